@@ -5,7 +5,7 @@ import pandas as pd
 import pvlib
 import pytest
 
-from recon.geo.sun import SunPosition, refraction_deg, sun_position
+from recon.geo.sun import SunPosition, refraction_deg, sun_position, utc_at_elevation
 from recon.model.geo import LatLon
 
 PLACES = [(45.0, -93.0), (-33.0, 18.0), (66.0, 25.0), (0.0, 0.0), (20.0, 179.9)]
@@ -56,3 +56,21 @@ def test_the_direction_to_the_sun_is_east_north_up(
 ) -> None:
     found = SunPosition(azimuth_deg, elevation_deg, 1.0).toward_enu
     np.testing.assert_allclose(found, toward_enu, atol=1e-12)
+
+
+@pytest.mark.parametrize("place", [LatLon(41.9, -93.6), LatLon(-33.0, 18.0), LatLon(20.0, 179.9)])
+@pytest.mark.parametrize("elevation_deg", [5.0, 25.0])
+@pytest.mark.parametrize("is_rising", [True, False])
+def test_the_time_of_an_elevation(place: LatLon, elevation_deg: float, is_rising: bool) -> None:
+    near_utc_s = pd.Timestamp("2025-06-20T16:00Z").timestamp()
+    at_s = utc_at_elevation(place, near_utc_s, elevation_deg, is_rising=is_rising)
+    sun = sun_position(place, at_s)
+    assert sun.elevation_deg == pytest.approx(elevation_deg, abs=1e-4)
+    assert (sun.azimuth_deg < 180.0) is is_rising
+    assert abs(at_s - near_utc_s) < 24 * 3600.0
+
+
+def test_an_elevation_that_the_sun_does_not_reach_is_refused() -> None:
+    near_utc_s = pd.Timestamp("2025-12-21T18:00Z").timestamp()
+    with pytest.raises(ValueError, match=r"to 24\.\d degrees, as the sun has on that day, got 60"):
+        utc_at_elevation(LatLon(41.9, -93.6), near_utc_s, 60.0, is_rising=True)

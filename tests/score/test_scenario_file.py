@@ -33,7 +33,17 @@ EXPECTED = {
     "l-shaped-5ha",
     "holed-11ha",
     "large-60ha",
+    "starts-in-shade",
+    "low-sun",
+    "auto-exposure-hard",
 }
+
+
+WITHOUT = "radius_m = 160.0\n"
+
+
+def with_conditions(line: str) -> str:
+    return f"{WITHOUT}[conditions]\n{line}\n"
 
 
 def fault_of(folder: Path, old: str, new: str) -> str:
@@ -116,7 +126,29 @@ def test_every_registered_method_is_accepted(tmp_path: Path, kind: str, name: st
         ("[200.0, 0.0],\n    [200.0, 150.0]", "[200.0, 150.0],\n    [200.0, 0.0]", "cannot be sur"),
         ('"pilot-takes:1:40:30"', '"gremlins"', "faults[0]: fault 'gremlins': expected one of"),
         ('"pilot-takes:1:40:30"', '"pilot-takes:7"', "faults[0]: expected a vehicle of SIM-1, S"),
-        ("radius_m = 160.0", "radius_m = 160.0\nperiod_s = 3", "expected 1 or 2 or 5, got 3"),
+        (
+            WITHOUT,
+            with_conditions("period_s = 300"),
+            "conditions.period_s: expected 0.2 to 60, got",
+        ),
+        (WITHOUT, with_conditions("hot_spot = [0.6, 0.2]"), "expected the lower value first, got"),
+        (
+            WITHOUT,
+            with_conditions("hot_spot = true"),
+            "hot_spot: expected a number or [lowest, high",
+        ),
+        (
+            WITHOUT,
+            with_conditions("hot_spot = [1.0]"),
+            "hot_spot: expected a number or [lowest, high",
+        ),
+        (WITHOUT, with_conditions("exposure_locked = 1"), "expected true or false, got 1"),
+        (
+            WITHOUT,
+            with_conditions("hotspot = 1"),
+            "conditions: expected only the keys sun_elevation",
+        ),
+        (WITHOUT, with_conditions("sun_elevation_deg = 80"), "as the sun has on that day, got 80"),
         (
             "speed_10m_mps = 4.0",
             "speed_10m_mps = 50.0",

@@ -181,8 +181,9 @@ def test_a_fault_can_strike_the_imager_alone(tmp_path: Path) -> None:
 
 
 def test_relief_is_rendered_only_where_the_scenario_has_it(tmp_path: Path) -> None:
-    flat = simulation_of(small(tmp_path), 1)
-    text = SMALL.replace("ground_altitude_m = 280.0", "ground_altitude_m = 280.0\nrelief_m = 6.0")
-    rolling = simulation_of(small(tmp_path, text), 1)
+    flat, rolling = (
+        simulation_of(small(tmp_path, f"{SMALL}[conditions]\nrelief_m = {height_m}\n"), 1)
+        for height_m in (0.0, 6.0)
+    )
     sources = [config.imager.source for config in (flat, rolling) if config.imager is not None]
     assert [getattr(source, "relief", None) is None for source in sources] == [True, False]

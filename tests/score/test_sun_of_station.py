@@ -8,7 +8,7 @@ import pytest
 from tests.score.scenes import SMALL, small
 
 from recon.score import StationRun
-from recon.score.simulation import sky_of
+from recon.score.scenario_conditions import sky_of
 from recon.site import Site
 
 START = "start_utc = 2025-06-20T16:00:00Z"

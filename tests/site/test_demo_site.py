@@ -142,13 +142,17 @@ def test_every_vehicle_of_the_demonstration_has_a_profile_that_can_fly_missions(
         assert (profile.camera_interval_s is None) == (profile.serial == IMAGER_SERIAL)
 
 
-def test_the_imager_sees_the_whole_ground_image() -> None:
+def test_the_imager_sees_the_ground_up_to_66_degrees() -> None:
     site = load_site(demo_site_folder())
     assert site.imager is not None
     assert site.ground_grid is not None
     projector = GroundProjector(site.ground_grid, site.imager.camera, site.imager.image_circle)
     grey = np.full((720, 1280, 3), 128, np.uint8)
     _, valid = projector.lay_pixels(grey, site.imager.solution.pose)
-    assert valid.all()
     assert valid.shape == (512, 512)
+    from_middle_m = np.hypot(*(np.mgrid[:512, :512] - 255.5))
+    # A cell counts when the pixels around its centre are in the circle as well.
+    seen_m = 120.0 * np.tan(np.radians(66.0))
+    assert valid[from_middle_m < seen_m - 8.0].all()
+    assert not valid[from_middle_m > seen_m + 4.0].any()
     assert find_image_circle(grey, site.imager.camera) is None

@@ -15,6 +15,7 @@ from recon.cli.run import HAS_GUARD, announce, console_folder, guard_port
 from recon.cli.scripted_operator import fly_surveys
 from recon.model.errors import ReconError
 from recon.score import Scenario, ScenarioError, load_scenario
+from recon.score.scenario_conditions import sky_of
 from recon.station.audit.start import default_place
 from recon.station.kernel.run import RunConfig, Started, run
 
@@ -58,7 +59,7 @@ def demo_command(
         # No state of an earlier run is recovered: its drones no longer exist.
         audit=default_place(link_port=0),
         console=console_folder(),
-        sun_time_ahead_s=played.sky.sun.start_utc_s - time(),
+        sun_time_ahead_s=sky_of(played, seed).settings.sun.start_utc_s - time(),
     )
     run_in_loop(_Demo(config, path, played, seed, survey).run())
 

@@ -2,6 +2,7 @@
 
 import sys
 from dataclasses import replace
+from enum import Enum
 from pathlib import Path
 from time import process_time
 from typing import Annotated
@@ -10,6 +11,7 @@ import typer
 
 from recon.model.errors import ReconError
 from recon.score import Methods, RunScore, Scenario, ScenarioError, load_scenario, run, tables
+from recon.score.scenario_conditions import with_exposure
 from recon.score.scenario_schema import METHOD_NAMES
 
 MOST_SEEDS = 10_000
@@ -20,6 +22,18 @@ FirstOption = Annotated[int, typer.Option(help="Seed of the first run; counts up
 MethodOption = Annotated[str | None, typer.Option(help="Overrides the scenario's method.")]
 
 
+class ExposureChoice(Enum):
+    """Exposure and white balance of the imaging drone's camera."""
+
+    AUTO = "auto"
+    LOCKED = "locked"
+
+
+ExposureOption = Annotated[
+    ExposureChoice | None, typer.Option(help="Overrides the scenario's exposure and white balance.")
+]
+
+
 def score_command(
     scenario: ScenarioArgument,
     seeds: SeedsOption = 5,
@@ -27,6 +41,7 @@ def score_command(
     planner: MethodOption = None,
     detection: MethodOption = None,
     forecast: MethodOption = None,
+    exposure: ExposureOption = None,
 ) -> None:
     """Fly a scenario by the whole station in virtual time and score its methods."""
     try:
@@ -36,6 +51,8 @@ def score_command(
                 f"and {first_seed}"
             )
         loaded = with_methods(load_scenario(scenario), planner, detection, forecast)
+        if exposure is not None:
+            loaded = with_exposure(loaded, exposure is ExposureChoice.LOCKED)
     except ReconError as problem:
         print(f"recon score: {problem}", file=sys.stderr)
         raise typer.Exit(2) from None

@@ -17,7 +17,7 @@ from recon.geo.local_frame import (
 )
 from recon.geo.path import DEFAULT_CHORD_ERROR_M, Path, corner_hulls, rounded_path, straight_path
 from recon.geo.polygon import Box, Footprints, Polygon, region_fault, thinned_ring
-from recon.geo.sun import SunPosition, sun_position
+from recon.geo.sun import SunPosition, sun_position, utc_at_elevation
 from recon.geo.surface import Surface
 
 __all__ = [
@@ -43,4 +43,5 @@ __all__ = [
     "sun_position",
     "tangent_plane",
     "thinned_ring",
+    "utc_at_elevation",
 ]

@@ -17,6 +17,8 @@ J2000_UNIX_S = 946_728_000.0
 """2000-01-01 12:00 UTC."""
 DAY_S = 86_400.0
 POSITIONS_KEPT = 16_384
+HALVINGS = 30
+"""Of half a day: to a tenth of a millisecond."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +66,40 @@ def sun_position(place: LatLon, utc_s: float) -> SunPosition:
     return SunPosition(
         degrees(atan2(east, north)) % 360.0, elevation + refraction_deg(elevation), sun.distance_au
     )
+
+
+def utc_at_elevation(
+    place: LatLon, near_utc_s: float, elevation_deg: float, *, is_rising: bool
+) -> float:
+    """Return when the sun stands at an elevation, before or after the noon nearest to a time.
+
+    Raises `ValueError` where the sun does not reach it on that day.
+    """
+    noon_s = _noon_utc_s(place, near_utc_s)
+    below_s, above_s = noon_s - (0.5 * DAY_S if is_rising else -0.5 * DAY_S), noon_s
+    lowest, highest = (sun_position(place, at_s).elevation_deg for at_s in (below_s, above_s))
+    if not lowest <= elevation_deg <= highest:
+        raise ValueError(
+            f"expected an elevation of {lowest:.1f} to {highest:.1f} degrees, as the sun has on"
+            f" that day, got {elevation_deg:g}"
+        )
+    # From midnight to noon the sun only rises, from noon to midnight it only sinks.
+    for _ in range(HALVINGS):
+        middle_s = (below_s + above_s) / 2.0
+        if sun_position(place, middle_s).elevation_deg < elevation_deg:
+            below_s = middle_s
+        else:
+            above_s = middle_s
+    return above_s
+
+
+def _noon_utc_s(place: LatLon, near_utc_s: float) -> float:
+    """Return when the sun is highest, within a minute, on the day around a time."""
+    mean_noon_s = 0.5 * DAY_S - place.longitude_deg / 360.0 * DAY_S
+    mean_noon_s += round((near_utc_s - mean_noon_s) / DAY_S) * DAY_S
+    # True noon is within 17 minutes of the mean one (equation of time).
+    times_s = [mean_noon_s + 60.0 * minute for minute in range(-20, 21)]
+    return max(times_s, key=lambda at_s: sun_position(place, at_s).elevation_deg)
 
 
 def refraction_deg(elevation_deg: float) -> float:

@@ -17,10 +17,10 @@ from recon.model.imagery import CameraPose, GroundImage, RgbImage
 from recon.model.shade import MaskMap, ShadeMap
 from recon.model.vehicle import VehicleProfile
 from recon.score.scenario import IDEAL, NO_FORECAST, Scenario
+from recon.score.scenario_conditions import conditions_of
 from recon.score.score_grid import cell_centres, field_angle_rad
 from recon.score.simulation import simulation_of
 from recon.score.true_frames import TrueFrames, ground_seen
-from recon.sim.app.camera_feed import FeedSettings, ImageFormat
 from recon.sim.camera.field import FieldRenderer
 from recon.sim.camera.frames import CameraView
 from recon.sim.fleet import IMAGER_SERIAL, SimulationConfig
@@ -59,8 +59,7 @@ def renderer_of(scenario: Scenario, seed: int) -> FieldRenderer:
 
 def config_of(scenario: Scenario, seed: int) -> SimulationConfig:
     """Return the scenario's simulation, with rendered frames only where they are read."""
-    feed = FeedSettings(1.0 / scenario.imager.period_s, ImageFormat.RAW)
-    config = simulation_of(scenario, seed, feed)
+    config = simulation_of(scenario, seed, conditions_of(scenario, seed).feed)
     if scenario.methods.detection != IDEAL or config.imager is None:
         return config
     return replace(config, imager=replace(config.imager, source=Placeholders()))

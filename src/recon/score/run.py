@@ -21,11 +21,11 @@ from recon.score.run_score import (
     time_to_share,
 )
 from recon.score.scenario import Scenario
+from recon.score.scenario_conditions import sky_of
 from recon.score.scenario_schema import ScenarioError
 from recon.score.scripted_operator import ScriptedOperator
 from recon.score.settings import SCORE
 from recon.score.shade_scoring import ImagerScore, ShadeScoring
-from recon.score.simulation import sky_of
 from recon.score.station_operator import SURVEY_ID, StationOperator
 from recon.score.true_frames import TrueFrames
 from recon.score.true_paths import (

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from recon.model.geo import LocalFrame
 from recon.model.survey import Survey
 from recon.sim.app.faults import InjectedFault, RandomFault
-from recon.sim.world import LightSettings, SkySettings, WindSettings
+from recon.sim.conditions import ConditionRanges
+from recon.sim.world import SkySettings, WindSettings
 from recon.site import Site
 
 IDEAL, NO_FORECAST = "ideal", "none"
@@ -39,8 +40,6 @@ class ScenarioImager:
     over_m: EastNorth
     height_m: float
     radius_m: float
-    period_s: float
-    """Between two shade maps."""
     cell_m: float
 
 
@@ -63,7 +62,10 @@ class Methods:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Scenario:
-    """Everything that a run needs beside its seed, which replaces `sky.seed` and `wind.seed`."""
+    """Everything that a run needs beside its seed, which replaces `sky.seed` and `wind.seed`.
+
+    The seed also draws the sun's elevation, light, camera and link from `conditions`.
+    """
 
     name: str
     about: str
@@ -72,11 +74,10 @@ class Scenario:
     fleet: ScenarioFleet
     imager: ScenarioImager
     sky: SkySettings
-    light: LightSettings
     wind: WindSettings
-    relief_m: float
-    """Standard deviation of the rendered land's heights. The station assumes flat ground on a site
-    without an elevation model; drones keep their height above takeoff in any case."""
+    conditions: ConditionRanges
+    """Relief is rendered only: the station assumes flat ground on a site without an elevation
+    model, and drones keep their height above takeoff in any case."""
     faults: tuple[InjectedFault, ...]
     chances: tuple[RandomFault, ...]
     """Random faults, drawn from the run's seed."""

@@ -14,6 +14,7 @@ from recon.model.airspace import Region
 from recon.model.geo import GeoPoint, LatLon
 from recon.model.survey import Survey, SurveyBudget, SurveyCamera
 from recon.score.scenario import Methods, Scenario
+from recon.score.scenario_conditions import ranges_of, with_exposure
 from recon.score.scenario_schema import (
     CloudsTable,
     ScenarioError,
@@ -28,7 +29,6 @@ from recon.sim.app.faults import InjectedFault, RandomFault, parse_fault
 from recon.sim.fleet import IMAGER_SERIAL
 from recon.sim.world import (
     LayerSettings,
-    LightSettings,
     SkySettings,
     SunSettings,
     WindSettings,
@@ -94,17 +94,16 @@ def _scenario(path: Path, file: ScenarioFile, errors: ScenarioErrors) -> Scenari
     survey = _survey(path.stem, file.task, file.methods.planner)
     place = staged(path, file, survey, errors)
     script = _script(path, file, errors)
-    origin = place.frame.origin
+    sky = _sky(file, place.frame.origin, errors)
     scenario = Scenario(
         name=path.stem,
         about=file.about,
         site=place.site,
         fleet=place.fleet,
         imager=place.imager,
-        sky=_sky(file, origin, errors),
-        light=LightSettings(altitude_m=origin.ellipsoid_height_m),
+        sky=sky,
         wind=_wind(file, errors),
-        relief_m=file.site.relief_m,
+        conditions=ranges_of(file.conditions, sky.sun, errors),
         faults=(*_faults(file, errors), *script.faults),
         chances=script.chances,
         survey=survey,
@@ -115,7 +114,7 @@ def _scenario(path: Path, file: ScenarioFile, errors: ScenarioErrors) -> Scenari
     if not isinstance(plan, SurveyPlan):
         raise errors.error(f"expected a survey that can be flown, got: {plan.reason}", "task")
     _check_faults(scenario, errors)
-    return scenario
+    return with_exposure(scenario, scenario.conditions.exposure_locked)
 
 
 def _faults(file: ScenarioFile, errors: ScenarioErrors) -> tuple[InjectedFault, ...]:

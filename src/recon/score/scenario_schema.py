@@ -57,7 +57,6 @@ class ScenarioSiteTable(Table, frozen=True):
     latitude_deg: Annotated[float, Meta(ge=-89.0, le=89.0)] | None = None
     longitude_deg: Annotated[float, Meta(ge=-180.0, le=180.0)] | None = None
     ground_altitude_m: Annotated[float, Meta(ge=-500.0, le=6000.0)] | None = None
-    relief_m: Annotated[float, Meta(ge=0.0, le=60.0)] = 0.0
 
 
 class TaskTable(Table, frozen=True):
@@ -98,7 +97,6 @@ class ScenarioImagerTable(Table, frozen=True):
     over_m: PlacePair | None = None
     height_m: Annotated[float, Meta(ge=10.0, le=500.0)] | None = None
     radius_m: Annotated[float, Meta(ge=20.0, le=2000.0)] = 300.0
-    period_s: Literal[1, 2, 5] = 5
     cell_m: Annotated[float, Meta(ge=1.0, le=50.0)] = 4.0
 
 
@@ -155,6 +153,8 @@ class ScenarioFile(Table, frozen=True):
     methods: MethodsTable = MethodsTable()
     clouds: list[CloudsTable] = []
     wind: WindTable = WindTable()
+    conditions: dict[str, object] = {}
+    """Checked by `scenario_conditions.py`: the keys are the fields of `ConditionRanges`."""
     faults: list[str] = []
     fault_file: Annotated[str, Meta(min_length=1, description="a file's name")] | None = None
 

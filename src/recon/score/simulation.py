@@ -5,15 +5,14 @@ from typing import TypeVar
 
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.score.scenario import Scenario
+from recon.score.scenario_conditions import conditions_of, sky_of
 from recon.sim.app.camera_feed import FeedSettings
 from recon.sim.app.faults import InjectedFault, RandomFault
 from recon.sim.app.telemetry import FIELD_SENSORS
-from recon.sim.camera import CameraSettings
 from recon.sim.camera.field import FieldRenderer
 from recon.sim.camera.replay import rig_over
 from recon.sim.camera.rig import CameraRig
 from recon.sim.fleet import IMAGER_SERIAL, Airborne, ImagerSetup, SimulationConfig
-from recon.sim.world import Sky
 from recon.sim.world.relief import Relief, ReliefSettings
 from recon.site import Imager, Site
 
@@ -34,14 +33,15 @@ def simulation_of(
     fleet = scenario.fleet
     frame, imager = scenario.frame, site.imager
     assert imager is not None  # or it would not have been read
-    rig = rig_of(frame, imager)
+    rig, conditions = rig_of(frame, imager), conditions_of(scenario, seed)
     source = FieldRenderer(
         rig.camera,
         imager.image_circle,
         seed,
         sky_of(scenario, seed),
-        CameraSettings(seed),
-        _relief(scenario, seed),
+        conditions.camera,
+        _relief(conditions.relief_m, seed),
+        conditions.light,
     )
     silent = FeedSettings(starts_on=False)
     return SimulationConfig(
@@ -52,7 +52,7 @@ def simulation_of(
         endurance_s=fleet.endurance_s,
         endurances_s={IMAGER_SERIAL: IMAGER_ENDURANCE_S},
         battery_swap_s=fleet.swap_s,
-        sensors=FIELD_SENSORS,
+        sensors=replace(FIELD_SENSORS, yaw_error_deg=conditions.yaw_error_deg),
         wind=replace(scenario.wind, seed=seed),
         seed=seed,
         faults=tuple(_by_serial(fault, fleet.serials) for fault in scenario.faults),
@@ -73,11 +73,6 @@ def go_home_heights_of(site: Site) -> dict[str, float]:
     return {serial: height_m for serial, height_m in heights_m.items() if height_m is not None}
 
 
-def sky_of(scenario: Scenario, seed: int) -> Sky:
-    """Return the sky for a seed."""
-    return Sky(replace(scenario.sky, seed=seed))
-
-
 def rig_of(frame: LocalFrame, imager: Imager) -> CameraRig:
     """Return the imaging drone's camera in a site's frame."""
     pose = imager.solution.pose
@@ -86,10 +81,8 @@ def rig_of(frame: LocalFrame, imager: Imager) -> CameraRig:
     return CameraRig(imager.camera, frame, pose, imager.marked_frame)
 
 
-def _relief(scenario: Scenario, seed: int) -> Relief | None:
-    if scenario.relief_m == 0.0:
-        return None
-    return Relief(ReliefSettings(seed, scenario.relief_m))
+def _relief(height_m: float, seed: int) -> Relief | None:
+    return None if height_m == 0.0 else Relief(ReliefSettings(seed, height_m))
 
 
 def _by_serial(fault: FaultOrChance, serials: tuple[str, ...]) -> FaultOrChance:

@@ -25,7 +25,7 @@ from recon.site import Imager, Site, SiteError, load_site
 from recon.site.demo_site import (
     CENTRE_COL_PX,
     CENTRE_ROW_PX,
-    RADIUS_AT_HALF_FIELD_PX,
+    IMAGE_CIRCLE_RADIUS_PX,
     demo_camera,
 )
 from recon.site.site import Layers
@@ -117,7 +117,7 @@ def _generated_imager(frame: LocalFrame, imager: ScenarioImager) -> Imager:
         control_points_image_size_px=(camera.cols, camera.rows),
         solution=PoseSolution(pose, 0.0, (), imager.height_m, 0.0, 0.0, 0.0),
         marked_frame=marked,
-        image_circle=ImageCircle(CENTRE_COL_PX, CENTRE_ROW_PX, RADIUS_AT_HALF_FIELD_PX),
+        image_circle=ImageCircle(CENTRE_COL_PX, CENTRE_ROW_PX, IMAGE_CIRCLE_RADIUS_PX),
     )
 
 
@@ -268,6 +268,4 @@ def _imager(
 ) -> ScenarioImager:
     over_m = beneath_m if table.over_m is None else (table.over_m[0], table.over_m[1])
     over_ground_m = height_m if table.height_m is None else table.height_m
-    return ScenarioImager(
-        over_m, over_ground_m, table.radius_m, float(table.period_s), table.cell_m
-    )
+    return ScenarioImager(over_m, over_ground_m, table.radius_m, table.cell_m)

@@ -1,7 +1,8 @@
 """The demonstration's site: synthetic, so that a first run needs no data.
 
-The lens is an equisolid-angle fisheye of 170 degrees; the imaging drone hovers 120 m over farmland
-and looks straight down, the top of the frame at its yaw. Running this module writes `demo/`:
+The lens is an equisolid-angle fisheye that lights the sensor up to 66 degrees from its axis; the
+imaging drone hovers 120 m over farmland and looks straight down, the top of the frame at its yaw.
+Running this module writes `demo/`:
 
     python -m recon.site.demo_site
 """
@@ -146,6 +147,10 @@ ROWS, COLS = 720, 1280
 CENTRE_ROW_PX, CENTRE_COL_PX = 361.2, 637.8
 HALF_FIELD_RAD = float(np.deg2rad(85.0))
 RADIUS_AT_HALF_FIELD_PX = 340.0
+FOCAL_PX = RADIUS_AT_HALF_FIELD_PX / (2.0 * np.sin(HALF_FIELD_RAD / 2.0))
+IMAGE_CIRCLE_RAD = float(np.deg2rad(66.0))
+"""The lens lights the sensor up to this angle, as the lenses of real frames do."""
+IMAGE_CIRCLE_RADIUS_PX = round(float(2.0 * FOCAL_PX * np.sin(IMAGE_CIRCLE_RAD / 2.0)), 1)
 INVERSE_DEGREE = 9
 
 MARKED_SIZE_PX = (3840, 2160)
@@ -180,11 +185,10 @@ def demo_site_files() -> dict[str, str]:
 
 def demo_camera() -> OmnidirectionalCamera:
     """Return the synthetic lens: r = 2 f sin(angle / 2), fitted by the omnidirectional model."""
-    focal_px = RADIUS_AT_HALF_FIELD_PX / (2.0 * np.sin(HALF_FIELD_RAD / 2.0))
     angles = np.linspace(0.0, HALF_FIELD_RAD + 0.05, 400)
     sine = np.sin(angles / 2.0)
-    radii = 2.0 * focal_px * sine
-    depths = focal_px * (1.0 - 2.0 * sine**2) / np.sqrt(1.0 - sine**2)
+    radii = 2.0 * FOCAL_PX * sine
+    depths = FOCAL_PX * (1.0 - 2.0 * sine**2) / np.sqrt(1.0 - sine**2)
     # The model's usual form: no linear term.
     powers = np.array([0, 2, 3, 4])
     scaled, *_ = np.linalg.lstsq((radii / radii[-1])[:, np.newaxis] ** powers, -depths, rcond=None)
@@ -267,7 +271,7 @@ roll_deg = 0.0
 [imager.image_circle]
 col_px = {CENTRE_COL_PX}
 row_px = {CENTRE_ROW_PX}
-radius_px = {RADIUS_AT_HALF_FIELD_PX}
+radius_px = {IMAGE_CIRCLE_RADIUS_PX}
 
 [ground_image]
 width_m = 512.0

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from recon.sim.camera import ExposureSettings
-from recon.sim.camera.development import LARGEST_DEVIATION, exposure_stops, white_balance
+from recon.sim.camera.exposure import LARGEST_DEVIATION, exposure_stops, white_balance
 from recon.sim.world import LayerSettings, Sky, SkySettings
 from recon.sim.world.light import metered_light
 

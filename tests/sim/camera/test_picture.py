@@ -9,9 +9,9 @@ import pytest
 from recon.geo.sun import SunPosition
 from recon.model.imagery import RgbImage
 from recon.sim.camera import CameraSettings, HoverSettings, ImageSensorSettings, LensSettings
-from recon.sim.camera.development import light_of_value
 from recon.sim.camera.field import FieldRenderer
 from recon.sim.camera.frames import CameraView
+from recon.sim.camera.tone import light_of_value
 from recon.sim.errors import SimulationError
 from recon.sim.land import land_tiles as tiles_module
 from recon.sim.land.farmland import lay_out

@@ -7,6 +7,7 @@ from random import Random
 from recon import wire
 from recon.geo import TangentPlane, tangent_plane
 from recon.model.geo import GeoPoint, LocalFrame
+from recon.model.units import wrap_degrees
 from recon.model.vehicle import CameraState
 from recon.sim.app.camera_feed import CameraFeed
 from recon.sim.flight.aircraft import Aircraft
@@ -32,6 +33,8 @@ class TelemetrySensorSettings:
     height_drift_m: float = 0.0
     """Slow part: air pressure, and the barometer warming up."""
     height_drift_time_s: float = 900.0
+    yaw_error_deg: float = 0.0
+    """Reported minus true yaw: the compass near metal and motors, for a whole flight."""
 
 
 FIELD_SENSORS = TelemetrySensorSettings(position_drift_m=0.7, height_drift_m=0.8)
@@ -139,7 +142,7 @@ class TelemetrySensors:
             velocity_north_mps=motion.velocity_north_mps,
             velocity_east_mps=motion.velocity_east_mps,
             velocity_down_mps=-motion.velocity_up_mps,
-            yaw_deg=motion.yaw_deg,
+            yaw_deg=wrap_degrees(motion.yaw_deg + self.settings.yaw_error_deg),
             pitch_deg=motion.pitch_deg,
             roll_deg=motion.roll_deg,
         )

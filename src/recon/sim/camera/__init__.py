@@ -11,6 +11,7 @@ from recon.sim.camera.settings import (
     HoverSettings,
     ImageSensorSettings,
     LensSettings,
+    ToneSettings,
 )
 
 __all__ = [
@@ -19,4 +20,5 @@ __all__ = [
     "HoverSettings",
     "ImageSensorSettings",
     "LensSettings",
+    "ToneSettings",
 ]

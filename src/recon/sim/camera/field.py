@@ -13,17 +13,21 @@ import numpy.typing as npt
 
 from recon.camera import ImageCircle, OmnidirectionalCamera
 from recon.model.imagery import CameraPose, RgbImage
-from recon.sim.camera.development import Scene, develop, exposure_stops, white_balance
+from recon.sim.camera.development import Scene, develop
+from recon.sim.camera.exposure import GREEN, exposure_stops, highlight_gain, white_balance
 from recon.sim.camera.frames import CameraView
 from recon.sim.camera.lens import LATTICE_PX, GroundRays, Lens, ground_rays
 from recon.sim.camera.rig import true_pose
 from recon.sim.camera.settings import CameraSettings
 from recon.sim.errors import FrameSourceError
 from recon.sim.land.land_tiles import CELLS_M, LandImage, LandSquare, land_of
-from recon.sim.world import Sky, SkySettings
+from recon.sim.world import LightSettings, Sky, SkySettings
 from recon.sim.world.keyframes import FloatArray, FloatImage
 from recon.sim.world.light import beam_share, light_under, metered_light
 from recon.sim.world.relief import Relief
+
+HIGHLIGHTS_LAND_LEVEL = 2
+"""Of 4 m: a road still covers its pixels, and a square covers kilometres."""
 
 
 def _clear_sky() -> Sky:
@@ -43,6 +47,8 @@ class FieldRenderer:
     sky: Sky = field(default_factory=_clear_sky)
     imager: CameraSettings = field(default_factory=CameraSettings)
     relief: Relief | None = None
+    light: LightSettings = field(default_factory=LightSettings)
+    _highlight_gain: float | None = field(default=None, init=False)
     _lens: Lens | None = field(default=None, init=False)
 
     def render(self, view: CameraView) -> RgbImage:
@@ -50,7 +56,7 @@ class FieldRenderer:
         pose, time_s = self.true_pose(view), view.elapsed_s
         lens, land, sun = self.lens, land_of(self.seed), self.sky.sun_at(time_s)
         rays = ground_rays(lens, pose, self.relief)
-        light = light_under(self.sky, time_s)
+        light = light_under(self.sky, time_s, self.light)
         east_m, north_m = (float(part) for part in pose.position_enu_m[:2])
         scene = Scene(
             rays,
@@ -77,7 +83,7 @@ class FieldRenderer:
         return true_pose(view.pose, self.imager.hover, self.imager.seed, view.elapsed_s)
 
     def gains(self, view: CameraView) -> FloatArray:
-        """Return exposure times white balance of a view, factors (3,), 1 in full sun."""
+        """Return exposure, white balance and tint of a view, factors (3,)."""
         return self._gains(self.true_pose(view), view.elapsed_s)
 
     @property
@@ -90,10 +96,29 @@ class FieldRenderer:
     def _gains(self, pose: CameraPose, time_s: float) -> FloatArray:
         exposure, seed = self.imager.exposure, self.imager.seed
         stops = exposure_stops(
-            exposure, seed, pose, time_s, lambda e, n, t: metered_light(self.sky, e, n, t)
+            exposure,
+            seed,
+            pose,
+            time_s,
+            lambda e, n, t: metered_light(self.sky, e, n, t, self.light),
         )
-        gains: FloatArray = 2.0**stops * white_balance(exposure, seed, time_s)
+        base = self._base_gain() * np.array(self.imager.tint)
+        gains: FloatArray = base * 2.0**stops * white_balance(exposure, seed, time_s)
         return gains
+
+    def _base_gain(self) -> float:
+        """Return the gain for the highlights; the first call draws a square of land."""
+        exposure = self.imager.exposure
+        if exposure.highlight_level is None:
+            return 1.0
+        if self._highlight_gain is None:
+            sun, light = self.sky.sun_at(0.0), light_under(self.sky, 0.0, self.light)
+            land = land_of(self.seed).square(HIGHLIGHTS_LAND_LEVEL, 0.0, 0.0, sun)
+            in_sun = float(light.beam[GREEN] + light.sky[GREEN])
+            self._highlight_gain = highlight_gain(
+                exposure.highlight_level, self.imager.tone, exposure.follows, land, in_sun
+            )
+        return self._highlight_gain
 
 
 Squares = Callable[[int], LandSquare]

@@ -10,11 +10,13 @@ import numpy as np
 from recon.camera import ImageCircle, OmnidirectionalCamera
 from recon.model.imagery import CameraPose
 from recon.sim.camera.settings import LensSettings
-from recon.sim.world.keyframes import FloatImage
+from recon.sim.world.keyframes import FloatArray, FloatImage
 from recon.sim.world.relief import Relief
 
 LATTICE_PX = 4
 """Ground points are computed for blocks of this many pixels and interpolated."""
+RIM_COLOUR_POWER = 3.0
+"""Of the way to the rim: in real frames of this lens class the colour changes mostly near it."""
 
 
 @dataclass(frozen=True)
@@ -55,21 +57,45 @@ class Lens:
         return 1.0 / abs(float(self.camera.profile.depth_px(np.zeros(1))[0]))
 
     @cached_property
+    def transmission(self) -> tuple[FloatImage, FloatImage, FloatImage]:
+        """Relative light over the window in red, green and blue, 0 outside the image circle.
+
+        Towards the rim it falls, and red falls more than blue.
+        """
+        # Red loses what blue gains: the lens's colour leaves the brightness as it is.
+        bluer = np.exp(
+            0.5 * np.log(self.settings.rim_blue_over_red) * self._share**RIM_COLOUR_POWER
+        )
+        red, blue = self.vignette / bluer, self.vignette * bluer
+        return red.astype(np.float32), self.vignette, blue.astype(np.float32)
+
+    @cached_property
     def vignette(self) -> FloatImage:
         """Relative light over the window: falls towards the rim, 0 outside the image circle."""
+        circle, soft_px = self._circle, self.settings.soft_rim_px
+        rim = (circle.radius_px + 0.5 * soft_px - self._radius_px) / soft_px
+        light = np.clip(rim, 0.0, 1.0) * (1.0 - self.settings.rim_falloff * self._share**4)
+        return np.clip(light, 0.0, 1.0).astype(np.float32)
+
+    @cached_property
+    def _circle(self) -> ImageCircle:
         camera = self.camera
-        rows, cols = self.window
-        col, row = np.meshgrid(np.arange(cols.start, cols.stop), np.arange(rows.start, rows.stop))
-        circle = self.image_circle or ImageCircle(
+        return self.image_circle or ImageCircle(
             camera.centre_col_px, camera.centre_row_px, float(np.hypot(camera.rows, camera.cols))
         )
-        radius = np.hypot(col - circle.centre_col_px, row - circle.centre_row_px)
-        rim = (
-            circle.radius_px + 0.5 * self.settings.soft_rim_px - radius
-        ) / self.settings.soft_rim_px
-        share = radius / min(circle.radius_px, max(camera.rows, camera.cols) / 2.0)
-        light = np.clip(rim, 0.0, 1.0) * (1.0 - self.settings.rim_falloff * share**4)
-        return np.clip(light, 0.0, 1.0).astype(np.float32)
+
+    @cached_property
+    def _radius_px(self) -> FloatArray:
+        """Distance of the window's pixels from the image circle's centre."""
+        rows, cols = self.window
+        col, row = np.meshgrid(np.arange(cols.start, cols.stop), np.arange(rows.start, rows.stop))
+        return np.hypot(col - self._circle.centre_col_px, row - self._circle.centre_row_px)
+
+    @cached_property
+    def _share(self) -> FloatArray:
+        """The same, of the way to the rim."""
+        camera = self.camera
+        return self._radius_px / min(self._circle.radius_px, max(camera.rows, camera.cols) / 2.0)
 
     @cached_property
     def is_lit(self) -> FloatImage:

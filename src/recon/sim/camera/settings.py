@@ -1,6 +1,6 @@
 """Settings of the imaging drone's camera, each with its reason."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Self
 
 from recon.sim.world.settings import expect
@@ -34,16 +34,19 @@ class HoverSettings:
 
 @dataclass(frozen=True, slots=True)
 class LensSettings:
-    """Vignetting of the lens."""
+    """Vignetting and colour of the lens."""
 
     rim_falloff: float = 0.42
     """Share of light lost at the image circle's rim; grows with the radius to the fourth."""
     soft_rim_px: float = 1.0
     """Width over which the edge of the image circle fades."""
+    rim_blue_over_red: float = 1.0
+    """How many times more blue than red light passes at the rim than in the middle."""
 
     def __post_init__(self) -> None:
         expect("lens: rim_falloff", self.rim_falloff, 0.0, 0.95)
         expect("lens: soft_rim_px", self.soft_rim_px, 0.5, 50.0)
+        expect("lens: rim_blue_over_red", self.rim_blue_over_red, 0.5, 3.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,14 +67,37 @@ class ExposureSettings:
     """Standard deviation of the gains of red and blue relative to green."""
     white_balance_s: float = 90.0
     """Time in which its correlation falls to 1/e: cameras adjust it slowly."""
+    highlight_level: float | None = None
+    """Pixel value, in green, of the brightest hundredth of the land in full sun: cameras expose for
+    the highlights. None: the land is as bright as it is drawn."""
 
     def __post_init__(self) -> None:
+        if self.highlight_level is not None:
+            expect("exposure: highlight_level", self.highlight_level, 1.0, 254.0)
         expect("exposure: follows", self.follows, 0.0, 1.0)
         expect("exposure: most_stops", self.most_stops, 0.0, 6.0)
         expect("exposure: drift_stops", self.drift_stops, 0.0, 2.0)
         expect("exposure: white_balance", self.white_balance, 0.0, 0.3)
         for name in ("lag_s", "drift_s", "white_balance_s"):
             expect(f"exposure: {name}", getattr(self, name), 0.1, 1e6)
+
+    def locked(self) -> Self:
+        """Return the settings with exposure and white balance as they were set on the ground."""
+        return replace(self, follows=0.0, drift_stops=0.0, white_balance=0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class ToneSettings:
+    """The tone curve, from light to pixel values."""
+
+    knee: float = 1.0
+    """Light, of white, above which highlights are compressed; 1: they are cut off at white."""
+    contrast: float = 0.0
+    """Strength of the S-shaped contrast, 0 to 1."""
+
+    def __post_init__(self) -> None:
+        expect("tone: knee", self.knee, 0.2, 1.0)
+        expect("tone: contrast", self.contrast, 0.0, 1.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,6 +123,9 @@ class CameraSettings:
     lens: LensSettings = field(default_factory=LensSettings)
     exposure: ExposureSettings = field(default_factory=ExposureSettings)
     sensor: ImageSensorSettings = field(default_factory=ImageSensorSettings)
+    tone: ToneSettings = field(default_factory=ToneSettings)
+    tint: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    """Gains of red, green and blue from the camera's white balance and the season's colours."""
     haze_m: float = 9_000.0
     """Distance at which contrast falls to 1/e; clear summer air (visibility about 30 km)."""
     hot_spot: float = 0.28
@@ -107,6 +136,8 @@ class CameraSettings:
     def __post_init__(self) -> None:
         expect("camera: seed", self.seed, 0, 2**63)
         expect("camera: haze_m", self.haze_m, 100.0, 1e12)
+        for gain in self.tint:
+            expect("camera: tint", gain, 0.2, 5.0)
         expect("camera: hot_spot", self.hot_spot, 0.0, 2.0)
         expect("camera: hot_spot_deg", self.hot_spot_deg, 0.1, 90.0)
 

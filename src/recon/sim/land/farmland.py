@@ -4,7 +4,7 @@ The land is described once (rectangles, lines, points in east-north metres) and 
 resolution, so that coarse rasters of the distance agree with the fine ones below the camera.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import pairwise
 
@@ -34,6 +34,10 @@ CROPS: tuple[tuple[str, Colour, float], ...] = (
 )
 """Name, colour (RGB, muted as seen from 100 m), share of plots; the rest is meadow."""
 MEADOW: Colour = (120, 130, 84)
+CROP_BRIGHTNESS, CROP_HUE = 0.10, 0.05
+"""Deviation of a year's crop colours: in brightness, and in red and blue, as shares. Stage and
+variety differ; the plots of a year have it in common."""
+PALETTE_STREAM = 9
 BARENESS = {"soil": 1.0, "stubble": 0.6, "maize": 0.25, "soybean": 0.25, "wheat": 0.3}
 """Share of bare soil visible between plants; 0.1 for crops not listed."""
 ROOFS: tuple[Colour, ...] = ((176, 178, 180), (134, 66, 54), (92, 94, 98), (188, 180, 164))
@@ -69,6 +73,7 @@ class Plot:
     patchiness: float
     bareness: float
     """Share of bare soil, 0 to 1: wet ground darkens by this share, as soil darkens most."""
+    crop: str
 
     @property
     def box_m(self) -> Box:
@@ -165,7 +170,7 @@ def lay_out(seed: int, half_width_m: float = 6_200.0) -> Farmland:
     yards, buildings = _farms(farms, roads_east, roads_north)
     trees = _beside(yards, grown)
     return Farmland(
-        tuple(plots),
+        _in_season(seed, plots),
         tuple(tracks),
         trees,
         creek,
@@ -268,7 +273,24 @@ def _plot(random: np.random.Generator, box: Box) -> Plot:
         rows_run_north=runs_north,
         patchiness=float(random.uniform(3.0, 9.0)),
         bareness=BARENESS.get(name, 0.1),
+        crop=name,
     )
+
+
+def _in_season(seed: int, plots: list[Plot]) -> tuple[Plot, ...]:
+    """Return the plots with the colours that their crops have in a seed's year."""
+    random = np.random.default_rng((seed, PALETTE_STREAM))
+    deviations = (CROP_HUE, 0.0, CROP_HUE)
+    shares = {
+        crop: np.exp(random.normal(0.0, CROP_BRIGHTNESS) + random.normal(0.0, deviations))
+        for crop in (*(name for name, _, _ in CROPS), "meadow")
+    }
+    return tuple(_tinted(plot, shares[plot.crop]) for plot in plots)
+
+
+def _tinted(plot: Plot, shares: FloatArray) -> Plot:
+    red, green, blue = (shares * plot.colour).tolist()
+    return replace(plot, colour=(red, green, blue))
 
 
 def _creek(random: np.random.Generator, half_width_m: float) -> FloatArray:

@@ -7,6 +7,7 @@ to the bit, whatever was asked before. Nothing here knows of aircraft, cameras o
 from recon.sim.world.settings import (
     LayerSettings,
     LightSettings,
+    ShadeColour,
     SkySettings,
     SunSettings,
     WindSettings,
@@ -18,6 +19,7 @@ from recon.sim.world.wind import Wind
 __all__ = [
     "LayerSettings",
     "LightSettings",
+    "ShadeColour",
     "Sky",
     "SkySettings",
     "SunSettings",

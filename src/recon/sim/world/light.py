@@ -117,7 +117,8 @@ def ground_light(
 ) -> GroundLight:
     """Return the light under broken clouds; its mean over colours is `ClearSkyLight.index`.
 
-    The light that clouds add is white.
+    The light that clouds add is white. With a shade colour in the settings, sun stays as bright and
+    shade has that share of it.
     """
     clear = clear_sky_light(sun, settings)
     strength = clear.global_w_m2 / reference_w_m2
@@ -125,6 +126,9 @@ def ground_light(
     blue_sky = clear.diffuse_share * np.array(SKY_COLOUR)
     beam = np.maximum(1.0 - blue_sky, 0.0) if clear.direct_w_m2 > 0.0 else np.zeros(3)
     from_clouds = (settings.cloud_brightening - 1.0) * clear.diffuse_share
+    if settings.shade is not None and clear.direct_w_m2 > 0.0:
+        ratios, whole = np.array(settings.shade.ratios), strength * (1.0 + from_clouds)
+        return GroundLight(whole * (1.0 - ratios), whole * ratios, sun.toward_enu)
     return GroundLight(strength * beam, strength * (blue_sky + from_clouds), sun.toward_enu)
 
 
@@ -141,9 +145,15 @@ def light_under(sky: Sky, time_s: float, settings: LightSettings | None = None) 
     return ground_light(sky.sun_at(time_s), settings)
 
 
-def metered_light(sky: Sky, east_m: npt.ArrayLike, north_m: npt.ArrayLike, time_s: float) -> float:
+def metered_light(
+    sky: Sky,
+    east_m: npt.ArrayLike,
+    north_m: npt.ArrayLike,
+    time_s: float,
+    settings: LightSettings | None = None,
+) -> float:
     """Return the mean light at points, in green, relative to the reference."""
-    light = light_under(sky, time_s)
+    light = light_under(sky, time_s, settings)
     share = float(np.mean(sky.transmittance(east_m, north_m, time_s), dtype=np.float64))
     return float(light.sky[GREEN] + share * light.beam[GREEN])
 

@@ -1,7 +1,7 @@
 """Settings of sky, wind and light, each with its reason."""
 
 from dataclasses import dataclass
-from math import inf, isfinite
+from math import inf, isfinite, sqrt
 
 from recon.model.geo import LatLon
 from recon.sim.errors import SimulationError
@@ -114,6 +114,8 @@ class SkySettings:
     sun: SunSettings = SunSettings()
     layers: tuple[LayerSettings, ...] = (LayerSettings(),)
     """One or two, the lower first."""
+    clouds_ahead_s: float = 0.0
+    """The clouds are those of this much later; the sun is not."""
 
     def __post_init__(self) -> None:
         if self.seed < 0:
@@ -152,6 +154,31 @@ class WindSettings:
 
 
 @dataclass(frozen=True, slots=True)
+class ShadeColour:
+    """Light in full shade over light in full sun, as measured on the ground."""
+
+    green: float = 0.36
+    """Of real frames, in red, green and blue: 0.19 to 0.23, 0.36, 0.47 to 0.53."""
+    blue_over_red: float = 2.4
+    """How many times more blue than red light is left in shade."""
+
+    def __post_init__(self) -> None:
+        expect("shade: green", self.green, 0.02, 0.9)
+        expect("shade: blue_over_red", self.blue_over_red, 0.5, 4.0)
+        expect("shade: blue", self.ratios[2], 0.0, 1.0)
+
+    @property
+    def ratios(self) -> tuple[float, float, float]:
+        """Shade over sun in red, green and blue."""
+        middle, apart = RED_AND_BLUE_OVER_GREEN * self.green, sqrt(self.blue_over_red)
+        return middle / apart, self.green, middle * apart
+
+
+RED_AND_BLUE_OVER_GREEN = 0.95
+"""Geometric mean of red's and blue's share over green's; 0.90 to 0.97 in real frames."""
+
+
+@dataclass(frozen=True, slots=True)
 class LightSettings:
     """The atmosphere that light passes."""
 
@@ -161,6 +188,8 @@ class LightSettings:
     """Above the sea: thinner air dims less."""
     cloud_brightening: float = 1.7
     """Diffuse light between broken clouds over that of a clear sky: their sides are bright."""
+    shade: ShadeColour | None = None
+    """None: shade as the model of the atmosphere has it, by the sun's elevation."""
 
     def __post_init__(self) -> None:
         expect("light: linke_turbidity", self.linke_turbidity, 1.0, 10.0)

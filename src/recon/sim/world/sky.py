@@ -63,10 +63,11 @@ class Sky:
         """Return the transmittance (N,) at N points; times are (N,) or (1,)."""
         times_s, moment = _moments(time_s)
         suns = [self.sun_at(float(one_s)) for one_s in times_s]
+        clouds_s = times_s + self.settings.clouds_ahead_s
         share = np.ones(east_m.size, dtype=np.float32)
         for layer in self.layers:
             edge = penumbra(suns, layer.settings.base_height_m)
-            share *= layer.transmittance(east_m, north_m, times_s, edge, moment)
+            share *= layer.transmittance(east_m, north_m, clouds_s, edge, moment)
         return share
 
     def on_grid(self, grid: GroundGrid, time_s: float) -> FloatImage:
