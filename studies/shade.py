@@ -273,6 +273,7 @@ def _renderer(scenario: Scenario, flight: Flight) -> FieldRenderer:
         renderer.sky,
         settings,
         renderer.relief,
+        renderer.light,
     )
 
 
