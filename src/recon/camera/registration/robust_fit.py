@@ -3,7 +3,7 @@
 Six parameters: a rotation vector (rad, ENU) and a shift (m, ENU) from the prior pose. Residuals lie
 on the unit sphere, in the plane across each measured ray, scaled to pixels. Gauss-Newton with
 weights by Cauchy's and then Tukey's function of the residual over a robust scale: features on
-moving shadow edges lose their vote. The prior keeps directions that no feature fixes.
+moving shadow edges get no weight. The prior keeps directions that no feature fixes.
 Nothing is drawn at random: the same input gives the same pose.
 """
 

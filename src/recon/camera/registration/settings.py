@@ -16,7 +16,7 @@ class RegistrationSettings:
     """Grey levels of contrast (standard deviation) below which texture is noise and stays faint."""
     most_features: int = 400
     features_apart_px: float = 12.0
-    """Spreads the features over the frame: corners of one farm do not outvote the fields."""
+    """Spreads the features over the frame: one farm does not hold most of them."""
     feature_quality: float = 0.01
     """Of the strongest corner."""
     largest_nadir_deg: float = 66.0
