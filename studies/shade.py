@@ -241,11 +241,11 @@ def _rendered(flight: Flight, grid: GroundGrid) -> Iterator[Moment]:
     field = replace(grid, cell_m=FIELD_CELL_M, rows=grid.rows // 2, cols=grid.cols // 2)
     imager = scenario.site.imager
     assert imager is not None
-    told = rig_of(scenario.frame, imager).marked_pose
+    reported = rig_of(scenario.frame, imager).marked_pose
     for number in range(round(flight.minutes * 60.0 / flight.every_s)):
         at_s = flight.every_s * number
-        view = CameraView(at_s, number, told)
-        pose = renderer.true_pose(view) if flight.pose == "true" else told
+        view = CameraView(at_s, number, reported)
+        pose = renderer.true_pose(view) if flight.pose == "true" else reported
         rgb, valid = projector.lay_pixels(renderer.render(view), pose)
         image = GroundImage(
             grid, number, seconds_to_ns(at_s), rgb, valid, pose, serial=SERIAL,

@@ -9,7 +9,7 @@ Theory of operation, per frame:
    or leaves a flat frame to its neighbours in time.
 4. `contrast.explained` finds each cell's transmittance from its light and colour against full sun.
 
-While nothing has told sun from shade, no cell is valid.
+While nothing shows which is sun and which shade, no cell is valid.
 """
 
 from dataclasses import replace
@@ -80,7 +80,7 @@ def _with_keyframe(
 
 
 def _level(memory: SunlitMemory, coarse: CellColour, is_locked: bool) -> Level | None:
-    """Return the level of sun in a frame; None where it cannot be told."""
+    """Return the level of sun in a frame; None where that is open."""
     land, last = memory.land, memory.level
     assert land is not None
     if is_locked and last is not None:

@@ -1,6 +1,6 @@
 """The hot spot: opposite the sun, sunlit ground hides its own shadows and is brighter.
 
-In shade there is none, so it tells a view that is all in sun from one that is all in shade. The
+In shade it is absent, so it tells a view that is all in sun from one that is all in shade. The
 land has bright spots too, but they stand still: the hot spot moves over the land with the sun
 (0.25 degrees a minute) and with the drone. Only that motion is used.
 """
@@ -34,7 +34,7 @@ SURE = 3.0
 
 
 class FlatScene(Enum):
-    """What the hot spot says about a view without an edge of shade."""
+    """What the hot spot shows about a view without an edge of shade."""
 
     UNKNOWN = "unknown"
     SUN = "sun"
@@ -50,7 +50,7 @@ class HotSpot:
 
     @property
     def scene(self) -> FlatScene:
-        """Return what it says."""
+        """Return what it shows."""
         if self.standard_error > WORST_ERROR:
             return FlatScene.UNKNOWN
         margin = SURE * self.standard_error

@@ -9,7 +9,15 @@ from recon.detection.sunlit.contrast import Contrast, explained
 from recon.detection.sunlit.drift import moved
 from recon.detection.sunlit.hot_spot import FlatScene, hot_spot
 from recon.detection.sunlit.land import FloatStack, land_of
-from recon.detection.sunlit.levels import LEAST_CELLS, Level, Reading, above, apart, read, refined
+from recon.detection.sunlit.levels import (
+    LEAST_CELLS,
+    FrameLevels,
+    Level,
+    above,
+    apart,
+    read,
+    refined,
+)
 from recon.model.shade import FloatMap, MaskMap
 from recon.model.units import NS_PER_S, seconds_to_ns
 
@@ -109,9 +117,9 @@ def solved(
 
 def _read_all(
     light: FloatStack, colour: FloatStack, seen: MaskMap, land: SunlitLand
-) -> tuple[SunlitLand, list[Reading | None]]:
+) -> tuple[SunlitLand, list[FrameLevels | None]]:
     """Return each frame's reading, and the land with the contrast that they show."""
-    readings: list[Reading | None] = []
+    readings: list[FrameLevels | None] = []
     for one_light, one_colour, one_seen in zip(light, colour, seen, strict=True):
         cells = one_seen & land.known
         if np.count_nonzero(cells) < LEAST_CELLS:
@@ -122,7 +130,7 @@ def _read_all(
     return replace(land, contrast=_contrast(readings)), readings
 
 
-def _contrast(readings: list[Reading | None]) -> Contrast:
+def _contrast(readings: list[FrameLevels | None]) -> Contrast:
     """Return the weighted median of the measured contrasts and the usual one."""
     measured = [(each.contrast, each.weight) for each in readings if each and each.contrast]
     usual = Contrast()
@@ -143,7 +151,7 @@ def _weighted_median(values: FloatStack, weights: FloatStack) -> float:
 
 def _levels(
     kept: tuple[Keyframe, ...],
-    readings: list[Reading | None],
+    readings: list[FrameLevels | None],
     land: SunlitLand,
     before: SunlitLand | None,
 ) -> list[Level] | None:
@@ -161,7 +169,7 @@ def _levels(
 def _agreed(
     number: int,
     kept: tuple[Keyframe, ...],
-    readings: list[Reading | None],
+    readings: list[FrameLevels | None],
     levels: list[Level | None],
     contrast: Contrast,
 ) -> Level:
@@ -173,11 +181,11 @@ def _agreed(
     """
     frame, reading = kept[number], readings[number]
     votes = []
-    for other, said, level in zip(kept, readings, levels, strict=True):
+    for other, shown, level in zip(kept, readings, levels, strict=True):
         if level is None:
             continue
         age_s = abs(other.at_ns - frame.at_ns) / NS_PER_S
-        share = said.weight if said and said.sun else FLAT_VOTE
+        share = shown.weight if shown and shown.sun else FLAT_VOTE
         weight = share * float(np.exp2(-age_s / VOTE_S))
         votes.append((weight, moved(level, other.drift, frame.drift)))
     if reading is None:
@@ -211,7 +219,7 @@ def _carried_over(
 
 
 def _by_hot_spot(
-    kept: tuple[Keyframe, ...], readings: list[Reading | None], land: SunlitLand
+    kept: tuple[Keyframe, ...], readings: list[FrameLevels | None], land: SunlitLand
 ) -> list[Level | None]:
     """Return the levels of flat frames that are all in sun, or all in shade."""
     light = np.stack([each.cells.light for each in kept])

@@ -37,8 +37,8 @@ class Level:
 
 
 @dataclass(frozen=True, slots=True)
-class Reading:
-    """What one frame by itself says."""
+class FrameLevels:
+    """What one frame by itself shows."""
 
     main: Level
     sun: Level | None
@@ -64,7 +64,7 @@ def level_of(light: Values, colour: Values) -> Level:
     return Level(mode(light, LIGHT_BIN), mode(colour, COLOUR_BIN))
 
 
-def read(light: Values, colour: Values, contrast: Contrast) -> Reading:
+def read(light: Values, colour: Values, contrast: Contrast) -> FrameLevels:
     """Return what a frame's cells (N,), with the land taken out, say about the level of sun."""
     main_light = mode(light, LIGHT_BIN)
     near = np.abs(light - np.float32(main_light)) < MAIN_WIDTH
@@ -74,15 +74,15 @@ def read(light: Values, colour: Values, contrast: Contrast) -> Reading:
     darker = (light < main.light - by_light) & (colour > main.colour + by_colour)
     share_brighter, share_darker = float(brighter.mean()), float(darker.mean())
     if max(share_brighter, share_darker) < LEAST_SHARE:
-        return Reading(main, None)
+        return FrameLevels(main, None)
     is_sun = share_darker >= share_brighter
     share, chosen = (share_darker, darker) if is_sun else (share_brighter, brighter)
     if share < MEASURED_SHARE:
-        return Reading(main, main if is_sun else above(main, contrast), None, share)
+        return FrameLevels(main, main if is_sun else above(main, contrast), None, share)
     other = level_of(light[chosen], colour[chosen])
     sun, shade = (main, other) if is_sun else (other, main)
     measured = Contrast(sun.light - shade.light, shade.colour - sun.colour)
-    return Reading(main, sun, measured, share)
+    return FrameLevels(main, sun, measured, share)
 
 
 def above(shade: Level, contrast: Contrast) -> Level:

@@ -45,7 +45,7 @@ class SunlitMemory:
 
     keyframes: tuple[Keyframe, ...] = ()
     land: SunlitLand | None = None
-    """None while sun and shade cannot be told apart."""
+    """None while nothing shows which is sun and which shade."""
     detail: Detail | None = None
     level: Level | None = None
     drift: Drift | None = None
