@@ -133,7 +133,8 @@ def _go_home_up_m(airspace: PreparedAirspace, vehicle: VehicleState) -> float | 
     """The go-home height in the site's frame; above the origin without a takeoff point."""
     if vehicle.profile is None or vehicle.profile.go_home_height_m is None:
         return None
-    return (takeoff_up_m(airspace, vehicle) or 0.0) + vehicle.profile.go_home_height_m
+    base_m = takeoff_up_m(airspace, vehicle)
+    return (0.0 if base_m is None else base_m) + vehicle.profile.go_home_height_m
 
 
 def _not_cleared(height_m: float, vehicle: VehicleState, situation: Situation) -> list[str]:
