@@ -16,18 +16,23 @@ if (executablePath === undefined) {
 process.env["RECON_E2E_RUN"] ??= String(process.pid);
 const args = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
 
+/** Tests with a whole station and its simulated vehicles. */
+const LIVE = ["station.spec.ts", "surveys.spec.ts"];
+
 export default defineConfig({
   testDir: "e2e",
   globalSetup: "./e2e/servePage.ts",
   // One folder for each run, which clears it when it begins.
   outputDir: `test-results/${process.env["RECON_E2E_RUN"]}`,
-  workers: 1,
+  workers: 2,
   // Deadlines that only a broken test reaches, however busy the machine is.
   timeout: 300_000,
   expect: { timeout: 60_000 },
   reporter: "list",
   projects: [
-    { name: "e2e", testIgnore: "screens.spec.ts" },
+    { name: "pages", testIgnore: ["screens.spec.ts", ...LIVE] },
+    // A station in real time has the machine to itself: two at once are late on two cores.
+    { name: "stations", testMatch: LIVE, workers: 1, dependencies: ["pages"] },
     { name: "screens", testMatch: "screens.spec.ts" },
   ],
   use: {
