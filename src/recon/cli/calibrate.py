@@ -92,7 +92,7 @@ def _common_size(photos: list[Path]) -> tuple[int, int]:
 def _boards(photos: list[Path], board: Chessboard) -> list[BoardPhoto]:
     """Return the photos that show the whole board; the others are listed."""
     seen, missing = [], []
-    for photo in progress_over(photos, "looking for the chessboard"):
+    for photo in progress_over(photos, "looking for the chessboard", len(photos)):
         corners = find_corners(read_photo(photo), board)
         if corners is None:
             missing.append(photo)

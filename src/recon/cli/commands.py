@@ -95,6 +95,10 @@ COMMANDS = {
         "calibrate:calibrate_command",
         "Fit a lens to photos of a chessboard, for `camera-model.txt` of a site.",
     ),
+    "detect": CommandSource(
+        "detect:detect_command",
+        "Find shade in a recorded flight: GeoTIFFs, a contact sheet, cover over time.",
+    ),
     "inspect": CommandSource("inspect:inspect_command", "Print the packets of a captured stream."),
     "openapi": CommandSource("run:openapi_command", "Print the API's OpenAPI document."),
 }

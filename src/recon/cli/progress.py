@@ -1,6 +1,6 @@
 """A progress bar on standard error; none where that is no terminal."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from typing import TypeVar
 
 from rich.console import Console
@@ -9,7 +9,7 @@ from rich.progress import track
 Item = TypeVar("Item")
 
 
-def progress_over(items: Sequence[Item], title: str) -> Iterator[Item]:
-    """Yield the items, showing how many are done and how long the rest will take."""
+def progress_over(items: Iterable[Item], title: str, count: int) -> Iterator[Item]:
+    """Yield the items, showing how many of `count` are done and how long the rest will take."""
     console = Console(stderr=True)
-    yield from track(items, title, console=console, disable=not console.is_terminal)
+    yield from track(items, title, count, console=console, disable=not console.is_terminal)

@@ -1,0 +1,118 @@
+"""`recon detect` on a recorded flight: a field under a shadow that passes, and refusals."""
+
+import csv
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+import rasterio
+from typer.testing import CliRunner, Result
+
+from recon.camera import format_camera
+from recon.cli.commands import app
+from recon.site.demo_site import demo_camera
+
+FRAMES = 8
+HEIGHT_M = 120.0
+
+
+@pytest.fixture(scope="module")
+def flight(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Frames of 640 x 360 over textured ground; a dark band crosses it."""
+    folder = tmp_path_factory.mktemp("flight")
+    (folder / "lens.txt").write_text(format_camera(demo_camera()))
+    (folder / "frames").mkdir()
+    camera = demo_camera().scaled_to(360, 640)
+    row, col = np.mgrid[0:360, 0:640].reshape(2, -1)
+    rays = np.nan_to_num(camera.unproject(np.stack([col, row], axis=1))).reshape(360, 640, 3)
+    is_ground = rays[..., 2] > 0.2
+    depth = np.where(is_ground, rays[..., 2], 1.0)
+    east_m, north_m = HEIGHT_M * rays[..., 0] / depth, -HEIGHT_M * rays[..., 1] / depth
+    land = cv2.GaussianBlur(np.random.default_rng(1).normal(0, 1, (800, 800)), (0, 0), 2.0)
+    land = 140.0 + 10.0 * land / land.std()
+    at_row = np.clip(400 - north_m / 2.0, 0, 799).astype(int)
+    at_col = np.clip(400 + east_m / 2.0, 0, 799).astype(int)
+    for number in range(FRAMES):
+        light = np.where(np.abs(east_m + 100.0 - 30.0 * number) < 40.0, 0.5, 1.0)
+        levels = land[at_row, at_col] * light + np.random.default_rng(number).normal(
+            0, 1.5, light.shape
+        )
+        grey = np.where(is_ground, np.clip(levels, 40, 255), 0).astype(np.uint8)
+        cv2.imwrite(str(folder / "frames" / f"{number:03d}.png"), grey)
+    return folder
+
+
+def detect(folder: Path, out: Path, *words: str) -> Result:
+    place = ["--height-m", "120", "--latitude-deg", "44.5", "--longitude-deg", "-92.9"]
+    lens = ["--camera", str(folder / "lens.txt"), "--out", str(out)]
+    return CliRunner().invoke(app, ["detect", str(folder / "frames"), *lens, *place, *words])
+
+
+def test_a_flight_gives_maps_a_sheet_and_cover_over_time(flight: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    words = ["--method", "otsu", "--step-s", "5", "--start-utc", "2025-06-20T18:00:00"]
+    done = detect(flight, out, *words, "--every", "2")
+    assert done.exit_code == 0, done.output
+    names = sorted(path.name for path in out.iterdir())
+    assert names == [
+        "contact-sheet.png",
+        "cover.csv",
+        *(f"shade-{n:05d}.tif" for n in range(0, FRAMES, 2)),
+    ]
+    with (out / "cover.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert [row["frame"] for row in rows] == [f"{n:03d}.png" for n in range(FRAMES)]
+    assert [float(row["time_s"]) for row in rows] == [5.0 * n for n in range(FRAMES)]
+    for row in rows:
+        shares = [float(row[name]) for name in ("in_sun", "in_shade", "unknown")]
+        assert sum(shares) == pytest.approx(1.0, abs=2e-4)
+        assert 0.15 < shares[1] < 0.35
+        assert row["registration"] == "registered"
+    with rasterio.open(out / "shade-00004.tif") as dataset:
+        transmittance = dataset.read(1)
+        assert dataset.tags()["RECON_CAPTURED_UTC"] == "2025-06-20T18:00:20+00:00"
+        # The band's middle is 20 m east of the camera, over which the raster is centred.
+        middle_col, middle_row = dataset.width // 2 + 5, dataset.height // 2
+        assert np.nanmean(transmittance[middle_row - 4 : middle_row + 5, middle_col]) < 0.5
+        assert np.nanmean(transmittance[middle_row - 4 : middle_row + 5, 4:10]) > 0.5
+    sheet = cv2.imread(str(out / "contact-sheet.png"))
+    assert sheet is not None
+    assert sheet.shape == (512, 6 * 256, 3)
+
+
+@pytest.mark.parametrize(
+    ("name", "data", "words"),
+    [
+        ("000.png", b"text", "000.png: expected a JPEG or PNG file, got one that starts with"),
+        ("003.jpg", b"\xff\xd8\xff", "003.jpg: JPEG: expected a frame header"),
+    ],
+)
+def test_a_broken_frame_is_named_and_nothing_is_written(
+    flight: Path, tmp_path: Path, name: str, data: bytes, words: str
+) -> None:
+    (tmp_path / "lens.txt").write_text((flight / "lens.txt").read_text())
+    frames = tmp_path / "frames"
+    frames.mkdir()
+    (frames / "001.png").write_bytes((flight / "frames" / "001.png").read_bytes())
+    (frames / name).write_bytes(data)
+    done = detect(tmp_path, tmp_path / "out")
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert words in done.stderr
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["frames", "lens.txt"]
+
+
+def test_wrong_use_is_one_line(flight: Path, tmp_path: Path) -> None:
+    for words, expected in (
+        (["--method", "magic"], "--method: expected "),
+        (["--height-m", "0"], "expected --gcps FILE, or --height-m of 1 to 1000"),
+        (["--camera", str(flight / "frames/000.png")], "expected"),
+    ):
+        done = detect(flight, tmp_path / "out", *words)
+        assert (done.exit_code, done.stdout) == (2, "")
+        assert expected in done.stderr
+        assert len(done.stderr.splitlines()) == 1
+    used = tmp_path / "used"
+    used.mkdir()
+    (used / "file").touch()
+    assert "expected a new or empty folder" in detect(flight, used).stderr
