@@ -46,7 +46,7 @@ GROUND_PER_HEIGHT = 2.75
 COLUMNS = ("frame", "time_s", "in_sun", "in_shade", "unknown", "registration", "residual_m", "note")
 
 
-class Exposure(Enum):
+class ExposureLock(Enum):
     """Whether the camera's exposure was locked."""
 
     AUTO = "auto"
@@ -67,7 +67,7 @@ class Options:
     """What the user asked for."""
 
     method: str
-    exposure: Exposure
+    exposure: ExposureLock
     cell_m: float
     start_utc: datetime | None
     every: int
@@ -92,8 +92,8 @@ def detect_command(
         float, typer.Option(min=0.01, max=3600.0, help="Seconds between the frames used.")
     ] = 1.0,
     exposure: Annotated[
-        Exposure, typer.Option(help="Was the camera's exposure locked?")
-    ] = Exposure.AUTO,
+        ExposureLock, typer.Option(help="Was the camera's exposure locked?")
+    ] = ExposureLock.AUTO,
     start_utc: Annotated[
         datetime | None, typer.Option(help="Time of the first frame, for the sun.")
     ] = None,
@@ -177,7 +177,7 @@ def _write_all(
     print_line(f"wrote {out}: cover.csv, contact-sheet.png and shade maps")
 
 
-class _Flight:
+class RecordedFlight:
     """Registers, projects and reads one frame after the other."""
 
     def __init__(
@@ -192,7 +192,7 @@ class _Flight:
         self._registration = RegistrationState()
         self._shade = DetectionState()
         self._settings = DetectionSettings(
-            method=options.method, follows_exposure=options.exposure is Exposure.AUTO
+            method=options.method, follows_exposure=options.exposure is ExposureLock.AUTO
         )
         # Twice: a reference is taken at a hover, which takes two frames to see.
         for at_s in (-2.0, -1.0):
@@ -216,7 +216,7 @@ class _Flight:
             registration=found.registration,
             registration_residual_m=found.residual_m,
             toward_sun_enu=_toward_sun(self._start, self._options, frame.at_s),
-            exposure_locked=self._options.exposure is Exposure.LOCKED,
+            exposure_locked=self._options.exposure is ExposureLock.LOCKED,
         )
         detect = DETECTORS[self._options.method]
         self._shade, shade = detect(self._shade, image, self._settings)
@@ -248,7 +248,7 @@ def _run(
     part: Path, lens: OmnidirectionalCamera, recording: Recording, start: Start, options: Options
 ) -> None:
     first = next(recording.frames()).rgb if start.marked is None else start.marked
-    flight = _Flight(lens, start, options, first)
+    flight = RecordedFlight(lens, start, options, first)
     shown_every = -(-recording.count // MOST_TILES)
     tiles: list[RgbImage] = []
     with (part / "cover.csv").open("w", newline="", encoding="utf-8") as file:
