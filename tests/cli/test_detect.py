@@ -116,3 +116,31 @@ def test_wrong_use_is_one_line(flight: Path, tmp_path: Path) -> None:
     used.mkdir()
     (used / "file").touch()
     assert "expected a new or empty folder" in detect(flight, used).stderr
+
+
+def test_a_video_is_read_at_the_step_asked_for(flight: Path, tmp_path: Path) -> None:
+    video = tmp_path / "flight.avi"
+    writer = cv2.VideoWriter(str(video), cv2.VideoWriter.fourcc(*"MJPG"), 2.0, (640, 360))
+    for name in sorted((flight / "frames").iterdir()):
+        writer.write(cv2.imread(str(name)))
+    writer.release()
+    place = ["--height-m", "120", "--latitude-deg", "44.5", "--longitude-deg", "-92.9"]
+    lens = ["--camera", str(flight / "lens.txt"), "--out", str(tmp_path / "out")]
+    done = CliRunner().invoke(app, ["detect", str(video), *lens, *place, "--method", "otsu"])
+    assert done.exit_code == 0, done.output
+    with (tmp_path / "out/cover.csv").open() as file:
+        assert [row["time_s"] for row in csv.DictReader(file)] == ["0.00", "1.00", "2.00", "3.00"]
+
+
+def test_a_real_frame_is_placed_by_its_control_points(fisheye_data: Path, tmp_path: Path) -> None:
+    (tmp_path / "frames").mkdir()
+    data = (fisheye_data / "becker-1/RefFrame.jpeg").read_bytes()
+    (tmp_path / "frames/0.jpeg").write_bytes(data)
+    lens = ["--camera", str(fisheye_data / "camera-model.txt")]
+    points = ["--gcps", str(fisheye_data / "becker-1/GCPs.txt"), "--out", str(tmp_path / "out")]
+    words = ["detect", str(tmp_path / "frames"), *lens, *points, "--method", "otsu"]
+    done = CliRunner().invoke(app, words)
+    assert done.exit_code == 0, done.output
+    with rasterio.open(tmp_path / "out/shade-00000.tif") as dataset:
+        assert np.isfinite(dataset.read(1)).mean() > 0.9
+        assert 250.0 < dataset.width * dataset.res[0] < 420.0
