@@ -202,7 +202,7 @@ def test_a_survey_continues_after_a_battery_change(folder: Path) -> None:
 
 def test_rows_longer_than_the_shade_history_count_in_sun(folder: Path) -> None:
     text = CLEAR.replace("90.0", "1200.0").replace("60.0]", "40.0]")
-    text = text.replace("radius_m = 160.0", "radius_m = 700.0\ncell_m = 20.0")
+    text = text.replace("radius_m = 160.0", "height_m = 330.0\nradius_m = 700.0\ncell_m = 20.0")
     flown = flown_to_the_surveys_end(guidance_alone(small(folder, text)), 600.0)
     assert flown.record is not None
     assert flown.record.state is not None

@@ -100,7 +100,9 @@ class IdealDetection:
         self._frame, self._imager = scenario.frame, site.imager
         self._mount = site.profiles.get(IMAGER_SERIAL, VehicleProfile(IMAGER_SERIAL)).mount
         self._sky, self._frames = sky, frames
-        self._grid = field_grid(site.ground_grid, DetectionSettings())
+        # No finer than the ground images: between their cells nothing is seen.
+        cell_m = max(DetectionSettings().cell_m, site.ground_grid.cell_m)
+        self._grid = field_grid(site.ground_grid, DetectionSettings(cell_m=cell_m))
         east_m, north_m = (part.ravel() for part in np.meshgrid(*cell_centres(self._grid)))
         self._points_m = np.column_stack([east_m, north_m])
         self._field_rad = field_angle_rad(site.imager)

@@ -57,9 +57,10 @@ def test_a_short_run_is_near_what_was_measured() -> None:
 
 def test_the_page_shows_the_studys_table() -> None:
     """Every figure is there, its ratio is right, and none is farther off than a quarter."""
-    rows = ROW.findall(PAGE.read_text(encoding="utf-8"))
-    empty = {name: np.array(measured) for name, measured in MEASURED.items()}
-    assert [row[:3] for row in rows] == [row[:3] for row in ROW.findall(table(empty))]
+    empty = ROW.findall(table({name: np.array(each) for name, each in MEASURED.items()}))
+    names = {row[0] for row in empty}
+    rows = [row for row in ROW.findall(PAGE.read_text(encoding="utf-8")) if row[0] in names]
+    assert [row[:3] for row in rows] == [row[:3] for row in empty]
     for name, at, measured, simulated, ratio in rows:
         assert float(ratio) == pytest.approx(float(simulated) / float(measured), abs=0.02)
         assert abs(float(ratio) - 1.0) <= 0.25, f"{name} {at}"
