@@ -14,6 +14,7 @@ import tempfile
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from pathlib import Path
 
 import cv2
@@ -39,9 +40,21 @@ MIXED = (0.05, 0.95)
 SERIAL = "SIM-IMAGER"
 
 
+@lru_cache(maxsize=1)
+def _renderer_digest() -> bytes:
+    """Of the code and the scenarios that frames come from: another one renders anew."""
+    project = Path(__file__).parents[1]
+    rooms = [project / "src/recon" / room for room in ("sim", "camera", "geo", "score")]
+    files = [file for room in rooms for file in room.rglob("*.py")]
+    digest = hashlib.sha256()
+    for file in sorted([*files, *(project / "scenarios").glob("*.toml"), Path(__file__)]):
+        digest.update(file.read_bytes())
+    return digest.digest()
+
+
 @dataclass(frozen=True, slots=True)
 class Flight:
-    """What is rendered; the key of the cache."""
+    """What is rendered; with the renderer's code the key of the cache."""
 
     scenario: str
     seed: int
@@ -54,7 +67,7 @@ class Flight:
     @property
     def folder(self) -> Path:
         """The flight's folder in the cache."""
-        key = hashlib.sha256(repr(self).encode()).hexdigest()[:16]
+        key = hashlib.sha256(repr(self).encode() + _renderer_digest()).hexdigest()[:16]
         return Path(tempfile.gettempdir()) / "recon-shade" / f"{self.scenario}-{self.seed}-{key}"
 
 

@@ -9,7 +9,7 @@ from recon.model.geo import GroundGrid
 class DetectionSettings:
     """Times in seconds, light as a share of the sensor's full scale, levels of 255."""
 
-    method: str = "brightness_ratio"
+    method: str = "sunlit_reference"
     """A name in `recon.detection.DETECTORS`."""
 
     grid: GroundGrid | None = None

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from tests.station.station_world import HOME
 
-from recon.detection import DETECTORS
+from recon.detection import DETECTORS, DetectionSettings
 from recon.model.event import Event
 from recon.model.geo import GroundGrid, LocalFrame
 from recon.model.imagery import CameraPose, GroundImage
@@ -20,6 +20,7 @@ from recon.station.imaging.shade import READ_SHADE, ReadShade, seen_cells
 from recon.station.kernel.step import step
 from recon.station.kernel.worker import AnyJob, JobRunner
 from recon.station.state.imaging import WAITING_KEPT
+from recon.station.state.settings import StationSettings
 from recon.station.state.station import Station
 from recon.station.state.steps import Job, JobDone, JobDropped, JobFailed, Output
 
@@ -75,7 +76,9 @@ class Line:
 
 @pytest.fixture
 def line() -> Line:
-    return Line()
+    """With the method that maps a drawn field within a minute."""
+    detection = DetectionSettings(method="brightness_ratio")
+    return Line(Station(settings=StationSettings(detection=detection)))
 
 
 def test_every_frame_is_read_once_and_in_order(line: Line) -> None:
