@@ -11,7 +11,7 @@ from recon.detection import DETECTORS, DetectionSettings, DetectionState
 from recon.model.geo import GroundGrid
 from recon.model.shade import ShadeMap
 
-SEEDS = range(9_000, 9_004)
+SEEDS = range(9_000, 9_002)
 METHOD = "brightness_ratio"
 
 

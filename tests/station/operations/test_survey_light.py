@@ -36,8 +36,9 @@ def flown_under_an_imager(planner: str, sunny_from_s: float) -> SurveyedWorld:
     """A frame a second: half of the field in shade until a moment, then all in sun."""
     world = surveyed_world()
     settings = world.driver.station.settings
-    # Over two minutes, shade that lasts the whole flight would come to look like sun.
-    detection = replace(settings.detection, window_s=600.0, samples=120)
+    # It maps a drawn field at once; over two minutes, shade that lasts the whole flight would come
+    # to look like sun.
+    detection = replace(settings.detection, method="brightness_ratio", window_s=600.0, samples=120)
     world.driver.station = replace(
         world.driver.station, settings=replace(settings, detection=detection)
     )
