@@ -20,7 +20,7 @@ from tests.detection.shaded_field import (
 from recon.detection import DETECTORS, DetectionSettings, DetectionState
 from recon.detection.sunlit.contrast import Contrast, curve, explained
 from recon.detection.sunlit.hot_spot import FlatScene, HotSpot
-from recon.detection.sunlit.keyframes import MOST, Keyframe, with_keyframe
+from recon.detection.sunlit.keyframes import MOST, Keyframe, is_due, with_keyframe
 from recon.detection.sunlit.land import land_of
 from recon.detection.sunlit.levels import Level, read
 from recon.geo.sun import SunPosition
@@ -229,3 +229,18 @@ class TestParts:
         assert times_s[0] == 0.0
         assert times_s[-1] == 1990.0
         assert max(np.diff(times_s)) < 200.0
+
+    def test_a_hot_spot_that_moves_is_kept_more_often(self) -> None:
+        """A look aside lasts twenty seconds: with a keyframe in ten it would hardly be seen."""
+        still, moved = np.zeros((8, 8), np.float32), np.zeros((8, 8), np.float32)
+        still[2, 2] = moved[2, 4] = 1.0
+        level = Level(0.0, 0.0)
+        kept = tuple(
+            Keyframe(seconds_to_ns(10.0 * i), None, level, still)  # type: ignore[arg-type]
+            for i in range(10)
+        )
+        assert not is_due(kept, seconds_to_ns(94.0), still)
+        assert not is_due(kept, seconds_to_ns(94.0), None)
+        assert not is_due(kept, seconds_to_ns(91.9), moved)
+        assert is_due(kept, seconds_to_ns(92.0), moved)
+        assert is_due(kept, seconds_to_ns(100.0), still)

@@ -41,7 +41,7 @@ def read_small_text(path: Path, error: type[CameraError]) -> str:
     except OSError as problem:
         raise error(
             f"{path}: expected a readable file, got: {problem.strerror or problem}; check the name "
-            "in site.toml"
+            "on the command line or in site.toml"
         ) from problem
     if len(data) > LARGEST_FILE_BYTES:
         raise error(

@@ -65,13 +65,11 @@ def sunlit_reference(
 def _with_keyframe(
     memory: SunlitMemory, coarse: CellColour, image: GroundImage, grid: GroundGrid, is_locked: bool
 ) -> SunlitMemory:
-    at_ns, drift = image.captured_at_ns, memory.drift
+    at_ns, drift, shape = image.captured_at_ns, memory.drift, shape_of(image, grid)
     assert drift is not None
-    if not is_due(memory.keyframes, at_ns):
+    if not is_due(memory.keyframes, at_ns, shape):
         return memory
-    kept = with_keyframe(
-        memory.keyframes, Keyframe(at_ns, coarse, drift.total, shape_of(image, grid))
-    )
+    kept = with_keyframe(memory.keyframes, Keyframe(at_ns, coarse, drift.total, shape))
     if len(kept) < LEAST:
         return replace(memory, keyframes=kept)
     kept, land = solved(kept, memory.land, is_locked)

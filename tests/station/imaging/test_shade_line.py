@@ -202,3 +202,15 @@ def test_the_cells_in_view_are_those_whose_middle_the_image_shows() -> None:
     assert seen[:32, 1:].all()
     east = GroundGrid(image.grid.frame, 20.0, 64.0, 4.0, 4, 6)
     assert seen_cells(image, east).tolist() == [[True] * 4 + [False] * 2] * 4
+
+
+def test_a_forecast_of_unknown_ground_covers_nothing(line: Line) -> None:
+    """The first frame of a method that needs several: no cell is known, none is predicted."""
+    line.happens(laid(ground_image(1)))
+    line.works()
+    shown = shade_view(line.station, 2 * NS_PER_S)
+    assert shown is not None
+    assert shown.map is not None
+    assert shown.map.known_share == 0.0
+    assert shown.forecast is not None
+    assert set(shown.forecast.predicted_share) == {0.0}

@@ -28,6 +28,9 @@ SPACING_S, FIRST_SPACING_S, FIRST_S = 10.0, 5.0, 30.0
 minute, so that there is an answer soon."""
 OLDEST_S = 2_400.0
 """The sun moves ten degrees meanwhile."""
+MOVED_AFTER_S, MOVED = 2.0, 0.4
+"""While the drone flies aside, keyframes are denser: the hot spot has moved when its shape differs
+by this share of its strength somewhere (about 3 degrees)."""
 LEAST = 4
 """Keyframes for a median over time."""
 KNOWN_SHARE = 0.5
@@ -80,14 +83,26 @@ def with_keyframe(kept: tuple[Keyframe, ...], new: Keyframe) -> tuple[Keyframe, 
     return tuple(all_of)
 
 
-def is_due(kept: tuple[Keyframe, ...], at_ns: int) -> bool:
-    """Return whether the next keyframe is due; later in a flight they are further apart."""
+def is_due(kept: tuple[Keyframe, ...], at_ns: int, shape: FloatMap | None) -> bool:
+    """Return whether the next keyframe is due; later in a flight they are further apart.
+
+    `shape` is the hot spot's in the frame: one that moves shows whether a flat view is in sun.
+    """
     if not kept:
+        return True
+    since_ns = at_ns - kept[-1].at_ns
+    if since_ns >= seconds_to_ns(MOVED_AFTER_S) and _has_moved(kept[-1].hot_spot, shape):
         return True
     span_s = (at_ns - kept[0].at_ns) / NS_PER_S
     spacing_s = FIRST_SPACING_S if span_s <= FIRST_S else max(SPACING_S, 0.5 * span_s / MOST)
     # Frames come a little early or late.
-    return at_ns - kept[-1].at_ns >= seconds_to_ns(spacing_s - 0.5)
+    return since_ns >= seconds_to_ns(spacing_s - 0.5)
+
+
+def _has_moved(before: FloatMap | None, now: FloatMap | None) -> bool:
+    if before is None or now is None:
+        return False
+    return float(np.abs(now - before).max()) > MOVED
 
 
 def solved(

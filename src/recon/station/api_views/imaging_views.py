@@ -90,7 +90,10 @@ def _forecast(sun: SunForecast, number: int, now_ns: int) -> schema.ForecastView
         issued_age_s=ns_to_seconds(now_ns - sun.issued_at_ns),
         method=sun.method,
         lead_s=sun.lead_s.tolist(),
-        predicted_share=[float((sun.horizon_s >= lead).mean()) for lead in sun.lead_s],
+        # A cell without a horizon was not seen: nothing is known of it at lead 0 either.
+        predicted_share=[
+            float(((sun.horizon_s > 0.0) & (sun.horizon_s >= lead)).mean()) for lead in sun.lead_s
+        ],
         prior_sunlit=sun.prior_sunlit,
         shadows_east_mps=east_mps,
         shadows_north_mps=north_mps,

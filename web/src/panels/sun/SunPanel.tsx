@@ -97,7 +97,7 @@ function ForecastLead(props: { forecast: ForecastView }) {
   return (
     <label class="sun-lead">
       <span>
-        <strong>{when()}</strong>: forecast covers {formatFraction(covered())} of the view
+        <strong>{when()}</strong>: forecast covers {formatFraction(covered())} of the map
       </span>
       <input
         type="range"

@@ -59,7 +59,7 @@ describe("sun and shade", () => {
     expect(page.shared.overlay.lead_s()).toBe(60);
     expect(page.root.textContent).toContain("Sun in 1 min 0 s: ");
     expect(page.shared.overlay.kind()).toBe("forecast");
-    expect(page.root.textContent).toContain("forecast covers 20\u00a0% of the view");
+    expect(page.root.textContent).toContain("forecast covers 20\u00a0% of the map");
   });
 
   it("shows why there is no shade map", () => {
