@@ -1,16 +1,19 @@
 """Waypoints are counted as they are passed: never back, never onto a neighbouring row."""
 
+from dataclasses import replace
 from itertools import pairwise
 from math import cos, hypot, sin
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.examples import examples
 
-from recon.fleet.mission_progress import distance_to_m, waypoints_passed
+from recon.fleet.mission_progress import Seen, distance_to_m, waypoints_passed
 from recon.geo.distance import moved_m
 from recon.model.geo import LatLon
 from recon.model.mission import Mission, Waypoint
+from recon.model.vehicle import VelocityNed
 
 ORIGIN = LatLon(42.0, -93.6)
 Place = tuple[float, float]
@@ -22,7 +25,7 @@ def mission(*places: Place, height_m: float = 40.0) -> Mission:
 
 
 def count(flown: Mission, passed: int, place: Place, since_s: float = 0.1) -> int:
-    return waypoints_passed(flown, passed, moved_m(ORIGIN, *place), 40.0, since_s)
+    return waypoints_passed(flown, passed, Seen(moved_m(ORIGIN, *place), 40.0), since_s)
 
 
 def along(places: list[Place], step_m: float) -> list[Place]:
@@ -85,9 +88,37 @@ def test_what_is_passed_stays_passed() -> None:
 def test_heights_count_when_they_are_known() -> None:
     flown = mission((0.0, 0.0), (50.0, 0.0))
     here = moved_m(ORIGIN, 0.0, 0.0)
-    assert waypoints_passed(flown, 0, here, 10.0, 0.1) == 0
-    assert waypoints_passed(flown, 0, here, None, 0.1) == 1
+    assert waypoints_passed(flown, 0, Seen(here, 10.0), 0.1) == 0
+    assert waypoints_passed(flown, 0, Seen(here, None), 0.1) == 1
     assert distance_to_m(flown.waypoints[0], here, 10.0) == 30.0
+
+
+def test_one_that_climbs_to_a_waypoint_has_not_passed_it() -> None:
+    """It eases into the height for another second or two, above the same place."""
+    flown = mission((0.0, 0.0), (50.0, 0.0))
+    here = moved_m(ORIGIN, 0.5, 0.0)
+
+    def passed(height_m: float, climb_mps: float) -> int:
+        return waypoints_passed(
+            flown, 0, Seen(here, height_m, VelocityNed(0.0, 0.0, -climb_mps)), 0.1
+        )
+
+    assert passed(37.5, 2.0) == 0
+    assert passed(38.9, 1.4) == 0
+    assert passed(39.7, 0.7) == 1
+    assert passed(39.0, 0.4) == 1, "it holds there: heights may differ by a little"
+    assert passed(40.8, 1.4) == 1, "it leaves upwards"
+    assert passed(42.0, -1.4) == 0
+
+
+@pytest.mark.parametrize(("is_curved", "expected"), [(False, 1), (True, 2)])
+def test_one_that_brakes_at_a_corner_has_not_passed_it(is_curved: bool, expected: int) -> None:
+    flown = mission((0.0, 0.0), (50.0, 0.0), (50.0, 50.0))
+    flown = replace(flown, curved=is_curved)
+    brakes = Seen(moved_m(ORIGIN, 48.0, 0.0), 40.0, VelocityNed(2.0, 0.0, 0.0))
+    assert waypoints_passed(flown, 1, brakes, 0.1) == expected
+    stands = brakes._replace(velocity=VelocityNed(0.1, 0.0, 0.0))
+    assert waypoints_passed(flown, 1, stands, 0.1) == 2
 
 
 PLACES = st.tuples(st.floats(-300.0, 300.0), st.floats(-300.0, 300.0))

@@ -1,20 +1,27 @@
 """Waypoints of a mission that a vehicle has passed, from its positions alone.
 
-The count only grows. A waypoint is passed when the vehicle has been near it, or is nearer to a leg
-after it. The legs considered are bounded by the distance the vehicle can have flown since the
+The count only grows. A waypoint is passed when the vehicle has been near it and no longer comes
+nearer, or is nearer to a leg after it. One that still climbs to a waypoint, or brakes there, stays
+for a second or two yet: predicted to leave at once, it would be thought out of others' way. The
+legs considered are bounded by the distance the vehicle can have flown since the
 previous position, so that neighbouring rows are not confused.
 """
 
 from collections.abc import Sequence
 from math import hypot
+from typing import NamedTuple
 
 from recon.geo import OnGlobe
 from recon.geo.distance import offset_north_east_m
 from recon.model.geo import LatLon
 from recon.model.mission import Mission, Waypoint
+from recon.model.vehicle import VelocityNed
 
 NEAR_M = 3.0
 """Twice the noise of a GNSS position; a mission stops at half a metre from its waypoints."""
+
+AT_M = 0.5
+COMES_NEARER_MPS = 0.5
 
 CLEARLY_NEARER_M = 0.5
 FASTEST_MPS = 18.0
@@ -24,23 +31,29 @@ GAP_S = 1.0
 """After a gap this long the first waypoint may have been passed unnoticed."""
 
 Point = tuple[float, float, float]
+"""North, east, up."""
 
 
-def waypoints_passed(
-    mission: Mission, passed: int, position: LatLon, height_m: float | None, since_s: float
-) -> int:
+class Seen(NamedTuple):
+    """A vehicle's telemetry. `height_m` is above takeoff, as waypoints' own: None leaves heights
+    out. A velocity of None is unknown: the vehicle may have come to a halt."""
+
+    position: LatLon
+    height_m: float | None
+    velocity: VelocityNed | None = None
+
+
+def waypoints_passed(mission: Mission, passed: int, seen: Seen, since_s: float) -> int:
     """Return how many waypoints are passed, at least `passed`.
 
-    `height_m` is above takeoff, as the waypoints' own; None leaves heights out. `since_s` is the
-    time since the previous position.
+    `since_s` is the time since the previous position.
     """
-    points = mission.waypoints
-    passed = _past_the_near_ones(points, passed, position, height_m)
+    passed = _past_the_near_ones(mission, passed, seen)
     if passed == 0 and since_s < GAP_S:
         return 0
     reach_m = NEAR_M + FASTEST_MPS * max(0.0, since_s)
-    on = _onto_the_nearest_leg(points, passed, position, height_m, reach_m)
-    return passed if on == passed else _past_the_near_ones(points, on, position, height_m)
+    on = _onto_the_nearest_leg(mission.waypoints, passed, seen.position, seen.height_m, reach_m)
+    return passed if on == passed else _past_the_near_ones(mission, on, seen)
 
 
 def distance_to_m(waypoint: Waypoint, position: LatLon, height_m: float | None) -> float:
@@ -48,12 +61,27 @@ def distance_to_m(waypoint: Waypoint, position: LatLon, height_m: float | None) 
     return _distance_m(position, height_m, waypoint)
 
 
-def _past_the_near_ones(
-    points: Sequence[Waypoint], passed: int, position: LatLon, height_m: float | None
-) -> int:
-    while passed < len(points) and _distance_m(position, height_m, points[passed]) <= NEAR_M:
+def _past_the_near_ones(mission: Mission, passed: int, seen: Seen) -> int:
+    points = mission.waypoints
+    while passed < len(points):
+        way_m = _offset(seen.position, seen.height_m, points[passed])
+        if _norm(way_m) > NEAR_M or _comes_nearer(way_m, seen.velocity, mission.curved):
+            break
         passed += 1
     return passed
+
+
+def _comes_nearer(way_m: Point, velocity: VelocityNed | None, is_curved: bool) -> bool:
+    """Whether a vehicle is still on its way to a waypoint near it; one that flies through the
+    waypoints of a curved mission is so in the vertical only."""
+    if velocity is None:
+        return False
+    towards = (0.0, 0.0, way_m[2]) if is_curved else way_m
+    far_m = _norm(towards)
+    if far_m <= AT_M:
+        return False
+    moves = velocity.north_mps, velocity.east_mps, -velocity.down_mps
+    return _dot(towards, moves) / far_m > COMES_NEARER_MPS
 
 
 def _onto_the_nearest_leg(

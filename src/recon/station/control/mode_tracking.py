@@ -22,7 +22,7 @@ that was never commanded and moves in position mode is flown by its pilot.
 
 from recon.fleet.confirmation import SentContext
 from recon.fleet.flight_table import Instruction, ModeKind, Reading, Verdict, kind_of, read
-from recon.fleet.mission_progress import waypoints_passed
+from recon.fleet.mission_progress import Seen, waypoints_passed
 from recon.model.command import STEERED_BODIES, Body, LandNow, Phase
 from recon.model.control import Commanded, Intent
 from recon.model.replacing import replace
@@ -319,8 +319,9 @@ def _count_passed(station: Station, serial: str, vehicle: VehicleState) -> Stati
     if core_at_ns is None or core_at_ns == tracking.core_at_ns:
         return station
     since_ns = tracking.core_at_ns if tracking.core_at_ns is not None else intent.since_ns
-    height_m, since_s = vehicle.height_above_takeoff_m.value, ns_to_seconds(core_at_ns - since_ns)
-    passed = waypoints_passed(intent.mission, intent.passed, position, height_m, since_s)
+    seen = Seen(position, vehicle.height_above_takeoff_m.value, vehicle.velocity_ned.value)
+    since_s = ns_to_seconds(core_at_ns - since_ns)
+    passed = waypoints_passed(intent.mission, intent.passed, seen, since_s)
     station = _with_tracking(station, serial, replace(tracking, core_at_ns=core_at_ns))
     return intents.with_passed(station, serial, passed)
 
