@@ -44,18 +44,34 @@ def cell_colour(image: GroundImage, grid: GroundGrid, settings: DetectionSetting
 
 
 def block_means(values: FloatMap) -> FloatMap:
-    """Return the means of COARSE x COARSE blocks; NaN where any cell of the block is."""
+    """Return the means of what is seen in COARSE x COARSE blocks; NaN where less than half is."""
     rows, cols = (size // COARSE for size in values.shape)
     cut = values[: rows * COARSE, : cols * COARSE]
-    means: FloatMap = cut.reshape(rows, COARSE, cols, COARSE).mean(axis=(1, 3))
-    return means
+    blocks = cut.reshape(rows, COARSE, cols, COARSE)
+    shown = np.isfinite(blocks)
+    count = np.count_nonzero(shown, axis=(1, 3))
+    total = np.where(shown, blocks, np.float32(0.0)).sum(axis=(1, 3))
+    means = np.where(2 * count >= COARSE**2, total / np.maximum(count, 1), np.nan)
+    return means.astype(np.float32)
 
 
 def upsampled(values: FloatMap, shape: tuple[int, ...]) -> FloatMap:
-    """Return coarse values interpolated on the field grid of `shape`."""
+    """Return coarse values interpolated on the field grid of `shape`, a cell beyond their rim."""
     rows, cols = values.shape
-    fine = cv2.resize(values, (cols * COARSE, rows * COARSE), interpolation=cv2.INTER_LINEAR)
+    size = cols * COARSE, rows * COARSE
+    fine = cv2.resize(_with_rim(values), size, interpolation=cv2.INTER_LINEAR)
     missing = (0, shape[0] - rows * COARSE, 0, shape[1] - cols * COARSE)
     # An odd last row or column repeats its neighbour.
     whole = cv2.copyMakeBorder(fine, *missing, cv2.BORDER_REPLICATE)
     return np.asarray(whole, dtype=np.float32)
+
+
+def _with_rim(values: FloatMap) -> FloatMap:
+    """Return values whose neighbours without one have the mean of those around them."""
+    for _ in range(2):  # interpolation needs one cell more than is wanted
+        known = np.isfinite(values)
+        share = cv2.blur(known.astype(np.float32), (3, 3))
+        mean = cv2.blur(np.where(known, values, np.float32(0.0)), (3, 3))
+        filled = np.where(share > 0.0, mean / np.maximum(share, 1e-6), np.nan)
+        values = np.where(known, values, filled).astype(np.float32)
+    return values
