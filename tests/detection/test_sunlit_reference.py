@@ -1,6 +1,6 @@
 """Against a reference learned over the flight: known shade over known ground, and a moving sun."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -22,7 +22,8 @@ from recon.detection.sunlit.contrast import Contrast, curve, explained
 from recon.detection.sunlit.hot_spot import FlatScene, HotSpot
 from recon.detection.sunlit.keyframes import MOST, Keyframe, is_due, with_keyframe
 from recon.detection.sunlit.land import land_of
-from recon.detection.sunlit.levels import Level, read
+from recon.detection.sunlit.levels import Level, Values, apart, read
+from recon.detection.sunlit.likelihood import Belief, best_contrast, counted, most_likely
 from recon.geo.sun import SunPosition
 from recon.model.imagery import GroundImage
 from recon.model.shade import SUNLIT_TRANSMITTANCE, ShadeMap
@@ -174,6 +175,69 @@ class TestFlatScenes:
         assert HotSpot(0.3, 0.02).scene is FlatScene.SUN
         assert HotSpot(0.0, 0.02).scene is FlatScene.SHADE
         assert HotSpot(0.08, 0.02).scene is FlatScene.UNKNOWN
+
+
+def cells(level: Level, contrast: Contrast, shares: Sequence[float]) -> list[Values]:
+    """Light and colour of a thousand cells, so many in shade, in between and in sun."""
+    rng = np.random.default_rng(1)
+    by_light, by_colour = curve(contrast)
+    at = rng.choice([0, 20, 40], size=1000, p=shares)
+    noise = rng.normal(size=(2, 1000))
+    return [
+        (level.light + by_light[at] + 0.08 * noise[0]).astype(np.float32),
+        (level.colour + by_colour[at] + 0.05 * noise[1]).astype(np.float32),
+    ]
+
+
+class TestLikelihood:
+    TRUTH, CONTRAST = Level(-1.0, 0.2), Contrast(0.9, 0.6)
+    NEAR = Belief(Level(-0.9, 0.14), 0.2, 0.12)
+
+    @pytest.mark.parametrize(
+        "shares", [(0.4, 0.2, 0.4), (0.9, 0.07, 0.03), (0.0, 0.1, 0.9), (0.7, 0.3, 0.0)]
+    )
+    def test_the_level_is_found_whatever_share_is_in_sun(self, shares: tuple[float, ...]) -> None:
+        found, doubt = most_likely(
+            *cells(self.TRUTH, self.CONTRAST, shares), self.CONTRAST, self.NEAR
+        )
+        assert found.level.light == pytest.approx(self.TRUTH.light, abs=0.06)
+        assert found.level.colour == pytest.approx(self.TRUTH.colour, abs=0.05)
+        assert found.light_spread < self.NEAR.light_spread
+        assert doubt < 0.01
+
+    def test_a_flat_frame_stays_what_it_was(self) -> None:
+        for shares in ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)):
+            found, doubt = most_likely(
+                *cells(self.TRUTH, self.CONTRAST, shares), self.CONTRAST, self.NEAR
+            )
+            assert apart(found.level, self.TRUTH, self.CONTRAST) < 0.1
+            assert doubt < 0.1
+
+    def test_cells_beyond_sun_and_shade_turn_a_frame_around(self) -> None:
+        """The level before was one contrast too low: what it calls sun is shade."""
+        low = Level(self.TRUTH.light - self.CONTRAST.light, self.TRUTH.colour + 0.6)
+        frame = cells(self.TRUTH, self.CONTRAST, (0.5, 0.1, 0.4))
+        found, _ = most_likely(*frame, self.CONTRAST, Belief(low, 0.1, 0.06))
+        assert apart(found.level, self.TRUTH, self.CONTRAST) < 0.1
+
+    def test_between_two_levels_there_is_doubt(self) -> None:
+        """On the way from the one to the other, what a flat frame is passes from sun to shade."""
+        frame = cells(self.TRUTH, self.CONTRAST, (0.0, 0.0, 1.0))
+        doubts = []
+        for share in np.linspace(0.0, 1.0, 21):
+            light = self.TRUTH.light + share * self.CONTRAST.light
+            between = Level(light, self.TRUTH.colour - share * self.CONTRAST.colour)
+            doubts.append(most_likely(*frame, self.CONTRAST, Belief(between, 0.4, 0.3))[1])
+        assert max(doubts) > 0.3
+        assert max(doubts[0], doubts[-1]) < 0.1
+
+    @pytest.mark.parametrize("truth", [Contrast(0.75, 0.7), Contrast(1.3, 0.4)])
+    def test_the_contrast_is_learned_from_many_cells(self, truth: Contrast) -> None:
+        light, colour = cells(self.TRUTH, truth, (0.3, 0.2, 0.5))
+        shown = counted(light - self.TRUTH.light, colour - self.TRUTH.colour)
+        found = best_contrast(shown, Contrast())
+        assert found.light == pytest.approx(truth.light, abs=0.12)
+        assert found.colour == pytest.approx(truth.colour, abs=0.1)
 
 
 class TestParts:

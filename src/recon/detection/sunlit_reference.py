@@ -22,21 +22,22 @@ from recon.detection.settings import DetectionSettings
 from recon.detection.state import DetectionState
 from recon.detection.sunlit.colour import CellColour, cell_colour, upsampled
 from recon.detection.sunlit.contrast import explained
-from recon.detection.sunlit.drift import followed, moved
+from recon.detection.sunlit.drift import followed, since
 from recon.detection.sunlit.hot_spot import shape_of
 from recon.detection.sunlit.keyframes import LEAST, Keyframe, is_due, solved, with_keyframe
-from recon.detection.sunlit.levels import LEAST_CELLS, Level, apart, nearer, read, refined
+from recon.detection.sunlit.levels import LEAST_CELLS, Level
+from recon.detection.sunlit.likelihood import Belief, most_likely
 from recon.detection.sunlit.memory import SunlitMemory
 from recon.model.geo import GroundGrid
 from recon.model.imagery import GroundImage
 from recon.model.shade import FloatMap, MaskMap, ShadeMap
 
-CLEAR_SHARE = 0.25
-"""Share of the cells beside the main level from which a frame by itself decides which it is."""
-OPPOSED = 0.5
-"""Levels farther apart than this contradict each other."""
-DOUBT = 0.6
-"""A flat frame's level is refused when the other choice is nearly as good."""
+DOUBT = 0.25
+"""A frame is unknown when this much of the belief is in another level."""
+NO_CHANGE = Level(0.0, 0.0)
+DRIFT_SPREAD, LOCKED_SPREAD = (0.03, 0.02), (0.004, 0.003)
+"""Errors of light and colour by which the camera's change from frame to frame is known."""
+KEYFRAME_SPREAD = 0.06, 0.04
 SMOOTHED_CELLS = 5
 """Of the median filter over the map: edges of shade are wider than 20 m."""
 
@@ -55,10 +56,8 @@ def sunlit_reference(
     drift = followed(memory.drift, coarse, image.captured_at_ns)
     memory = replace(memory, drift=drift)
     memory = _with_keyframe(memory, coarse, image, grid, is_locked)
-    level = None if memory.land is None else _level(memory, coarse, is_locked)
-    if level is not None:
-        memory = replace(memory, level=level, level_drift=drift.total)
-    found = _unknown(fine) if level is None else _transmittance(memory, level, fine)
+    memory = _believed(memory, coarse, is_locked)
+    found = _transmittance(memory, fine) if memory.is_certain else _unknown(fine)
     return replace(state, sunlit=memory), shade_map(image, grid, found, settings)
 
 
@@ -74,37 +73,28 @@ def _with_keyframe(
         return replace(memory, keyframes=kept)
     kept, land = solved(kept, memory.land, is_locked)
     level = kept[-1].level
-    return replace(memory, keyframes=kept, land=land, level=level, level_drift=drift.total)
+    belief = None if level is None else Belief(level, *KEYFRAME_SPREAD)
+    return replace(memory, keyframes=kept, land=land, belief=belief, belief_drift=drift.total)
 
 
-def _level(memory: SunlitMemory, coarse: CellColour, is_locked: bool) -> Level | None:
-    """Return the level of sun in a frame; None where that is open."""
-    land, last = memory.land, memory.level
-    assert land is not None
-    if is_locked and last is not None:
-        return last
+def _believed(memory: SunlitMemory, coarse: CellColour, is_locked: bool) -> SunlitMemory:
+    """Return the memory with the level of sun in a frame; without one where that is open."""
+    land, drift = memory.land, memory.drift
+    if land is None or memory.belief is None:
+        return replace(memory, is_certain=False)
+    assert drift is not None
     cells = coarse.seen & land.known
     if np.count_nonzero(cells) < LEAST_CELLS:
-        return None
+        return replace(memory, is_certain=False)
+    changed = NO_CHANGE if is_locked else since(memory.belief_drift, drift.total)
+    spread = LOCKED_SPREAD if is_locked else DRIFT_SPREAD
+    before = memory.belief.later(changed, spread)
     light, colour = (coarse.light - land.light)[cells], (coarse.colour - land.colour)[cells]
-    reading = read(light, colour, land.contrast)
-    level = reading.sun
-    if last is not None and reading.weight < CLEAR_SHARE:
-        assert memory.drift is not None
-        last = moved(last, memory.level_drift, memory.drift.total)
-        near, doubt = nearer(reading.main, last, land.contrast, is_locked)
-        if level is None and doubt > DOUBT:
-            return None
-        if level is None or apart(level, near, land.contrast) > OPPOSED:
-            level = near
-    if level is None:
-        return None
-    for _ in range(2):
-        by_light = (light - np.float32(level.light))[np.newaxis]
-        by_colour = (colour - np.float32(level.colour))[np.newaxis]
-        found, _, _ = explained(by_light, by_colour, land.contrast)
-        level = refined(light, colour, found[0], land.contrast, level)
-    return level
+    belief, doubt = most_likely(light, colour, land.contrast, before)
+    memory = replace(memory, is_certain=doubt < DOUBT)
+    if doubt >= DOUBT:
+        return memory
+    return replace(memory, belief=belief, belief_drift=drift.total)
 
 
 def _unknown(fine: CellColour) -> tuple[FloatMap, MaskMap, FloatMap]:
@@ -112,13 +102,13 @@ def _unknown(fine: CellColour) -> tuple[FloatMap, MaskMap, FloatMap]:
     return nothing, np.zeros(fine.light.shape, dtype=np.bool_), nothing
 
 
-def _transmittance(
-    memory: SunlitMemory, level: Level, fine: CellColour
-) -> tuple[FloatMap, MaskMap, FloatMap]:
+def _transmittance(memory: SunlitMemory, fine: CellColour) -> tuple[FloatMap, MaskMap, FloatMap]:
     """Return transmittance, validity and confidence, (R, C) each."""
     land, detail = memory.land, memory.detail
     assert land is not None
     assert detail is not None
+    assert memory.belief is not None
+    level = memory.belief.level
     shape = fine.light.shape
     light = fine.light - upsampled(land.light, shape) - detail.light - np.float32(level.light)
     colour = fine.colour - upsampled(land.colour, shape) - detail.colour - np.float32(level.colour)

@@ -32,7 +32,7 @@ class Contrast:
     colour: float = 0.6
     """By which blue over red rises: 1.4 to 2.4 times in real frames."""
 
-    LEAST = (0.6, 0.2)
+    LEAST = (0.65, 0.3)
     MOST = (1.9, 1.1)
     """Bounds (light, colour) of what is learned."""
 

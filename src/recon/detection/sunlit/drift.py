@@ -44,8 +44,12 @@ def followed(drift: Drift | None, cells: CellColour, at_ns: int) -> Drift:
     return Drift(at_ns, cells, Level(total.light + light, total.colour + colour))
 
 
-def moved(level: Level, since: Level, until: Level) -> Level:
+def since(start: Level, end: Level) -> Level:
+    """Return the drift between two totals."""
+    return Level(end.light - start.light, end.colour - start.colour)
+
+
+def moved(level: Level, start: Level, end: Level) -> Level:
     """Return a level of sun, moved by the drift between two totals."""
-    return Level(
-        level.light + until.light - since.light, level.colour + until.colour - since.colour
-    )
+    change = since(start, end)
+    return Level(level.light + change.light, level.colour + change.colour)

@@ -16,8 +16,8 @@ from recon.detection.sunlit.levels import (
     above,
     apart,
     read,
-    refined,
 )
+from recon.detection.sunlit.likelihood import Belief, best_contrast, counted, most_likely
 from recon.model.shade import FloatMap, MaskMap
 from recon.model.units import NS_PER_S, seconds_to_ns
 
@@ -42,6 +42,8 @@ VOTE_S = 60.0
 """A vote counts half after this time: the drift's errors add up."""
 AGREED = 0.25
 """Distance of two levels at which they agree by half."""
+AGREED_SPREAD = 0.2, 0.12
+"""Errors of light and colour of what keyframes agreed on."""
 LAND_WEIGHT = 0.5
 """Of the land found from differences, in samples, against each cell's own samples."""
 SUN_WEIGHT, SHADE_WEIGHT, EDGE_WEIGHT = 1.0, 0.5, 0.05
@@ -113,6 +115,8 @@ def solved(
     colour = np.stack([each.cells.colour for each in kept])
     seen = np.isfinite(light)
     known: MaskMap = seen.mean(axis=0) >= KNOWN_SHARE
+    if before is not None:
+        known |= before.known & seen.any(axis=0)
     if not known.any():
         return kept, before
     contrast = Contrast() if before is None else before.contrast
@@ -270,7 +274,8 @@ def _alternated(
             summed = np.einsum("krc,krc->rc", weight, samples.astype(np.float32))
             parts.append(((summed + LAND_WEIGHT * own) / total).astype(np.float32))
         land = replace(land, light=parts[0], colour=parts[1])
-        levels = _refined(light, colour, found[0], land, levels)
+        levels = _refined(light, colour, land, levels)
+    land = replace(land, contrast=_pooled_contrast(light, colour, land, levels))
     return land, levels
 
 
@@ -291,20 +296,25 @@ def _weights(transmittance: FloatStack, is_seen: MaskMap) -> FloatStack:
 
 
 def _refined(
-    light: FloatStack,
-    colour: FloatStack,
-    transmittance: FloatStack,
-    land: SunlitLand,
-    levels: list[Level],
+    light: FloatStack, colour: FloatStack, land: SunlitLand, levels: list[Level]
 ) -> list[Level]:
     found = []
     for i, level in enumerate(levels):
         rest_light, rest_colour = light[i] - land.light, colour[i] - land.colour
         cells = np.isfinite(rest_light)
-        shown = transmittance[i][cells]
-        level = refined(rest_light[cells], rest_colour[cells], shown, land.contrast, level)
-        found.append(level)
+        before = Belief(level, *AGREED_SPREAD)
+        belief, _ = most_likely(rest_light[cells], rest_colour[cells], land.contrast, before)
+        found.append(belief.level)
     return found
+
+
+def _pooled_contrast(
+    light: FloatStack, colour: FloatStack, land: SunlitLand, levels: list[Level]
+) -> Contrast:
+    """Return the contrast that explains the cells of all keyframes together."""
+    by_light, by_colour = _relative(light, colour, land, levels)
+    cells = np.isfinite(by_light)
+    return best_contrast(counted(by_light[cells], by_colour[cells]), Contrast())
 
 
 def _steady(kept: tuple[Keyframe, ...], levels: list[Level]) -> list[Level]:

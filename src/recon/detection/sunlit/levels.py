@@ -90,39 +90,7 @@ def above(shade: Level, contrast: Contrast) -> Level:
     return Level(shade.light + contrast.light, shade.colour - contrast.colour)
 
 
-def nearer(main: Level, last: Level, contrast: Contrast, is_locked: bool) -> tuple[Level, float]:
-    """Return the level of sun of a flat frame, and how doubtful it is, 0 to 1.
-
-    The main level is taken for sun or for shade, whichever changes the level of sun less. `last` is
-    the level before, with the camera's drift since.
-    """
-    by_light = LOCKED_WEIGHT if is_locked else AUTO_WEIGHT
-    chosen = []
-    for sun in (main, above(main, contrast)):
-        light = by_light * abs(sun.light - last.light) / contrast.light
-        chosen.append((abs(sun.colour - last.colour) / contrast.colour + light, sun))
-    chosen.sort(key=lambda pair: pair[0])
-    (least, sun), (most, _) = chosen
-    return sun, least / max(most, 1e-6)
-
-
-LOCKED_WEIGHT, AUTO_WEIGHT = 3.0, 1.0
-
-
 def apart(one: Level, other: Level, contrast: Contrast) -> float:
     """Return how far two levels are apart: 1 for sun against shade, in light and in colour."""
     light = abs(one.light - other.light) / contrast.light
     return 0.5 * (light + abs(one.colour - other.colour) / contrast.colour)
-
-
-def refined(
-    light: Values, colour: Values, transmittance: Values, contrast: Contrast, level: Level
-) -> Level:
-    """Return the level of sun from the modes of the cells taken for sun, or else for shade."""
-    sunlit, shaded = transmittance > 0.6, transmittance < 0.25
-    sunlit_count, shaded_count = np.count_nonzero(sunlit), np.count_nonzero(shaded)
-    if sunlit_count > LEAST_CELLS and sunlit_count >= 0.3 * shaded_count:
-        return level_of(light[sunlit], colour[sunlit])
-    if shaded_count > LEAST_CELLS:
-        return above(level_of(light[shaded], colour[shaded]), contrast)
-    return level

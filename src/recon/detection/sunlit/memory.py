@@ -8,6 +8,7 @@ from recon.detection.sunlit.colour import CellColour, upsampled
 from recon.detection.sunlit.drift import Drift
 from recon.detection.sunlit.keyframes import Keyframe, SunlitLand
 from recon.detection.sunlit.levels import Level
+from recon.detection.sunlit.likelihood import Belief
 from recon.model.shade import FloatMap
 
 DETAIL_FRAMES = 40
@@ -47,10 +48,13 @@ class SunlitMemory:
     land: SunlitLand | None = None
     """None while nothing shows which is sun and which shade."""
     detail: Detail | None = None
-    level: Level | None = None
+    belief: Belief | None = None
+    """The level of sun in the latest frame that showed it."""
+    is_certain: bool = False
+    """Whether the latest frame did."""
     drift: Drift | None = None
-    level_drift: Level = Level(0.0, 0.0)  # noqa: RUF009
-    """The total drift at the time of `level`."""
+    belief_drift: Level = Level(0.0, 0.0)  # noqa: RUF009
+    """The total drift at the time of `belief`."""
 
     def with_detail(self, fine: CellColour, coarse: CellColour) -> "SunlitMemory":
         """Return the memory with a frame's detail."""
