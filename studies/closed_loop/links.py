@@ -148,6 +148,10 @@ class LinkedApps:
             return False
         return connection.link.delay_s + connection.link.jitter_s <= SLOWEST_ALIVE_S
 
+    def link_of(self, serial: str) -> int | None:
+        """Return a vehicle's present link; None while it is not connected."""
+        return self._joined[serial].link_id
+
     def delay_s(self, serial: str) -> float:
         """Return the longest delay of what arrives now over a vehicle's links, the latest ones."""
         now_ns = self.driver.now_ns

@@ -92,6 +92,8 @@ class ClosedLoopRun:
         """When core telemetry arrived, and its link's longest delay then."""
         self._takes_off_for: dict[str, int] = {}
         """The survey by which each vehicle was last allowed to take off."""
+        self._named_links: set[int] = set()
+        """Links on which a serial has arrived: on another no one can know whom it reaches."""
         self._alarm_ids: set[int] = set()
         self._died_s: float | None = None
         self._snapshot = b""
@@ -187,7 +189,7 @@ class ClosedLoopRun:
         self.book.note(event.serial or "", what[:260])
 
     def _expects_stop(self, serial: str) -> bool:
-        is_known = serial in self.driver.station.fleet.vehicles
+        is_known = self.links.link_of(serial) in self._named_links
         return is_known and self.apps[serial].aircraft.is_flying and self.links.has_downlink(serial)
 
     def _pilot_acted(self, serial: str, pilot: Pilot, done: str) -> None:
@@ -238,6 +240,8 @@ class ClosedLoopRun:
             if marks.known_since_s is None and serial in after.fleet.vehicles:
                 marks.known_since_s = now_s
         elif isinstance(event.report, ExtendedReport):
+            if event.report.serial is not None:
+                self._named_links.add(event.link_id)
             is_pilots = event.report.flight_mode is FlightMode.GPS_SPORT
             if is_pilots and event.report.serial is not None:
                 self.guard.reported(serial, now_s)

@@ -143,8 +143,11 @@ class TrueFleet:
         here = self.place(serial)
         is_low = isinstance(mode, Land | TakeOff | GoHome) or marks.is_coming_down
         is_low = is_low or marks.brakes_descent(self.book.now_s())
+        home = self.scene.homes_m[serial][:2]
+        # Low over its pad is allowed; what hovers at the rim of it drifts out and in.
+        is_low = is_low or hypot(here[0] - home[0], here[1] - home[1]) <= NEAR_HOME_M
         is_low = self._stays_low(marks, here, is_low)
-        return TruePlace(*here, self.scene.homes_m[serial][:2], is_low)
+        return TruePlace(*here, home, is_low)
 
     def _stays_low(
         self, marks: VehicleMarks, here: tuple[float, float, float], is_low: bool

@@ -120,6 +120,21 @@ class TestALanding:
         assert flight.belief is False
         assert flight.doubts == set()
 
+    def test_one_from_knee_height_is_in_doubt_at_once_so_that_no_hover_starts_a_takeoff(
+        self,
+    ) -> None:
+        flight = in_flight().reports(19.6, flying=True, up_mps=-2.0).reports(40.0, flying=True)
+        assert flight.height_m == pytest.approx(0.8)
+        flight.reports(1.0, flying=True, up_mps=-0.8, mode=LANDING)
+        for _ in range(20):
+            flight.reports(0.5, flying=False, mode=GPS)
+            assert flight.belief is None
+
+    def test_of_one_that_sinks_on_it_stays_false(self) -> None:
+        flight = in_flight().reports(1.0, flying=True, up_mps=-0.5, mode=LANDING)
+        flight.reports(5.0, flying=False, up_mps=-2.0, mode=LANDING)
+        assert flight.belief is True
+
     def test_it_is_believed_at_home_in_any_mode(self) -> None:
         flight = in_flight().reports(20.0, flying=True, north_mps=-5.0)
         flight.reports(20.0, flying=True, up_mps=-2.0).reports(1.3, flying=False)

@@ -20,8 +20,9 @@ A *landing* is believed when the vehicle was slow (under 0.5 m/s) for 1 s of suc
 
 Where none of these holds, two minutes of rest count in which the battery stays the same: motors
 that run empty it by 3 % and more in that time. A descent without a landing mode is no evidence: a
-hover that follows one looks the same. Until then the belief is *True* if it has not come down by
-2 m from the greatest height of the last half minute or more, or has moved since; else it is None.
+hover that follows one looks the same. Until then the belief is *True* if it has moved since, or if it
+was not landing and has not come down by 2 m from the greatest height of the last half minute or
+more; else it is None. (A landing from knee height comes down by less than any bound.)
 
 On the ground, *signs of flight* are a speed over 2 m/s, a height that moved away by more than 5 m
 (a step at once is a new zero of the barometer), and a mode that exists only in flight. Each makes
@@ -168,7 +169,9 @@ def _reported_on_ground_after_flight(
     moved_ns = reports.moved_at_ns
     if moved_ns is not None and now_ns - moved_ns < seconds_to_ns(settings.slow_s):
         return AirborneBelief(True, evidence, is_doubted=True)
-    if not (lands or is_home) and _is_up(evidence, report.height_above_takeoff_m, settings):
+    was_landing = evidence.landing_from_m is not None and not reports.has_moved
+    is_up = _is_up(evidence, report.height_above_takeoff_m, settings)
+    if is_up and not (was_landing or is_home):
         return AirborneBelief(True, evidence, is_doubted=True)
     lasts_ns = now_ns - reports.since_ns
     return AirborneBelief(None, evidence, is_doubted=lasts_ns >= seconds_to_ns(settings.doubt_s))

@@ -243,14 +243,14 @@ class TestOtherOrders:
         assert holder(scene) is AuthorityHolder.PILOT
         assert commanded(scene) is Commanded.NOTHING
 
-    def test_an_order_between_the_pilots_mode_and_the_next_place_hides_no_takeover(self) -> None:
+    def test_an_order_between_the_pilots_mode_and_the_next_place_is_refused(self) -> None:
         scene = hovering()
         scene.order(Hover())
         scene.passes(1.0).keeps_receiving(1, *at(0.0, GPS)).passes(1.0)
         core, extended = at(0.0, SPORT)
         scene.keeps_receiving(1).passes(0.08).receives(1, extended)
         order = scene.order(mission())
-        assert scene.phase(order) is Phase.SENT
+        assert scene.phase(order) is Phase.REFUSED_BY_STATION
         scene.keeps_receiving(1, core, extended).passes(0.5)
         assert holder(scene) is AuthorityHolder.PILOT
         assert commanded(scene) is Commanded.NOTHING

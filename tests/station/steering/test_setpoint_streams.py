@@ -22,6 +22,7 @@ from recon.model.command import (
     LandNow,
     Nudge,
     Phase,
+    Refusal,
     ReturnHome,
     StartCamera,
 )
@@ -31,6 +32,8 @@ from recon.model.mission import Mission, Waypoint
 from recon.model.vehicle import FlightMode
 from recon.safety import PreparedAirspace
 from recon.station.kernel.virtual import FakeLink
+from recon.station.steering.setpoint_streams import advance, start_stream
+from recon.station.steering.stream_ends import StreamUpdate
 
 JITTERY = FakeLink(delay_s=0.05, jitter_s=0.25, seed=4)
 
@@ -194,6 +197,25 @@ class TestBlownAway:
         assert s.moving_sticks(seen_s + 1.0) == []
         assert s.aircraft.motion.east_m < 45.0
         assert s.aircraft.motion.ground_speed_mps < 0.1
+
+
+def test_a_first_setpoint_that_is_refused_leaves_a_return_as_it_is() -> None:
+    """The goto leads inwards, and the first stick cannot turn so soon: a hold would end a return,
+    and leave the vehicle standing where it must not be."""
+    s = steered()
+    s.goto(0.0, 250.0)
+    s.run_for(45.0)
+    returning = s.order(ReturnHome())
+    s.run_until(lambda: s.aircraft.motion.velocity_east_mps < -7.0)
+    station, now_ns = s.w.driver.station, s.w.driver.now_ns
+    goto = replace(s.w.record(returning).command, body=GoTo(s.there(0.0, 200.0), HEIGHT_M, 8.0))
+    station, _ = start_stream(station, goto, OWNER, now_ns)
+    refused = Refusal("boundary", "it goes out")
+    ended = advance(StreamUpdate(station), SERIAL, now_ns, lambda _station, _command: refused)
+    assert (ended.outputs, ended.holds) == ((), ())
+    assert ended.station.control(SERIAL).stream is None
+    (alarm,) = ended.station.alarms.alarms.values()
+    assert alarm.condition.text.endswith("it goes out; nothing was sent, it goes on as before")
 
 
 def fence_alarms(s: Steered) -> list[str]:

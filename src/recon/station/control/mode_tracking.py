@@ -148,7 +148,10 @@ def _track(station: Station, serial: str, now_ns: int, judge: Judge) -> Stepped:
 
 
 def _reading(station: Station, serial: str, vehicle: VehicleState) -> Reading | None:
-    """Return what the newest mode means, None while there is no newer one or no newer place."""
+    """Return what the newest mode means, None while there is no newer one or no newer place.
+
+    A mode that only a pilot selects needs no place: an order may come before the next position.
+    """
     intent, tracking = _tracked(station, serial)
     instruction, mode = intents.instruction_of(intent, tracking.has_begun), vehicle.flight_mode
     if instruction in _UNCONFIRMED_EMERGENCY or mode.value is None or mode.received_at_ns is None:
@@ -156,11 +159,13 @@ def _reading(station: Station, serial: str, vehicle: VehicleState) -> Reading | 
     core_ns = vehicle.core_received_at_ns
     if mode is tracking.read or mode == tracking.read:
         return None
-    is_new = mode.received_at_ns > tracking.since_ns
-    if not is_new or core_ns is None or core_ns < mode.received_at_ns:
-        return None
     level = vehicle.gnss_signal_level.value
-    place = intents.place_of(intent, vehicle, kind_of(mode.value, level))
+    kind = kind_of(mode.value, level)
+    is_new = mode.received_at_ns > tracking.since_ns
+    is_placed = core_ns is not None and core_ns >= mode.received_at_ns
+    if not is_new or not (is_placed or kind is ModeKind.PILOT):
+        return None
+    place = intents.place_of(intent, vehicle, kind)
     if place is None:
         return None
     return read(instruction, mode.value, level, place, tracking.mode_before)

@@ -7,7 +7,8 @@ Theory of operation. A stream binds one vehicle to one order. At each beat (`adv
 3. If it cannot continue, it is aborted: the order fails with an alarm, a neutral setpoint is sent
    at once and the hold follows. Causes: the link changed, telemetry older than `resumes_s`, another
    holder of authority, no stick mode within `obeyed_s`, the gate refused a setpoint, the connection
-   that owns the order closed, or a fault in the station.
+   that owns the order closed, or a fault in the station. If the gate refuses the very first
+   setpoint, nothing is sent: the vehicle goes on as before the order, as after any refusal.
 4. Else the next velocity is computed from telemetry, judged by the gate and sent. With telemetry
    older than `max_telemetry_age_s` a neutral setpoint is sent instead; the stream goes on.
 
@@ -182,10 +183,13 @@ def _with_next_setpoint(
 def _send(
     update: StreamUpdate, serial: str, stream: SetpointStream, now_ns: int, judge: Judge
 ) -> StreamUpdate:
+    is_first = stream.last_stick_id == 0
     station, answer, stream = judge_setpoint(update.station, stream, now_ns, judge)
     if isinstance(answer, Refusal):
         reason = f"the gate refused its setpoint: {answer.reason}"
         update = replace(update, station=stream_ends.with_refusal(station, stream, answer))
+        if is_first:
+            return stream_ends.end_unsent(update, serial, stream, reason, now_ns)
         return stream_ends.abort(update, serial, stream, reason, now_ns, judge)
     station = with_stream(station, serial, stream)
     return replace(update, station=station, outputs=(*update.outputs, SendCommand(answer)))

@@ -201,6 +201,16 @@ def abort(
     return _close(replace(update, station=station), serial, stream, why, now_ns, judge)
 
 
+def end_unsent(
+    update: StreamUpdate, serial: str, stream: SetpointStream, why: str, now_ns: int
+) -> StreamUpdate:
+    """End a stream of which nothing was sent: its order fails, with an alarm, and the vehicle goes
+    on as before. A hold would end a return on its way, or leave it standing inside a zone."""
+    station = change_phase(update.station, stream, Phase.FAILED, now_ns, why)
+    station = _alarm(station, stream, f"{why}; nothing was sent, it goes on as before", now_ns)
+    return release(replace(update, station=station), serial)
+
+
 def end_held_place(
     update: StreamUpdate, serial: str, stream: SetpointStream, now_ns: int, judge: Judge
 ) -> StreamUpdate:
