@@ -149,8 +149,8 @@ def test_the_imager_sees_the_ground_up_to_66_degrees() -> None:
     projector = GroundProjector(site.ground_grid, site.imager.camera, site.imager.image_circle)
     grey = np.full((720, 1280, 3), 128, np.uint8)
     _, valid = projector.lay_pixels(grey, site.imager.solution.pose)
-    assert valid.shape == (512, 512)
-    from_middle_m = np.hypot(*(np.mgrid[:512, :512] - 255.5))
+    assert valid.shape == (544, 544)
+    from_middle_m = np.hypot(*(np.mgrid[:544, :544] - 271.5))
     # A cell counts when the pixels around its centre are in the circle as well.
     seen_m = 120.0 * np.tan(np.radians(66.0))
     assert valid[from_middle_m < seen_m - 8.0].all()

@@ -22,7 +22,7 @@ def test_the_report_tells_the_fit_and_every_residual() -> None:
     lines = site_report(site)
     solution = site.imager.solution
     assert lines[0] == "site demo field: 8 vehicle profiles"
-    assert "512 x 512 cells of 1 m" in lines[1]
+    assert "544 x 544 cells of 1 m" in lines[1]
     assert lines[2] == "imaging drone SIM-IMAGER: 1280 x 720 lens model"
     assert f"8 control points fit to {solution.rms_px:.2f} px RMS" in lines[3]
     assert f"height {solution.height_above_ground_m:.1f} +-" in lines[3]

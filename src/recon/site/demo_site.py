@@ -274,8 +274,8 @@ row_px = {CENTRE_ROW_PX}
 radius_px = {IMAGE_CIRCLE_RADIUS_PX}
 
 [ground_image]
-width_m = 512.0
-height_m = 512.0
+width_m = 544.0
+height_m = 544.0
 cell_m = 1.0
 
 [layers]
