@@ -103,6 +103,27 @@ class TestLegs:
         assert (flown.low_m[0, 0], flown.high_m[0, 0]) == (40.0, 60.0)
         assert (flown.low_m[0, 1], flown.high_m[0, 1]) == (60.0, 60.0)
 
+    def test_to_a_first_waypoint_above_it_climbs_before_it_leaves(self) -> None:
+        up = flies(route((0.0, 0.0, 70.0), (100.0, 0.0, 70.0)))
+        assert where(aircraft(), up, 5.0, 9.9, 15.0).north_m[0] == pytest.approx(
+            [0.0, 0.0, 19.0], abs=1.0
+        )
+        seen_s = where(aircraft(velocity=(0.0, 0.0, 2.0)), up, 5.0, 12.0)
+        assert seen_s.north_m[0] == pytest.approx([0.0, 0.0])
+        assert seen_s.low_m[0, 0] == seen_s.high_m[0, 0] == pytest.approx(49.2, abs=0.2)
+        order = FlyMission(route((30.0, 0.0, 70.0), (99.0, 0.0, 70.0)))
+        predicted = predict_order(seen(aircraft()), order, SETTINGS)
+        flown_s = float(predicted.rows[0, 1])
+        assert flown_s == pytest.approx(10.0)
+        # Climbs first, then 30 m: its flight as well; and no faster than 2 m/s.
+        assert predicted.delay_s == pytest.approx(8.0 + 10.0 + 5.0)
+
+    def test_a_goto_that_climbs_arrives_when_it_has_climbed(self) -> None:
+        goto = GoTo(at(10.0, 0.0), 70.0, 5.0)
+        predicted = predict_order(seen(aircraft()), goto, SETTINGS)
+        assert float(predicted.rows[0, 1]) == pytest.approx(10.0)
+        assert predicted.delay_s == pytest.approx(5.0)
+
     def test_age_is_made_up_for(self) -> None:
         old = aircraft(velocity=(5.0, 0.0, 0.0), age_s=1.0)
         flown = where(old, flies(route((0.0, 0.0), (100.0, 0.0)), 1), 0.0, 1.0)
@@ -411,18 +432,29 @@ class TestAgainstAnIntegrator:
     @settings(max_examples=examples(60), deadline=None)
     def test_missions_the_gate_passes_stay_apart(self, data: st.DataObject) -> None:
         coordinate = st.floats(-150.0, 150.0)
-        places = st.tuples(coordinate, coordinate, st.sampled_from([36.0, 40.0, 44.0, 48.0]))
+        heights = st.sampled_from([4.0, 36.0, 40.0, 44.0, 48.0, 80.0])
+        places = st.tuples(coordinate, coordinate, heights)
         ways = [data.draw(st.lists(places, min_size=3, max_size=5)) for _ in range(2)]
         rates = [data.draw(st.floats(0.93, 1.07)) for _ in range(2)]
         delays = [data.draw(st.floats(0.0, 7.0)), 0.0]
+        climb_first = [data.draw(st.booleans()) for _ in range(2)]
         own, other = (
             aircraft(name, way[0][:2], way[0][2]) for name, way in zip("AB", ways, strict=True)
         )
         traffic = Traffic(other, flies(route(*ways[1][1:]), 0))
         refusal = judged(route(*ways[0][1:]), own, traffic)
-        nearest = _least_closeness(ways, rates, delays)
+        nearest = _least_closeness(ways, rates, delays, climb_first)
         if refusal is None:
             assert nearest >= 0.98
+
+    def test_a_climb_to_the_first_waypoint_takes_its_time(self) -> None:
+        """A climbs to 80 m where it stands, for half a minute; B crosses over it at 57 m."""
+        own, other = aircraft("A", (0.0, 0.0), 1.0), aircraft("B", (0.0, 140.0), 57.0)
+        climbs = route((0.0, 0.5, 80.0), (-200.0, 0.0, 90.0))
+        over = Traffic(other, flies(route((0.0, 0.0, 57.0), (0.0, -200.0, 57.0)), 0))
+        assert judged(climbs, own, over) is not None
+        beside = Traffic(other, flies(route((60.0, 140.0, 57.0), (60.0, -200.0, 57.0)), 0))
+        assert judged(climbs, own, beside) is None
 
     def test_it_refuses_what_meets_and_passes_what_does_not(self) -> None:
         """The property above is not empty: both answers come."""
@@ -435,12 +467,14 @@ class TestAgainstAnIntegrator:
 
 
 def _least_closeness(
-    ways: list[list[tuple[float, float, float]]], rates: list[float], delays: list[float]
+    ways: list[list[tuple[float, float, float]]],
+    rates: list[float],
+    delays: list[float],
+    climb_first: list[bool],
 ) -> float:
     """Two flown at 10 Hz, stopping at each waypoint, each at its own rate and after its delay."""
-    tracks = [
-        _flown(way, rate, delay) for way, rate, delay in zip(ways, rates, delays, strict=True)
-    ]
+    each = zip(ways, rates, delays, climb_first, strict=True)
+    tracks = [_flown(*one) for one in each]
     longest = max(len(track) for track in tracks)
     one, other = (
         np.vstack([track, np.repeat(track[-1:], longest - len(track), axis=0)]) for track in tracks
@@ -452,9 +486,15 @@ def _least_closeness(
     return float("inf") if start < 1.0 else float(np.maximum(level, upright).min())
 
 
-def _flown(way: list[tuple[float, float, float]], rate: float, delay_s: float) -> np.ndarray:
-    """Positions each tenth of a second: 5 m/s, 2.5 m/s2, the first leg at its last height."""
+def _flown(
+    way: list[tuple[float, float, float]], rate: float, delay_s: float, climbs_first: bool
+) -> np.ndarray:
+    """Positions each tenth of a second: 5 m/s, 2.5 m/s2, up and down at 2.5 or 3 m/s."""
     track = [way[0]] * max(1, round(delay_s * 10))
+    if climbs_first:
+        rises = round(10.0 * abs(way[1][2] - way[0][2]) / 2.5)
+        track += [(*way[0][:2], z) for z in np.linspace(way[0][2], way[1][2], rises + 1)]
+        way = [track[-1], *way[1:]]
     for start, end in pairwise(way):
         long_m = hypot(end[0] - start[0], end[1] - start[1])
         gone, speed = 0.0, 0.0

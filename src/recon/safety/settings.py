@@ -199,6 +199,9 @@ class PredictionSettings:
     sink_mps: float = 4.0
     """What aircraft of all sizes do at most by themselves on the way home and down."""
 
+    slow_climb_mps: float = 2.0
+    """What they climb and sink at least when they change height for an order."""
+
     takeoff_height_m: float = 3.0
     """A hover that takes off ends so high at most: DJI's own takeoff ends at 1.2 m, and bounces."""
 

@@ -15,6 +15,8 @@ STANDING_MPS = 0.5
 """Below this a vehicle counts as standing: GNSS velocity noise and gusts stay under it."""
 
 VERTICAL_BRAKING_MPS2 = 2.0
+EASING_MPS2 = 0.8
+"""An aircraft eases into a new height more gently than it brakes; only there does it fly on."""
 LONGEST_RISE_S = 600.0
 """A leg to an unknown height still ends."""
 
@@ -43,17 +45,16 @@ def fly(
     *,
     exactly: bool,
     until_s: float = FOREVER_S,
+    least_s: float = 0.0,
 ) -> None:
     """Write a leg: as its phases of gaining, keeping and losing speed, or as one even row.
 
-    No phase that begins after `until_s` is written.
+    No phase that begins after `until_s` is written. It takes `least_s` at least: the climb of a leg
+    that may be at every height between from its beginning on.
     """
     long_m = hypot(leg.east_m - writer.east_m, leg.north_m - writer.north_m)
     low_m, high_m = leg.band_m
-    rise_s = 0.0
-    if high_m > writer.high_m or low_m < writer.low_m:
-        climb_s = (high_m - writer.high_m) / settings.climb_mps
-        rise_s = min(max(climb_s, (writer.low_m - low_m) / settings.sink_mps), LONGEST_RISE_S)
+    rise_s = max(least_s, fastest_rise_s(writer, leg.band_m, settings))
     if exactly and long_m > LEAST_M:
         phases = _phases(long_m, leg, settings.braking_mps2)
         seconds = phases[0][3] + phases[1][3] + phases[2][3]
@@ -64,6 +65,23 @@ def fly(
         seconds = _even_seconds(long_m, leg, settings.braking_mps2)
     longest_s = max(seconds, rise_s, LEAST_S)
     writer.moves(leg.east_m, leg.north_m, longest_s, leg.part, band_m=leg.band_m)
+
+
+def fastest_rise_s(
+    writer: TrajectoryWriter, band_m: tuple[float, float], settings: PredictionSettings
+) -> float:
+    """Return how long a change of height takes at least; 0 into a band that holds the present."""
+    climb_s = (band_m[1] - writer.high_m) / settings.climb_mps
+    sink_s = (writer.low_m - band_m[0]) / settings.sink_mps
+    return min(max(0.0, climb_s, sink_s), LONGEST_RISE_S)
+
+
+def eased_rise_s(rise_m: float, speed_mps: float) -> float:
+    """Return how long a change of height takes at a speed, easing into the new height."""
+    easing_m = speed_mps**2 / (2.0 * EASING_MPS2)
+    if rise_m <= easing_m:
+        return sqrt(2.0 * rise_m / EASING_MPS2)
+    return rise_m / speed_mps + 0.5 * speed_mps / EASING_MPS2
 
 
 def stop(

@@ -47,8 +47,8 @@ def predict_order(motion: VehicleMotion, body: Body, settings: PredictionSetting
     predictor = Predictor(motion, settings)
     write_order(predictor, body)
     trajectory = predictor.writer.trajectory(motion.name, motion.state.serial, motion.drift_m)
-    may_wait = isinstance(body, FlyMission)
-    return replace(trajectory, delay_s=settings.start_delay_s) if may_wait else trajectory
+    start_s = settings.start_delay_s if isinstance(body, FlyMission) else 0.0
+    return replace(trajectory, delay_s=predictor.delay_s + start_s)
 
 
 def predict_traffic(
@@ -68,9 +68,8 @@ def predict_traffic(
     predictor = Predictor(motion, settings, until_s=until_s)
     predictor.follow(intent)
     trajectory = predictor.writer.trajectory(motion.name, motion.state.serial, motion.drift_m)
-    if _has_not_begun(motion, intent):
-        trajectory = replace(trajectory, delay_s=settings.start_delay_s)
-    return (trajectory, *volumes)
+    start_s = settings.start_delay_s if _has_not_begun(motion, intent) else 0.0
+    return (replace(trajectory, delay_s=predictor.delay_s + start_s), *volumes)
 
 
 def _has_not_begun(motion: VehicleMotion, intent: Intent) -> bool:

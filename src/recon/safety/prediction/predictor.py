@@ -9,9 +9,12 @@ from recon.model.mission import Mission
 from recon.safety.go_home import is_off_track
 from recon.safety.prediction.legs import (
     LEAST_M,
+    LONGEST_RISE_S,
     STANDING_MPS,
     Leg,
     corner_bulge_m,
+    eased_rise_s,
+    fastest_rise_s,
     fly,
     stop,
     stopping_distance_m,
@@ -52,6 +55,8 @@ class Predictor:
         self.exactly = exactly
         self.writer = TrajectoryWriter(motion.east_m, motion.north_m, motion.low_m, motion.high_m)
         self.writer.time_s = -motion.age_s
+        self.delay_s = 0.0
+        """By how much later all of it may be flown."""
 
     def follow(self, intent: Intent) -> None:
         """Write what an intent makes a vehicle do."""
@@ -93,18 +98,12 @@ class Predictor:
             writer.radius_m = self._bulge_m(mission, index)
             place_m = plane.east_north_m(waypoint)
             band_m = self.motion.up_m(waypoint.height_above_takeoff_m)
+            towards_mps = self._towards_mps(*place_m) if start_mps is None else start_mps
+            leg = Leg(*place_m, band_m, towards_mps, speed_mps, end_mps, index)
             if index == 0:
-                writer.widens(*band_m)  # it may climb or sink first, last or on the way
-            leg = Leg(
-                *place_m,
-                (writer.low_m, writer.high_m) if index == 0 else band_m,
-                self._towards_mps(*place_m) if start_mps is None else start_mps,
-                speed_mps,
-                end_mps,
-                index,
-            )
-            fly(writer, leg, self.settings, exactly=self.exactly, until_s=self.until_s)
-            writer.low_m, writer.high_m = band_m
+                self._fly_at_any_height_between(leg, climbs_first=True)
+            else:
+                fly(writer, leg, self.settings, exactly=self.exactly, until_s=self.until_s)
             start_mps = end_mps
             if waypoint.loiter_s is not None and waypoint.loiter_s > 0.0:
                 writer.waits(waypoint.loiter_s, index)
@@ -119,12 +118,40 @@ class Predictor:
         writer = self.writer
         band_m = (writer.low_m, writer.high_m) if height_m is None else self.motion.up_m(height_m)
         place_m = self.motion.plane.east_north_m(target)
-        writer.widens(*band_m)
         start_mps = self._towards_mps(*place_m)
-        both_m = writer.low_m, writer.high_m
-        leg = Leg(*place_m, both_m, start_mps, speed_mps, 0.0, FlightPart.GOING_TO)
-        fly(writer, leg, self.settings, exactly=self.exactly)
-        writer.low_m, writer.high_m = band_m
+        leg = Leg(*place_m, band_m, start_mps, speed_mps, 0.0, FlightPart.GOING_TO)
+        self._fly_at_any_height_between(leg, climbs_first=False)
+
+    def _fly_at_any_height_between(self, leg: Leg, *, climbs_first: bool) -> None:
+        """Fly a leg whose change of height comes first, last or on the way, and as long as that.
+
+        One that climbs first, as most aircraft do at a mission's beginning, comes later to all that
+        follows: `delay_s`. One that is seen to do so stays where it is until it has climbed.
+        """
+        writer, settings = self.writer, self.settings
+        rise_s = fastest_rise_s(writer, leg.band_m, settings)
+        rise_m = max(0.0, leg.band_m[1] - writer.high_m, writer.low_m - leg.band_m[0])
+        slowest_s = min(rise_m / settings.slow_climb_mps, LONGEST_RISE_S)
+        if climbs_first and self.exactly and self._is_seen_to_climb(leg):
+            climb_mps = min(settings.climb_mps, abs(self.motion.velocity_mps[2]))
+            self._climb_here(leg, eased_rise_s(leg.band_m[1] - writer.high_m, climb_mps))
+            rise_s = 0.0
+        before_s = writer.time_s
+        writer.widens(*leg.band_m)
+        both = leg._replace(band_m=(writer.low_m, writer.high_m))
+        fly(writer, both, settings, exactly=self.exactly, until_s=self.until_s, least_s=rise_s)
+        writer.low_m, writer.high_m = leg.band_m
+        first_s = min(rise_s, writer.time_s - before_s) if climbs_first else 0.0
+        self.delay_s += slowest_s - rise_s + first_s
+
+    def _is_seen_to_climb(self, leg: Leg) -> bool:
+        is_below = leg.band_m[1] > self.writer.high_m
+        climbs = self.motion.velocity_mps[2] >= STANDING_MPS
+        return is_below and climbs and self.motion.speed_mps < UNDER_WAY_MPS
+
+    def _climb_here(self, leg: Leg, seconds: float) -> None:
+        writer = self.writer
+        writer.moves(writer.east_m, writer.north_m, seconds, leg.part, band_m=leg.band_m)
 
     def go_straight_on(self, seconds: float, part: int = FlightPart.STEERED) -> None:
         """Keep the present velocity for a while."""
