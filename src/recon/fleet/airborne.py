@@ -20,8 +20,8 @@ A *landing* is believed when the vehicle was slow (under 0.5 m/s) for 1 s of suc
 
 Where none of these holds, two minutes of rest count in which the battery stays the same: motors
 that run empty it by 3 % and more in that time. A descent without a landing mode is no evidence: a
-hover that follows one looks the same. Until then the belief is *True* if it has moved since, or if it
-was not landing and has not come down by 2 m from the greatest height of the last half minute or
+hover that follows one looks the same. Until then the belief is *True* if it has moved since, or if
+it was not landing and has not come down by 2 m from the greatest height of the last half minute or
 more; else it is None. (A landing from knee height comes down by less than any bound.)
 
 On the ground, *signs of flight* are a speed over 2 m/s, a height that moved away by more than 5 m

@@ -9,13 +9,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 
+import cv2
 import numpy as np
 
 from recon.detection.sunlit.colour import COARSE
 from recon.detection.sunlit.land import FloatStack
 from recon.model.geo import GroundGrid
 from recon.model.imagery import GroundImage
-from recon.model.shade import FloatMap
+from recon.model.shade import FloatMap, MaskMap
 
 FOLD_DEG = 6.0
 """Angle at which it falls to 1/e: 4 to 8 degrees over crops."""
@@ -89,18 +90,19 @@ def hot_spot(light: FloatStack, shapes: Sequence[FloatMap | None]) -> HotSpot | 
     if len(used) < LEAST_FRAMES:
         return None
     shape = np.stack([each for each in shapes if each is not None])
-    near = (shape.max(axis=0) > np.exp(-REACH_DEG / FOLD_DEG)) & np.isfinite(light[used]).all(
-        axis=0
-    )
+    seen = np.isfinite(light[used]).all(axis=0)
+    # A cell at the rim is half seen, and the lens is darkest there.
+    inside = cv2.erode(np.asarray(seen, np.uint8), np.ones((3, 3), np.uint8)) > 0
+    near: MaskMap = (shape.max(axis=0) > np.exp(-REACH_DEG / FOLD_DEG)) & inside
     if np.count_nonzero(near) < LEAST_CELLS:
         return None
-    seen, expected = _centred(light[used][:, near]), _centred(shape[:, near])
+    change, expected = _centred(light[used][:, near]), _centred(shape[:, near])
     # A few samples that are far off (a vehicle, an error of place) must not decide.
-    spread = 1.48 * float(np.median(np.abs(seen)))
-    seen = np.clip(seen, -3.0 * spread, 3.0 * spread)
+    spread = 1.48 * float(np.median(np.abs(change)))
+    change = np.clip(change, -3.0 * spread, 3.0 * spread)
     power = float((expected**2).sum())
-    strength = float((seen * expected).sum()) / max(power, 1e-9)
-    rest = seen - strength * expected
+    strength = float((change * expected).sum()) / max(power, 1e-9)
+    rest = change - strength * expected
     error = float(np.sqrt(ALIKE * np.mean(rest**2) / max(power, 1e-9)))
     return HotSpot(strength, error)
 

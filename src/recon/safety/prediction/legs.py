@@ -53,7 +53,6 @@ def fly(
     that may be at every height between from its beginning on.
     """
     long_m = hypot(leg.east_m - writer.east_m, leg.north_m - writer.north_m)
-    low_m, high_m = leg.band_m
     rise_s = max(least_s, fastest_rise_s(writer, leg.band_m, settings))
     if exactly and long_m > LEAST_M:
         phases = _phases(long_m, leg, settings.braking_mps2)
