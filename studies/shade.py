@@ -132,7 +132,7 @@ def main() -> int:
                 options.every_s,
             )  # fmt: skip
             for method in options.methods.split(","):
-                row = score(flight, method)
+                row = score(flight, method, 60.0 * options.after)
                 sums.setdefault(method, []).append(row)
                 if not options.brief:
                     print(_row(f"{name} {seed}", method, row), flush=True)
@@ -141,8 +141,8 @@ def main() -> int:
     return 0
 
 
-def score(flight: Flight, method: str) -> tuple[float, ...]:
-    """Return the figures of a method on a flight."""
+def score(flight: Flight, method: str, after_s: float = 0.0) -> tuple[float, ...]:
+    """Return the figures of a method on a flight, over the frames after a time."""
     tally = Tally(ms=[])
     state, settings = DetectionState(), DetectionSettings(cell_m=FIELD_CELL_M)
     if flight.exposure == "locked":
@@ -152,6 +152,8 @@ def score(flight: Flight, method: str) -> tuple[float, ...]:
         state, found = DETECTORS[method](state, moment.image, settings)
         assert tally.ms is not None
         tally.ms.append(1e3 * (time.process_time() - started))
+        if moment.image.captured_at_ns < seconds_to_ns(after_s):
+            continue
         shade = None if isinstance(found, RejectedFrame) else found
         tally.add(shade, moment.transmittance, _counted(moment), moment.image.captured_at_ns / 1e9)
     mixed, ms = tally.mixed_iou or [], tally.ms or [0.0]
@@ -309,6 +311,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--scenario", default="cumulus-40", help="names, with commas")
     parser.add_argument("--seeds", default="0-4", help="first-last; 1000 and above are for scores")
     parser.add_argument("--minutes", type=float, default=20.0)
+    parser.add_argument("--after", type=float, default=0.0, help="minutes that do not count")
     parser.add_argument("--every-s", type=float, default=5.0)
     parser.add_argument("--cols", type=int, default=640, help="width of the rendered frames")
     parser.add_argument("--exposure", choices=("auto", "locked"), default="auto")
