@@ -44,6 +44,8 @@ class TrueFleet:
     permits: TakeoffPermits
     core_s: dict[str, float] = field(default_factory=dict)
     """When core telemetry of each vehicle last reached the station."""
+    _home_m: dict[str, tuple[float, float]] = field(default_factory=dict)
+    """Where each took off last: an aircraft's home moves with that."""
     _was_flying: dict[str, bool] = field(default_factory=dict)
     _was_grounded: dict[str, bool] = field(default_factory=dict)
 
@@ -73,6 +75,7 @@ class TrueFleet:
             self.book.note(serial, f"landed with {aircraft.battery.fraction:.0%}")
         if self._was_grounded[serial] and not aircraft.is_on_ground:
             self.book.note(serial, "takes off")
+            self._home_m[serial] = self.place(serial)[:2]
             found = self.permits.took_off(serial, now_s)
             if found is not None:
                 self.book.found(found)
@@ -143,7 +146,7 @@ class TrueFleet:
         here = self.place(serial)
         is_low = isinstance(mode, Land | TakeOff | GoHome) or marks.is_coming_down
         is_low = is_low or marks.brakes_descent(self.book.now_s())
-        home = self.scene.homes_m[serial][:2]
+        home = self._home_m.get(serial, self.scene.homes_m[serial][:2])
         # Low over its pad is allowed; what hovers at the rim of it drifts out and in.
         is_low = is_low or hypot(here[0] - home[0], here[1] - home[1]) <= NEAR_HOME_M
         is_low = self._stays_low(marks, here, is_low)
