@@ -147,8 +147,11 @@ class TrueFleet:
         is_low = isinstance(mode, Land | TakeOff | GoHome) or marks.is_coming_down
         is_low = is_low or marks.brakes_descent(self.book.now_s())
         home = self._home_m.get(serial, self.scene.homes_m[serial][:2])
-        # Low over its pad is allowed; what hovers at the rim of it drifts out and in.
-        is_low = is_low or hypot(here[0] - home[0], here[1] - home[1]) <= NEAR_HOME_M
+        # Low over its home or any pad is allowed; what hovers at the rim of it drifts out and in.
+        pads = (home, *(pad[:2] for pad in self.scene.homes_m.values()))
+        is_low = is_low or any(
+            hypot(here[0] - pad[0], here[1] - pad[1]) <= NEAR_HOME_M for pad in pads
+        )
         is_low = self._stays_low(marks, here, is_low)
         return TruePlace(*here, home, is_low)
 
