@@ -38,7 +38,7 @@ OUTLIERS = 2e-3
 WORTH = 20.0
 """A frame's cells are worth so many independent ones: neighbours are wrong together."""
 LEAP = 1e-6
-"""How likely a level far from what is expected is, against that one: only a twentieth of the cells
+"""How likely a level far from what is expected is, against that one: only a seventh of the cells
 that nothing else explains makes it likely."""
 ALIKE = 0.3, 0.5
 """Shares of the contrast within which two levels are the same one."""
