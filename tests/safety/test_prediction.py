@@ -111,6 +111,9 @@ class TestLegs:
         seen_s = where(aircraft(velocity=(0.0, 0.0, 2.0)), up, 5.0, 12.0)
         assert seen_s.north_m[0] == pytest.approx([0.0, 0.0])
         assert seen_s.low_m[0, 0] == seen_s.high_m[0, 0] == pytest.approx(49.2, abs=0.2)
+        last = flies(route((0.0, 0.0, 41.0), (100.0, 0.0, 41.0)))
+        eases = where(aircraft(velocity=(0.0, 0.0, 1.3)), last, 1.5, 3.5)
+        assert eases.north_m[0] == pytest.approx([0.0, 4.6], abs=0.3), "easing takes 1.6 s"
         order = FlyMission(route((30.0, 0.0, 70.0), (99.0, 0.0, 70.0)))
         predicted = predict_order(seen(aircraft()), order, SETTINGS)
         flown_s = float(predicted.rows[0, 1])
