@@ -150,7 +150,7 @@ def _track(station: Station, serial: str, now_ns: int, judge: Judge) -> Stepped:
 def _reading(station: Station, serial: str, vehicle: VehicleState) -> Reading | None:
     """Return what the newest mode means, None while there is no newer one or no newer place.
 
-    A mode that only a pilot selects needs no place: an order may come before the next position.
+    A mode that only a pilot selects needs no newer place: an order may come before the next one.
     """
     intent, tracking = _tracked(station, serial)
     instruction, mode = intents.instruction_of(intent, tracking.has_begun), vehicle.flight_mode
