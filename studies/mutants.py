@@ -71,7 +71,11 @@ PARTS: Mapping[str, Part] = {
     "watchdogs": Part(_safety("watchdogs/*.py"), ("tests/safety/watchdogs",)),
     "path": Part(
         _safety("path/*.py"),
-        ("tests/safety/test_order_path.py", "tests/safety/test_path_volumes.py"),
+        (
+            "tests/safety/test_order_path.py",
+            "tests/safety/test_path_volumes.py",
+            "tests/safety/test_standstill.py",
+        ),
     ),
     "prediction": Part(
         _safety("prediction/*.py", "separation_minima.py"),

@@ -1,6 +1,6 @@
 """Orders interpreted once: the motion they ask for, and how far a stick counts."""
 
-from math import cos, hypot, radians, sin
+from math import cos, hypot, inf, radians, sin
 
 import pytest
 from hypothesis import given
@@ -25,9 +25,10 @@ from recon.safety.path.order_path import (
     StickFlight,
     StraightFlight,
     TakeoffClimb,
+    as_sent,
     order_path,
 )
-from recon.safety.settings import SafetySettings
+from recon.safety.settings import SafetySettings, StickBounds
 
 LIMITS = SafetySettings()
 SPEEDS = st.floats(-15.0, 15.0, width=32)
@@ -65,9 +66,9 @@ class TestMotions:
 
     def test_a_nudge_adds_to_the_present_height(self) -> None:
         state = vehicle(height_above_takeoff_m=Stamped(40.0, 1))
-        path = order_path(Nudge(0.0, 0.0, 3.0), state)
+        path = order_path(Nudge(0.0, 0.0, 3.0, 2.5), state)
         assert isinstance(path, StraightFlight)
-        assert path.height_above_takeoff_m == 43.0
+        assert (path.height_above_takeoff_m, path.speed_mps) == (43.0, 2.5)
         unknown = order_path(Nudge(0.0, 0.0, 3.0), vehicle(height_above_takeoff_m=Stamped()))
         assert isinstance(unknown, StraightFlight)
         assert unknown.height_above_takeoff_m is None
@@ -91,6 +92,7 @@ class TestSticks:
         path = stick(x_mps, y_mps, yaw_deg, StickFrame.GROUND)
         assert path.east_north_mps() == (y_mps, x_mps)
         assert path.turn_deg == 0.0
+        assert path.frame is StickFrame.GROUND
 
     def test_the_turn_is_from_the_present_yaw(self) -> None:
         assert stick(1.0, 0.0, 90.0, StickFrame.BODY).turn_deg == pytest.approx(10.0)
@@ -104,6 +106,16 @@ class TestSticks:
         path = stick(1e-50, 0.1, 0.0, StickFrame.GROUND)
         assert path.north_mps == 0.0
         assert path.east_mps == 0.10000000149011612
+
+    @pytest.mark.parametrize("beyond", [1e39, 1e300])
+    def test_what_no_32_bit_float_holds_is_infinite(self, beyond: float) -> None:
+        assert (as_sent(beyond), as_sent(-beyond)) == (inf, -inf)
+
+    def test_another_speed_reaches_as_far_as_a_stick_of_that_speed(self) -> None:
+        bounds = StickBounds(reaction_s=1.0, braking_mps2=2.0)
+        slow = stick(2.0, 0.0, 0.0, StickFrame.GROUND)
+        assert slow.reach_m(bounds) == pytest.approx(2.0 * 3.0 + 1.0)
+        assert slow.reach_m(bounds, speed_mps=6.0) == pytest.approx(6.0 * 3.0 + 9.0)
 
     @given(x_mps=SPEEDS, y_mps=SPEEDS)
     def test_energy_counts_least_and_separation_most(self, x_mps: float, y_mps: float) -> None:

@@ -25,13 +25,20 @@ from recon.model.vehicle import Attitude, Failsafe, VehicleState
 from recon.safety import OPEN_AIRSPACE, PreparedAirspace
 from recon.safety.path.pieces import Kind, PathVolume, UnknownPath
 from recon.safety.path.volumes import path_volume
+from recon.safety.settings import SafetySettings
 
 FLAT = airspace()
 INF = np.inf
 
 
-def path(body: Body, state: VehicleState | None = None, air: PreparedAirspace = FLAT) -> PathVolume:
-    found = path_volume(command(body), here(air, state))
+def path(
+    body: Body,
+    state: VehicleState | None = None,
+    air: PreparedAirspace = FLAT,
+    *,
+    takeoff: bool = False,
+) -> PathVolume:
+    found = path_volume(command(body, takeoff=takeoff), here(air, state))
     assert isinstance(found, PathVolume), found
     return found
 
@@ -66,6 +73,29 @@ def test_what_sets_nothing_in_motion_flies_nowhere(body: Body) -> None:
 
 def test_no_vehicle_flies_nowhere() -> None:
     assert path_volume(command(goto(10.0, 0.0)), replace(here(FLAT), vehicle=None)) is None
+
+
+@pytest.mark.parametrize("failsafe", Failsafe)
+@pytest.mark.parametrize(
+    "body",
+    [
+        mission((50.0, 0.0, 30.0), (50.0, 50.0, 30.0), (0.0, 50.0, 30.0), curved=True, land=True),
+        goto(10.0, 0.0),
+        HoldPosition(),
+        stick(1.0, 2.0, 30.0),
+        stick(1.0, 2.0, 30.0, frame=StickFrame.BODY, yaw_deg=80.0),
+    ],
+)
+def test_every_piece_is_complete_and_entries_begin_at_the_vehicle(
+    body: Body, failsafe: Failsafe
+) -> None:
+    found = path(body, flier(-20.0, 10.0, failsafe=failsafe))
+    every = found.pieces
+    columns = every.triangles_m, every.low_m, every.high_m, every.is_entry, every.names
+    assert {len(column) for column in columns} == {len(every)}
+    entries = every.only(every.is_entry)
+    assert entries.label(0) == every.label(0)
+    assert (entries.triangles_m[:, 0] == found.here_m[:2]).all()
 
 
 class TestMission:
@@ -137,6 +167,7 @@ class TestMission:
         assert pieces(path(self.square, vehicle(None)), Kind.WAY_HOME)[2][2:4] == (30.0, INF)
         index = int(np.flatnonzero(found.of_kinds(Kind.WAY_HOME))[2])
         assert found.heights(index) == "30.0 m to an unknown go-home height above takeoff"
+        assert found.height_parameters(index) == {"lowest_above_takeoff_m": 30.0}
 
     def test_an_aircraft_that_hovers_by_itself_has_no_way_home(self) -> None:
         found = path(self.square, flier(failsafe=Failsafe.HOVER))
@@ -165,14 +196,21 @@ class TestMission:
             30.0,
             False,
         )
-        heights = path(body).heights(len(path(body).pieces) - 1)
-        assert heights == "the ground to 30.0 m above takeoff"
+        assert pieces(path(body), Kind.LANDING)[:-1] == pieces(path(self.square), Kind.LANDING)
+        assert pieces(path(body), Kind.FLIGHT) == pieces(path(self.square), Kind.FLIGHT)
+        last = len(path(body).pieces) - 1
+        assert path(body).heights(last) == "the ground to 30.0 m above takeoff"
+        assert path(body).height_parameters(last) == {"highest_above_takeoff_m": 30.0}
 
     def test_heights_count_from_the_takeoff_point(self) -> None:
         air = airspace(elevation=hills([[20.0] * 8] * 8))
         found = path(self.square, air=air)
         assert pieces(found, Kind.FLIGHT)[2][2:4] == (50.0, 50.0)
         assert found.heights(2) == "30.0 m above takeoff"
+        assert found.height_parameters(1) == {
+            "lowest_above_takeoff_m": 30.0,
+            "highest_above_takeoff_m": 50.0,
+        }
         assert found.subject(2) == "A: leg 2 to 3"
 
     def test_without_a_site_it_is_the_same_seen_from_the_vehicle(self) -> None:
@@ -225,6 +263,10 @@ class TestSteered:
             ("the nudge", [[50, 50], [45.2, 56.4], [45.2, 56.4]], 39.5, 39.5, True)
         ]
 
+    def test_however_short_the_way_it_may_pass_its_end(self) -> None:
+        found = path(Nudge(north_m=0.5, east_m=0.0, up_m=0.0))
+        assert pieces(found, Kind.FLIGHT)[0][1] == [[0, 0], [0, 3.5], [0, 3.5]]
+
     def test_straight_up_goes_nowhere_else(self) -> None:
         found = path(Nudge(0.0, 0.0, up_m=20.0), flier(50.0, 50.0, 10.0))
         assert pieces(found, Kind.FLIGHT) == [
@@ -237,6 +279,19 @@ class TestSteered:
         assert pieces(found, Kind.FLIGHT) == [
             ("the place to hold", [[50, 50], [50, 50], [50, 50]], 10.0, 10.0, True)
         ]
+
+
+def test_a_takeoff_climbs_on_the_spot_and_may_go_home_from_there() -> None:
+    found = path(Hover(), flier(20.0, -10.0, 3.0), takeoff=True)
+    column = [[20, -10], [20, -10], [20, -10]]
+    top_m = 3.0 + SafetySettings().prediction.takeoff_height_m
+    assert pieces(found, Kind.FLIGHT) == [("the takeoff", column, 4.0, top_m, True)]
+    assert pieces(found, Kind.CLIMB) == [
+        ("the climb before the way home from the takeoff", column, 4.0, 60.0, True)
+    ]
+    assert pieces(found, Kind.WAY_HOME) == [
+        ("the way home from the takeoff", [[20, -10], [20, -10], [0, 0]], 60.0, 60.0, True)
+    ]
 
 
 class TestStick:
@@ -310,6 +365,17 @@ class TestStick:
             end = 9.99 * np.array([np.sin(bearing), np.cos(bearing)])
             assert any(is_within(triangle, end) for triangle in found.pieces.triangles_m)
 
+    @pytest.mark.parametrize(
+        ("turn_deg", "count"),
+        [(0.0, 1), (-30.0, 1), (31.0, 2), (90.0, 3), (-170.0, 6), (171.0, 12)],
+    )
+    def test_a_fan_has_a_piece_for_each_30_deg_and_a_circle_beyond_170_deg(
+        self, turn_deg: float, count: int
+    ) -> None:
+        body = stick(1.0, 0.0, frame=StickFrame.BODY, yaw_deg=turn_deg)
+        found = path(body, self.heading(0.0))
+        assert len(found.pieces) == count
+
 
 class TestUnknown:
     def test_without_a_position(self) -> None:
@@ -322,12 +388,18 @@ class TestUnknown:
 
     def test_without_a_home(self) -> None:
         refusal_text = unknown(TestMission.square, flier(takeoff_point=None))
-        assert refusal_text.startswith("A: home unknown")
+        assert refusal_text == (
+            "A: home unknown: it took off before telemetry was received; write its pad into "
+            "site.toml, or let its pilot land it and take off again"
+        )
 
     def test_without_ground_at_home(self) -> None:
         air = airspace(elevation=hills([[0.0, 0.0], [0.0, 0.0]]))
         refusal_text = unknown(HoldPosition(), flier(takeoff_point=place(500.0, 0.0)), air)
-        assert "has no ground at its takeoff point" in refusal_text
+        assert refusal_text == (
+            "A: the elevation model has no ground at its takeoff point, so its heights cannot be "
+            "related to the site; write its pad's altitude into site.toml"
+        )
 
 
 def test_several_rules_share_one_path() -> None:

@@ -101,12 +101,12 @@ class Situation:
         default_factory=dict, init=False, repr=False, compare=False
     )
 
-    def once(self, what: object, command: Command, work: Callable[[Command, "Situation"], T]) -> T:
+    def once(self, command: Command, work: Callable[[Command, "Situation"], T]) -> T:
         """Return what `work` makes of the command here; several rules that ask share one answer."""
-        known = self._worked_out.get(what)
+        known = self._worked_out.get(work)
         # By identity: to compare two missions takes longer than most rules.
         if known is None or known[0] is not command:
             known = (command, work(command, self))
-            self._worked_out[what] = known
+            self._worked_out[work] = known
         answer: T = known[1]
         return answer

@@ -58,7 +58,7 @@ def path_volume(command: Command, situation: Situation) -> PathVolume | UnknownP
     """
     if not command.moves or situation.vehicle is None:
         return None
-    return situation.once(path_volume, command, _path_volume)
+    return situation.once(command, _path_volume)
 
 
 def _path_volume(command: Command, situation: Situation) -> PathVolume | UnknownPath:
@@ -124,7 +124,7 @@ def _landing(point_m: FloatArray) -> Pieces:
 def straight_pieces(path: StraightFlight, departure: Departure, settings: FenceSettings) -> Pieces:
     """To the target by closed-loop sticks, which may pass it a little; ways home from there."""
     height_m = path.height_above_takeoff_m
-    assert height_m is not None, "a departure has a height"
+    assert height_m is not None  # a departure has a height
     target_m = places_m(departure.frame, [path.target])[0]
     offset_m = target_m - departure.here_m[:2]
     distance_m = float(np.hypot(*offset_m))
@@ -247,7 +247,7 @@ def _going_home(flown: Pieces, departure: Departure) -> Pieces:
     triangles_m[:, 2] = departure.home_m[:2]
     ways = _like(flights, Kind.WAY_HOME, triangles_m, *return_m)
     home_m = np.broadcast_to(departure.home_m[:2], (1, 3, 2))
-    highest_m = np.array([return_m[1].max(initial=departure.takeoff_m)])
+    highest_m = np.array([return_m[1].max()])
     return joined(
         climbs, ways, block(Kind.LANDING, home_m, np.array([-np.inf]), highest_m, (HOME,))
     )
