@@ -45,7 +45,8 @@ def _safety(*names: str) -> tuple[str, ...]:
 
 PARTS: Mapping[str, Part] = {
     "rules": Part(
-        _safety("rules/*.py", "gate.py"), ("tests/safety/rules", "tests/safety/test_gate.py")
+        _safety("rules/*.py", "gate.py"),
+        ("tests/safety/rules", "tests/safety/test_gate.py", "tests/safety/test_unknown_heights.py"),
     ),
     "trust": Part(
         ("src/recon/fleet/trust.py", "src/recon/fleet/airborne.py"),

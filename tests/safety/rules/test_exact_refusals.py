@@ -39,7 +39,7 @@ from recon.model.control import AuthorityHolder, ControlAuthority, OperatorLease
 from recon.model.geo import LatLon
 from recon.model.units import Stamped
 from recon.model.vehicle import BatteryWarning, VehicleState
-from recon.safety import ClaimingLink, Situation, Traffic
+from recon.safety import ClaimingLink, PreparedAirspace, Situation, Traffic
 from recon.safety.rules import RULES
 
 RULES_BY_NAME = {rule.__name__: rule for rule in RULES}
@@ -81,10 +81,10 @@ def corners(*radii_m: float) -> Body:
     return northward(*points, curved=True)
 
 
-def among(*others: VehicleState) -> Situation:
+def among(*others: VehicleState, air: PreparedAirspace = AIR) -> Situation:
     own = aircraft("A")
     traffic = tuple(Traffic(other) for other in others)
-    return Situation(NOW, own, (ClaimingLink(1, own.is_flying),), airspace=AIR, traffic=traffic)
+    return Situation(NOW, own, (ClaimingLink(1, own.is_flying),), airspace=air, traffic=traffic)
 
 
 OPEN_SKY = "wait, or move to open sky"
@@ -643,6 +643,27 @@ PLACES = [
         vertical_m=4.0,
         min_horizontal_m=18.0,
         min_vertical_m=7.5,
+    ),
+    case(
+        "separation",
+        GoTo(at(0.0, 300.0), 40.0, 5.0),
+        among(
+            aircraft("B", (10.0, 150.0), 44.0),
+            air=airspace(
+                limits=replace(
+                    WIDE, min_separation_horizontal_m=20.26, min_separation_vertical_m=5.26
+                )
+            ),
+        ),
+        "A: on its way to its target, about 27 s from now, it must keep 23.3 m, or 6.8 m in "
+        "height, from B (while it hovers); got 10 m and 4 m in height: fly at another height, "
+        "elsewhere, or later",
+        other="B",
+        time_s=26.572,
+        horizontal_m=10.0,
+        vertical_m=4.0,
+        min_horizontal_m=23.26,
+        min_vertical_m=6.76,
     ),
     case(
         "separation",

@@ -70,9 +70,10 @@ class TestWithoutTakeoff:
 
 def test_a_report_on_the_ground_without_a_landing_seen_is_uncertain() -> None:
     uncertain = vehicle(flying=None, reported_is_flying=False)
-    judged = flying(command(Hover()), situation(uncertain))
-    assert judged is not None
-    assert "it reports on the ground, and no landing was seen" in judged.reason
+    assert flying(command(Hover()), situation(uncertain)) == Refusal(
+        "flying",
+        "A: it reports on the ground, and no landing was seen; the order could start a takeoff",
+    )
 
 
 class TestWithTakeoff:

@@ -46,14 +46,15 @@ def test_every_waypoint_counts(east_m: float, allowed: bool) -> None:
     )
 
 
-def test_the_limit_itself_is_allowed() -> None:
+@pytest.mark.parametrize(("beyond_m", "allowed"), [(0.0, True), (5e-7, False), (1e-3, False)])
+def test_the_limit_itself_is_allowed_and_nothing_beyond(beyond_m: float, allowed: bool) -> None:
     body = mission((250.0, 0.0, 40.0), (0.0, 0.0, 40.0))
     path = path_volume(command(body), here(NEAR))
     assert isinstance(path, PathVolume)
     offsets_m = path.pieces.triangles_m - path.home_m[:2]
     exact_m = float(np.linalg.norm(offsets_m, axis=-1).max())
-    limited = airspace(limits=replace(WIDE, max_distance_from_home_m=exact_m))
-    assert asked(home_distance, body, limited) is None
+    limited = airspace(limits=replace(WIDE, max_distance_from_home_m=exact_m - beyond_m))
+    assert (asked(home_distance, body, limited) is None) is allowed
 
 
 def test_home_is_where_it_took_off() -> None:

@@ -339,8 +339,9 @@ class TestUnseen:
         assert judged(NORTH, aircraft("A"), app) is None
         refused(judged(NORTH, aircraft("A"), app, aircraft("C", (100.0, 0.0))), "from C")
 
-    def test_the_order_of_traffic_does_not_matter(self) -> None:
-        wall, far = aircraft("B", (100.0, 0.0)), aircraft("C", (0.0, 60.0))
+    @pytest.mark.parametrize("east_m", [60.0, 9_000.0])
+    def test_the_order_of_traffic_does_not_matter(self, east_m: float) -> None:
+        wall, far = aircraft("B", (100.0, 0.0)), aircraft("C", (0.0, east_m))
         refused(judged(NORTH, aircraft("A"), wall, far), "from B")
         refused(judged(NORTH, aircraft("A"), far, wall), "from B")
 

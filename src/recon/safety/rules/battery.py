@@ -22,11 +22,13 @@ def battery(command: Command, situation: Situation) -> Refusal | None:
     vehicle, body = situation.vehicle, command.body
     if vehicle is None or not command.moves or is_stop(command, situation):
         return None
-    energy, reserve = situation.settings.energy, _reserve(situation)
-    is_unwarned = vehicle.battery_warning.value is BatteryWarning.NONE
-    is_stricter = reserve >= energy.landing_fraction
-    if is_unwarned and is_stricter and _short(vehicle, body, True, situation) is None:
-        return None  # wherever it leads
+    energy = situation.settings.energy
+    if (
+        vehicle.battery_warning.value is BatteryWarning.NONE
+        and _reserve(situation) >= energy.landing_fraction
+        and _short(vehicle, body, True, situation) is None
+    ):
+        return None  # enough wherever it leads
     is_away = command.takeoff or leads_away(body, vehicle, situation.airspace, energy)
     return _warned(vehicle, is_away) or _short(vehicle, body, is_away, situation)
 
