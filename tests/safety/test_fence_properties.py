@@ -137,7 +137,7 @@ def test_heights_above_ground_are_kept_at_every_sample_of_the_path(seed: int) ->
     legs = np.concatenate([a + share * (b - a) for a, b in pairwise(way)])
     samples = np.concatenate([legs * factor for factor in np.linspace(0.02, 1.0, 50)])
     far = samples[np.hypot(*samples.T) > 5.0]
-    takeoff_m = float(air.ground_up_m([(0.0, 0.0)])[0])
+    takeoff_m = float(air.ground_up_m(np.zeros((1, 2)))[0])
     above_m = takeoff_m + height_m - air.ground_up_m(far)
     if asked(min_height, body, air, state) is None:
         assert above_m.min() >= 10.0 - 1e-6

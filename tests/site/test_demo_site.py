@@ -113,7 +113,8 @@ def test_its_ground_is_flat_as_the_simulators_is(tmp_path: Path) -> None:
     for site in (shipped, load_site(tmp_path / "made")):
         ground = PreparedAirspace(site.airspace)
         corners = [(east, north) for east in (-740.0, 740.0) for north in (-740.0, 740.0)]
-        assert ground.ground_up_m([*BOUNDARY, *corners]) == pytest.approx(0.0, abs=1e-6)
+        points_m = np.array([*BOUNDARY, *corners])
+        assert ground.ground_up_m(points_m) == pytest.approx(0.0, abs=1e-6)
 
 
 def test_two_can_land_at_once_and_all_ways_home_are_apart_and_legal() -> None:

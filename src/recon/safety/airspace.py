@@ -123,7 +123,7 @@ class PreparedAirspace:
     def may_touch_zone(self, kinds: Iterable[ZoneKind], cylinder: Cylinder) -> bool:
         """Return whether a circle's box meets a box round a zone of these kinds: in doubt yes."""
         east_m, north_m, radius_m = cylinder[:3]
-        if not isfinite(east_m + north_m + radius_m):
+        if not (isfinite(east_m) and isfinite(north_m) and isfinite(radius_m)):
             return True
         around = cylinder.box
         return any(around.meets(box, 0.0) for kind in kinds for box in self._boxes[kind])
@@ -144,25 +144,18 @@ class PreparedAirspace:
     def is_surely_between_heights(self, cylinder: Cylinder) -> bool:
         """Return whether a cylinder keeps the height limits whatever ground of the site is below
         it: in doubt not."""
-        limits, ground = self.airspace.limits, self._ground
-        lowest_m = highest_m = 0.0
-        if ground is not None:
-            if not ground.covers(cylinder.box):
-                return False
-            lowest_m, highest_m = ground.lowest_of_all_m, ground.highest_of_all_m
-        return (
-            cylinder.low_m - limits.min_height_above_ground_m >= highest_m
-            and cylinder.high_m - limits.max_height_above_ground_m <= lowest_m
-        )
+        limits, box = self.airspace.limits, cylinder.box
+        return self.is_surely_above(
+            box, cylinder.low_m, limits.min_height_above_ground_m
+        ) and self.is_surely_below(box, cylinder.high_m, limits.max_height_above_ground_m)
 
     def zones_of(self, kind: ZoneKind) -> tuple[PreparedZone, ...]:
         """Return the zones of one kind, in the site's order."""
         return self._zones[kind][0]
 
-    def ground_up_m(self, points_m: npt.ArrayLike) -> FloatArray:
+    def ground_up_m(self, points_m: FloatArray) -> FloatArray:
         """Return the ground's heights (N,) at (N, 2) east-north points."""
-        points = np.asarray(points_m, dtype=np.float64).reshape(-1, 2)
-        return np.zeros(len(points)) if self._ground is None else self._ground.heights_m(points)
+        return np.zeros(len(points_m)) if self._ground is None else self._ground.heights_m(points_m)
 
     def ground_within_up_m(self, triangles_m: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the lowest and highest ground (N,) under (N, 3, 2) triangles, exactly."""
@@ -189,8 +182,8 @@ def _boxed(
     """The N zones of a kind and the boxes around them, (N, 2) each."""
     chosen = tuple(zone for zone in zones if zone.zone.kind is kind)
     outlines = [zone.zone.region.outline_m for zone in chosen]
-    least_m = np.array([outline.min(axis=0) for outline in outlines]).reshape(-1, 2)
-    most_m = np.array([outline.max(axis=0) for outline in outlines]).reshape(-1, 2)
+    least_m = np.array([outline.min(axis=0) for outline in outlines]).reshape(len(chosen), 2)
+    most_m = np.array([outline.max(axis=0) for outline in outlines]).reshape(len(chosen), 2)
     return chosen, least_m, most_m
 
 

@@ -53,8 +53,8 @@ def places_m(frame: LocalFrame, places: Iterable[OnGlobe]) -> FloatArray:
     if len(degrees) <= FEW_PLACES:
         plane = tangent_plane(frame)
         points = [plane.enu_m(latitude, longitude, height_m)[:2] for latitude, longitude in degrees]
-        return np.array(points, dtype=np.float64).reshape(-1, 2)
-    latitudes, longitudes = np.array(degrees, dtype=np.float64).T
+        return np.array(points).reshape(len(points), 2)
+    latitudes, longitudes = np.array(degrees).T
     return enu_from_geo(frame, latitudes, longitudes, height_m)[:, :2]
 
 
@@ -105,7 +105,7 @@ def is_takeoff_height_known(
     if not is_ground_assumed_flat(airspace):
         return takeoff_up_m_at(airspace, vehicle, point) is not None
     own = None if vehicle.profile is None else vehicle.profile.pad
-    return _is_at_pad(airspace, point, own, vehicle.serial)
+    return _is_at_pad(airspace, point, own)
 
 
 def is_ground_assumed_flat(airspace: PreparedAirspace) -> bool:
@@ -125,8 +125,7 @@ def vehicle_enu_m(
     takeoff_m = takeoff_up_m(airspace, vehicle)
     if frame is None or position is None or height_m is None or takeoff_m is None:
         return None
-    enu_m: FloatArray = _raised(places_m(frame, [position]), [takeoff_m + height_m])[0]
-    return enu_m
+    return _enu_m(frame, position, takeoff_m + height_m)
 
 
 def home_enu_m(
@@ -137,8 +136,7 @@ def home_enu_m(
     point, takeoff_m = home(vehicle), takeoff_up_m(airspace, vehicle)
     if frame is None or point is None or takeoff_m is None:
         return None
-    enu_m: FloatArray = _raised(places_m(frame, [point]), [takeoff_m])[0]
-    return enu_m
+    return _enu_m(frame, point, takeoff_m)
 
 
 @lru_cache(maxsize=TAKEOFF_POINTS_KEPT)
@@ -160,10 +158,9 @@ def _takeoff_up_m(
 
 
 @lru_cache(maxsize=TAKEOFF_POINTS_KEPT)
-def _is_at_pad(
-    airspace: PreparedAirspace, point: LatLon, own_pad: GeoPoint | None, serial: str | None
-) -> bool:
-    return _pad_at(airspace, point, own_pad, serial) is not None
+def _is_at_pad(airspace: PreparedAirspace, point: LatLon, own_pad: GeoPoint | None) -> bool:
+    """Whether a takeoff here was from a pad: the vehicle's own, or any of the site's."""
+    return _pad_at(airspace, point, own_pad, None) is not None
 
 
 def _pad_at(
@@ -177,17 +174,12 @@ def _pad_at(
 
 
 def _nearest(pads: Sequence[GeoPoint], point: LatLon) -> GeoPoint | None:
-    near = (
-        (horizontal_distance_m(point, LatLon(pad.latitude_deg, pad.longitude_deg)), pad)
-        for pad in pads
-    )
-    return min(
-        ((far_m, pad) for far_m, pad in near if far_m <= NEAR_PAD_M),
-        key=lambda found: found[0],
-        default=(0.0, None),
-    )[1]
+    def far_m(pad: GeoPoint) -> float:
+        return horizontal_distance_m(point, pad)
+
+    return min((pad for pad in pads if far_m(pad) <= NEAR_PAD_M), key=far_m, default=None)
 
 
-def _raised(points_m: FloatArray, up_m: Sequence[float]) -> FloatArray:
-    """East and north (N, 2) with their heights (N,), as (N, 3)."""
-    return np.column_stack([points_m, np.asarray(up_m, dtype=np.float64)])
+def _enu_m(frame: LocalFrame, place: LatLon, up_m: float) -> FloatArray:
+    """A place on the globe and its height in the frame, (3,)."""
+    return np.array([*places_m(frame, [place])[0], up_m])

@@ -19,7 +19,7 @@ home, height above takeoff. `docs/energy-model.md` explains it for pilots.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from math import atan2, cos, hypot, sin
 
 from recon.geo.distance import offset_north_east_m
@@ -167,7 +167,8 @@ def way_of(body: Body, vehicle: VehicleState, settings: EnergySettings) -> Way |
     match path:
         case StraightFlight(target, height_m, speed_mps):
             north_m, east_m = offset_north_east_m(base, target)
-            assert height_m is not None, "a vehicle with a place has a height"
+            # A vehicle with a place has a height.
+            assert height_m is not None
             return [here, (north_m, east_m, height_m)], speed_mps
         case StickFlight():
             return [here, _stick_end(here, path, settings)], path.speed_mps
@@ -233,13 +234,11 @@ def _pause_s(mission: Mission, number: int, uses: Consumption) -> float:
 
 def _dearest(uses: Consumption, points: Sequence[Point], legs: Sequence[float]) -> Need:
     """The point from which flown way and way home together take most; the first of equals."""
-    flown = 0.0
-    dearest = Need(0.0, uses.home(points[0]), 0)
-    for number, (point, leg) in enumerate(zip(points[1:], legs, strict=True), start=1):
-        flown += leg
-        need = Need(flown, uses.home(point), number)
-        dearest = max(dearest, need, key=lambda each: each.whole)
-    return dearest
+    needs = (
+        Need(flown, uses.home(points[at]), at)
+        for at, flown in enumerate(accumulate(legs, initial=0.0))
+    )
+    return max(needs, key=lambda each: each.whole)
 
 
 def _vertical(up_m: float, settings: EnergySettings) -> float:
