@@ -1,6 +1,7 @@
 """Which zones are worth asking."""
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.examples import examples
@@ -35,6 +36,12 @@ def test_a_zone_is_near_that_is_near_to_any_of_them() -> None:
     assert AIR.zones_near(ZoneKind.HEIGHT, Footprints(np.zeros((1, 3, 2))), 0.0) == []
 
 
+def test_a_zone_that_is_just_as_far_as_the_gap_is_near() -> None:
+    assert near((-55.0, -5.0)) == near((-45.0, 5.0)) == ["west"]
+    assert near((-59.0, -9.0), gap_m=4.0) == near((-41.0, 9.0), gap_m=4.0) == ["west"]
+    assert near((-59.1, 0.0), gap_m=4.0) == near((0.0, 9.1), (-50.0, 9.1), gap_m=4.0) == []
+
+
 def test_one_that_is_between_all_and_near_to_none_is_not() -> None:
     assert near((-90.0, 40.0), (90.0, -40.0)) == []
 
@@ -50,7 +57,8 @@ def test_a_circle_may_touch_a_zone_that_its_box_meets() -> None:
     assert AIR.may_touch_zone(KEEP_OUT, Cylinder(-60.0, 0.0, 6.0, 10.0, 20.0))
     assert not AIR.may_touch_zone(KEEP_OUT, Cylinder(-60.0, 0.0, 4.0, 10.0, 20.0))
     assert not AIR.may_touch_zone((ZoneKind.HEIGHT,), Cylinder(-50.0, 0.0, 4.0, 10.0, 20.0))
-    assert AIR.may_touch_zone(KEEP_OUT, Cylinder(np.nan, 0.0, 4.0, 10.0, 20.0))
+    for nowhere in ((np.nan, 0.0, 4.0), (-90.0, np.nan, 4.0), (-90.0, 0.0, np.nan)):
+        assert AIR.may_touch_zone(KEEP_OUT, Cylinder(*nowhere, 10.0, 20.0))
 
 
 GRID = GroundGrid(FRAME, west_m=-100.0, north_m=100.0, cell_m=20.0, rows=10, cols=10)
@@ -73,7 +81,19 @@ def test_heights_are_sure_only_over_known_ground() -> None:
     assert is_sure(0.0, 50.0, 36.0, 119.0)
     assert not is_sure(0.0, 50.0, 34.0, 119.0)
     assert not is_sure(0.0, 50.0, 36.0, 121.0)
+    assert is_sure(0.0, 50.0, 35.0, 120.0)
     assert not is_sure(60.0, 50.0, 36.0, 119.0)
+
+
+@pytest.mark.parametrize(
+    ("low_m", "high_m", "is_sure"),
+    [(5.0, 120.0, True), (4.9, 120.0, False), (5.0, 120.1, False)],
+)
+def test_without_elevation_model_heights_are_sure_over_flat_ground(
+    low_m: float, high_m: float, is_sure: bool
+) -> None:
+    cylinder = Cylinder(5_000.0, 0.0, 50.0, low_m, high_m)
+    assert OPEN_AIRSPACE.is_surely_between_heights(cylinder) is is_sure
 
 
 @settings(max_examples=examples(200))
@@ -118,11 +138,11 @@ def test_what_is_surely_above_or_below_is_so_over_all_ground_below(
 
 def test_heights_over_a_box_are_sure_only_over_known_ground() -> None:
     inside, outside = Box(-20.0, -20.0, 20.0, 20.0), Box(-20.0, -20.0, 2_000.0, 20.0)
-    assert SLOPE.is_surely_above(inside, 36.0, 5.0)
-    assert not SLOPE.is_surely_above(inside, 34.0, 5.0)
+    assert SLOPE.is_surely_above(inside, 35.0, 5.0)
+    assert not SLOPE.is_surely_above(inside, 34.9, 5.0)
     assert not SLOPE.is_surely_above(outside, 36.0, 5.0)
-    assert SLOPE.is_surely_below(inside, 119.0, 120.0)
-    assert not SLOPE.is_surely_below(inside, 121.0, 120.0)
+    assert SLOPE.is_surely_below(inside, 120.0, 120.0)
+    assert not SLOPE.is_surely_below(inside, 120.1, 120.0)
     assert not SLOPE.is_surely_below(outside, 119.0, 120.0)
     assert OPEN_AIRSPACE.is_surely_above(outside, 5.0, 5.0)
     assert not OPEN_AIRSPACE.is_surely_above(outside, 4.0, 5.0)

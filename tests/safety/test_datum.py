@@ -1,11 +1,12 @@
 """Heights and places of vehicles, pads and ground in one frame, and what is not known."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 from tests.safety.cases import PLACE, TAKEOFF, vehicle
-from tests.safety.fenced import ORIGIN, airspace, flier, hills, place, square
+from tests.safety.fenced import ORIGIN, airspace, flier, hills, keep_out_zone, place, square
 
 from recon.model.airspace import Airspace, LandingPad
 from recon.model.geo import GeoPoint, LatLon, LocalFrame
@@ -78,6 +79,10 @@ class TestTakeoffHeight:
         assert takeoff_up_m(air, flier(serial="C")) == pytest.approx(3.0)
         assert takeoff_up_m(air, flier(serial=None)) == pytest.approx(3.0)
 
+    def test_of_two_as_near_the_first_counts(self) -> None:
+        air = airspace(pads=[pad(6.0, 0.0, 3.0), pad(6.0, 0.0, 4.0)])
+        assert takeoff_up_m(air, flier()) == pytest.approx(3.0)
+
     def test_the_profiles_pad_counts_as_its_own(self) -> None:
         profile = replace(TAKEOFF, pad=geo_point(place(0.0, 7.0), 276.0))
         air = airspace(pads=[pad(1.0, 0.0, 3.0)])
@@ -144,18 +149,27 @@ class TestPlaces:
         assert home_enu_m(OPEN_AIRSPACE, state) is None
 
 
-def test_fences_without_a_frame_are_no_airspace() -> None:
-    with pytest.raises(ValueError, match="expected a frame"):
-        PreparedAirspace(Airspace(boundary=square(0.0, 0.0, 1.0, 1.0)))
+@pytest.mark.parametrize(
+    "placed",
+    [
+        {"boundary": square(0.0, 0.0, 1.0, 1.0)},
+        {"zones": (keep_out_zone(square(0.0, 0.0, 1.0, 1.0)),)},
+        {"elevation": hills(np.zeros((2, 2)))},
+    ],
+    ids=lambda placed: next(iter(placed)),
+)
+def test_what_is_placed_in_metres_needs_a_frame(placed: dict[str, Any]) -> None:
+    expected = r"^expected a frame for boundary, zones and elevation, got none$"
+    with pytest.raises(ValueError, match=expected):
+        PreparedAirspace(Airspace(**placed))
 
 
 def test_the_ground_of_a_site() -> None:
     air = airspace(elevation=hills([[0.0, 10.0], [0.0, 10.0]]))
     leg = np.array([[[-40.0, 0.0], [30.0, 0.0], [30.0, 0.0]]])
     triangle = np.array([[[-50.0, 0.0], [50.0, 0.0], [0.0, 40.0]]])
-    assert air.ground_up_m([[0.0, 0.0], [25.0, 10.0], [51.0, 0.0]]) == pytest.approx(
-        [5.0, 7.5, np.nan], nan_ok=True
-    )
+    points_m = np.array([[0.0, 0.0], [25.0, 10.0], [51.0, 0.0]])
+    assert air.ground_up_m(points_m) == pytest.approx([5.0, 7.5, np.nan], nan_ok=True)
     assert np.concatenate(air.ground_within_up_m(leg)) == pytest.approx([1.0, 8.0])
     assert np.concatenate(air.ground_within_up_m(triangle)) == pytest.approx([0.0, 10.0])
     assert air.is_ground_below(leg, np.array([8.01])).all()
@@ -165,4 +179,6 @@ def test_the_ground_of_a_site() -> None:
     assert FLAT.ground_up_m(leg[0]).tolist() == [0.0, 0.0, 0.0]
     assert np.concatenate(FLAT.ground_within_up_m(leg)).tolist() == [0.0, 0.0]
     assert FLAT.is_ground_below(leg, np.array([0.0])).all()
+    assert not FLAT.is_ground_below(leg, np.array([-0.01])).any()
     assert FLAT.is_ground_above(leg, np.array([0.0])).all()
+    assert not FLAT.is_ground_above(leg, np.array([0.01])).any()

@@ -52,7 +52,7 @@ def per_mille(loaded_s: float) -> object:
 
 class TestLeg:
     def test_level_flight_counts_its_time_and_its_stops(self) -> None:
-        start, end = (0.0, 0.0, 50.0), (30.0, 40.0, 50.0)
+        start, end = (10.0, 20.0, 50.0), (40.0, 60.0, 50.0)
         assert CALM.leg(start, end, 5.0) == per_mille((10.0 + 2.0) * 1.25)
         assert CALM.leg(start, end, 5.0, stops=False) == per_mille(10.0 * 1.25)
 
@@ -60,6 +60,16 @@ class TestLeg:
         low, high = (0.0, 0.0, 20.0), (0.0, 0.0, 50.0)
         assert CALM.leg(low, high, 5.0) == per_mille(15.0 * 1.6)
         assert CALM.leg(high, low, 5.0) == per_mille(15.0)
+
+    def test_the_shortest_legs_cost_their_time_and_stops_too(self) -> None:
+        here = (0.0, 0.0, 50.0)
+        assert CALM.leg(here, (0.5, 0.0, 50.0), 5.0) == per_mille((0.1 + 2.0) * 1.25)
+        assert CALM.leg(here, (0.0, 0.0, 50.5), 5.0) == per_mille(0.25 * 1.6)
+
+    def test_sinking_is_cheaper_where_its_load_is_less(self) -> None:
+        light = replace(CALM, settings=replace(SETTINGS, sink_load=0.5))
+        assert light.leg((0.0, 0.0, 50.0), (0.0, 0.0, 20.0), 5.0) == per_mille(15.0 * 0.5)
+        assert light.landing(60.0) == per_mille((40.0 + 15.0) * 0.5)
 
     def test_climbing_on_the_way_is_no_cheaper_than_one_after_the_other(self) -> None:
         climb = CALM.leg((0.0, 0.0, 20.0), (0.0, 0.0, 50.0), 5.0)
@@ -146,6 +156,21 @@ class TestMission:
         assert need.flown == pytest.approx(legs / 1_000.0, rel=1e-4)
         assert need.back == pytest.approx(CALM.home((200.0, 0.0, 40.0)), rel=1e-4)
 
+    def test_the_last_waypoints_speed_is_of_no_leg(self) -> None:
+        speeds_mps = (10.0, 5.0, 2.0)
+        waypoints = (waypoint(100.0 * n, speed_mps=v) for n, v in enumerate(speeds_mps, start=1))
+        body = mission(*waypoints, curved=True)
+        at: list[Point] = [(100.0 * number, 0.0, 40.0) for number in range(4)]
+        need = mission_need(CALM, at, body.mission)
+        assert need.flown == per_mille((10.0 + 10.0 + 20.0) * 1.25)
+
+    @pytest.mark.parametrize("count", [2, 4])
+    def test_points_of_another_mission_are_an_error(self, count: int) -> None:
+        body = mission(waypoint(100.0), waypoint(200.0))
+        at: list[Point] = [(100.0 * number, 0.0, 40.0) for number in range(count)]
+        with pytest.raises(ValueError, match="zip"):
+            mission_need(CALM, at, body.mission)
+
     def test_a_curved_one_does_not_stop(self) -> None:
         saved = self.need().flown - self.need(curved=True).flown
         assert saved == pytest.approx(2 * 4.0 * 1.25 / 1_000.0, rel=1e-4)
@@ -196,6 +221,9 @@ class TestVehicle:
         uses = consumption(state, airspace, SETTINGS)
         assert uses is not None
         assert uses.go_home_height_m == 99.0
+        here = place_of(state)
+        assert here is not None
+        assert fraction_to_get_home(state, airspace, SETTINGS) == uses.home(here)
 
     @pytest.mark.parametrize(
         ("level", "load"), [(0, 1.0), (1, 1.2), (2, 1.5), (3, 1.5), (127, 1.5), (None, 1.2)]

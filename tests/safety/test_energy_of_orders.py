@@ -108,6 +108,13 @@ def test_what_ends_a_metre_farther_from_home_leads_away(body: Body, is_away: boo
     assert leads_away(body, OUT, AIRSPACE, ENERGY) is is_away
 
 
+@pytest.mark.parametrize(("speed_mps", "is_away"), [(0.5, False), (0.51, True)])
+def test_as_far_as_a_place_being_held_does_not(speed_mps: float, is_away: bool) -> None:
+    """Over home: the stick's 2 s lead exactly `nearer_m` away from it."""
+    assert ENERGY.nearer_m == 1.0
+    assert leads_away(stick(speed_mps, 0.0), vehicle(), AIRSPACE, ENERGY) is is_away
+
+
 @pytest.mark.parametrize("lost", [{"position": Stamped()}, {"takeoff_point": None}])
 def test_the_unknown_leads_away_and_has_no_need(
     lost: dict[str, object],
@@ -123,9 +130,10 @@ def test_the_unknown_leads_away_and_has_no_need(
 def test_what_it_needs_is_that_of_its_way() -> None:
     uses = consumption(OUT, NOW.airspace, NOW.settings.energy)
     assert uses is not None
-    way = way_of(goto(300.0), OUT, ENERGY)
-    assert way is not None
-    assert need_of(uses, OUT, goto(300.0)) == path_need(uses, *way)
+    for body in (goto(300.0), stick(3.0, 4.0)):
+        way = way_of(body, OUT, ENERGY)
+        assert way is not None
+        assert need_of(uses, OUT, body) == path_need(uses, *way)
     points = mission_points(OUT, mission().mission)
     assert points is not None
     assert need_of(uses, OUT, mission()) == mission_need(uses, points, mission().mission)

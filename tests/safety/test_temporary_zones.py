@@ -83,15 +83,20 @@ class TestInTheAirspace:
 
     def test_without_a_frame_there_is_no_place_for_one(self) -> None:
         assert OPEN_AIRSPACE.with_temporary_zones([]).zones == ()
-        with pytest.raises(ValueError, match="expected a frame for temporary zones"):
+        with pytest.raises(ValueError, match=r"^expected a frame for temporary zones, got none$"):
             with_zone(air=OPEN_AIRSPACE)
 
-    def test_its_heights_are_above_ground(self) -> None:
-        zone = prepared_temporary_zone(in_force(), FRAME).zone
-        assert (zone.floor_m, zone.ceiling_m, zone.datum) == (None, 30.0, HeightDatum.GROUND)
-        at_all_heights = replace(PERSON, ceiling_m=None)
-        zone = prepared_temporary_zone(in_force(at_all_heights), FRAME).zone
-        assert (zone.floor_m, zone.ceiling_m, zone.datum) == (None, None, None)
+    @pytest.mark.parametrize(
+        "heights_m", [(None, 30.0), (10.0, None), (10.0, 30.0), (0.0, None), (None, None)]
+    )
+    def test_its_heights_are_above_ground(
+        self, heights_m: tuple[float | None, float | None]
+    ) -> None:
+        floor_m, ceiling_m = heights_m
+        drawn = replace(PERSON, floor_m=floor_m, ceiling_m=ceiling_m)
+        zone = prepared_temporary_zone(in_force(drawn), FRAME).zone
+        assert (zone.floor_m, zone.ceiling_m) == heights_m
+        assert zone.datum is (None if heights_m == (None, None) else HeightDatum.GROUND)
 
     def test_a_circle_is_never_drawn_smaller_and_hardly_larger(self) -> None:
         ring_m = drawn_region(PERSON, FRAME).outline_m
@@ -141,6 +146,22 @@ class TestWhatMayBeDrawn:
         corners = outline((0.0, 0.0), (50.0, 0.0), (50.0, 50.0))
         assert fault(shape=corners, floor_m=10.0, lasts_s=600.0) == ""
 
+    @pytest.mark.parametrize(
+        "changes",
+        [
+            {"reason": "x"},
+            {"reason": "x" * 200},
+            {"lasts_s": 10.0},
+            {"lasts_s": 86_400.0},
+            {"lasts_s": None},
+            {"floor_m": 0.0, "ceiling_m": 1_000.0},
+            {"floor_m": 1_000.0, "ceiling_m": None},
+            {"floor_m": None, "ceiling_m": 0.5},
+        ],
+    )
+    def test_the_limits_themselves_are_possible(self, changes: dict[str, object]) -> None:
+        assert fault(**changes) == ""
+
     @pytest.mark.parametrize("text", ["", "  ", "x" * 201])
     def test_a_reason_is_needed(self, text: str) -> None:
         assert fault(reason=text).startswith("a reason of 1 to 200 characters is needed")
@@ -161,9 +182,9 @@ class TestWhatMayBeDrawn:
 
     def test_a_place_far_from_the_site_is_refused(self) -> None:
         assert fault(shape=Circle(place(9_900.0, 0.0), 20.0)) == ""
-        text = fault(shape=Circle(place(11_000.0, 0.0), 20.0))
+        text = fault(shape=Circle(place(60_000.0, 0.0), 20.0))
         assert text == (
-            "it is 11.0 km from the site's origin: 10 km at most are possible; check latitude and "
+            "it is 60.0 km from the site's origin: 10 km at most are possible; check latitude and "
             "longitude"
         )
 
@@ -183,7 +204,15 @@ class TestWhatMayBeDrawn:
 
     def test_a_polygon_that_is_too_large_is_refused(self) -> None:
         large = outline((-2_100.0, 0.0), (2_100.0, 0.0), (0.0, 50.0))
-        assert fault(shape=large).startswith("it is 4200 m across: 4000 m at most are possible")
+        assert fault(shape=large) == (
+            "it is 4200 m across: 4000 m at most are possible; to clear more, use the all stop"
+        )
+
+    @pytest.mark.parametrize("far_m", [-8_000.0, 8_000.0])
+    def test_far_from_the_origin_a_polygon_may_be_as_large_as_anywhere(self, far_m: float) -> None:
+        east = outline((far_m, 0.0), (far_m + 1_000.0, 0.0), (far_m, 1_000.0))
+        north = outline((0.0, far_m), (0.0, far_m + 1_000.0), (1_000.0, far_m))
+        assert fault(shape=east) == fault(shape=north) == ""
 
     def test_a_corner_off_the_globe_is_refused(self) -> None:
         corners = Outline((place(0.0, 0.0), place(9.0, 0.0), LatLon(0.0, float("nan"))))
@@ -202,5 +231,6 @@ class TestWhatMayBeDrawn:
 
     @pytest.mark.parametrize("lasts_s", [9.0, 86_401.0, float("nan"), float("inf")])
     def test_it_lasts_a_day_at_most_or_without_end(self, lasts_s: float) -> None:
-        assert fault(lasts_s=lasts_s).startswith("it would last ")
-        assert fault(lasts_s=None) == ""
+        assert fault(lasts_s=lasts_s) == (
+            f"it would last {lasts_s:g} s: 10 to 86400 s are possible, or no end at all"
+        )

@@ -2,12 +2,13 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
-from tests.safety.traffic import AIR, FRAME, ORIGIN, aircraft, judged, route
+from tests.safety.traffic import AIR, FRAME, ORIGIN, aircraft, at, judged, route
 from tests.safety.watchdogs.looks import in_context, looks
 
-from recon.model.airspace import Airspace, LandingPad
-from recon.model.geo import GeoPoint
+from recon.model.airspace import Airspace, ElevationModel, LandingPad
+from recon.model.geo import GeoPoint, GroundGrid
 from recon.model.vehicle import VehicleState
 from recon.safety import PreparedAirspace
 from recon.safety.datum import is_takeoff_height_known
@@ -85,3 +86,17 @@ def test_a_pad_within_10_m_makes_it_known(north_m: float, is_known: bool) -> Non
     assert is_takeoff_height_known(airspace, vehicle, vehicle.takeoff_point) is is_known
     assert not is_takeoff_height_known(AIR, vehicle, vehicle.takeoff_point)
     assert not is_takeoff_height_known(airspace, vehicle, None)
+
+
+def test_so_does_an_elevation_model_where_it_has_ground() -> None:
+    grid = GroundGrid(FRAME, west_m=-50.0, north_m=50.0, cell_m=50.0, rows=2, cols=2)
+    elevation = ElevationModel(grid, np.full((2, 2), 275.0))
+    airspace = PreparedAirspace(Airspace(frame=FRAME, elevation=elevation))
+    vehicle = aircraft("A")
+    assert is_takeoff_height_known(airspace, vehicle, at(20.0, 0.0))
+    assert not is_takeoff_height_known(airspace, vehicle, at(60.0, 0.0))
+
+
+def test_without_a_profile_it_is_not_known_over_flat_ground() -> None:
+    vehicle = replace(aircraft("A"), profile=None)
+    assert not is_takeoff_height_known(AIR, vehicle, vehicle.takeoff_point)
