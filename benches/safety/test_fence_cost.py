@@ -185,9 +185,9 @@ def naive_room_m(path: PathVolume) -> float:
         steps = max(1, int(hypot(be - ae, bn - an) / STEP_M))
         for step in range(steps + 1):
             east_m, north_m = ae + (be - ae) * step / steps, an + (bn - an) * step / steps
-            steps = max(1, int(hypot(east_m - home_east_m, north_m - home_north_m) / STEP_M))
-            for back in range(steps + 1):
-                share = back / steps
+            back_steps = max(1, int(hypot(east_m - home_east_m, north_m - home_north_m) / STEP_M))
+            for back in range(back_steps + 1):
+                share = back / back_steps
                 e = east_m + (home_east_m - east_m) * share
                 n = north_m + (home_north_m - north_m) * share
                 nearest_m = min(nearest_m, *(distance_m(e, n, *edge) for edge in edges))

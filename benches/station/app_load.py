@@ -1,9 +1,11 @@
 """Many companion apps in one process: telemetry at its rates, images, and every packet counted.
 
-    python -m benches.station.app_load PORT --apps 64 --streams 4 --seconds 60
+    python -m benches.station.app_load PORT --apps 64 --streams 4 --seconds 60 --stamps-from-s 0
 
-Core Telemetry carries the sender's CLOCK_MONOTONIC, in seconds, in its Altitude field. Prints one
-line of JSON when all is sent: packets sent by kind, and when each app read its first command.
+Core Telemetry carries in its Altitude field how many seconds of CLOCK_MONOTONIC have passed since
+`--stamps-from-s` when it is written: a station believes no altitude of many kilometers, so the
+clock itself cannot be the stamp. Prints one line of JSON when all is sent: packets sent by kind,
+and when each app read its first command.
 """
 
 import argparse
@@ -63,7 +65,7 @@ class App(asyncio.Protocol):
         self.transport.write(packet)
         self.sent.bytes += len(packet)
 
-    async def run(self, begin_s: float, seconds: float) -> None:
+    async def run(self, begin_s: float, seconds: float, stamps_from_s: float) -> None:
         """Send until the time is over; an app's phase within the periods is its own."""
         begin_s += CORE_PERIOD_S * (self.number * 0.618 % 1.0)
         for tick in range(round(seconds / CORE_PERIOD_S)):
@@ -72,21 +74,21 @@ class App(asyncio.Protocol):
             if tick % round(EXTENDED_PERIOD_S / CORE_PERIOD_S) == 0:
                 self.write(extended_packet(self.number))
                 self.sent.extended += 1
-            self.write(core_packet(self.number, tick))
+            self.write(core_packet(self.number, tick, time.monotonic() - stamps_from_s))
             self.sent.core += 1
             if self.image is not None and tick % round(IMAGE_PERIOD_S / CORE_PERIOD_S) == 1:
                 self.write(self.image)
                 self.sent.images += 1
 
 
-def core_packet(number: int, tick: int) -> bytes:
-    """Return core telemetry of a vehicle that hovers, stamped with the time in its altitude."""
+def core_packet(number: int, tick: int, stamp_s: float) -> bytes:
+    """Return core telemetry of a vehicle that hovers, with a time of sending as its altitude."""
     return wire.encode(
         wire.CoreTelemetry(
             is_flying=1,
             latitude_deg=41.9 + 1e-4 * number,
             longitude_deg=-93.6 + 1e-6 * tick,
-            altitude_m=time.monotonic(),
+            altitude_m=stamp_s,
             height_above_takeoff_m=30.0,
             velocity_north_mps=0.1,
             velocity_east_mps=0.0,
@@ -125,7 +127,12 @@ def image_packet(rows: int = IMAGE_ROWS, cols: int = IMAGE_COLS) -> bytes:
 
 
 async def send_load(
-    port: int, apps: int, streams: int, seconds: float, image_size: tuple[int, int]
+    port: int,
+    apps: int,
+    streams: int,
+    seconds: float,
+    image_size: tuple[int, int],
+    stamps_from_s: float,
 ) -> Sent:
     """Connect, send for a time, close politely; return what was sent."""
     loop, sent = asyncio.get_running_loop(), Sent()
@@ -137,7 +144,7 @@ async def send_load(
             await loop.create_connection(lambda app=app: app, "127.0.0.1", port)
         running.append(app)
     begin_s = time.monotonic() + 0.1
-    await asyncio.gather(*(app.run(begin_s, seconds) for app in running))
+    await asyncio.gather(*(app.run(begin_s, seconds, stamps_from_s) for app in running))
     for app in running:
         assert app.transport is not None
         app.transport.close()
@@ -153,9 +160,19 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=60.0)
     parser.add_argument("--image-rows", type=int, default=IMAGE_ROWS)
     parser.add_argument("--image-cols", type=int, default=IMAGE_COLS)
+    parser.add_argument("--stamps-from-s", type=float, required=True)
     asked = parser.parse_args()
     image_size = (asked.image_rows, asked.image_cols)
-    sent = uvloop.run(send_load(asked.port, asked.apps, asked.streams, asked.seconds, image_size))
+    sent = uvloop.run(
+        send_load(
+            asked.port,
+            asked.apps,
+            asked.streams,
+            asked.seconds,
+            image_size,
+            asked.stamps_from_s,
+        )
+    )
     print(json.dumps(asdict(sent)), flush=True)
 
 

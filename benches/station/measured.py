@@ -41,6 +41,7 @@ class Load:
 class Received:
     """What came out of the station's steps."""
 
+    stamps_from_s: float
     core: int = 0
     extended: int = 0
     images: int = 0
@@ -53,7 +54,9 @@ class Received:
         match event:
             case PacketReceived(_, CoreReport() as report):
                 self.core += 1
-                self.latencies_s.append(time.monotonic() - (report.reported_altitude_m or 0.0))
+                assert report.reported_altitude_m is not None
+                sent_at_s = self.stamps_from_s + report.reported_altitude_m
+                self.latencies_s.append(time.monotonic() - sent_at_s)
             case PacketReceived(_, ExtendedReport()):
                 self.extended += 1
             case PacketReceived(_, ImageReport()):
@@ -102,7 +105,7 @@ class Outcome:
 
 async def measure_station(load: Load) -> Outcome:
     """Run a station, with a console's worth of states, under a load; halfway order "all stop"."""
-    received, site = Received(), default_site()
+    received, site = Received(time.monotonic()), default_site()
     driver = AsyncioDriver(first_state(site), station_clock(), received.observe)
     driver.links = links = LinkServer(driver.handle, driver.now_ns, LinkSettings())
     service = Service.around(driver, site, None)
@@ -112,7 +115,7 @@ async def measure_station(load: Load) -> Outcome:
     freeze_loaded_objects()
     scheduled = ran_and_waited_ns()
     cpu_s, wall_s = time.process_time(), time.monotonic()
-    sending = asyncio.create_task(_send(links.port, load))
+    sending = asyncio.create_task(_send(links.port, load, received.stamps_from_s))
     async with asyncio.timeout(load.seconds + ENDING_S):
         while received.core < load.apps * load.seconds * 5 and not sending.done():
             await asyncio.sleep(0.01)
@@ -153,10 +156,10 @@ class SinkOutcome:
 async def measure_sink(load: Load) -> SinkOutcome:
     """Run a bare asyncio server with a deframer under a load."""
     latencies_s: list[float] = []
-    loop = asyncio.get_running_loop()
-    server = await loop.create_server(lambda: _Sink(latencies_s), "127.0.0.1", 0)
+    loop, stamps_from_s = asyncio.get_running_loop(), time.monotonic()
+    server = await loop.create_server(lambda: _Sink(stamps_from_s, latencies_s), "127.0.0.1", 0)
     cpu_s, wall_s = time.process_time(), time.monotonic()
-    sent = await _send(server.sockets[0].getsockname()[1], load)
+    sent = await _send(server.sockets[0].getsockname()[1], load, stamps_from_s)
     share = (time.process_time() - cpu_s) / (time.monotonic() - wall_s)
     async with asyncio.timeout(ENDING_S):
         while len(latencies_s) < sent.core:
@@ -166,14 +169,16 @@ async def measure_sink(load: Load) -> SinkOutcome:
 
 
 class _Sink(asyncio.Protocol):
-    def __init__(self, latencies_s: list[float]) -> None:
+    def __init__(self, stamps_from_s: float, latencies_s: list[float]) -> None:
+        self.stamps_from_s = stamps_from_s
         self.latencies_s = latencies_s
         self.deframer = wire.Deframer()
 
     def data_received(self, data: bytes) -> None:
         for packet in self.deframer.feed(data):
             if isinstance(packet, wire.CoreTelemetry):
-                self.latencies_s.append(time.monotonic() - packet.altitude_m)
+                sent_at_s = self.stamps_from_s + packet.altitude_m
+                self.latencies_s.append(time.monotonic() - sent_at_s)
 
 
 async def _console(service: Service, state_ms: list[float]) -> None:
@@ -184,9 +189,10 @@ async def _console(service: Service, state_ms: list[float]) -> None:
         state_ms.append(1e3 * (time.perf_counter() - begin_s))
 
 
-async def _send(port: int, load: Load) -> Sent:
+async def _send(port: int, load: Load, stamps_from_s: float) -> Sent:
     options = ["--apps", load.apps, "--streams", load.streams, "--seconds", load.seconds]
     options += ["--image-rows", load.image_rows, "--image-cols", load.image_cols]
+    options += ["--stamps-from-s", stamps_from_s]
     process = await asyncio.create_subprocess_exec(
         sys.executable,
         "-m",

@@ -1,4 +1,4 @@
-"""Companion apps whose aircraft take sticks and stand: they note when each stick arrives.
+"""Companion apps whose aircraft fly north as their sticks say, and note when each stick arrives.
 
     python -m benches.station.stick_apps PORT --apps 8 --seconds 20
 
@@ -10,6 +10,7 @@ import argparse
 import asyncio
 import json
 import time
+from math import hypot
 from typing import cast
 
 import uvloop
@@ -18,6 +19,9 @@ from recon import wire
 
 CORE_PERIOD_S = 0.1
 CORE_PER_EXTENDED = 5
+M_PER_DEG = 111_070.0
+"""Of latitude, at these pads."""
+
 APART_DEG = 0.0006
 """About 50 m of longitude: paths north are clear of each other."""
 
@@ -26,11 +30,15 @@ JOYSTICK, POSITION = 12, 3
 
 
 class StickApp(asyncio.Protocol):
-    """One app; its aircraft goes over to sticks with the first one."""
+    """One app; its aircraft goes over to sticks with the first one, and flies north at their speed.
+
+    One that stood still while it is steered would be taken for frozen telemetry, and held.
+    """
 
     def __init__(self, number: int) -> None:
         self.number = number
         self.stick_at_s: list[float] = []
+        self.north_m, self.speed_mps = 0.0, 0.0
         self.transport: asyncio.Transport | None = None
         self._deframer = wire.Deframer()
 
@@ -42,6 +50,7 @@ class StickApp(asyncio.Protocol):
         for packet in self._deframer.feed(data):
             if isinstance(packet, wire.VirtualStickCommand):
                 self.stick_at_s.append(now_s)
+                self.speed_mps = hypot(packet.velocity_x_mps, packet.velocity_y_mps)
 
     async def run(self, begin_s: float, seconds: float) -> None:
         """Say telemetry until the time is over."""
@@ -50,7 +59,8 @@ class StickApp(asyncio.Protocol):
             phase_s = CORE_PERIOD_S * (self.number * 0.618 % 1.0)
             due_s = begin_s + phase_s + tick * CORE_PERIOD_S
             await asyncio.sleep(max(0.0, due_s - time.monotonic()))
-            self.transport.write(core(self.number))
+            self.north_m += self.speed_mps * CORE_PERIOD_S
+            self.transport.write(core(self.number, self.north_m, self.speed_mps))
             if tick % CORE_PER_EXTENDED == 0:
                 self.transport.write(extended(self.number, bool(self.stick_at_s)))
 
@@ -60,16 +70,16 @@ def serial(number: int) -> str:
     return f"STICK-{number:02d}"
 
 
-def core(number: int) -> bytes:
-    """Return core telemetry of an aircraft that stands in the air."""
+def core(number: int, north_m: float, speed_mps: float) -> bytes:
+    """Return core telemetry of an aircraft that flies north, or stands in the air."""
     return wire.encode(
         wire.CoreTelemetry(
             is_flying=1,
-            latitude_deg=LATITUDE_DEG,
+            latitude_deg=LATITUDE_DEG + north_m / M_PER_DEG,
             longitude_deg=LONGITUDE_DEG + APART_DEG * number,
             altitude_m=275.0 + HEIGHT_M,
             height_above_takeoff_m=HEIGHT_M,
-            velocity_north_mps=0.0,
+            velocity_north_mps=speed_mps,
             velocity_east_mps=0.0,
             velocity_down_mps=0.0,
             yaw_deg=0.0,

@@ -37,9 +37,8 @@ def busy_station() -> Station:
         station = heard(station, number, extended_packet(number), 0)
     for now_ns in range(0, LAST_NS + 1, NS_PER_S):
         for number in range(VEHICLES):
-            station = heard(
-                station, number, core_packet(number, now_ns // (NS_PER_S // 10)), now_ns
-            )
+            packet = core_packet(number, now_ns // (NS_PER_S // 10), now_ns / NS_PER_S)
+            station = heard(station, number, packet, now_ns)
     for number in range(VEHICLES):
         serial = f"LOAD-{number:03d}"
         station, _ = step(station, OperatorOrder(number, Hover(), "bench", serial=serial), LAST_NS)
@@ -65,7 +64,7 @@ def median_us(work: Callable[[], object], times: int) -> float:
 def test_costs_with_64_vehicles() -> None:
     station = busy_station()
     now_ns = LAST_NS + NS_PER_S // 4
-    report = to_report(wire.decode(core_packet(3, 7)))
+    report = to_report(wire.decode(core_packet(3, 7, 0.7)))
     event = PacketReceived(3, report)
     empty, _ = step(first_state(default_site()), LinkOpened(3, "bench"), 0)
     one_us = median_us(lambda: step(empty, event, now_ns), 200)
