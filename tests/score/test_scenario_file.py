@@ -88,10 +88,10 @@ def test_values_of_the_file_are_in_the_scenario(tmp_path: Path) -> None:
     assert scenario.faults[0].start_s == 40.0
 
 
-def test_a_look_aside_is_allowed_only_by_the_task(tmp_path: Path) -> None:
-    assert not small(tmp_path).survey.look_aside_allowed
-    allowed = SMALL.replace("[task]", "[task]\nlook_aside = true")
-    assert load_scenario(written(tmp_path, allowed)).survey.look_aside_allowed
+def test_the_task_may_forbid_a_look_aside(tmp_path: Path) -> None:
+    assert small(tmp_path).survey.look_aside_allowed
+    forbidden = SMALL.replace("[task]", "[task]\nlook_aside = false")
+    assert not load_scenario(written(tmp_path, forbidden)).survey.look_aside_allowed
 
 
 def test_method_names_are_those_of_the_registries() -> None:

@@ -71,8 +71,8 @@ class TaskTable(Table, frozen=True):
     side_overlap: Share = 0.6
     photo_interval_s: Annotated[float, Meta(ge=0.1, le=60.0)] = 2.0
     rounds: Annotated[int, Meta(ge=1, le=100)] = 20
-    look_aside: bool = False
-    """The imaging drone may look aside by itself; it flies in the full simulation only."""
+    look_aside: bool = True
+    """The operator allows the imaging drone to look aside by itself; it flies with rendered frames."""
 
 
 class FleetTable(Table, frozen=True):
