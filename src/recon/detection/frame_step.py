@@ -130,7 +130,7 @@ def take_frame(
     if grid is None or (settings.grid is not None and grid != settings.grid):
         grid = field_grid(image.grid, settings)
     if grid != state.grid or image.serial != state.serial:
-        state = DetectionState(grid, image.serial)
+        state = DetectionState(grid, image.serial, references=state.references)
     fault = picture_fault(image, state.latest_ns, grid, settings)
     if fault is not None:
         return fault

@@ -11,7 +11,7 @@ from recon.detection.exposure import Exposure
 from recon.detection.settings import DetectionSettings
 from recon.detection.sunlit.memory import SunlitMemory
 from recon.model.geo import GroundGrid
-from recon.model.shade import FloatMap
+from recon.model.shade import FloatMap, SunlitReference
 from recon.model.units import seconds_to_ns
 
 DARK_QUANTILE = 0.1
@@ -84,3 +84,5 @@ class DetectionState:
     exposure: Exposure | None = None
     history: LightHistory | None = None
     sunlit: SunlitMemory | None = None
+    references: tuple[SunlitReference, ...] = ()
+    """Of earlier flights over the site."""

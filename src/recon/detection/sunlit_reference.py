@@ -9,7 +9,8 @@ Theory of operation, per frame:
    or leaves a flat frame to its neighbours in time.
 4. `contrast.explained` finds each cell's transmittance from its light and colour against full sun.
 
-While nothing shows which is sun and which shade, no cell is valid.
+While nothing shows which is sun and which shade, no cell is valid. What the flight has learned is
+kept as a reference (`sunlit_reference_of`), which the next one takes up: `sunlit.earlier`.
 """
 
 from dataclasses import replace
@@ -23,6 +24,7 @@ from recon.detection.state import DetectionState
 from recon.detection.sunlit.colour import CellColour, cell_colour, upsampled
 from recon.detection.sunlit.contrast import explained
 from recon.detection.sunlit.drift import followed, since
+from recon.detection.sunlit.earlier import reference_of, taken_up
 from recon.detection.sunlit.hot_spot import shape_of
 from recon.detection.sunlit.keyframes import LEAST, Keyframe, is_due, solved, with_keyframe
 from recon.detection.sunlit.levels import LEAST_CELLS, Level
@@ -30,7 +32,7 @@ from recon.detection.sunlit.likelihood import Belief, most_likely
 from recon.detection.sunlit.memory import SunlitMemory
 from recon.model.geo import GroundGrid
 from recon.model.imagery import GroundImage
-from recon.model.shade import FloatMap, MaskMap, ShadeMap
+from recon.model.shade import FloatMap, MaskMap, ShadeMap, SunlitReference
 
 DOUBT = 0.25
 """A frame is unknown when this much of the belief is in another level."""
@@ -52,13 +54,24 @@ def sunlit_reference(
     state, grid, fine = taken
     coarse = fine.coarse()
     is_locked = image.exposure_locked or not settings.follows_exposure
-    memory = (state.sunlit or SunlitMemory()).with_detail(fine, coarse)
+    memory = state.sunlit or SunlitMemory(taken_up(state.references, image, grid, coarse))
+    memory = memory.with_detail(fine, coarse)
     drift = followed(memory.drift, coarse, image.captured_at_ns)
     memory = replace(memory, drift=drift)
     memory = _with_keyframe(memory, coarse, image, grid, is_locked)
     memory = _believed(memory, coarse, is_locked)
     found = _transmittance(memory, fine) if memory.is_certain else _unknown(fine)
     return replace(state, sunlit=memory), shade_map(image, grid, found, settings)
+
+
+def sunlit_reference_of(state: DetectionState, image: GroundImage) -> SunlitReference | None:
+    """Return what a flight has learned of the land, for later ones; None while that is too little.
+
+    `image` is its newest ground image.
+    """
+    if state.sunlit is None or state.grid is None:
+        return None
+    return reference_of(state.sunlit.keyframes, state.sunlit.land, image, state.grid)
 
 
 def _with_keyframe(
@@ -69,9 +82,7 @@ def _with_keyframe(
     if not is_due(memory.keyframes, at_ns, shape):
         return memory
     kept = with_keyframe(memory.keyframes, Keyframe(at_ns, coarse, drift.total, shape))
-    if len(kept) < LEAST:
-        return replace(memory, keyframes=kept)
-    kept, land = solved(kept, memory.land, is_locked)
+    kept, land = solved(kept, memory.land, memory.taken_up.earlier, is_locked)
     level = kept[-1].level
     belief = None if level is None else Belief(level, *KEYFRAME_SPREAD)
     return replace(memory, keyframes=kept, land=land, belief=belief, belief_drift=drift.total)

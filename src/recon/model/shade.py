@@ -52,6 +52,32 @@ class ShadeMap:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class SunlitReference:
+    """The land in full sun as one flight has seen it, for the flights after it.
+
+    `light` and `colour` (blue over red) are (r, c) natural logs up to a constant, NaN where the
+    land was not seen; r and c are whole multiples of the cells of `grid`.
+    """
+
+    serial: str
+    """Of the vehicle whose camera it belongs to."""
+    grid: GroundGrid
+    toward_sun_enu: tuple[float, float, float]
+    camera_enu_m: tuple[float, float, float]
+    light: FloatMap
+    colour: FloatMap
+    light_contrast: float
+    colour_contrast: float
+    """Natural logs by which shade was darker, and blue over red higher."""
+    sun_colour: float
+    """The level of `colour` in full sun, in this flight's white balance."""
+    is_exposure_locked: bool
+
+    def __post_init__(self) -> None:
+        _expect_shape("colour", self.colour.shape, self.light.shape)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class SunForecast:
     """Probability that each cell of `grid` is in sun, by lead time.
 

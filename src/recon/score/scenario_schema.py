@@ -72,7 +72,7 @@ class TaskTable(Table, frozen=True):
     photo_interval_s: Annotated[float, Meta(ge=0.1, le=60.0)] = 2.0
     rounds: Annotated[int, Meta(ge=1, le=100)] = 20
     look_aside: bool = True
-    """The operator allows the imaging drone to look aside by itself; it flies with rendered frames."""
+    """The operator allows the imaging drone to look aside by itself."""
 
 
 class FleetTable(Table, frozen=True):

@@ -44,8 +44,12 @@ AGREED = 0.25
 """Distance of two levels at which they agree by half."""
 AGREED_SPREAD = 0.2, 0.12
 """Errors of light and colour of what keyframes agreed on."""
-LAND_WEIGHT = 0.5
-"""Of the land found from differences, in samples, against each cell's own samples."""
+LAND_WEIGHT, EARLIER_WEIGHT = 0.5, 6.0
+"""Of the land found from differences, and of an earlier flight's, in samples, against each cell's
+own samples."""
+COLOUR_NEAR = 0.25
+"""Distance from sun or from shade at which a frame's colour shows it, as a share of the contrast:
+haze and thin cloud lie between."""
 SUN_WEIGHT, SHADE_WEIGHT, EDGE_WEIGHT = 1.0, 0.5, 0.05
 PRIOR_WEIGHT = 0.3
 """Of the usual contrast, as the share of cells of a measured one."""
@@ -72,6 +76,15 @@ class SunlitLand:
     colour: FloatMap
     known: MaskMap
     contrast: Contrast
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Earlier:
+    """What an earlier flight has learned of the land."""
+
+    land: SunlitLand
+    sun_colour: float | None
+    """The level of colour in full sun; None where this flight's white balance may be another."""
 
 
 def with_keyframe(kept: tuple[Keyframe, ...], new: Keyframe) -> tuple[Keyframe, ...]:
@@ -108,34 +121,64 @@ def _has_moved(before: FloatMap | None, now: FloatMap | None) -> bool:
 
 
 def solved(
-    kept: tuple[Keyframe, ...], before: SunlitLand | None, is_locked: bool
+    kept: tuple[Keyframe, ...],
+    before: SunlitLand | None,
+    earlier: Earlier | None,
+    is_locked: bool,
 ) -> tuple[tuple[Keyframe, ...], SunlitLand | None]:
     """Return the keyframes with their levels, and the land in full sun; None while all are flat."""
+    if earlier is None and len(kept) < LEAST:
+        return kept, before
     light = np.stack([each.cells.light for each in kept])
     colour = np.stack([each.cells.colour for each in kept])
     seen = np.isfinite(light)
-    known: MaskMap = seen.mean(axis=0) >= KNOWN_SHARE
-    if before is not None:
-        known |= before.known & seen.any(axis=0)
-    if not known.any():
+    usual = Contrast() if earlier is None else earlier.land.contrast
+    land = _first_land(light, colour, _known(seen, before, earlier), earlier)
+    if not land.known.any():
         return kept, before
-    contrast = Contrast() if before is None else before.contrast
-    land = SunlitLand(land_of(light, known), land_of(colour, known), known, contrast)
+    land = replace(land, contrast=usual if before is None else before.contrast)
     # Twice at first: what counts as darker depends on the contrast that is measured.
     for _ in range(2 if before is None else 1):
-        land, readings = _read_all(light, colour, seen, land)
-    levels = _levels(kept, readings, land, before)
+        land, readings = _read_all(light, colour, seen, land, usual)
+    levels = _levels(kept, readings, land, before, earlier)
     if levels is None:
         return kept, before
-    land, levels = _alternated(light, colour, land, levels)
+    weight = LAND_WEIGHT if earlier is None else EARLIER_WEIGHT
+    land, levels = _alternated(light, colour, land, levels, weight)
+    land = replace(land, contrast=_pooled_contrast(light, colour, land, levels, usual))
     if is_locked:
         levels = _steady(kept, levels)
     named = (replace(each, level=level) for each, level in zip(kept, levels, strict=True))
     return tuple(named), land
 
 
+def _known(seen: MaskMap, before: SunlitLand | None, earlier: Earlier | None) -> MaskMap:
+    known: MaskMap = seen.mean(axis=0) >= KNOWN_SHARE
+    if len(seen) < LEAST and earlier is not None:
+        known &= earlier.land.known
+    if before is not None:
+        known |= before.known & seen.any(axis=0)
+    return known
+
+
+def _first_land(
+    light: FloatStack, colour: FloatStack, known: MaskMap, earlier: Earlier | None
+) -> SunlitLand:
+    """Return the land as differences show it; as an earlier flight knew it, where it did."""
+    own = SunlitLand(land_of(light, known), land_of(colour, known), known, Contrast())
+    if earlier is None:
+        return own
+    both = known & earlier.land.known
+    parts = []
+    for was, found in ((earlier.land.light, own.light), (earlier.land.colour, own.colour)):
+        # Both are known up to a constant.
+        off = np.median((was - found)[both]) if both.any() else np.float32(0.0)
+        parts.append(np.where(both, was, found + off).astype(np.float32))
+    return replace(own, light=parts[0], colour=parts[1])
+
+
 def _read_all(
-    light: FloatStack, colour: FloatStack, seen: MaskMap, land: SunlitLand
+    light: FloatStack, colour: FloatStack, seen: MaskMap, land: SunlitLand, usual: Contrast
 ) -> tuple[SunlitLand, list[FrameLevels | None]]:
     """Return each frame's reading, and the land with the contrast that they show."""
     readings: list[FrameLevels | None] = []
@@ -146,13 +189,12 @@ def _read_all(
             continue
         parts = (one_light - land.light)[cells], (one_colour - land.colour)[cells]
         readings.append(read(*parts, land.contrast))
-    return replace(land, contrast=_contrast(readings)), readings
+    return replace(land, contrast=_contrast(readings, usual)), readings
 
 
-def _contrast(readings: list[FrameLevels | None]) -> Contrast:
+def _contrast(readings: list[FrameLevels | None], usual: Contrast) -> Contrast:
     """Return the weighted median of the measured contrasts and the usual one."""
     measured = [(each.contrast, each.weight) for each in readings if each and each.contrast]
-    usual = Contrast()
     values = [*measured, (usual, PRIOR_WEIGHT)]
     weights = np.array([weight for _, weight in values])
     light, colour = (
@@ -173,6 +215,7 @@ def _levels(
     readings: list[FrameLevels | None],
     land: SunlitLand,
     before: SunlitLand | None,
+    earlier: Earlier | None,
 ) -> list[Level] | None:
     """Return the level of sun of every keyframe; None while nothing tells sun from shade."""
     levels = [None if each is None else each.sun for each in readings]
@@ -180,6 +223,8 @@ def _levels(
         levels = _carried_over(kept, land, before)
     if all(level is None for level in levels):
         levels = _by_hot_spot(kept, readings, land)
+    if all(level is None for level in levels) and earlier is not None:
+        levels = _by_colour(readings, earlier)
     if all(level is None for level in levels):
         return None
     return [_agreed(i, kept, readings, levels, land.contrast) for i in range(len(kept))]
@@ -252,8 +297,30 @@ def _by_hot_spot(
     return [None if main is None else above(main, land.contrast) for main in mains]
 
 
+def _by_colour(readings: list[FrameLevels | None], earlier: Earlier) -> list[Level | None]:
+    """Return the level of sun of flat frames by their colour: shade is bluer than sun.
+
+    None where it lies between the two, or the white balance may be another than it was.
+    """
+    mains = [None if each is None else each.main for each in readings]
+    seen = [main.colour for main in mains if main is not None]
+    if earlier.sun_colour is None or not seen:
+        return [None] * len(mains)
+    contrast = earlier.land.contrast
+    bluer = float(np.median(seen)) - earlier.sun_colour
+    if abs(bluer) < COLOUR_NEAR * contrast.colour:
+        return list(mains)
+    if abs(bluer - contrast.colour) < COLOUR_NEAR * contrast.colour:
+        return [None if main is None else above(main, contrast) for main in mains]
+    return [None] * len(mains)
+
+
 def _alternated(
-    light: FloatStack, colour: FloatStack, land: SunlitLand, levels: list[Level]
+    light: FloatStack,
+    colour: FloatStack,
+    land: SunlitLand,
+    levels: list[Level],
+    first_weight: float,
 ) -> tuple[SunlitLand, list[Level]]:
     """Return land and levels after rounds of: transmittance, land from it, levels from both."""
     first = land
@@ -264,7 +331,7 @@ def _alternated(
         in_rows = explained(flat_light, flat_colour, land.contrast)
         found = [each.reshape(light.shape) for each in in_rows]
         weight = _weights(found[0], is_seen)
-        total = weight.sum(axis=0) + np.float32(LAND_WEIGHT)
+        total = weight.sum(axis=0) + np.float32(first_weight)
         parts = []
         for own, rest, made in (
             (first.light, relative[0] + land.light, found[1]),
@@ -272,10 +339,9 @@ def _alternated(
         ):
             samples = np.where(is_seen, rest - made, 0.0)
             summed = np.einsum("krc,krc->rc", weight, samples.astype(np.float32))
-            parts.append(((summed + LAND_WEIGHT * own) / total).astype(np.float32))
+            parts.append(((summed + first_weight * own) / total).astype(np.float32))
         land = replace(land, light=parts[0], colour=parts[1])
         levels = _refined(light, colour, land, levels)
-    land = replace(land, contrast=_pooled_contrast(light, colour, land, levels))
     return land, levels
 
 
@@ -309,12 +375,16 @@ def _refined(
 
 
 def _pooled_contrast(
-    light: FloatStack, colour: FloatStack, land: SunlitLand, levels: list[Level]
+    light: FloatStack,
+    colour: FloatStack,
+    land: SunlitLand,
+    levels: list[Level],
+    usual: Contrast,
 ) -> Contrast:
     """Return the contrast that explains the cells of all keyframes together."""
     by_light, by_colour = _relative(light, colour, land, levels)
     cells = np.isfinite(by_light)
-    return best_contrast(counted(by_light[cells], by_colour[cells]), Contrast())
+    return best_contrast(counted(by_light[cells], by_colour[cells]), usual)
 
 
 def _steady(kept: tuple[Keyframe, ...], levels: list[Level]) -> list[Level]:

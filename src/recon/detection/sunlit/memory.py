@@ -6,6 +6,7 @@ import numpy as np
 
 from recon.detection.sunlit.colour import CellColour, upsampled
 from recon.detection.sunlit.drift import Drift
+from recon.detection.sunlit.earlier import TakenUp
 from recon.detection.sunlit.keyframes import Keyframe, SunlitLand
 from recon.detection.sunlit.levels import Level
 from recon.detection.sunlit.likelihood import Belief
@@ -44,6 +45,8 @@ class Detail:
 class SunlitMemory:
     """Keyframes, the land in full sun, and the level of sun in the latest frame."""
 
+    taken_up: TakenUp
+    """What an earlier flight knew of the land."""
     keyframes: tuple[Keyframe, ...] = ()
     land: SunlitLand | None = None
     """None while nothing shows which is sun and which shade."""
