@@ -15,7 +15,7 @@ from recon.detection.frame_step import FrameFault, RejectedFrame
 from recon.detection.otsu import otsu
 from recon.detection.settings import DetectionSettings
 from recon.detection.state import DetectionState
-from recon.detection.sunlit_reference import sunlit_reference
+from recon.detection.sunlit_reference import sunlit_reference, sunlit_reference_of
 from recon.model.imagery import GroundImage
 from recon.model.shade import ShadeMap
 
@@ -26,6 +26,7 @@ __all__ = [
     "Detector",
     "FrameFault",
     "RejectedFrame",
+    "sunlit_reference_of",
 ]
 
 Detector: TypeAlias = Callable[

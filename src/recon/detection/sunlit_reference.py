@@ -53,11 +53,13 @@ def sunlit_reference(
         return state, taken
     state, grid, fine = taken
     coarse = fine.coarse()
-    is_locked = image.exposure_locked or not settings.follows_exposure
     memory = state.sunlit or SunlitMemory(taken_up(state.references, image, grid, coarse))
     memory = memory.with_detail(fine, coarse)
     drift = followed(memory.drift, coarse, image.captured_at_ns)
-    memory = replace(memory, drift=drift)
+    is_locked = image.exposure_locked or not settings.follows_exposure
+    problem = memory.lock_problem or (drift.lock_problem() if is_locked else "")
+    memory = replace(memory, drift=drift, lock_problem=problem)
+    is_locked = is_locked and not problem
     memory = _with_keyframe(memory, coarse, image, grid, is_locked)
     memory = _believed(memory, coarse, is_locked)
     found = _transmittance(memory, fine) if memory.is_certain else _unknown(fine)

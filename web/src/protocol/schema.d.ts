@@ -1868,7 +1868,17 @@ export interface components {
             frames_dropped: number;
             /** Frames Rejected */
             frames_rejected: number;
+            /**
+             * Lock Problem
+             * @description what shows that a camera said to be locked is not; empty if nothing does
+             */
+            lock_problem: string;
             map: components["schemas"]["ShadeMapView"] | null;
+            /**
+             * Reference
+             * @description which earlier flight's knowledge of the land is used, or why none is; empty if there was none
+             */
+            reference: string;
             /**
              * Rejected
              * @description why the newest frame was rejected; null if it was not

@@ -360,6 +360,8 @@ export function shadeLine(changes: Partial<ShadeLineView> = {}): ShadeLineView {
     frames_dropped: 0,
     rejected: null,
     error: null,
+    reference: "",
+    lock_problem: "",
     map: {
       number: 3,
       captured_age_s: 1.5,

@@ -146,5 +146,12 @@ class ShadeLineView(Message):
         description="why the newest frame was rejected; null if it was not"
     )
     error: str | None
+    reference: str = Field(
+        description="which earlier flight's knowledge of the land is used, or why none is; empty "
+        "if there was none"
+    )
+    lock_problem: str = Field(
+        description="what shows that a camera said to be locked is not; empty if nothing does"
+    )
     map: ShadeMapView | None
     forecast: ForecastView | None

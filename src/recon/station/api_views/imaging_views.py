@@ -44,7 +44,7 @@ def shade_view(station: Station, now_ns: int) -> schema.ShadeLineView | None:
     """Return the state of shade detection and forecast; None without an imaging drone."""
     if station.imaging.imager_serial is None:
         return None
-    line, settings = station.shade, station.settings
+    line, settings, memory = station.shade, station.settings, station.shade.detection.sunlit
     return schema.ShadeLineView(
         detection=settings.detection.method,
         forecaster=settings.forecast.method,
@@ -52,6 +52,8 @@ def shade_view(station: Station, now_ns: int) -> schema.ShadeLineView | None:
         frames_dropped=line.frames_dropped,
         rejected=None if line.rejected is None else line.rejected.reason,
         error=line.error,
+        reference="" if memory is None else memory.taken_up.note,
+        lock_problem="" if memory is None else memory.lock_problem,
         map=None if line.shade is None else _map(line.shade, line.seen, line.number, now_ns),
         forecast=None if line.sun is None else _forecast(line.sun, line.number, now_ns),
     )

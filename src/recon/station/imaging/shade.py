@@ -11,6 +11,7 @@ from recon.forecast import FORECASTERS, ForecastSettings, ForecastState
 from recon.model.geo import GroundGrid
 from recon.model.imagery import GroundImage
 from recon.model.shade import MaskMap, ShadeMap, SunForecast
+from recon.station.imaging import references
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.imaging import WAITING_KEPT, ShadePipeline
 from recon.station.state.station import Station
@@ -18,7 +19,7 @@ from recon.station.state.steps import Job, JobKind, Stepped
 
 Method = TypeVar("Method")
 
-RULE = "shade"
+RULE, LOCK_RULE = "shade", "exposure_lock"
 TROUBLE_AFTER_S = 5.0
 """One torn frame is no trouble; a camera that is black or frozen for five seconds is."""
 
@@ -85,8 +86,10 @@ def seen_cells(image: GroundImage, grid: GroundGrid) -> MaskMap:
 
 
 def conditions(station: Station) -> Iterator[Condition]:
-    """Yield an alarm while no shade is read from the imaging drone's frames."""
+    """Yield the alarms of shade detection: frames not read, a camera that is not locked."""
     pipeline = station.shade
+    yield from _lock_conditions(station)
+    yield from references.conditions(pipeline, station.imaging.imager_serial)
     why = pipeline.error if pipeline.rejected is None else pipeline.rejected.reason
     if why is not None:
         serial = station.imaging.imager_serial
@@ -94,6 +97,18 @@ def conditions(station: Station) -> Iterator[Condition]:
         yield Condition(
             RULE, Severity.WARNING, RULE, serial or "", text, serial, after_s=TROUBLE_AFTER_S
         )
+
+
+def _lock_conditions(station: Station) -> Iterator[Condition]:
+    memory, serial = station.shade.detection.sunlit, station.imaging.imager_serial
+    if memory is None or not memory.lock_problem:
+        return
+    text = (
+        f"the imaging drone's camera is not locked: {memory.lock_problem}; lock exposure and white "
+        'balance in the app, or state exposure = "auto" in site.toml; shade is found without '
+        "the lock meanwhile"
+    )
+    yield Condition(LOCK_RULE, Severity.WARNING, LOCK_RULE, serial or "", text, serial)
 
 
 def _read(station: Station, job_id: int, read: ShadeRead, _now_ns: int) -> Stepped:
@@ -109,7 +124,9 @@ def _read(station: Station, job_id: int, read: ShadeRead, _now_ns: int) -> Stepp
     shade, sun = read.found
     number = pipeline.number + 1
     pipeline = replace(pipeline, shade=shade, sun=sun, seen=read.seen, rejected=None, number=number)
-    return _next(station, pipeline)
+    pipeline, kept = references.written(pipeline, station.imaging.ground_image)
+    station, started = _next(station, pipeline)
+    return station, (*started, *kept)
 
 
 def _not_read(station: Station, job_id: int, error: str, _now_ns: int) -> Stepped:

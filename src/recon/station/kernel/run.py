@@ -21,7 +21,7 @@ from recon.model.errors import RecordError
 from recon.model.event import Event
 from recon.model.units import ns_to_seconds
 from recon.record.users_file import default_users_file
-from recon.site import Site
+from recon.site import Site, demo_site_folder
 from recon.site.reading import site_digest
 from recon.station.api_views.service import Service
 from recon.station.audit.auditor import Auditor, LogPrinter
@@ -33,6 +33,7 @@ from recon.station.audit.start import (
     ended_entry,
     started_entry,
 )
+from recon.station.imaging.references import with_references
 from recon.station.kernel.app_list_writer import AppListWriter
 from recon.station.kernel.build import first_state
 from recon.station.kernel.driver import AsyncioDriver, freeze_loaded_objects, station_clock
@@ -130,7 +131,7 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
     async with AsyncExitStack() as stack:
         doors = _open_doors(config, certificate, stack)
         clock = station_clock()
-        begins = first_state(config.site, _settings(config), config.apps)
+        begins = _first_state(config)
         station = restored(begins, last_run, clock())
         auditor = _start_auditor(config, begun, last_run, clock, stack)
         auditor.put(restart_entries(station))
@@ -330,6 +331,14 @@ def _start_auditor(
     first_ids = last_run.first_ids
     auditor.put([started_entry(settings, site, begun.ended_in_order, first_ids, troubles)])
     return auditor
+
+
+def _first_state(config: RunConfig) -> Station:
+    station, folder = first_state(config.site, _settings(config), config.apps), config.site_folder
+    # The demonstration's site is a part of the package: nothing is kept there.
+    if folder is None or folder.resolve() == demo_site_folder().resolve():
+        return station
+    return with_references(station, folder)
 
 
 def _settings(config: RunConfig) -> StationSettings:

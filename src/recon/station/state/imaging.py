@@ -1,6 +1,7 @@
 """The state of the imaging pipeline: the imaging drone's telemetry, ground images, shade maps."""
 
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from recon.camera.motion import TelemetryReference
 from recon.camera.registration import RegistrationState
@@ -88,3 +89,19 @@ class ShadePipeline:
     rejected: RejectedFrame | None = None
     error: str | None = None
     """Why the newest job failed."""
+    references: "ReferenceKeeping | None" = None
+    """How what is learned is kept for later flights; None without a site's folder."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReferenceKeeping:
+    """Where sunlit references are written, and what came of it."""
+
+    folder: Path
+    due_ns: int = 0
+    """The next one is written with the first ground image taken at this time or later."""
+    next_job_id: int = 1
+    problem: str = ""
+    """Why the newest one could not be written; empty if it was."""
+    unreadable: tuple[str, ...] = ()
+    """A sentence for each file of an earlier flight that was not read."""

@@ -1,7 +1,7 @@
 import { For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { OverlayKind } from "../../map/overlays";
-import type { ForecastView, ShadeLineView } from "../../protocol";
+import type { ForecastView, GroundImageView, ShadeLineView } from "../../protocol";
 import { formatAge, formatFraction } from "../../text/quantities";
 import { Panel } from "../Panel";
 import { SeverityMark } from "../SeverityMark";
@@ -63,11 +63,14 @@ function ShadeStatus(props: { line: ShadeLineView }) {
             <p class="muted">
               of the ground in view, {formatAge(map().captured_age_s + behindS())} ago
               <Show when={fleet.groundImage}>
-                {(image) => <>; exposure {image().exposure_locked ? "locked" : "automatic"}</>}
+                {(image) => <>; exposure {exposure(image(), props.line)}</>}
               </Show>
             </p>
           </>
         )}
+      </Show>
+      <Show when={props.line.reference}>
+        {(text) => <p class="muted wire-text">Land in full sun: {text()}.</p>}
       </Show>
       <Show when={props.line.forecast}>{(forecast) => <ForecastLead forecast={forecast()} />}</Show>
       <Show when={problem()}>
@@ -82,6 +85,11 @@ function ShadeStatus(props: { line: ShadeLineView }) {
       </Show>
     </div>
   );
+}
+
+function exposure(image: GroundImageView, line: ShadeLineView): string {
+  if (line.lock_problem) return "not locked";
+  return image.exposure_locked ? "locked" : "automatic";
 }
 
 /** Slider over the leads the forecast provides. */
