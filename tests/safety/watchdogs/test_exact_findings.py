@@ -17,6 +17,7 @@ from tests.safety.watchdogs.looks import (
     picture,
 )
 
+from recon.model.airspace import Airspace, FlightLimits
 from recon.model.severity import Severity
 from recon.model.temporary_zone import Circle, DrawnZone, TemporaryZone, TemporaryZoneKind
 from recon.model.units import Stamped
@@ -104,6 +105,15 @@ class TestBatteryForTheWayHome:
         assert severities(needs, Commanded.RETURN) == []
         assert severities(needs - 1e-9, Commanded.RETURN) == [Severity.CRITICAL]
 
+    def test_an_unknown_go_home_height_is_the_highest_of_the_site(self) -> None:
+        """Higher by 400 m: at 2 m/s up and 1.5 m/s down some 8 min, a third of the battery."""
+        state = self.out(0.5)
+        assert state.profile is not None
+        state = replace(state, profile=replace(state.profile, go_home_height_m=None))
+        high = PreparedAirspace(Airspace(FlightLimits(max_height_above_ground_m=520.0)))
+        assert looks(battery_home, state) == []
+        assert len(looks(battery_home, state, airspace=high)) == 1
+
 
 class TestHeightsThatContradict:
     def test_a_drift(self) -> None:
@@ -159,6 +169,12 @@ class TestGoingHome:
         assert low.text.startswith("A: goes home too low: expected 60 m above takeoff, seen 20 m")
         assert late == replace(finding("go_home:progress", Severity.ERROR, "", 0.0), text=late.text)
         assert "without progress for 12 s" in late.text
+
+    def test_limits_are_those_of_the_settings(self) -> None:
+        now = picture(self.state(FlightMode.GO_HOME, 20.0))
+        lenient = replace(now.go_home, height_off_m=50.0, no_progress_s=60.0)
+        assert len(list(go_home(now))) == 2
+        assert list(go_home(replace(now, go_home=lenient))) == []
 
     def test_an_ordered_landing_hides_no_other_vehicles_and_no_other_deviation(self) -> None:
         lands = self.state(FlightMode.AUTO_LANDING)

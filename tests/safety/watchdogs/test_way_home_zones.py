@@ -2,15 +2,18 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
-from tests.safety.fenced import FRAME, airspace, flier, place
+from tests.safety.fenced import FRAME, ORIGIN, airspace, flier, hills, place
 from tests.safety.watchdogs.looks import looks
 
+from recon.model.airspace import HeightDatum
 from recon.model.severity import Severity
 from recon.model.temporary_zone import Circle, DrawnZone, TemporaryZone, TemporaryZoneKind
 from recon.model.units import Stamped
 from recon.model.vehicle import VehicleState
 from recon.safety import PreparedAirspace
+from recon.safety.airspace import prepared_zone
 from recon.safety.temporary_zones import prepared_temporary_zone
 from recon.safety.watchdogs import Finding
 from recon.safety.watchdogs.way_home_zones import way_home_zones
@@ -54,8 +57,39 @@ def test_nor_is_one_that_goes_home_above_it() -> None:
     assert found(flier(200.0, 0.0, 40.0, go_home_m=28.0), between(ceiling_m=30.0)) == []
 
 
+@pytest.mark.parametrize(("go_home_m", "count"), [(60.0, 0), (28.0, 1)])
+def test_its_ceiling_may_be_over_the_ellipsoid_and_over_higher_ground(
+    go_home_m: float, count: int
+) -> None:
+    """At 30 m over home: over the ellipsoid, or over a hill of 10 m between."""
+    beyond = flier(200.0, 0.0, 25.0, go_home_m=go_home_m)
+    (drawn,) = between(ceiling_m=30.0).temporary_zones
+    over_m = ORIGIN.ellipsoid_height_m + 30.0
+    zone = replace(drawn.zone, ceiling_m=over_m, datum=HeightDatum.WGS84)
+    assert len(found(beyond, airspace().with_temporary_zones([prepared_zone(zone)]))) == count
+    hill = hills([[0.0] * 6 + [10.0] + [0.0] * 2] * 3, cell_m=50.0)
+    zone = replace(drawn.zone, ceiling_m=20.0)
+    over_hill = airspace(elevation=hill).with_temporary_zones([prepared_zone(zone)])
+    assert len(found(beyond, over_hill)) == count
+
+
+def test_a_home_outside_the_elevation_model_is_at_no_known_height() -> None:
+    beyond = flier(200.0, 0.0, 25.0, takeoff_point=place(-900.0, 0.0))
+    drawn = between(ceiling_m=30.0).temporary_zones
+    over_known_ground = airspace(elevation=hills(np.zeros((8, 8)))).with_temporary_zones(drawn)
+    assert len(found(beyond, over_known_ground)) == 1
+
+
 def test_a_home_in_the_zone_is_never_above_it() -> None:
     assert found(flier(200.0, 0.0, go_home_m=60.0), between(ceiling_m=30.0, east_m=0.0))
+
+
+def test_an_unknown_height_is_not_above_it() -> None:
+    low = flier(200.0, 0.0, 25.0, go_home_m=60.0)
+    blind = replace(low, height_above_takeoff_m=Stamped())
+    assert found(low, between(ceiling_m=30.0)) == []
+    assert len(found(blind, between(ceiling_m=30.0))) == 1
+    assert len(found(blind)) == 1
 
 
 def test_without_a_position_or_a_home_there_is_no_way() -> None:
@@ -65,3 +99,4 @@ def test_without_a_position_or_a_home_there_is_no_way() -> None:
 
 def test_without_a_temporary_zone_nothing_is_asked() -> None:
     assert found(flier(200.0, 0.0), airspace()) == []
+    assert found(flier(200.0, 0.0), airspace(frame=None)) == []

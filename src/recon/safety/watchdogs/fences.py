@@ -7,9 +7,8 @@ and held only while it goes deeper. What lands or returns is not stopped on its 
 pilot leads is alarmed about only.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from math import hypot
 
 import numpy as np
 import numpy.typing as npt
@@ -17,15 +16,15 @@ import numpy.typing as npt
 from recon.geo import Footprints, Polygon
 from recon.model.airspace import ZoneKind
 from recon.model.failsafe_matrix import FailsafeCondition
-from recon.model.geo import LatLon, LocalFrame
+from recon.model.geo import LocalFrame
 from recon.model.severity import Severity
 from recon.safety.airspace import PreparedAirspace, PreparedZone
 from recon.safety.datum import places_m
 from recon.safety.heights import height_text, stays_above, stays_below, zone_datum
-from recon.safety.prediction.motion import last_place
+from recon.safety.prediction.motion import VehicleMotion
 from recon.safety.prediction.trajectory import ALL_HEIGHTS_M, FloatArray
-from recon.safety.watchdogs.reach import near_limits
-from recon.safety.watchdogs.traffic_picture import Finding, TrafficPicture
+from recon.safety.watchdogs.reach import last_known_place, near_limits, way_ahead_s
+from recon.safety.watchdogs.traffic_picture import Finding, TrafficPicture, WatchedVehicle
 
 BoolArray = npt.NDArray[np.bool_]
 IntArray = npt.NDArray[np.int64]
@@ -77,12 +76,12 @@ def fences(picture: TrafficPicture) -> Iterator[Finding]:
 def _boundary(picture: TrafficPicture, way: Way, fence: Polygon) -> Iterator[Finding]:
     for index in np.flatnonzero(~fence.holds(way.ahead)):
         inside_m, later_m = _depths_m(way, fence, int(index))
-        if inside_m < 0.0:
+        is_out = inside_m < 0.0
+        if is_out:
             text = f"is {-inside_m:.0f} m outside the site's boundary"
             stops = later_m < inside_m - DEEPER_M
         else:
             text, stops = "is about to leave the site's boundary", True
-        is_out = inside_m < 0.0
         yield _found(picture, int(index), FENCE, text, is_bad=is_out, stops=stops)
 
 
@@ -93,12 +92,12 @@ def _keep_out(picture: TrafficPicture, way: Way, zone: PreparedZone) -> Iterator
     row = None if zone in picture.airspace.temporary_zones else FailsafeCondition.GEOFENCE
     for index in indices[_has_its_heights(picture.airspace, way, zone, indices)]:
         inside_m, later_m = _depths_m(way, zone.polygon, int(index))
-        if inside_m >= 0.0:
+        is_in = inside_m >= 0.0
+        if is_in:
             text = f"is in the keep-out zone {name!r}"
             stops = later_m > inside_m + DEEPER_M
         else:
             text, stops = f"is about to enter the keep-out zone {name!r}", True
-        is_in = inside_m >= 0.0
         yield _found(
             picture, int(index), ZONE, text, about=name, is_bad=is_in, stops=stops, row=row
         )
@@ -150,18 +149,18 @@ def _has_its_heights(
     """Which of these vehicles' ways have a height that is the zone's."""
     datum, ceiling_m, floor_m = zone_datum(zone.zone), zone.zone.ceiling_m, zone.zone.floor_m
     triangles_m = way.triangles_m[indices]
-    has = np.ones(len(indices), dtype=np.bool_)
+    is_over = is_under = np.zeros(len(indices), dtype=np.bool_)
     if ceiling_m is not None:
-        has &= ~stays_above(airspace, triangles_m, way.low_m[indices], ceiling_m, datum)
+        is_over = stays_above(airspace, triangles_m, way.low_m[indices], ceiling_m, datum)
     if floor_m is not None:
-        has &= ~stays_below(airspace, triangles_m, way.high_m[indices], floor_m, datum)
-    return has
+        is_under = stays_below(airspace, triangles_m, way.high_m[indices], floor_m, datum)
+    return np.asarray(~(is_over | is_under))
 
 
 def _may_be_low(picture: TrafficPicture, way: Way) -> BoolArray:
     """Who takes off or lands."""
     is_coming_down = [watched.is_coming_down for watched in picture.flying]
-    return way.is_near_home | np.array(is_coming_down, dtype=np.bool_)
+    return np.asarray(way.is_near_home | is_coming_down)
 
 
 def _depths_m(way: Way, polygon: Polygon, index: int) -> tuple[float, float]:
@@ -199,15 +198,14 @@ def _found(
 def way_ahead(picture: TrafficPicture, frame: LocalFrame) -> Way:
     """Return the ways of a picture's flying vehicles, of which there must be one.
 
-    Each is flown in `fence_factor` times the time in which its speed covers its stopping distance.
+    Each ends at the first sample that is not before `way_ahead_s`.
     """
-    motions = [watched.motion for watched in picture.flying]
-    speeds = np.array([0.0 if motion is None else motion.speed_mps for motion in motions])
-    prediction, times_s = picture.prediction, picture.ahead.times_s
-    stop_s = prediction.reaction_s + speeds / (2.0 * prediction.braking_mps2)
-    last = np.searchsorted(times_s, np.minimum(picture.settings.fence_factor * stop_s, times_s[-1]))
-    here_m = places_m(frame, [_place(picture, number) for number in range(len(motions))])
-    last_known_m = np.array([(f.east_m, f.north_m) if f else (0.0, 0.0) for f in motions])
+    motions = [_motion(watched) for watched in picture.flying]
+    settings, prediction = picture.settings, picture.prediction
+    ends_s = [way_ahead_s(motion.speed_mps, settings, prediction) for motion in motions]
+    last = np.searchsorted(picture.ahead.times_s, ends_s)
+    here_m = places_m(frame, [last_known_place(motion.state) for motion in motions])
+    last_known_m = _last_known_m(motions)
     at_m = _at_m(picture, np.stack([np.zeros_like(last), (last + 1) // 2, last], axis=1))
     # Exact at the vehicles' last positions, and from there on in the plane, which suffices.
     triangles_m = here_m[:, np.newaxis] + at_m - last_known_m[:, np.newaxis]
@@ -219,14 +217,18 @@ def way_ahead(picture: TrafficPicture, frame: LocalFrame) -> Way:
         ahead=Footprints(triangles_m),
         low_m=np.minimum(flies.low_m[rows, 0], flies.low_m[rows, last]),
         high_m=np.maximum(flies.high_m[rows, 0], flies.high_m[rows, last]),
-        is_near_home=_is_near_home(picture),
+        is_near_home=_is_near_home(motions),
     )
 
 
-def _place(picture: TrafficPicture, number: int) -> LatLon:
-    place, _at_ns = last_place(picture.flying[number].state)
-    assert place is not None, "a vehicle in contact has a position"
-    return place
+def _motion(watched: WatchedVehicle) -> VehicleMotion:
+    """The motion that every vehicle flying in contact has."""
+    assert watched.motion is not None
+    return watched.motion
+
+
+def _last_known_m(motions: Sequence[VehicleMotion]) -> FloatArray:
+    return np.array([(motion.east_m, motion.north_m) for motion in motions])
 
 
 def _at_m(picture: TrafficPicture, index: IntArray) -> FloatArray:
@@ -235,14 +237,8 @@ def _at_m(picture: TrafficPicture, index: IntArray) -> FloatArray:
     return np.stack([flies.east_m[rows, index], flies.north_m[rows, index]], axis=2)
 
 
-def _is_near_home(picture: TrafficPicture) -> BoolArray:
-    near = []
-    for watched in picture.flying:
-        motion = watched.motion
-        home_m = None if motion is None else motion.home_m
-        if motion is None or home_m is None:
-            near.append(False)
-            continue
-        far_m = hypot(motion.east_m - home_m[0], motion.north_m - home_m[1])
-        near.append(far_m <= NEAR_HOME_M)
-    return np.array(near, dtype=np.bool_)
+def _is_near_home(motions: Sequence[VehicleMotion]) -> BoolArray:
+    homes_m = np.array([motion.home_m or (np.nan, np.nan) for motion in motions])
+    east_m, north_m = (_last_known_m(motions) - homes_m).T
+    # Of an unknown home the comparison is False.
+    return np.asarray(np.hypot(east_m, north_m) <= NEAR_HOME_M)

@@ -13,8 +13,8 @@ def go_home(picture: TrafficPicture) -> Iterator[Finding]:
     """Find vehicles that go home at another height, elsewhere, or not at all."""
     for watched in picture.flying:
         for found in deviations(watched.state, picture.now_ns, picture.go_home):
-            if found.kind == LANDING and watched.intent.commanded is Commanded.LAND:
-                continue  # ordered to land where it is
-            yield watched.finding(
-                RULE, found.severity, found.text, about=f":{found.kind}", after_s=found.after_s
-            )
+            lands_as_ordered = watched.intent.commanded is Commanded.LAND and found.kind == LANDING
+            if not lands_as_ordered:
+                yield watched.finding(
+                    RULE, found.severity, found.text, about=f":{found.kind}", after_s=found.after_s
+                )

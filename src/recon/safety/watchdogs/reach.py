@@ -24,6 +24,7 @@ from recon.geo import TangentPlane, tangent_plane
 from recon.model.airspace import ZoneKind
 from recon.model.control import Commanded, Intent
 from recon.model.geo import LatLon, LocalFrame
+from recon.model.vehicle import VehicleState
 from recon.safety.airspace import Cylinder, PreparedAirspace
 from recon.safety.heights import stays_above, stays_below
 from recon.safety.prediction import BoolArray, PredictionSettings, VehicleMotion
@@ -94,11 +95,9 @@ def reach_of(
     for height_m in heights_m:
         band_m = motion.up_m(height_m)
         low_m, high_m = min(low_m, band_m[0]), max(high_m, band_m[1])
-    place, _at_ns = last_place(motion.state)
-    assert place is not None, "a motion begins at a place"
     # A stick that climbs or sinks may do so from its commanded height on.
     return Reach(
-        place,
+        last_known_place(motion.state),
         motion.east_m,
         motion.north_m,
         low_m - change_m,
@@ -108,6 +107,13 @@ def reach_of(
         slack_m,
         motion.drift_m,
     )
+
+
+def last_known_place(vehicle: VehicleState) -> LatLon:
+    """Return the last position of a vehicle that has one, as each with a motion has."""
+    place, _at_ns = last_place(vehicle)
+    assert place is not None
+    return place
 
 
 def near_each_other(
@@ -193,9 +199,9 @@ def _may_leave(airspace: PreparedAirspace, cylinders: Mapping[int, Cylinder]) ->
     }
     if not asked:
         return set()
-    circles_m = np.array([cylinder[:3] for cylinder in asked.values()])
-    is_inside = fence.distance_to_edge_m(circles_m[:, :2]) > circles_m[:, 2]
-    return {number for number, holds in zip(asked, is_inside, strict=True) if not holds}
+    east_m, north_m, far_m, _low_m, _high_m = np.array(list(asked.values())).T
+    is_inside = fence.distance_to_edge_m(np.stack([east_m, north_m], axis=1)) > far_m
+    return _numbers(asked, ~is_inside)
 
 
 def _may_break_heights(airspace: PreparedAirspace, cylinders: Mapping[int, Cylinder]) -> set[int]:
@@ -209,7 +215,11 @@ def _may_break_heights(airspace: PreparedAirspace, cylinders: Mapping[int, Cylin
         return set()
     east_m, north_m, far_m, low_m, high_m = np.array(list(asked.values())).T
     middles_m = np.stack([east_m, north_m], axis=1)[:, np.newaxis]
-    triangles_m = middles_m + far_m[:, np.newaxis, np.newaxis] * _ROUND_CIRCLE
+    triangles_m = far_m[:, np.newaxis, np.newaxis] * _ROUND_CIRCLE + middles_m
     clear = stays_above(airspace, triangles_m, low_m, limits.min_height_above_ground_m)
     clear &= stays_below(airspace, triangles_m, high_m, limits.max_height_above_ground_m)
-    return {number for number, is_clear in zip(asked, clear, strict=True) if not is_clear}
+    return _numbers(asked, ~clear)
+
+
+def _numbers(asked: Mapping[int, Cylinder], which: BoolArray) -> set[int]:
+    return set(np.array(list(asked))[which].tolist())

@@ -68,11 +68,12 @@ def _off_its_leg(watched: WatchedVehicle, settings: WatchdogSettings) -> Iterato
     if height_m is None or len(leg) < 2:
         return
     low_m, high_m = sorted(waypoint.height_above_takeoff_m for waypoint in leg)
-    off_m = max(low_m - height_m, height_m - high_m)
-    if off_m > settings.height_off_m:
-        side = "above" if height_m > high_m else "below"
-        text = f"it flies {off_m:.0f} m {side} the heights of the leg it was sent"
-        yield watched.finding(ALTITUDE_MISMATCH, Severity.ERROR, text, about=":leg", after_s=3.0)
+    for off_m, side in ((low_m - height_m, "below"), (height_m - high_m, "above")):
+        if off_m > settings.height_off_m:
+            text = f"it flies {off_m:.0f} m {side} the heights of the leg it was sent"
+            yield watched.finding(
+                ALTITUDE_MISMATCH, Severity.ERROR, text, about=":leg", after_s=3.0
+            )
 
 
 STICK_STARVED = "stick_starved"

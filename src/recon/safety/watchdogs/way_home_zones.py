@@ -11,12 +11,14 @@ from collections.abc import Iterator
 import numpy as np
 
 from recon.geo import Footprints
+from recon.model.geo import LocalFrame
 from recon.model.severity import Severity
 from recon.model.vehicle import VehicleState
 from recon.safety.airspace import PreparedAirspace, PreparedZone
-from recon.safety.datum import home_enu_m, takeoff_up_m, vehicle_enu_m
+from recon.safety.datum import home, places_m, takeoff_up_m
 from recon.safety.heights import stays_above, zone_datum
 from recon.safety.prediction.trajectory import FloatArray
+from recon.safety.watchdogs.reach import last_known_place
 from recon.safety.watchdogs.traffic_picture import Finding, TrafficPicture
 
 RULE = "way_home_zone"
@@ -24,12 +26,12 @@ RULE = "way_home_zone"
 
 def way_home_zones(picture: TrafficPicture) -> Iterator[Finding]:
     """Find vehicles in the air whose straight way home meets a temporary zone."""
-    airspace = picture.airspace
+    airspace, frame = picture.airspace, picture.airspace.airspace.frame
+    if frame is None:
+        return
     if not airspace.temporary_zones:
         return
-    known = [
-        (one, way) for one in picture.flying if (way := _way_m(one.state, airspace)) is not None
-    ]
+    known = [(one, way) for one in picture.flying if (way := _way_m(one.state, frame)) is not None]
     if not known:
         return
     # All ways at once: most are far from most zones.
@@ -48,23 +50,21 @@ def way_home_zones(picture: TrafficPicture) -> Iterator[Finding]:
             yield watched.finding(RULE, Severity.WARNING, text, about=f":{name}", after_s=1.0)
 
 
-def _way_m(vehicle: VehicleState, airspace: PreparedAirspace) -> FloatArray | None:
-    """From here to its home, (3, 2) in the site's frame; None while either is unknown."""
-    here_m, home_m = vehicle_enu_m(airspace, vehicle), home_enu_m(airspace, vehicle)
-    if here_m is None or home_m is None:
-        return None
-    return np.stack([here_m[:2], home_m[:2], home_m[:2]])
+def _way_m(vehicle: VehicleState, frame: LocalFrame) -> FloatArray | None:
+    """From here to its home, which is last, (3, 2) in the frame; None while home is unknown."""
+    here, there = last_known_place(vehicle), home(vehicle)
+    return None if there is None else places_m(frame, [here, here, there])
 
 
 def _is_above(
     zone: PreparedZone, vehicle: VehicleState, way_m: FloatArray, airspace: PreparedAirspace
 ) -> bool:
-    """Whether it flies home above the zone, and lands beside it."""
+    """Whether it is known to fly home above the zone, and lands beside it."""
     ceiling_m, low_m = zone.zone.ceiling_m, _level_up_m(vehicle, airspace)
     if ceiling_m is None or low_m is None:
         return False
-    home = Footprints(way_m[np.newaxis, [1, 1, 1]])
-    if not zone.polygon.is_clear_of(home, airspace.airspace.limits.boundary_margin_m)[0]:
+    end = Footprints([way_m[2]] * 3)
+    if not zone.polygon.is_clear_of(end, airspace.airspace.limits.boundary_margin_m)[0]:
         return False
     datum = zone_datum(zone.zone)
     return bool(stays_above(airspace, way_m[np.newaxis], np.array([low_m]), ceiling_m, datum)[0])
