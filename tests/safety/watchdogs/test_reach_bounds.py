@@ -29,7 +29,6 @@ MINIMA = SeparationMinima(17.0, 7.0)
 HORIZON_S = 10.0
 HOVERING = Intent(Commanded.HOLD)
 CLIMBING = aircraft("A", (0.0, 0.0), 40.0, (0.0, 0.0, 2.0))
-SINKING = aircraft("A", (0.0, 0.0), 40.0, (0.0, 0.0, -2.0))
 LEVEL = aircraft("A", (30.0, 40.0), 40.0, (3.0, 4.0, 0.0))
 
 
@@ -105,9 +104,9 @@ class TestReachOf:
     def test_it_climbs_or_sinks_for_as_long_as_anything_lasts_and_then_brakes(
         self, horizon_s: float, age_s: float, prediction: PredictionSettings, lasts_s: float
     ) -> None:
-        """From 2 m/s up or down with 2 m/s2: another metre."""
-        change_m = 2.0 * lasts_s + 1.0 + ROUNDING_M
-        for up_mps in (2.0, -2.0):
+        """From 3 m/s up or down with 2 m/s2: another 2.25 m."""
+        change_m = 3.0 * lasts_s + 2.25 + ROUNDING_M
+        for up_mps in (3.0, -3.0):
             state = aircraft("A", (0.0, 0.0), 40.0, (0.0, 0.0, up_mps), age_s=age_s)
             reach = bound(state, HOVERING, horizon_s, prediction)
             assert band_m(reach) == pytest.approx((40.0 - change_m, 40.0 + change_m))

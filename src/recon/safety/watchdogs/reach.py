@@ -94,7 +94,7 @@ def reach_of(
         fastest_mps = max(fastest_mps, intent.speed_mps or prediction.go_home_speed_mps)
     for height_m in heights_m:
         band_m = motion.up_m(height_m)
-        low_m, high_m = min(low_m, band_m[0]), max(high_m, band_m[1])
+        low_m, high_m = min(low_m, *band_m), max(high_m, *band_m)
     # A stick that climbs or sinks may do so from its commanded height on.
     return Reach(
         last_known_place(motion.state),
