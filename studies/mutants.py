@@ -82,7 +82,11 @@ PARTS: Mapping[str, Part] = {
         _safety("prediction/*.py", "separation_minima.py"),
         (
             "tests/safety/test_prediction.py",
+            "tests/safety/test_predicted_orders.py",
+            "tests/safety/test_trajectory.py",
+            "tests/safety/test_conflicts.py",
             "tests/safety/test_may_conflict.py",
+            "tests/safety/test_height_drift.py",
             "tests/safety/test_standstill.py",
             "tests/safety/rules/test_separation.py",
         ),
