@@ -41,18 +41,22 @@ def present(from_s: float, seconds: float) -> Trajectory:
 
 
 @pytest.mark.parametrize(
-    ("east_m", "up_m", "is_too_near"),
+    ("east_m", "north_m", "up_m", "is_too_near"),
     [
-        (14.99, 40.0, True),
-        (15.0, 40.0, False),
-        (0.0, 47.99, True),
-        (0.0, 48.0, False),
-        (0.0, 32.01, True),
-        (0.0, 32.0, False),
+        (14.99, 0.0, 40.0, True),
+        (15.0, 0.0, 40.0, False),
+        (8.99, 12.0, 40.0, True),
+        (9.0, 12.0, 40.0, False),
+        (0.0, 0.0, 47.99, True),
+        (0.0, 0.0, 48.0, False),
+        (0.0, 0.0, 32.01, True),
+        (0.0, 0.0, 32.0, False),
     ],
 )
-def test_the_minima_themselves_are_kept(east_m: float, up_m: float, is_too_near: bool) -> None:
-    assert (conflict(standing(east_m, up_m), OTHER) is not None) is is_too_near
+def test_15_m_or_8_m_in_height_are_enough(
+    east_m: float, north_m: float, up_m: float, is_too_near: bool
+) -> None:
+    assert (conflict(standing(east_m, up_m, north_m), OTHER) is not None) is is_too_near
 
 
 class TestTime:

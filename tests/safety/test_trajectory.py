@@ -30,12 +30,12 @@ def test_legs_are_named_by_their_waypoints(part: int, words: str) -> None:
 
 
 def test_a_trajectory_begins_now_and_is_as_uncertain_in_height_as_its_drift() -> None:
-    writer = writer_at(0.0)
+    writer = TrajectoryWriter(0.0, 0.0, 36.0, 44.0)
     writer.moves(10.0, 0.0, 5.0, 0, band_m=(50.0, 60.0))
     assert writer.trajectory("A").rows[0, 0] == 0.0
     drifted = writer.trajectory("A", 2.0)
-    assert drifted.here_m == (38.0, 42.0)
-    assert drifted.rows[0, 6:10].tolist() == [38.0, 42.0, 48.0, 62.0]
+    assert drifted.here_m == (34.0, 46.0)
+    assert drifted.rows[0, 6:10].tolist() == [34.0, 46.0, 48.0, 62.0]
 
 
 class TestSample:
