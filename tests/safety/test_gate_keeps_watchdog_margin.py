@@ -35,7 +35,7 @@ class Member:
         self.state, self.mission = state, mission
         predictor = Predictor(seen(state), SETTINGS, exactly=True)
         predictor.fly_mission(mission, 0)
-        self.trajectory: Trajectory = predictor.writer.trajectory(state.display_name, state.serial)
+        self.trajectory: Trajectory = predictor.writer.trajectory(state.display_name)
         self.starts_s = rng.choice((0.0, rng.uniform(0.0, 6.0)))
         self.off_m = [rng.uniform(-OFF_TRACK_M, OFF_TRACK_M) for _ in range(2)]
         self.off_m.append(rng.uniform(-0.2, 0.2))

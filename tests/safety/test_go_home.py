@@ -263,6 +263,6 @@ class TestPrediction:
         astray = seen(goes_home((200.0, -30.0)))
         predictor = Predictor(astray, PredictionSettings())
         predictor.return_home()
-        rows = predictor.writer.trajectory("B", "B").rows
+        rows = predictor.writer.trajectory("B").rows
         assert rows[0, LOW_0] < -1_000.0
         assert rows[0, HIGH_0] > 1_000.0

@@ -17,13 +17,15 @@ from tests.safety.traffic import (
     flies,
     judged,
     route,
+    seen,
 )
+from tests.safety.trajectories import NEED, heights_m, places_m, standing, trajectories
 
 from recon.model.command import FlyMission, GoTo, StickFrame, VirtualStick
 from recon.model.control import Commanded, Intent
 from recon.model.vehicle import FlightMode, VehicleState
 from recon.safety import Traffic
-from recon.safety.prediction import vehicle_motion
+from recon.safety.prediction import VehicleMotion, vehicle_motion
 from recon.safety.prediction.conflicts import first_conflict
 from recon.safety.prediction.predicted_trajectories import (
     TrajectoryBounds,
@@ -34,35 +36,8 @@ from recon.safety.prediction.predicted_trajectories import (
     predict_traffic,
     trajectory_bounds,
 )
-from recon.safety.prediction.trajectory import FOREVER_S, FlightPart, Trajectory, TrajectoryWriter
+from recon.safety.prediction.trajectory import FOREVER_S, Trajectory
 from recon.safety.rules.separation import separation
-from recon.safety.separation_minima import SeparationMinima
-
-NEED = SeparationMinima(horizontal_m=15.0, vertical_m=8.0)
-
-places_m = st.floats(-120.0, 120.0)
-heights_m = st.floats(20.0, 70.0)
-
-
-@st.composite
-def trajectories(draw: st.DrawFn) -> Trajectory:
-    """Some straight pieces, with bands of heights and growing discs; at the end it stays."""
-    height_m = draw(heights_m)
-    writer = TrajectoryWriter(draw(places_m), draw(places_m), height_m, height_m)
-    for _ in range(draw(st.integers(1, 4))):
-        low_m = draw(heights_m)
-        writer.moves(
-            draw(places_m),
-            draw(places_m),
-            draw(st.floats(1.0, 20.0)),
-            0,
-            curve=draw(st.sampled_from([0.0, 0.001])),
-            band_m=(low_m, low_m + draw(st.floats(0.0, 5.0))),
-            radius_m=draw(st.sampled_from([None, 3.0, 10.0])),
-        )
-    if draw(st.booleans()):
-        writer.stays(FlightPart.HOVERING)
-    return writer.trajectory("SIM-1", "SIM-1")
 
 
 @settings(max_examples=examples(300))
@@ -72,19 +47,24 @@ def test_what_meets_is_never_sorted_out(own: Trajectory, other: Trajectory) -> N
         assert may_conflict(other, trajectory_bounds(own, NEED, SETTINGS))
 
 
-def standing(east_m: float, up_m: float) -> Trajectory:
-    writer = TrajectoryWriter(east_m, 0.0, up_m, up_m)
-    writer.stays(FlightPart.HOVERING)
-    return writer.trajectory("SIM-2", "SIM-2")
-
-
-def test_what_is_elsewhere_or_at_other_heights_is_sorted_out() -> None:
+@pytest.mark.parametrize(
+    ("east_m", "north_m", "up_m"),
+    [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)],
+)
+def test_what_is_elsewhere_or_at_other_heights_is_sorted_out(
+    east_m: float, north_m: float, up_m: float
+) -> None:
+    """15 m away, or 8 m above or below; what rounding may hide is in doubt."""
     around = trajectory_bounds(standing(0.0, 40.0), NEED, SETTINGS)
-    assert may_conflict(standing(14.9, 40.0), around)
-    assert not may_conflict(standing(15.1, 40.0), around)
-    assert may_conflict(standing(0.0, 47.9), around)
-    assert not may_conflict(standing(0.0, 48.1), around)
-    assert not may_conflict(standing(0.0, 31.9), around)
+
+    def may_conflict_beyond(minima_m: float) -> bool:
+        place = (15.0 + minima_m) * east_m, (15.0 + minima_m) * north_m
+        up = 40.0 + (8.0 + minima_m) * up_m
+        return may_conflict(standing(place[0], up, place[1]), around)
+
+    assert may_conflict_beyond(-0.01)
+    assert may_conflict_beyond(1e-7)
+    assert not may_conflict_beyond(0.01)
 
 
 def test_what_is_nowhere_is_in_doubt() -> None:
@@ -144,6 +124,128 @@ def test_far_traffic_is_sorted_out_before_its_motion() -> None:
     assert not is_too_far(lost, hold, PLANE, around, NOW, SETTINGS)
 
 
+PLACE = (40.0, -30.0)
+HOLD, STICK, BACK = (Intent(it) for it in (Commanded.HOLD, Commanded.STICK, Commanded.RETURN))
+AWAY = flies(route((90.0, 0.0), (99.0, 0.0)))
+EVERYWHERE_M = 1.0e6
+
+
+def beyond(motion: VehicleMotion, far_m: float, until_s: float = 5.0) -> TrajectoryBounds:
+    """A circle of 20 m whose edge is so far from a vehicle, to its north-east."""
+    east_m, north_m = motion.east_m + 0.6 * (20.0 + far_m), motion.north_m + 0.8 * (20.0 + far_m)
+    return TrajectoryBounds(east_m, north_m, 20.0, -EVERYWHERE_M, EVERYWHERE_M, until_s)
+
+
+class TestReach:
+    @pytest.mark.parametrize(
+        ("speed_mps", "age_s", "intent", "until_s", "reach_m"),
+        [
+            (0.0, 0.0, HOLD, 5.0, 0.0),
+            (0.0, 3.0, HOLD, 5.0, 0.0),
+            (10.0, 0.0, HOLD, 5.0, 50.0 + 30.0),
+            (10.0, 0.0, HOLD, 1.0, 50.0 + 30.0),
+            (10.0, 0.0, HOLD, 20.0, 200.0 + 30.0),
+            (10.0, 2.0, HOLD, 5.0, 70.0 + 30.0),
+            (0.0, 0.0, STICK, 5.0, 75.0 + 60.0),
+            (0.0, 0.0, AWAY, 5.0, 75.0 + 60.0),
+        ],
+    )
+    def test_it_is_a_vehicles_flight_and_its_stop(
+        self, speed_mps: float, age_s: float, intent: Intent, until_s: float, reach_m: float
+    ) -> None:
+        """At 10 m/s it stops in 30 m, at the 15 m/s of a command in 60 m."""
+        state = aircraft("B", PLACE, velocity=(speed_mps, 0.0, 0.0), age_s=age_s)
+        motion = seen(state)
+        for far_m, enters in ((reach_m - 1.0, True), (reach_m + 1.0, False)):
+            around = beyond(motion, far_m, until_s)
+            assert may_enter(motion, intent, around, SETTINGS) is enters
+            assert is_too_far(state, intent, PLANE, around, NOW, SETTINGS) is not enters
+
+    @pytest.mark.parametrize(
+        ("home", "age_s", "intent", "hazard_radius_m", "reach_m"),
+        [
+            (None, 3.1, HOLD, 150.0, 150.0),
+            (None, 3.1, HOLD, 300.0, 300.0),
+            (PLACE, 3.1, HOLD, 300.0, 300.0),
+            ((520.0, -390.0), 3.1, HOLD, 150.0, 600.0 + 10.0),
+            (None, 0.0, BACK, 50.0, 150.0),
+            (PLACE, 0.0, BACK, 150.0, 75.0 + 60.0),
+        ],
+    )
+    def test_of_one_that_is_lost_or_returns_it_is_its_hazard_area_and_its_way_home(
+        self,
+        home: tuple[float, float] | None,
+        age_s: float,
+        intent: Intent,
+        hazard_radius_m: float,
+        reach_m: float,
+    ) -> None:
+        wide = replace(SETTINGS, hazard_radius_m=hazard_radius_m)
+        state = aircraft("B", PLACE, home=home, age_s=age_s)
+        motion = seen(state)
+        for far_m, enters in ((reach_m - 1.0, True), (reach_m + 1.0, False)):
+            around = beyond(motion, far_m)
+            assert may_enter(motion, intent, around, wide) is enters
+            assert not is_too_far(state, intent, PLANE, around, NOW, wide)
+
+
+def between(low_m: float, high_m: float) -> TrajectoryBounds:
+    return TrajectoryBounds(0.0, 0.0, 1_000.0, low_m, high_m, 5.0)
+
+
+class TestHeights:
+    """At 40 m, for 5 s: 20 m up or down at 4 m/s."""
+
+    up_first = route((90.0, 0.0, 80.0), (99.0, 0.0, 40.0))
+
+    @pytest.mark.parametrize(
+        ("intent", "drift_m", "age_s", "up_mps", "low_m", "high_m"),
+        [
+            (HOLD, 0.0, 0.0, 0.0, 20.0, 60.0),
+            (HOLD, 0.0, 3.0, 0.0, 8.0, 72.0),
+            (HOLD, 0.0, 0.0, -8.0, 0.0, 80.0),
+            (HOLD, 5.0, 0.0, 0.0, 15.0, 65.0),
+            (replace(STICK, target_height_above_takeoff_m=80.0), 5.0, 0.0, 0.0, 15.0, 105.0),
+            (replace(STICK, target_height_above_takeoff_m=10.0), 5.0, 0.0, 0.0, -15.0, 65.0),
+            (flies(up_first), 0.0, 0.0, 0.0, 20.0, 100.0),
+            (flies(up_first, 1), 0.0, 0.0, 0.0, 20.0, 60.0),
+        ],
+    )
+    def test_they_hold_its_climb_its_descent_and_what_it_was_sent_to(
+        self,
+        intent: Intent,
+        drift_m: float,
+        age_s: float,
+        up_mps: float,
+        low_m: float,
+        high_m: float,
+    ) -> None:
+        state = aircraft("B", velocity=(0.0, 0.0, up_mps), age_s=age_s)
+        motion = seen(state)._replace(drift_m=drift_m)
+        for around, enters in (
+            (between(-EVERYWHERE_M, low_m + 0.1), True),
+            (between(-EVERYWHERE_M, low_m - 0.1), False),
+            (between(high_m - 0.1, EVERYWHERE_M), True),
+            (between(high_m + 0.1, EVERYWHERE_M), False),
+        ):
+            assert may_enter(motion, intent, around, SETTINGS) is enters
+
+    def test_a_faster_climb_takes_it_higher(self) -> None:
+        quick = replace(SETTINGS, climb_mps=6.0)
+        assert may_enter(seen(aircraft()), HOLD, between(69.0, 90.0), quick)
+        assert not may_enter(seen(aircraft()), HOLD, between(71.0, 90.0), quick)
+
+    @pytest.mark.parametrize(
+        ("intent", "age_s"), [(HOLD, 3.1), (Intent(Commanded.LAND), 0.0), (BACK, 0.0)]
+    )
+    def test_one_that_is_lost_lands_or_returns_may_be_at_any(
+        self, intent: Intent, age_s: float
+    ) -> None:
+        motion = seen(aircraft("B", age_s=age_s))
+        assert may_enter(motion, intent, between(-9.0, 0.0), SETTINGS)
+        assert may_enter(motion, intent, between(900.0, 999.0), SETTINGS)
+
+
 bodies = st.one_of(
     st.builds(
         lambda east_mps, north_mps, height_m: VirtualStick(
@@ -168,6 +270,21 @@ def test_sorting_out_far_traffic_changes_no_refusal(
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(sys.modules[separation.__module__], "is_too_far", lambda *_: False)
         assert judged(body, own, *known) == with_bound
+
+
+@settings(max_examples=examples(300), deadline=None)
+@given(bodies, others())
+def test_what_cannot_enter_is_never_met(
+    body: VirtualStick | GoTo | FlyMission, other: tuple[VehicleState, Intent]
+) -> None:
+    state, intent = other
+    motion = vehicle_motion(state, AIR, PLANE, NOW, SETTINGS)
+    assert motion is not None
+    own = predict_order(seen(aircraft("A")), body, SETTINGS)
+    around = trajectory_bounds(own, NEED, SETTINGS)
+    if not may_enter(motion, intent, around, SETTINGS):
+        met = predict_traffic(motion, intent, SETTINGS, around.until_s)
+        assert first_conflict(own, met, NEED, SETTINGS) is None
 
 
 def short_orders() -> st.SearchStrategy[VirtualStick | GoTo]:

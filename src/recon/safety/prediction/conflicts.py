@@ -75,16 +75,15 @@ def first_conflict(
     if not is_conflict.any():
         return None
     met = _kept(pairs, is_conflict)
-    first = int(np.argmin(mine.at_s[met.own]))
-    same = met.trajectory == met.trajectory[first]
+    same = met.trajectory == met.trajectory[0]
     for volumes, piece in ((mine, met.own), (theirs, met.other)):
-        same &= volumes.part[piece] == volumes.part[piece[first]]
+        same &= volumes.part[piece] == volumes.part[piece[0]]
     vertical_m = _vertical_gap_m(mine, theirs, met)
     return Conflict(
-        other=int(met.trajectory[first]),
-        own_part=int(mine.part[met.own[first]]),
-        other_part=int(theirs.part[met.other[first]]),
-        at_s=max(0.0, float(mine.at_s[met.own[first]])),
+        other=int(met.trajectory[0]),
+        own_part=int(mine.part[met.own[0]]),
+        other_part=int(theirs.part[met.other[0]]),
+        at_s=max(0.0, float(mine.at_s[met.own[0]])),
         horizontal_m=max(0.0, float(gap_m[is_conflict][same].min())),
         vertical_m=max(0.0, float(vertical_m[same].min())),
     )
@@ -92,7 +91,8 @@ def first_conflict(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Pairs:
-    """Pieces that overlap in time: indices (P,) of mine, theirs and their trajectory."""
+    """Pieces that overlap in time, in order of mine: indices (P,) of mine, theirs and their
+    trajectory."""
 
     own: IntArray
     other: IntArray
@@ -110,9 +110,8 @@ def _pairs(mine: ProtectedVolumes, theirs: ProtectedVolumes) -> _Pairs:
     piece_shift_s = np.repeat(shift_s, counts_of)
     asked_early = mine.early_s[:, np.newaxis] + shift_s
     asked_late = mine.late_s[:, np.newaxis] + shift_s
-    low = np.searchsorted(theirs.late_s + piece_shift_s, asked_early, side="left")
+    low = np.searchsorted(theirs.late_s + piece_shift_s, asked_early)
     high = np.searchsorted(theirs.early_s + piece_shift_s, asked_late, side="right")
-    low, high = np.maximum(low, theirs.first[:-1]), np.minimum(high, theirs.first[1:])
     counts = np.maximum(high - low, 0).ravel()
     group = np.repeat(np.arange(len(counts)), counts)
     step = np.arange(len(group)) - np.repeat(np.cumsum(counts) - counts, counts)
@@ -134,10 +133,9 @@ def _may_be_near(
     reach_m = need.horizontal_m + mine.radius_m[pairs.own] + theirs.radius_m[pairs.other]
     mine_low, mine_high = _box(mine)
     their_low, their_high = _box(theirs)
-    is_near = np.ones(len(pairs.own), dtype=np.bool_)
-    for axis in range(2):
-        is_near &= their_low[pairs.other, axis] - mine_high[pairs.own, axis] < reach_m
-        is_near &= mine_low[pairs.own, axis] - their_high[pairs.other, axis] < reach_m
+    beyond_m = their_low[pairs.other] - mine_high[pairs.own]
+    before_m = mine_low[pairs.own] - their_high[pairs.other]
+    is_near: BoolArray = np.maximum(beyond_m, before_m).max(axis=1) < reach_m
     return is_near
 
 

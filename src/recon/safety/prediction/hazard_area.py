@@ -92,7 +92,7 @@ def hazard_trajectories(hazard: HazardArea) -> tuple[Trajectory, ...]:
         landing.radius_m = hazard.corridor_half_m
         landing.stays(FlightPart.HAZARD)
         writers += [way, landing]
-    return tuple(writer.trajectory(hazard.name, hazard.serial) for writer in writers)
+    return tuple(writer.trajectory(hazard.name) for writer in writers)
 
 
 def _plausible_mps(motion: VehicleMotion, intent: Intent) -> float:

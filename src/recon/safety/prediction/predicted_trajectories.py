@@ -46,7 +46,7 @@ def predict_order(motion: VehicleMotion, body: Body, settings: PredictionSetting
     """Return the trajectory an order to move would send its vehicle on."""
     predictor = Predictor(motion, settings)
     write_order(predictor, body)
-    trajectory = predictor.writer.trajectory(motion.name, motion.state.serial, motion.drift_m)
+    trajectory = predictor.writer.trajectory(motion.name, motion.drift_m)
     start_s = settings.start_delay_s if isinstance(body, FlyMission) else 0.0
     return replace(trajectory, delay_s=predictor.delay_s + start_s)
 
@@ -67,7 +67,7 @@ def predict_traffic(
         return volumes
     predictor = Predictor(motion, settings, until_s=until_s)
     predictor.follow(intent)
-    trajectory = predictor.writer.trajectory(motion.name, motion.state.serial, motion.drift_m)
+    trajectory = predictor.writer.trajectory(motion.name, motion.drift_m)
     start_s = settings.start_delay_s if _has_not_begun(motion, intent) else 0.0
     return (replace(trajectory, delay_s=predictor.delay_s + start_s), *volumes)
 
@@ -182,10 +182,12 @@ def _reach_m(
         motion.home_m is not None or intent.commanded is not Commanded.RETURN
     ):
         return own_m
-    home_m = (0.0, 0.0) if motion.home_m is None else motion.home_m
-    home_far_m = hypot(home_m[0] - motion.east_m, home_m[1] - motion.north_m)
-    hidden_m = max(settings.hazard_radius_m, UNHOMED_RADIUS_M, home_far_m + settings.corridor_m)
-    return max(own_m, hidden_m)
+    reach_m = max(own_m, settings.hazard_radius_m, UNHOMED_RADIUS_M)
+    if motion.home_m is not None:
+        east_m, north_m = motion.home_m
+        home_far_m = hypot(east_m - motion.east_m, north_m - motion.north_m)
+        reach_m = max(reach_m, home_far_m + settings.corridor_m)
+    return reach_m
 
 
 def _flown_m(
@@ -203,19 +205,16 @@ def _band_m(
 ) -> tuple[float, float]:
     """The heights it can be at within so many seconds."""
     if motion.age_s > settings.stale_s or intent.commanded in (Commanded.LAND, Commanded.RETURN):
-        return -ALL_HEIGHTS_M, 2.0 * ALL_HEIGHTS_M
-    low_m, high_m = motion.low_m - motion.drift_m, motion.high_m + motion.drift_m
+        return -ALL_HEIGHTS_M, ALL_HEIGHTS_M
     heights_m = [intent.target_height_above_takeoff_m]
     if intent.mission is not None and intent.passed == 0:
         heights_m.append(intent.mission.waypoints[0].height_above_takeoff_m)
-    for height_m in heights_m:
-        if height_m is not None:
-            band_m = motion.up_m(height_m)
-            low_m = min(low_m, band_m[0] - motion.drift_m)
-            high_m = max(high_m, band_m[1] + motion.drift_m)
+    bands_m = [motion.up_m(height_m) for height_m in heights_m if height_m is not None]
+    bands_m.append((motion.low_m, motion.high_m))
     fastest_mps = max(settings.climb_mps, settings.sink_mps, abs(motion.velocity_mps[2]))
     change_m = fastest_mps * (motion.age_s + max(seconds, settings.stick_horizon_s))
-    return low_m - change_m, high_m + change_m
+    off_m = change_m + motion.drift_m
+    return min(low_m for low_m, _ in bands_m) - off_m, max(high_m for _, high_m in bands_m) + off_m
 
 
 def write_order(predictor: Predictor, body: Body) -> None:

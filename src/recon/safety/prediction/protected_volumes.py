@@ -55,7 +55,7 @@ class ProtectedVolumes:
     low_m: FloatArray
     high_m: FloatArray
     radius_m: FloatArray
-    part: IntArray
+    part: FloatArray
     first: IntArray
 
 
@@ -84,7 +84,7 @@ def cut(trajectories: Sequence[Trajectory], settings: PredictionSettings) -> Pro
         low_m=_extreme(found, LOW_0, LOW_1, share_0, share_1, np.minimum),
         high_m=_extreme(found, HIGH_0, HIGH_1, share_0, share_1, np.maximum),
         radius_m=_extreme(found, RADIUS_0, RADIUS_1, start, end, np.maximum),
-        part=found[:, PART].astype(np.int64),
+        part=found[:, PART],
         first=row_first[np.concatenate([[0], np.cumsum(counts)])],
     )
 

@@ -74,20 +74,9 @@ class Trajectory:
     of its last telemetry; on its first row it may be higher or lower by then."""
 
     name: str
-    serial: str | None
     rows: FloatArray
     here_m: tuple[float, float]
     delay_s: float = 0.0
-
-
-def with_drift(rows: FloatArray, drift_m: float) -> FloatArray:
-    """Return rows with bands of heights that are wider by this, up and down."""
-    if drift_m == 0.0:
-        return rows
-    wider = rows.copy()
-    wider[:, [LOW_0, LOW_1]] -= drift_m
-    wider[:, [HIGH_0, HIGH_1]] += drift_m
-    return wider
 
 
 class TrajectoryWriter:
@@ -137,11 +126,12 @@ class TrajectoryWriter:
         """Stay indefinitely."""
         self.waits(FOREVER_S, part)
 
-    def trajectory(self, name: str, serial: str | None, drift_m: float = 0.0) -> Trajectory:
-        """Return what has been written, its heights uncertain by a drift."""
-        rows = np.array(self.rows, dtype=np.float64).reshape(-1, COLUMNS)
-        here_m = self.here_m[0] - drift_m, self.here_m[1] + drift_m
-        return Trajectory(name, serial, with_drift(rows, drift_m), here_m)
+    def trajectory(self, name: str, drift_m: float = 0.0) -> Trajectory:
+        """Return what has been written, at least one row, its heights uncertain by a drift."""
+        rows = np.array(self.rows)
+        rows[:, [LOW_0, LOW_1]] -= drift_m
+        rows[:, [HIGH_0, HIGH_1]] += drift_m
+        return Trajectory(name, rows, (self.here_m[0] - drift_m, self.here_m[1] + drift_m))
 
 
 _APART_S = 4.0 * FOREVER_S
@@ -164,8 +154,8 @@ def sample(trajectories: Sequence[Sequence[Row] | FloatArray], times_s: npt.Arra
 
     No trajectory may be without a row.
     """
-    times = np.asarray(times_s, dtype=np.float64)
-    rows = np.array([row for trajectory in trajectories for row in trajectory], dtype=np.float64)
+    times = np.asarray(times_s)
+    rows = np.array([row for trajectory in trajectories for row in trajectory])
     counts = np.array([len(trajectory) for trajectory in trajectories])
     vehicle = np.repeat(np.arange(len(trajectories)), counts)
     axis = rows[:, START_S] + vehicle * _APART_S
