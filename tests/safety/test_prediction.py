@@ -178,19 +178,6 @@ class TestCurved:
                 )
                 assert off <= bulge_m + 1e-6
 
-    @pytest.mark.parametrize(
-        ("before", "after"),
-        [
-            ((0.0, 0.0), (5.0, 0.0)),
-            ((5.0, 0.0), (0.0, 0.0)),
-            ((-5.0, 0.0), (5.0, 0.0)),
-        ],
-    )
-    def test_a_corner_that_is_none_has_no_bulge(
-        self, before: tuple[float, float], after: tuple[float, float]
-    ) -> None:
-        assert corner_bulge_m(before, (0.0, 0.0), after, 10.0) == 0.0
-
     def test_the_gate_allows_for_the_bulge(self) -> None:
         corner = [
             waypoint(0.0, 0.0),

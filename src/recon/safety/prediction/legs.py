@@ -1,6 +1,6 @@
 """Straight ways flown with limited acceleration, and stopping: rows for a trajectory."""
 
-from math import hypot, sqrt
+from math import atan2, cos, hypot, sin, sqrt
 from typing import NamedTuple
 
 from recon.safety.prediction.trajectory import FOREVER_S, FlightPart, TrajectoryWriter
@@ -47,40 +47,36 @@ def fly(
     until_s: float = FOREVER_S,
     least_s: float = 0.0,
 ) -> None:
-    """Write a leg: as its phases of gaining, keeping and losing speed, or as one even row.
+    """Write a leg: as its phases of gaining, keeping and losing speed, or as one even row as long.
 
     No phase that begins after `until_s` is written. It takes `least_s` at least: the climb of a leg
     that may be at every height between from its beginning on.
     """
     long_m = hypot(leg.east_m - writer.east_m, leg.north_m - writer.north_m)
-    rise_s = max(least_s, fastest_rise_s(writer, leg.band_m, settings))
-    if exactly and long_m > LEAST_M:
-        phases = _phases(long_m, leg, settings.braking_mps2)
-        seconds = phases[0][3] + phases[1][3] + phases[2][3]
-        if seconds >= rise_s:
-            _write_phases(writer, leg, long_m, phases, until_s)
-            return
+    fastest_s = rise_s(writer, leg.band_m, settings.climb_mps, settings.sink_mps)
+    least_s = max(least_s, fastest_s, LEAST_S)
+    phases = _phases(long_m, leg, settings.braking_mps2)
+    flown_s = sum(seconds for *_, seconds in phases)
+    if exactly and long_m > LEAST_M and flown_s >= least_s:
+        _write_phases(writer, leg, long_m, phases, until_s)
     else:
-        seconds = _even_seconds(long_m, leg, settings.braking_mps2)
-    longest_s = max(seconds, rise_s, LEAST_S)
-    writer.moves(leg.east_m, leg.north_m, longest_s, leg.part, band_m=leg.band_m)
+        seconds = max(flown_s, least_s)
+        writer.moves(leg.east_m, leg.north_m, seconds, leg.part, band_m=leg.band_m)
 
 
-def fastest_rise_s(
-    writer: TrajectoryWriter, band_m: tuple[float, float], settings: PredictionSettings
+def rise_s(
+    writer: TrajectoryWriter, band_m: tuple[float, float], climb_mps: float, sink_mps: float
 ) -> float:
-    """Return how long a change of height takes at least; 0 into a band that holds the present."""
-    climb_s = (band_m[1] - writer.high_m) / settings.climb_mps
-    sink_s = (writer.low_m - band_m[0]) / settings.sink_mps
+    """Return how long a change of height takes; 0 into a band that holds the present."""
+    climb_s = (band_m[1] - writer.high_m) / climb_mps
+    sink_s = (writer.low_m - band_m[0]) / sink_mps
     return min(max(0.0, climb_s, sink_s), LONGEST_RISE_S)
 
 
 def eased_rise_s(rise_m: float, speed_mps: float) -> float:
     """Return how long a change of height takes at a speed, easing into the new height."""
-    easing_m = speed_mps**2 / (2.0 * EASING_MPS2)
-    if rise_m <= easing_m:
-        return sqrt(2.0 * rise_m / EASING_MPS2)
-    return rise_m / speed_mps + 0.5 * speed_mps / EASING_MPS2
+    eased_mps = min(speed_mps, sqrt(2.0 * EASING_MPS2 * rise_m))
+    return rise_m / eased_mps + 0.5 * eased_mps / EASING_MPS2
 
 
 def stop(
@@ -132,45 +128,26 @@ def corner_bulge_m(before_m: Point, corner_m: Point, after_m: Point, radius_m: f
     """
     back = before_m[0] - corner_m[0], before_m[1] - corner_m[1]
     on = after_m[0] - corner_m[0], after_m[1] - corner_m[1]
-    back_m, on_m = hypot(*back), hypot(*on)
-    if back_m < LEAST_M or on_m < LEAST_M:
-        return 0.0
-    cosine = max(-1.0, min(1.0, (back[0] * on[0] + back[1] * on[1]) / (back_m * on_m)))
-    sine = sqrt(1.0 - cosine**2)
-    if sine < LEAST_M:
-        return 0.0
-    arc_reach_m = radius_m * (1.0 + cosine) / sine  # radius / tan(half the corner's angle)
-    reach_m = min(max(radius_m, arc_reach_m), back_m, on_m)
-    return 0.5 * reach_m * sine
-
-
-def _even_seconds(long_m: float, leg: Leg, braking_mps2: float) -> float:
-    """How long a leg takes with gaining speed at its start and losing it at its end."""
-    reached_mps = max(sqrt(braking_mps2 * long_m), leg.start_mps, leg.end_mps)
-    speed_mps = max(min(leg.speed_mps, reached_mps), LEAST_SPEED_MPS)
-    gaining_mps, losing_mps = speed_mps - leg.start_mps, speed_mps - leg.end_mps
-    lost_s = (gaining_mps**2 + losing_mps**2) / (2.0 * braking_mps2 * speed_mps)
-    return long_m / speed_mps + lost_s if long_m > LEAST_M else 0.0
+    across, along = back[0] * on[1] - back[1] * on[0], back[0] * on[0] + back[1] * on[1]
+    angle_rad = atan2(abs(across), along)
+    sine = sin(angle_rad)
+    arc_reach = 1.0 + cos(angle_rad)  # sine / tan(half the corner's angle)
+    return 0.5 * min(radius_m * max(sine, arc_reach), hypot(*back) * sine, hypot(*on) * sine)
 
 
 def _phases(long_m: float, leg: Leg, braking_mps2: float) -> tuple[Phase, Phase, Phase]:
     """Return a leg's gaining, keeping and losing of speed; what it has none of has no length."""
-    speed_mps = max(leg.speed_mps, LEAST_SPEED_MPS)
     change = 2.0 * braking_mps2 * long_m  # how much the square of a speed may change on the leg
     start_mps = leg.start_mps
     slowest_mps = sqrt(max(0.0, start_mps**2 - change))  # too fast to stop: it arrives all the same
     end_mps = min(max(leg.end_mps, slowest_mps), sqrt(start_mps**2 + change))
-    gaining_m = abs(speed_mps**2 - start_mps**2) / (2.0 * braking_mps2)
-    losing_m = max(0.0, speed_mps**2 - end_mps**2) / (2.0 * braking_mps2)
-    if gaining_m + losing_m > long_m:
-        peak_mps = sqrt(0.5 * (start_mps**2 + end_mps**2 + change))
-        speed_mps = min(peak_mps, max(speed_mps, start_mps))
-        gaining_m = min(abs(speed_mps**2 - start_mps**2) / (2.0 * braking_mps2), long_m)
-        losing_m = long_m - gaining_m
-    steady_m = max(0.0, long_m - gaining_m - losing_m)
+    peak_mps = sqrt(0.5 * (start_mps**2 + end_mps**2 + change))
+    speed_mps = min(max(leg.speed_mps, end_mps, LEAST_SPEED_MPS), peak_mps)
+    gaining_m = min(abs(speed_mps**2 - start_mps**2) / (2.0 * braking_mps2), long_m)
+    losing_m = min((speed_mps**2 - end_mps**2) / (2.0 * braking_mps2), long_m - gaining_m)
     return (
         _phase(gaining_m, start_mps, speed_mps),
-        _phase(steady_m, speed_mps, speed_mps),
+        _phase(long_m - gaining_m - losing_m, speed_mps, speed_mps),
         _phase(losing_m, speed_mps, end_mps),
     )
 

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from recon.geo import OnGlobe
 from recon.geo.distance import offset_north_east_m
 from recon.model.geo import LatLon
-from recon.model.units import NS_PER_S, Stamped
+from recon.model.units import NS_PER_S, Stamped, wrap_degrees
 from recon.model.vehicle import Failsafe, VehicleState, VelocityNed
 from recon.safety.airspace import PreparedAirspace
 from recon.safety.datum import home, is_takeoff_height_known, takeoff_up_m_at
@@ -37,7 +37,7 @@ class Plane:
 
     def east_north_m(self, place: OnGlobe) -> tuple[float, float]:
         """Return how far east and north of the origin a place lies."""
-        east_deg = (place.longitude_deg - self._longitude_deg + 180.0) % 360.0 - 180.0
+        east_deg = wrap_degrees(place.longitude_deg - self._longitude_deg)
         north_deg = place.latitude_deg - self._latitude_deg
         return east_deg * self._east_m_per_deg, north_deg * self._north_m_per_deg
 
@@ -106,8 +106,7 @@ def vehicle_motion(
     profile, home_place = state.profile, home(state)
     base_m = takeoff_up_m_at(airspace, state, home_place)
     height_m = state.height_above_takeoff_m.value
-    known = base_m is not None and height_m is not None
-    up_m = base_m + height_m if base_m is not None and height_m is not None else 0.0
+    up_m = None if base_m is None or height_m is None else base_m + height_m
     go_home_m = seen_height_m(state)
     if go_home_m is None and profile is not None:
         go_home_m = profile.go_home_height_m
@@ -118,8 +117,8 @@ def vehicle_motion(
         plane=plane,
         east_m=east_m,
         north_m=north_m,
-        low_m=up_m if known else -ALL_HEIGHTS_M,
-        high_m=up_m if known else ALL_HEIGHTS_M,
+        low_m=-ALL_HEIGHTS_M if up_m is None else up_m,
+        high_m=ALL_HEIGHTS_M if up_m is None else up_m,
         velocity_mps=velocity_mps,
         speed_mps=speed_mps,
         age_s=age_at(now_ns, at_ns),

@@ -9,13 +9,12 @@ from recon.model.mission import Mission
 from recon.safety.go_home import is_off_track
 from recon.safety.prediction.legs import (
     LEAST_M,
-    LONGEST_RISE_S,
     STANDING_MPS,
     Leg,
     corner_bulge_m,
     eased_rise_s,
-    fastest_rise_s,
     fly,
+    rise_s,
     stop,
     stopping_distance_m,
 )
@@ -85,7 +84,7 @@ class Predictor:
     def fly_mission(self, mission: Mission, passed: int) -> None:
         """The rest of a mission, and indefinitely what it ends with."""
         waypoints, writer, plane = mission.waypoints, self.writer, self.motion.plane
-        start_mps: float | None = None
+        start_mps = 0.0 if writer.rows else None  # what was written before is a stop
         for index in range(passed, len(waypoints)):
             if writer.time_s > self.until_s:
                 return
@@ -129,20 +128,18 @@ class Predictor:
         follows: `delay_s`. One that is seen to do so stays where it is until it has climbed.
         """
         writer, settings = self.writer, self.settings
-        rise_s = fastest_rise_s(writer, leg.band_m, settings)
-        rise_m = max(0.0, leg.band_m[1] - writer.high_m, writer.low_m - leg.band_m[0])
-        slowest_s = min(rise_m / settings.slow_climb_mps, LONGEST_RISE_S)
+        slow_mps = settings.slow_climb_mps
+        fastest_s = rise_s(writer, leg.band_m, settings.climb_mps, settings.sink_mps)
+        slowest_s = rise_s(writer, leg.band_m, slow_mps, slow_mps)
+        self.delay_s = slowest_s if climbs_first else slowest_s - fastest_s
         if climbs_first and self.exactly and self._is_seen_to_climb(leg):
             climb_mps = min(settings.climb_mps, abs(self.motion.velocity_mps[2]))
             self._climb_here(leg, eased_rise_s(leg.band_m[1] - writer.high_m, climb_mps))
-            rise_s = 0.0
-        before_s = writer.time_s
+            fastest_s = 0.0
         writer.widens(*leg.band_m)
         both = leg._replace(band_m=(writer.low_m, writer.high_m))
-        fly(writer, both, settings, exactly=self.exactly, until_s=self.until_s, least_s=rise_s)
+        fly(writer, both, settings, exactly=self.exactly, until_s=self.until_s, least_s=fastest_s)
         writer.low_m, writer.high_m = leg.band_m
-        first_s = min(rise_s, writer.time_s - before_s) if climbs_first else 0.0
-        self.delay_s += slowest_s - rise_s + first_s
 
     def _is_seen_to_climb(self, leg: Leg) -> bool:
         is_below = leg.band_m[1] > self.writer.high_m
@@ -210,6 +207,7 @@ class Predictor:
             writer.widens(writer.low_m, top_m)
         else:
             stop(writer, motion.velocity_mps, settings, reaction_s=0.0)
+            towards_mps = 0.0
         if top_m > writer.high_m:
             low_m, climb_s = writer.low_m, (top_m - writer.high_m) / settings.climb_mps
             writer.moves(
@@ -235,7 +233,7 @@ class Predictor:
             writer.stays(FlightPart.HOVERING)
             return
         rise_m = up_mps * settings.free_s
-        writer.widens(writer.low_m + min(rise_m, 0.0), writer.high_m + max(rise_m, 0.0))
+        writer.widens(writer.low_m + rise_m, writer.high_m + rise_m)
         reach_m = motion.speed_mps * settings.free_s
         reach_m += stopping_distance_m(motion.speed_mps, settings)
         writer.grows(reach_m, settings.free_s, FlightPart.FREE)
@@ -244,9 +242,7 @@ class Predictor:
     def _towards_mps(self, east_m: float, north_m: float) -> float:
         """How fast the vehicle flies now towards a place."""
         ahead_m = east_m - self.writer.east_m, north_m - self.writer.north_m
-        far_m = hypot(*ahead_m)
-        if far_m < LEAST_M:
-            return 0.0
+        far_m = max(hypot(*ahead_m), LEAST_M)
         east_mps, north_mps, _up_mps = self.motion.velocity_mps
         return max(0.0, (ahead_m[0] * east_mps + ahead_m[1] * north_mps) / far_m)
 
@@ -258,9 +254,11 @@ class Predictor:
         bulges_m = [0.0]
         for corner in (index - 1, index):
             if 0 < corner < len(waypoints) - 1:
-                places_m = [plane.east_north_m(w) for w in waypoints[corner - 1 : corner + 2]]
+                before_m, corner_m, after_m = map(
+                    plane.east_north_m, waypoints[corner - 1 : corner + 2]
+                )
                 radius_m = waypoints[corner].corner_radius_m
-                bulges_m.append(corner_bulge_m(places_m[0], places_m[1], places_m[2], radius_m))
+                bulges_m.append(corner_bulge_m(before_m, corner_m, after_m, radius_m))
         return max(bulges_m)
 
 
