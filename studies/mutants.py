@@ -92,7 +92,6 @@ PARTS: Mapping[str, Part] = {
             "tests/safety/test_predicted_flights.py",
             "tests/safety/test_hazard_area.py",
             "tests/safety/test_vehicle_motion.py",
-            "tests/safety/test_height_drift.py",
             "tests/safety/test_unknown_heights.py",
             "tests/safety/test_go_home.py",
             "tests/safety/rules/test_separation.py",

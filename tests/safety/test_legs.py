@@ -5,7 +5,7 @@ from itertools import pairwise
 from math import cos, hypot, pi, sin, sqrt
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from tests.examples import examples
 
@@ -80,6 +80,9 @@ speeds = st.floats(0.5, 15.0)
 
 class TestPhases:
     @given(lengths_m, st.floats(0.0, 20.0), speeds, st.floats(0.0, 1.0))
+    @example(1.0, 4.0, 15.0, 1.0)
+    @example(1.0, 0.5, 15.0, 1.0)
+    @example(5.0, 15.0, 2.0, 0.0)
     @settings(max_examples=examples(200), deadline=None)
     def test_speed_is_gained_and_lost_at_the_braking_limit_and_else_kept(
         self, long_m: float, start_mps: float, speed_mps: float, end_share: float
@@ -144,6 +147,14 @@ class TestPhases:
         (row,) = writer.rows
         assert 0.0 < row[END_S] < 0.05
         assert (row[LOW_1], row[HIGH_1]) == (50.0, 50.0)
+
+    @pytest.mark.parametrize(("braking_mps2", "count"), [(500.0, 2), (500.1, 1)])
+    def test_a_phase_shorter_than_a_millimetre_is_left_out(
+        self, braking_mps2: float, count: int
+    ) -> None:
+        """1 m/s is lost on a millimetre."""
+        hard = replace(SETTINGS, braking_mps2=braking_mps2)
+        assert len(flown(10.0, 1.0, 1.0, 0.0, flies=hard)) == count
 
     def test_a_leg_commanded_at_no_speed_still_ends(self) -> None:
         (row,) = flown(10.0, 0.0, 0.0, 0.0, exactly=False)

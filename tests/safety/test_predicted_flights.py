@@ -10,7 +10,13 @@ from recon.model.control import Commanded, Intent
 from recon.model.mission import Mission
 from recon.model.vehicle import FlightMode, VehicleState
 from recon.safety import Traffic
-from recon.safety.prediction import FlightPart, Predictor, VehicleMotion, predict_order
+from recon.safety.prediction import (
+    FlightPart,
+    Predictor,
+    VehicleMotion,
+    predict_order,
+    predict_traffic,
+)
 from recon.safety.prediction.trajectory import (
     ALL_HEIGHTS_M,
     END_S,
@@ -192,6 +198,11 @@ class TestFirstWaypoint:
         state = aircraft(height_m=height_m, age_s=age_s)
         assert predict_order(seen(state), body, SETTINGS).delay_s == pytest.approx(delay_s)
 
+    @pytest.mark.parametrize("intent", [HOME, LAND, STICK, Intent(), flies(ALONG, 1)])
+    def test_nothing_else_is_delayed(self, intent: Intent) -> None:
+        (found,) = predict_traffic(seen(aircraft()), intent, SETTINGS, FOREVER_S)
+        assert found.delay_s == 0.0
+
 
 class TestTooFastForItsLeg:
     """Speed that is too high for a leg is lost within seconds: the vehicle arrives sooner."""
@@ -253,13 +264,16 @@ class TestLanding:
 
     @pytest.mark.parametrize(
         ("takeoff_up_m", "up_m", "lasts_s"),
-        [(0.0, 40.0, 70.0), (15.0, 40.0, 55.0), (0.0, -20.0, 30.0), (None, 40.0, 530.0)],
+        [(0.0, 40.0, 50.0), (15.0, 40.0, 42.5), (0.0, -20.0, 30.0), (None, 40.0, 280.0)],
     )
-    def test_it_takes_a_second_a_metre_and_half_a_minute(
+    def test_it_sinks_to_its_takeoff_point_and_waits_half_a_minute(
         self, takeoff_up_m: float | None, up_m: float, lasts_s: float
     ) -> None:
+        """At 2 m/s; over unknown ground from as high as any flies home."""
         above = seen(aircraft(height_m=up_m))._replace(takeoff_up_m=takeoff_up_m)
-        down = written(above, LAND, exactly=False)[-1]
+        predictor = Predictor(above, replace(SETTINGS, landing_mps=2.0))
+        predictor.follow(LAND)
+        down = predictor.writer.rows[-1]
         assert down[END_S] - down[START_S] == pytest.approx(lasts_s)
         assert down[PART] == FlightPart.LANDING
 

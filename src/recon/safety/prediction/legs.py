@@ -143,8 +143,8 @@ def _phases(long_m: float, leg: Leg, braking_mps2: float) -> tuple[Phase, Phase,
     end_mps = min(max(leg.end_mps, slowest_mps), sqrt(start_mps**2 + change))
     peak_mps = sqrt(0.5 * (start_mps**2 + end_mps**2 + change))
     speed_mps = min(max(leg.speed_mps, end_mps, LEAST_SPEED_MPS), peak_mps)
-    gaining_m = min(abs(speed_mps**2 - start_mps**2) / (2.0 * braking_mps2), long_m)
-    losing_m = min((speed_mps**2 - end_mps**2) / (2.0 * braking_mps2), long_m - gaining_m)
+    gaining_m = abs(speed_mps**2 - start_mps**2) / (2.0 * braking_mps2)
+    losing_m = (speed_mps**2 - end_mps**2) / (2.0 * braking_mps2)
     return (
         _phase(gaining_m, start_mps, speed_mps),
         _phase(long_m - gaining_m - losing_m, speed_mps, speed_mps),
