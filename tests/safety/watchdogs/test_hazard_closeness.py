@@ -11,7 +11,7 @@ from recon.safety.separation_minima import SeparationMinima
 from recon.safety.watchdogs.closest_approach import hazard_closeness
 
 NEED = SeparationMinima(10.0, 5.0)
-AREA = HazardArea("B", "B", 4.0, 100.0, 200.0, 20.0, 5.0, 60.0, 30.0, 50.0, None, 40.0, 8.0)
+AREA = HazardArea("B", 4.0, 100.0, 200.0, 20.0, 5.0, 60.0, 30.0, 50.0, None, 40.0, 8.0)
 """At 100 m east and 200 m north, 20 m wide and growing to 60 m; its corridor is 16 m wide."""
 HOME = replace(AREA, home_m=(400.0, 600.0))
 """Its way home is 500 m long, towards 3 east and 4 north."""

@@ -1870,7 +1870,7 @@ export interface components {
             frames_rejected: number;
             /**
              * Lock Problem
-             * @description what shows that a camera said to be locked is not; empty if nothing does
+             * @description what shows that a camera stated to be locked is not; empty if nothing does
              */
             lock_problem: string;
             map: components["schemas"]["ShadeMapView"] | null;

@@ -151,7 +151,7 @@ class ShadeLineView(Message):
         "if there was none"
     )
     lock_problem: str = Field(
-        description="what shows that a camera said to be locked is not; empty if nothing does"
+        description="what shows that a camera stated to be locked is not; empty if nothing does"
     )
     map: ShadeMapView | None
     forecast: ForecastView | None

@@ -57,7 +57,7 @@ class SunlitMemory:
     """Whether the latest frame did."""
     drift: Drift | None = None
     lock_problem: str = ""
-    """What has shown that a camera said to be locked is not; from there on it is not trusted."""
+    """What has shown that a camera stated to be locked is not; from there on it is not trusted."""
     belief_drift: Level = Level(0.0, 0.0)  # noqa: RUF009
     """The total drift at the time of `belief`."""
 

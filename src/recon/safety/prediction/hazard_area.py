@@ -32,7 +32,6 @@ class HazardArea:
     """
 
     name: str
-    serial: str | None
     age_s: float
     east_m: float
     north_m: float
@@ -60,7 +59,6 @@ def hazard_area_of(
         top_m = max(top_m, go_home_top_m(motion, settings))
     return HazardArea(
         name=motion.name,
-        serial=motion.state.serial,
         age_s=motion.age_s,
         east_m=motion.east_m,
         north_m=motion.north_m,

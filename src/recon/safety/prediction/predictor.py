@@ -174,8 +174,8 @@ class Predictor:
 
     def sink_here(self, part: int) -> None:
         """Sink from where the trajectory has come to, anywhere between there and the ground; then
-        be
-        down, which ends the trajectory. A few seconds ahead only so far as it can sink in them."""
+        be down, which ends the trajectory. A few seconds ahead only so far as it can sink in them.
+        """
         writer, settings = self.writer, self.settings
         if self.exactly:
             low_m = writer.low_m - self.until_s * settings.sink_mps
