@@ -37,7 +37,7 @@ Log = Annotated[float, msgspec.Meta(ge=-20.0, le=20.0)]
 Size = Annotated[int, msgspec.Meta(ge=1, le=4096)]
 
 
-class _Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class _ReferenceHeader(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     format: str
     version: int
     bytes: Annotated[int, msgspec.Meta(ge=0, le=8 * MOST_CELLS)]
@@ -59,7 +59,7 @@ class _Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     exposure_locked: bool
 
 
-class _Version(msgspec.Struct, frozen=True):
+class _ReferenceVersion(msgspec.Struct, frozen=True):
     """What every version of the header has."""
 
     format: str
@@ -129,11 +129,11 @@ def _name(reference: SunlitReference) -> str:
     return f"{serial[:64]}-sun-{azimuth % 360:03d}-{height:02d}{SUFFIX}"
 
 
-def _header_of(reference: SunlitReference, payload: bytes) -> _Header:
+def _header_of(reference: SunlitReference, payload: bytes) -> _ReferenceHeader:
     grid = reference.grid
     origin = grid.frame.origin
     rows, cols = reference.light.shape
-    return _Header(
+    return _ReferenceHeader(
         FORMAT,
         VERSION,
         len(payload),
@@ -156,20 +156,20 @@ def _header_of(reference: SunlitReference, payload: bytes) -> _Header:
     )
 
 
-def _header(line: bytes) -> _Header:
+def _header(line: bytes) -> _ReferenceHeader:
     """Return a file's header; raises ValueError."""
     try:
-        common = msgspec.json.decode(line, type=_Version)
+        common = msgspec.json.decode(line, type=_ReferenceVersion)
         if common.format == FORMAT and common.version != VERSION:
             raise ValueError(f"expected format version {VERSION}, got {common.version}")
         if common.format == FORMAT:
-            return msgspec.json.decode(line, type=_Header)
+            return msgspec.json.decode(line, type=_ReferenceHeader)
     except (msgspec.DecodeError, UnicodeError, RecursionError) as problem:
         raise ValueError("its header is damaged") from problem
     raise ValueError(f"expected a file of format {FORMAT}, got {common.format[:40]!a}")
 
 
-def _reference(header: _Header, payload: bytes) -> SunlitReference:
+def _reference(header: _ReferenceHeader, payload: bytes) -> SunlitReference:
     """Return the reference of a file's parts; raises ValueError."""
     if len(payload) != header.bytes:
         got = "more" if len(payload) > header.bytes else str(len(payload))
@@ -198,12 +198,12 @@ def _reference(header: _Header, payload: bytes) -> SunlitReference:
     )
 
 
-def _grid(header: _Header, origin: GeoPoint) -> GroundGrid:
+def _grid(header: _ReferenceHeader, origin: GeoPoint) -> GroundGrid:
     edges = header.west_m, header.north_m, header.cell_m
     return GroundGrid(LocalFrame(origin), *edges, header.grid_rows, header.grid_cols)
 
 
-def _maps(header: _Header, payload: bytes) -> tuple[FloatMap, FloatMap]:
+def _maps(header: _ReferenceHeader, payload: bytes) -> tuple[FloatMap, FloatMap]:
     maps = np.frombuffer(payload, dtype="<f4").reshape(2, header.rows, header.cols)
     light, colour = (np.asarray(each, dtype=np.float32) for each in maps)
     known = np.isfinite(light)

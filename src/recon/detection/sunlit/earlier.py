@@ -5,8 +5,8 @@ the land's own light, the lens and the hot spot are the same. It is taken up wit
 whose cells it explains, and is the land from there on, until the flight has seen enough by itself.
 
 An edge of shade in the first frame is then seen as one at once. A frame without an edge is still
-all sun or all shade: the light shows nothing, because exposure is another one in each flight. Colour
-does where exposure and white balance are locked in both flights: shade is bluer than sun.
+all sun or all shade: its light shows nothing, because exposure is another one in each flight. Its
+colour does where exposure and white balance are locked in both flights: shade is bluer than sun.
 """
 
 from collections.abc import Sequence
