@@ -171,7 +171,7 @@ def _config(site: Site, seed: int, sees: bool, faults: Sequence[str]) -> Simulat
     assert site.imager is not None
     assert site.imager.marked_frame is not None
     marked = site.imager.marked_frame
-    rig = CameraRig(site.imager.camera, site.frame, site.imager.solution.pose, marked)
+    rig = CameraRig(site.imager.camera, site.frame, site.imager.marked_pose, marked)
     origin = site.frame.origin
     sun = SunSettings(LatLon(origin.latitude_deg, origin.longitude_deg))
     clouds = LayerSettings(cover=0.35, outer_scale_m=2_500.0, softness=0.15)

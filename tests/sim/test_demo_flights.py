@@ -30,7 +30,7 @@ def config(site: Site, seed: int, vehicle_count: int) -> SimulationConfig:
     assert imager is not None
     assert imager.marked_frame is not None
     assert site.frame is not None
-    rig = CameraRig(imager.camera, site.frame, imager.solution.pose, imager.marked_frame)
+    rig = CameraRig(imager.camera, site.frame, imager.marked_pose, imager.marked_frame)
     return SimulationConfig(
         home=site.frame.origin,
         vehicle_count=vehicle_count,

@@ -75,6 +75,7 @@ def test_it_loads_and_its_pose_is_the_one_it_was_made_with() -> None:
     assert site.imager is not None
     assert site.frame is not None
     solution = site.imager.solution
+    assert solution is not None
     assert 0.0 < solution.rms_px < 0.5
     assert solution.height_above_ground_m == pytest.approx(IMAGER_HEIGHT_M, abs=0.3)
     made_with = level_pose(demo_marked_telemetry(), np.array([0.0, 0.0, IMAGER_HEIGHT_M]))
@@ -149,7 +150,7 @@ def test_the_imager_sees_the_ground_up_to_66_degrees() -> None:
     assert site.ground_grid is not None
     projector = GroundProjector(site.ground_grid, site.imager.camera, site.imager.image_circle)
     grey = np.full((720, 1280, 3), 128, np.uint8)
-    _, valid = projector.lay_pixels(grey, site.imager.solution.pose)
+    _, valid = projector.lay_pixels(grey, site.imager.marked_pose)
     assert valid.shape == (544, 544)
     from_middle_m = np.hypot(*(np.mgrid[:544, :544] - 271.5))
     # A cell counts when the pixels around its centre are in the circle as well.

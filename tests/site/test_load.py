@@ -9,12 +9,15 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from tests.examples import examples
 
+from recon.camera import TelemetryReference
 from recon.model.airspace import FlightLimits
 from recon.model.geo import GeoPoint
 from recon.model.vehicle import AltitudeReference, Failsafe, Mount, VehicleProfile
 from recon.site import SiteError, default_site, demo_site_folder, load_site
+from recon.site.report import site_report
 
 ORIGIN = "[origin]\nlatitude_deg = 41.9012\nlongitude_deg = -93.6034\nground_altitude_m = 275.0\n"
+BY_TELEMETRY = '[imager]\nserial = "IMAGER"\nplaced_by = "telemetry"\n'
 IMAGER = '[imager]\nserial = "IMAGER"\ncontrol_points_image_size_px = [3840, 2160]\n'
 MINIMAL = 'name = "a field"\n' + ORIGIN
 
@@ -60,10 +63,20 @@ def test_the_imager_uses_the_usual_file_names_and_reports_a_missing_marked_frame
     assert site.imager is not None
     assert site.imager.first_frame_stands_for_marked_frame
     assert site.imager.image_circle is None
-    assert site.imager.control_points_image_size_px == (3840, 2160)
-    assert len(site.imager.control_points) == 8
+    assert site.imager.solution is not None
+    assert len(site.imager.solution.residuals) == 8
     assert site.imager.solution.rms_px < 0.5
     assert site.profiles["IMAGER"] == VehicleProfile("IMAGER")
+
+
+def test_without_control_points_telemetry_leads_on_from_the_origin(folder: Path) -> None:
+    site = load_site(write(folder, MINIMAL + BY_TELEMETRY))
+    assert site.imager is not None
+    assert site.imager.solution is None
+    assert site.imager.marked_frame == TelemetryReference(41.9012, -93.6034, 0.0, 0.0)
+    assert site.imager.marked_pose.position_enu_m.tolist() == [0.0, 0.0, 0.0]
+    (line,) = [line for line in site_report(site) if "no control points" in line]
+    assert "at 120 m expect the ground image off by 4 m below the drone and 11 m at 195 m" in line
 
 
 def test_without_a_folder_nothing_is_known() -> None:
@@ -212,8 +225,17 @@ def vehicle(line: str) -> str:
         (vehicle('serial = "B"\nspeed = 3'), "packet_gap_s, got 'speed'"),
         (
             MINIMAL + '[imager]\nserial = "E"',
-            "imager.control_points_image_size_px is missing: expected a list",
+            "imager.control_points_image_size_px is missing: expected columns and rows",
         ),
+        (
+            MINIMAL + IMAGER + 'placed_by = "telemetry"',
+            "imager.control_points_image_size_px belongs to control points: remove it",
+        ),
+        (
+            MINIMAL + BY_TELEMETRY + 'control_points = "GCPs.txt"',
+            "imager.control_points belongs to control points: remove it",
+        ),
+        (MINIMAL + IMAGER + 'placed_by = "guess"', "imager.placed_by: expected "),
         (MINIMAL + IMAGER.replace("2160", "3000"), "GCPs.txt: expected a frame of 3840 x 3000"),
         (MINIMAL + IMAGER.replace("3840", "0"), "_px[0]: expected a whole number of 2 to 16384"),
         (MINIMAL + IMAGER + 'camera = "other.txt"', "got 'other.txt', and there is no such file"),

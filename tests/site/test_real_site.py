@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from recon.camera import GroundProjector
+from recon.camera import GroundProjector, load_control_points
 from recon.geo import enu_from_points
 from recon.model.imagery import Frame
 from recon.site import load_site
@@ -41,14 +41,16 @@ def test_a_real_frame_lies_on_the_ground_of_its_site(becker: Path) -> None:
     assert site.imager is not None
     assert site.frame is not None
     assert site.ground_grid is not None
+    assert site.imager.solution is not None
     assert site.imager.solution.rms_px == pytest.approx(3.62, abs=0.02)
     jpeg = (becker / "RefFrame.jpeg").read_bytes()
     projector = GroundProjector(site.ground_grid, site.imager.camera, site.imager.image_circle)
     frame = Frame(1, "IMAGER", 10, 5, 0.2, jpeg=jpeg)
-    image = projector.lay(frame, site.imager.solution.pose)
+    image = projector.lay(frame, site.imager.marked_pose)
     assert image.valid.mean() > 0.75
+    points = becker / "GCPs.txt"
     # Point A is where a pale track forks: brighter than the meadow beside it.
-    enu = enu_from_points(site.frame, [point.place for point in site.imager.control_points])
+    enu = enu_from_points(site.frame, [point.place for point in load_control_points(points)])
     rows = np.floor(site.ground_grid.north_m - enu[:, 1]).astype(int)
     cols = np.floor(enu[:, 0] - site.ground_grid.west_m).astype(int)
     assert image.valid[rows, cols].all()

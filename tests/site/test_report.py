@@ -21,6 +21,7 @@ def test_the_report_tells_the_fit_and_every_residual() -> None:
     assert site.imager is not None
     lines = site_report(site)
     solution = site.imager.solution
+    assert solution is not None
     assert lines[0] == "site demo field: 8 vehicle profiles"
     assert "544 x 544 cells of 1 m" in lines[1]
     assert lines[2] == "imaging drone SIM-IMAGER: 1280 x 720 lens model"

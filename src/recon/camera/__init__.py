@@ -16,7 +16,7 @@ from recon.camera.errors import (
 )
 from recon.camera.ground import GroundProjector, ground_maps
 from recon.camera.image_circle import ImageCircle, find_image_circle
-from recon.camera.motion import TelemetryReference, displaced_pose, level_pose
+from recon.camera.motion import TelemetryReference, displaced_pose, level_pose, placing_error_m
 from recon.camera.omnidirectional import OmnidirectionalCamera
 from recon.camera.pose import PointResidual, PoseSolution, pose_from_points
 from recon.camera.text_files import (
@@ -56,5 +56,6 @@ __all__ = [
     "load_control_points",
     "parse_camera",
     "parse_control_points",
+    "placing_error_m",
     "pose_from_points",
 ]

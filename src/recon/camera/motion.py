@@ -5,6 +5,7 @@ What remains (drift of barometer, GNSS and compass) is unknown here: a moved pos
 """
 
 from dataclasses import dataclass
+from math import hypot, radians
 from typing import Self
 
 import numpy as np
@@ -16,6 +17,9 @@ from recon.model.units import is_finite
 from recon.model.vehicle import Attitude, Mount
 
 FloatArray = npt.NDArray[np.float64]
+
+POSITION_ERROR_M, HEADING_ERROR_DEG, TILT_ERROR_DEG = 3.0, 2.0, 1.0
+"""Standard errors of an aircraft's GNSS, of its compass, and of a gimbal's straight down."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,6 +78,19 @@ def displaced_pose(
     return CameraPose(
         rotation_enu_camera=turn @ marked_pose.rotation_enu_camera,
         position_enu_m=marked_pose.position_enu_m + np.append(shift_m, climb_m),
+    )
+
+
+def placing_error_m(height_m: float, away_m: float) -> float:
+    """Return the standard error on the ground of a camera that telemetry alone places.
+
+    `away_m` is the distance from the point below it, where an error of direction is longer.
+    """
+    sight_m2 = height_m**2 + away_m**2
+    return hypot(
+        POSITION_ERROR_M,
+        radians(HEADING_ERROR_DEG) * away_m,
+        radians(TILT_ERROR_DEG) * sight_m2 / height_m,
     )
 
 

@@ -111,7 +111,7 @@ class IdealDetection:
         """Return a frame's time and believed pose, without pixels."""
         marked, now, frame = work.reference, work.telemetry, work.frame
         shift_m = shift_east_north_m(self._frame, marked, now)
-        pose = displaced_pose(self._imager.solution.pose, marked, now, shift_m, self._mount)
+        pose = displaced_pose(self._imager.marked_pose, marked, now, shift_m, self._mount)
         nothing = np.zeros((self._grid.rows, self._grid.cols, 3), dtype=np.uint8)
         is_seen = self._seen(pose).reshape(nothing.shape[:2])
         image = GroundImage(

@@ -75,7 +75,7 @@ def go_home_heights_of(site: Site) -> dict[str, float]:
 
 def rig_of(frame: LocalFrame, imager: Imager) -> CameraRig:
     """Return the imaging drone's camera in a site's frame."""
-    pose = imager.solution.pose
+    pose = imager.marked_pose
     if imager.marked_frame is None:
         return rig_over(imager.camera, frame, pose)
     return CameraRig(imager.camera, frame, pose, imager.marked_frame)

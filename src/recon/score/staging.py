@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from recon.camera import ImageCircle, PoseSolution, TelemetryReference, level_pose
+from recon.camera import ImageCircle, TelemetryReference, level_pose
 from recon.geo import enu_from_point, point_from_enu
 from recon.model.airspace import FlightLimits, LandingPad, Region
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
@@ -113,9 +113,7 @@ def _generated_imager(frame: LocalFrame, imager: ScenarioImager) -> Imager:
     return Imager(
         serial=IMAGER_SERIAL,
         camera=camera,
-        control_points=(),
-        control_points_image_size_px=(camera.cols, camera.rows),
-        solution=PoseSolution(pose, 0.0, (), imager.height_m, 0.0, 0.0, 0.0),
+        marked_pose=pose,
         marked_frame=marked,
         image_circle=ImageCircle(CENTRE_COL_PX, CENTRE_ROW_PX, IMAGE_CIRCLE_RADIUS_PX),
     )
@@ -218,7 +216,7 @@ def _on_folder(folder: Path, file: ScenarioFile, errors: ScenarioErrors) -> Stag
         text = f"folder: expected a site with imaging drone {IMAGER_SERIAL}, got none"
         raise errors.error(text, "site")
     fleet = _fleet(file.fleet, _site_pads_m(site, frame, file.fleet, errors))
-    east_m, north_m, up_m = site.imager.solution.pose.position_enu_m.tolist()
+    east_m, north_m, up_m = site.imager.marked_pose.position_enu_m.tolist()
     imager = _imager(file.imager, (east_m, north_m), up_m)
     return Staged(site, frame, fleet, imager)
 

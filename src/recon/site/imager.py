@@ -1,5 +1,7 @@
 """The imaging drone from its table in site.toml: files read, pose solved, both checked."""
 
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import msgspec
@@ -7,8 +9,11 @@ import numpy as np
 
 from recon.camera import (
     CameraError,
+    ControlPoint,
     ImageCircle,
+    OmnidirectionalCamera,
     TelemetryReference,
+    level_pose,
     load_camera,
     load_control_points,
     pose_from_points,
@@ -20,6 +25,7 @@ from recon.site.reading import file_inside
 from recon.site.schema import ImagerTable
 from recon.site.site import Imager
 
+USUAL_POINTS = "GCPs.txt"
 LARGEST_ALTITUDE_GAP_M = 15.0
 """Between the control points and the site's ground: more is a geoid height forgotten, or a slip."""
 LARGEST_DISTANCE_M = 5_000.0
@@ -34,30 +40,60 @@ def imager_from_table(site_file: Path, table: ImagerTable, frame: LocalFrame) ->
     Files lie in the site file's folder. Raises `SiteError` naming file, line or key.
     """
     camera_file = file_inside(site_file, table.camera, "imager.camera")
-    points_file = file_inside(site_file, table.control_points, "imager.control_points")
     try:
         camera = load_camera(camera_file)
+    except CameraError as problem:
+        raise SiteError(str(problem)) from problem
+    if table.placed_by == "telemetry":
+        placed = _placed_by_telemetry(site_file, table, camera, frame)
+    else:
+        placed = _placed_by_points(site_file, table, camera, frame)
+    return replace(placed, image_circle=_circle(table), exposure_locked=table.exposure == "locked")
+
+
+def _placed_by_telemetry(
+    path: Path, table: ImagerTable, camera: OmnidirectionalCamera, frame: LocalFrame
+) -> Imager:
+    """Return an imaging drone whose camera points straight down, its top to the drone's front."""
+    marks = {
+        "control_points": table.control_points,
+        "control_points_image_size_px": table.control_points_image_size_px,
+        "marked_frame": table.marked_frame,
+    }
+    for key, value in marks.items():
+        if value is not None:
+            raise SiteError(
+                f"{path}: imager.{key} belongs to control points: remove it, or remove placed_by = "
+                '"telemetry"'
+            )
+    origin = frame.origin
+    marked = TelemetryReference(origin.latitude_deg, origin.longitude_deg, 0.0, 0.0)
+    return Imager(table.serial, camera, level_pose(marked, np.zeros(3)), marked)
+
+
+def _placed_by_points(
+    site_file: Path, table: ImagerTable, camera: OmnidirectionalCamera, frame: LocalFrame
+) -> Imager:
+    """Return an imaging drone whose camera's pose its control points give."""
+    name, size_px = table.control_points or USUAL_POINTS, table.control_points_image_size_px
+    points_file = file_inside(site_file, name, "imager.control_points")
+    if size_px is None:
+        raise SiteError(
+            f"{site_file}: imager.control_points_image_size_px is missing: expected columns and "
+            "rows of the frame on which the points were marked; a site without control points "
+            'has imager.placed_by = "telemetry"'
+        )
+    try:
         points = load_control_points(points_file)
     except CameraError as problem:
         raise SiteError(str(problem)) from problem
     points_enu_m = enu_from_points(frame, [point.place for point in points])
     try:
-        solution = pose_from_points(
-            camera, points, table.control_points_image_size_px, points_enu_m
-        )
+        solution = pose_from_points(camera, points, size_px, points_enu_m)
     except CameraError as problem:
         raise SiteError(f"{points_file}: {problem}") from problem
-    imager = Imager(
-        serial=table.serial,
-        camera=camera,
-        control_points=points,
-        control_points_image_size_px=table.control_points_image_size_px,
-        solution=solution,
-        marked_frame=_reference(table),
-        image_circle=_circle(table),
-        exposure_locked=table.exposure == "locked",
-    )
-    _refuse_other_place(points_file, imager, frame)
+    imager = Imager(table.serial, camera, solution.pose, _reference(table), solution)
+    _refuse_other_place(points_file, points, frame)
     _refuse_other_marked_frame(site_file, imager, frame)
     return imager
 
@@ -80,7 +116,7 @@ def _refuse_other_marked_frame(path: Path, imager: Imager, frame: LocalFrame) ->
     enu = enu_from_geo(
         frame, marked.latitude_deg, marked.longitude_deg, frame.origin.ellipsoid_height_m
     )[0]
-    apart_m = float(np.hypot(*(enu - imager.solution.pose.position_enu_m)[:2]))
+    apart_m = float(np.hypot(*(enu - imager.marked_pose.position_enu_m)[:2]))
     if apart_m > LARGEST_MARKED_GAP_M:
         raise SiteError(
             f"{path}: imager.marked_frame: expected telemetry within {LARGEST_MARKED_GAP_M:g} m of "
@@ -88,8 +124,10 @@ def _refuse_other_marked_frame(path: Path, imager: Imager, frame: LocalFrame) ->
         )
 
 
-def _refuse_other_place(points_file: Path, imager: Imager, frame: LocalFrame) -> None:
-    for point in imager.control_points:
+def _refuse_other_place(
+    points_file: Path, points: Sequence[ControlPoint], frame: LocalFrame
+) -> None:
+    for point in points:
         enu = enu_from_geo(
             frame, point.latitude_deg, point.longitude_deg, point.ellipsoid_height_m
         )[0]
@@ -100,7 +138,7 @@ def _refuse_other_place(points_file: Path, imager: Imager, frame: LocalFrame) ->
                 f"{LARGEST_DISTANCE_M:g} m of the site's origin, got {distance_m:.0f} m; is the "
                 "origin right, and the latitude before the longitude?"
             )
-    gap_m = float(np.mean([p.ellipsoid_height_m for p in imager.control_points]))
+    gap_m = float(np.mean([p.ellipsoid_height_m for p in points]))
     gap_m -= frame.origin.ellipsoid_height_m
     if abs(gap_m) > LARGEST_ALTITUDE_GAP_M:
         raise SiteError(

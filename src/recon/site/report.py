@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from recon.camera import PoseSolution
+from recon.camera import PoseSolution, placing_error_m
 from recon.geo import Polygon, enu_from_points
 from recon.model.airspace import FlightLimits, HeightDatum, Zone, ZoneKind
 from recon.model.vehicle import VehicleProfile
@@ -82,13 +82,27 @@ def _imager_report(imager: Imager) -> list[str]:
     lines = [
         f"imaging drone {imager.serial}: {imager.camera.cols} x {imager.camera.rows} lens model"
     ]
-    lines += pose_report(imager.solution)
+    lines += placing_report() if imager.solution is None else pose_report(imager.solution)
     if imager.first_frame_stands_for_marked_frame:
         lines.append(
             "[imager.marked_frame] is missing: the first frame received in flight is used instead, "
             "which is right only if it was taken from the same position"
         )
     return lines
+
+
+PLACING_HEIGHT_M, PLACING_AWAY_M = 120.0, 195.0
+"""The usual height, and 1.6 times it."""
+
+
+def placing_report() -> list[str]:
+    """Return the line about a camera that telemetry alone places: how wrong that is."""
+    below_m, away_m = (placing_error_m(PLACING_HEIGHT_M, far) for far in (0.0, PLACING_AWAY_M))
+    return [
+        "no control points: telemetry places the camera, pointing straight down, its top to the "
+        f"drone's front; at {PLACING_HEIGHT_M:g} m expect the ground image off by {below_m:.0f} m "
+        f"below the drone and {away_m:.0f} m at {PLACING_AWAY_M:g} m from there"
+    ]
 
 
 def pose_report(solution: PoseSolution) -> list[str]:

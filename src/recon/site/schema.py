@@ -75,12 +75,13 @@ class ImageCircleTable(_Table, frozen=True):
 
 
 class ImagerTable(_Table, frozen=True):
-    """[imager]: the imaging drone, its lens and its ground control points."""
+    """[imager]: the imaging drone, its lens, and its ground control points unless it has none."""
 
     serial: Serial
-    control_points_image_size_px: tuple[Pixels, Pixels]
+    placed_by: Literal["control_points", "telemetry"] = "control_points"
+    control_points_image_size_px: tuple[Pixels, Pixels] | None = None
     camera: FileName = "camera-model.txt"
-    control_points: FileName = "GCPs.txt"
+    control_points: FileName | None = None
     marked_frame: MarkedFrameTable | None = None
     image_circle: ImageCircleTable | None = None
     exposure: Literal["auto", "locked"] = "auto"

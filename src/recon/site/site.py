@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from recon.camera import (
-    ControlPoint,
     ImageCircle,
     OmnidirectionalCamera,
     PoseSolution,
@@ -13,24 +12,26 @@ from recon.camera import (
 from recon.model.airspace import Airspace, ElevationModel, FlightLimits, LandingPad, Region, Zone
 from recon.model.failsafe_matrix import FailsafeMatrix
 from recon.model.geo import GroundGrid, LocalFrame
+from recon.model.imagery import CameraPose
 from recon.model.vehicle import VehicleProfile
 from recon.safety.failsafe import DEFAULT_MATRIX
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Imager:
-    """The imaging drone: its lens, its control points and the pose these give.
+    """The imaging drone: its lens, and a pose of its camera from which telemetry leads on.
 
-    `solution` is the camera's pose when the marked frame was taken; `marked_frame` its telemetry
-    then. `image_circle` is at the camera's size, None when it must be detected in the frames.
+    `marked_pose` is the camera's pose when the marked frame was taken, `marked_frame` its telemetry
+    then. Without control points both are those of a level camera on the ground at the origin.
+    `image_circle` is at the camera's size, None when it must be detected in the frames.
     """
 
     serial: str
     camera: OmnidirectionalCamera
-    control_points: tuple[ControlPoint, ...]
-    control_points_image_size_px: tuple[int, int]
-    solution: PoseSolution
+    marked_pose: CameraPose
     marked_frame: TelemetryReference | None = None
+    solution: PoseSolution | None = None
+    """How the control points gave the pose; None without control points."""
     image_circle: ImageCircle | None = None
     exposure_locked: bool = False
     """Whether exposure and white balance are locked in flight."""

@@ -7,11 +7,15 @@ import pytest
 from scipy.spatial.transform import Rotation
 from tests.camera.registered_scenes import CAMERA, displacements_m, seen
 
+from recon.camera import TelemetryReference, level_pose
 from recon.camera.registration import RegistrationState
+from recon.geo import point_from_enu
 from recon.model.imagery import CameraPose, Frame, Registration, RgbImage
 from recon.model.units import seconds_to_ns
 from recon.site import Site, demo_site_folder, load_site
+from recon.station.api_views.imaging_views import ground_image_view
 from recon.station.imaging.projection import LaidFrame, projection
+from recon.station.kernel.build import first_state
 from recon.station.state.imaging import LayFrame
 
 
@@ -25,7 +29,7 @@ class Worker:
 
     def __init__(self, site: Site) -> None:
         assert site.imager is not None
-        self.marked_pose = site.imager.solution.pose
+        self.marked_pose = site.imager.marked_pose
         self.marked = site.imager.marked_frame
         self.lay = projection(site)
         self.state = RegistrationState()
@@ -83,3 +87,33 @@ def test_a_lens_without_a_known_circle_is_registered_once_it_is_found(site: Site
     start = seen(worker.marked_pose)
     statuses = [worker.lays(start).image.registration for _ in range(3)]
     assert statuses[-1] is Registration.REGISTERED
+
+
+def test_without_control_points_the_frame_lies_where_telemetry_has_the_drone(site: Site) -> None:
+    assert site.imager is not None
+    assert site.frame is not None
+    origin = site.frame.origin
+    start = TelemetryReference(origin.latitude_deg, origin.longitude_deg, 0.0, 0.0)
+    level = level_pose(start, np.zeros(3))
+    imager = replace(site.imager, marked_pose=level, marked_frame=start, solution=None)
+    bare = replace(site, imager=imager)
+    place = point_from_enu(site.frame, (30.0, -40.0, 0.0))
+    now = TelemetryReference(place.latitude_deg, place.longitude_deg, 110.0, 90.0)
+    frame = Frame(1, "SIM-IMAGER", 10, 5, 0.25, rgb=seen(Worker(site).marked_pose))
+    pose = projection(bare)(LayFrame(frame, now, start)).image.pose
+    assert pose.position_enu_m == pytest.approx([30.0, -40.0, 110.0], abs=0.05)
+    # The rows run away from the top, which is the drone's front; the third axis is the optical one.
+    assert -pose.rotation_enu_camera[:, 1] == pytest.approx([1.0, 0.0, 0.0], abs=1e-6)
+    assert pose.rotation_enu_camera[:, 2] == pytest.approx([0.0, 0.0, -1.0], abs=1e-6)
+
+
+def test_the_ground_image_states_that_telemetry_alone_places_it(site: Site) -> None:
+    assert site.imager is not None
+    bare = replace(site, imager=replace(site.imager, solution=None))
+    laid = Worker(site).lays(seen(Worker(site).marked_pose))
+    for shown, expected in ((bare, "telemetry and mount alone"), (site, "of the marked frame")):
+        station = first_state(shown)
+        imaging = replace(station.imaging, ground_image=laid.image)
+        view = ground_image_view(replace(station, imaging=imaging), seconds_to_ns(2))
+        assert view is not None
+        assert expected in view.reference

@@ -8,6 +8,7 @@ from recon.model.geo import GroundGrid
 from recon.model.imagery import GroundImage
 from recon.model.shade import MaskMap, ShadeMap, SunForecast
 from recon.model.units import ns_to_seconds
+from recon.station.state.imaging import Imaging
 from recon.station.state.station import Station
 
 
@@ -26,7 +27,7 @@ def ground_image_view(station: Station, now_ns: int) -> schema.GroundImageView |
         registration=image.registration.value,
         registration_residual_m=image.registration_residual_m,
         exposure_locked=image.exposure_locked,
-        reference=_reference_text(imaging.is_reference_assumed),
+        reference=_reference_text(imaging),
         corners=corners_lon_lat(image.grid),
         cell_m=image.grid.cell_m,
         rows=image.grid.rows,
@@ -34,8 +35,10 @@ def ground_image_view(station: Station, now_ns: int) -> schema.GroundImageView |
     )
 
 
-def _reference_text(is_assumed: bool) -> str:
-    if is_assumed:
+def _reference_text(imaging: Imaging) -> str:
+    if imaging.is_placed_by_telemetry:
+        return "telemetry and mount alone: the site has no control points"
+    if imaging.is_reference_assumed:
         return "first frame received in flight, used for the marked one"
     return "telemetry of the marked frame, from the site's folder"
 

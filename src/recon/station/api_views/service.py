@@ -330,7 +330,8 @@ class Service:
 
     def geotiff(self, image: GroundImage) -> bytes:
         """Return a ground image as a GeoTIFF file."""
-        rms_px = None if self.site.imager is None else self.site.imager.solution.rms_px
+        solution = None if self.site.imager is None else self.site.imager.solution
+        rms_px = None if solution is None else solution.rms_px
         captured = datetime.fromtimestamp(ns_to_seconds(image.captured_at_ns), UTC)
         return geotiff_bytes(image, captured_utc=captured.isoformat(), rms_px=rms_px)
 

@@ -51,6 +51,7 @@ def site_view(site: Site) -> schema.SiteView:
     """Return what a console shows of a site."""
     origin = None if site.frame is None else site.frame.origin
     imager = site.imager
+    solution = None if imager is None else imager.solution
     areas = list(_areas(site))
     drawn, within_m = _thinned(_few(areas))
     return schema.SiteView(
@@ -59,8 +60,8 @@ def site_view(site: Site) -> schema.SiteView:
         longitude_deg=None if origin is None else origin.longitude_deg,
         ground_altitude_m=None if origin is None else origin.ellipsoid_height_m,
         imager_serial=None if imager is None else imager.serial,
-        pose_rms_px=None if imager is None else imager.solution.rms_px,
-        pose_height_m=None if imager is None else imager.solution.height_above_ground_m,
+        pose_rms_px=None if solution is None else solution.rms_px,
+        pose_height_m=None if solution is None else solution.height_above_ground_m,
         limits=schema.LimitsView(**asdict(site.limits)),
         terrain="flat assumed" if site.elevation is None else "model",
         layers=_layers(site),

@@ -94,7 +94,7 @@ def _telemetry_pose(site: Site, imager: Imager, frame: LocalFrame, work: LayFram
     marked, now = work.reference, work.telemetry
     mount = site.profiles.get(imager.serial, VehicleProfile(imager.serial)).mount
     shift_m = shift_east_north_m(frame, marked, now)
-    return displaced_pose(imager.solution.pose, marked, now, shift_m, mount)
+    return displaced_pose(imager.marked_pose, marked, now, shift_m, mount)
 
 
 def _toward_sun_enu(frame: LocalFrame, utc_s: float | None) -> FloatArray | None:

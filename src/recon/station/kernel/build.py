@@ -32,6 +32,7 @@ def first_state(
             imager_serial=None if site.imager is None else site.imager.serial,
             reference=marked,
             is_reference_assumed=marked is None,
+            is_placed_by_telemetry=site.imager is not None and site.imager.solution is None,
         ),
     )
 

@@ -49,6 +49,8 @@ class Imaging:
     imager_serial: str | None = None
     reference: TelemetryReference | None = None
     is_reference_assumed: bool = True
+    is_placed_by_telemetry: bool = False
+    """Whether the site has no control points, so that telemetry alone places the camera."""
     samples: tuple[ImagerSample, ...] = ()
     ground_image: GroundImage | None = None
     captured_sigma_s: float = 0.0
