@@ -150,6 +150,7 @@ class TestHolds:
     def test_a_vehicle_without_a_profile_has_no_priority(self) -> None:
         a, b = head_on()
         assert only(looks(separation, replace(a, profile=None), b)).holds == "B"
+        assert only(looks(separation, a, replace(b, profile=None))).holds == "B"
 
     def test_switched_off_it_only_reports(self) -> None:
         found = only(looks(separation, *head_on(), is_hold_on=False))

@@ -46,16 +46,13 @@ def near_pairs(
     """
     reach_m = np.hypot(
         ahead.east_m - ahead.east_m[:, :1], ahead.north_m - ahead.north_m[:, :1]
-    ).max(axis=1, initial=0.0) + ahead.radius_m.max(axis=1, initial=0.0)
+    ).max(axis=1) + ahead.radius_m.max(axis=1)
     first, second = _all_pairs(len(reach_m))
     apart_m = np.hypot(
         ahead.east_m[first, 0] - ahead.east_m[second, 0],
         ahead.north_m[first, 0] - ahead.north_m[second, 0],
     )
-    low_m, high_m = (
-        ahead.low_m.min(axis=1, initial=np.inf),
-        ahead.high_m.max(axis=1, initial=-np.inf),
-    )
+    low_m, high_m = ahead.low_m.min(axis=1), ahead.high_m.max(axis=1)
     is_near = apart_m < need.horizontal_m + reach_m[first] + reach_m[second]
     is_level = low_m[first] - high_m[second] < need.vertical_m
     is_level &= low_m[second] - high_m[first] < need.vertical_m

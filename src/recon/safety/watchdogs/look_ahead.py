@@ -161,23 +161,26 @@ def _way(from_m: Point, to_m: Point) -> Point:
 def _held(flies: Samples, times_s: FloatArray, prediction: PredictionSettings) -> Samples:
     """The same vehicles if held now: they fly on for the reaction time and brake."""
     last = int(np.searchsorted(times_s, prediction.reaction_s))
-    step_s = float(times_s[1] - times_s[0])
-    braked_s = np.maximum(times_s - times_s[last], 0.0)
+    step_s = float(times_s[1])
+    flown = np.minimum(np.arange(len(times_s)), last)
+    braked_s = times_s - times_s[flown]
+
+    def speed_mps(values: FloatArray) -> FloatArray:
+        return (values[:, last] - values[:, last - 1])[:, np.newaxis] / step_s
 
     def brakes(values: FloatArray, mps2: FloatArray | float) -> FloatArray:
         """Each value goes on at its speed at `last`, which falls to nothing."""
-        speed = (values[:, last] - values[:, last - 1])[:, np.newaxis] / step_s
-        lasts_s = np.minimum(braked_s, np.abs(speed) / np.maximum(mps2, 1e-9))
-        gone = speed * lasts_s - 0.5 * np.sign(speed) * mps2 * lasts_s**2
-        return np.where(times_s <= times_s[last], values, values[:, last : last + 1] + gone)
+        mps = speed_mps(values)
+        lasts_s = np.minimum(braked_s, np.abs(mps) / np.maximum(mps2, 1e-9))
+        gone: FloatArray = mps * lasts_s - 0.5 * np.sign(mps) * mps2 * lasts_s**2
+        return values[:, flown] + gone
 
-    east_mps = flies.east_m[:, last] - flies.east_m[:, last - 1]
-    north_mps = flies.north_m[:, last] - flies.north_m[:, last - 1]
-    both = np.maximum(np.hypot(east_mps, north_mps), 1e-9)
+    east_mps, north_mps = speed_mps(flies.east_m), speed_mps(flies.north_m)
+    both_mps = np.maximum(np.hypot(east_mps, north_mps), 1e-9)
     brakes_mps2 = prediction.braking_mps2
     return Samples(
-        east_m=brakes(flies.east_m, (brakes_mps2 * np.abs(east_mps) / both)[:, np.newaxis]),
-        north_m=brakes(flies.north_m, (brakes_mps2 * np.abs(north_mps) / both)[:, np.newaxis]),
+        east_m=brakes(flies.east_m, brakes_mps2 * np.abs(east_mps) / both_mps),
+        north_m=brakes(flies.north_m, brakes_mps2 * np.abs(north_mps) / both_mps),
         low_m=brakes(flies.low_m, VERTICAL_BRAKING_MPS2),
         high_m=brakes(flies.high_m, VERTICAL_BRAKING_MPS2),
         radius_m=flies.radius_m,

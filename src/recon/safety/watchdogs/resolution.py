@@ -86,11 +86,12 @@ def speed_mps(watched: WatchedVehicle) -> float:
 
 def _is_wider(one: Approach, other: Approach, settings: WatchdogSettings) -> bool:
     """Whether the one keeps more distance; what keeps the minima is as good as any other."""
-    if other.in_s is None or one.in_s is None:
-        return other.in_s is not None
-    if abs(one.least - other.least) >= settings.helps_share:
-        return one.least > other.least
-    return one.height_gap_m >= other.height_gap_m + settings.helps_height_m
+    if other.in_s is None:
+        return False
+    wider_by = one.least - other.least
+    if abs(wider_by) < settings.helps_share:
+        return one.height_gap_m >= other.height_gap_m + settings.helps_height_m
+    return wider_by > 0.0
 
 
 def _may_wait(picture: TrafficPicture, conflict: PairConflict) -> bool:

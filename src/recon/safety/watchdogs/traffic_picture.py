@@ -193,7 +193,7 @@ class TrafficPicture:
         reaches: list[Reach] = []
         for watched in self.flying:
             motion = watched.motion
-            assert motion is not None, "a vehicle in contact has a position"
+            assert motion is not None  # a vehicle in contact has a position
             horizon_s = self.settings.horizon_s
             reach = reach_of(motion, watched.intent, horizon_s, self.prediction)
             if reach is None:
@@ -295,7 +295,7 @@ def _placed(
 
 def _next_rows(one: WatchedVehicle, picture: TrafficPicture) -> list[Row]:
     """A hold that the station gave counts from its giving on, until a newer order."""
-    assert one.motion is not None, "a vehicle in contact has a position"
+    assert one.motion is not None  # a vehicle in contact has a position
     intent, braking, held = one.intent, None, one.held
     if held is not None and held.holds_against(intent):
         if not one.is_coming_down:
@@ -308,7 +308,7 @@ def _next_rows(one: WatchedVehicle, picture: TrafficPicture) -> list[Row]:
 def _lost_rows(one: WatchedVehicle, picture: TrafficPicture) -> list[Row]:
     """The mission it was sent, flown on: anywhere within what time has made of its place."""
     motion, prediction = one.motion, picture.prediction
-    assert motion is not None, "only a vehicle with a position has a hazard area"
+    assert motion is not None  # only a vehicle with a position has a hazard area
     predictor = Predictor(motion, prediction, until_s=picture.settings.horizon_s)
     predictor.follow(one.intent)
     off_m = prediction.time_uncertainty * motion.age_s * motion.speed_mps
