@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from recon.safety.prediction.trajectory import Samples
 from recon.safety.separation_minima import SeparationMinima
-from recon.safety.watchdogs.closest_approach import Approach, approach, closeness, near_pairs
+from recon.safety.watchdogs.closest_approach import Approach, Gaps, approach, closeness, near_pairs
 
 NEED = SeparationMinima(10.0, 5.0)
 FIRST, SECOND = np.array([0]), np.array([1])
@@ -140,8 +140,11 @@ def test_an_approach_has_the_first_moment_and_the_nearest_one() -> None:
     times_s = np.array([0.0, 0.5, 1.0, 1.5])
     close, far_m = np.array([2.0, 0.9, 0.4, 0.8]), np.array([20.0, 9.0, 4.0, 8.0])
     up_m = np.array([-9.0, 3.0, 2.0, 1.0])
-    assert approach(close, far_m, up_m, times_s) == Approach(0.5, 0.4, 4.0, 2.0, 1.0)
-    inside = approach(close, -far_m, -up_m, times_s)
-    assert inside == Approach(0.5, 0.4, 0.0, 0.0, -3.0)
-    never = approach(close + 0.6, far_m, up_m, times_s)
-    assert never == Approach(None, 1.0, 4.0, 2.0, inf)
+    gaps = Gaps(
+        np.array([close, close, close + 0.6]),
+        np.array([far_m, -far_m, far_m]),
+        np.array([up_m, -up_m, up_m]),
+    )
+    assert approach(gaps, 0, times_s) == Approach(0.5, 0.4, 4.0, 2.0, 1.0)
+    assert approach(gaps, 1, times_s) == Approach(0.5, 0.4, 0.0, 0.0, -3.0)
+    assert approach(gaps, 2, times_s) == Approach(None, 1.0, 4.0, 2.0, inf)

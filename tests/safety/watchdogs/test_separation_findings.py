@@ -76,7 +76,10 @@ def test_a_hold_is_due_when_the_alarm_has_lasted(age_s: float, holds: str | None
 
 def test_only_a_gap_in_height_below_the_minimum_is_too_near() -> None:
     for up_m, count in ((46.99, 1), (47.0, 0)):
-        assert len(looks(separation, aircraft("A"), aircraft("B", (3.0, 0.0), up_m))) == count
+        for up_mps in (0.0, 1.0):
+            a = aircraft("A", velocity=(0.0, 0.0, up_mps))
+            b = aircraft("B", (3.0, 0.0), up_m, (0.0, 0.0, up_mps))
+            assert len(looks(separation, a, b)) == count
 
 
 class TestHazardAreas:

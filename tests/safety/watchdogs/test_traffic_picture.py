@@ -48,6 +48,7 @@ def test_it_has_the_settings_it_was_built_with() -> None:
         assert (built.energy, built.go_home) == (settings.energy, settings.go_home)
         assert (built.airspace, built.is_hold_on) == (AIR, is_hold_on)
         assert [one.name for one in built.flying] == ["A"]
+        assert build_traffic_picture([], AIR, settings, NOW, since_ns).is_hold_on
         hazard = built.watched[1].hazard
         assert hazard is not None
         assert hazard.growth_mps == 4.0

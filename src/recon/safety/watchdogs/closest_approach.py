@@ -7,6 +7,7 @@ and its vertical gap over the vertical one. Below 1 both are violated.
 from dataclasses import dataclass
 from functools import lru_cache
 from math import inf
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -35,6 +36,14 @@ class Approach:
     horizontal_m: float
     vertical_m: float
     height_gap_m: float = inf
+
+
+class Gaps(NamedTuple):
+    """Closeness of P pairs at K moments, and the gaps that it is made of, each (P, K)."""
+
+    closeness: FloatArray
+    horizontal_m: FloatArray
+    vertical_m: FloatArray
 
 
 def near_pairs(
@@ -73,8 +82,8 @@ def closeness(
     second: IntArray,
     need: SeparationMinima,
     unknown: BoolArray | None = None,
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return closeness, horizontal and vertical gaps of P pairs at K moments, each (P, K).
+) -> Gaps:
+    """Return how near P pairs are at K moments.
 
     Between heights that say nothing about each other, `unknown` (V, V), the gap is 0 at most.
     """
@@ -86,7 +95,7 @@ def closeness(
     if unknown is not None:
         pairs = unknown[first, second][:, np.newaxis]
         vertical_m = np.where(pairs, np.minimum(vertical_m, 0.0), vertical_m)
-    return _shares(horizontal_m, vertical_m, need), horizontal_m, vertical_m
+    return Gaps(_shares(horizontal_m, vertical_m, need), horizontal_m, vertical_m)
 
 
 def hazard_closeness(
@@ -95,8 +104,8 @@ def hazard_closeness(
     hazard: HazardArea,
     need: SeparationMinima,
     unknown: BoolArray | None = None,
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the same of V vehicles to where a hazard area may be, each (V, K).
+) -> Gaps:
+    """Return how near V vehicles are to where a hazard area may be, each (V, K).
 
     No height separates the vehicles in `unknown` (V,) from it.
     """
@@ -118,13 +127,12 @@ def hazard_closeness(
         least = np.minimum(least, _shares(landing_m, vertical_m, need))
         least = np.minimum(least, _shares(way_m, beside_m, need))
         horizontal_m = np.minimum(horizontal_m, np.minimum(landing_m, way_m))
-    return least, horizontal_m, vertical_m
+    return Gaps(least, horizontal_m, vertical_m)
 
 
-def approach(
-    close: FloatArray, horizontal_m: FloatArray, vertical_m: FloatArray, times_s: FloatArray
-) -> Approach:
-    """Return how one pair, (K,) each, comes near."""
+def approach(gaps: Gaps, row: int | np.integer, times_s: FloatArray) -> Approach:
+    """Return how one of the pairs comes near."""
+    close, horizontal_m, vertical_m = (each[row] for each in gaps)
     nearest = int(np.argmin(close))
     is_too_near = close < 1.0
     first_s = float(times_s[int(np.argmax(is_too_near))]) if is_too_near.any() else None

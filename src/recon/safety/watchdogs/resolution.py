@@ -91,7 +91,7 @@ def _is_wider(one: Approach, other: Approach, settings: WatchdogSettings) -> boo
     wider_by = one.least - other.least
     if abs(wider_by) < settings.helps_share:
         return one.height_gap_m >= other.height_gap_m + settings.helps_height_m
-    return wider_by > 0.0
+    return wider_by >= settings.helps_share
 
 
 def _may_wait(picture: TrafficPicture, conflict: PairConflict) -> bool:
@@ -112,7 +112,5 @@ def _if_held(picture: TrafficPicture, conflict: PairConflict, number: int) -> Ap
     """How near they come if this one of the two is held now and the other flies on."""
     ahead = picture.ahead_apart
     held, stays = (np.array([conflict.indices[index]]) for index in (number, 1 - number))
-    close, horizontal_m, vertical_m = closeness(
-        ahead.if_held, held, ahead.as_it_flies, stays, conflict.need, conflict.unknown
-    )
-    return approach(close[0], horizontal_m[0], vertical_m[0], ahead.times_s)
+    gaps = closeness(ahead.if_held, held, ahead.as_it_flies, stays, conflict.need, conflict.unknown)
+    return approach(gaps, 0, ahead.times_s)

@@ -65,13 +65,13 @@ def separation(picture: TrafficPicture) -> Iterator[Finding]:
     flies, times_s = picture.ahead_apart.as_it_flies, picture.ahead.times_s
     unknown = _unknown_heights(picture.predicted)
     first, second = near_pairs(flies, need, unknown)
+    can_help = first < in_contact  # of two lost ones no hold can reach either
+    first, second = first[can_help], second[can_help]
     if len(first) == 0:
         return
-    close, horizontal_m, vertical_m = closeness(flies, first, flies, second, need, unknown)
-    for row in np.flatnonzero((close < 1.0).any(axis=1)):
-        if min(first[row], second[row]) >= in_contact:
-            continue  # both lost: no hold can reach either
-        found = approach(close[row], horizontal_m[row], vertical_m[row], times_s)
+    gaps = closeness(flies, first, flies, second, need, unknown)
+    for row in np.flatnonzero((gaps.closeness < 1.0).any(axis=1)):
+        found = approach(gaps, row, times_s)
         yield _pair(picture, int(first[row]), int(second[row]), found, need)
 
 
@@ -120,14 +120,14 @@ def _hazard(
     pairs = _unknown_heights((*picture.predicted, lost))
     unknown = None if pairs is None else pairs[-1, :-1]
     flies = hazard_closeness(ahead.as_it_flies, ahead.times_s, hazard, need, unknown)
-    rows = np.flatnonzero((flies[0][: len(picture.flying)] < 1.0).any(axis=1))
+    rows = np.flatnonzero((flies.closeness[: len(picture.flying)] < 1.0).any(axis=1))
     if len(rows) == 0:
         return
     if_held = hazard_closeness(ahead.if_held, ahead.times_s, hazard, need, unknown)
     for row in rows:
         watched = picture.flying[row]
-        found = approach(flies[0][row], flies[1][row], flies[2][row], ahead.times_s)
-        instead = approach(if_held[0][row], if_held[1][row], if_held[2][row], ahead.times_s)
+        found = approach(flies, row, ahead.times_s)
+        instead = approach(if_held, row, ahead.times_s)
         key = f"{RULE}:{watched.key}:hazard area of {hazard.name}"
         is_due = _is_due(picture, key, found, watched)
         can = is_due and can_be_held(picture, watched)
