@@ -2,10 +2,14 @@
 
     python -m studies.shade --scenario cumulus-40 --seeds 0-4 --minutes 20
     python -m studies.shade --scenario cumulus-40 --exposure locked --pose telemetry
+    python -m studies.shade --scenario cumulus-20 --earlier 10    what an earlier flight is worth
 
 Frames are rendered at a small size, laid on the ground with the true pose (or telemetry's), and
 kept in a temporary folder for the next call. Unknown cells count as wrong in the IoU. The row
 `true reference` is a ceiling: the frame over the same ground under a clear sky, at the true gain.
+
+With `--earlier` the first minutes are a flight of their own: what it has learned is taken up by a
+second one, which begins there, in one row, and not by the same one in the other.
 """
 
 import argparse
@@ -22,7 +26,13 @@ import numpy as np
 import numpy.typing as npt
 
 from recon.camera import GroundProjector
-from recon.detection import DETECTORS, DetectionSettings, DetectionState, RejectedFrame
+from recon.detection import (
+    DETECTORS,
+    DetectionSettings,
+    DetectionState,
+    RejectedFrame,
+    sunlit_reference_of,
+)
 from recon.model.geo import GroundGrid
 from recon.model.imagery import CameraPose, GroundImage
 from recon.model.shade import SUNLIT_TRANSMITTANCE, FloatMap, MaskMap, ShadeMap
@@ -131,8 +141,7 @@ def main() -> int:
                 name, seed, options.minutes, options.exposure, options.pose, options.cols,
                 options.every_s,
             )  # fmt: skip
-            for method in options.methods.split(","):
-                row = score(flight, method, 60.0 * options.after)
+            for method, row in _rows(flight, options):
                 sums.setdefault(method, []).append(row)
                 if not options.brief:
                     print(_row(f"{name} {seed}", method, row), flush=True)
@@ -141,13 +150,50 @@ def main() -> int:
     return 0
 
 
-def score(flight: Flight, method: str, after_s: float = 0.0) -> tuple[float, ...]:
-    """Return the figures of a method on a flight, over the frames after a time."""
-    tally = Tally(ms=[])
-    state, settings = DetectionState(), DetectionSettings(cell_m=FIELD_CELL_M)
-    if flight.exposure == "locked":
-        settings = replace(settings, follows_exposure=False)
+def _rows(flight: Flight, options: argparse.Namespace) -> Iterator[tuple[str, tuple[float, ...]]]:
+    """Yield each method's name and figures."""
+    if options.earlier > 0.0:
+        start_s = 60.0 * options.earlier
+        yield "anew", score(flight, "sunlit_reference", start_s, start_s)
+        known = _learned(flight, start_s)
+        yield "knowing", score(flight, "sunlit_reference", start_s, start_s, known)
+        return
+    for method in options.methods.split(","):
+        yield method, score(flight, method, 60.0 * options.after)
+
+
+def _learned(flight: Flight, until_s: float) -> DetectionState:
+    """Return what a later flight starts from: the reference of a flight's first minutes."""
+    state, settings = DetectionState(), _settings(flight)
     for moment in moments(flight):
+        if moment.image.captured_at_ns >= seconds_to_ns(until_s):
+            break
+        state, _ = DETECTORS["sunlit_reference"](state, moment.image, settings)
+        image = moment.image
+    reference = sunlit_reference_of(state, image)
+    return DetectionState(references=() if reference is None else (reference,))
+
+
+def _settings(flight: Flight) -> DetectionSettings:
+    return DetectionSettings(cell_m=FIELD_CELL_M, follows_exposure=flight.exposure != "locked")
+
+
+def score(
+    flight: Flight,
+    method: str,
+    after_s: float = 0.0,
+    begins_s: float = 0.0,
+    state: DetectionState | None = None,
+) -> tuple[float, ...]:
+    """Return the figures of a method on a flight, over the frames after a time.
+
+    The flight begins at a moment of what was rendered, in a state: by default, of knowing nothing.
+    """
+    tally = Tally(ms=[])
+    state, settings = state or DetectionState(), _settings(flight)
+    for moment in moments(flight):
+        if moment.image.captured_at_ns < seconds_to_ns(begins_s):
+            continue
         started = time.process_time()
         state, found = DETECTORS[method](state, moment.image, settings)
         assert tally.ms is not None
@@ -155,7 +201,8 @@ def score(flight: Flight, method: str, after_s: float = 0.0) -> tuple[float, ...
         if moment.image.captured_at_ns < seconds_to_ns(after_s):
             continue
         shade = None if isinstance(found, RejectedFrame) else found
-        tally.add(shade, moment.transmittance, _counted(moment), moment.image.captured_at_ns / 1e9)
+        at_s = moment.image.captured_at_ns / 1e9 - begins_s
+        tally.add(shade, moment.transmittance, _counted(moment), at_s)
     mixed, ms = tally.mixed_iou or [], tally.ms or [0.0]
     return (
         tally.both, tally.either, tally.cells, tally.false, tally.missed, tally.unknown,
@@ -312,6 +359,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--seeds", default="0-4", help="first-last; 1000 and above are for scores")
     parser.add_argument("--minutes", type=float, default=20.0)
     parser.add_argument("--after", type=float, default=0.0, help="minutes that do not count")
+    parser.add_argument("--earlier", type=float, default=0.0, help="minutes of an earlier flight")
     parser.add_argument("--every-s", type=float, default=5.0)
     parser.add_argument("--cols", type=int, default=640, help="width of the rendered frames")
     parser.add_argument("--exposure", choices=("auto", "locked"), default="auto")

@@ -2,7 +2,7 @@ import type { Map as MapLibre } from "maplibre-gl";
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import type { GroundImageView } from "../protocol";
 import type { Outcome, Picture } from "../source/stationSource";
-import { at, station } from "../testing/fakeState";
+import { at, groundImage, station } from "../testing/fakeState";
 import { GroundImageLayer } from "./groundImageLayer";
 
 type Shown = { readonly url: string; readonly coordinates: [number, number][] };
@@ -27,20 +27,13 @@ function fakeMap() {
 }
 
 function image(frame_id: number): GroundImageView {
-  return {
-    frame_id,
-    serial: "SN-001",
-    captured_age_s: 0.5,
-    captured_sigma_s: 0.2,
-    registration: "unregistered",
-    exposure_locked: false,
-    registration_residual_m: null,
-    reference: "telemetry",
-    corners: [at(frame_id, 10), at(10, 10), at(10, -10), at(frame_id, -10)],
-    cell_m: 1,
-    rows: 20,
-    cols: 20,
-  };
+  const corners: GroundImageView["corners"] = [
+    at(frame_id, 10),
+    at(10, 10),
+    at(10, -10),
+    at(frame_id, -10),
+  ];
+  return groundImage({ frame_id, corners });
 }
 
 function setUp() {

@@ -1,31 +1,14 @@
 import { afterEach, describe, expect, it } from "vitest";
 import { useConsole } from "../console";
-import type { GroundImageView, StationState } from "../protocol";
-import { at, station, vehicle } from "../testing/fakeState";
+import type { StationState } from "../protocol";
+import { groundImage, station, vehicle } from "../testing/fakeState";
 import { find, type RenderedPage, renderPage } from "../testing/renderPage";
 import { GroundImageNote } from "./GroundImageNote";
 import { createDisplayedGround, type DisplayedGround } from "./groundImageLayer";
 
-function image(frame_id: number, captured_age_s: number): GroundImageView {
-  return {
-    frame_id,
-    serial: "SN-001",
-    captured_age_s,
-    captured_sigma_s: 0.2,
-    registration: "unregistered",
-    exposure_locked: false,
-    registration_residual_m: null,
-    reference: "telemetry at the marked frame",
-    corners: [at(-10, 10), at(10, 10), at(10, -10), at(-10, -10)],
-    cell_m: 0.5,
-    rows: 40,
-    cols: 40,
-  };
-}
-
 /** The state at `second` that announces this frame; frame n is captured at second n. */
 function announcing(frame_id: number, second: number): StationState {
-  const ground_image = image(frame_id, second - frame_id);
+  const ground_image = groundImage({ frame_id, captured_age_s: second - frame_id });
   return station([vehicle(1)], { time_ns: second * 1e9, ground_image });
 }
 
@@ -45,7 +28,7 @@ afterEach(() => page.dispose());
 describe("the note on the ground image", () => {
   it("is marked old after 5 s", () => {
     page = renderPage(Note, announcing(12, 12.8));
-    ground.show(image(12, 0.8));
+    ground.show(groundImage({ frame_id: 12, captured_age_s: 0.8 }));
     expect(text()).toBe("Ground image: frame 12, taken 0.8 s ago ± 0.2 s, not aligned");
     page.age(4.1);
     expect(isOld()).toBe(false);
@@ -56,16 +39,23 @@ describe("the note on the ground image", () => {
 
   it("states how well a frame is aligned, and that alignment was lost", () => {
     page = renderPage(Note, announcing(12, 12.8));
-    ground.show({ ...image(12, 0.8), registration: "registered", registration_residual_m: 0.14 });
+    ground.show(
+      groundImage({
+        frame_id: 12,
+        captured_age_s: 0.8,
+        registration: "registered",
+        registration_residual_m: 0.14,
+      }),
+    );
     expect(text()).toMatch(/, aligned to 0\.1 m$/);
-    ground.show({ ...image(12, 0.8), registration: "lost" });
+    ground.show(groundImage({ frame_id: 12, captured_age_s: 0.8, registration: "lost" }));
     expect(text()).toMatch(/, alignment lost: positions may be off by metres$/);
     expect(find(page.root, ".tone-warning").textContent).toMatch(/^alignment lost/);
   });
 
   it("describes the displayed frame until a newer picture has loaded", () => {
     page = renderPage(Note, announcing(12, 12.8));
-    ground.show(image(12, 0.8));
+    ground.show(groundImage({ frame_id: 12, captured_age_s: 0.8 }));
     page.receive(announcing(13, 13.8));
     expect(text()).toBe("Ground image: frame 12, taken 1.8 s ago ± 0.2 s, not aligned");
     page.receive(announcing(15, 15.9));
@@ -74,7 +64,7 @@ describe("the note on the ground image", () => {
     );
     page.receive(announcing(17, 17.8));
     expect(isOld()).toBe(true);
-    ground.show(image(17, 0.8));
+    ground.show(groundImage({ frame_id: 17, captured_age_s: 0.8 }));
     expect(text()).toBe("Ground image: frame 17, taken 0.8 s ago ± 0.2 s, not aligned");
     expect(isOld()).toBe(false);
   });

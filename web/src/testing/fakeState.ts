@@ -3,6 +3,7 @@ import type {
   AlarmView,
   AreaView,
   CommandView,
+  GroundImageView,
   HazardView,
   LinkView,
   OrderResult,
@@ -347,6 +348,25 @@ export function survey(id: number, changes: Partial<SurveyView> = {}): SurveyVie
     cells: { number: 1200, ...fieldGrid() },
     rows: 8,
     ways: 40,
+    ...changes,
+  };
+}
+
+/** The newest ground image, with `changes` applied. */
+export function groundImage(changes: Partial<GroundImageView> = {}): GroundImageView {
+  return {
+    frame_id: 1,
+    serial: "SN-001",
+    captured_age_s: 0.5,
+    captured_sigma_s: 0.2,
+    registration: "unregistered",
+    exposure_locked: false,
+    registration_residual_m: null,
+    reference: "telemetry of the marked frame",
+    corners: [at(-10, 10), at(10, 10), at(10, -10), at(-10, -10)],
+    cell_m: 1,
+    rows: 20,
+    cols: 20,
     ...changes,
   };
 }

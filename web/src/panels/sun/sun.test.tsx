@@ -1,6 +1,6 @@
 import { afterEach, describe, expect, it } from "vitest";
 import type { LookAsideView } from "../../protocol";
-import { shadeLine, station, survey, vehicle } from "../../testing/fakeState";
+import { groundImage, shadeLine, station, survey, vehicle } from "../../testing/fakeState";
 import { find, type RenderedPage, renderPage } from "../../testing/renderPage";
 import { lightPercents } from "../../text/light";
 import { GUARD_MS } from "../guard/GuardButton";
@@ -60,6 +60,27 @@ describe("sun and shade", () => {
     expect(page.root.textContent).toContain("Sun in 1 min 0 s: ");
     expect(page.shared.overlay.kind()).toBe("forecast");
     expect(page.root.textContent).toContain("forecast covers 20\u00a0% of the map");
+  });
+
+  it("shows whether an earlier flight's knowledge of the land is used", () => {
+    show({ reference: "of an earlier flight, with the sun 3 degrees from where it is now" });
+    expect(page.root.textContent).toContain(
+      "Land in full sun: of an earlier flight, with the sun 3 degrees from where it is now.",
+    );
+    page.dispose();
+    show();
+    expect(page.root.textContent).not.toContain("Land in full sun");
+  });
+
+  it("shows a camera that is not locked as such", () => {
+    page = renderPage(
+      SunPanel,
+      station([vehicle(1)], {
+        ground_image: groundImage({ exposure_locked: true }),
+        shade: shadeLine({ lock_problem: "exposure changed by 30% within 20 s" }),
+      }),
+    );
+    expect(page.root.textContent).toContain("exposure not locked");
   });
 
   it("shows why there is no shade map", () => {
