@@ -3,7 +3,7 @@
 Theory of operation, per frame:
 
 1. `cell_colour` averages light and colour (blue over red) over each cell of the field grid.
-2. Every ten seconds or more a keyframe is kept. From all keyframes, `keyframes.solved` finds the
+2. Every ten seconds or more a keyframe is kept. From all keyframes, `solution.solved` finds the
    land: edges that stand still are land, edges that move are shade.
 3. With the land taken out, a frame has one or two levels. `levels.read` names them sun and shade,
    or leaves a flat frame to its neighbours in time.
@@ -26,10 +26,11 @@ from recon.detection.sunlit.contrast import explained
 from recon.detection.sunlit.drift import followed, since
 from recon.detection.sunlit.earlier import reference_of, taken_up
 from recon.detection.sunlit.hot_spot import shape_of
-from recon.detection.sunlit.keyframes import LEAST, Keyframe, is_due, solved, with_keyframe
+from recon.detection.sunlit.keyframes import Keyframe, is_due, with_keyframe
 from recon.detection.sunlit.levels import LEAST_CELLS, Level
 from recon.detection.sunlit.likelihood import Belief, most_likely
 from recon.detection.sunlit.memory import SunlitMemory
+from recon.detection.sunlit.solution import LEAST, solved
 from recon.model.geo import GroundGrid
 from recon.model.imagery import GroundImage
 from recon.model.shade import FloatMap, MaskMap, ShadeMap, SunlitReference
