@@ -57,15 +57,13 @@ def real(folder: Path, name: str) -> Moments:
 def panels(flown: Moments, *, is_real: bool) -> list[Picture]:
     """Return a panel per step at the last frame of a flight."""
     state = DetectionState()
-    for image, truth in flown:
+    for image, truth in flown:  # noqa: B007
         state, found = DETECTORS["sunlit_reference"](state, image, SETTINGS)
     if not isinstance(found, ShadeMap) or state.sunlit is None or state.sunlit.land is None:
         raise SystemExit("expected a last frame in which shade is found, got one without")
     cells = cell_colour(image, found.grid, SETTINGS)
-    result = [
-        _gray(found.transmittance, 0.0, 1.0),
-        _gray(np.where(cells.seen, truth, np.nan), 0, 1),
-    ]
+    shown = np.where(cells.seen, truth, np.nan)
+    result = [_gray(found.transmittance, 0.0, 1.0), _gray(shown, 0.0, 1.0)]
     if is_real:
         return result
     land = state.sunlit.land
