@@ -9,18 +9,15 @@ from recon import version
 from recon.api import schema
 from recon.api.port import SurveyCellStates
 from recon.fleet import pairing
-from recon.model.command import Body, Hover, Phase, Refusal
+from recon.model.command import Body, Refusal
 from recon.model.control import AuthorityHolder
 from recon.model.event import (
     AlarmAcknowledged,
-    AllStopped,
     AppAdmitted,
     AppRefused,
     AuthorityTaken,
-    FleetReturnOrdered,
     HazardDismissed,
     LookAsideOrdered,
-    OperatorOrder,
     OwnerConnected,
     OwnerDisconnected,
     PersonConnected,
@@ -40,18 +37,15 @@ from recon.record import geotiff_bytes
 from recon.record.audit import NumberedEntry, harmless
 from recon.record.audit_log import AuditLog
 from recon.site import Site
-from recon.station.alarms.event_alarms import FAULT_TO_DO
 from recon.station.api_views import RunningStation
+from recon.station.api_views.order_service import OrderService
 from recon.station.api_views.site_view import site_view
 from recon.station.api_views.state_view import DriverState, state_view
 from recon.station.api_views.survey_service import SurveyService
 from recon.station.api_views.vehicle_views import preflight_view
 from recon.station.api_views.zone_views import zone_views
 from recon.station.control import handover, preflight, stop_latch, temporary_zones
-from recon.station.control.order_gateway import DRY_RUN_ID, dry_run
 from recon.station.operations.look_aside.commands import refusal as look_aside_refusal
-from recon.station.state.orders import OrderRecord
-from recon.station.state.station import Station
 from recon.station.traffic.known_traffic import is_dismissible
 
 
@@ -97,20 +91,7 @@ class Service:
         given_at_ns: int | None = None,
     ) -> schema.OrderResponse:
         """Give one order to each named vehicle, once each."""
-        asked = [
-            OperatorOrder(
-                self._ids(),
-                body,
-                by.label,
-                serial=serial,
-                takeoff=takeoff,
-                owner=owner,
-                given_at_ns=given_at_ns,
-                person=by.name,
-            )
-            for serial in dict.fromkeys(serials)
-        ]
-        return self._give(asked)
+        return self._orders.give(serials, body, by, takeoff, owner, given_at_ns)
 
     def check(
         self,
@@ -123,24 +104,21 @@ class Service:
         given_at_ns: int | None = None,
     ) -> schema.OrderResponse:
         """Return what `order` would answer now; nothing is given and nothing changes."""
-        orders = [
-            OperatorOrder(
-                DRY_RUN_ID,
-                body,
-                by.label,
-                serial=serial,
-                takeoff=takeoff,
-                owner=owner,
-                given_at_ns=given_at_ns,
-                person=by.name,
-            )
-            for serial in dict.fromkeys(serials)
-        ]
-        station = self.driver.station
-        records = dry_run(station, orders, self.driver.now_ns())
-        return schema.OrderResponse(
-            results=[_result(r, _is_simulated(station, r)) for r in records]
-        )
+        return self._orders.check(serials, body, by, takeoff, owner, given_at_ns)
+
+    def all_stop(self, by: Person) -> schema.OrderResponse:
+        """Latch every vehicle, then hold every link that may be in flight, identified or not."""
+        return self._orders.all_stop(by)
+
+    def fleet_return(
+        self, serials: list[str] | None, by: Person, given_at_ns: int | None = None
+    ) -> schema.OrderResponse:
+        """Return vehicles home in layers; None: every vehicle that is or may be in flight."""
+        return self._orders.fleet_return(serials, by, given_at_ns)
+
+    @property
+    def _orders(self) -> OrderService:
+        return OrderService(self.driver, self._ids)
 
     def owner_connected(self, owner: str) -> None:
         """Add an owner."""
@@ -149,30 +127,6 @@ class Service:
     def owner_disconnected(self, owner: str) -> None:
         """Remove an owner; its steered orders end."""
         self.driver.handle(OwnerDisconnected(owner))
-
-    def all_stop(self, by: Person) -> schema.OrderResponse:
-        """Latch every vehicle, then hold every link that may be in flight, identified or not.
-
-        Vehicles on the ground or without a connection are in the results with the gate's refusal:
-        no vehicle that may be in flight is omitted.
-        """
-        self.driver.handle(AllStopped(by.label))
-        fleet = self.driver.station.fleet
-        serials = self._within_reach()
-        links = [
-            link.id
-            for link in fleet.unbound_links()
-            if link.claimed_serial is None
-            and link.own_state.core_received_at_ns is not None
-            and link.own_state.is_flying.value is not False
-        ]
-        orders = [
-            OperatorOrder(self._ids(), Hover(), by.label, serial=s, person=by.name) for s in serials
-        ]
-        orders += [
-            OperatorOrder(self._ids(), Hover(), by.label, link_id=i, person=by.name) for i in links
-        ]
-        return self._give(orders)
 
     def release_stop(self, serials: list[str] | None, by: Person) -> schema.ActionResponse:
         """Release vehicles from the all stop in force; None: all."""
@@ -208,13 +162,6 @@ class Service:
         """Refuse the app that waits on a link."""
         event = AppRefused(link_id, by.label)
         return self._decided(event, pairing.refusal_to_refuse(self.driver.station.fleet, event))
-
-    def fleet_return(
-        self, serials: list[str] | None, by: Person, given_at_ns: int | None = None
-    ) -> schema.OrderResponse:
-        """Return vehicles home in layers; None: every vehicle that is or may be in flight."""
-        called = self._within_reach() if serials is None else list(dict.fromkeys(serials))
-        return schema.OrderResponse(results=[self._call_one(s, by, given_at_ns) for s in called])
 
     def look_aside(self, by: Person, given_at_ns: int | None = None) -> schema.ActionResponse:
         """Have the imaging drone look aside; the audit has a refusal too."""
@@ -352,37 +299,6 @@ class Service:
         self.driver.handle(event)
         return _action(refusal)
 
-    def _give(self, orders: list[OperatorOrder]) -> schema.OrderResponse:
-        return schema.OrderResponse(results=[self._give_one(order) for order in orders])
-
-    def _give_one(self, order: OperatorOrder) -> schema.OrderResult:
-        """Handle an order and read its record at once: the order book keeps a limited number."""
-        self.driver.handle(order)
-        return self._outcome(order.command_id, order.serial)
-
-    def _call_one(self, serial: str, by: Person, given_at_ns: int | None) -> schema.OrderResult:
-        """Add one vehicle to the return; it is planned at the next tick."""
-        command_id = self._ids()
-        event = FleetReturnOrdered(command_id, (serial,), by.label, given_at_ns, by.name)
-        self.driver.handle(event)
-        return self._outcome(command_id, serial)
-
-    def _outcome(self, command_id: int, serial: str | None) -> schema.OrderResult:
-        station = self.driver.station
-        record = station.orders.records.get(command_id)
-        if record is None:
-            return _not_taken(command_id, serial)
-        return _result(record, _is_simulated(station, record))
-
-    def _within_reach(self) -> list[str]:
-        """Return every vehicle with a connection, or that is or may be in flight."""
-        fleet = self.driver.station.fleet
-        return [
-            serial
-            for serial, vehicle in fleet.vehicles.items()
-            if fleet.link_ids_claiming(serial) or vehicle.is_flying.value is not False
-        ]
-
     def _driver_state(self, now_ns: int) -> DriverState:
         links = self.driver.links
         sessions = {} if links is None else links.sessions()
@@ -410,46 +326,6 @@ def _action(refusal: Refusal | None) -> schema.ActionResponse:
     if refusal is not None:
         return schema.ActionResponse(accepted=False, rule=refusal.rule, reason=refusal.reason)
     return schema.ActionResponse(accepted=True, rule=None, reason=None)
-
-
-def _not_taken(command_id: int, serial: str | None) -> schema.OrderResult:
-    """Return the result of an order that was lost by a fault in the station's own code."""
-    return schema.OrderResult(
-        serial=serial,
-        link_id=None,
-        vehicle_name=serial or "?",
-        is_simulated=False,
-        accepted=False,
-        command_id=command_id,
-        rule="station_fault",
-        reason=f"a fault in the station's own code, see the alarm; nothing was sent: {FAULT_TO_DO}",
-        parameters={},
-        repairs=[],
-        parts=0,
-    )
-
-
-def _is_simulated(station: Station, record: OrderRecord) -> bool:
-    target = station.target(record.command.serial, record.command.link_id)
-    return target is not None and target.is_simulated
-
-
-def _result(record: OrderRecord, is_simulated: bool) -> schema.OrderResult:
-    is_refused = record.phase is Phase.REFUSED_BY_STATION
-    refusal = record.refusal if is_refused else None
-    return schema.OrderResult(
-        serial=record.command.serial,
-        link_id=record.command.link_id,
-        vehicle_name=record.vehicle_name,
-        is_simulated=is_simulated,
-        accepted=not is_refused,
-        command_id=record.command.id,
-        rule=None if refusal is None else refusal.rule,
-        reason=record.note or None,
-        parameters={} if refusal is None else dict(refusal.parameters),
-        repairs=[] if record.plan is None else list(record.plan.repairs),
-        parts=0 if record.plan is None else len(record.plan.parts),
-    )
 
 
 def _audit_page(log: AuditLog | None, after: int, at_most: int) -> schema.AuditPage:
