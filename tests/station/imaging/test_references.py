@@ -11,10 +11,11 @@ from recon.detection import DetectionState
 from recon.model.imagery import GroundImage
 from recon.model.units import seconds_to_ns
 from recon.record.reference_file import FOLDER, read_references, write_reference
-from recon.site import Site
+from recon.site import Site, demo_site_folder
 from recon.station.alarms.conditions import conditions
 from recon.station.api_views.imaging_views import shade_view
 from recon.station.imaging.references import WRITE_EVERY_S, with_references, written
+from recon.station.kernel.run import RunConfig, first_station
 from recon.station.kernel.step import step
 from recon.station.kernel.worker import JobRunner
 from recon.station.state.imaging import Imaging
@@ -111,3 +112,15 @@ def test_a_camera_that_is_not_locked_is_an_alarm(learned: Learned) -> None:
     (alarm,) = [each for each in conditions(station, 0) if each.rule == "exposure_lock"]
     assert "exposure changed by 30% within 20 s" in alarm.text
     assert "lock exposure and white balance" in alarm.text
+
+
+def test_a_start_reads_its_site_but_keeps_nothing_in_the_demonstrations(
+    tmp_path: Path, learned: Learned
+) -> None:
+    after_writing(station_of(tmp_path, learned), learned[1])
+    site = Site(name="bare")
+    begun = first_station(RunConfig(site, site_folder=tmp_path))
+    assert len(begun.shade.detection.references) == 1
+    assert begun.shade.references is not None
+    for folder in (None, demo_site_folder()):
+        assert first_station(RunConfig(site, site_folder=folder)).shade.references is None

@@ -131,7 +131,7 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
     async with AsyncExitStack() as stack:
         doors = _open_doors(config, certificate, stack)
         clock = station_clock()
-        begins = _first_state(config)
+        begins = first_station(config)
         station = restored(begins, last_run, clock())
         auditor = _start_auditor(config, begun, last_run, clock, stack)
         auditor.put(restart_entries(station))
@@ -333,7 +333,8 @@ def _start_auditor(
     return auditor
 
 
-def _first_state(config: RunConfig) -> Station:
+def first_station(config: RunConfig) -> Station:
+    """Return the station before its first event, with what earlier flights over the site learned."""
     station, folder = first_state(config.site, _settings(config), config.apps), config.site_folder
     # The demonstration's site is a part of the package: nothing is kept there.
     if folder is None or folder.resolve() == demo_site_folder().resolve():
