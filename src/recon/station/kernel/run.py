@@ -334,7 +334,7 @@ def _start_auditor(
 
 
 def first_station(config: RunConfig) -> Station:
-    """Return the station before its first event, with what earlier flights over the site learned."""
+    """Return the station before its first event; it knows what earlier flights have learned."""
     station, folder = first_state(config.site, _settings(config), config.apps), config.site_folder
     # The demonstration's site is a part of the package: nothing is kept there.
     if folder is None or folder.resolve() == demo_site_folder().resolve():
