@@ -53,6 +53,14 @@ def test_it_lands_at_home_and_makes_no_long_detour(way: Mission, only_lands: boo
     assert only_lands is leads_home(way, out_at(300.0), OPEN_AIRSPACE)
 
 
+def test_an_end_exactly_as_far_from_home_as_it_may_be_leads_home(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    far_m = horizontal_distance_m(north(8.0), TAKEOFF)
+    monkeypatch.setattr(return_missions, "NEAR_PAD_M", far_m)
+    assert leads_home(landing(300.0, 8.0), out_at(300.0), OPEN_AIRSPACE)
+
+
 def test_a_way_of_exactly_the_longest_length_leads_home(monkeypatch: pytest.MonkeyPatch) -> None:
     """Out and back to where it is: the whole way is the detour."""
     way, here = landing(20.0, 0.0), out_at(0.0)
