@@ -12,6 +12,7 @@ from recon.model.mission import Mission
 from recon.model.units import Stamped
 from recon.model.vehicle import VehicleState
 from recon.safety import OPEN_AIRSPACE, PreparedAirspace, return_missions
+from recon.safety.datum import home
 from recon.safety.return_missions import leads_home
 
 
@@ -56,9 +57,11 @@ def test_it_lands_at_home_and_makes_no_long_detour(way: Mission, only_lands: boo
 def test_an_end_exactly_as_far_from_home_as_it_may_be_leads_home(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    far_m = horizontal_distance_m(north(8.0), TAKEOFF)
-    monkeypatch.setattr(return_missions, "NEAR_PAD_M", far_m)
-    assert leads_home(landing(300.0, 8.0), out_at(300.0), OPEN_AIRSPACE)
+    flown = out_at(300.0)
+    took_off = home(flown)
+    assert took_off is not None
+    monkeypatch.setattr(return_missions, "NEAR_PAD_M", horizontal_distance_m(north(8.0), took_off))
+    assert leads_home(landing(300.0, 8.0), flown, OPEN_AIRSPACE)
 
 
 def test_a_way_of_exactly_the_longest_length_leads_home(monkeypatch: pytest.MonkeyPatch) -> None:
