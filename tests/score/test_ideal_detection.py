@@ -63,7 +63,7 @@ def read(
 def marked_of(scenario: Scenario) -> tuple[TelemetryReference, CameraPose]:
     imager = scenario.site.imager
     assert imager is not None
-    return rig_of(scenario.frame, imager).marked, imager.solution.pose
+    return rig_of(scenario.frame, imager).marked, imager.marked_pose
 
 
 def test_with_true_pose_and_time_the_map_is_the_sky(scenario: Scenario) -> None:
