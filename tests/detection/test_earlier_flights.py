@@ -151,6 +151,13 @@ class TestWhatDoesNotFit:
         assert known_share(maps[0][0]) == 0.0
         assert said in note_of(state)
 
+    def test_a_reference_of_other_cells_is_not_used(self, reference: SunlitReference) -> None:
+        later = Later(SEED, lasts_s=5.0, sky=5)
+        fewer = replace(reference, light=reference.light[1:], colour=reference.colour[1:])
+        state, maps, _ = flown(later.moments(), knowing(fewer))
+        assert known_share(maps[0][0]) == 0.0
+        assert "on this ground grid" in note_of(state)
+
     def test_a_field_that_has_changed_since_is_learned_anew(
         self, reference: SunlitReference
     ) -> None:

@@ -84,6 +84,7 @@ def taken_up(
         for each in references
         if each.serial == image.serial
         and each.grid == grid
+        and each.light.shape == coarse.light.shape
         and dist(each.camera_enu_m, camera) <= NEAREST_M
     ]
     if not fitting:

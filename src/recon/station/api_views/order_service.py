@@ -7,6 +7,7 @@ from recon.api import schema
 from recon.model.command import Body, Hover, Phase
 from recon.model.event import AllStopped, FleetReturnOrdered, OperatorOrder
 from recon.model.person import Person
+from recon.model.replacing import replace
 from recon.station.alarms.event_alarms import FAULT_TO_DO
 from recon.station.api_views import RunningStation
 from recon.station.control.order_gateway import DRY_RUN_ID, dry_run
@@ -21,36 +22,15 @@ class OrderService:
     driver: RunningStation
     ids: Callable[[], int]
 
-    def give(
-        self,
-        serials: list[str],
-        body: Body,
-        by: Person,
-        takeoff: bool,
-        owner: str | None,
-        given_at_ns: int | None,
-    ) -> schema.OrderResponse:
-        """Give one order to each named vehicle, once each."""
-        return self._given(
-            _order(self.ids(), body, by, serial, takeoff, owner, given_at_ns)
-            for serial in dict.fromkeys(serials)
-        )
+    def give(self, serials: list[str], order: OperatorOrder) -> schema.OrderResponse:
+        """Give an order like this one to each named vehicle, once each."""
+        named = dict.fromkeys(serials)
+        return self._given(replace(order, command_id=self.ids(), serial=one) for one in named)
 
-    def check(
-        self,
-        serials: list[str],
-        body: Body,
-        by: Person,
-        takeoff: bool,
-        owner: str | None,
-        given_at_ns: int | None,
-    ) -> schema.OrderResponse:
+    def check(self, serials: list[str], order: OperatorOrder) -> schema.OrderResponse:
         """Return what `give` would answer now; nothing is given and nothing changes."""
         station = self.driver.station
-        orders = [
-            _order(DRY_RUN_ID, body, by, serial, takeoff, owner, given_at_ns)
-            for serial in dict.fromkeys(serials)
-        ]
+        orders = [replace(order, serial=serial) for serial in dict.fromkeys(serials)]
         records = dry_run(station, orders, self.driver.now_ns())
         return schema.OrderResponse(results=[_result(station, record) for record in records])
 
@@ -69,12 +49,10 @@ class OrderService:
             and link.own_state.core_received_at_ns is not None
             and link.own_state.is_flying.value is not False
         ]
-        orders = [_order(self.ids(), Hover(), by, serial) for serial in self._within_reach()]
-        orders += [
-            OperatorOrder(self.ids(), Hover(), by.label, link_id=link, person=by.name)
-            for link in links
-        ]
-        return self._given(orders)
+        hover = order_of(Hover(), by)
+        orders = [replace(hover, serial=serial) for serial in self._within_reach()]
+        orders += [replace(hover, link_id=link) for link in links]
+        return self._given(replace(order, command_id=self.ids()) for order in orders)
 
     def fleet_return(
         self, serials: list[str] | None, by: Person, given_at_ns: int | None
@@ -113,20 +91,19 @@ class OrderService:
         ]
 
 
-def _order(
-    command_id: int,
+def order_of(
     body: Body,
     by: Person,
-    serial: str,
+    *,
     takeoff: bool = False,
     owner: str | None = None,
     given_at_ns: int | None = None,
 ) -> OperatorOrder:
+    """Return a person's order, without a number and a vehicle yet."""
     return OperatorOrder(
-        command_id,
+        DRY_RUN_ID,
         body,
         by.label,
-        serial=serial,
         takeoff=takeoff,
         owner=owner,
         given_at_ns=given_at_ns,

@@ -38,7 +38,7 @@ from recon.record.audit import NumberedEntry, harmless
 from recon.record.audit_log import AuditLog
 from recon.site import Site
 from recon.station.api_views import RunningStation
-from recon.station.api_views.order_service import OrderService
+from recon.station.api_views.order_service import OrderService, order_of
 from recon.station.api_views.site_view import site_view
 from recon.station.api_views.state_view import DriverState, state_view
 from recon.station.api_views.survey_service import SurveyService
@@ -91,7 +91,8 @@ class Service:
         given_at_ns: int | None = None,
     ) -> schema.OrderResponse:
         """Give one order to each named vehicle, once each."""
-        return self._orders.give(serials, body, by, takeoff, owner, given_at_ns)
+        order = order_of(body, by, takeoff=takeoff, owner=owner, given_at_ns=given_at_ns)
+        return self._orders.give(serials, order)
 
     def check(
         self,
@@ -104,7 +105,8 @@ class Service:
         given_at_ns: int | None = None,
     ) -> schema.OrderResponse:
         """Return what `order` would answer now; nothing is given and nothing changes."""
-        return self._orders.check(serials, body, by, takeoff, owner, given_at_ns)
+        order = order_of(body, by, takeoff=takeoff, owner=owner, given_at_ns=given_at_ns)
+        return self._orders.check(serials, order)
 
     def all_stop(self, by: Person) -> schema.OrderResponse:
         """Latch every vehicle, then hold every link that may be in flight, identified or not."""
