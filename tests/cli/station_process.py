@@ -3,6 +3,7 @@
 import json
 import os
 import sys
+import time
 import urllib.request
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, redirect_stderr, redirect_stdout
@@ -61,6 +62,16 @@ class StationProcess:
             except SystemExit as ended:
                 code = int(ended.code or 0)
         return CommandResult(code, out.getvalue(), err.getvalue())
+
+    def audited(self, kind: str, entries: int = 1) -> list[str]:
+        """The audit's lines of a kind, once that many are in its file: a thread writes them."""
+        given_up_s = time.monotonic() + PATIENCE_S
+        while True:
+            shown = self.recon("audit", "show", self.audit, "--kind", kind)
+            if len(lines := shown.out.splitlines()) >= entries:
+                return lines
+            assert time.monotonic() < given_up_s, f"{shown.out}{shown.err}"
+            time.sleep(0.02)
 
     def get(self, path: str) -> Any:
         """Return a resource of the API."""
