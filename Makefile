@@ -4,6 +4,8 @@ SHELL := /bin/sh
 MAKEFLAGS += --no-print-directory
 # Tests start the command some two hundred times: without compiled modules each start takes twice as long.
 unexport PYTHONDONTWRITEBYTECODE
+# As `recon` does for itself.
+export OPENBLAS_NUM_THREADS := 1
 
 UV_VERSION := 0.13.9
 UV := $(shell command -v uv 2>/dev/null || echo .tools/bin/uv)

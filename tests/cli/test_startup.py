@@ -1,7 +1,9 @@
 """Commands that an operator waits for load no heavy library before they do their work."""
 
+import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 import typer
@@ -76,3 +78,24 @@ def test_a_mistyped_command_gets_a_suggestion() -> None:
     result = CliRunner().invoke(app, ["al-stop"])
     assert result.exit_code == 2
     assert "Did you mean 'all-stop'" in result.output
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="the kernel counts threads there")
+def test_linear_algebra_starts_no_threads() -> None:
+    program = """
+import os
+from recon.cli import main
+try:
+    main()
+finally:
+    import numpy
+    print("threads:", len(os.listdir("/proc/self/task")))
+"""
+    environment = {k: v for k, v in os.environ.items() if k != "OPENBLAS_NUM_THREADS"}
+    ended = subprocess.run(
+        [sys.executable, "-c", program, "--help"],
+        env=environment,
+        capture_output=True,
+        check=True,
+    )
+    assert "threads: 1" in ended.stdout.decode().splitlines()

@@ -1,5 +1,6 @@
 """The command line: `recon run`, `demo`, `sim`, `all-stop`, `fly` and more; see `recon --help`."""
 
+import os
 import sys
 
 from recon.model.errors import ReconError
@@ -7,6 +8,8 @@ from recon.model.errors import ReconError
 
 def main() -> None:
     """Run the command line; an expected error is one sentence and an exit code, no traceback."""
+    # Matrices here are small: more threads would only wait for each other, at a core's full cost.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     from recon.cli.commands import app
 
     try:
