@@ -21,6 +21,7 @@ from recon.score.simulation import simulation_of
 from recon.sim.camera.field import FieldRenderer
 from recon.sim.camera.frames import CameraView
 from recon.sim.camera.tone import light_of_value
+from recon.sim.fleet import IMAGER_SERIAL
 
 PLACES = ("becker-1", "elgin-5", "grand-meadow-7")
 ROWS, COLS = 720, 1280
@@ -58,7 +59,7 @@ def rendered_rows(path: Path, seeds: int) -> Iterator[str]:
     """Yield the lines of a scenario's frames."""
     scenario = load_scenario(path)
     for seed in range(seeds):
-        imager = simulation_of(scenario, seed).imager
+        imager = simulation_of(scenario, seed).imagers[IMAGER_SERIAL]
         assert imager is not None
         assert imager.rig is not None
         renderer = imager.source

@@ -42,6 +42,7 @@ from recon.score.scenario_file import load_scenario
 from recon.score.simulation import rig_of, simulation_of
 from recon.sim.camera.field import FieldRenderer
 from recon.sim.camera.frames import CameraView
+from recon.sim.fleet import IMAGER_SERIAL
 
 IMAGE_CELL_M, FIELD_CELL_M = 2.0, 4.0
 FULL_COLS, FULL_ROWS = 1280, 720
@@ -318,7 +319,7 @@ def _rendered(flight: Flight, grid: GroundGrid) -> Iterator[Moment]:
 
 
 def _renderer(scenario: Scenario, flight: Flight) -> FieldRenderer:
-    setup = simulation_of(scenario, flight.seed).imager
+    setup = simulation_of(scenario, flight.seed).imagers[IMAGER_SERIAL]
     assert setup is not None
     renderer = setup.source
     assert isinstance(renderer, FieldRenderer)

@@ -138,8 +138,10 @@ class FakeStation:
     ) -> OrderResponse:
         return self.service.fleet_return(serials, by, given_at_ns)
 
-    def look_aside(self, by: Person, given_at_ns: int | None = None) -> ActionResponse:
-        return self.service.look_aside(by, given_at_ns)
+    def look_aside(
+        self, serial: str | None, by: Person, given_at_ns: int | None = None
+    ) -> ActionResponse:
+        return self.service.look_aside(serial, by, given_at_ns)
 
     def dismiss_hazard(self, name: str, by: Person) -> bool:
         return self.service.dismiss_hazard(name, by)

@@ -8,6 +8,7 @@ import pytest
 from tests.api.client import Client
 from tests.api.fake_station import FakeStation, application
 from tests.ready import ready_profile, ready_site
+from tests.station.imagers import with_imagers
 from tests.station.imaging.test_shade_line import ground_image
 from tests.station.station_world import HOME
 
@@ -21,7 +22,7 @@ from recon.model.geo import GroundGrid, LocalFrame
 from recon.model.shade import ShadeMap, SunForecast
 from recon.station.api_views.imaging_views import shade_view
 from recon.station.imaging.shade import READ_SHADE, ShadeRead, on_ground_image
-from recon.station.state.imaging import Imaging, ShadePipeline
+from recon.station.state.imaging import SeenShade, ShadePipeline
 from recon.station.state.station import Station
 from recon.station.state.steps import JobDone
 
@@ -221,7 +222,7 @@ class TestShade:
         shade, _ = found()
         seen = np.ones((3, 4), np.bool_)
         seen[2, 2:] = False
-        station = replace(Station(), imaging=Imaging(imager_serial="IMAGER"))
+        station = with_imagers(Station(), "IMAGER")
         pipeline = ShadePipeline(shade=shade, seen=seen, number=1)
         view = shade_view(replace(station, shade=pipeline), 0)
         assert view is not None
@@ -308,7 +309,8 @@ def put(
     driver.station, _ = on_ground_image(driver.station, ground_image(1))
     job = driver.station.shade.job_id
     assert job is not None
-    read = ShadeRead(DetectionState(), ForecastState(), (shade, sun), seen)
+    own = SeenShade(shade, shade.valid if seen is None else seen)
+    read = ShadeRead("", DetectionState(), ForecastState(), own, (own, sun))
     driver.handle(JobDone(job, READ_SHADE, read))
 
 
@@ -317,7 +319,7 @@ def test_a_rejected_frame_is_no_map(client: Client, station: FakeStation) -> Non
     driver.worker = None
     driver.station, _ = on_ground_image(driver.station, ground_image(1))
     rejected = RejectedFrame(1, FrameFault.BLACK, "expected a picture, got black")
-    read = ShadeRead(DetectionState(), ForecastState(), rejected)
+    read = ShadeRead("", DetectionState(), ForecastState(), rejected)
     driver.handle(JobDone(driver.station.shade.job_id or 0, READ_SHADE, read))
     assert client.get("/api/shade.png").status_code == 404
     assert driver.station.shade.frames_rejected == 1

@@ -6,6 +6,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+from tests.station.imagers import imager_of
 
 from recon.camera import GroundProjector
 from recon.model.imagery import Frame, GroundImage, Registration
@@ -77,15 +78,18 @@ def _ground_image(folder: Path, site: Site, image_format: ImageFormat) -> Ground
     rig, still = load_replay(folder)
     feed = FeedSettings(image_format=image_format)
     imager = ImagerSetup(still, feed, rig)
-    config = SimulationConfig(home=rig.frame.origin, vehicle_count=1, imager=imager)
+    config = SimulationConfig(
+        home=rig.frame.origin, vehicle_count=1, imagers={IMAGER_SERIAL: imager}
+    )
     driver = VirtualDriver(first_state(site), jobs=JobRunner(site))
     (app,) = build_fleet(config, start_ns=driver.now_ns)
     app.connected(driver.now_ns)
     driver.connect(app)
     driver.run_for(10.0)
     assert isinstance(driver.station.frames[IMAGER_SERIAL], Frame)
-    assert driver.station.imaging.latest_error is None
-    image = driver.station.imaging.ground_image
+    imager_frames = imager_of(driver.station)
+    assert imager_frames.latest_error is None
+    image = imager_frames.ground_image
     assert image is not None
     return image
 

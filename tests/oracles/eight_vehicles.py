@@ -21,7 +21,7 @@ from recon.sim.app.telemetry import FIELD_SENSORS
 from recon.sim.camera.field import FieldRenderer
 from recon.sim.camera.rig import CameraRig
 from recon.sim.camera.settings import CameraSettings
-from recon.sim.fleet import Airborne, ImagerSetup, SimulationConfig, build_fleet
+from recon.sim.fleet import IMAGER_SERIAL, Airborne, ImagerSetup, SimulationConfig, build_fleet
 from recon.sim.world import LayerSettings, Sky, SkySettings, SunSettings
 from recon.site import Site, demo_site_folder, load_site
 from recon.station.kernel.build import first_state
@@ -183,10 +183,11 @@ def _config(site: Site, seed: int, sees: bool, faults: Sequence[str]) -> Simulat
         CameraSettings(seed),
     )
     pads = {s: profile.pad for s, profile in site.profiles.items() if profile.pad is not None}
+    setup = ImagerSetup(source, FeedSettings(PICTURES_HZ, starts_on=sees), rig)
     return SimulationConfig(
         home=origin,
         vehicle_count=VEHICLES,
-        imager=ImagerSetup(source, FeedSettings(PICTURES_HZ, starts_on=sees), rig),
+        imagers={IMAGER_SERIAL: setup},
         airborne=Airborne.ALL,
         sensors=FIELD_SENSORS,
         seed=seed,

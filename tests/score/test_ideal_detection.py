@@ -26,7 +26,7 @@ from recon.sim.camera.settings import CameraSettings
 from recon.sim.fleet import IMAGER_SERIAL
 from recon.sim.world import LayerSettings, Sky, SkySettings
 from recon.station.imaging.shade import ReadShade
-from recon.station.state.imaging import LayFrame
+from recon.station.state.imaging import LayFrame, SeenShade
 
 SKY = Sky(SkySettings(seed=5, layers=(LayerSettings(cover=0.5, outer_scale_m=1000.0),)))
 METRES_PER_DEGREE = 111_000.0
@@ -55,9 +55,9 @@ def read(
     work = ReadShade(
         image, DetectionState(), ForecastState(), DetectionSettings(), ForecastSettings()
     )
-    found = ideal.read(work).found
-    assert isinstance(found, tuple)
-    return found[0]
+    found = ideal.read(work).own
+    assert isinstance(found, SeenShade)
+    return found.shade
 
 
 def marked_of(scenario: Scenario) -> tuple[TelemetryReference, CameraPose]:
@@ -100,9 +100,7 @@ def test_ground_beyond_the_image_circle_is_unknown(scenario: Scenario) -> None:
     assert imager is not None
     assert imager.image_circle is not None
     half = replace(imager.image_circle, radius_px=imager.image_circle.radius_px / 2.0)
-    narrow = replace(
-        scenario, site=replace(scenario.site, imager=replace(imager, image_circle=half))
-    )
+    narrow = replace(scenario, site=scenario.site.with_imager(replace(imager, image_circle=half)))
     marked, pose = marked_of(narrow)
     shade = read(narrow, 60.0, pose, marked)
     east_m, north_m = np.meshgrid(*cell_centres(shade.grid))

@@ -13,6 +13,7 @@ from recon.score.simulation import simulation_of
 from recon.sim.app.telemetry import FIELD_SENSORS
 from recon.sim.camera.field import FieldRenderer
 from recon.sim.conditions import Range
+from recon.sim.fleet import IMAGER_SERIAL
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 
@@ -42,8 +43,7 @@ def test_without_an_elevation_the_start_time_has_it(tmp_path: Path) -> None:
 def test_the_simulation_has_the_conditions(cumulus: Scenario) -> None:
     conditions = conditions_of(cumulus, 5)
     config = simulation_of(cumulus, 5)
-    assert config.imager is not None
-    source = config.imager.source
+    source = config.imagers[IMAGER_SERIAL].source
     assert isinstance(source, FieldRenderer)
     assert (source.imager, source.light) == (conditions.camera, conditions.light)
     assert source.relief is not None

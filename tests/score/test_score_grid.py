@@ -39,7 +39,7 @@ def with_field(scenario: Scenario, degrees: float) -> Scenario:
     ray = np.array([[np.sin(radians(degrees)), 0.0, np.cos(radians(degrees))]])
     radius_px = float(camera.project(ray)[0, 0] - camera.centre_col_px) / RIM_SHARE
     circle = ImageCircle(camera.centre_col_px, camera.centre_row_px, radius_px)
-    site = replace(scenario.site, imager=replace(imager, image_circle=circle))
+    site = scenario.site.with_imager(replace(imager, image_circle=circle))
     return replace(scenario, site=site)
 
 

@@ -185,5 +185,5 @@ def test_relief_is_rendered_only_where_the_scenario_has_it(tmp_path: Path) -> No
         simulation_of(small(tmp_path, f"{SMALL}[conditions]\nrelief_m = {height_m}\n"), 1)
         for height_m in (0.0, 6.0)
     )
-    sources = [config.imager.source for config in (flat, rolling) if config.imager is not None]
+    sources = [config.imagers[IMAGER_SERIAL].source for config in (flat, rolling)]
     assert [getattr(source, "relief", None) is None for source in sources] == [True, False]

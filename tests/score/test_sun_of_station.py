@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tests.score.scenes import SMALL, small
+from tests.station.imagers import imager_of
 
 from recon.score import StationRun
 from recon.score.scenario_conditions import sky_of
@@ -27,7 +28,7 @@ def test_the_suns_direction_and_the_locked_exposure_come_with_each_ground_image(
     )
     for _ in range(12):
         flown.advance_a_second()
-    image = flown.driver.station.imaging.ground_image
+    image = imager_of(flown.driver.station).ground_image
     assert image is not None
     assert image.exposure_locked is is_locked
     assert image.toward_sun_enu is not None
@@ -40,4 +41,4 @@ def test_the_suns_direction_and_the_locked_exposure_come_with_each_ground_image(
 
 def with_exposure(site: Site, is_locked: bool) -> Site:
     assert site.imager is not None
-    return replace(site, imager=replace(site.imager, exposure_locked=is_locked))
+    return site.with_imager(replace(site.imager, exposure_locked=is_locked))

@@ -10,7 +10,7 @@ from recon.model.airspace import ZoneKind
 from recon.model.units import NS_PER_S
 from recon.sim.app.camera_feed import FeedSettings
 from recon.sim.camera.rig import CameraRig
-from recon.sim.fleet import Airborne, ImagerSetup, SimulationConfig, build_fleet
+from recon.sim.fleet import IMAGER_SERIAL, Airborne, ImagerSetup, SimulationConfig, build_fleet
 from recon.site import Site, demo_site_folder, load_site
 
 SIMULATED_S = 600
@@ -34,7 +34,7 @@ def config(site: Site, seed: int, vehicle_count: int) -> SimulationConfig:
     return SimulationConfig(
         home=site.frame.origin,
         vehicle_count=vehicle_count,
-        imager=ImagerSetup(NoPictures(), FeedSettings(1.0), rig),
+        imagers={IMAGER_SERIAL: ImagerSetup(NoPictures(), FeedSettings(1.0), rig)},
         airborne=Airborne.ALL,
         wanders=True,
         endurance_s=36_000.0,

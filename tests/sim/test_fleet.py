@@ -11,11 +11,18 @@ from recon.sim.app.app import SimulatedApp
 from recon.sim.app.faults import parse_fault
 from recon.sim.camera.frames import StillFrame
 from recon.sim.errors import FaultError
-from recon.sim.fleet import Airborne, ImagerSetup, SimulationConfig, build_fleet, fleet_serials
+from recon.sim.fleet import (
+    IMAGER_SERIAL,
+    Airborne,
+    ImagerSetup,
+    SimulationConfig,
+    build_fleet,
+    fleet_serials,
+)
 
 HOME = GeoPoint(41.9, -93.6, 275.0)
 IMAGER = ImagerSetup(StillFrame(np.zeros((9, 16, 3), dtype=np.uint8)))
-CONFIG = SimulationConfig(home=HOME, imager=IMAGER)
+CONFIG = SimulationConfig(home=HOME, imagers={IMAGER_SERIAL: IMAGER})
 
 
 def heights(apps: list[SimulatedApp]) -> list[float]:
@@ -24,8 +31,15 @@ def heights(apps: list[SimulatedApp]) -> list[float]:
 
 def test_the_imaging_drone_is_the_first_vehicle() -> None:
     assert fleet_serials(CONFIG) == ("SIM-IMAGER", "SIM-1", "SIM-2", "SIM-3")
-    assert fleet_serials(replace(CONFIG, imager=None)) == ("SIM-1", "SIM-2", "SIM-3", "SIM-4")
+    assert fleet_serials(replace(CONFIG, imagers={})) == ("SIM-1", "SIM-2", "SIM-3", "SIM-4")
     assert fleet_serials(replace(CONFIG, vehicle_count=1)) == ("SIM-IMAGER",)
+
+
+def test_several_imaging_drones_come_first() -> None:
+    two = replace(CONFIG, imagers={"NORTH": IMAGER, "SOUTH": IMAGER})
+    assert fleet_serials(two) == ("NORTH", "SOUTH", "SIM-1", "SIM-2")
+    assert heights(build_fleet(two, 0)) == [130.0, 130.0, 0.0, 0.0]
+    assert [app.feed is not None for app in build_fleet(two, 0)] == [True, True, False, False]
 
 
 def test_only_the_imaging_drone_starts_in_the_air_by_default() -> None:

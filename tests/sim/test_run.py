@@ -15,7 +15,7 @@ from recon.sim.app.camera_feed import FeedSettings
 from recon.sim.app.faults import FaultKind, InjectedFault
 from recon.sim.camera.frames import StillFrame
 from recon.sim.errors import FrameSourceError
-from recon.sim.fleet import ImagerSetup, SimulationConfig
+from recon.sim.fleet import IMAGER_SERIAL, ImagerSetup, SimulationConfig
 from recon.sim.run import run_fleet
 
 LIMIT_S = 120.0
@@ -103,7 +103,9 @@ def with_fault(kind: FaultKind, start_s: float, duration_s: float) -> Simulation
 def test_four_vehicles_connect_send_and_end() -> None:
     async def scenario() -> None:
         imager = ImagerSetup(StillFrame(PICTURE), FeedSettings(largest_fps_hz=10.0, latency_s=0.05))
-        async with flying(replace(CONFIG, vehicle_count=4, imager=imager)) as station:
+        async with flying(
+            replace(CONFIG, vehicle_count=4, imagers={IMAGER_SERIAL: imager})
+        ) as station:
             await station.until(
                 lambda: len(station.links) == 4 and all(len(x.packets) > 8 for x in station.links)
             )
@@ -230,7 +232,7 @@ class Broken:
 def test_a_frame_that_cannot_be_rendered_is_reported_and_the_flight_continues() -> None:
     async def scenario() -> None:
         imager = ImagerSetup(Broken(), FeedSettings(largest_fps_hz=10.0))
-        async with flying(replace(CONFIG, imager=imager)) as station:
+        async with flying(replace(CONFIG, imagers={IMAGER_SERIAL: imager})) as station:
             await station.until(lambda: sum("frame lost" in x for x in station.lines) > 2)
             await station.until(lambda: len(station.links[0].packets) > 5)
 

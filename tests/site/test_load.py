@@ -79,6 +79,40 @@ def test_without_control_points_telemetry_leads_on_from_the_origin(folder: Path)
     assert "at 120 m expect the ground image off by 4 m below the drone and 11 m at 195 m" in line
 
 
+class TestSeveralImagingDrones:
+    @staticmethod
+    def tables(*serials: str) -> str:
+        one = BY_TELEMETRY.replace("[imager]", "[[imager]]")
+        return MINIMAL + "".join(one.replace("IMAGER", serial) for serial in serials)
+
+    def test_they_are_known_by_serial_in_the_files_order(self, folder: Path) -> None:
+        site = load_site(write(folder, self.tables("NORTH", "SOUTH")))
+        assert list(site.imagers) == ["NORTH", "SOUTH"]
+        assert site.imager is site.imagers["NORTH"]
+        assert {"NORTH", "SOUTH"} <= set(site.profiles)
+        drones = [line for line in site_report(site) if line.startswith("imaging drone ")]
+        assert [line.split()[2] for line in drones] == ["NORTH:", "SOUTH:"]
+
+    def test_one_in_a_list_is_one(self, folder: Path) -> None:
+        assert list(load_site(write(folder, self.tables("NORTH"))).imagers) == ["NORTH"]
+
+    def test_each_only_once(self, folder: Path) -> None:
+        with pytest.raises(
+            SiteError, match=r"imager\[1\]\.serial: expected each .* got NORTH twice"
+        ):
+            load_site(write(folder, self.tables("NORTH", "NORTH")))
+
+    def test_a_wrong_value_names_which(self, folder: Path) -> None:
+        wrong = self.tables("NORTH", "SOUTH") + "exposure = 'bright'\n"
+        with pytest.raises(SiteError, match=r"imager\[1\]"):
+            load_site(write(folder, wrong))
+
+    def test_not_more_than_one_worker_reads(self, folder: Path) -> None:
+        serials = [f"N{number}" for number in range(5)]
+        with pytest.raises(SiteError, match="expected 4 imaging drones or fewer, got 5"):
+            load_site(write(folder, self.tables(*serials)))
+
+
 def test_without_a_folder_nothing_is_known() -> None:
     site = default_site()
     assert (site.frame, site.ground_grid, site.imager) == (None, None, None)

@@ -146,7 +146,7 @@ def test_a_model_with_gaps_gives_the_share_of_the_boundary_without_ground() -> N
 def test_the_report_names_a_missing_marked_frame() -> None:
     site = load_site(demo_site_folder())
     assert site.imager is not None
-    without = Site(site.name, site.frame, site.ground_grid, replace(site.imager, marked_frame=None))
+    without = site.with_imager(replace(site.imager, marked_frame=None))
     assert any(
         "[imager.marked_frame] is missing: the first frame received" in x
         for x in site_report(without)

@@ -4,9 +4,11 @@ from dataclasses import dataclass, replace
 from math import hypot
 
 import numpy as np
+from tests.station.imagers import with_imagers
 from tests.station.station_world import HOME
 from tests.station.surveyed_world import SurveyedWorld, surveyed_world
 
+from recon.detection import DetectionState
 from recon.forecast import FORECASTERS, ForecastSettings, ForecastState
 from recon.geo.sun import sun_position
 from recon.model.control import AuthorityHolder
@@ -15,6 +17,7 @@ from recon.model.geo import GroundGrid, LatLon, LocalFrame
 from recon.model.shade import ShadeMap
 from recon.station.imaging.shade import READ_SHADE, ShadeRead
 from recon.station.kernel.virtual import EPOCH_NS
+from recon.station.state.imaging import SeenShade
 from recon.station.state.look_aside_record import LookAside
 from recon.station.state.station import Station
 from recon.station.state.steps import JobDone
@@ -86,8 +89,8 @@ class LookingWorld:
         self.station = replace(
             self.station, shade=replace(pipeline, job_id=number, next_job_id=number + 1)
         )
-        seen = np.ones_like(valid)
-        read = ShadeRead(pipeline.detection, forecast, (shade, sun), seen)
+        own = SeenShade(shade, np.ones_like(valid))
+        read = ShadeRead(IMAGER, DetectionState(), forecast, own, (own, sun))
         self.surveyed.driver.handle(JobDone(number, READ_SHADE, read))
 
     def sun_azimuth_deg(self) -> float:
@@ -106,8 +109,7 @@ def looking_world(
     pads = ((place_m[0], place_m[1]), *((40.0 * number, -40.0) for number in range(others)))
     world = surveyed_world(1 + others, pads=pads, **options)
     driver = world.driver
-    imaging = replace(driver.station.imaging, imager_serial=IMAGER)
-    driver.station = replace(driver.station, imaging=imaging)
+    driver.station = with_imagers(driver.station, IMAGER)
     world.fleet.put(IMAGER, (*place_m, height_m))
     world.runs(3.0)
     return LookingWorld(world, (*place_m, height_m))

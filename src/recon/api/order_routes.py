@@ -95,11 +95,13 @@ def _add_orders(app: FastAPI, port: StationPort) -> None:
 
     @app.post("/api/look-aside")
     async def look_aside(asked: schema.LookAsideRequest, request: Request) -> schema.ActionResponse:
-        """Have the imaging drone fly 25 m aside and back, so that a flat scene is decided.
+        """Have an imaging drone fly 25 m aside and back, so that a flat scene is decided.
 
         Guidance has it meanwhile; `look_aside` in the state shows the progress.
         """
-        return port.look_aside(person_of(request), given_at_ns(asked.given_at_unix_ms))
+        return port.look_aside(
+            asked.serial, person_of(request), given_at_ns(asked.given_at_unix_ms)
+        )
 
 
 def _add_hazards(app: FastAPI, port: StationPort) -> None:

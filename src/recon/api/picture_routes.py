@@ -37,13 +37,13 @@ def _add_camera(app: FastAPI, port: StationPort) -> None:
     @app.get("/api/ground-image.png", response_class=Response, responses=PROBLEMS | PNG)
     async def ground_png() -> Response:
         """The newest ground image; its corners are in the state."""
-        newest = found(port.ground_image(), NO_GROUND_IMAGE)
+        newest = found(await asyncio.to_thread(port.ground_image), NO_GROUND_IMAGE)
         return png(await asyncio.to_thread(pictures.ground_png, newest), newest.frame_id)
 
     @app.get("/api/ground-image.tif", response_class=Response, responses=PROBLEMS | tiff)
     async def ground_tiff() -> Response:
         """The newest ground image as a GeoTIFF file."""
-        newest = found(port.ground_image(), NO_GROUND_IMAGE)
+        newest = found(await asyncio.to_thread(port.ground_image), NO_GROUND_IMAGE)
         data = await asyncio.to_thread(port.geotiff, newest)
         name = f'attachment; filename="recon-ground-{newest.frame_id}.tif"'
         return Response(data, media_type="image/tiff", headers={"Content-Disposition": name})

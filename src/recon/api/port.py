@@ -105,8 +105,13 @@ class StationPort(Protocol):
         Each result is the hold that the return starts with; the state shows waves and heights.
         """
 
-    def look_aside(self, by: Person, given_at_ns: int | None = None) -> ActionResponse:
-        """Have the imaging drone look aside; refusals are results, not errors."""
+    def look_aside(
+        self, serial: str | None, by: Person, given_at_ns: int | None = None
+    ) -> ActionResponse:
+        """Have an imaging drone look aside; refusals are results, not errors.
+
+        None: the one whose light is unknown, or the site's first.
+        """
 
     def dismiss_hazard(self, name: str, by: Person) -> bool:
         """Dismiss the hazard area of a lost vehicle; False when it has none."""

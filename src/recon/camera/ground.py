@@ -181,6 +181,7 @@ class GroundProjector:
             pose=pose,
             registration=Registration.UNREGISTERED,
             serial=frame.serial,
+            pixels_per_radian=self.camera.pixels_per_radian,
         )
 
     def lay_pixels(self, rgb: RgbImage, pose: CameraPose) -> tuple[RgbImage, npt.NDArray[np.bool_]]:

@@ -27,6 +27,8 @@ INVERSE_MISMATCH_SHARE = 0.005
 
 COMPARED_ANGLES_RAD = np.deg2rad(np.linspace(0.0, 85.0, 86))
 
+NEAR_AXIS_RAD = 0.3
+
 
 @dataclass(frozen=True, slots=True)
 class OmnidirectionalCamera:
@@ -63,6 +65,11 @@ class OmnidirectionalCamera:
     def largest_angle_rad(self) -> float:
         """Largest angle from the axis, in radians, at which rays are projected."""
         return self.profile.largest_angle_rad
+
+    @property
+    def pixels_per_radian(self) -> float:
+        """Pixels per radian near the axis; a fisheye's hardly change over most of its field."""
+        return float(self.profile.radius_px(np.array([NEAR_AXIS_RAD]))[0]) / NEAR_AXIS_RAD
 
     def project(self, rays: npt.ArrayLike) -> FloatArray:
         """Return pixels (N, 2) as (col, row) of rays (N, 3) of any length.

@@ -49,7 +49,7 @@ COMMANDS = {
     ),
     "look-aside": CommandSource(
         "look_aside:look_aside_command",
-        "Fly the imaging drone 25 m aside and back, to tell even sun from even shade.",
+        "Fly an imaging drone 25 m aside and back, to tell even sun from even shade.",
     ),
     "goto": CommandSource(
         "steering:goto_command",

@@ -217,6 +217,7 @@ class RecordedFlight:
             registration_residual_m=found.residual_m,
             toward_sun_enu=_toward_sun(self._start, self._options, frame.at_s),
             exposure_locked=self._options.exposure is ExposureLock.LOCKED,
+            pixels_per_radian=self._projector.camera.pixels_per_radian,
         )
         detect = DETECTORS[self._options.method]
         self._shade, shade = detect(self._shade, image, self._settings)

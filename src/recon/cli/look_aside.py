@@ -1,9 +1,11 @@
-"""`recon look-aside`: the imaging drone flies 25 m aside and back, and its progress."""
+"""`recon look-aside`: an imaging drone flies 25 m aside and back, and its progress."""
 
 import asyncio
 import time
+from typing import Annotated
 
 import msgspec
+import typer
 
 from recon.cli.connection import (
     DEFAULT_ADDRESS,
@@ -13,6 +15,7 @@ from recon.cli.connection import (
     JsonOption,
     TokenOption,
     WaitOption,
+    named_serials,
     run_at_station,
 )
 from recon.cli.output import print_json, print_line
@@ -22,19 +25,29 @@ POLL_INTERVAL_S = 0.5
 
 
 def look_aside_command(
+    vehicle: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="[VEHICLE]",
+            help="Serial, or name from site.toml; without one the imaging drone below which light "
+            "is unknown, or the site's first.",
+        ),
+    ] = None,
     wait: WaitOption = 0.0,
     as_json: JsonOption = False,
     address: AddressOption = DEFAULT_ADDRESS,
     token_file: TokenOption = None,
 ) -> None:
-    """Fly the imaging drone 25 m aside and back, to tell even sun from even shade.
+    """Fly an imaging drone 25 m aside and back, to tell even sun from even shade.
 
     It must hover. Exits once it has begun; with --wait, once it has ended or after that many
     seconds. It continues after the exit: `recon hold` stops it.
     """
 
     async def work(station: Station) -> int:
-        refusal = await station.look_aside()
+        refusal = await station.look_aside(
+            named_serials(station, [vehicle])[0] if vehicle is not None else None
+        )
         if refusal is not None:
             print_line(f"look aside: refused ({refusal.rule}): {refusal.reason}")
             return REFUSED

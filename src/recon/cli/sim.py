@@ -2,6 +2,7 @@
 
 import asyncio
 import sys
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, NamedTuple
@@ -58,7 +59,7 @@ from recon.sim.camera.frames import FrameSource, folder_frames
 from recon.sim.camera.replay import load_replay
 from recon.sim.camera.rig import CameraRig
 from recon.sim.errors import SimulationError
-from recon.sim.fleet import Airborne, ImagerSetup, SimulationConfig
+from recon.sim.fleet import IMAGER_SERIAL, Airborne, ImagerSetup, SimulationConfig
 from recon.sim.run import run_fleet
 from recon.sim.world import LayerSettings, Sky, SkySettings, SunSettings, WindSettings
 from recon.site import Imager, Site, SiteError, demo_site_folder, load_site
@@ -69,7 +70,7 @@ sim_app = new_app()
 
 
 class ImagerWorld(NamedTuple):
-    """Camera and pose of the imaging drone (None: above home), and the source of its frames."""
+    """Camera and pose of an imaging drone (None: above home), and the source of its frames."""
 
     rig: CameraRig | None
     source: FrameSource
@@ -119,13 +120,16 @@ def sim_command(
             raise SimulationError(
                 "--no-imager: expected neither --frames nor --replay-site, got one"
             )
-        world = _imager_world(place, replay_site, frames, frame_size, seed) if imager else None
+        worlds = _imager_worlds(place, replay_site, frames, frame_size, seed) if imager else {}
         config = SimulationConfig(
-            home=_home(home, place, world),
+            home=_home(home, place, worlds),
             station_host=host,
             station_port=port,
             vehicle_count=vehicles,
-            imager=None if world is None else ImagerSetup(world.source, feed_settings, world.rig),
+            imagers={
+                serial: ImagerSetup(world.source, feed_settings, world.rig)
+                for serial, world in worlds.items()
+            },
             altitude_reference=AltitudeReference(altitude_reference.value),
             hover_on_ground=hover_on_ground,
             airborne=_AIRBORNE[airborne],
@@ -191,33 +195,39 @@ def _load_site(folder: Path | None) -> Site:
     return place
 
 
-def _home(text: str | None, place: Site, world: ImagerWorld | None) -> GeoPoint:
-    frame = place.frame if world is None or world.rig is None else world.rig.frame
+def _home(text: str | None, place: Site, worlds: Mapping[str, ImagerWorld]) -> GeoPoint:
+    rigs = (world.rig for world in worlds.values())
+    frame = next((rig.frame for rig in rigs if rig is not None), place.frame)
     assert frame is not None
     if text is None:
         return frame.origin
     return GeoPoint(*parse_home(text), frame.origin.ellipsoid_height_m)
 
 
-def _imager_world(
+def _imager_worlds(
     place: Site, replay: Path | None, frames: Path | None, frame_size: str, seed: int
-) -> ImagerWorld:
-    """Return the imaging drone's rig and frames: of a real field, a folder, or rendered land."""
+) -> dict[str, ImagerWorld]:
+    """Return the imaging drones' rigs and frames: of a real field, a folder, or rendered land."""
     if replay is not None and frames is not None:
         raise SimulationError("expected --replay-site or --frames, got both")
     if replay is not None:
-        return ImagerWorld(*load_replay(replay))
+        return {IMAGER_SERIAL: ImagerWorld(*load_replay(replay))}
     cols, rows = parse_size(frame_size)
-    rig = None if place.imager is None else _rig(place, place.imager)
+    rigs = {serial: _rig(place, imager) for serial, imager in place.imagers.items()}
     if frames is not None:
-        return ImagerWorld(rig, folder_frames(frames, rows, cols))
-    if rig is None or place.imager is None:
+        still = folder_frames(frames, rows, cols)
+        return {s: ImagerWorld(rigs.get(s), still) for s in rigs or (IMAGER_SERIAL,)}
+    if not rigs:
         raise SimulationError(
             "expected a site with an [imager], or --frames, or --no-imager, got none"
         )
-    sky, imager = _sky(rig.frame.origin, seed), CameraSettings(seed)
-    land = FieldRenderer(rig.camera, place.imager.image_circle, seed, sky, imager)
-    return ImagerWorld(rig, land)
+    assert place.frame is not None, "a site with an imaging drone has an origin"
+    sky, camera = _sky(place.frame.origin, seed), CameraSettings(seed)
+    worlds = {}
+    for serial, rig in rigs.items():
+        circle = place.imagers[serial].image_circle
+        worlds[serial] = ImagerWorld(rig, FieldRenderer(rig.camera, circle, seed, sky, camera))
+    return worlds
 
 
 def _sky(origin: GeoPoint, seed: int) -> Sky:

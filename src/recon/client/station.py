@@ -138,12 +138,13 @@ class Station:
         """Return the all stop in force; None without one."""
         return (await self._state()).stop_latch
 
-    async def look_aside(self) -> Refusal | None:
-        """Have the imaging drone fly 25 m aside and back; None on success.
+    async def look_aside(self, serial: str | None = None) -> Refusal | None:
+        """Have an imaging drone fly 25 m aside and back; None on success.
 
-        It goes on after this call; `looking_aside` has the progress, a hold stops it.
+        By default the one whose light is unknown, or the site's first. It goes on after this call;
+        `looking_aside` has the progress, a hold stops it.
         """
-        request = {"given_at_unix_ms": self._order_api.station_time_ms()}
+        request = {"serial": serial, "given_at_unix_ms": self._order_api.station_time_ms()}
         answer = await self._http.post(
             "/api/look-aside", request, AnswerMessage, "an answer to a look aside"
         )

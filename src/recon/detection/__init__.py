@@ -12,6 +12,7 @@ from typing import TypeAlias
 
 from recon.detection.brightness_ratio import brightness_ratio
 from recon.detection.frame_step import FrameFault, RejectedFrame
+from recon.detection.merged import merged
 from recon.detection.otsu import otsu
 from recon.detection.settings import DetectionSettings
 from recon.detection.state import DetectionState
@@ -26,6 +27,7 @@ __all__ = [
     "Detector",
     "FrameFault",
     "RejectedFrame",
+    "merged",
     "sunlit_reference_of",
 ]
 

@@ -47,7 +47,7 @@ def brightness_ratio(
     # In full shade only the diffuse share is left: ratio = diffuse + (1 - diffuse) x transmittance.
     transmittance = (ratio - settings.diffuse_share) / (1.0 - settings.diffuse_share)
     found = (transmittance, valid, _confidence(light, history, settings))
-    return state, shade_map(image, grid, found, settings)
+    return state, shade_map(image, grid, found)
 
 
 def _confidence(light: FloatMap, history: LightHistory, settings: DetectionSettings) -> FloatMap:

@@ -145,14 +145,13 @@ def shade_map(
     image: GroundImage,
     grid: GroundGrid,
     found: tuple[FloatMap, MaskMap, FloatMap],
-    settings: DetectionSettings,
 ) -> ShadeMap:
     """Return the shade map of (transmittance, validity, confidence), each (R, C).
 
     Invalid cells get NaN and confidence 0; transmittance and confidence are clipped to [0, 1].
     """
     transmittance, valid, confidence = found
-    coarser_m = metres_per_pixel(grid, image.pose, settings.pixels_per_radian)
+    coarser_m = metres_per_pixel(grid, image.pose, image.pixels_per_radian)
     nowhere = np.float32(np.nan)
     return ShadeMap(
         grid=grid,

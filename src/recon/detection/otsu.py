@@ -27,7 +27,7 @@ def otsu(
     levels: FloatMap = 255.0 * cells.light ** np.float32(1.0 / settings.gamma)
     transmittance, separation = _two_classes(levels, levels[cells.seen])
     confidence = np.full(levels.shape, separation, dtype=np.float32)
-    return state, shade_map(image, grid, (transmittance, cells.seen, confidence), settings)
+    return state, shade_map(image, grid, (transmittance, cells.seen, confidence))
 
 
 def _two_classes(levels: FloatMap, seen: npt.NDArray[np.float32]) -> tuple[FloatMap, float]:

@@ -70,6 +70,3 @@ class DetectionSettings:
     flat_share: float = 0.2
     """A larger share at one single level is not ground, which noise spreads over many levels:
     decoders fill missing parts with one grey, and saturated sensors give one white."""
-
-    pixels_per_radian: float = 250.0
-    """Of the imaging drone's lens at 1280 columns: a fisheye of 170 degrees."""

@@ -64,7 +64,7 @@ def sunlit_reference(
     memory = _with_keyframe(memory, coarse, image, grid, is_locked)
     memory = _believed(memory, coarse, is_locked)
     found = _transmittance(memory, fine) if memory.is_certain else _unknown(fine)
-    return replace(state, sunlit=memory), shade_map(image, grid, found, settings)
+    return replace(state, sunlit=memory), shade_map(image, grid, found)
 
 
 def sunlit_reference_of(state: DetectionState, image: GroundImage) -> SunlitReference | None:

@@ -10,13 +10,13 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import TypeAlias
 
-from recon.forecast.global_shift import global_shift
+from recon.forecast.global_shift import global_shift, moved_on
 from recon.forecast.persistence import persistence
 from recon.forecast.settings import ForecastSettings
 from recon.forecast.state import ForecastState
 from recon.model.shade import ShadeMap, SunForecast
 
-__all__ = ["FORECASTERS", "ForecastSettings", "ForecastState", "Forecaster"]
+__all__ = ["FORECASTERS", "ForecastSettings", "ForecastState", "Forecaster", "moved_on"]
 
 Forecaster: TypeAlias = Callable[
     [ForecastState, ShadeMap, ForecastSettings], tuple[ForecastState, SunForecast]

@@ -266,7 +266,7 @@ class FleetReturnOrdered:
 
 @dataclass(frozen=True, slots=True)
 class LookAsideOrdered:
-    """The imaging drone is to fly a little aside and back, so that a flat scene is decided.
+    """An imaging drone is to fly a little aside and back, so that a flat scene is decided.
 
     `given_at_ns` is when its person gave the command, in station time; None if not stated.
     `survey_id` is the survey for which the station itself orders it; None: a person does.
@@ -276,6 +276,8 @@ class LookAsideOrdered:
     given_at_ns: int | None = None
     person: str = ""
     survey_id: int | None = None
+    serial: str | None = None
+    """Which one; None: the one whose light is unknown, or the site's first."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -73,3 +73,5 @@ class GroundImage:
     """Unit vector (3,) to the sun at capture; None when unknown or the sun is below the horizon."""
     exposure_locked: bool = False
     """Whether the pilot locked exposure and white balance, by the site's file."""
+    pixels_per_radian: float = 250.0
+    """Of the lens near its axis; by default a fisheye of 170 degrees at 1280 columns."""

@@ -29,7 +29,7 @@ from recon.station.imaging.frames import LAY_FRAME
 from recon.station.imaging.projection import LaidFrame
 from recon.station.imaging.shade import READ_SHADE, ReadShade, ShadeRead
 from recon.station.kernel.worker import JobRunner
-from recon.station.state.imaging import LayFrame
+from recon.station.state.imaging import LayFrame, SeenShade
 from recon.station.state.settings import StationSettings
 
 PLACEHOLDER_PX = 8
@@ -51,8 +51,7 @@ class Placeholders:
 
 def renderer_of(scenario: Scenario, seed: int) -> FieldRenderer:
     """Return the renderer of the scenario's frames, which knows their true poses."""
-    imager = simulation_of(scenario, seed).imager
-    assert imager is not None  # a scenario has an imaging drone
+    imager = simulation_of(scenario, seed).imagers[IMAGER_SERIAL]
     assert isinstance(imager.source, FieldRenderer)
     return imager.source
 
@@ -60,9 +59,10 @@ def renderer_of(scenario: Scenario, seed: int) -> FieldRenderer:
 def config_of(scenario: Scenario, seed: int) -> SimulationConfig:
     """Return the scenario's simulation, with rendered frames only where they are read."""
     config = simulation_of(scenario, seed, conditions_of(scenario, seed).feed)
-    if scenario.methods.detection != IDEAL or config.imager is None:
+    if scenario.methods.detection != IDEAL:
         return config
-    return replace(config, imager=replace(config.imager, source=Placeholders()))
+    unread = replace(config.imagers[IMAGER_SERIAL], source=Placeholders())
+    return replace(config, imagers={IMAGER_SERIAL: unread})
 
 
 def settings_of(scenario: Scenario) -> StationSettings:
@@ -128,9 +128,10 @@ class IdealDetection:
     def read(self, work: ReadShade) -> ShadeRead:
         """Return the true sky of an image as a shade map, and the forecast from it."""
         shade = self._shade(work.image)
+        own = SeenShade(shade, work.image.valid)
         method = FORECASTERS[work.forecast_settings.method]
         forecast, sun = method(work.forecast, shade, work.forecast_settings)
-        return ShadeRead(work.detection, forecast, (shade, sun), work.image.valid)
+        return ShadeRead(IMAGER_SERIAL, work.detection, forecast, own, (own, sun))
 
     def _shade(self, image: GroundImage) -> ShadeMap:
         """Return the true sky as this image shows it; raises `ValueError` without its frame."""

@@ -61,7 +61,7 @@ def with_exposure(scenario: Scenario, is_locked: bool) -> Scenario:
     """Return the scenario with exposure automatic or locked, and the station informed of it."""
     imager = scenario.site.imager
     assert imager is not None  # or it would not have been read
-    site = replace(scenario.site, imager=replace(imager, exposure_locked=is_locked))
+    site = scenario.site.with_imager(replace(imager, exposure_locked=is_locked))
     conditions = replace(scenario.conditions, exposure_locked=is_locked)
     return replace(scenario, site=site, conditions=conditions)
 

@@ -14,6 +14,7 @@ from recon.score.score_grid import nearest_cells, score_grid, scored_cells
 from recon.score.settings import SCORE
 from recon.score.shade_figures import ShadeFigures, map_figures
 from recon.score.true_frames import TrueFrames, registration_errors_m
+from recon.sim.fleet import IMAGER_SERIAL
 from recon.sim.world import Sky
 from recon.station.state.station import Station
 
@@ -93,7 +94,7 @@ class ShadeScoring:
         if has_forecast and now_s >= self._forecasts_due_s and line.sun is not None:
             self._forecasts_due_s = now_s + SCORE.score_forecasts_every_s
             self._score_forecast(line.sun)
-        self._score_pose(station.imaging.ground_image)
+        self._score_pose(station.imaging.imagers[IMAGER_SERIAL].ground_image)
 
     def _score_map(self, shade: ShadeMap | None, now_s: float) -> None:
         at_s = now_s if shade is None else shade.captured_at_ns / NS_PER_S

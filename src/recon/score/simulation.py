@@ -47,7 +47,9 @@ def simulation_of(
     return SimulationConfig(
         home=frame.origin,
         vehicle_count=len(fleet.serials) + 1,
-        imager=ImagerSetup(source, silent if feed is None else feed, rig),
+        imagers={
+            IMAGER_SERIAL: ImagerSetup(source, silent if feed is None else feed, rig),
+        },
         airborne=Airborne.IMAGER,
         endurance_s=fleet.endurance_s,
         endurances_s={IMAGER_SERIAL: IMAGER_ENDURANCE_S},

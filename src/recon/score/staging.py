@@ -59,7 +59,7 @@ def generated_site(
         name=name,
         frame=frame,
         ground_grid=_grid(frame, imager),
-        imager=_generated_imager(frame, imager),
+        imagers={IMAGER_SERIAL: _generated_imager(frame, imager)},
         profiles=_profiles(frame, fleet, imager, photo_interval_s, ceiling_m),
         layers=Layers(
             boundary=_boundary([*region.outline_m.tolist(), *fleet.pads_m, imager.over_m]),
@@ -212,11 +212,13 @@ def _on_folder(folder: Path, file: ScenarioFile, errors: ScenarioErrors) -> Stag
     except SiteError as problem:
         raise errors.error(f"folder: expected a site that loads, got: {problem}", "site") from None
     frame = site.frame
-    if frame is None or site.imager is None or site.imager.serial != IMAGER_SERIAL:
-        text = f"folder: expected a site with imaging drone {IMAGER_SERIAL}, got none"
+    only = site.imager
+    if frame is None or only is None or list(site.imagers) != [IMAGER_SERIAL]:
+        got = ", ".join(site.imagers) or "none"
+        text = f"folder: expected a site with the one imaging drone {IMAGER_SERIAL}, got {got}"
         raise errors.error(text, "site")
     fleet = _fleet(file.fleet, _site_pads_m(site, frame, file.fleet, errors))
-    east_m, north_m, up_m = site.imager.marked_pose.position_enu_m.tolist()
+    east_m, north_m, up_m = only.marked_pose.position_enu_m.tolist()
     imager = _imager(file.imager, (east_m, north_m), up_m)
     return Staged(site, frame, fleet, imager)
 

@@ -40,7 +40,7 @@ class Airborne(Enum):
 
 @dataclass(frozen=True, slots=True)
 class ImagerSetup:
-    """The imaging drone's frames; with a rig it starts where the rig's marked frame was taken."""
+    """An imaging drone's frames; with a rig it starts where the rig's marked frame was taken."""
 
     source: FrameSource
     feed: FeedSettings = field(default_factory=FeedSettings)
@@ -55,7 +55,8 @@ class SimulationConfig:
     station_host: str = "127.0.0.1"
     station_port: int = 3001
     vehicle_count: int = 4
-    imager: ImagerSetup | None = None
+    imagers: Mapping[str, ImagerSetup] = field(default_factory=dict)
+    """The imaging drones by serial."""
     altitude_reference: AltitudeReference = AltitudeReference.TAKEOFF
     hover_on_ground: HoverOnGround = HoverOnGround.NOTHING
     airborne: Airborne = Airborne.IMAGER
@@ -84,10 +85,9 @@ class SimulationConfig:
 
 
 def fleet_serials(config: SimulationConfig) -> tuple[str, ...]:
-    """Return the serials: the imaging drone first, if any, then SIM-1, SIM-2, ..."""
-    survey_count = config.vehicle_count - (config.imager is not None)
-    imager = (IMAGER_SERIAL,) if config.imager is not None else ()
-    return imager + tuple(f"SIM-{number}" for number in range(1, survey_count + 1))
+    """Return the serials: the imaging drones first, then SIM-1, SIM-2, ..."""
+    survey_count = config.vehicle_count - len(config.imagers)
+    return tuple(config.imagers) + tuple(f"SIM-{number}" for number in range(1, survey_count + 1))
 
 
 def build_fleet(
@@ -134,31 +134,32 @@ def _build_app(
         ),
         renders_inline=renders_inline,
     )
-    is_imager = serial == IMAGER_SERIAL
+    imager = config.imagers.get(serial)
     settings = AircraftSettings(
         go_home_height_m=config.go_home_heights_m.get(serial, _go_home_height_m(number)),
         endurance_s=endurance_s,
         battery_swap_s=config.battery_swap_s,
     )
-    motion = _imager_start(config) if is_imager else _survey_start(config, number)
+    motion = _imager_start(config, imager) if imager else _survey_start(config, number)
     active_mode: ActiveMode = Grounded() if motion.height_m == 0.0 else PositionHold()
     east_m, north_m = (float(v) for v in enu_from_point(LocalFrame(config.home), home)[:2])
-    if config.wanders and not is_imager:
+    if config.wanders and imager is None:
         active_mode = _wandering(settings, motion, number, random, (north_m, east_m))
     wind = None if config.wind is None else Wind(config.wind)
     air = Air(wind, north_m, east_m, start_ns)
     aircraft = Aircraft(start_ns, settings, motion, active_mode, battery=battery, air=air)
-    if not is_imager or config.imager is None:
+    if imager is None:
         return SimulatedApp(app, aircraft)
     # A generator of its own: adding a camera must not change the aircraft.
     feed_random = Random(f"{config.seed}/{serial}/feed")
-    feed = CameraFeed(config.imager.source, config.imager.feed, feed_random, start_ns)
-    return SimulatedApp(app, aircraft, feed, config.imager.rig)
+    feed = CameraFeed(imager.source, imager.feed, feed_random, start_ns)
+    return SimulatedApp(app, aircraft, feed, imager.rig)
 
 
 def _home_of(config: SimulationConfig, serial: str, number: int) -> GeoPoint:
-    """Return the takeoff point: the imaging drone's below its marked position, others on pads."""
-    rig = config.imager.rig if config.imager is not None and serial == IMAGER_SERIAL else None
+    """Return the takeoff point: an imaging drone's below its marked position, others on pads."""
+    imager = config.imagers.get(serial)
+    rig = None if imager is None else imager.rig
     if rig is not None:
         ground_m = rig.frame.origin.ellipsoid_height_m
         beneath = GeoPoint(rig.marked.latitude_deg, rig.marked.longitude_deg, ground_m)
@@ -176,8 +177,8 @@ def _go_home_height_m(number: int) -> float:
     return 40.0 + 8.0 * ((number - 1) % 10)
 
 
-def _imager_start(config: SimulationConfig) -> AircraftMotion:
-    rig = config.imager.rig if config.imager is not None else None
+def _imager_start(config: SimulationConfig, imager: ImagerSetup) -> AircraftMotion:
+    rig = imager.rig
     yaw_deg = 0.0 if rig is None else rig.marked.yaw_deg
     if config.airborne is Airborne.NONE:
         return AircraftMotion(yaw_deg=yaw_deg)

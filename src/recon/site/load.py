@@ -33,7 +33,7 @@ from recon.site.schema import (
     SiteTable,
     VehicleTable,
 )
-from recon.site.site import Layers, Site
+from recon.site.site import Imager, Layers, Site
 
 PLACEHOLDER_SERIAL = "00000"
 """Sent by apps before they know their aircraft's serial."""
@@ -103,6 +103,8 @@ SITE_FILE = "site.toml"
 LARGEST_FILE_BYTES = 256 * 1024
 MOST_CELLS = 4096 * 4096
 MOST_VEHICLES = 64
+MOST_IMAGERS = 4
+"""Frames of more would come faster than one worker reads them."""
 
 
 def load_site(folder: Path) -> Site:
@@ -123,17 +125,16 @@ def load_site(folder: Path) -> Site:
     ground = convert(path, table.ground_image or {}, GroundImageTable, "ground_image")
     grid = _ground_grid(path, ground, frame)
     profiles = _profiles(path, table.vehicles)
-    imager = None
-    if table.imager is not None:
-        imager = imager_from_table(path, convert(path, table.imager, ImagerTable, "imager"), frame)
-        profiles.setdefault(imager.serial, VehicleProfile(imager.serial))
+    imagers = _imagers(path, table.imager, frame)
+    for serial in imagers:
+        profiles.setdefault(serial, VehicleProfile(serial))
     layers = read_layers(path, convert(path, table.layers, LayersTable, "layers"), frame)
     _give_pads(path, layers, profiles)
     limits = limits_from_table(
         convert(path, table.limits, LimitsTable, "limits"), f"{path}: limits"
     )
     failsafe = failsafe_from_tables(path, table.failsafe)
-    site = Site(table.name, frame, grid, imager, profiles, layers, limits, failsafe)
+    site = Site(table.name, frame, grid, imagers, profiles, layers, limits, failsafe)
     refuse_high_go_home_heights(str(path), profiles, limits)
     refuse_misplaced_pads(path, site)
     if table.elevation is not None:
@@ -143,6 +144,27 @@ def load_site(folder: Path) -> Site:
         refuse_sunken_pads(path, site)
     refuse_sunken_zones(path, site)
     return site
+
+
+def _imagers(
+    path: Path, tables: dict[str, Any] | list[dict[str, Any]] | None, frame: LocalFrame
+) -> dict[str, Imager]:
+    """Return the imaging drones of [imager], or of several [[imager]], by serial."""
+    listed = tables if isinstance(tables, list) else [] if tables is None else [tables]
+    if len(listed) > MOST_IMAGERS:
+        raise SiteError(
+            f"{path}: imager: expected {MOST_IMAGERS} imaging drones or fewer, got {len(listed)}"
+        )
+    imagers: dict[str, Imager] = {}
+    for number, table in enumerate(listed):
+        key = f"imager[{number}]" if isinstance(tables, list) else "imager"
+        imager = imager_from_table(path, convert(path, table, ImagerTable, key), frame)
+        if imager.serial in imagers:
+            raise SiteError(
+                f"{path}: {key}.serial: expected each imaging drone once, got {imager.serial} twice"
+            )
+        imagers[imager.serial] = imager
+    return imagers
 
 
 def _read_toml(path: Path) -> dict[str, Any]:

@@ -27,10 +27,10 @@ def site_report(site: Site) -> tuple[str, ...]:
         lines.append(
             f"ground image {grid.cols} x {grid.rows} cells of {grid.cell_m:g} m around the origin"
         )
-    if site.imager is None:
+    if not site.imagers:
         lines.append("no imaging drone: ground image is off")
-    else:
-        lines += _imager_report(site.imager)
+    for imager in site.imagers.values():
+        lines += _imager_report(imager)
     lines += _layers_report(site.layers)
     lines += [_terrain_report(site), _limits_report(site.limits)]
     lines.append(failsafe_report(site.failsafe))

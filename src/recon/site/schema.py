@@ -75,7 +75,7 @@ class ImageCircleTable(_Table, frozen=True):
 
 
 class ImagerTable(_Table, frozen=True):
-    """[imager]: the imaging drone, its lens, and its ground control points unless it has none."""
+    """[imager], or each of [[imager]]: an imaging drone, its lens, its control points if any."""
 
     serial: Serial
     placed_by: Literal["control_points", "telemetry"] = "control_points"
@@ -200,7 +200,7 @@ class SiteTable(_Table, frozen=True):
     name: Text
     origin: dict[str, Any]
     limits: dict[str, Any] = {}
-    imager: dict[str, Any] | None = None
+    imager: dict[str, Any] | list[dict[str, Any]] | None = None
     ground_image: dict[str, Any] | None = None
     layers: dict[str, Any] = {}
     elevation: dict[str, Any] | None = None

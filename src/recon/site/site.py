@@ -1,7 +1,7 @@
-"""A site: origin, imaging drone, vehicle profiles, layers and elevation."""
+"""A site: origin, imaging drones, vehicle profiles, layers and elevation."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from recon.camera import (
     ImageCircle,
@@ -19,7 +19,7 @@ from recon.safety.failsafe import DEFAULT_MATRIX
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Imager:
-    """The imaging drone: its lens, and a pose of its camera from which telemetry leads on.
+    """An imaging drone: its lens, and a pose of its camera from which telemetry leads on.
 
     `marked_pose` is the camera's pose when the marked frame was taken, `marked_frame` its telemetry
     then. Without control points both are those of a level camera on the ground at the origin.
@@ -68,13 +68,23 @@ class Site:
     name: str
     frame: LocalFrame | None = None
     ground_grid: GroundGrid | None = None
-    imager: Imager | None = None
+    imagers: Mapping[str, Imager] = field(default_factory=dict)
+    """The imaging drones by serial, in the order of the file."""
     profiles: Mapping[str, VehicleProfile] = field(default_factory=dict)
     layers: Layers = field(default_factory=Layers)
     limits: FlightLimits = field(default_factory=FlightLimits)
     failsafe: FailsafeMatrix = DEFAULT_MATRIX
     elevation: ElevationModel | None = None
     elevation_file: str | None = None
+
+    @property
+    def imager(self) -> Imager | None:
+        """The first imaging drone, where one is meant; None without any."""
+        return next(iter(self.imagers.values()), None)
+
+    def with_imager(self, imager: Imager) -> "Site":
+        """Return the site with an imaging drone added, or in place of the one of its serial."""
+        return replace(self, imagers={**self.imagers, imager.serial: imager})
 
     @property
     def airspace(self) -> Airspace:

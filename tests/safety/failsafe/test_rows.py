@@ -175,10 +175,11 @@ def test_the_words_state_value_limit_and_what_to_do() -> None:
 
 class TestTheStationsOwn:
     def test_the_imaging_drone_concerns_the_others(self) -> None:
-        lost = SharedFacts(imager_serial="B", imager_lost_since_ns=ago_ns(5.0))
+        lost = SharedFacts(imager_serials=frozenset({"B", "C"}), imager_lost_since_ns=ago_ns(5.0))
         assert since(FailsafeCondition.IMAGING_DRONE_LOST, facts(station=lost)) == ago_ns(5.0)
-        itself = facts(station=lost, serial="B")
-        assert since(FailsafeCondition.IMAGING_DRONE_LOST, itself) is None
+        for serial in ("B", "C"):
+            itself = facts(station=lost, serial=serial)
+            assert since(FailsafeCondition.IMAGING_DRONE_LOST, itself) is None
 
     def test_lateness_and_operators(self) -> None:
         given = facts(station=SharedFacts(1, 2))

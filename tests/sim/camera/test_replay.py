@@ -19,7 +19,7 @@ from recon.model.geo import GeoPoint, LocalFrame
 from recon.sim.camera.frames import CameraView
 from recon.sim.camera.replay import load_replay
 from recon.sim.errors import ReplayError
-from recon.sim.fleet import ImagerSetup, SimulationConfig, build_fleet
+from recon.sim.fleet import IMAGER_SERIAL, ImagerSetup, SimulationConfig, build_fleet
 from recon.site import demo_site_folder
 
 ORIGIN = GeoPoint(44.0, -93.0, 300.0)
@@ -49,7 +49,9 @@ def make_field(folder: Path) -> None:
 def test_the_imaging_drone_starts_where_the_frame_was_taken(tmp_path: Path) -> None:
     make_field(tmp_path / "field")
     rig, still = load_replay(tmp_path / "field")
-    config = SimulationConfig(home=ORIGIN, vehicle_count=1, imager=ImagerSetup(still, rig=rig))
+    config = SimulationConfig(
+        home=ORIGIN, vehicle_count=1, imagers={IMAGER_SERIAL: ImagerSetup(still, rig=rig)}
+    )
     (app,) = build_fleet(config, 0)
     truth = app.true_reference()
     place = GeoPoint(truth.latitude_deg, truth.longitude_deg, 300.0)

@@ -231,11 +231,7 @@ class TestBuild:
     def test_the_demonstration_site_becomes_a_station(self) -> None:
         site = load_site(demo_site_folder())
         station = first_state(site)
-        assert station.imaging.imager_serial == "SIM-IMAGER"
-        pixels = station.settings.detection.pixels_per_radian
-        assert site.imager is not None
-        at_axis = -site.imager.camera.direct[0]
-        assert pixels == pytest.approx(at_axis, rel=0.15), "the imager's own lens, not the default"
+        assert list(station.imaging.imagers) == ["SIM-IMAGER"]
         driver = AsyncioDriver(station, lambda: 0)
         site_view = Service.around(driver, site, None).state().site
         assert site_view is not None

@@ -13,10 +13,16 @@ from recon.model.imagery import CameraPose, Frame, GroundImage, Registration
 from recon.model.units import NS_PER_S, Stamped
 from recon.model.vehicle import Attitude, VehicleState
 from recon.station.alarms.conditions import conditions
-from recon.station.imaging.frames import LAY_FRAME, LOST_FOR_S, lay_job, with_sample
+from recon.station.imaging.frames import (
+    LAY_FRAME,
+    LOST_FOR_S,
+    started,
+    with_frame,
+    with_sample,
+)
 from recon.station.imaging.projection import LaidFrame
 from recon.station.kernel.step import step
-from recon.station.state.imaging import Imaging
+from recon.station.state.imaging import ImagerFrames, Imaging, LayFrame
 from recon.station.state.station import Station
 from recon.station.state.steps import Job, JobDone, JobDropped, JobFailed
 
@@ -32,24 +38,41 @@ def imager(height_m: float | None) -> VehicleState:
     )
 
 
-def frame(captured_at_s: float) -> Frame:
+def frame(captured_at_s: float, serial: str = "IMAGER") -> Frame:
     captured_at_ns = round(captured_at_s * NS_PER_S)
-    return Frame(
-        1, "IMAGER", captured_at_ns, captured_at_ns, 0.25, rgb=np.zeros((2, 2, 3), np.uint8)
-    )
+    return Frame(1, serial, captured_at_ns, captured_at_ns, 0.25, rgb=np.zeros((2, 2, 3), np.uint8))
 
 
-def observed(seconds: int, kept: int = 50) -> Imaging:
+def observed(seconds: int, kept: int = 50) -> ImagerFrames:
     """Ten samples a second; the height identifies them."""
-    imaging = Imaging("IMAGER", MARKED, is_reference_assumed=False)
+    seen = ImagerFrames("IMAGER", MARKED, is_reference_assumed=False)
     for tick in range(10 * seconds):
-        imaging = with_sample(imaging, imager(tick / 10), tick * NS_PER_S // 10, kept)
-    return imaging
+        seen = with_sample(seen, imager(tick / 10), tick * NS_PER_S // 10, kept)
+    return seen
+
+
+def station_of(*imagers: ImagerFrames) -> Station:
+    return Station(imaging=Imaging({each.serial: each for each in imagers}))
+
+
+def offered(
+    station: Station, captured_at_s: float, *, is_flying: bool = True, serial: str = "IMAGER"
+) -> tuple[Station, Job[LayFrame, LaidFrame] | None]:
+    """Return the station after a frame, and the job that it starts."""
+    seen = with_frame(station.imaging.imagers[serial], frame(captured_at_s, serial), is_flying)
+    imagers = {**station.imaging.imagers, serial: seen}
+    station, outputs = started(station, replace(station.imaging, imagers=imagers))
+    return station, next((job for job in outputs if isinstance(job, Job)), None)
+
+
+def only(station: Station) -> ImagerFrames:
+    (seen,) = station.imaging.imagers.values()
+    return seen
 
 
 @pytest.mark.parametrize("captured_at_s", [4.0, 3.52, 2.16])
 def test_the_telemetry_at_capture_is_taken_not_the_newest(captured_at_s: float) -> None:
-    _, work = lay_job(observed(5), frame(captured_at_s), is_flying=True)
+    _, work = offered(station_of(observed(5)), captured_at_s)
     assert work is not None
     height_m = work.input.telemetry.height_above_takeoff_m
     assert height_m == pytest.approx(captured_at_s, abs=0.051)
@@ -57,40 +80,40 @@ def test_the_telemetry_at_capture_is_taken_not_the_newest(captured_at_s: float) 
 
 @pytest.mark.parametrize("kept", [1, 2, 50])
 def test_samples_are_bounded(kept: int) -> None:
-    imaging = observed(20, kept)
-    assert len(imaging.samples) == kept
-    assert imaging.samples[-1].at_ns == round(19.9 * NS_PER_S)
+    seen = observed(20, kept)
+    assert len(seen.samples) == kept
+    assert seen.samples[-1].at_ns == round(19.9 * NS_PER_S)
 
 
 def test_incomplete_telemetry_is_not_kept() -> None:
-    imaging = Imaging("IMAGER", MARKED)
-    assert with_sample(imaging, imager(None), 0, 50) is imaging
+    seen = ImagerFrames("IMAGER", MARKED)
+    assert with_sample(seen, imager(None), 0, 50) is seen
 
 
 def test_a_frame_far_from_all_telemetry_is_an_error() -> None:
-    imaging, work = lay_job(observed(5), frame(60.0), is_flying=True)
+    station, work = offered(station_of(observed(5)), 60.0)
     assert work is None
-    assert imaging.latest_error is not None
-    assert "no telemetry" in imaging.latest_error
+    error = only(station).latest_error
+    assert error is not None
+    assert "no telemetry" in error
 
 
 def test_a_short_dropout_is_bridged() -> None:
-    _, work = lay_job(observed(5), frame(7.0), is_flying=True)
+    _, work = offered(station_of(observed(5)), 7.0)
     assert work is not None
 
 
 def test_without_a_marked_frame_the_first_in_flight_takes_its_place() -> None:
-    imaging = observed(5)
-    unmarked = Imaging("IMAGER", samples=imaging.samples)
-    on_ground, work = lay_job(unmarked, frame(4.0), is_flying=False)
+    unmarked = ImagerFrames("IMAGER", samples=observed(5).samples)
+    on_ground, work = offered(station_of(unmarked), 4.0, is_flying=False)
     assert work is None
-    assert on_ground.reference is None
-    seen, first = lay_job(on_ground, frame(4.0), is_flying=True)
-    seen = replace(seen, job_id=None)
-    seen, second = lay_job(seen, frame(4.9), is_flying=True)
+    assert only(on_ground).reference is None
+    seen, first = offered(on_ground, 4.0)
+    seen = replace(seen, imaging=replace(seen.imaging, job_id=None))
+    seen, second = offered(seen, 4.9)
     assert first is not None
     assert second is not None
-    assert seen.is_reference_assumed
+    assert only(seen).is_reference_assumed
     assert first.input.reference == first.input.telemetry
     assert second.input.reference == first.input.reference
     assert second.id == first.id + 1
@@ -98,44 +121,90 @@ def test_without_a_marked_frame_the_first_in_flight_takes_its_place() -> None:
 
 def test_one_frame_at_a_time_and_the_newest_of_the_others_waits() -> None:
     """What registration keeps must come back before the next frame is aligned."""
-    imaging, first = lay_job(observed(5), frame(4.0), is_flying=True)
+    station, first = offered(station_of(observed(5)), 4.0)
     assert first is not None
     for captured_at_s in (4.2, 4.4, 4.6):
-        imaging, job = lay_job(imaging, frame(captured_at_s), is_flying=True)
+        station, job = offered(station, captured_at_s)
         assert job is None
-    assert imaging.frames_dropped == 2
+    assert only(station).frames_dropped == 2
     kept = RegistrationState(turn=7)
     laid = LaidFrame(image(Registration.REGISTERED), kept)
-    station, outputs = step(Station(imaging=imaging), JobDone(first.id, LAY_FRAME, laid), 0)
+    station, outputs = step(station, JobDone(first.id, LAY_FRAME, laid), 0)
     (waited,) = (job for job in outputs if isinstance(job, Job) and job.kind is LAY_FRAME)
     assert waited.input.frame.captured_at_ns == round(4.6 * NS_PER_S)
     assert waited.input.registration is kept
-    assert station.imaging.waiting is None
+    assert only(station).waiting is None
 
 
 @pytest.mark.parametrize("ends", [JobFailed(1, LAY_FRAME, "damaged"), JobDropped(1, LAY_FRAME)])
 def test_a_frame_that_fails_holds_up_none_after_it(ends: Event) -> None:
-    imaging, _ = lay_job(observed(5), frame(4.0), is_flying=True)
-    imaging, _ = lay_job(imaging, frame(4.5), is_flying=True)
-    station, outputs = step(Station(imaging=imaging), ends, 0)
+    station, _ = offered(station_of(observed(5)), 4.0)
+    station, _ = offered(station, 4.5)
+    station, outputs = step(station, ends, 0)
     assert [job.id for job in outputs if isinstance(job, Job)] == [2]
     station, _ = step(station, JobFailed(2, LAY_FRAME, "damaged"), 0)
-    _, third = lay_job(station.imaging, frame(4.9), is_flying=True)
+    _, third = offered(station, 4.9)
     assert third is not None
 
 
 def test_a_lost_registration_is_an_alarm_with_its_reason_until_it_is_found() -> None:
-    imaging, _ = lay_job(observed(5), frame(4.0), is_flying=True)
+    station, _ = offered(station_of(observed(5)), 4.0)
     laid = LaidFrame(image(Registration.LOST), problem="5 of 200 features in view found again")
-    station, _ = step(Station(imaging=imaging), JobDone(1, LAY_FRAME, laid), 0)
+    station, _ = step(station, JobDone(1, LAY_FRAME, laid), 0)
     (alarm,) = (each for each in conditions(station, 0) if each.rule == "registration")
     assert "5 of 200 features" in alarm.text
     assert alarm.after_s == LOST_FOR_S
+    station, _ = offered(station, 4.9)
     landed, _ = step(station, JobFailed(2, LAY_FRAME, "the camera is on the ground"), 0)
     assert [each for each in conditions(landed, 0) if each.rule == "registration"] == []
     found = LaidFrame(image(Registration.REGISTERED, captured_at_s=5.0))
     station, _ = step(station, JobDone(2, LAY_FRAME, found), 0)
     assert [each for each in conditions(station, 0) if each.rule == "registration"] == []
+
+
+def test_an_older_image_and_the_failure_of_another_job_change_nothing() -> None:
+    station, _ = offered(station_of(observed(5)), 4.0)
+    for ends in (JobFailed(7, LAY_FRAME, "damaged"), JobDropped(7, LAY_FRAME)):
+        assert step(station, ends, 0)[0].imaging is station.imaging
+    newest = image(Registration.REGISTERED, captured_at_s=4.0)
+    station, _ = step(station, JobDone(1, LAY_FRAME, LaidFrame(newest)), 0)
+    station, _ = offered(station, 4.5)
+    older = LaidFrame(image(Registration.REGISTERED, captured_at_s=3.0))
+    station, outputs = step(station, JobDone(2, LAY_FRAME, older), 0)
+    assert only(station).ground_image is newest
+    assert outputs == ()
+
+
+class TestSeveral:
+    """One job at a time for all imaging drones; each has its own memory."""
+
+    @staticmethod
+    def two() -> Station:
+        return station_of(observed(5), replace(observed(5), serial="OTHER"))
+
+    def test_the_one_that_waits_longest_is_next(self) -> None:
+        station, first = offered(self.two(), 4.0)
+        station, _ = offered(station, 4.1, serial="OTHER")
+        station, _ = offered(station, 4.2)
+        assert first is not None
+        kept = RegistrationState(turn=7)
+        laid = LaidFrame(image(Registration.REGISTERED), kept)
+        station, outputs = step(station, JobDone(first.id, LAY_FRAME, laid), 0)
+        (second,) = (job for job in outputs if isinstance(job, Job) and job.kind is LAY_FRAME)
+        assert second.input.frame.serial == "OTHER"
+        assert second.input.registration is not kept
+        station, outputs = step(station, JobFailed(second.id, LAY_FRAME, "damaged"), 0)
+        (third,) = (job for job in outputs if isinstance(job, Job) and job.kind is LAY_FRAME)
+        assert third.input.frame.serial == "IMAGER"
+        assert third.input.registration is kept
+
+    def test_each_has_its_own_alarm(self) -> None:
+        station, _ = offered(self.two(), 60.0, serial="OTHER")
+        (alarm,) = (each for each in conditions(station, 0) if each.rule == "imaging")
+        assert alarm.serial == "OTHER"
+        station, _ = offered(station, 60.0)
+        keys = {each.key for each in conditions(station, 0) if each.rule == "imaging"}
+        assert len(keys) == 2
 
 
 def image(registration: Registration, captured_at_s: float = 4.0) -> GroundImage:
@@ -148,4 +217,5 @@ def image(registration: Registration, captured_at_s: float = 4.0) -> GroundImage
         np.ones((16, 16), np.bool_),
         CameraPose(np.eye(3), np.array([0.0, 0.0, 120.0])),
         registration,
+        serial="IMAGER",
     )

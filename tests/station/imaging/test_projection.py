@@ -80,7 +80,7 @@ def test_frames_of_another_size_begin_with_a_reference_of_their_own(site: Site) 
 
 def test_a_lens_without_a_known_circle_is_registered_once_it_is_found(site: Site) -> None:
     assert site.imager is not None
-    bare = replace(site, imager=replace(site.imager, image_circle=None))
+    bare = site.with_imager(replace(site.imager, image_circle=None))
     worker = Worker(bare)
     black = np.zeros((CAMERA.rows, CAMERA.cols, 3), dtype=np.uint8)
     assert "image circle" in worker.lays(black).problem
@@ -96,7 +96,7 @@ def test_without_control_points_the_frame_lies_where_telemetry_has_the_drone(sit
     start = TelemetryReference(origin.latitude_deg, origin.longitude_deg, 0.0, 0.0)
     level = level_pose(start, np.zeros(3))
     imager = replace(site.imager, marked_pose=level, marked_frame=start, solution=None)
-    bare = replace(site, imager=imager)
+    bare = site.with_imager(imager)
     place = point_from_enu(site.frame, (30.0, -40.0, 0.0))
     now = TelemetryReference(place.latitude_deg, place.longitude_deg, 110.0, 90.0)
     frame = Frame(1, "SIM-IMAGER", 10, 5, 0.25, rgb=seen(Worker(site).marked_pose))
@@ -109,11 +109,13 @@ def test_without_control_points_the_frame_lies_where_telemetry_has_the_drone(sit
 
 def test_the_ground_image_states_that_telemetry_alone_places_it(site: Site) -> None:
     assert site.imager is not None
-    bare = replace(site, imager=replace(site.imager, solution=None))
+    bare = site.with_imager(replace(site.imager, solution=None))
     laid = Worker(site).lays(seen(Worker(site).marked_pose))
     for shown, expected in ((bare, "telemetry and mount alone"), (site, "of the marked frame")):
         station = first_state(shown)
-        imaging = replace(station.imaging, ground_image=laid.image)
+        ((serial, imager),) = station.imaging.imagers.items()
+        imagers = {serial: replace(imager, ground_image=laid.image)}
+        imaging = replace(station.imaging, imagers=imagers)
         view = ground_image_view(replace(station, imaging=imaging), seconds_to_ns(2))
         assert view is not None
         assert expected in view.reference

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.station.imagers import with_imagers
 from tests.station.station_world import HOME
 
 from recon.detection import DETECTORS, DetectionSettings
@@ -16,7 +17,7 @@ from recon.station.alarms.conditions import conditions
 from recon.station.api_views.imaging_views import shade_view
 from recon.station.imaging.frames import LAY_FRAME
 from recon.station.imaging.projection import LaidFrame
-from recon.station.imaging.shade import READ_SHADE, ReadShade, seen_cells
+from recon.station.imaging.shade import MERGED_WITHIN_S, READ_SHADE, ReadShade, seen_cells
 from recon.station.kernel.step import step
 from recon.station.kernel.worker import AnyJob, JobRunner
 from recon.station.state.imaging import WAITING_KEPT
@@ -33,9 +34,19 @@ def ground_image(second: int, level: float = 1.0) -> GroundImage:
     """A field of a pattern of its own, darkened as a whole by a level; the east half is in sun."""
     light = np.where(np.arange(128) < 64, level, 1.0)[np.newaxis, :, np.newaxis]
     rgb = np.broadcast_to((TEXTURE * light**0.45).astype(np.uint8), (128, 128, 3)).copy()
-    rgb[0, 0] = second % 200 + 20
+    rgb[0, 0] = rgb[0, -1] = second % 200 + 20
     valid = np.ones((128, 128), dtype=np.bool_)
     return GroundImage(GRID, second, second * NS_PER_S, rgb, valid, POSE, serial="IMAGER")
+
+
+def half_image(second: float, serial: str, *, is_east: bool) -> GroundImage:
+    """The east or the west half of the field alone, as another imaging drone shows it."""
+    image = ground_image(round(10 * second))
+    valid = image.valid.copy()
+    valid[:, slice(0, 60) if is_east else slice(68, 128)] = False
+    rgb = np.where(valid[..., np.newaxis], image.rgb, np.uint8(0))
+    at_ns = round(second * NS_PER_S)
+    return replace(image, captured_at_ns=at_ns, rgb=rgb, valid=valid, serial=serial)
 
 
 def laid(image: GroundImage) -> Event:
@@ -53,10 +64,7 @@ class Line:
     """A station whose worker runs each job when the test asks it to."""
 
     def __init__(self, station: Station | None = None) -> None:
-        self.station = station or Station()
-        self.station = replace(
-            self.station, imaging=replace(self.station.imaging, imager_serial="IMAGER")
-        )
+        self.station = with_imagers(station or Station(), "IMAGER")
         self.given: list[AnyJob] = []
         self.read: list[int] = []
 
@@ -214,3 +222,82 @@ def test_a_forecast_of_unknown_ground_covers_nothing(line: Line) -> None:
     assert shown.map.known_share == 0.0
     assert shown.forecast is not None
     assert set(shown.forecast.predicted_share) == {0.0}
+
+
+class TestSeveralImagingDrones:
+    """WEST and EAST each show a half of the field."""
+
+    @pytest.fixture
+    def two(self) -> Line:
+        line = Line(Station(settings=StationSettings(detection=DetectionSettings(method="otsu"))))
+        line.station = with_imagers(line.station, "WEST", "EAST")
+        return line
+
+    @staticmethod
+    def shown(line: Line) -> tuple[bool, bool]:
+        """Whether the map shows the far west and the far east of the field."""
+        shade = line.station.shade.shade
+        assert shade is not None
+        return bool(shade.valid[5, 2]), bool(shade.valid[5, -3])
+
+    def sees(self, line: Line, second: float, serial: str) -> None:
+        line.happens(laid(half_image(second, serial, is_east=serial == "EAST")))
+        line.works()
+
+    def test_one_map_shows_both_halves(self, two: Line) -> None:
+        self.sees(two, 1.0, "WEST")
+        assert self.shown(two) == (True, False)
+        self.sees(two, 1.4, "EAST")
+        assert self.shown(two) == (True, True)
+        pipeline = two.station.shade
+        assert pipeline.shade is not None
+        assert pipeline.shade.source_serials == ("EAST", "WEST")
+        assert pipeline.shade.captured_at_ns == round(1.4 * NS_PER_S)
+        assert pipeline.seen is not None
+        assert pipeline.seen[5, 2]
+        assert pipeline.sun is not None
+        assert pipeline.sun.horizon_s.shape == pipeline.shade.valid.shape
+        self.sees(two, 2.0, "WEST")
+        assert self.shown(two) == (True, True)
+
+    def test_each_is_read_by_its_own_memory(self, two: Line) -> None:
+        for second in (1.0, 2.0, 3.0):
+            self.sees(two, second, "WEST")
+            self.sees(two, second + 0.4, "EAST")
+        detections = two.station.shade.detections
+        assert {serial: each.serial for serial, each in detections.items()} == {
+            "WEST": "WEST",
+            "EAST": "EAST",
+        }
+        assert two.station.shade.frames_rejected == 0
+        assert two.station.shade.number == 6
+
+    def test_a_map_that_is_too_old_is_left_out(self, two: Line) -> None:
+        self.sees(two, 1.0, "WEST")
+        self.sees(two, 1.0 + MERGED_WITHIN_S, "EAST")
+        assert self.shown(two) == (True, True)
+        self.sees(two, 1.1 + MERGED_WITHIN_S, "EAST")
+        assert self.shown(two) == (False, True)
+
+    def test_an_image_taken_before_the_others_waits_for_the_next(self, two: Line) -> None:
+        """Latencies differ: forecasts go forward in time only."""
+        self.sees(two, 2.0, "EAST")
+        self.sees(two, 1.8, "WEST")
+        assert two.station.shade.number == 1
+        assert self.shown(two) == (False, True)
+        self.sees(two, 3.0, "EAST")
+        assert self.shown(two) == (True, True)
+
+    def test_each_has_its_own_alarm(self, two: Line) -> None:
+        black = replace(
+            half_image(1.0, "EAST", is_east=True), rgb=np.zeros((128, 128, 3), np.uint8)
+        )
+        two.happens(laid(black))
+        two.works()
+        self.sees(two, 1.2, "WEST")
+        (alarm,) = [each for each in conditions(two.station, 0) if each.rule == "shade"]
+        assert (alarm.serial, "black" in alarm.text) == ("EAST", True)
+        shown = shade_view(two.station, 2 * NS_PER_S)
+        assert shown is not None
+        assert shown.rejected is not None
+        assert shown.rejected.startswith("EAST: ")

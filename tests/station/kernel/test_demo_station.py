@@ -10,7 +10,7 @@ from recon.geo import point_from_enu
 from recon.model.airspace import Region
 from recon.model.command import FlyMission, Phase
 from recon.model.mission import Mission, Waypoint
-from recon.sim.fleet import build_fleet
+from recon.sim.fleet import IMAGER_SERIAL, build_fleet
 from recon.site import Site, demo_site_folder, load_site
 from recon.station.kernel.build import first_state
 from recon.station.kernel.virtual import VirtualDriver
@@ -19,10 +19,10 @@ from recon.station.kernel.virtual import VirtualDriver
 def demonstration(site: Site, seed: int, vehicle_count: int, wanders: bool) -> World:
     """Return the station of a site with the demonstration's fleet in the air, and no pictures."""
     base = config(site, seed, vehicle_count)
-    assert base.imager is not None
-    imager = replace(base.imager, feed=replace(base.imager.feed, starts_on=False))
+    imager = base.imagers[IMAGER_SERIAL]
+    silent = replace(imager, feed=replace(imager.feed, starts_on=False))
     world = World(VirtualDriver(first_state(site), keeps_log=False))
-    for app in build_fleet(replace(base, imager=imager, wanders=wanders), 0):
+    for app in build_fleet(replace(base, imagers={IMAGER_SERIAL: silent}, wanders=wanders), 0):
         world.connect(app)
     return world
 

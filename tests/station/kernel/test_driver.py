@@ -6,6 +6,7 @@ import time
 
 import pytest
 from tests.fleet.reports import core
+from tests.station.imagers import imager_of, with_imagers
 
 from recon.model.event import ClockGap, Event, LinkOpened, PacketReceived, Tick
 from recon.model.units import NS_PER_S
@@ -58,7 +59,7 @@ class TestAsyncioDriver:
         async def main() -> None:
             seen: list[Event] = []
             driver = AsyncioDriver(
-                first_state(default_site()),
+                with_imagers(first_state(default_site()), "IMAGER"),
                 station_clock(),
                 lambda before, after, event: seen.append(event),
             )
@@ -73,7 +74,7 @@ class TestAsyncioDriver:
                 while dropped not in seen:
                     await asyncio.sleep(0)
             thread.join()
-            assert driver.station.imaging.frames_dropped == 1
+            assert imager_of(driver.station).frames_dropped == 1
             running.cancel()
             with pytest.raises(asyncio.CancelledError):
                 await running

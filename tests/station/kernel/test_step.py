@@ -1,11 +1,11 @@
 """Frames and heavy work in the station's step."""
 
-from dataclasses import replace
 from typing import get_args
 
 import numpy as np
 from tests.fleet.reports import core, extended
 from tests.station.commanded import CommandedStation
+from tests.station.imagers import imager_of, with_imagers
 
 from recon.model.event import Event, JobEnded
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
@@ -22,6 +22,12 @@ from recon.station.state.steps import JobDone, JobDropped, JobFailed
 IMAGE = ImageReport(target_fps_hz=1.0, jpeg=b"x")
 
 
+def imaging_scene(serial: str = "IMAGER") -> CommandedStation:
+    scene = CommandedStation()
+    scene.station = with_imagers(scene.station, serial)
+    return scene
+
+
 def ground_image(captured_at_ns: int) -> GroundImage:
     return GroundImage(
         grid=GroundGrid(LocalFrame(GeoPoint(42.0, -93.6, 275.0)), 0.0, 1.0, 1.0, 1, 1),
@@ -30,6 +36,7 @@ def ground_image(captured_at_ns: int) -> GroundImage:
         rgb=np.zeros((1, 1, 3), np.uint8),
         valid=np.ones((1, 1), np.bool_),
         pose=CameraPose(np.eye(3), np.zeros(3)),
+        serial="IMAGER",
     )
 
 
@@ -60,16 +67,16 @@ def test_a_frame_of_a_link_without_a_serial_is_not_kept() -> None:
 
 
 def test_an_older_ground_image_never_replaces_a_newer_one() -> None:
-    scene = CommandedStation()
+    scene = imaging_scene()
     for captured_at_ns in (5, 9, 7):
         scene.happens(JobDone(1, LAY_FRAME, LaidFrame(ground_image(captured_at_ns))))
-    image = scene.station.imaging.ground_image
+    image = imager_of(scene.station).ground_image
     assert image is not None
     assert image.captured_at_ns == 9
 
 
 def test_failed_work_is_an_alarm_until_work_succeeds() -> None:
-    scene = CommandedStation().happens(JobFailed(1, LAY_FRAME, "no pose")).passes(0.1)
+    scene = imaging_scene().happens(JobFailed(1, LAY_FRAME, "no pose")).passes(0.1)
     assert scene.alarms() == set()
     scene.passes(scene.station.settings.imaging_trouble_after_s)
     assert scene.alarms() == {"imaging"}
@@ -78,16 +85,14 @@ def test_failed_work_is_an_alarm_until_work_succeeds() -> None:
 
 
 def test_a_dropped_frame_is_counted() -> None:
-    scene = CommandedStation().happens(JobDropped(1, LAY_FRAME))
-    assert scene.station.imaging.frames_dropped == 1
+    scene = imaging_scene().happens(JobDropped(1, LAY_FRAME))
+    assert imager_of(scene.station).frames_dropped == 1
 
 
 def test_the_imaging_drones_telemetry_is_kept_for_its_frames() -> None:
-    scene = CommandedStation()
-    imaging = replace(scene.station.imaging, imager_serial="A")
-    scene.station = replace(scene.station, imaging=imaging)
+    scene = imaging_scene("A")
     scene.opens(1, extended("A"), core(), core(position=None))
-    assert len(scene.station.imaging.samples) == 1
+    assert len(imager_of(scene.station).samples) == 1
 
 
 class TestLostVehicles:

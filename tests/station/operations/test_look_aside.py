@@ -20,6 +20,7 @@ from recon.model.event import (
 )
 from recon.model.geo import LatLon
 from recon.station.operations.look_aside.commands import audit_entries, refusal
+from recon.station.state.imaging import Imaging
 from recon.station.state.look_aside_record import LookAsideStage
 from recon.station.state.station import Station
 
@@ -129,9 +130,15 @@ class TestRefused:
 
     def test_without_an_imaging_drone(self) -> None:
         world = looking_world()
-        imaging = replace(world.station.imaging, imager_serial=None)
-        world.station = replace(world.station, imaging=imaging)
+        world.station = replace(world.station, imaging=Imaging())
         assert self.why(world) == "the site has no imaging drone"
+
+    def test_of_a_vehicle_that_is_none(self) -> None:
+        world = looking_world(1)
+        event = LookAsideOrdered("ann", person="ann", serial="SIM-2")
+        why = refusal(world.station, event, world.surveyed.driver.now_ns)
+        assert why is not None
+        assert why.reason == "SIM-2 is no imaging drone of the site: expected SIM-1"
 
     def test_on_the_ground(self) -> None:
         world = looking_world(height_m=0.0)

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+from tests.station.imagers import with_imagers
 from tests.station.station_world import HOME
 from tests.station.surveyed_world import SurveyedWorld, asked, surveyed_world
 
@@ -35,6 +36,7 @@ def ground_image(number: int, at_ns: int, is_shaded: bool) -> GroundImage:
 def flown_under_an_imager(planner: str, sunny_from_s: float) -> SurveyedWorld:
     """A frame a second: half of the field in shade until a moment, then all in sun."""
     world = surveyed_world()
+    world.driver.station = with_imagers(world.driver.station, "IMAGER")
     settings = world.driver.station.settings
     # It maps a drawn field at once; over two minutes, shade that lasts the whole flight would come
     # to look like sun.

@@ -75,7 +75,7 @@ export function busyState(elapsed_s: number): StationState {
     ],
     ground_image: {
       frame_id: 12,
-      serial: "SN-001",
+      serials: ["SN-001"],
       captured_age_s: 0.8,
       captured_sigma_s: 0.2,
       registration: "unregistered",

@@ -304,7 +304,7 @@ export interface paths {
         put?: never;
         /**
          * Look Aside
-         * @description Have the imaging drone fly 25 m aside and back, so that a flat scene is decided.
+         * @description Have an imaging drone fly 25 m aside and back, so that a flat scene is decided.
          *
          *     Guidance has it meanwhile; `look_aside` in the state shows the progress.
          */
@@ -1280,6 +1280,8 @@ export interface components {
         /**
          * GroundImageView
          * @description The newest ground image; corners are (longitude, latitude) NW, NE, SE, SW.
+         *
+         *     Of several imaging drones their newest images, the newest on top: as old as the oldest of them.
          */
         GroundImageView: {
             /** Captured Age S */
@@ -1300,7 +1302,10 @@ export interface components {
              * @description by the site: the pilot locks exposure and white balance before takeoff
              */
             exposure_locked: boolean;
-            /** Frame Id */
+            /**
+             * Frame Id
+             * @description of the newest frame in it
+             */
             frame_id: number;
             /**
              * Reference
@@ -1319,8 +1324,8 @@ export interface components {
             registration_residual_m: number | null;
             /** Rows */
             rows: number;
-            /** Serial */
-            serial: string;
+            /** Serials */
+            serials: string[];
         };
         /**
          * HazardView
@@ -1506,7 +1511,7 @@ export interface components {
         };
         /**
          * LookAsideRequest
-         * @description The site's imaging drone is to fly a little aside and back.
+         * @description An imaging drone is to fly a little aside and back.
          */
         LookAsideRequest: {
             /**
@@ -1514,6 +1519,11 @@ export interface components {
              * @description when its person gave it, in Unix milliseconds of the station's time (a state's `time_ns` and the time since then) or of a clock set by NTP; null: now. What moves a vehicle is refused when given more than 5 s ago or in the future; stops are never late
              */
             given_at_unix_ms?: number | null;
+            /**
+             * Serial
+             * @description null: the one whose light is unknown, or the site's first
+             */
+            serial?: string | null;
         };
         /**
          * LookAsideView
@@ -1945,8 +1955,8 @@ export interface components {
             areas_left_out: number;
             /** Ground Altitude M */
             ground_altitude_m: number | null;
-            /** Imager Serial */
-            imager_serial: string | null;
+            /** Imager Serials */
+            imager_serials: string[];
             /** Latitude Deg */
             latitude_deg: number | null;
             /** Layers */

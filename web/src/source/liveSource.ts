@@ -126,8 +126,8 @@ export class LiveSource implements StationSource {
     return this.requests.fleetReturn(serials, this.stationNowMs());
   }
 
-  lookAside() {
-    return this.requests.lookAside(this.stationNowMs());
+  lookAside(serial: string) {
+    return this.requests.lookAside(serial, this.stationNowMs());
   }
 
   setAuthority(serial: string, holder: AuthorityHolder, takeOver = false) {

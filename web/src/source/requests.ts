@@ -73,8 +73,8 @@ export class Requests {
     );
   }
 
-  lookAside(given_at_unix_ms: number | null): Promise<Outcome<ActionResponse>> {
-    const body = { given_at_unix_ms };
+  lookAside(serial: string, given_at_unix_ms: number | null): Promise<Outcome<ActionResponse>> {
+    const body = { serial, given_at_unix_ms };
     return answered(
       () => this.client.POST("/api/look-aside", { body, signal: timeout() }),
       identity,

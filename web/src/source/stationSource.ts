@@ -84,7 +84,7 @@ export interface StationSource {
   /** Returns vehicles home with landing missions at separate heights; null means all in reach. */
   fleetReturn(serials: readonly string[] | null): Promise<Outcome<readonly OrderResult[]>>;
   /** Has the imaging drone fly 25 m aside and back. */
-  lookAside(): Promise<Outcome<ActionResponse>>;
+  lookAside(serial: string): Promise<Outcome<ActionResponse>>;
   /** `takeOver`: also from another person who operates the vehicle. */
   setAuthority(
     serial: string,

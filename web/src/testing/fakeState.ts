@@ -193,7 +193,7 @@ export function station(
       latitude_deg: FIELD.lat,
       longitude_deg: FIELD.lon,
       ground_altitude_m: 281.5,
-      imager_serial: "SN-001",
+      imager_serials: ["SN-001"],
       pose_rms_px: 3.62,
       pose_height_m: 133.2,
       limits: {
@@ -356,7 +356,7 @@ export function survey(id: number, changes: Partial<SurveyView> = {}): SurveyVie
 export function groundImage(changes: Partial<GroundImageView> = {}): GroundImageView {
   return {
     frame_id: 1,
-    serial: "SN-001",
+    serials: ["SN-001"],
     captured_age_s: 0.5,
     captured_sigma_s: 0.2,
     registration: "unregistered",

@@ -65,7 +65,7 @@ export type PageRequest =
     }
   | { readonly refusedLink: number }
   | { readonly fleetReturn: readonly string[] | null }
-  | { readonly lookAside: true }
+  | { readonly lookAside: string }
   | { readonly plannedSurvey: NewSurvey }
   | {
       readonly startedSurvey: number;
@@ -210,8 +210,8 @@ function fakeSource(
       recorded.requests.push({ fleetReturn: serials });
       return { kind: "answered", value: recorded.answer };
     },
-    lookAside: async () => {
-      recorded.requests.push({ lookAside: true });
+    lookAside: async (serial) => {
+      recorded.requests.push({ lookAside: serial });
       return { kind: "answered", value: recorded.response };
     },
     setAuthority: async (serial, authority, takeOver) => {

@@ -180,8 +180,13 @@ class FleetReturnRequest(StrictMessage):
 
 
 class LookAsideRequest(StrictMessage):
-    """The site's imaging drone is to fly a little aside and back."""
+    """An imaging drone is to fly a little aside and back."""
 
+    serial: str | None = Field(
+        None,
+        max_length=256,
+        description="null: the one whose light is unknown, or the site's first",
+    )
     given_at_unix_ms: GivenAt = None
 
 

@@ -8,10 +8,13 @@ from recon.api.schema.message import Message
 
 
 class GroundImageView(Message):
-    """The newest ground image; corners are (longitude, latitude) NW, NE, SE, SW."""
+    """The newest ground image; corners are (longitude, latitude) NW, NE, SE, SW.
 
-    frame_id: int
-    serial: str
+    Of several imaging drones their newest images, the newest on top: as old as the oldest of them.
+    """
+
+    frame_id: int = Field(description="of the newest frame in it")
+    serials: list[str]
     captured_age_s: float
     captured_sigma_s: float
     registration: Literal["unregistered", "registered", "lost"]
@@ -77,7 +80,7 @@ class SiteView(Message):
     latitude_deg: float | None
     longitude_deg: float | None
     ground_altitude_m: float | None
-    imager_serial: str | None
+    imager_serials: list[str]
     pose_rms_px: float | None
     pose_height_m: float | None
     limits: LimitsView

@@ -1,4 +1,4 @@
-"""Imaging drone lost in flight: for the others, ground image and sun forecast grow old.
+"""An imaging drone lost in flight: for the others, ground image and sun forecast grow old.
 
 Their flights stay as safe as they were, so an alarm is enough; a survey goes on without new shade.
 """
@@ -10,15 +10,15 @@ RULE = "imaging_drone_lost"
 
 
 def find(facts: FlightFacts) -> int | None:
-    """Return the imaging drone's last telemetry while it is lost, for any other vehicle."""
-    if facts.vehicle.serial == facts.station.imager_serial:
+    """Return a lost imaging drone's last telemetry, for all vehicles but imaging drones."""
+    if facts.vehicle.serial in facts.station.imager_serials:
         return None
     return facts.station.imager_lost_since_ns
 
 
 ROW = FailsafeRow(
     condition=FailsafeCondition.IMAGING_DRONE_LOST,
-    begins="the imaging drone flies and sent no telemetry for 3 s",
+    begins="an imaging drone flies and sent no telemetry for 3 s",
     ends="its telemetry returns",
     reactions=frozenset({Reaction.NOTHING, Reaction.ALARM, Reaction.HOLD, Reaction.RETURN}),
     why_no_other="it is no reason to land the others where they are",

@@ -36,9 +36,10 @@ class SharedFacts(NamedTuple):
     """Since when its steps have come late."""
     operator_gone_since_ns: int | None = None
     """Since when no client is connected, after one was for a while."""
-    imager_serial: str | None = None
+    imager_serials: frozenset[str] = frozenset()
+    """The imaging drones."""
     imager_lost_since_ns: int | None = None
-    """The imaging drone's last telemetry, while it is lost in flight."""
+    """The last telemetry of the imaging drone lost first, while one is lost in flight."""
 
 
 class FlightFacts(NamedTuple):

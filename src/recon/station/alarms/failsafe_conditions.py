@@ -15,6 +15,7 @@ from recon.safety.failsafe import ROWS
 from recon.safety.failsafe import imaging_drone_lost as imaging_row
 from recon.safety.failsafe import operator_gone as operator_row
 from recon.safety.failsafe import station_overloaded as overload_row
+from recon.station.failsafe.facts import lost_imagers
 from recon.station.failsafe.runner import cell_of, may_react
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.failsafe_state import Occurrence, ReactionOutcome
@@ -72,11 +73,11 @@ def _affected(station: Station, condition: FailsafeCondition) -> dict[str, Occur
     }
 
 
-def _imaging_text(station: Station, _now_ns: int) -> str:
-    serial = station.imaging.imager_serial or ""
-    imager = station.fleet.vehicles.get(serial)
-    name = serial if imager is None else imager.display_name
-    return f"the imaging drone {name} is lost in flight: ground image and sun forecast grow old"
+def _imaging_text(station: Station, now_ns: int) -> str:
+    names = [imager.display_name for imager, _ in lost_imagers(station, now_ns)]
+    are = "drone {} is" if len(names) == 1 else "drones {} are"
+    lost = are.format(", ".join(names))
+    return f"the imaging {lost} lost in flight: ground image and sun forecast grow old"
 
 
 def _late_text(station: Station, _now_ns: int) -> str:

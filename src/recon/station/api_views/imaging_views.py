@@ -1,33 +1,36 @@
 """Ground images, shade and the forecast of sun, as the API sends them."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from recon.api import schema
 from recon.geo import geo_from_enu
 from recon.model.geo import GroundGrid
-from recon.model.imagery import GroundImage
 from recon.model.shade import MaskMap, ShadeMap, SunForecast
 from recon.model.units import ns_to_seconds
-from recon.station.state.imaging import Imaging
+from recon.station.imaging.mosaic import alignment_of, newest_images
+from recon.station.state.imaging import ImagerFrames
 from recon.station.state.station import Station
 
 
 def ground_image_view(station: Station, now_ns: int) -> schema.GroundImageView | None:
     """Return the newest ground image's place and time; None before the first."""
-    imaging = station.imaging
-    image: GroundImage | None = imaging.ground_image
-    if image is None or imaging.imager_serial is None:
+    images = newest_images(station.imaging)
+    if not images:
         return None
-    profile = station.fleet.profiles.get(imaging.imager_serial)
+    image = alignment_of(images)
+    serials = [each.serial for each in images]
+    profiles = [station.fleet.profiles.get(serial) for serial in serials]
     return schema.GroundImageView(
-        frame_id=image.frame_id,
-        serial=imaging.imager_serial,
+        frame_id=images[0].frame_id,
+        serials=serials,
         captured_age_s=ns_to_seconds(now_ns - image.captured_at_ns),
-        captured_sigma_s=0.25 if profile is None else profile.video_latency_sigma_s,
+        captured_sigma_s=max(0.25 if p is None else p.video_latency_sigma_s for p in profiles),
         registration=image.registration.value,
         registration_residual_m=image.registration_residual_m,
         exposure_locked=image.exposure_locked,
-        reference=_reference_text(imaging),
+        reference=_reference_text(station.imaging.imagers[serials[0]]),
         corners=corners_lon_lat(image.grid),
         cell_m=image.grid.cell_m,
         rows=image.grid.rows,
@@ -35,31 +38,41 @@ def ground_image_view(station: Station, now_ns: int) -> schema.GroundImageView |
     )
 
 
-def _reference_text(imaging: Imaging) -> str:
-    if imaging.is_placed_by_telemetry:
+def _reference_text(imager: ImagerFrames) -> str:
+    if imager.is_placed_by_telemetry:
         return "telemetry and mount alone: the site has no control points"
-    if imaging.is_reference_assumed:
+    if imager.is_reference_assumed:
         return "first frame received in flight, used for the marked one"
     return "telemetry of the marked frame, from the site's folder"
 
 
 def shade_view(station: Station, now_ns: int) -> schema.ShadeLineView | None:
     """Return the state of shade detection and forecast; None without an imaging drone."""
-    if station.imaging.imager_serial is None:
+    if not station.imaging.imagers:
         return None
-    line, settings, memory = station.shade, station.settings, station.shade.detection.sunlit
+    line, settings = station.shade, station.settings
+    memories = {s: each.sunlit for s, each in line.detections.items() if each.sunlit is not None}
     return schema.ShadeLineView(
         detection=settings.detection.method,
         forecaster=settings.forecast.method,
         frames_rejected=line.frames_rejected,
         frames_dropped=line.frames_dropped,
-        rejected=None if line.rejected is None else line.rejected.reason,
+        rejected=_by_imager(station, {s: each.reason for s, each in line.rejected.items()}) or None,
         error=line.error,
-        reference="" if memory is None else memory.taken_up.note,
-        lock_problem="" if memory is None else memory.lock_problem,
+        reference=_by_imager(station, {s: m.taken_up.note for s, m in memories.items()}),
+        lock_problem=_by_imager(station, {s: m.lock_problem for s, m in memories.items()}),
         map=None if line.shade is None else _map(line.shade, line.seen, line.number, now_ns),
         forecast=None if line.sun is None else _forecast(line.sun, line.number, now_ns),
     )
+
+
+def _by_imager(station: Station, texts: Mapping[str, str]) -> str:
+    """Return texts by serial as one, with the vehicles' names where there are several of them."""
+    if len(station.imaging.imagers) == 1:
+        return "".join(texts.values())
+    vehicles = station.fleet.vehicles
+    names = {s: vehicles[s].display_name if s in vehicles else s for s in texts}
+    return "; ".join(f"{names[serial]}: {text}" for serial, text in texts.items() if text)
 
 
 def _map(shade: ShadeMap, seen: MaskMap | None, number: int, now_ns: int) -> schema.ShadeMapView:

@@ -45,6 +45,7 @@ from recon.station.api_views.survey_service import SurveyService
 from recon.station.api_views.vehicle_views import preflight_view
 from recon.station.api_views.zone_views import zone_views
 from recon.station.control import handover, preflight, stop_latch, temporary_zones
+from recon.station.imaging.mosaic import mosaic, newest_images
 from recon.station.operations.look_aside.commands import refusal as look_aside_refusal
 from recon.station.traffic.known_traffic import is_dismissible
 
@@ -165,9 +166,11 @@ class Service:
         event = AppRefused(link_id, by.label)
         return self._decided(event, pairing.refusal_to_refuse(self.driver.station.fleet, event))
 
-    def look_aside(self, by: Person, given_at_ns: int | None = None) -> schema.ActionResponse:
-        """Have the imaging drone look aside; the audit has a refusal too."""
-        event = LookAsideOrdered(by.label, given_at_ns, by.name)
+    def look_aside(
+        self, serial: str | None, by: Person, given_at_ns: int | None = None
+    ) -> schema.ActionResponse:
+        """Have an imaging drone look aside; the audit has a refusal too."""
+        event = LookAsideOrdered(by.label, given_at_ns, by.name, serial=serial)
         refused = look_aside_refusal(self.driver.station, event, self.driver.now_ns())
         self.driver.handle(event)
         return _action(refused)
@@ -224,8 +227,8 @@ class Service:
         return self.driver.station.frames.get(serial)
 
     def ground_image(self) -> GroundImage | None:
-        """Return the newest ground image."""
-        return self.driver.station.imaging.ground_image
+        """Return the newest ground image of all imaging drones; safe in another thread."""
+        return mosaic(newest_images(self.driver.station.imaging))
 
     def shade(self) -> tuple[int, ShadeMap, MaskMap] | None:
         """Return the number of the newest shade map, the map, and its cells in view."""
@@ -279,7 +282,8 @@ class Service:
 
     def geotiff(self, image: GroundImage) -> bytes:
         """Return a ground image as a GeoTIFF file."""
-        solution = None if self.site.imager is None else self.site.imager.solution
+        imager = self.site.imagers.get(image.serial)
+        solution = None if imager is None else imager.solution
         rms_px = None if solution is None else solution.rms_px
         captured = datetime.fromtimestamp(ns_to_seconds(image.captured_at_ns), UTC)
         return geotiff_bytes(image, captured_utc=captured.isoformat(), rms_px=rms_px)
@@ -314,7 +318,9 @@ class Service:
             version=version(),
             link_addresses=self.link_addresses,
             uptime_s=ns_to_seconds(now_ns - self.driver.started_at_ns),
-            frames_dropped=self.driver.station.imaging.frames_dropped,
+            frames_dropped=sum(
+                each.frames_dropped for each in self.driver.station.imaging.imagers.values()
+            ),
             capture_folder=self.capture_folder,
             capture_dropped_bytes=0 if capture is None else capture.dropped_bytes,
             guard_stop_url=self.guard_stop_url,

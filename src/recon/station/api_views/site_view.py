@@ -50,8 +50,7 @@ class _Area:
 def site_view(site: Site) -> schema.SiteView:
     """Return what a console shows of a site."""
     origin = None if site.frame is None else site.frame.origin
-    imager = site.imager
-    solution = None if imager is None else imager.solution
+    solution = None if site.imager is None else site.imager.solution
     areas = list(_areas(site))
     drawn, within_m = _thinned(_few(areas))
     return schema.SiteView(
@@ -59,7 +58,7 @@ def site_view(site: Site) -> schema.SiteView:
         latitude_deg=None if origin is None else origin.latitude_deg,
         longitude_deg=None if origin is None else origin.longitude_deg,
         ground_altitude_m=None if origin is None else origin.ellipsoid_height_m,
-        imager_serial=None if imager is None else imager.serial,
+        imager_serials=list(site.imagers),
         pose_rms_px=None if solution is None else solution.rms_px,
         pose_height_m=None if solution is None else solution.height_above_ground_m,
         limits=schema.LimitsView(**asdict(site.limits)),

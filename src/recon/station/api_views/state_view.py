@@ -105,7 +105,7 @@ def _vehicle(
         name=vehicle.display_name,
         model="unknown model" if profile is None else profile.model,
         is_simulated=vehicle.is_simulated,
-        is_imager=vehicle.serial is not None and vehicle.serial == station.imaging.imager_serial,
+        is_imager=vehicle.serial in station.imaging.imagers,
         authority=authority_view(station, vehicle.serial, now_ns),
         lease=lease_view(station, vehicle.serial, now_ns),
         is_stopped=station.is_stopped(vehicle.serial),

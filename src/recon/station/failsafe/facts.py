@@ -1,7 +1,7 @@
 """The facts that the rows of the failsafe matrix are judged by, gathered from the station."""
 
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from recon.fleet.state import staleness
@@ -45,12 +45,12 @@ def limits_of(settings: StationSettings) -> FailsafeLimits:
 def station_facts(station: Station, now_ns: int) -> SharedFacts:
     """Return the facts of the station itself."""
     state = station.failsafe_state
-    imager_serial = station.imaging.imager_serial
+    lost = [at_ns for _, at_ns in lost_imagers(station, now_ns)]
     return SharedFacts(
         state.late_since_ns if state.is_late else None,
         _operator_gone_since_ns(state, station.settings.failsafe, now_ns),
-        imager_serial,
-        _imager_lost_since_ns(station, now_ns),
+        frozenset(station.imaging.imagers),
+        min(lost, default=None),
     )
 
 
@@ -108,15 +108,16 @@ def _operator_gone_since_ns(
     return since_ns if now_ns - since_ns >= seconds_to_ns(settings.operator_gone_s) else None
 
 
-def _imager_lost_since_ns(station: Station, now_ns: int) -> int | None:
-    serial = station.imaging.imager_serial
-    imager = station.fleet.vehicles.get(serial or "")
-    if imager is None or imager.is_flying.value is False or imager.core_received_at_ns is None:
-        return None
-    if station.control(serial).restored is not None:
-        return None  # of the last run: nothing was lost in this one
-    is_lost = staleness(imager, now_ns) in (Staleness.LOST, Staleness.SILENT)
-    return imager.core_received_at_ns if is_lost else None
+def lost_imagers(station: Station, now_ns: int) -> Iterator[tuple[VehicleState, int]]:
+    """Yield the imaging drones that are lost in flight, with their last telemetry's time."""
+    for serial in station.imaging.imagers:
+        imager = station.fleet.vehicles.get(serial)
+        if imager is None or imager.is_flying.value is False or imager.core_received_at_ns is None:
+            continue
+        if station.control(serial).restored is not None:
+            continue  # of the last run: nothing was lost in this one
+        if staleness(imager, now_ns) in (Staleness.LOST, Staleness.SILENT):
+            yield imager, imager.core_received_at_ns
 
 
 def _findings(station: Station) -> Findings:

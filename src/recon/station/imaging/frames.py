@@ -1,8 +1,9 @@
-"""Frames: kept for showing; those of the imaging drone are projected on the ground by the worker.
+"""Frames: kept for showing; those of imaging drones are projected on the ground by the worker.
 
 A frame carries no capture time and no telemetry. It is given the telemetry nearest to its estimated
 capture time, relative to the frame on which the site's control points were marked; the worker
-aligns it by its content from there. Frames are taken in order, one at a time.
+aligns it by its content from there. One frame is laid at a time, of whichever imaging drone has
+waited longest; of each drone the newest one waits.
 """
 
 from collections.abc import Iterator
@@ -16,7 +17,7 @@ from recon.model.vehicle import VehicleProfile, VehicleState
 from recon.station.imaging import shade
 from recon.station.imaging.projection import LaidFrame, projection
 from recon.station.state.alarm_book import Condition, Severity
-from recon.station.state.imaging import ImagerSample, Imaging, LayFrame
+from recon.station.state.imaging import ImagerFrames, ImagerSample, Imaging, LayFrame
 from recon.station.state.station import Station
 from recon.station.state.steps import Job, JobKind, Stepped
 
@@ -27,18 +28,18 @@ frame would be projected from where the imaging drone was, not from where it is.
 LOST_FOR_S = 10.0
 """A climb or a flight to another place loses registration for some seconds: no trouble."""
 
-LayJob = Job[LayFrame, LaidFrame]
-
 _MISSING = "no telemetry of the imaging drone within 3 s of the frame's capture"
 _NO_PROFILE = VehicleProfile(serial="")
 
 
 def on_telemetry(station: Station, vehicle: VehicleState, now_ns: int) -> Station:
     """Return the station with a vehicle's telemetry kept for its frames, if it takes any."""
-    if vehicle.serial is None or vehicle.serial != station.imaging.imager_serial:
+    imager = station.imaging.imagers.get(vehicle.serial or "")
+    if imager is None:
         return station
     kept = station.settings.pose_history_samples
-    return replace(station, imaging=with_sample(station.imaging, vehicle, now_ns, kept))
+    sampled = with_sample(imager, vehicle, now_ns, kept)
+    return replace(station, imaging=_with_imager(station.imaging, sampled))
 
 
 def on_frame(station: Station, vehicle: VehicleState, report: ImageReport, now_ns: int) -> Stepped:
@@ -58,21 +59,25 @@ def on_frame(station: Station, vehicle: VehicleState, report: ImageReport, now_n
     others = ((key, kept) for key, kept in station.frames.items() if key != frame.serial)
     frames = dict([*others, (frame.serial, frame)][-station.settings.frames_kept :])
     station = replace(station, frames=frames, next_frame_id=frame.id + 1)
-    if frame.serial != station.imaging.imager_serial:
+    imager = station.imaging.imagers.get(frame.serial)
+    if imager is None:
         return station, ()
     is_flying = vehicle.is_flying.value is True
-    return _started(station, lay_job(station.imaging, frame, is_flying, _utc_s(station, frame)))
+    imager = with_frame(imager, frame, is_flying, _utc_s(station, frame))
+    return started(station, _with_imager(station.imaging, imager))
 
 
-def with_sample(imaging: Imaging, imager: VehicleState, now_ns: int, kept: int) -> Imaging:
+def with_sample(
+    imager: ImagerFrames, vehicle: VehicleState, now_ns: int, kept: int
+) -> ImagerFrames:
     """Return the state with the imaging drone's newest telemetry, if it is complete."""
     telemetry = TelemetryReference.from_report(
-        imager.position.value, imager.height_above_takeoff_m.value, imager.attitude.value
+        vehicle.position.value, vehicle.height_above_takeoff_m.value, vehicle.attitude.value
     )
     if telemetry is None:
-        return imaging
-    samples = (*imaging.samples, ImagerSample(now_ns, telemetry))
-    return replace(imaging, samples=samples[-kept:])
+        return imager
+    samples = (*imager.samples, ImagerSample(now_ns, telemetry))
+    return replace(imager, samples=samples[-kept:])
 
 
 def _utc_s(station: Station, frame: Frame) -> float | None:
@@ -83,70 +88,76 @@ def _utc_s(station: Station, frame: Frame) -> float | None:
     return clock_s + station.settings.sun_time_ahead_s
 
 
-def lay_job(
-    imaging: Imaging, frame: Frame, is_flying: bool, captured_utc_s: float | None = None
-) -> tuple[Imaging, LayJob | None]:
-    """Return the job for a frame.
+def with_frame(
+    imager: ImagerFrames, frame: Frame, is_flying: bool, captured_utc_s: float | None = None
+) -> ImagerFrames:
+    """Return the state in which a frame waits to be laid, in place of one that waited before.
 
-    None without telemetry at its capture or a marked frame, and while another frame's job runs: the
-    frame waits then, in place of one that waited before.
+    It does not without telemetry at its capture, or without a marked frame on the ground.
     """
-    sample = _sample_at(imaging.samples, frame.captured_at_ns)
+    sample = _sample_at(imager.samples, frame.captured_at_ns)
     if sample is None:
-        return replace(imaging, latest_error=_MISSING), None
-    reference = imaging.reference
+        return replace(imager, latest_error=_MISSING)
+    reference = imager.reference
     if reference is None:
         if not is_flying:
-            return imaging, None
+            return imager
         reference = sample.telemetry
-    dropped = imaging.frames_dropped + (imaging.waiting is not None)
+    dropped = imager.frames_dropped + (imager.waiting is not None)
     waiting = LayFrame(frame, sample.telemetry, reference, captured_utc_s)
-    return _next(replace(imaging, reference=reference, waiting=waiting, frames_dropped=dropped))
+    return replace(imager, reference=reference, waiting=waiting, frames_dropped=dropped)
 
 
-def _next(imaging: Imaging) -> tuple[Imaging, LayJob | None]:
-    """Start a job for the frame that waits, unless one is running."""
-    if imaging.job_id is not None or imaging.waiting is None:
-        return imaging, None
-    work = replace(imaging.waiting, registration=imaging.registration)
-    number = imaging.next_job_id
-    imaging = replace(imaging, waiting=None, job_id=number, next_job_id=number + 1)
-    return imaging, Job(number, LAY_FRAME, work)
+def started(station: Station, imaging: Imaging) -> Stepped:
+    """Start a job for the frame that waits longest, unless one is running."""
+    waiting = [each.waiting for each in imaging.imagers.values() if each.waiting is not None]
+    if imaging.job_id is not None or not waiting:
+        return replace(station, imaging=imaging), ()
+    work = min(waiting, key=lambda each: each.frame.received_at_ns)
+    serial, number = work.frame.serial, imaging.next_job_id
+    imager = imaging.imagers[serial]
+    imaging = _with_imager(imaging, replace(imager, waiting=None))
+    imaging = replace(imaging, job_id=number, job_serial=serial, next_job_id=number + 1)
+    job = Job(number, LAY_FRAME, replace(work, registration=imager.registration))
+    return replace(station, imaging=imaging), (job,)
 
 
-def _started(station: Station, started: tuple[Imaging, LayJob | None]) -> Stepped:
-    imaging, job = started
-    return replace(station, imaging=imaging), () if job is None else (job,)
+def _with_imager(imaging: Imaging, imager: ImagerFrames) -> Imaging:
+    return replace(imaging, imagers={**imaging.imagers, imager.serial: imager})
 
 
 def conditions(station: Station) -> Iterator[Condition]:
     """Yield the alarms of the imaging pipeline: frames not projected, not aligned, not read."""
-    imaging = station.imaging
-    image = imaging.ground_image
+    for imager in station.imaging.imagers.values():
+        yield from _laying_conditions(imager, station.settings.imaging_trouble_after_s)
+    yield from shade.conditions(station)
+
+
+def _laying_conditions(imager: ImagerFrames, trouble_after_s: float) -> Iterator[Condition]:
+    image, serial = imager.ground_image, imager.serial
     is_lost = image is not None and image.registration is Registration.LOST
     # Frames that are not projected at all have an alarm of their own, as after landing.
-    if is_lost and imaging.latest_error is None:
+    if is_lost and imager.latest_error is None:
         yield Condition(
-            key="registration",
+            key=f"registration:{serial}",
             severity=Severity.WARNING,
             rule="registration",
-            vehicle_name=imaging.imager_serial or "",
+            vehicle_name=serial,
             text="the ground image is placed by telemetry alone and may be off by metres: "
-            f"{imaging.registration_problem}",
-            serial=imaging.imager_serial,
+            f"{imager.registration_problem}",
+            serial=serial,
             after_s=LOST_FOR_S,
         )
-    if imaging.latest_error is not None:
+    if imager.latest_error is not None:
         yield Condition(
-            key="imaging",
+            key=f"imaging:{serial}",
             severity=Severity.WARNING,
             rule="imaging",
-            vehicle_name=imaging.imager_serial or "",
-            text=f"frames of the imaging drone are not projected: {imaging.latest_error}",
-            serial=imaging.imager_serial,
-            after_s=station.settings.imaging_trouble_after_s,
+            vehicle_name=serial,
+            text=f"frames of the imaging drone are not projected: {imager.latest_error}",
+            serial=serial,
+            after_s=trouble_after_s,
         )
-    yield from shade.conditions(station)
 
 
 def _sample_at(samples: tuple[ImagerSample, ...], at_ns: int) -> ImagerSample | None:
@@ -159,33 +170,42 @@ def _sample_at(samples: tuple[ImagerSample, ...], at_ns: int) -> ImagerSample | 
 
 def _laid(station: Station, job_id: int, laid: LaidFrame, _now_ns: int) -> Stepped:
     """Keep a ground image unless a newer one is there already, and read it for shade."""
-    imaging = station.imaging
+    imaging, image = station.imaging, laid.image
+    imager = imaging.imagers.get(image.serial)
+    if imager is None:
+        return station, ()
     if job_id == imaging.job_id:
-        imaging = replace(
-            imaging, registration=laid.registration, registration_problem=laid.problem, job_id=None
-        )
-    station, next_job = _started(station, _next(imaging))
-    latest = imaging.ground_image
-    if latest is not None and latest.captured_at_ns > laid.image.captured_at_ns:
+        imager = replace(imager, registration=laid.registration, registration_problem=laid.problem)
+        imaging = replace(imaging, job_id=None)
+    latest = imager.ground_image
+    is_newer = latest is None or latest.captured_at_ns <= image.captured_at_ns
+    if is_newer:
+        imager = replace(imager, ground_image=image, latest_error=None)
+    station, next_job = started(station, _with_imager(imaging, imager))
+    if not is_newer:
         return station, next_job
-    imaging = replace(station.imaging, ground_image=laid.image, latest_error=None)
-    station, outputs = shade.on_ground_image(replace(station, imaging=imaging), laid.image)
+    station, outputs = shade.on_ground_image(station, image)
     return station, (*next_job, *outputs)
 
 
 def _not_laid(station: Station, job_id: int, error: str, _now_ns: int) -> Stepped:
-    imaging = replace(_ended(station.imaging, job_id), latest_error=error)
-    return _started(station, _next(imaging))
+    imaging = station.imaging
+    if job_id != imaging.job_id:
+        return station, ()
+    return _ended(station, replace(imaging.imagers[imaging.job_serial], latest_error=error))
 
 
 def _dropped(station: Station, job_id: int, _now_ns: int) -> Stepped:
-    imaging = _ended(station.imaging, job_id)
-    imaging = replace(imaging, frames_dropped=imaging.frames_dropped + 1)
-    return _started(station, _next(imaging))
+    imaging = station.imaging
+    if job_id != imaging.job_id:
+        return station, ()
+    imager = imaging.imagers[imaging.job_serial]
+    return _ended(station, replace(imager, frames_dropped=imager.frames_dropped + 1))
 
 
-def _ended(imaging: Imaging, job_id: int) -> Imaging:
-    return replace(imaging, job_id=None) if job_id == imaging.job_id else imaging
+def _ended(station: Station, imager: ImagerFrames) -> Stepped:
+    """The job of an imaging drone's frame has ended, and left this state: start the next."""
+    return started(station, replace(_with_imager(station.imaging, imager), job_id=None))
 
 
 LAY_FRAME: JobKind[LayFrame, LaidFrame] = JobKind(

@@ -58,17 +58,20 @@ class LensViews:
 
 def projection(site: Site) -> Callable[[LayFrame], LaidFrame]:
     """Return the work on one frame for a site; raises `ReconError` without an imaging drone."""
-    if site.imager is None or site.frame is None or site.ground_grid is None:
+    if not site.imagers or site.frame is None or site.ground_grid is None:
         raise ReconError("the site has no imaging drone with a ground grid")
-    imager, frame = site.imager, site.frame
-    projector = GroundProjector(site.ground_grid, imager.camera, imager.image_circle)
-    views = LensViews(projector)
+    frame, grid = site.frame, site.ground_grid
+    lenses = {
+        serial: LensViews(GroundProjector(grid, imager.camera, imager.image_circle))
+        for serial, imager in site.imagers.items()
+    }
 
     def lay(work: LayFrame) -> LaidFrame:
+        imager, views = site.imagers[work.frame.serial], lenses[work.frame.serial]
         rgb = decode_frame(work.frame)
         state, found = _registered(views, work, rgb, _telemetry_pose(site, imager, frame, work))
         image = replace(
-            projector.lay_decoded(work.frame, rgb, found.pose),
+            views.projector.lay_decoded(work.frame, rgb, found.pose),
             registration=found.registration,
             registration_residual_m=found.residual_m,
             toward_sun_enu=_toward_sun_enu(frame, work.captured_utc_s),

@@ -14,7 +14,7 @@ from recon.model.replacing import replace
 from recon.model.units import seconds_to_ns
 from recon.record.reference_file import read_references, write_reference
 from recon.station.state.alarm_book import Condition, Severity
-from recon.station.state.imaging import ReferenceKeeping, ShadePipeline
+from recon.station.state.imaging import Imaging, ReferenceKeeping, ShadePipeline
 from recon.station.state.station import Station
 from recon.station.state.steps import Job, JobKind, Stepped
 
@@ -24,34 +24,34 @@ WRITE_EVERY_S = 120.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WriteReference:
-    """What the flight has learned so far, and where it is kept."""
+    """What the flight has learned so far of each imaging drone's land, and where it is kept."""
 
     folder: Path
-    detection: DetectionState
-    image: GroundImage
+    learned: tuple[tuple[DetectionState, GroundImage], ...]
 
 
 def with_references(station: Station, folder: Path) -> Station:
     """Return the station with the references of a site's folder, where it also keeps its own."""
     found, troubles = read_references(folder)
-    keeping = ReferenceKeeping(folder, unreadable=troubles)
-    detection = replace(station.shade.detection, references=found)
-    return replace(station, shade=replace(station.shade, detection=detection, references=keeping))
+    keeping = ReferenceKeeping(folder, found, unreadable=troubles)
+    return replace(station, shade=replace(station.shade, references=keeping))
 
 
-def written(pipeline: ShadePipeline, image: GroundImage | None) -> tuple[ShadePipeline, "Jobs"]:
+def written(pipeline: ShadePipeline, imaging: Imaging) -> tuple[ShadePipeline, "Jobs"]:
     """Return the job that writes what was learned, when it is due."""
-    keeping = pipeline.references
-    if keeping is None or image is None or image.captured_at_ns < keeping.due_ns:
+    keeping, shade = pipeline.references, pipeline.shade
+    if keeping is None or shade is None or shade.captured_at_ns < keeping.due_ns:
         return pipeline, ()
     number = keeping.next_job_id
-    due_ns = image.captured_at_ns + seconds_to_ns(WRITE_EVERY_S)
+    due_ns = shade.captured_at_ns + seconds_to_ns(WRITE_EVERY_S)
     pipeline = replace(pipeline, references=replace(keeping, due_ns=due_ns, next_job_id=number + 1))
-    work = WriteReference(keeping.folder, pipeline.detection, image)
-    return pipeline, (Job(number, WRITE_REFERENCE, work),)
+    images = ((s, each.ground_image) for s, each in imaging.imagers.items())
+    known = pipeline.detections
+    learned = tuple((known[s], image) for s, image in images if s in known and image is not None)
+    return pipeline, (Job(number, WRITE_REFERENCE, WriteReference(keeping.folder, learned)),)
 
 
-def conditions(pipeline: ShadePipeline, serial: str | None) -> Iterator[Condition]:
+def conditions(pipeline: ShadePipeline) -> Iterator[Condition]:
     """Yield what an operator must know of references: files not read, or not written."""
     keeping = pipeline.references
     if keeping is None:
@@ -61,14 +61,15 @@ def conditions(pipeline: ShadePipeline, serial: str | None) -> Iterator[Conditio
         problems[-1] = keeping.problem
     for number, text in problems.items():
         key = f"{RULE}:{number}"
-        yield Condition(key, Severity.WARNING, RULE, serial or "", text, serial)
+        yield Condition(key, Severity.WARNING, RULE, "", text)
 
 
 def _write(work: WriteReference) -> None:
-    """Write a reference, if enough was learned; raises `RecordError`."""
-    reference = sunlit_reference_of(work.detection, work.image)
-    if reference is not None:
-        write_reference(work.folder, reference)
+    """Write the references for which enough was learned; raises `RecordError`."""
+    for detection, image in work.learned:
+        reference = sunlit_reference_of(detection, image)
+        if reference is not None:
+            write_reference(work.folder, reference)
 
 
 def _with_problem(station: Station, problem: str) -> Stepped:

@@ -1,4 +1,8 @@
-"""Ground images to shade maps and sun forecasts: read one by one, in order, by the worker."""
+"""Ground images to shade maps and sun forecasts: read one by one, in order, by the worker.
+
+Each image is read by what is known of its own camera. The maps of several imaging drones become one
+map of the newest one's time, the older moved on with the shadows; the forecast is made from it.
+"""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
@@ -6,14 +10,21 @@ from typing import TypeVar
 
 import numpy as np
 
-from recon.detection import DETECTORS, DetectionSettings, DetectionState, RejectedFrame
-from recon.forecast import FORECASTERS, ForecastSettings, ForecastState
+from recon.detection import (
+    DETECTORS,
+    DetectionSettings,
+    DetectionState,
+    RejectedFrame,
+    merged,
+)
+from recon.forecast import FORECASTERS, ForecastSettings, ForecastState, moved_on
 from recon.model.geo import GroundGrid
 from recon.model.imagery import GroundImage
-from recon.model.shade import MaskMap, ShadeMap, SunForecast
+from recon.model.shade import MaskMap, SunForecast
+from recon.model.units import ns_to_seconds
 from recon.station.imaging import references
 from recon.station.state.alarm_book import Condition, Severity
-from recon.station.state.imaging import WAITING_KEPT, ShadePipeline
+from recon.station.state.imaging import NONE, WAITING_KEPT, SeenShade, ShadePipeline
 from recon.station.state.station import Station
 from recon.station.state.steps import Job, JobKind, Stepped
 
@@ -22,28 +33,38 @@ Method = TypeVar("Method")
 RULE, LOCK_RULE = "shade", "exposure_lock"
 TROUBLE_AFTER_S = 5.0
 """One torn frame is no trouble; a camera that is black or frozen for five seconds is."""
+MERGED_WITHIN_S = 10.0
+"""Older maps of another imaging drone are left out: shadows have moved and changed by then."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ReadShade:
-    """The next ground image, and the methods' memories of those before it."""
+    """The next ground image, and the methods' memories of those before it.
+
+    `others` are the newest maps of the other imaging drones, `velocity_mps` that of the shadows.
+    """
 
     image: GroundImage
     detection: DetectionState
     forecast: ForecastState
     detection_settings: DetectionSettings
     forecast_settings: ForecastSettings
+    others: tuple[SeenShade, ...] = ()
+    velocity_mps: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ShadeRead:
-    """A shade map with its forecast, or a rejected frame; and the methods' new memories."""
+    """What an image showed, or why it was rejected; and the methods' new memories."""
 
+    serial: str
+    """Of the imaging drone."""
     detection: DetectionState
     forecast: ForecastState
-    found: tuple[ShadeMap, SunForecast] | RejectedFrame
-    seen: MaskMap | None = None
-    """The cells of the map that the image showed; None for a rejected frame."""
+    own: SeenShade | RejectedFrame
+    merged: tuple[SeenShade, SunForecast] | None = None
+    """All imaging drones' map and the forecast from it; None for a rejected frame, and for one
+    taken before another drone's that was read already."""
 
 
 def on_ground_image(station: Station, image: GroundImage) -> Stepped:
@@ -62,11 +83,30 @@ def read_shade(work: ReadShade) -> ShadeRead:
     """
     detect = _method(DETECTORS, work.detection_settings.method, "detection")
     predict = _method(FORECASTERS, work.forecast_settings.method, "forecast")
+    serial = work.image.serial
     detection, shade = detect(work.detection, work.image, work.detection_settings)
     if isinstance(shade, RejectedFrame):
-        return ShadeRead(detection, work.forecast, shade)
-    forecast, sun = predict(work.forecast, shade, work.forecast_settings)
-    return ShadeRead(detection, forecast, (shade, sun), seen_cells(work.image, shade.grid))
+        return ShadeRead(serial, detection, work.forecast, shade)
+    own = SeenShade(shade, seen_cells(work.image, shade.grid))
+    latest_ns = work.forecast.latest_ns
+    if latest_ns is not None and shade.captured_at_ns <= latest_ns:
+        return ShadeRead(serial, detection, work.forecast, own)
+    together = _together(own, work.others, work.velocity_mps)
+    forecast, sun = predict(work.forecast, together.shade, work.forecast_settings)
+    return ShadeRead(serial, detection, forecast, own, (together, sun))
+
+
+def _together(
+    own: SeenShade, others: tuple[SeenShade, ...], velocity_mps: tuple[float, float] | None
+) -> SeenShade:
+    """Return one map of an image's time; `others` are older, or their map would be later."""
+    shades, seen, at_ns = [own.shade], own.seen, own.shade.captured_at_ns
+    for other in others:
+        age_s = ns_to_seconds(at_ns - other.shade.captured_at_ns)
+        if age_s <= MERGED_WITHIN_S and other.shade.grid == own.shade.grid:
+            shades.append(moved_on(other.shade, velocity_mps, age_s))
+            seen = seen | other.seen
+    return SeenShade(merged(shades), seen)
 
 
 def seen_cells(image: GroundImage, grid: GroundGrid) -> MaskMap:
@@ -88,19 +128,22 @@ def seen_cells(image: GroundImage, grid: GroundGrid) -> MaskMap:
 def conditions(station: Station) -> Iterator[Condition]:
     """Yield the alarms of shade detection: frames not read, a camera that is not locked."""
     pipeline = station.shade
-    yield from _lock_conditions(station)
-    yield from references.conditions(pipeline, station.imaging.imager_serial)
-    why = pipeline.error if pipeline.rejected is None else pipeline.rejected.reason
-    if why is not None:
-        serial = station.imaging.imager_serial
-        text = f"no shade is read from the imaging drone's frames: {why}"
-        yield Condition(
-            RULE, Severity.WARNING, RULE, serial or "", text, serial, after_s=TROUBLE_AFTER_S
-        )
+    for serial, detection in pipeline.detections.items():
+        yield from _lock_conditions(serial, detection)
+    yield from references.conditions(pipeline)
+    for serial in station.imaging.imagers:
+        rejected = pipeline.rejected.get(serial)
+        why = pipeline.error if rejected is None else rejected.reason
+        if why is not None:
+            key = f"{RULE}:{serial}"
+            text = f"no shade is read from the imaging drone's frames: {why}"
+            yield Condition(
+                key, Severity.WARNING, RULE, serial, text, serial, after_s=TROUBLE_AFTER_S
+            )
 
 
-def _lock_conditions(station: Station) -> Iterator[Condition]:
-    memory, serial = station.shade.detection.sunlit, station.imaging.imager_serial
+def _lock_conditions(serial: str, detection: DetectionState) -> Iterator[Condition]:
+    memory = detection.sunlit
     if memory is None or not memory.lock_problem:
         return
     text = (
@@ -108,7 +151,8 @@ def _lock_conditions(station: Station) -> Iterator[Condition]:
         'balance in the app, or state exposure = "auto" in site.toml; shade is found without '
         "the lock meanwhile"
     )
-    yield Condition(LOCK_RULE, Severity.WARNING, LOCK_RULE, serial or "", text, serial)
+    key = f"{LOCK_RULE}:{serial}"
+    yield Condition(key, Severity.WARNING, LOCK_RULE, serial, text, serial)
 
 
 def _read(station: Station, job_id: int, read: ShadeRead, _now_ns: int) -> Stepped:
@@ -116,15 +160,24 @@ def _read(station: Station, job_id: int, read: ShadeRead, _now_ns: int) -> Stepp
     if job_id != pipeline.job_id:
         return station, ()
     pipeline = replace(
-        pipeline, job_id=None, detection=read.detection, forecast=read.forecast, error=None
+        pipeline,
+        job_id=None,
+        detections={**pipeline.detections, read.serial: read.detection},
+        forecast=read.forecast,
+        error=None,
     )
-    if isinstance(read.found, RejectedFrame):
-        rejected = pipeline.frames_rejected + 1
-        return _next(station, replace(pipeline, rejected=read.found, frames_rejected=rejected))
-    shade, sun = read.found
-    number = pipeline.number + 1
-    pipeline = replace(pipeline, shade=shade, sun=sun, seen=read.seen, rejected=None, number=number)
-    pipeline, kept = references.written(pipeline, station.imaging.ground_image)
+    if isinstance(read.own, RejectedFrame):
+        rejected = {**pipeline.rejected, read.serial: read.own}
+        number = pipeline.frames_rejected + 1
+        return _next(station, replace(pipeline, rejected=rejected, frames_rejected=number))
+    rejected = {s: each for s, each in pipeline.rejected.items() if s != read.serial}
+    own = {**pipeline.own, read.serial: read.own}
+    pipeline = replace(pipeline, own=own, rejected=rejected)
+    if read.merged is None:
+        return _next(station, pipeline)
+    (newest, sun), number = read.merged, pipeline.number + 1
+    pipeline = replace(pipeline, shade=newest.shade, seen=newest.seen, sun=sun, number=number)
+    pipeline, kept = references.written(pipeline, station.imaging)
     station, started = _next(station, pipeline)
     return station, (*started, *kept)
 
@@ -133,7 +186,7 @@ def _not_read(station: Station, job_id: int, error: str, _now_ns: int) -> Steppe
     pipeline = station.shade
     if job_id != pipeline.job_id:
         return station, ()
-    return _next(station, replace(pipeline, job_id=None, error=error, rejected=None))
+    return _next(station, replace(pipeline, job_id=None, error=error, rejected=NONE))
 
 
 def _dropped(station: Station, job_id: int, _now_ns: int) -> Stepped:
@@ -156,8 +209,16 @@ def _next(station: Station, pipeline: ShadePipeline) -> Stepped:
         return replace(station, shade=pipeline), ()
     first, *rest = pipeline.waiting
     settings, number = station.settings, pipeline.next_job_id
+    keeping = pipeline.references
+    fresh = DetectionState(references=() if keeping is None else keeping.found)
     work = ReadShade(
-        first, pipeline.detection, pipeline.forecast, settings.detection, settings.forecast
+        first,
+        pipeline.detections.get(first.serial, fresh),
+        pipeline.forecast,
+        settings.detection,
+        settings.forecast,
+        tuple(each for serial, each in pipeline.own.items() if serial != first.serial),
+        None if pipeline.sun is None else pipeline.sun.velocity_mps,
     )
     pipeline = replace(pipeline, waiting=tuple(rest), job_id=number, next_job_id=number + 1)
     return replace(station, shade=pipeline), (Job(number, READ_SHADE, work),)

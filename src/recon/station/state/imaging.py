@@ -1,18 +1,23 @@
-"""The state of the imaging pipeline: the imaging drone's telemetry, ground images, shade maps."""
+"""The state of the imaging pipeline: imaging drones' telemetry, ground images, shade maps."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import MappingProxyType
+from typing import Any
 
 from recon.camera.motion import TelemetryReference
 from recon.camera.registration import RegistrationState
 from recon.detection import DetectionState, RejectedFrame
 from recon.forecast import ForecastState
 from recon.model.imagery import Frame, GroundImage
-from recon.model.shade import MaskMap, ShadeMap, SunForecast
+from recon.model.shade import MaskMap, ShadeMap, SunForecast, SunlitReference
 
 WAITING_KEPT = 8
 """Ground images that wait to be read, of 1 MB each: at one a second, the worker has this long to
 catch up. More drop the oldest, and are counted."""
+
+NONE: Mapping[str, Any] = MappingProxyType({})
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,16 +42,16 @@ class LayFrame:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Imaging:
-    """Frames and ground images of the imaging drone.
+class ImagerFrames:
+    """Frames and ground images of one imaging drone.
 
     What registration keeps travels with each job and comes back with its result, as the memories of
-    the shade methods do: one frame at a time. Of the frames received meanwhile the newest waits.
-    `reference` is the telemetry of the frame the control points were marked on. If the site does
-    not give it, the first frame received in flight takes its place.
+    the shade methods do. Of the frames received while a job runs the newest waits. `reference` is
+    the telemetry of the frame the control points were marked on. If the site does not give it, the
+    first frame received in flight takes its place.
     """
 
-    imager_serial: str | None = None
+    serial: str
     reference: TelemetryReference | None = None
     is_reference_assumed: bool = True
     is_placed_by_telemetry: bool = False
@@ -58,11 +63,32 @@ class Imaging:
     registration_problem: str = ""
     """Why the newest frame was not aligned; empty if it was."""
     waiting: LayFrame | None = None
-    job_id: int | None = None
-    """Of the job that runs now."""
-    next_job_id: int = 1
     frames_dropped: int = 0
     latest_error: str | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Imaging:
+    """The site's imaging drones, and the one job that lays a frame of one of them."""
+
+    imagers: Mapping[str, ImagerFrames] = field(default_factory=lambda: NONE)
+    """By serial, in the order of the site's file."""
+    job_id: int | None = None
+    """Of the job that runs now."""
+    job_serial: str = ""
+    """The imaging drone whose frame it lays."""
+    next_job_id: int = 1
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SeenShade:
+    """A shade map, and the cells (R, C) that its ground images showed.
+
+    Those without a value are unknown.
+    """
+
+    shade: ShadeMap
+    seen: MaskMap
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -72,23 +98,27 @@ class ShadePipeline:
     The memories of the detection and forecast methods travel with each job and come back with its
     result, so that a step depends on its arguments alone: one job at a time, every image in order.
     `number` counts the shade maps of this run; the forecast is always of the newest map.
-    `rejected` is the newest frame if no shade could be read from it.
     """
 
-    detection: DetectionState = field(default_factory=DetectionState)
+    detections: Mapping[str, DetectionState] = field(default_factory=lambda: NONE)
+    """What detection remembers of each imaging drone's frames, by serial."""
+    own: Mapping[str, SeenShade] = field(default_factory=lambda: NONE)
+    """The newest shade map of each imaging drone alone."""
     forecast: ForecastState = field(default_factory=ForecastState)
     number: int = 0
     shade: ShadeMap | None = None
+    """Of all imaging drones."""
     seen: MaskMap | None = None
-    """The cells of `shade` that its ground image showed; those without a value are unknown."""
+    """The cells of `shade` that its ground images showed; those without a value are unknown."""
     sun: SunForecast | None = None
     waiting: tuple[GroundImage, ...] = ()
     job_id: int | None = None
     """Of the job that runs now."""
-    next_job_id: int = 1
     frames_rejected: int = 0
     frames_dropped: int = 0
-    rejected: RejectedFrame | None = None
+    rejected: Mapping[str, RejectedFrame] = field(default_factory=lambda: NONE)
+    """Each imaging drone's newest frame, if no shade could be read from it."""
+    next_job_id: int = 1
     error: str | None = None
     """Why the newest job failed."""
     references: "ReferenceKeeping | None" = None
@@ -100,8 +130,10 @@ class ReferenceKeeping:
     """Where sunlit references are written, and what came of it."""
 
     folder: Path
+    found: tuple[SunlitReference, ...] = ()
+    """Of earlier flights."""
     due_ns: int = 0
-    """The next one is written with the first ground image taken at this time or later."""
+    """The next ones are written with the first shade map taken at this time or later."""
     next_job_id: int = 1
     problem: str = ""
     """Why the newest one could not be written; empty if it was."""

@@ -1,6 +1,7 @@
-"""The newest look aside of the imaging drone, and what lets one begin by itself."""
+"""The newest look aside of an imaging drone, and what lets one begin by itself."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from enum import Enum
 
 from recon.model.geo import LatLon
@@ -53,12 +54,13 @@ class LookAside:
 
 @dataclass(frozen=True, slots=True)
 class LookAsides:
-    """The newest look aside; since when the shade maps are mostly unknown, by their capture time.
+    """The newest look aside; since when light is mostly unknown below each imaging drone.
 
-    `due_ns` is when one may begin by itself again, `refused` why the last one could not.
+    That is by serial, and by the capture time of its own shade maps. `due_ns` is when one may begin
+    by itself again, `refused` why the last one could not.
     """
 
     newest: LookAside | None = None
-    unknown_since_ns: int | None = None
+    unknown_since_ns: Mapping[str, int] = field(default_factory=dict)
     due_ns: int = 0
     refused: str | None = None

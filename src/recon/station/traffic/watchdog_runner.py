@@ -76,7 +76,7 @@ def switch_hold(station: Station, event: SeparationHoldSwitched, _now_ns: int) -
 
 
 def _watched(station: Station, now_ns: int) -> Iterator[WatchedVehicle]:
-    watch, imager = station.watchdog_state, station.imaging.imager_serial
+    watch = station.watchdog_state
     for vehicle, claimed in in_the_air(station):
         if vehicle.serial != claimed and _is_connected(station, claimed):
             continue  # a link in conflict: most likely telemetry of the same aircraft
@@ -92,7 +92,7 @@ def _watched(station: Station, now_ns: int) -> Iterator[WatchedVehicle]:
             control.intent,
             control.authority.holder,
             held=watch.held.get(serial),
-            is_imager=vehicle.serial is not None and vehicle.serial == imager,
+            is_imager=vehicle.serial in station.imaging.imagers,
             stick_quiet_s=quiet_s,
             hold_refused="" if refused is None else refused.why,
             alarm_only=failsafe_holds.alarm_only(station, vehicle),

@@ -91,7 +91,7 @@ function SiteFacts(props: { site: SiteView }) {
           "Max. distance from home",
           formatQuantity(props.site.limits.max_distance_from_home_m, "m"),
         ],
-        ["Imaging drone", props.site.imager_serial ?? UNKNOWN],
+        ["Imaging drones", props.site.imager_serials.join(", ") || UNKNOWN],
         ["Camera pose error, RMS", formatQuantity(props.site.pose_rms_px, "px", 2)],
         ["Camera pose height", formatQuantity(props.site.pose_height_m, "m")],
       ]}

@@ -1,4 +1,4 @@
-import { createSignal, Show } from "solid-js";
+import { createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { LookAsideView } from "../../protocol";
 import { issuerName, responseProblem, vehicleLabel } from "../../text/names";
@@ -6,30 +6,34 @@ import { formatAge, formatHeading } from "../../text/quantities";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Problem } from "../Panel";
 
-/** Has the imaging drone fly aside and back, to tell even sun from even shade; and its progress. */
+/** Has an imaging drone fly aside and back, to tell even sun from even shade; and its progress. */
 export function LookAside() {
   const { fleet, source } = useConsole();
   const [problem, setProblem] = createSignal<string | null>(null);
-  const imager = () => fleet.vehicles.find(({ is_imager: isImager }) => isImager) ?? null;
-  const name = () => {
-    const vehicle = imager();
-    return vehicle === null ? "the imaging drone" : vehicleLabel(vehicle);
-  };
+  const imagers = () => fleet.vehicles.filter(({ is_imager: isImager }) => isImager);
   const isUnderWay = () => fleet.lookAside !== null && !isOver(fleet.lookAside);
-  const subject = () => (isUnderWay() ? "" : (imager()?.serial ?? ""));
-  const order = async () => setProblem(responseProblem(await source.lookAside()));
+  const order = async (serial: string) =>
+    setProblem(responseProblem(await source.lookAside(serial)));
+  const button = (label: string, name: string, serial: string) => (
+    <GuardButton
+      label={label}
+      name={`Fly ${name} 25 m aside and back`}
+      hold_ms={GUARD_MS}
+      subject={isUnderWay() ? "" : serial}
+      onConfirm={() => void order(serial)}
+    />
+  );
+  const labelFor = (name: string) => (imagers().length > 1 ? `Look aside: ${name}` : "Look aside");
   return (
     <section class="section" aria-label="Look aside">
       <p class="muted">
-        Under an even sky, {name()} flies 25&nbsp;m aside and back, to tell sun from shade.
+        Under an even sky, an imaging drone flies 25&nbsp;m aside and back, to tell sun from shade.
       </p>
-      <GuardButton
-        label="Look aside"
-        name={`Fly ${name()} 25 m aside and back`}
-        hold_ms={GUARD_MS}
-        subject={subject()}
-        onConfirm={() => void order()}
-      />
+      <For each={imagers()} fallback={button("Look aside", "the imaging drone", "")}>
+        {(vehicle) =>
+          button(labelFor(vehicleLabel(vehicle)), vehicleLabel(vehicle), vehicle.serial ?? "")
+        }
+      </For>
       <Problem text={problem()} />
       <Show when={fleet.lookAside}>{(view) => <Progress view={view()} />}</Show>
     </section>

@@ -3,6 +3,7 @@ import type { LookAsideView } from "../../protocol";
 import { groundImage, shadeLine, station, survey, vehicle } from "../../testing/fakeState";
 import { find, type RenderedPage, renderPage } from "../../testing/renderPage";
 import { lightPercents } from "../../text/light";
+import { vehicleLabel } from "../../text/names";
 import { GUARD_MS } from "../guard/GuardButton";
 import { SunPanel } from "./SunPanel";
 
@@ -121,7 +122,18 @@ describe("look aside", () => {
     expect(button().getAttribute("aria-label")).toContain("25 m aside and back");
     button().dispatchEvent(new PointerEvent("pointerdown", { bubbles: true, button: 0 }));
     page.clock.advance(GUARD_MS);
-    expect(page.requests).toEqual([{ lookAside: true }]);
+    expect(page.requests).toEqual([{ lookAside: "SN-001" }]);
+  });
+
+  it("has a button for each of several imaging drones", () => {
+    const vehicles = [1, 2].map((number) => vehicle(number, { is_imager: true }));
+    page = renderPage(SunPanel, station(vehicles, { shade: shadeLine() }));
+    const buttons = page.root.querySelectorAll("section[aria-label='Look aside'] button");
+    expect(buttons).toHaveLength(2);
+    expect(buttons[1]?.textContent).toContain(`Look aside: ${vehicleLabel(vehicle(2))}`);
+    buttons[1]?.dispatchEvent(new PointerEvent("pointerdown", { bubbles: true, button: 0 }));
+    page.clock.advance(GUARD_MS);
+    expect(page.requests).toEqual([{ lookAside: "SN-002" }]);
   });
 
   it("is not offered while one is under way, or without the imaging drone", () => {

@@ -20,14 +20,15 @@ def begin_if_due(station: Station, now_ns: int, settings: LookAsideSettings) -> 
     """Begin a look aside for a survey if its light has been unknown for long enough."""
     asides = station.look_asides
     record = _survey_that_allows(station)
-    if record is None or not is_unknown_for_long(station, now_ns, settings):
+    serial = unknown_for_long(station, now_ns, settings)
+    if record is None or serial is None:
         if asides.refused is not None:
             station = replace(station, look_asides=replace(asides, refused=None))
         return station, ()
     if now_ns < asides.due_ns:
         return station, ()
     by = f"{record.started_by}: survey {record.survey.name}"
-    event = LookAsideOrdered(by, person=record.person, survey_id=record.survey.id)
+    event = LookAsideOrdered(by, person=record.person, survey_id=record.survey.id, serial=serial)
     begun = begin(station, event, now_ns)
     if isinstance(begun, Refusal):
         due_ns = now_ns + seconds_to_ns(settings.refused_again_s)
@@ -38,14 +39,14 @@ def begin_if_due(station: Station, now_ns: int, settings: LookAsideSettings) -> 
     return replace(begun.station, look_asides=waits), begun.outputs
 
 
-def is_unknown_for_long(station: Station, now_ns: int, settings: LookAsideSettings) -> bool:
-    """Return whether the newest shade map is recent, and light mostly unknown for long."""
-    since_ns, shade = station.look_asides.unknown_since_ns, station.shade.shade
-    if since_ns is None or shade is None:
-        return False
-    is_recent = now_ns - shade.captured_at_ns <= seconds_to_ns(settings.map_within_s)
-    unknown_for_ns = shade.captured_at_ns - since_ns
-    return is_recent and unknown_for_ns >= seconds_to_ns(settings.unknown_for_s)
+def unknown_for_long(station: Station, now_ns: int, settings: LookAsideSettings) -> str | None:
+    """Return an imaging drone with a recent shade map, and light mostly unknown for long."""
+    for serial, since_ns in station.look_asides.unknown_since_ns.items():
+        captured_at_ns = station.shade.own[serial].shade.captured_at_ns
+        is_recent = now_ns - captured_at_ns <= seconds_to_ns(settings.map_within_s)
+        if is_recent and captured_at_ns - since_ns >= seconds_to_ns(settings.unknown_for_s):
+            return serial
+    return None
 
 
 def _survey_that_allows(station: Station) -> SurveyRecord | None:

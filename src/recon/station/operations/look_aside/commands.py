@@ -48,9 +48,12 @@ def refusal(station: Station, event: LookAsideOrdered, now_ns: int) -> Refusal |
 
 def begin(station: Station, event: LookAsideOrdered, now_ns: int) -> LookAsideBegun | Refusal:
     """Return the station with a look aside begun, in the first direction that the gate accepts."""
-    serial = station.imaging.imager_serial
+    serial = event.serial or meant(station)
     if serial is None:
         return Refusal(RULE, NO_IMAGER)
+    if serial not in station.imaging.imagers:
+        known = ", ".join(station.imaging.imagers)
+        return Refusal(RULE, f"{serial} is no imaging drone of the site: expected {known}")
     vehicle = station.fleet.vehicles.get(serial)
     if vehicle is None:
         return Refusal(RULE, f"the imaging drone {serial} is not connected")
@@ -64,6 +67,17 @@ def begin(station: Station, event: LookAsideOrdered, now_ns: int) -> LookAsideBe
     if isinstance(tried, Refusal):
         return tried
     return LookAsideBegun(tried.station, (*withdrawn, *tried.outputs))
+
+
+def meant(station: Station) -> str | None:
+    """Return the imaging drone to look aside when none is named: light is unknown below it.
+
+    The site's first one if light is known below all of them; None without any.
+    """
+    unknown = station.look_asides.unknown_since_ns
+    return next((s for s in station.imaging.imagers if s in unknown), None) or next(
+        iter(station.imaging.imagers), None
+    )
 
 
 def way(station: Station, by: str, serial: str, place: LatLon, height_m: float) -> OperatorOrder:
@@ -87,7 +101,7 @@ def audit_entries(
         if why is not None:
             details = {"rule": why.rule, "reason": why.reason}
             text = f"look aside refused: {why.reason}"
-            serial = before.imaging.imager_serial
+            serial = event.serial or meant(before)
             yield AuditEntry("look_aside.refused", text, event.by, serial, details=details)
     new, old = after.look_asides.newest, before.look_asides.newest
     if new is not None and (old is None or (old.stage, old.since_ns) != (new.stage, new.since_ns)):

@@ -6,6 +6,7 @@ from recon.geo.distance import horizontal_distance_m
 from recon.guidance.look_aside import LOOK_ASIDE_SETTINGS
 from recon.model.control import AuthorityHolder
 from recon.station.operations.fleet_return.progress import newest_motion
+from recon.station.operations.look_aside.commands import meant
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.look_aside_record import LookAside, LookAsideStage
 from recon.station.state.station import Station
@@ -29,7 +30,7 @@ def conditions(station: Station) -> Iterator[Condition]:
     if newest is not None and newest.stage is LookAsideStage.STOPPED:
         yield from _off_its_place(station, newest)
     if asides.refused is not None:
-        serial = station.imaging.imager_serial or ""
+        serial = meant(station) or ""
         text = f"light is unknown, and the imaging drone cannot look aside: {asides.refused}"
         yield Condition(f"{RULE}:refused", Severity.WARNING, RULE, serial, text, serial)
 

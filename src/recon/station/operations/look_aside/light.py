@@ -1,4 +1,4 @@
-"""Since when the light is mostly unknown, from each new shade map."""
+"""Since when light is mostly unknown below each imaging drone, from each new shade map."""
 
 from dataclasses import replace
 
@@ -7,13 +7,14 @@ from recon.model.shade import ShadeMap
 from recon.station.state.station import Station
 
 
-def on_shade(station: Station, shade: ShadeMap) -> Station:
-    """Return the station that knows since when its shade maps are mostly unknown."""
-    asides, seen = station.look_asides, station.shade.seen
-    since_ns: int | None = None
-    if seen is not None and is_mostly_unknown(shade.valid, seen, LOOK_ASIDE_SETTINGS):
-        before_ns = asides.unknown_since_ns
-        since_ns = shade.captured_at_ns if before_ns is None else before_ns
+def on_shade(station: Station, _shade: ShadeMap) -> Station:
+    """Return the station that knows since when light is mostly unknown below each."""
+    asides = station.look_asides
+    since_ns = {
+        serial: asides.unknown_since_ns.get(serial, own.shade.captured_at_ns)
+        for serial, own in station.shade.own.items()
+        if is_mostly_unknown(own.shade.valid, own.seen, LOOK_ASIDE_SETTINGS)
+    }
     if since_ns == asides.unknown_since_ns:
         return station
     return replace(station, look_asides=replace(asides, unknown_since_ns=since_ns))

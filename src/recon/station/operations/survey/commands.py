@@ -182,8 +182,8 @@ def _vehicle_refusal(
     name = station.fleet.vehicles[serial].display_name
     if station.is_stopped(serial):
         return Refusal(STOP_RULE, f"{name} is held by an all stop; release its stop first")
-    if serial == station.imaging.imager_serial:
-        return Refusal(RULE, f"{name} is the imaging drone and cannot join a survey")
+    if serial in station.imaging.imagers:
+        return Refusal(RULE, f"{name} is an imaging drone and cannot join a survey")
     other = station.surveys.running_with(serial)
     if other is not None and other.survey.id != record.survey.id:
         return Refusal(RULE, f"{name} flies for the survey {other.survey.name}; pause that first")
