@@ -5,8 +5,9 @@
     python -m studies.shade --scenario cumulus-20 --earlier 10    what an earlier flight is worth
 
 Frames are rendered at a small size, laid on the ground with the true pose (or telemetry's), and
-kept in a temporary folder for the next call. Unknown cells count as wrong in the IoU. The row
-`true reference` is a ceiling: the frame over the same ground under a clear sky, at the true gain.
+kept in a temporary folder for the next call. Unknown cells count as wrong in the IoU. A method
+named like `brightness_ratio:600` remembers so many seconds. What is lost by cause is the difference
+between two calls: true pose or telemetry's, exposure locked or automatic, all minutes or `--after`.
 
 With `--earlier` the first minutes are a flight of their own: what it has learned is taken up by a
 second one, which begins there, in one row, and not by the same one in the other.
@@ -191,12 +192,17 @@ def score(
     The flight begins at a moment of what was rendered, in a state: by default, of knowing nothing.
     """
     tally = Tally(ms=[])
+    name, _, window_s = method.partition(":")
     state, settings = state or DetectionState(), _settings(flight)
+    if window_s:
+        seconds = float(window_s)
+        samples = round(seconds / settings.window_s * settings.samples)
+        settings = replace(settings, window_s=seconds, samples=samples)
     for moment in moments(flight):
         if moment.image.captured_at_ns < seconds_to_ns(begins_s):
             continue
         started = time.process_time()
-        state, found = DETECTORS[method](state, moment.image, settings)
+        state, found = DETECTORS[name](state, moment.image, settings)
         assert tally.ms is not None
         tally.ms.append(1e3 * (time.process_time() - started))
         if moment.image.captured_at_ns < seconds_to_ns(after_s):
