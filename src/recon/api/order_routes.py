@@ -36,6 +36,7 @@ from recon.model.mission import Mission, Waypoint
 def add_order_routes(app: FastAPI, port: StationPort) -> None:
     """Add all routes of this module."""
     _add_orders(app, port)
+    _add_operations(app, port)
     _add_hazards(app, port)
     _add_readiness(app, port)
 
@@ -82,6 +83,8 @@ def _add_orders(app: FastAPI, port: StationPort) -> None:
         """Release vehicles from the all stop. Nothing is sent to them, and nothing resumes."""
         return port.release_stop(asked.serials, person_of(request))
 
+
+def _add_operations(app: FastAPI, port: StationPort) -> None:
     @app.post("/api/fleet-return")
     async def fleet_return(
         asked: schema.FleetReturnRequest, request: Request

@@ -17,10 +17,10 @@ from recon.station.alarms.conditions import conditions
 from recon.station.api_views.imaging_views import shade_view
 from recon.station.imaging.frames import LAY_FRAME
 from recon.station.imaging.projection import LaidFrame
-from recon.station.imaging.shade import MERGED_WITHIN_S, READ_SHADE, ReadShade, seen_cells
+from recon.station.imaging.shade import READ_SHADE, ReadShade, seen_cells
 from recon.station.kernel.step import step
 from recon.station.kernel.worker import AnyJob, JobRunner
-from recon.station.state.imaging import WAITING_KEPT
+from recon.station.state.imaging import TOGETHER_WITHIN_S, WAITING_KEPT
 from recon.station.state.settings import StationSettings
 from recon.station.state.station import Station
 from recon.station.state.steps import Job, JobDone, JobDropped, JobFailed, Output
@@ -274,9 +274,9 @@ class TestSeveralImagingDrones:
 
     def test_a_map_that_is_too_old_is_left_out(self, two: Line) -> None:
         self.sees(two, 1.0, "WEST")
-        self.sees(two, 1.0 + MERGED_WITHIN_S, "EAST")
+        self.sees(two, 1.0 + TOGETHER_WITHIN_S, "EAST")
         assert self.shown(two) == (True, True)
-        self.sees(two, 1.1 + MERGED_WITHIN_S, "EAST")
+        self.sees(two, 1.1 + TOGETHER_WITHIN_S, "EAST")
         assert self.shown(two) == (False, True)
 
     def test_an_image_taken_before_the_others_waits_for_the_next(self, two: Line) -> None:

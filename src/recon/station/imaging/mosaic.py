@@ -5,10 +5,8 @@ from collections.abc import Sequence
 from recon.model.imagery import GroundImage, Registration
 from recon.model.replacing import replace
 from recon.model.units import seconds_to_ns
-from recon.station.state.imaging import Imaging
+from recon.station.state.imaging import TOGETHER_WITHIN_S, Imaging
 
-WITHIN_S = 10.0
-"""An image that is older than the newest one by more is left out, or it would look like now."""
 WORST_FIRST = (Registration.LOST, Registration.UNREGISTERED, Registration.REGISTERED)
 
 
@@ -19,7 +17,7 @@ def newest_images(imaging: Imaging) -> tuple[GroundImage, ...]:
     return tuple(
         image
         for image in known
-        if known[0].captured_at_ns - image.captured_at_ns <= seconds_to_ns(WITHIN_S)
+        if known[0].captured_at_ns - image.captured_at_ns <= seconds_to_ns(TOGETHER_WITHIN_S)
     )
 
 

@@ -24,7 +24,13 @@ from recon.model.shade import MaskMap, SunForecast
 from recon.model.units import ns_to_seconds
 from recon.station.imaging import references
 from recon.station.state.alarm_book import Condition, Severity
-from recon.station.state.imaging import NONE, WAITING_KEPT, SeenShade, ShadePipeline
+from recon.station.state.imaging import (
+    NONE,
+    TOGETHER_WITHIN_S,
+    WAITING_KEPT,
+    SeenShade,
+    ShadePipeline,
+)
 from recon.station.state.station import Station
 from recon.station.state.steps import Job, JobKind, Stepped
 
@@ -33,8 +39,6 @@ Method = TypeVar("Method")
 RULE, LOCK_RULE = "shade", "exposure_lock"
 TROUBLE_AFTER_S = 5.0
 """One torn frame is no trouble; a camera that is black or frozen for five seconds is."""
-MERGED_WITHIN_S = 10.0
-"""Older maps of another imaging drone are left out: shadows have moved and changed by then."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -103,7 +107,7 @@ def _together(
     shades, seen, at_ns = [own.shade], own.seen, own.shade.captured_at_ns
     for other in others:
         age_s = ns_to_seconds(at_ns - other.shade.captured_at_ns)
-        if age_s <= MERGED_WITHIN_S and other.shade.grid == own.shade.grid:
+        if age_s <= TOGETHER_WITHIN_S and other.shade.grid == own.shade.grid:
             shades.append(moved_on(other.shade, velocity_mps, age_s))
             seen = seen | other.seen
     return SeenShade(merged(shades), seen)

@@ -17,6 +17,10 @@ WAITING_KEPT = 8
 """Ground images that wait to be read, of 1 MB each: at one a second, the worker has this long to
 catch up. More drop the oldest, and are counted."""
 
+TOGETHER_WITHIN_S = 10.0
+"""Of the newest one: older images and maps of other imaging drones are left out of what is shown of
+all together. Shadows have moved and changed by then, and an old image would look like now."""
+
 NONE: Mapping[str, Any] = MappingProxyType({})
 
 
