@@ -17,9 +17,9 @@ from tests.real_footage.footage import FootageSettings, footage, ground_images
 from tests.real_footage.places import PLACES, load_place
 
 from recon.detection import DETECTORS, DetectionSettings, DetectionState
+from recon.geo import nearest_cells
 from recon.model.imagery import GroundImage
 from recon.model.shade import ShadeMap
-from recon.score.score_grid import nearest_cells
 from recon.score.shade_figures import ShadeFigures, map_figures
 
 BEGIN_S = 30.0

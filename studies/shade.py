@@ -59,7 +59,7 @@ def _renderer_digest() -> bytes:
     rooms = [project / "src/recon" / room for room in ("sim", "camera", "geo", "score")]
     files = [file for room in rooms for file in room.rglob("*.py")]
     digest = hashlib.sha256()
-    for file in sorted([*files, *(project / "scenarios").glob("*.toml"), Path(__file__)]):
+    for file in sorted([*files, *(project / "scenarios").rglob("*.toml"), Path(__file__)]):
         digest.update(file.read_bytes())
     return digest.digest()
 
@@ -80,7 +80,8 @@ class Flight:
     def folder(self) -> Path:
         """The flight's folder in the cache."""
         key = hashlib.sha256(repr(self).encode() + _renderer_digest()).hexdigest()[:16]
-        return Path(tempfile.gettempdir()) / "recon-shade" / f"{self.scenario}-{self.seed}-{key}"
+        name = self.scenario.replace("/", "-")
+        return Path(tempfile.gettempdir()) / "recon-shade" / f"{name}-{self.seed}-{key}"
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -2,18 +2,18 @@
 
     python -m studies.sky_pictures docs/images/skies.png
 
-From the left: cover 20, 40 and 60 %, and two layers; below, the same ten minutes later. A picture
-is 8 km wide; white is full sun.
+From the left: the scenarios cumulus-20, -40, -60 and two-layers; below, the same ten minutes later.
+A picture is 8 km wide; white is full sun.
 """
 
 import argparse
-from dataclasses import replace
 from pathlib import Path
 
 import cv2
 import numpy as np
 
-from recon.sim.world import LayerSettings, Sky, SkySettings
+from recon.score import load_scenario
+from recon.score.scenario_sky import sky_of
 from recon.sim.world.keyframes import FloatImage
 
 SEED = 12
@@ -22,22 +22,14 @@ CELLS = 180
 TIMES_S = (0.0, 600.0)
 GRAYS = 20
 """So few that the file stays small."""
-LOW = LayerSettings()
-HIGH = LayerSettings(4_500.0, 14.0, 115.0, 0.3, softness=0.6)
-SKIES = (
-    (replace(LOW, cover=0.2),),
-    (replace(LOW, cover=0.4),),
-    (replace(LOW, cover=0.6),),
-    (replace(LOW, cover=0.3), HIGH),
-)
+SCENARIOS = ("cumulus-20", "cumulus-40", "cumulus-60", "two-layers")
 
 
-def shade(layers: tuple[LayerSettings, ...], time_s: float) -> FloatImage:
+def shade(scenario: str, time_s: float) -> FloatImage:
     """Return what reaches the ground, north up."""
+    sky = sky_of(load_scenario(Path("scenarios") / f"{scenario}.toml"), SEED)
     east_m = (np.arange(CELLS) + 0.5) * WIDTH_M / CELLS
-    return Sky(SkySettings(SEED, layers=layers)).transmittance(
-        east_m[np.newaxis, :], east_m[::-1, np.newaxis], time_s
-    )
+    return sky.transmittance(east_m[np.newaxis, :], east_m[::-1, np.newaxis], time_s)
 
 
 def picture() -> np.ndarray:
@@ -45,7 +37,7 @@ def picture() -> np.ndarray:
     frame = 4
     rows = []
     for time_s in TIMES_S:
-        panels = [np.pad(shade(sky, time_s), frame, constant_values=0.5) for sky in SKIES]
+        panels = [np.pad(shade(sky, time_s), frame, constant_values=0.5) for sky in SCENARIOS]
         rows.append(np.hstack(panels))
     whole = np.vstack(rows)
     return (np.round(whole * (GRAYS - 1)) * (255.0 / (GRAYS - 1))).astype(np.uint8)

@@ -17,19 +17,55 @@ def known(stage: str) -> str:
     return " or ".join(METHOD_NAMES[stage])
 
 
+@pytest.fixture(autouse=True)
+def _kept_here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+
+
 def test_tables_go_to_stdout_and_progress_to_stderr(tmp_path: Path) -> None:
-    path = str(written(tmp_path, SHORT))
-    first, second = (CliRunner().invoke(app, ["score", path, *FEW]) for _ in range(2))
-    assert first.exit_code == 0
+    command = ["score", str(written(tmp_path, SHORT)), *FEW, "--fresh"]
+    first = CliRunner().invoke(app, [*command, "--jobs", "1"])
+    # In two processes: the same to the byte.
+    second = CliRunner().invoke(app, [*command, "--jobs", "2"])
+    assert first.exit_code == 0, first.stderr
     assert first.stdout_bytes == second.stdout_bytes
     assert "ideal, forecast global_shift, planner lawnmower_again; 2 seeds" in first.stdout
     assert "| time to 95 % in sun, min |" in first.stdout
-    assert "| shade IoU | 0.94 |" in first.stdout  # ideal pixels, laid by telemetry
+    assert "| shade IoU | 0.9" in first.stdout  # ideal pixels, laid by telemetry
     assert "| unknown, % | 0.0 |" in first.stdout
-    assert "| Brier, beyond horizon |" in first.stdout
+    assert "| Brier, not seen |" in first.stdout
     assert "| violations: outside the fence | 0.0 |" in first.stdout
     assert [line.split(":")[0] for line in first.stderr.splitlines()] == ["seed 7", "seed 8"]
-    assert "times faster than real time" in first.stderr
+    assert "2 of 2 runs, about 0 min left" in second.stderr
+
+
+def test_a_stopped_command_goes_on_where_it_was(tmp_path: Path) -> None:
+    path = str(written(tmp_path, SHORT))
+    one = CliRunner().invoke(app, ["score", path, "--seeds", "1", "--first-seed", "7"])
+    assert one.exit_code == 0
+    both = CliRunner().invoke(app, ["score", path, *FEW])
+    assert "1 of 2 runs were flown before" in both.stderr
+    assert "seed 7" not in both.stderr
+    assert "seed 8" in both.stderr
+    fresh = CliRunner().invoke(app, ["score", path, *FEW, "--fresh", "--jobs", "1"])
+    assert fresh.stdout_bytes == both.stdout_bytes
+    # Another scenario, another method: nothing of it was flown before.
+    other = CliRunner().invoke(app, ["score", path, *FEW, "--forecast", "none", "--jobs", "1"])
+    assert "before" not in other.stderr
+
+
+def test_all_forecasts_are_compared_with_one(tmp_path: Path) -> None:
+    options = ["--seeds", "1", "--against", "persistence"]
+    done = CliRunner().invoke(app, ["score", str(written(tmp_path, SHORT)), *options])
+    assert done.exit_code == 0
+    assert "| forecast by global_shift | 15 s |" in done.stdout
+    assert "| Brier, seen | 15 s |" in done.stdout
+    heading, _line, *rows = done.stdout.partition("| Brier over that of persistence, seen ")[
+        2
+    ].splitlines()
+    methods = {row.split(" | ")[0].strip("| ") for row in rows if row}
+    assert {"climatology", "global_shift", "true_motion"} <= methods
+    assert "15 s" in heading
 
 
 def test_options_choose_methods(tmp_path: Path) -> None:
@@ -48,6 +84,10 @@ def test_options_choose_methods(tmp_path: Path) -> None:
         (["--planner", "magic"], "--planner: expected lawnmower_once or lawnmower_again, got"),
         (["--detection", "magic"], f"--detection: expected {known('detection')}, got"),
         (["--forecast", "magic"], f"--forecast: expected {known('forecast')}, got"),
+        (["--against", "magic"], "--against: expected global_shift or persistence or"),
+        (["--against", "persistence", "--forecast", "none"], "expected a forecast to compare"),
+        (["--jobs", "0"], "--jobs: expected 1 or more, got 0"),
+        (["--cluster", "127.0.0.1:1"], "expected a Dask scheduler at 127.0.0.1:1, got"),
     ],
 )
 def test_invalid_options_are_one_line(tmp_path: Path, options: list[str], words: str) -> None:

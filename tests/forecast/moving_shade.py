@@ -54,6 +54,14 @@ def forecasts(
     """Return the forecast after each map."""
     state, found = ForecastState(), []
     for one in maps:
-        state, forecast = FORECASTERS[method](state, one, settings or ForecastSettings())
+        state, forecast = step(method, state, one, settings or ForecastSettings())
         found.append(forecast)
     return found
+
+
+def step(
+    method: str, state: ForecastState, shade: ShadeMap, settings: ForecastSettings
+) -> tuple[ForecastState, SunForecast]:
+    """Return the state after a map, and its forecast."""
+    state = FORECASTERS[method].observed(state, shade, settings)
+    return state, FORECASTERS[method].forecast(state, settings)

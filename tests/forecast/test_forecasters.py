@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.detection.shaded_field import FIELD, DriftingShade
 from tests.examples import examples
-from tests.forecast.moving_shade import SEEN, forecasts, noisy_map, shade_map
+from tests.forecast.moving_shade import SEEN, forecasts, noisy_map, shade_map, step
 
 from recon.forecast import FORECASTERS, ForecastSettings, ForecastState
 from recon.model.geo import GroundGrid
@@ -18,6 +18,8 @@ GRID = GroundGrid(FIELD.frame, 0.0, 0.0, 8.0, 20, 24)
 SETTINGS = ForecastSettings(lead_s=(0.0, 20.0, 60.0, 400.0))
 
 methods = pytest.mark.parametrize("method", sorted(FORECASTERS))
+methods_of_cells = pytest.mark.parametrize("method", sorted(set(FORECASTERS) - {"climatology"}))
+"""Climatology is the same for all cells."""
 
 
 def drawn_maps(seed: int) -> list[ShadeMap]:
@@ -64,14 +66,13 @@ def test_any_maps_give_sound_and_repeatable_forecasts(method: str, seed: int) ->
 
 @methods
 def test_a_map_that_is_not_newer_is_an_error(method: str) -> None:
-    step = FORECASTERS[method]
-    state, _ = step(ForecastState(), noisy_map(DriftingShade(1), 10.0), SETTINGS)
+    state, _ = step(method, ForecastState(), noisy_map(DriftingShade(1), 10.0), SETTINGS)
     for at_s in (10.0, 9.0):
         with pytest.raises(ValueError, match="expected a newer shade map"):
-            step(state, noisy_map(DriftingShade(1), at_s), SETTINGS)
+            step(method, state, noisy_map(DriftingShade(1), at_s), SETTINGS)
 
 
-@methods
+@methods_of_cells
 def test_lead_0_is_the_map_where_its_confidence_is_high(method: str) -> None:
     maps = [noisy_map(DriftingShade(2, cover=0.4), 5.0 * i) for i in range(12)]
     forecast = forecasts(method, maps, SETTINGS)[-1]
@@ -79,7 +80,7 @@ def test_lead_0_is_the_map_where_its_confidence_is_high(method: str) -> None:
     assert np.mean(is_likely[SEEN] == maps[-1].is_sunlit[SEEN]) > 0.95
 
 
-@methods
+@methods_of_cells
 def test_low_confidence_is_nearer_to_the_prior(method: str) -> None:
     direct = DriftingShade(3, cover=0.4).transmittance(FIELD, 0.0)
     far = []
@@ -100,8 +101,8 @@ def test_the_prior_is_the_recent_share_in_sun(method: str) -> None:
     priors = []
     for i in range(240):
         seen = np.ones(direct.shape, bool)
-        state, forecast = FORECASTERS[method](
-            state, shade_map(direct, 5.0 * i, seen, 0.9, GRID), settings_
+        state, forecast = step(
+            method, state, shade_map(direct, 5.0 * i, seen, 0.9, GRID), settings_
         )
         priors.append(forecast.prior_sunlit)
     assert priors[0] == pytest.approx(0.5)
@@ -113,7 +114,7 @@ def test_the_prior_is_the_recent_share_in_sun(method: str) -> None:
 def test_memory_is_bounded(method: str) -> None:
     state, shade = ForecastState(), DriftingShade(4, cover=0.4)
     for i in range(150):
-        state, _ = FORECASTERS[method](state, noisy_map(shade, 2.0 * i), SETTINGS)
+        state, _ = step(method, state, noisy_map(shade, 2.0 * i), SETTINGS)
         assert len(state.kept) <= 10
         assert len(state.velocities) <= 3 * 13
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from tests.detection.shaded_field import FIELD, FOOTPRINT, DriftingShade, Imager, Land
-from tests.forecast.moving_shade import is_sunlit
+from tests.forecast.moving_shade import is_sunlit, step
 
 from recon.detection import DETECTORS, DetectionSettings, DetectionState
 from recon.forecast import FORECASTERS, ForecastSettings, ForecastState
@@ -22,8 +22,8 @@ def line(seed: int, velocity: tuple[float, float]) -> tuple[DriftingShade, dict[
         image = Imager(offset_m=tuple(wrong_m[i])).see(land, shade, 5.0 * i)
         detection, found = DETECTORS["brightness_ratio"](detection, image, DetectionSettings())
         assert isinstance(found, ShadeMap), found
-        for method, step in FORECASTERS.items():
-            states[method], latest[method] = step(states[method], found, LEADS)
+        for method in FORECASTERS:
+            states[method], latest[method] = step(method, states[method], found, LEADS)
     return shade, latest
 
 

@@ -14,6 +14,8 @@ FloatArray = npt.NDArray[np.float64]
 IndexSeries = npt.NDArray[np.float32]
 
 SHADE_INDEX = 0.65
+BROKEN_SHARE = (0.1, 0.75)
+"""Share of shade of a day that counts as broken cloud; days outside were not measured either."""
 SHORTEST_S = 30
 """Shorter shadows and gaps are no matter to a survey, and were not counted outside either."""
 LEADS_MIN = (1, 3, 5, 10, 20)
@@ -33,7 +35,9 @@ class Passages:
     watched_s: int = 0
 
     def add(self, index: IndexSeries) -> None:
-        """Count one more (T, P) series."""
+        """Count those of one more (T, P) series that have broken cloud."""
+        share = (index < SHADE_INDEX).mean(axis=0)
+        index = index[:, (share >= BROKEN_SHARE[0]) & (share <= BROKEN_SHARE[1])]
         shade = index < SHADE_INDEX
         self.shaded_s += int(shade.sum())
         self.watched_s += shade.size

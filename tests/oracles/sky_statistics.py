@@ -36,21 +36,28 @@ COLUMNS = ("10 %", "50 %", "90 %")
 class Mixture:
     """What the drawn days are like: fitted, but for the layers' speeds, angles and heights."""
 
-    cover_middle: float = -0.35
-    """Of the low clouds' covers, as a normal deviate: 36 %."""
-    cover_spread: float = 1.1
-    """Deviation of these deviates: two days of three lie between 7 and 77 %."""
+    cover_middle: float = -0.31
+    """Of the low clouds' covers, as a normal deviate: 38 %."""
+    cover_spread: float = 0.68
+    """Deviation of these deviates: two days of three lie between 16 and 64 %."""
     high_share: float = 0.4
     """How many days have a second layer."""
-    high_cover_middle: float = -1.3
+    high_cover_middle: float = -0.85
     high_cover_spread: float = 0.7
-    """Of the high clouds' covers: 10 %, mostly 2 to 27 %."""
-    softness: float = 0.7
+    """Of the high clouds' covers: 20 %, mostly 6 to 44 %."""
+    softness: float = 0.62
     softness_spread: float = 1.6
     """Deviation of the softness' logarithm: from hard-edged cumulus to veils."""
     softness_bounds: tuple[float, float] = (0.02, 1.0)
     ragged_share: float = 0.6
-    """How many layers have the spectral slope 3.0 instead of 3.4."""
+    """How many layers have the first of the spectral slopes, the others the second."""
+    slopes: tuple[float, float] = (3.0, 3.43)
+    finest_scale_m: float = 130.0
+    lifetime_s: float = 1_100.0
+    """As in the scenarios of broken cloud."""
+    modulation: float = 1.24
+    modulation_s: float = 4_950.0
+    """Days have slower changes of cover than single broken hours."""
     low_base_m: tuple[float, float] = (900.0, 2_000.0)
     high_base_m: tuple[float, float] = (3_000.0, 6_000.0)
 
@@ -88,7 +95,11 @@ class Mixture:
             heading_deg=heading_deg,
             cover=min(max(cover, 0.01), 0.99),
             softness=min(max(softness, self.softness_bounds[0]), self.softness_bounds[1]),
-            spectral_slope=3.0 if draws.next() < self.ragged_share else 3.4,
+            spectral_slope=self.slopes[0 if draws.next() < self.ragged_share else 1],
+            finest_scale_m=self.finest_scale_m,
+            lifetime_s=self.lifetime_s,
+            modulation=self.modulation,
+            modulation_s=self.modulation_s,
         )
 
 
@@ -115,8 +126,13 @@ def watch(skies: list[Sky], points: int, hours: float) -> Passages:
     """Return what passes over the points of these skies."""
     passages = Passages()
     for sky in skies:
-        passages.add(np.vstack(list(_indices(sky, points, hours))))
+        passages.add(clear_sky_indices(sky, points, hours))
     return passages
+
+
+def clear_sky_indices(sky: Sky, points: int, hours: float) -> IndexSeries:
+    """Return the clear-sky indices (T, P) of points with weathers of their own, one a second."""
+    return np.vstack(list(_indices(sky, points, hours)))
 
 
 def _indices(sky: Sky, points: int, hours: float) -> Iterator[IndexSeries]:

@@ -1,4 +1,6 @@
-"""Forecasts of four cells, whose Brier scores can be worked out by hand."""
+"""Figures of forecasts, by hand and on any forecast."""
+
+from math import exp, log
 
 import numpy as np
 import pytest
@@ -8,87 +10,107 @@ from hypothesis.extra.numpy import arrays
 
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.shade import SunForecast
-from recon.score.forecast_figures import HorizonCells, LeadScore, score_lead
+from recon.score.forecast_figures import (
+    BINS,
+    Calibration,
+    LeadScore,
+    SeenCells,
+    score_cells,
+    sun_probability,
+)
+from recon.score.interval import log_ratio
 from recon.score.shade_figures import Overlap
 
-GRID = GroundGrid(LocalFrame(GeoPoint(45.0, -93.0, 250.0)), 0.0, 8.0, 4.0, 2, 2)
+GRID = GroundGrid(LocalFrame(GeoPoint(41.9, -93.6, 280.0)), 0.0, 20.0, 10.0, 2, 2)
 ALL = np.ones((2, 2), dtype=np.bool_)
-LEADS_S = (0.0, 60.0)
 
 
-def forecast(levels: object, horizon_s: object) -> SunForecast:
+def forecast(levels: list[int]) -> SunForecast:
     """The same levels of 255 at both leads."""
     each = np.array(levels, dtype=np.uint8).reshape(2, 2)
+    nowhere = np.zeros((2, 2), dtype=np.float32)
     return SunForecast(
-        GRID,
-        0,
-        np.array(LEADS_S),
-        np.stack([each, each]),
-        np.array(horizon_s, dtype=np.float32).reshape(2, 2),
-        0.5,
-        "drawn",
+        GRID, 0, np.array([0.0, 60.0]), np.stack([each, each]), nowhere, 0.5, "drawn"
     )
 
 
 def test_brier_and_iou_of_seen_unseen_and_all() -> None:
-    predicted = forecast([255, 0, 51, 204], [60.0, 60.0, 0.0, 30.0])
+    chances = np.array([[1.0, 0.0], [0.2, 0.8]])
     is_sunlit = np.array([[True, True], [False, False]])
-    found = score_lead(predicted, 60.0, GRID, is_sunlit, ALL)
-    # Within: right and in sun; and wrong, in shade. Beyond: 0.2 and 0.8 of sun, both in shade.
-    assert found[HorizonCells.WITHIN] == LeadScore(1.0, 2, Overlap(0, 1))
-    assert found[HorizonCells.BEYOND].squares == pytest.approx(0.2**2 + 0.8**2)
-    assert found[HorizonCells.BEYOND].shade == Overlap(1, 2)
-    assert found[HorizonCells.ALL].brier == pytest.approx((1.0 + 0.04 + 0.64) / 4.0)
-    assert found[HorizonCells.ALL].shade.iou == pytest.approx(1.0 / 3.0)
+    found = score_cells(chances, is_sunlit, np.array([[True, True], [False, False]]), ALL)
+    # Seen: right and in sun; and wrong, in shade. Not seen: 0.2 and 0.8 of sun, both in shade.
+    seen, unseen = found[SeenCells.SEEN], found[SeenCells.UNSEEN]
+    assert (seen.squares, seen.cells, seen.shade) == (1.0, 2, Overlap(0, 1))
+    assert unseen.squares == pytest.approx(0.2**2 + 0.8**2)
+    assert unseen.shade == Overlap(1, 2)
+    assert found[SeenCells.ALL].brier == pytest.approx((1.0 + 0.04 + 0.64) / 4.0)
+    assert found[SeenCells.ALL].shade.iou == pytest.approx(1.0 / 3.0)
 
 
-def test_a_coin_has_a_quarter() -> None:
-    found = score_lead(forecast([128] * 4, [0.0] * 4), 60.0, GRID, ~ALL, ALL)
-    assert found[HorizonCells.ALL].brier == pytest.approx(0.25, abs=0.003)
+def test_a_coin_has_a_quarter_and_nothing_seen_no_brier() -> None:
+    found = score_cells(np.full((2, 2), 0.5), ~ALL, ~ALL, ALL)
+    assert found[SeenCells.ALL].brier == 0.25
+    assert found[SeenCells.SEEN].brier is None
 
 
-def test_nothing_seen_has_no_brier() -> None:
-    assert (
-        score_lead(forecast([9] * 4, [0.0] * 4), 60.0, GRID, ALL, ALL)[HorizonCells.WITHIN].brier
-        is None
-    )
+def test_cells_that_are_not_scored_do_not_count() -> None:
+    found = score_cells(np.ones((2, 2)), ~ALL, ALL, np.diag([True, False]))
+    assert found[SeenCells.ALL].cells == 1
 
 
-def test_cells_outside_the_footprint_do_not_count() -> None:
-    found = score_lead(forecast([255] * 4, [60.0] * 4), 60.0, GRID, ~ALL, np.diag([True, False]))
-    assert found[HorizonCells.ALL].cells == 1
+def test_the_calibration_error_is_that_of_the_bins() -> None:
+    """A hundred cells at 0.95 of which 80 are in sun, a hundred at 0.55 of which 55 are."""
+    chances = np.repeat([0.95, 0.55], 100).reshape(1, -1)
+    sunlit = np.concatenate([np.arange(100) < 80, np.arange(100) < 55]).reshape(1, -1)
+    every = np.ones(chances.shape, dtype=np.bool_)
+    found = score_cells(chances, sunlit, every, every)[SeenCells.ALL]
+    assert found.calibration.error_sum / found.cells == pytest.approx(0.15 / 2.0)
+    # Errors of two forecasts may cancel: the sums are pooled first.
+    other = score_cells(chances, sunlit | (chances == 0.95), every, every)[SeenCells.ALL]
+    pooled = found + other
+    assert pooled.calibration.error_sum / pooled.cells == pytest.approx(0.05 / 2.0)
 
 
 def test_cells_off_the_forecasts_grid_have_its_prior() -> None:
     wider = GroundGrid(GRID.frame, GRID.west_m, GRID.north_m, GRID.cell_m, 2, 3)
-    counted = np.ones((2, 3), dtype=np.bool_)
-    found = score_lead(forecast([255] * 4, [60.0] * 4), 60.0, wider, counted, counted)
-    assert found[HorizonCells.WITHIN] == LeadScore(0.0, 4, Overlap())
-    assert found[HorizonCells.BEYOND] == LeadScore(2 * 0.5**2, 2, Overlap())
+    chances = sun_probability(forecast([255, 0, 51, 204]), 60.0, wider)
+    assert chances.tolist() == [[1.0, 0.0, 0.5], [0.2, 0.8, 0.5]]
 
 
 def test_a_lead_that_is_not_there_is_refused() -> None:
     with pytest.raises(ValueError, match=r"expected a lead of \[0.0, 60.0\] s, got 45.0"):
-        score_lead(forecast([9] * 4, [0.0] * 4), 45.0, GRID, ALL, ALL)
+        sun_probability(forecast([9] * 4), 45.0, GRID)
+
+
+def test_a_ratio_of_pairs_is_that_of_their_logarithms() -> None:
+    """What all runs share drops out: each is half of its pair, whatever the sky was."""
+    found = log_ratio([(0.1, 0.2), (0.01, 0.02), (0.3, 0.6), (None, 0.3), (0.0, 0.1)])
+    assert found is not None
+    assert found.count == 3
+    assert (found.mean, found.low, found.high) == pytest.approx((0.5, 0.5, 0.5))
+    spread = log_ratio([(0.1, 0.2), (0.2, 0.2)])
+    assert spread is not None
+    assert spread.mean == pytest.approx(exp(log(0.5) / 2.0))
+    assert spread.low < 0.5 < 1.0 < spread.high
+    assert log_ratio([(0.0, 0.0)]) is None
 
 
 @given(
-    levels=arrays(np.uint8, 4),
-    horizon_s=arrays(np.float32, 4, elements=st.sampled_from([0.0, 30.0, 60.0])),
+    chances=arrays(np.float64, (2, 2), elements=st.floats(0.0, 1.0)),
+    seen=arrays(np.bool_, (2, 2)),
     truth=arrays(np.bool_, (2, 2)),
     counted=arrays(np.bool_, (2, 2)),
-    lead_s=st.sampled_from(LEADS_S),
 )
 def test_ranges_and_the_parts_are_the_whole(
-    levels: np.ndarray,
-    horizon_s: np.ndarray,
-    truth: np.ndarray,
-    counted: np.ndarray,
-    lead_s: float,
+    chances: np.ndarray, seen: np.ndarray, truth: np.ndarray, counted: np.ndarray
 ) -> None:
-    found = score_lead(forecast(levels, horizon_s), lead_s, GRID, truth, counted)
+    found = score_cells(chances, truth, seen, counted)
     for score in found.values():
         assert score.brier is None or 0.0 <= score.brier <= 1.0
         assert 0 <= score.shade.both <= score.shade.either <= score.cells
-    assert found[HorizonCells.ALL] == found[HorizonCells.WITHIN] + found[HorizonCells.BEYOND]
-    assert found[HorizonCells.ALL].cells == counted.sum()
+        assert sum(score.calibration.cells) == score.cells
+        assert score.calibration.error_sum <= score.cells + 1e-9
+    assert found[SeenCells.ALL] == found[SeenCells.SEEN] + found[SeenCells.UNSEEN]
+    assert found[SeenCells.ALL].cells == counted.sum()
+    assert LeadScore() + found[SeenCells.ALL] == found[SeenCells.ALL]
+    assert len(Calibration().cells) == BINS

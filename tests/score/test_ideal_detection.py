@@ -11,12 +11,12 @@ from tests.score.scenes import small
 from recon.camera import TelemetryReference
 from recon.detection import DetectionSettings, DetectionState
 from recon.forecast import ForecastSettings, ForecastState
+from recon.geo import cell_centres_m
 from recon.model.imagery import CameraPose, Frame
 from recon.model.shade import ShadeMap
 from recon.model.units import NS_PER_S
 from recon.score import Scenario
 from recon.score.imager import IdealDetection
-from recon.score.score_grid import cell_centres
 from recon.score.simulation import rig_of
 from recon.score.true_frames import TrueFrames
 from recon.sim.app.camera_feed import CaptureTimes
@@ -87,7 +87,7 @@ def test_a_pose_that_telemetry_has_wrong_shifts_the_map(scenario: Scenario) -> N
     marked, pose = marked_of(scenario)
     off = replace(marked, latitude_deg=marked.latitude_deg + 8.0 / METRES_PER_DEGREE)
     shade = read(scenario, 60.0, pose, off)
-    east_m, north_m = np.meshgrid(*cell_centres(shade.grid))
+    east_m, north_m = np.meshgrid(*cell_centres_m(shade.grid))
     truth = SKY.transmittance(east_m, north_m - 8.0, 60.0)
     differs = np.abs(shade.transmittance - truth)[shade.valid]
     unshifted = np.abs(shade.transmittance - SKY.on_grid(shade.grid, 60.0))[shade.valid]
@@ -103,7 +103,7 @@ def test_ground_beyond_the_image_circle_is_unknown(scenario: Scenario) -> None:
     narrow = replace(scenario, site=scenario.site.with_imager(replace(imager, image_circle=half)))
     marked, pose = marked_of(narrow)
     shade = read(narrow, 60.0, pose, marked)
-    east_m, north_m = np.meshgrid(*cell_centres(shade.grid))
+    east_m, north_m = np.meshgrid(*cell_centres_m(shade.grid))
     across_m = np.hypot(east_m - pose.position_enu_m[0], north_m - pose.position_enu_m[1])
     assert across_m[shade.valid].max() < across_m[~shade.valid].min()
     assert across_m[shade.valid].max() < scenario.imager.height_m / cos(radians(45.0))

@@ -13,8 +13,9 @@ from tests.score.scenes import SMALL, small
 
 from recon.model.geo import GeoPoint
 from recon.score import Methods, RunScore, Scenario, StationRun, run, tables
-from recon.score.forecast_figures import HorizonCells
+from recon.score.forecast_figures import SeenCells
 from recon.score.run_score import shares_by, time_to_share
+from recon.score.scenario import TRUE_MOTION
 from recon.score.true_paths import TruePath, encounters, times_begun
 from recon.sim.app.app import AppSettings, SimulatedApp
 from recon.sim.fleet import IMAGER_SERIAL
@@ -128,12 +129,34 @@ def test_ideal_detection_errs_by_latency_and_pose_alone(cumulus: RunScore) -> No
     assert cumulus.wrongly_in_sun_share < 0.02
 
 
-def test_leads_within_and_beyond_the_horizon_add_up(cumulus: RunScore) -> None:
-    for lead_s in (60.0, 180.0, 300.0):
-        within, beyond, every = (cumulus.leads[lead_s, cells] for cells in HorizonCells)
-        assert every.cells == within.cells + beyond.cells > 0
+def test_cells_seen_and_not_seen_add_up(cumulus: RunScore) -> None:
+    shares = []
+    for lead_s in (15.0, 30.0, 180.0):
+        seen, unseen, every = (cumulus.forecasts["global_shift", lead_s, c] for c in SeenCells)
+        assert every.cells == seen.cells + unseen.cells > 0
+        shares.append(seen.cells / every.cells)
         assert every.brier is not None
         assert 0.0 <= every.brier <= 1.0
+    assert 1.0 > shares[0] > shares[1] > shares[2] == 0.0
+
+
+def test_methods_are_compared_on_the_same_maps_and_cells(folder: Path) -> None:
+    scenario = small(folder, CALM.replace("limit_min = 10.0", "limit_min = 3.0"))
+    compared = ("persistence", "global_shift", TRUE_MOTION)
+    found = run(replace(scenario, methods=Methods(compared=compared)), 3).forecasts
+    for lead_s in (15.0, 30.0):
+        scores = [found[name, lead_s, SeenCells.SEEN] for name in compared]
+        assert len({score.cells for score in scores}) == 1
+        persistence, shift, true = (score.brier for score in scores)
+        assert persistence is not None
+        assert shift is not None
+        assert true is not None
+        assert true < persistence
+        assert true < shift
+    # The station's own is what it is without the others.
+    alone = run(scenario, 3).forecasts
+    assert {key: alone[key] for key in alone} == {key: found[key] for key in alone}
+    assert {name for name, _lead_s, _cells in alone} == {"global_shift"}
 
 
 def test_a_detector_reads_rendered_frames_with_errors(folder: Path) -> None:
@@ -202,7 +225,7 @@ def test_a_survey_continues_after_a_battery_change(folder: Path) -> None:
 
 def test_rows_longer_than_the_shade_history_count_in_sun(folder: Path) -> None:
     text = CLEAR.replace("90.0", "1200.0").replace("60.0]", "40.0]")
-    text = text.replace("radius_m = 160.0", "height_m = 330.0\nradius_m = 700.0\ncell_m = 20.0")
+    text = text.replace("radius_m = 160.0", "field_deg = 83.0\nradius_m = 700.0\ncell_m = 20.0")
     flown = flown_to_the_surveys_end(guidance_alone(small(folder, text)), 600.0)
     assert flown.record is not None
     assert flown.record.state is not None

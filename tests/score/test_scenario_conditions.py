@@ -8,7 +8,8 @@ import pytest
 from tests.score.scenes import SMALL, small
 
 from recon.score import Scenario, load_scenario
-from recon.score.scenario_conditions import conditions_of, sky_of, with_exposure
+from recon.score.scenario_conditions import conditions_of, with_exposure
+from recon.score.scenario_sky import sky_of
 from recon.score.simulation import simulation_of
 from recon.sim.app.telemetry import FIELD_SENSORS
 from recon.sim.camera.field import FieldRenderer
@@ -37,7 +38,7 @@ def test_the_sun_starts_where_it_is_drawn(cumulus: Scenario) -> None:
 
 def test_without_an_elevation_the_start_time_has_it(tmp_path: Path) -> None:
     scenario = small(tmp_path)
-    assert sky_of(scenario, 3).settings.sun == scenario.sky.sun
+    assert sky_of(scenario, 3).settings.sun == scenario.sun
 
 
 def test_the_simulation_has_the_conditions(cumulus: Scenario) -> None:

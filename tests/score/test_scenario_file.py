@@ -16,7 +16,7 @@ from recon.score import ScenarioError, load_scenario
 from recon.score.scenario_schema import METHOD_NAMES, key_lines, line_of
 
 FOLDER = Path(__file__).parents[2] / "scenarios"
-FILES = sorted(FOLDER.glob("*.toml"))
+FILES = sorted(FOLDER.rglob("*.toml"))
 EXPECTED = {
     "clear-sky",
     "thin-cirrus",
@@ -36,6 +36,12 @@ EXPECTED = {
     "starts-in-shade",
     "low-sun",
     "auto-exposure-hard",
+    "cumulus-40-wide",
+    "two-layers-wide",
+    "stress/cumulus-20",
+    "stress/cumulus-40",
+    "stress/cumulus-60",
+    "stress/two-layers",
 }
 
 
@@ -55,10 +61,10 @@ def fault_of(folder: Path, old: str, new: str) -> str:
 
 
 def test_all_documented_scenarios_exist() -> None:
-    assert {path.stem for path in FILES} == EXPECTED
+    assert {str(path.relative_to(FOLDER).with_suffix("")) for path in FILES} == EXPECTED
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(FOLDER)))
 def test_every_scenario_loads(path: Path) -> None:
     scenario = load_scenario(path)
     assert scenario.name == path.stem
@@ -74,17 +80,17 @@ def test_scenarios_have_the_fleet_holes_and_layers_of_their_names() -> None:
     for name, count in (("one-drone", 1), ("cumulus-40", 3), ("eight-drones", 8)):
         assert len(load_scenario(FOLDER / f"{name}.toml").fleet.pads_m) == count
     assert len(load_scenario(FOLDER / "holed-11ha.toml").survey.region.holes_m) == 1
-    assert len(load_scenario(FOLDER / "two-layers.toml").sky.layers) == 2
-    assert load_scenario(FOLDER / "clear-sky.toml").sky.layers == ()
+    assert len(load_scenario(FOLDER / "two-layers.toml").clouds) == 2
+    assert load_scenario(FOLDER / "clear-sky.toml").clouds == ()
 
 
 def test_values_of_the_file_are_in_the_scenario(tmp_path: Path) -> None:
     scenario = small(tmp_path)
-    assert scenario.sky.sun.start_utc_s == 1_750_435_200.0
+    assert scenario.sun.start_utc_s == 1_750_435_200.0
     assert scenario.frame.origin.ellipsoid_height_m == 280.0
     assert scenario.fleet.pads_m == ((90.0, -30.0), (110.0, -30.0))
     assert scenario.imager.over_m == (100.0, 75.0)
-    assert [layer.cover for layer in scenario.sky.layers] == [0.4]
+    assert [clouds.layer.cover for clouds in scenario.clouds] == [0.4]
     assert scenario.faults[0].start_s == 40.0
 
 
@@ -203,7 +209,7 @@ def test_arbitrary_bytes_raise_a_scenario_error(
         load_scenario(path)
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(FOLDER)))
 def test_key_lines_match_the_file(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
     lines = key_lines(text)

@@ -8,13 +8,12 @@ import pytest
 from tests.score.scenes import SMALL, small
 
 from recon.camera import ImageCircle
+from recon.geo import cell_centres_m
 from recon.model.geo import GroundGrid
 from recon.model.shade import ShadeMap
 from recon.score import Scenario
 from recon.score.score_grid import (
     RIM_SHARE,
-    cell_centres,
-    nearest_cells,
     score_grid,
     score_radius_m,
     scored_cells,
@@ -53,10 +52,7 @@ def test_the_scored_ground_ends_with_the_lens_or_with_the_scenario(scenario: Sce
     assert score_radius_m(with_field(scenario, 60.0)) == pytest.approx(
         height_m * tan(radians(60.0)), rel=1e-3
     )
-    # 330 m at 120 m: nothing farther than 70 degrees from the vertical is scored.
-    assert score_radius_m(with_field(scenario, 78.0)) == pytest.approx(
-        height_m * 330.0 / 120.0, rel=2e-3
-    )
+    assert score_radius_m(with_field(scenario, 78.0)) == scenario.imager.radius_m == 330.0
     near = replace(scenario, imager=replace(scenario.imager, radius_m=100.0))
     assert score_radius_m(near) == 100.0
 
@@ -66,23 +62,13 @@ def test_the_scored_cells_are_a_disk_below_the_camera(scenario: Scenario) -> Non
     grid = score_grid(near)
     counted = scored_cells(grid, near)
     assert counted.sum() * grid.cell_m**2 == pytest.approx(np.pi * 100.0**2, rel=0.01)
-    east_m, north_m = cell_centres(grid)
+    east_m, north_m = cell_centres_m(grid)
     assert float((counted.sum(axis=0) * east_m).sum() / counted.sum()) == pytest.approx(
         near.imager.over_m[0]
     )
     assert float((counted.sum(axis=1) * north_m).sum() / counted.sum()) == pytest.approx(
         near.imager.over_m[1]
     )
-
-
-def test_a_map_is_read_at_the_nearest_cell(scenario: Scenario) -> None:
-    source = GroundGrid(scenario.frame, 0.0, 30.0, 10.0, 3, 3)
-    target = GroundGrid(scenario.frame, -4.0, 32.0, 4.0, 3, 3)
-    rows, cols, is_on = nearest_cells(source, target)
-    # Norths 30, 26, 22 and easts -2, 2, 6: a centre on the edge belongs to the cell below it.
-    assert rows.ravel().tolist() == [0, 0, 0]
-    assert cols.ravel().tolist() == [0, 0, 0]
-    assert is_on.tolist() == [[False, True, True]] * 3
 
 
 def test_a_map_of_less_ground_is_unknown_elsewhere(scenario: Scenario) -> None:

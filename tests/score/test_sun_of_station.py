@@ -9,7 +9,7 @@ from tests.score.scenes import SMALL, small
 from tests.station.imagers import imager_of
 
 from recon.score import StationRun
-from recon.score.scenario_conditions import sky_of
+from recon.score.scenario_sky import sky_of
 from recon.site import Site
 
 START = "start_utc = 2025-06-20T16:00:00Z"

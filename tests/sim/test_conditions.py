@@ -85,10 +85,9 @@ def test_a_locked_exposure_neither_follows_nor_drifts() -> None:
     assert locked.highlight_level == DRAWN[7].camera.exposure.highlight_level
 
 
-@pytest.mark.parametrize(
-    ("values", "words"),
-    [(Range(0.5, 0.4), "lower value first"), (Range(0.1, 9.0), "expected 0 to 2, got 9")],
-)
-def test_impossible_ranges_are_refused(values: Range, words: str) -> None:
-    with pytest.raises(SimulationError, match=words):
-        ConditionRanges(hot_spot=values)
+def test_impossible_ranges_are_refused() -> None:
+    with pytest.raises(SimulationError, match="hot_spot: expected 0 to 2, got 9"):
+        ConditionRanges(hot_spot=Range(0.1, 9.0))
+    for low, high in ((0.5, 0.4), (float("nan"), 1.0)):
+        with pytest.raises(SimulationError, match="expected the lower value first, got"):
+            Range(low, high)

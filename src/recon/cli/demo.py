@@ -15,7 +15,7 @@ from recon.cli.run import HAS_GUARD, announce, console_folder, guard_port
 from recon.cli.scripted_operator import fly_surveys
 from recon.model.errors import ReconError
 from recon.score import Scenario, ScenarioError, load_scenario
-from recon.score.scenario_conditions import sky_of
+from recon.score.scenario_sky import sky_of
 from recon.station.audit.start import default_place
 from recon.station.kernel.run import RunConfig, Started, run
 

@@ -1,25 +1,47 @@
 """`recon score`: fly scenarios in closed loop and print the figures of their methods."""
 
+import os
 import sys
+from collections.abc import Iterator
 from dataclasses import replace
 from enum import Enum
 from pathlib import Path
-from time import process_time
+from time import monotonic
 from typing import Annotated
 
 import typer
 
+from recon.forecast import FORECASTERS
 from recon.model.errors import ReconError
-from recon.score import Methods, RunScore, Scenario, ScenarioError, load_scenario, run, tables
+from recon.record.users_file import state_folder
+from recon.score import Methods, RunScore, Scenario, ScenarioError, load_scenario, tables
+from recon.score.kept_runs import KeptRuns, code_digest, runs_digest
+from recon.score.many_runs import on_cluster, on_cores, one_by_one
+from recon.score.scenario import NO_FORECAST, TRUE_MOTION
 from recon.score.scenario_conditions import with_exposure
 from recon.score.scenario_schema import METHOD_NAMES
 
 MOST_SEEDS = 10_000
+DIGEST_LETTERS = 16
 
 ScenarioArgument = Annotated[Path, typer.Argument(help="Scenario file, as in scenarios/.")]
 SeedsOption = Annotated[int, typer.Option(help="Number of runs, each with another sky.")]
 FirstOption = Annotated[int, typer.Option(help="Seed of the first run; counts up.")]
 MethodOption = Annotated[str | None, typer.Option(help="Overrides the scenario's method.")]
+AgainstOption = Annotated[
+    str | None,
+    typer.Option(help="Score all forecast methods, and compare them with this one by seed."),
+]
+JobsOption = Annotated[
+    int | None, typer.Option(help="Runs flown at once; default: one for each core.")
+]
+ClusterOption = Annotated[
+    str | None,
+    typer.Option(help="Fly the runs on the workers of a Dask scheduler, host:port."),
+]
+FreshOption = Annotated[
+    bool, typer.Option("--fresh", help="Fly all seeds, also those that were flown before.")
+]
 
 
 class ExposureChoice(Enum):
@@ -42,36 +64,72 @@ def score_command(
     detection: MethodOption = None,
     forecast: MethodOption = None,
     exposure: ExposureOption = None,
+    against: AgainstOption = None,
+    jobs: JobsOption = None,
+    cluster: ClusterOption = None,
+    fresh: FreshOption = False,
 ) -> None:
     """Fly a scenario by the whole station in virtual time and score its methods."""
     try:
-        if not (1 <= seeds <= MOST_SEEDS and first_seed >= 0):
-            raise ScenarioError(
-                f"expected --seeds of 1 to {MOST_SEEDS} and --first-seed of 0 or more, got {seeds} "
-                f"and {first_seed}"
-            )
+        _check_numbers(seeds, first_seed, jobs)
         loaded = with_methods(load_scenario(scenario), planner, detection, forecast)
         if exposure is not None:
             loaded = with_exposure(loaded, exposure is ExposureChoice.LOCKED)
+        if against is not None:
+            loaded = _compared(loaded, against)
+        digest = runs_digest(scenario, loaded, code_digest())[:DIGEST_LETTERS]
+        kept = KeptRuns(state_folder() / "score" / f"{loaded.name}-{digest}")
+        wanted = range(first_seed, first_seed + seeds)
+        runs = {} if fresh else {seed: run for seed in wanted if (run := kept.found(seed))}
+        if runs:
+            _report(f"{len(runs)} of {seeds} runs were flown before (--fresh flies them again)")
+        left = [seed for seed in wanted if seed not in runs]
+        began_s = monotonic()
+        for number, done in enumerate(_flown(loaded, left, jobs, cluster), start=1):
+            kept.keep(done)
+            runs[done.seed] = done
+            left_s = (monotonic() - began_s) / number * (len(left) - number)
+            _report(
+                f"seed {done.seed}: {done.end}; {len(runs)} of {seeds} runs,"
+                f" about {left_s / 60.0:.0f} min left"
+            )
     except ReconError as problem:
         print(f"recon score: {problem}", file=sys.stderr)
         raise typer.Exit(2) from None
-    runs = [_flown(loaded, seed) for seed in range(first_seed, first_seed + seeds)]
-    print(tables(loaded, runs))
+    print(tables(loaded, list(runs.values()), against))
 
 
-def _flown(scenario: Scenario, seed: int) -> RunScore:
-    """Fly one seed; report progress and speed."""
+def _check_numbers(seeds: int, first_seed: int, jobs: int | None) -> None:
+    if not (1 <= seeds <= MOST_SEEDS and first_seed >= 0):
+        raise ScenarioError(
+            f"expected --seeds of 1 to {MOST_SEEDS} and --first-seed of 0 or more, got {seeds} "
+            f"and {first_seed}"
+        )
+    if jobs is not None and jobs < 1:
+        raise ScenarioError(f"--jobs: expected 1 or more, got {jobs}")
 
-    def report(minutes: int, in_sun: float) -> None:
-        _report(f"seed {seed}: {minutes} min, {100.0 * in_sun:.0f} % of the region imaged in sun")
 
-    began_s = process_time()
-    done = run(scenario, seed, report)
-    took_s = max(process_time() - began_s, 1e-3)
-    faster = done.simulated_s / took_s
-    _report(f"seed {seed}: {done.end}; {faster:.0f} times faster than real time")
-    return done
+def _flown(
+    scenario: Scenario, seeds: list[int], jobs: int | None, cluster: str | None
+) -> Iterator[RunScore]:
+    if cluster is not None:
+        return on_cluster(scenario, seeds, cluster)
+    at_once = min(jobs or len(os.sched_getaffinity(0)), len(seeds))
+    return on_cores(scenario, seeds, at_once) if at_once > 1 else one_by_one(scenario, seeds, _tell)
+
+
+def _tell(seed: int, minutes: int, in_sun: float) -> None:
+    _report(f"seed {seed}: {minutes} min, {100.0 * in_sun:.0f} % of the region imaged in sun")
+
+
+def _compared(scenario: Scenario, against: str) -> Scenario:
+    """Return the scenario with all forecasts scored. Raises `ScenarioError`."""
+    known = (*FORECASTERS, TRUE_MOTION)
+    if against not in known:
+        raise ScenarioError(f"--against: expected {' or '.join(known)}, got {against!a}")
+    if scenario.methods.forecast == NO_FORECAST:
+        raise ScenarioError(f"--against: expected a forecast to compare, got {NO_FORECAST}")
+    return replace(scenario, methods=replace(scenario.methods, compared=known))
 
 
 def with_methods(

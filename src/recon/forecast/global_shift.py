@@ -18,6 +18,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
+from recon.forecast.forecaster import Forecaster
 from recon.forecast.motion import ShadowMotion, motion_of, with_pairs
 from recon.forecast.persistence import persisting
 from recon.forecast.settings import ForecastSettings
@@ -32,16 +33,18 @@ BOX_OVER_SIGMA = float(np.sqrt(12.0))
 """A box this many standard deviations wide has that standard deviation."""
 
 
-def global_shift(
-    state: ForecastState, shade: ShadeMap, settings: ForecastSettings
-) -> tuple[ForecastState, SunForecast]:
-    """Return the state after a map, and its forecast; see `recon.forecast.Forecaster`."""
-    state = with_pairs(with_map(state, shade, settings), shade, settings)
-    prior = prior_sunlit(state, settings)
-    motion = motion_of(state, settings)
+def _observed(state: ForecastState, shade: ShadeMap, settings: ForecastSettings) -> ForecastState:
+    return with_pairs(with_map(state, shade, settings), shade, settings)
+
+
+def _forecast(state: ForecastState, settings: ForecastSettings) -> SunForecast:
+    prior, motion = prior_sunlit(state, settings), motion_of(state, settings)
     if motion is None:
-        return state, persisting(shade, prior, settings)
-    return state, _moving_on(shade, motion, prior, settings)
+        return persisting(state.newest, prior, settings)
+    return _moving_on(state.newest, motion, prior, settings)
+
+
+GLOBAL_SHIFT = Forecaster(_observed, _forecast)
 
 
 def _moving_on(

@@ -1,22 +1,20 @@
-"""Sun and shade stay as they are, with decreasing certainty. The baseline of all forecasts.
+"""Two baselines: sun and shade stay as they are, and only the recent share in sun is known.
 
-The probability decays exponentially from the current one to the prior (`persistence_memory_s`), and
-is the prior beyond `persistence_horizon_s`.
+`persistence`: the probability decays exponentially from the current one to the prior
+(`persistence_memory_s`), and is the prior beyond `persistence_horizon_s`. `climatology`: it is the
+prior everywhere.
 """
 
 import numpy as np
 
+from recon.forecast.forecaster import Forecaster
 from recon.forecast.settings import ForecastSettings
 from recon.forecast.state import ForecastState, prior_sunlit, sunlit_now, with_map
 from recon.model.shade import SURE, ShadeMap, SunForecast
 
 
-def persistence(
-    state: ForecastState, shade: ShadeMap, settings: ForecastSettings
-) -> tuple[ForecastState, SunForecast]:
-    """Return the state after a map, and its forecast; see `recon.forecast.Forecaster`."""
-    state = with_map(state, shade, settings)
-    return state, persisting(shade, prior_sunlit(state, settings), settings)
+def _persistence(state: ForecastState, settings: ForecastSettings) -> SunForecast:
+    return persisting(state.newest, prior_sunlit(state, settings), settings)
 
 
 def persisting(shade: ShadeMap, prior: float, settings: ForecastSettings) -> SunForecast:
@@ -36,3 +34,22 @@ def persisting(shade: ShadeMap, prior: float, settings: ForecastSettings) -> Sun
         prior_sunlit=prior,
         method="persistence",
     )
+
+
+def _climatology(state: ForecastState, settings: ForecastSettings) -> SunForecast:
+    shade, prior = state.newest, prior_sunlit(state, settings)
+    lead_s = np.array(settings.lead_s, dtype=np.float64)
+    cells = shade.valid.shape
+    return SunForecast(
+        grid=shade.grid,
+        issued_at_ns=shade.captured_at_ns,
+        lead_s=lead_s,
+        sun_probability=np.full((len(lead_s), *cells), round(prior * SURE), dtype=np.uint8),
+        horizon_s=np.zeros(cells, dtype=np.float32),
+        prior_sunlit=prior,
+        method="climatology",
+    )
+
+
+PERSISTENCE = Forecaster(with_map, _persistence)
+CLIMATOLOGY = Forecaster(with_map, _climatology)

@@ -10,8 +10,9 @@ class ForecastSettings:
     method: str = "global_shift"
     """A name in `recon.forecast.FORECASTERS`."""
 
-    lead_s: tuple[float, ...] = tuple(30.0 * i for i in range(21))
-    """0 to ten minutes: a survey row takes about half a minute, a whole mission ten."""
+    lead_s: tuple[float, ...] = (0.0, 15.0, 30.0, 45.0, *(30.0 * i for i in range(2, 21)))
+    """0 to ten minutes: a survey row takes about half a minute, a whole mission ten. Denser where
+    most is known."""
 
     surest: float = 0.97
     """Largest probability: detection is wrong in a few per cent of the cells it is sure of."""

@@ -23,7 +23,8 @@ class PairVelocity:
 class ForecastState:
     """One state for all methods, so that the method can be changed in flight; bounded."""
 
-    latest_ns: int | None = None
+    shade: ShadeMap | None = None
+    """The newest map."""
     sunlit_share: float | None = None
     """Recent mean share of visible cells in sun; None before the first map."""
     seen_s: float = 0.0
@@ -32,6 +33,13 @@ class ForecastState:
     """Spectra of earlier maps to compare with, oldest first."""
     velocities: tuple[PairVelocity, ...] = ()
     """Oldest first."""
+
+    @property
+    def newest(self) -> ShadeMap:
+        """The newest map; raises `ValueError` without one."""
+        if self.shade is None:
+            raise ValueError("expected a shade map before a forecast, got none yet")
+        return self.shade
 
 
 NO_KNOWLEDGE = 0.5
@@ -43,17 +51,16 @@ def with_map(state: ForecastState, shade: ShadeMap, settings: ForecastSettings) 
 
     Raises `ValueError` for a map that is not newer than the last one.
     """
-    if state.latest_ns is not None and shade.captured_at_ns <= state.latest_ns:
-        late_s = ns_to_seconds(state.latest_ns - shade.captured_at_ns)
-        raise ValueError(
-            f"expected a newer shade map than the last one, got one {late_s:.1f} s older"
-        )
+    passed_s = 0.0
+    if state.shade is not None:
+        passed_s = ns_to_seconds(shade.captured_at_ns - state.shade.captured_at_ns)
+        if passed_s <= 0.0:
+            raise ValueError(
+                f"expected a newer shade map than the last one, got one {-passed_s:.1f} s older"
+            )
     if state.kept and state.kept[-1].grid != shade.grid:
         state = replace(state, kept=(), velocities=())
-    passed_s = 0.0
-    if state.latest_ns is not None:
-        passed_s = ns_to_seconds(shade.captured_at_ns - state.latest_ns)
-    state = replace(state, latest_ns=shade.captured_at_ns)
+    state = replace(state, shade=shade)
     return _with_share(state, shade, passed_s, settings.cover_memory_s)
 
 

@@ -1,26 +1,50 @@
 """Figures of sun forecasts against the true sky, as sums that add up over forecasts."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 
 import numpy as np
 import numpy.typing as npt
 
+from recon.geo import nearest_cells
 from recon.model.geo import GroundGrid
-from recon.model.shade import SURE, FloatMap, MaskMap, SunForecast
-from recon.score.score_grid import nearest_cells
+from recon.model.shade import SURE, MaskMap, SunForecast
 from recon.score.shade_figures import Overlap, overlap
 
 FloatArray = npt.NDArray[np.float64]
+BINS = 10
+"""Of the probability, of equal width."""
 
 
-class HorizonCells(Enum):
-    """Which cells count: those whose horizon reaches the lead, the others, or all."""
+class SeenCells(Enum):
+    """Which cells count: those whose clouds at the lead are over seen ground now; others; all."""
 
-    WITHIN = "within horizon"
-    BEYOND = "beyond horizon"
+    SEEN = "seen"
+    UNSEEN = "not seen"
     ALL = "all"
+
+
+@dataclass(frozen=True, slots=True)
+class Calibration:
+    """Sums over cells by predicted probability, for its reliability."""
+
+    cells: tuple[int, ...] = (0,) * BINS
+    predicted: tuple[float, ...] = (0.0,) * BINS
+    """Sum of probabilities."""
+    sunlit: tuple[int, ...] = (0,) * BINS
+    """In truth."""
+
+    def __add__(self, other: "Calibration") -> "Calibration":
+        return Calibration(
+            tuple(map(sum, zip(self.cells, other.cells, strict=True))),
+            tuple(map(sum, zip(self.predicted, other.predicted, strict=True))),
+            tuple(map(sum, zip(self.sunlit, other.sunlit, strict=True))),
+        )
+
+    @property
+    def error_sum(self) -> float:
+        """Cells times the difference of mean probability and true share in sun, over the bins."""
+        return sum(abs(p - s) for p, s in zip(self.predicted, self.sunlit, strict=True))
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,10 +54,14 @@ class LeadScore:
     squares: float = 0.0
     cells: int = 0
     shade: Overlap = field(default_factory=Overlap)
+    calibration: Calibration = field(default_factory=Calibration)
 
     def __add__(self, other: "LeadScore") -> "LeadScore":
         return LeadScore(
-            self.squares + other.squares, self.cells + other.cells, self.shade + other.shade
+            self.squares + other.squares,
+            self.cells + other.cells,
+            self.shade + other.shade,
+            self.calibration + other.calibration,
         )
 
     @property
@@ -43,13 +71,10 @@ class LeadScore:
         return self.squares / self.cells if self.cells else None
 
 
-def score_lead(
-    forecast: SunForecast, lead_s: float, grid: GroundGrid, is_sunlit: MaskMap, is_counted: MaskMap
-) -> Mapping[HorizonCells, LeadScore]:
-    """Return the score of one of a forecast's leads against the truth on `grid` at that moment.
+def sun_probability(forecast: SunForecast, lead_s: float, grid: GroundGrid) -> FloatArray:
+    """Return a forecast's probability of sun at one of its leads on another grid (R, C).
 
-    A cell counts as predicted in shade below a probability of sun of one half. Cells off the
-    forecast's own grid have its prior and no horizon. Raises `ValueError` for a lead that the
+    Cells off the forecast's own grid have its prior. Raises `ValueError` for a lead that the
     forecast does not have.
     """
     index = np.flatnonzero(forecast.lead_s == lead_s)
@@ -57,17 +82,37 @@ def score_lead(
         raise ValueError(f"expected a lead of {forecast.lead_s.tolist()} s, got {lead_s}")
     rows, cols, is_on = nearest_cells(forecast.grid, grid)
     levels = forecast.sun_probability[int(index[0])][rows, cols]
-    probability = np.where(is_on, levels / SURE, forecast.prior_sunlit)
-    horizon_s: FloatMap = np.where(is_on, forecast.horizon_s[rows, cols], np.float32(0.0))
-    is_within = horizon_s > 0.0 if lead_s == 0.0 else horizon_s >= lead_s
-    chosen = {HorizonCells.WITHIN: is_within, HorizonCells.BEYOND: ~is_within}
-    found = {
-        ahead: _score(probability, is_sunlit, cells & is_counted) for ahead, cells in chosen.items()
-    }
-    return {**found, HorizonCells.ALL: found[HorizonCells.WITHIN] + found[HorizonCells.BEYOND]}
+    return np.where(is_on, levels / SURE, forecast.prior_sunlit)
+
+
+def score_cells(
+    probability: FloatArray, is_sunlit: MaskMap, is_seen: MaskMap, is_counted: MaskMap
+) -> dict[SeenCells, LeadScore]:
+    """Return the scores of probabilities of sun against the truth; all arrays are (R, C).
+
+    A cell counts as predicted in shade below a probability of one half.
+    """
+    seen = _score(probability, is_sunlit, is_counted & is_seen)
+    unseen = _score(probability, is_sunlit, is_counted & ~is_seen)
+    return {SeenCells.SEEN: seen, SeenCells.UNSEEN: unseen, SeenCells.ALL: seen + unseen}
 
 
 def _score(probability: FloatArray, is_sunlit: MaskMap, cells: MaskMap) -> LeadScore:
-    squares = float(((probability - is_sunlit)[cells] ** 2).sum())
+    chances, truth = probability[cells], is_sunlit[cells]
+    squares = float(((chances - truth) ** 2).sum())
     shade = overlap(probability < 0.5, ~is_sunlit, cells)
-    return LeadScore(squares, int(cells.sum()), shade)
+    return LeadScore(squares, int(cells.sum()), shade, _calibration(chances, truth))
+
+
+def _calibration(chances: FloatArray, truth: MaskMap) -> Calibration:
+    number = np.minimum((chances * BINS).astype(np.intp), BINS - 1)
+
+    def sums(weights: FloatArray | None) -> list[float]:
+        found: list[float] = np.bincount(number, weights, minlength=BINS).tolist()
+        return found
+
+    return Calibration(
+        tuple(map(int, sums(None))),
+        tuple(sums(chances)),
+        tuple(map(int, sums(truth.astype(np.float64)))),
+    )

@@ -12,13 +12,13 @@ from recon.camera import displaced_pose
 from recon.detection import DetectionSettings
 from recon.detection.cells import field_grid
 from recon.forecast import FORECASTERS
-from recon.geo import shift_east_north_m
+from recon.geo import cell_centres_m, shift_east_north_m
 from recon.model.imagery import CameraPose, GroundImage, RgbImage
 from recon.model.shade import MaskMap, ShadeMap
 from recon.model.vehicle import VehicleProfile
 from recon.score.scenario import IDEAL, NO_FORECAST, Scenario
 from recon.score.scenario_conditions import conditions_of
-from recon.score.score_grid import cell_centres, field_angle_rad
+from recon.score.score_grid import field_angle_rad
 from recon.score.simulation import simulation_of
 from recon.score.true_frames import TrueFrames, ground_seen
 from recon.sim.camera.field import FieldRenderer
@@ -68,9 +68,10 @@ def config_of(scenario: Scenario, seed: int) -> SimulationConfig:
 def settings_of(scenario: Scenario) -> StationSettings:
     """Return the station's settings with the scenario's methods."""
     settings, methods = StationSettings(), scenario.methods
+    detection = replace(settings.detection, cell_m=scenario.imager.cell_m)
     if methods.detection != IDEAL:
-        detection = replace(settings.detection, method=methods.detection)
-        settings = replace(settings, detection=detection)
+        detection = replace(detection, method=methods.detection)
+    settings = replace(settings, detection=detection)
     if methods.forecast != NO_FORECAST:
         settings = replace(settings, forecast=replace(settings.forecast, method=methods.forecast))
     return settings
@@ -100,10 +101,9 @@ class IdealDetection:
         self._frame, self._imager = scenario.frame, site.imager
         self._mount = site.profiles.get(IMAGER_SERIAL, VehicleProfile(IMAGER_SERIAL)).mount
         self._sky, self._frames = sky, frames
-        # No finer than the ground images: between their cells nothing is seen.
-        cell_m = max(DetectionSettings().cell_m, site.ground_grid.cell_m)
-        self._grid = field_grid(site.ground_grid, DetectionSettings(cell_m=cell_m))
-        east_m, north_m = (part.ravel() for part in np.meshgrid(*cell_centres(self._grid)))
+        detection = DetectionSettings(cell_m=scenario.imager.cell_m)
+        self._grid = field_grid(site.ground_grid, detection)
+        east_m, north_m = (part.ravel() for part in np.meshgrid(*cell_centres_m(self._grid)))
         self._points_m = np.column_stack([east_m, north_m])
         self._field_rad = field_angle_rad(site.imager)
 
@@ -130,7 +130,8 @@ class IdealDetection:
         shade = self._shade(work.image)
         own = SeenShade(shade, work.image.valid)
         method = FORECASTERS[work.forecast_settings.method]
-        forecast, sun = method(work.forecast, shade, work.forecast_settings)
+        forecast = method.observed(work.forecast, shade, work.forecast_settings)
+        sun = method.forecast(forecast, work.forecast_settings)
         return ShadeRead(IMAGER_SERIAL, work.detection, forecast, own, (own, sun))
 
     def _shade(self, image: GroundImage) -> ShadeMap:

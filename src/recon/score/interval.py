@@ -5,7 +5,7 @@ The result does not depend on the order of the runs, to the last bit.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import inf, sqrt
+from math import exp, inf, log, sqrt
 
 import numpy as np
 from scipy.special import stdtrit
@@ -73,6 +73,22 @@ def ratio(parts: Sequence[tuple[float, float]]) -> Interval | None:
     tail = (1.0 - CONFIDENCE) / 2.0
     low, high = np.quantile(drawn[:, 0] / drawn[:, 1], [tail, 1.0 - tail])
     return Interval(float(total[0] / total[1]), float(low), float(high), count)
+
+
+def log_ratio(
+    pairs: Sequence[tuple[float | None, float | None]],
+) -> Interval | None:
+    """Return the geometric mean of first over second values, one pair per run.
+
+    The interval is Student's t of the logarithms of the runs' ratios: what differs from run to run,
+    but not between the two, drops out. Runs without two positive values are left out; None without
+    others.
+    """
+    logs = [log(a / b) for a, b in pairs if a is not None and b is not None and a > 0.0 < b]
+    found = interval(logs)
+    if found is None:
+        return None
+    return Interval(exp(found.mean), exp(found.low), exp(found.high), found.count)
 
 
 def pooled_quantile(groups: Sequence[Sequence[float]], share: float) -> Interval | None:

@@ -21,8 +21,8 @@ from recon.score.run_score import (
     time_to_share,
 )
 from recon.score.scenario import Scenario
-from recon.score.scenario_conditions import sky_of
 from recon.score.scenario_schema import ScenarioError
+from recon.score.scenario_sky import sky_of
 from recon.score.scripted_operator import ScriptedOperator
 from recon.score.settings import SCORE
 from recon.score.shade_scoring import ImagerScore, ShadeScoring
@@ -48,8 +48,9 @@ from recon.station.state.survey_record import SurveyRecord
 SAMPLES_PER_SECOND = round(1.0 / SCORE.sample_s)
 REPORT_EVERY_S = 300
 
-Report = Callable[[int, float], None]
-"""Called with minutes flown, and the share of the region that the survey counts as in sun."""
+Report = Callable[[int, int, float], None]
+"""Called with the seed, minutes flown, and the share of the region that the survey counts as in
+sun."""
 
 
 def run(scenario: Scenario, seed: int, report: Report | None = None) -> RunScore:
@@ -100,7 +101,7 @@ class StationRun:
             if landed_s is None and self._is_over():
                 landed_s = self.now_s
             if report is not None and round(self.now_s) % REPORT_EVERY_S == 0:
-                report(round(self.now_s / 60.0), self.in_sun_share)
+                report(self.seed, round(self.now_s / 60.0), self.in_sun_share)
         return self._summed_up(landed_s)
 
     def advance_a_second(self) -> None:
@@ -169,7 +170,7 @@ class StationRun:
             shade=shade.shade,
             to_right_s=shade.to_right_s,
             registration_m=registration_quantiles_m(shade.registration_errors_m),
-            leads=shade.leads,
+            forecasts=shade.forecasts,
             in_sun_share=shares_by(first_in_sun_s, curve_s),
             to_95_imaged_s=time_to_share(found.first_s[inside], ENOUGH, limit_s),
             to_95_in_sun_s=time_to_share(first_in_sun_s, ENOUGH, limit_s),

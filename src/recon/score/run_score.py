@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from recon.score.forecast_figures import HorizonCells, LeadScore
+from recon.score.forecast_figures import LeadScore
+from recon.score.forecast_scoring import ForecastKey
 from recon.score.shade_figures import ShadeFigures
 
 FloatArray = npt.NDArray[np.float64]
@@ -23,7 +24,7 @@ class RunScore:
     """Until most of the scored cells were first known and right."""
     registration_m: tuple[float, float] | None
     """Median and 95th percentile of the ground images' errors."""
-    leads: Mapping[tuple[float, HorizonCells], LeadScore]
+    forecasts: Mapping[ForecastKey, LeadScore]
     in_sun_share: tuple[float, ...]
     """Of the region, truly on a photo in sun, at each of `SCORE.curve_min` within the limit."""
     to_95_imaged_s: float | None

@@ -1,15 +1,18 @@
 """A scenario: site, fleet, sky, wind, faults, survey task and methods."""
 
 from dataclasses import dataclass
+from pathlib import Path
 
 from recon.model.geo import LocalFrame
 from recon.model.survey import Survey
 from recon.sim.app.faults import InjectedFault, RandomFault
-from recon.sim.conditions import ConditionRanges
-from recon.sim.world import SkySettings, WindSettings
+from recon.sim.conditions import ConditionRanges, Range
+from recon.sim.world import LayerSettings, SunSettings, WindSettings
 from recon.site import Site
 
 IDEAL, NO_FORECAST = "ideal", "none"
+TRUE_MOTION = "true_motion"
+"""The forecast that moves what is seen now by the true motion, without error."""
 
 EastNorth = tuple[float, float]
 """East and north metres of the site."""
@@ -40,7 +43,11 @@ class ScenarioImager:
     over_m: EastNorth
     height_m: float
     radius_m: float
+    """Of the scored ground, if the lens shows as much."""
     cell_m: float
+    """Of shade maps and their score."""
+    field_deg: float | None = None
+    """Of a generated site's lens, from its axis; None: as the demonstration's."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +60,8 @@ class Methods:
 
     detection: str = IDEAL
     forecast: str = "global_shift"
+    compared: tuple[str, ...] = ()
+    """Forecast methods that are scored beside the station's own, on the same maps."""
 
     @property
     def is_guidance_alone(self) -> bool:
@@ -60,11 +69,23 @@ class Methods:
         return self.detection == IDEAL and self.forecast == NO_FORECAST
 
 
+@dataclass(frozen=True, slots=True)
+class CloudRanges:
+    """One layer of clouds, before its velocity is drawn."""
+
+    layer: LayerSettings
+    """As if its clouds moved north at first."""
+    speed_mps: Range
+    turn_deg: Range
+    """Clockwise from the heading of the layer below; of the lowest layer from north."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Scenario:
-    """Everything that a run needs beside its seed, which replaces `sky.seed` and `wind.seed`.
+    """Everything that a run needs beside its seed, which replaces `wind.seed`.
 
-    The seed also draws the sun's elevation, light, camera and link from `conditions`.
+    The seed also draws the clouds' velocity and, from `conditions`, the sun's elevation, light,
+    camera and link.
     """
 
     name: str
@@ -73,7 +94,9 @@ class Scenario:
     """Read from a folder, or generated around the task; has a frame and an imaging drone."""
     fleet: ScenarioFleet
     imager: ScenarioImager
-    sky: SkySettings
+    sun: SunSettings
+    clouds: tuple[CloudRanges, ...]
+    """Layers, the lower first."""
     wind: WindSettings
     conditions: ConditionRanges
     """Relief is rendered only: the station assumes flat ground on a site without an elevation
@@ -85,6 +108,8 @@ class Scenario:
     methods: Methods
     limit_s: float
     """The operator aborts the survey then."""
+    files: tuple[Path, ...] = ()
+    """Beside the scenario's own: the site's folder, the file of faults."""
 
     @property
     def frame(self) -> LocalFrame:

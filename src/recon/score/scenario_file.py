@@ -16,24 +16,18 @@ from recon.model.survey import Survey, SurveyBudget, SurveyCamera
 from recon.score.scenario import Methods, Scenario
 from recon.score.scenario_conditions import ranges_of, with_exposure
 from recon.score.scenario_schema import (
-    CloudsTable,
     ScenarioError,
     ScenarioErrors,
     ScenarioFile,
     TaskTable,
     key_lines,
 )
+from recon.score.scenario_sky import clouds_of
 from recon.score.staging import staged
 from recon.sim.app.fault_file import FaultScript, load_faults
 from recon.sim.app.faults import InjectedFault, RandomFault, parse_fault
 from recon.sim.fleet import IMAGER_SERIAL
-from recon.sim.world import (
-    LayerSettings,
-    SkySettings,
-    SunSettings,
-    WindSettings,
-    WindShift,
-)
+from recon.sim.world import SunSettings, WindSettings
 from recon.site.reading import validation_error
 
 LARGEST_BYTES = 1_000_000
@@ -94,21 +88,23 @@ def _scenario(path: Path, file: ScenarioFile, errors: ScenarioErrors) -> Scenari
     survey = _survey(path.stem, file.task, file.methods.planner)
     place = staged(path, file, survey, errors)
     script = _script(path, file, errors)
-    sky = _sky(file, place.frame.origin, errors)
+    sun = _sun(file, place.frame.origin, errors)
     scenario = Scenario(
         name=path.stem,
         about=file.about,
         site=place.site,
         fleet=place.fleet,
         imager=place.imager,
-        sky=sky,
+        sun=sun,
+        clouds=clouds_of(file.clouds, errors),
         wind=_wind(file, errors),
-        conditions=ranges_of(file.conditions, sky.sun, errors),
+        conditions=ranges_of(file.conditions, sun, errors),
         faults=(*_faults(file, errors), *script.faults),
         chances=script.chances,
         survey=survey,
         methods=Methods(file.methods.detection, file.methods.forecast),
         limit_s=60.0 * file.task.limit_min,
+        files=tuple(path.parent / name for name in (file.site.folder, file.fault_file) if name),
     )
     plan = plan_survey(survey, scenario.frame)
     if not isinstance(plan, SurveyPlan):
@@ -161,26 +157,9 @@ def _survey(name: str, task: TaskTable, planner: str) -> Survey:
     )
 
 
-def _sky(file: ScenarioFile, origin: GeoPoint, errors: ScenarioErrors) -> SkySettings:
+def _sun(file: ScenarioFile, origin: GeoPoint, errors: ScenarioErrors) -> SunSettings:
     place = LatLon(origin.latitude_deg, origin.longitude_deg)
-    sun = SunSettings(place, file.start_utc.timestamp())
-    layers = tuple(_layer(i, clouds, errors) for i, clouds in enumerate(file.clouds))
-    return errors.made("clouds", lambda: SkySettings(sun=sun, layers=layers))
-
-
-def _layer(number: int, clouds: CloudsTable, errors: ScenarioErrors) -> LayerSettings:
-    within = f"clouds[{number}]"
-    values = {name: getattr(clouds, name) for name in clouds.__struct_fields__ if name != "shifts"}
-
-    def shift(index: int) -> WindShift:
-        given = clouds.shifts[index]
-        return WindShift(given.start_s, given.duration_s, given.speed_mps, given.heading_deg)
-
-    shifts = tuple(
-        errors.made(f"{within}.shifts[{i}]", lambda i=i: shift(i))  # type: ignore[misc]
-        for i in range(len(clouds.shifts))
-    )
-    return errors.made(within, lambda: LayerSettings(**values, shifts=shifts))
+    return errors.made("site", lambda: SunSettings(place, file.start_utc.timestamp()))
 
 
 def _check_faults(scenario: Scenario, errors: ScenarioErrors) -> None:

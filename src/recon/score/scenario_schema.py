@@ -46,6 +46,10 @@ PlacePair = Annotated[
 Ring = Annotated[list[PlacePair], Meta(min_length=3, description="3 places or more")]
 
 
+RANGE = "a number or [lowest, highest]"
+RangeValue = Annotated[float | list[float], Meta(description=RANGE)]
+
+
 class Table(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     """A table that refuses unknown keys."""
 
@@ -95,9 +99,14 @@ class ScenarioImagerTable(Table, frozen=True):
     """
 
     over_m: PlacePair | None = None
-    height_m: Annotated[float, Meta(ge=10.0, le=500.0)] | None = None
+    height_m: Annotated[float, Meta(ge=10.0, le=120.0)] | None = None
+    """At most as high as drones may fly in most countries."""
+    field_deg: Annotated[float, Meta(ge=30.0, le=85.0)] | None = None
+    """Of a generated site's lens, from its axis: 66, as that of real ones."""
     radius_m: Annotated[float, Meta(ge=20.0, le=2000.0)] = 300.0
+    """Of the scored ground, if the lens shows as much."""
     cell_m: Annotated[float, Meta(ge=1.0, le=50.0)] = 4.0
+    """Of shade maps and their score; larger for more ground."""
 
 
 class MethodsTable(Table, frozen=True):
@@ -114,22 +123,33 @@ class ShiftTable(Table, frozen=True):
     start_s: float
     duration_s: float
     speed_mps: float
-    heading_deg: float
+    turn_deg: Annotated[float, Meta(ge=-180.0, le=180.0)]
+    """Clockwise from the heading before."""
 
 
 class CloudsTable(Table, frozen=True):
-    """One cloud layer; the sky's settings check the ranges."""
+    """One cloud layer; the sky's settings check the ranges.
+
+    Speed, heading and veer are a number or [lowest, highest], drawn by the seed. The other usual
+    values are those of measured broken clouds, to which they were fitted (docs/world.md).
+    """
 
     cover: float
     base_height_m: float = 1_400.0
-    speed_mps: float = 7.5
-    heading_deg: float = 70.0
-    spectral_slope: float = 3.4
+    speed_mps: RangeValue | None = None
+    """5 to 11 m/s."""
+    heading_deg: RangeValue | None = None
+    """Of the lowest layer; any."""
+    veer_deg: RangeValue | None = None
+    """Of a layer above, clockwise from the heading of the one below; 25 to 70 degrees."""
+    spectral_slope: float = 2.91
     outer_scale_m: float = 12_000.0
-    softness: float = 0.28
+    finest_scale_m: float = 125.0
+    softness: float = 0.5
     largest_optical_depth: float = 20.0
-    lifetime_s: float = 900.0
-    modulation: float = 0.5
+    lifetime_s: float = 1_100.0
+    modulation: float = 1.0
+    modulation_s: float = 1_800.0
     shifts: list[ShiftTable] = []
 
 

@@ -14,8 +14,8 @@ class ScoreSettings:
     """Shade maps of one sky differ little over shorter times."""
 
     score_forecasts_every_s: float = 60.0
-    lead_s: tuple[float, ...] = (60.0, 180.0, 300.0, 600.0)
-    """Whole minutes, so that one true map serves several leads."""
+    lead_s: tuple[float, ...] = (15.0, 30.0, 60.0, 90.0, 120.0, 180.0, 300.0, 600.0)
+    """A photo is a moment, a row half a minute, a mission minutes."""
 
     oldest_map_s: float = 10.0
     """An older shade map does not describe the present: its cells count as wrong."""

@@ -4,13 +4,16 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from recon.forecast import ForecastSettings
+from recon.geo import nearest_cells
 from recon.model.geo import GroundGrid
 from recon.model.imagery import FloatArray, GroundImage
-from recon.model.shade import SUNLIT_TRANSMITTANCE, MaskMap, ShadeMap, SunForecast
+from recon.model.shade import MaskMap, ShadeMap
 from recon.model.units import NS_PER_S, seconds_to_ns
-from recon.score.forecast_figures import HorizonCells, LeadScore, score_lead
+from recon.score.forecast_figures import LeadScore
+from recon.score.forecast_scoring import ForecastKey, ForecastScoring
 from recon.score.scenario import NO_FORECAST, Scenario
-from recon.score.score_grid import nearest_cells, score_grid, scored_cells
+from recon.score.score_grid import score_grid, scored_cells
 from recon.score.settings import SCORE
 from recon.score.shade_figures import ShadeFigures, map_figures
 from recon.score.true_frames import TrueFrames, registration_errors_m
@@ -28,7 +31,7 @@ class ImagerScore:
     """When most cells were first known and right: `SCORE.right_share` of them."""
     registration_errors_m: list[FloatArray] = field(default_factory=list)
     """Of points of each ground image."""
-    leads: dict[tuple[float, HorizonCells], LeadScore] = field(default_factory=dict)
+    forecasts: dict[ForecastKey, LeadScore] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -67,15 +70,26 @@ class ShadeScoring:
     frames: TrueFrames
     score: ImagerScore = field(default_factory=ImagerScore)
     _maps_due_s: float = SCORE.score_maps_every_s
-    _forecasts_due_s: float = SCORE.score_forecasts_every_s
     _map_number: int = 0
     _image: GroundImage | None = None
     _ground: ScoredGround = field(init=False)
     _coarse: ScoredGround = field(init=False)
+    _forecasts: ForecastScoring | None = None
 
     def __post_init__(self) -> None:
         self._ground = scored_ground(self.scenario)
         self._coarse = scored_ground(self.scenario, is_coarse=True)
+        methods, ground = self.scenario.methods, self._ground
+        if methods.forecast != NO_FORECAST:
+            self._forecasts = ForecastScoring(
+                self.sky,
+                ground.grid,
+                ground.counted,
+                methods.forecast,
+                tuple(name for name in methods.compared if name != methods.forecast),
+                ForecastSettings(),
+                self.score.forecasts,
+            )
 
     def update(self, station: Station, now_ns: int) -> None:
         """Score the station's present map, forecast and image, if due or new."""
@@ -90,10 +104,8 @@ class ShadeScoring:
         if self.score.to_right_s is None and line.number != self._map_number:
             self._map_number = line.number
             self._note_right(line.shade, now_s)
-        has_forecast = self.scenario.methods.forecast != NO_FORECAST
-        if has_forecast and now_s >= self._forecasts_due_s and line.sun is not None:
-            self._forecasts_due_s = now_s + SCORE.score_forecasts_every_s
-            self._score_forecast(line.sun)
+        if self._forecasts is not None:
+            self._forecasts.update(line, now_s)
         self._score_pose(station.imaging.imagers[IMAGER_SERIAL].ground_image)
 
     def _score_map(self, shade: ShadeMap | None, now_s: float) -> None:
@@ -106,18 +118,6 @@ class ShadeScoring:
         found = self._coarse.figures(shade, self.sky, shade.captured_at_ns / NS_PER_S)
         if found.right_share >= SCORE.right_share:
             self.score.to_right_s = now_s
-
-    def _score_forecast(self, sun: SunForecast) -> None:
-        ground = self._ground
-        for lead_s in SCORE.lead_s:
-            if lead_s not in sun.lead_s:
-                continue
-            at_s = sun.issued_at_ns / NS_PER_S + lead_s
-            is_sunlit: MaskMap = self.sky.on_grid(ground.grid, at_s) >= SUNLIT_TRANSMITTANCE
-            scores = score_lead(sun, lead_s, ground.grid, is_sunlit, ground.counted)
-            for ahead, found in scores.items():
-                before = self.score.leads.get((lead_s, ahead), LeadScore())
-                self.score.leads[lead_s, ahead] = before + found
 
     def _score_pose(self, image: GroundImage | None) -> None:
         if image is None or image is self._image:

@@ -5,7 +5,8 @@ from typing import TypeVar
 
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.score.scenario import Scenario
-from recon.score.scenario_conditions import conditions_of, sky_of
+from recon.score.scenario_conditions import conditions_of
+from recon.score.scenario_sky import sky_of
 from recon.sim.app.camera_feed import FeedSettings
 from recon.sim.app.faults import InjectedFault, RandomFault
 from recon.sim.app.telemetry import FIELD_SENSORS

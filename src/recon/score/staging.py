@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from math import ceil, hypot
+from math import ceil, cos, hypot, radians, sin
 from pathlib import Path
 
 import numpy as np
@@ -42,7 +42,8 @@ large fleets."""
 BELOW_CEILING_M = 5.0
 IMAGER_PRIORITY = 10
 """In a conflict the imaging drone is held last: it observes the whole field."""
-IMAGE_CELL_M = 1.0
+IMAGE_CELLS_PER_CELL = 4
+"""Ground images are finer than shade maps by this."""
 
 
 def generated_site(
@@ -99,9 +100,11 @@ def _farthest_m(pads_m: tuple[EastNorth, ...], region: Region) -> float:
 
 
 def _grid(frame: LocalFrame, imager: ScenarioImager) -> GroundGrid:
-    half = ceil(imager.radius_m / IMAGE_CELL_M)
-    west_m, north_m = imager.over_m[0] - half * IMAGE_CELL_M, imager.over_m[1] + half * IMAGE_CELL_M
-    return GroundGrid(frame, west_m, north_m, IMAGE_CELL_M, 2 * half, 2 * half)
+    cell_m = imager.cell_m / IMAGE_CELLS_PER_CELL
+    half_m = ceil(imager.radius_m / cell_m) * cell_m
+    west_m, north_m = imager.over_m[0] - half_m, imager.over_m[1] + half_m
+    cells = round(2.0 * half_m / cell_m)
+    return GroundGrid(frame, west_m, north_m, cell_m, cells, cells)
 
 
 def _generated_imager(frame: LocalFrame, imager: ScenarioImager) -> Imager:
@@ -109,13 +112,18 @@ def _generated_imager(frame: LocalFrame, imager: ScenarioImager) -> Imager:
     beneath = point_from_enu(frame, (*imager.over_m, 0.0))
     marked = TelemetryReference(beneath.latitude_deg, beneath.longitude_deg, imager.height_m, 0.0)
     camera = demo_camera()
+    radius_px = IMAGE_CIRCLE_RADIUS_PX
+    if imager.field_deg is not None:
+        field = radians(imager.field_deg)
+        (rim_px,) = camera.project(np.array([[sin(field), 0.0, cos(field)]]))
+        radius_px = float(rim_px[0]) - CENTRE_COL_PX
     pose = level_pose(marked, np.array([*imager.over_m, imager.height_m]))
     return Imager(
         serial=IMAGER_SERIAL,
         camera=camera,
         marked_pose=pose,
         marked_frame=marked,
-        image_circle=ImageCircle(CENTRE_COL_PX, CENTRE_ROW_PX, IMAGE_CIRCLE_RADIUS_PX),
+        image_circle=ImageCircle(CENTRE_COL_PX, CENTRE_ROW_PX, radius_px),
     )
 
 
@@ -202,8 +210,8 @@ def _on_folder(folder: Path, file: ScenarioFile, errors: ScenarioErrors) -> Stag
     origin = (table.latitude_deg, table.longitude_deg, table.ground_altitude_m)
     if any(each is not None for each in origin):
         raise errors.error("expected a folder or an origin, got both", "site")
-    for key, value in (("over_m", file.imager.over_m), ("height_m", file.imager.height_m)):
-        if value is not None:
+    for key in ("over_m", "height_m", "field_deg"):
+        if getattr(file.imager, key) is not None:
             raise errors.error(f"{key}: expected only without a folder", "imager")
     if file.fleet.pads_m is not None:
         raise errors.error("pads_m: expected only without a folder", "fleet")
@@ -268,4 +276,4 @@ def _imager(
 ) -> ScenarioImager:
     over_m = beneath_m if table.over_m is None else (table.over_m[0], table.over_m[1])
     over_ground_m = height_m if table.height_m is None else table.height_m
-    return ScenarioImager(over_m, over_ground_m, table.radius_m, table.cell_m)
+    return ScenarioImager(over_m, over_ground_m, table.radius_m, table.cell_m, table.field_deg)

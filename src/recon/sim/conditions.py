@@ -28,6 +28,11 @@ class Range:
     low: float
     high: float
 
+    def __post_init__(self) -> None:
+        if not self.low <= self.high:
+            text = f"expected the lower value first, got [{self.low:g}, {self.high:g}]"
+            raise SimulationError(text)
+
     def drawn(self, seed: int, name: str) -> float:
         """Return a seed's value of a name: uniform, and the same at each call."""
         share = Random(f"{seed}/conditions/{name}").random()
@@ -82,9 +87,6 @@ class ConditionRanges:
             values = getattr(self, name)
             if values is None:
                 continue
-            if not values.low <= values.high:
-                text = f"expected the lower value first, got [{values.low:g}, {values.high:g}]"
-                raise SimulationError(f"{name}: {text}")
             expect(name, values.low, lowest, highest)
             expect(name, values.high, lowest, highest)
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from recon.geo import Polygon, enu_from_points
+from recon.geo import Polygon, cell_centres_m, enu_from_points
 from recon.model.airspace import FlightLimits, HeightDatum, Zone, ZoneKind
 from recon.model.errors import SiteError
 from recon.model.geo import GeoPoint, LocalFrame
@@ -165,8 +165,7 @@ def _places_m(site: Site, zone: Zone) -> FloatArray:
     """Return the zone's corners and the middles of the model's cells in it, (N, 2)."""
     assert site.elevation is not None
     grid, outline_m = site.elevation.grid, zone.region.outline_m
-    norths = grid.north_m - (np.arange(grid.rows) + 0.5) * grid.cell_m
-    easts = grid.west_m + (np.arange(grid.cols) + 0.5) * grid.cell_m
+    easts, norths = cell_centres_m(grid)
     (west_m, south_m), (east_m, north_m) = outline_m.min(axis=0), outline_m.max(axis=0)
     easts = easts[(easts >= west_m) & (easts <= east_m)]
     norths = norths[(norths >= south_m) & (norths <= north_m)]

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from msgspec import Meta, Struct
 from scipy import ndimage
 
-from recon.geo import Surface, enu_from_points
+from recon.geo import Surface, cell_centres_m, enu_from_points
 from recon.model.airspace import Airspace, ElevationModel
 from recon.model.errors import SiteError
 from recon.model.geo import GroundGrid, LocalFrame
@@ -158,10 +158,7 @@ def _reach(cell_m: float, pixel_m: float) -> int:
 
 def _middles_m(grid: GroundGrid) -> FloatArray:
     """Return the middles of all cells, row after row, (rows * cols, 2)."""
-    north = grid.north_m - (np.arange(grid.rows) + 0.5) * grid.cell_m
-    east = grid.west_m + (np.arange(grid.cols) + 0.5) * grid.cell_m
-    norths, easts = np.meshgrid(north, east, indexing="ij")
-    return np.column_stack([easts.ravel(), norths.ravel()])
+    return np.stack(np.meshgrid(*cell_centres_m(grid)), axis=-1).reshape(-1, 2)
 
 
 def _window(

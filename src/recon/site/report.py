@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 
 from recon.camera import PoseSolution, placing_error_m
-from recon.geo import Polygon, enu_from_points
+from recon.geo import Polygon, cell_centres_m, enu_from_points
 from recon.model.airspace import FlightLimits, HeightDatum, Zone, ZoneKind
 from recon.model.vehicle import VehicleProfile
 from recon.safety import SafetySettings
@@ -157,8 +157,7 @@ def _unknown_ground(site: Site) -> Iterator[str]:
     if site.elevation is None or site.layers.boundary is None:
         return
     grid = site.elevation.grid
-    norths = grid.north_m - (np.arange(grid.rows) + 0.5) * grid.cell_m
-    easts = grid.west_m + (np.arange(grid.cols) + 0.5) * grid.cell_m
+    easts, norths = cell_centres_m(grid)
     middles_m = np.stack(np.meshgrid(easts, norths), axis=-1).reshape(-1, 2)
     is_inside = Polygon(site.layers.boundary).contains(middles_m)
     is_unknown = np.isnan(site.elevation.ellipsoid_height_m.ravel())

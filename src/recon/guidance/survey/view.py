@@ -2,11 +2,11 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from math import ceil, cos, floor, radians, sin
 
 import numpy as np
 
+from recon.geo import nearest_cells
 from recon.guidance.survey.cells import BoolArray, CoverageCells, FloatArray, IntArray
 from recon.guidance.survey.lattice import RowLattice, Swath
 from recon.model.geo import GroundGrid
@@ -127,10 +127,6 @@ def _clipped(middle_m: float, half_m: float, cell_m: float, count: int) -> tuple
     return first, last
 
 
-OFF = -1
-"""In place of a row or column of a map that does not reach there."""
-
-
 def nearest_map(maps: Sequence[ShadeMap], at_ns: int, age_s: float) -> ShadeMap | None:
     """Return the map nearest in time to a moment, None when all are farther off than `age_s`."""
     nearest = min(maps, key=lambda shade: abs(shade.captured_at_ns - at_ns), default=None)
@@ -149,21 +145,9 @@ def sunlit_cells(
     if shade is None or shade.grid.frame != grid.frame:
         nothing = np.zeros(window.shape, dtype=np.bool_)
         return nothing, nothing
-    row, col = _on_map(grid, shade.grid)
-    row, col = row[window.first_row : window.last_row], col[window.first_col : window.last_col]
-    at = row[:, np.newaxis], col[np.newaxis, :]
-    is_known: BoolArray = shade.valid[at] & (at[0] != OFF) & (at[1] != OFF)
+    rows, cols, is_on = nearest_cells(shade.grid, grid)
+    part = slice(window.first_row, window.last_row), slice(window.first_col, window.last_col)
+    at = rows[part[0]], cols[:, part[1]]
+    is_known: BoolArray = shade.valid[at] & is_on[part]
     with np.errstate(invalid="ignore"):
         return is_known & (shade.transmittance[at] >= SUNLIT_TRANSMITTANCE), is_known
-
-
-@lru_cache(maxsize=8)
-def _on_map(grid: GroundGrid, other: GroundGrid) -> tuple[IntArray, IntArray]:
-    """Return in which row of another grid each of a grid's rows lies, and so the columns."""
-    north_m = grid.north_m - (np.arange(grid.rows) + 0.5) * grid.cell_m
-    east_m = grid.west_m + (np.arange(grid.cols) + 0.5) * grid.cell_m
-    row = np.floor((other.north_m - north_m) / other.cell_m).astype(np.int64)
-    col = np.floor((east_m - other.west_m) / other.cell_m).astype(np.int64)
-    row[(row < 0) | (row >= other.rows)] = OFF
-    col[(col < 0) | (col >= other.cols)] = OFF
-    return row, col

@@ -54,7 +54,7 @@ class CloudLayer:
         if self.settings.cover in (0.0, 1.0):
             return np.full(east_m.size, self._even_share, dtype=np.float32)
         # Frozen drift: sample the field where the cloud was at time 0.
-        off_east_m, off_north_m = self._offset_m(time_s, edge)
+        off_east_m, off_north_m = self.offset_m(time_s, edge)
         x_m, y_m = self._field_place(east_m + off_east_m[moment], north_m + off_north_m[moment])
         found = self.field.sample(x_m, y_m, time_s, edge.across_m * edge.along_m, moment)
         per_softness = np.float32(1.0 / self.settings.softness)
@@ -68,7 +68,7 @@ class CloudLayer:
         """Transmittance of a layer without edges: 1, or that of its thickest cloud."""
         return 1.0 if self.settings.cover == 0.0 else float(self._table[-1, 0])
 
-    def _offset_m(self, time_s: FloatArray, edge: Penumbra) -> tuple[FloatArray, FloatArray]:
+    def offset_m(self, time_s: FloatArray, edge: Penumbra) -> tuple[FloatArray, FloatArray]:
         """Return the offset from a ground point to where the cloud that shades it was at time 0."""
         drift_east_m, drift_north_m = drift_m(self.settings, time_s)
         return (

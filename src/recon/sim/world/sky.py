@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from recon.geo import cell_centres_m
 from recon.geo.sun import SunPosition, sun_position
 from recon.model.geo import GroundGrid
 from recon.sim.world.fractal_field import AT_ONCE, IndexArray
@@ -52,28 +53,62 @@ class Sky:
         shape = np.broadcast_shapes(east.shape, north.shape, time.shape)
         flat = [np.broadcast_to(v, shape).ravel() for v in (east, north)]
         times = time.reshape(1) if time.size == 1 else np.broadcast_to(time, shape).ravel()
-        found = np.ones(flat[0].size, dtype=np.float32)
+        return self._in_pieces(flat[0], flat[1], times, self._still).reshape(shape)
+
+    def _in_pieces(
+        self, east_m: FloatArray, north_m: FloatArray, time_s: FloatArray, moved_m: FloatArray
+    ) -> FloatImage:
+        found = np.ones(east_m.size, dtype=np.float32)
         for start in range(0, found.size, POINTS_AT_ONCE):
             part = slice(start, start + POINTS_AT_ONCE)
-            part_times = times if times.size == 1 else times[part]
-            found[part] = self._piece(flat[0][part], flat[1][part], part_times)
-        return found.reshape(shape)
+            times_s = time_s if time_s.size == 1 else time_s[part]
+            found[part] = self._piece(east_m[part], north_m[part], times_s, moved_m)
+        return found
 
-    def _piece(self, east_m: FloatArray, north_m: FloatArray, time_s: FloatArray) -> FloatImage:
-        """Return the transmittance (N,) at N points; times are (N,) or (1,)."""
+    @property
+    def _still(self) -> FloatArray:
+        return np.zeros((len(self.layers), 2))
+
+    def _piece(
+        self, east_m: FloatArray, north_m: FloatArray, time_s: FloatArray, moved_m: FloatArray
+    ) -> FloatImage:
+        """Return the transmittance (N,) at N points; times are (N,) or (1,).
+
+        Each layer is read `moved_m` (layers, 2) east and north of them.
+        """
         times_s, moment = _moments(time_s)
         suns = [self.sun_at(float(one_s)) for one_s in times_s]
         clouds_s = times_s + self.settings.clouds_ahead_s
         share = np.ones(east_m.size, dtype=np.float32)
-        for layer in self.layers:
+        for layer, (right_m, up_m) in zip(self.layers, moved_m.tolist(), strict=True):
             edge = penumbra(suns, layer.settings.base_height_m)
-            share *= layer.transmittance(east_m, north_m, clouds_s, edge, moment)
+            share *= layer.transmittance(east_m + right_m, north_m + up_m, clouds_s, edge, moment)
         return share
+
+    def origins_m(self, at_s: float, later_s: float) -> FloatArray:
+        """Return, by layer, how far east and north of a place the shadow is at a time that will lie
+        on it later, (layers, 2): the clouds' motion and the sun's."""
+        offsets = [self._offsets_m(time_s) for time_s in (at_s, later_s)]
+        return offsets[1] - offsets[0]
+
+    def _offsets_m(self, time_s: float) -> FloatArray:
+        sun, cloud_s = self.sun_at(time_s), np.array([time_s + self.settings.clouds_ahead_s])
+        offsets = [
+            layer.offset_m(cloud_s, penumbra([sun], layer.settings.base_height_m))
+            for layer in self.layers
+        ]
+        return np.array(offsets, dtype=np.float64).reshape(len(self.layers), 2)
+
+    def drifted(self, grid: GroundGrid, at_s: float, later_s: float) -> FloatImage:
+        """Return the transmittance (rows, cols) later, had the shadows of a time only moved."""
+        east_m, north_m = (part.ravel() for part in np.meshgrid(*cell_centres_m(grid)))
+        moved_m = self.origins_m(at_s, later_s)
+        found = self._in_pieces(east_m, north_m, np.array([at_s]), moved_m)
+        return found.reshape(grid.rows, grid.cols)
 
     def on_grid(self, grid: GroundGrid, time_s: float) -> FloatImage:
         """Return the transmittance at the centres of a grid's cells, (rows, cols)."""
-        east_m = grid.west_m + (np.arange(grid.cols) + 0.5) * grid.cell_m
-        north_m = grid.north_m - (np.arange(grid.rows) + 0.5) * grid.cell_m
+        east_m, north_m = cell_centres_m(grid)
         return self.transmittance(east_m[np.newaxis, :], north_m[:, np.newaxis], time_s)
 
 

@@ -8,8 +8,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
-import numpy as np
-
 from recon.detection import (
     DETECTORS,
     DetectionSettings,
@@ -18,6 +16,7 @@ from recon.detection import (
     merged,
 )
 from recon.forecast import FORECASTERS, ForecastSettings, ForecastState, moved_on
+from recon.geo import nearest_cells
 from recon.model.geo import GroundGrid
 from recon.model.imagery import GroundImage
 from recon.model.shade import MaskMap, SunForecast
@@ -86,17 +85,18 @@ def read_shade(work: ReadShade) -> ShadeRead:
     Raises `ValueError` for an unknown method.
     """
     detect = _method(DETECTORS, work.detection_settings.method, "detection")
-    predict = _method(FORECASTERS, work.forecast_settings.method, "forecast")
+    forecaster = _method(FORECASTERS, work.forecast_settings.method, "forecast")
     serial = work.image.serial
     detection, shade = detect(work.detection, work.image, work.detection_settings)
     if isinstance(shade, RejectedFrame):
         return ShadeRead(serial, detection, work.forecast, shade)
     own = SeenShade(shade, seen_cells(work.image, shade.grid))
-    latest_ns = work.forecast.latest_ns
-    if latest_ns is not None and shade.captured_at_ns <= latest_ns:
+    newest = work.forecast.shade
+    if newest is not None and shade.captured_at_ns <= newest.captured_at_ns:
         return ShadeRead(serial, detection, work.forecast, own)
     together = _together(own, work.others, work.velocity_mps)
-    forecast, sun = predict(work.forecast, together.shade, work.forecast_settings)
+    forecast = forecaster.observed(work.forecast, together.shade, work.forecast_settings)
+    sun = forecaster.forecast(forecast, work.forecast_settings)
     return ShadeRead(serial, detection, forecast, own, (together, sun))
 
 
@@ -118,15 +118,8 @@ def seen_cells(image: GroundImage, grid: GroundGrid) -> MaskMap:
 
     Both grids are of one local frame.
     """
-    laid = image.grid
-    north_m = grid.north_m - (np.arange(grid.rows) + 0.5) * grid.cell_m
-    east_m = grid.west_m + (np.arange(grid.cols) + 0.5) * grid.cell_m
-    row = np.floor((laid.north_m - north_m) / laid.cell_m).astype(np.intp)
-    col = np.floor((east_m - laid.west_m) / laid.cell_m).astype(np.intp)
-    is_inside = np.logical_and.outer((row >= 0) & (row < laid.rows), (col >= 0) & (col < laid.cols))
-    row, col = row.clip(0, laid.rows - 1), col.clip(0, laid.cols - 1)
-    seen: MaskMap = image.valid[np.ix_(row, col)] & is_inside
-    return seen
+    rows, cols, is_inside = nearest_cells(image.grid, grid)
+    return image.valid[rows, cols] & is_inside
 
 
 def conditions(station: Station) -> Iterator[Condition]:

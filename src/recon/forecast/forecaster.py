@@ -1,0 +1,23 @@
+"""What a forecast method is: two pure functions, one per map and one per forecast."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from recon.forecast.settings import ForecastSettings
+from recon.forecast.state import ForecastState
+from recon.model.shade import ShadeMap, SunForecast
+
+
+@dataclass(frozen=True, slots=True)
+class Forecaster:
+    """A method. Pure: no clock, no unseeded random numbers, no files.
+
+    Every map is observed; a forecast is made when one is wanted, of the newest map.
+    """
+
+    observed: Callable[[ForecastState, ShadeMap, ForecastSettings], ForecastState]
+    """The state after a map (R, C), starting from `ForecastState()`. Raises `ValueError` for a map
+    that is not newer than the one before."""
+    forecast: Callable[[ForecastState, ForecastSettings], SunForecast]
+    """From the newest map: (L, R, C) probabilities for the L leads of the settings, counted from
+    its capture time. Raises `ValueError` before the first map."""

@@ -1,0 +1,38 @@
+"""Cells of ground grids: where their centres are, and which cell of another grid is there."""
+
+from functools import lru_cache
+
+import numpy as np
+import numpy.typing as npt
+
+from recon.model.geo import GroundGrid
+
+FloatArray = npt.NDArray[np.float64]
+IndexArray = npt.NDArray[np.intp]
+MaskArray = npt.NDArray[np.bool_]
+
+
+def cell_centres_m(grid: GroundGrid) -> tuple[FloatArray, FloatArray]:
+    """Return easts (cols,) and norths (rows,) of the centres of a grid's cells."""
+    east_m = grid.west_m + (np.arange(grid.cols, dtype=np.float64) + 0.5) * grid.cell_m
+    north_m = grid.north_m - (np.arange(grid.rows, dtype=np.float64) + 0.5) * grid.cell_m
+    return east_m, north_m
+
+
+@lru_cache(maxsize=32)
+def nearest_cells(
+    source: GroundGrid, target: GroundGrid, off_m: tuple[float, float] = (0.0, 0.0)
+) -> tuple[IndexArray, IndexArray, MaskArray]:
+    """Return the source's row and column (R, 1), (1, C) of each target cell, and where it has one.
+
+    Read `off_m` east and north of the target's cells. Rows and columns are clipped to the source.
+    Both grids are in one local frame.
+    """
+    east_m, north_m = cell_centres_m(target)
+    rows = np.floor((source.north_m - north_m - off_m[1]) / source.cell_m).astype(np.intp)
+    cols = np.floor((east_m + off_m[0] - source.west_m) / source.cell_m).astype(np.intp)
+    inside = np.logical_and.outer(
+        (rows >= 0) & (rows < source.rows), (cols >= 0) & (cols < source.cols)
+    )
+    clipped = np.clip(rows, 0, source.rows - 1), np.clip(cols, 0, source.cols - 1)
+    return clipped[0][:, np.newaxis], clipped[1][np.newaxis, :], inside

@@ -1,0 +1,115 @@
+"""Forecast figures as tables: the station's method by lead, and all methods side by side."""
+
+from collections.abc import Callable, Sequence
+from math import isinf
+
+from recon.score.forecast_figures import LeadScore, SeenCells
+from recon.score.interval import Interval, log_ratio, ratio
+from recon.score.run_score import RunScore
+from recon.score.settings import SCORE
+from recon.score.table_rows import NOTHING, Row, fine, table
+
+Parts = Callable[[LeadScore], tuple[float, float]]
+
+
+def forecast_tables(runs: Sequence[RunScore], own: str, against: str | None) -> list[str]:
+    """Return the tables of the station's method, and of all methods if one is named to compare
+    them with."""
+    found = [_of_method(runs, own)]
+    if against is not None:
+        methods = sorted({method for run in runs for method, _lead_s, _cells in run.forecasts})
+        found += [_side_by_side(runs, methods, cells) for cells in SeenCells]
+        found += [_against(runs, methods, against, cells) for cells in SeenCells]
+    return found
+
+
+def _brier(score: LeadScore) -> tuple[float, float]:
+    return score.squares, score.cells
+
+
+def _iou(score: LeadScore) -> tuple[float, float]:
+    return score.shade.both, score.shade.either
+
+
+def _calibration(score: LeadScore) -> tuple[float, float]:
+    return score.calibration.error_sum, score.cells
+
+
+def _head(first: str) -> Row:
+    return (first, *(f"{lead_s:g} s" for lead_s in SCORE.lead_s))
+
+
+def _of_method(runs: Sequence[RunScore], method: str) -> str:
+    figures: dict[str, Parts] = {"Brier": _brier, "shade IoU": _iou}
+    rows = [
+        (
+            f"cells {SeenCells.SEEN.value}, %",
+            *(_seen_percent(runs, method, lead_s) for lead_s in SCORE.lead_s),
+        )
+    ]
+    rows += [
+        (f"{name}, {cells.value}", *_by_lead(runs, method, cells, parts))
+        for name, parts in figures.items()
+        for cells in SeenCells
+    ]
+    pooled = [_pooled(runs, method, lead_s) for lead_s in SCORE.lead_s]
+    errors = [NOTHING if one.cells == 0 else fine(_share(_calibration(one))) for one in pooled]
+    rows.append((f"calibration error, {SeenCells.SEEN.value}", *errors))
+    return table(_head(f"forecast by {method}"), rows)
+
+
+def _seen_percent(runs: Sequence[RunScore], method: str, lead_s: float) -> str:
+    seen = _pooled(runs, method, lead_s).cells
+    whole = _pooled(runs, method, lead_s, SeenCells.ALL).cells
+    return f"{100.0 * seen / whole:.0f}" if whole else NOTHING
+
+
+def _pooled(
+    runs: Sequence[RunScore], method: str, lead_s: float, cells: SeenCells = SeenCells.SEEN
+) -> LeadScore:
+    """Return the score over all runs: reliability needs their cells together."""
+    return sum((_score(run, method, lead_s, cells) for run in runs), LeadScore())
+
+
+def _score(run: RunScore, method: str, lead_s: float, cells: SeenCells) -> LeadScore:
+    return run.forecasts.get((method, lead_s, cells), LeadScore())
+
+
+def _share(parts: tuple[float, float]) -> float:
+    return parts[0] / parts[1]
+
+
+def _by_lead(runs: Sequence[RunScore], method: str, cells: SeenCells, parts: Parts) -> list[str]:
+    return [
+        _text(ratio([parts(_score(run, method, lead_s, cells)) for run in runs]))
+        for lead_s in SCORE.lead_s
+    ]
+
+
+def _text(found: Interval | None) -> str:
+    if found is None:
+        return NOTHING
+    mean = fine(found.mean)
+    return mean if isinf(found.high) else f"{mean} ({fine(found.low)} to {fine(found.high)})"
+
+
+def _side_by_side(runs: Sequence[RunScore], methods: Sequence[str], cells: SeenCells) -> str:
+    rows = [(method, *_by_lead(runs, method, cells, _brier)) for method in methods]
+    return table(_head(f"Brier, {cells.value}"), rows)
+
+
+def _against(
+    runs: Sequence[RunScore], methods: Sequence[str], against: str, cells: SeenCells
+) -> str:
+    rows = []
+    for method in methods:
+        if method != against:
+            pairs = [
+                [
+                    (_score(run, method, s, cells).brier, _score(run, against, s, cells).brier)
+                    for run in runs
+                ]
+                for s in SCORE.lead_s
+            ]
+            rows.append((method, *(_text(log_ratio(each)) for each in pairs)))
+    return table(_head(f"Brier over that of {against}, {cells.value}"), rows)

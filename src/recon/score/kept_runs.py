@@ -1,0 +1,87 @@
+"""Finished runs on disk, one file per seed, so that a stopped command goes on where it was.
+
+The folder's name holds a digest of all that a run follows from beside its seed: the scenario's
+files, the methods, Recon's own code and the libraries that compute. Whatever changes, older runs
+are no longer found.
+"""
+
+from dataclasses import dataclass
+from functools import cache
+from hashlib import sha256
+from importlib.metadata import version
+from pathlib import Path
+
+import msgspec
+
+import recon
+from recon.score.run_score import RunScore
+from recon.score.scenario import Scenario
+from recon.score.scenario_schema import ScenarioError
+from recon.site.reading import site_digest
+
+COMPUTING = ("numpy", "opencv-python-headless", "scipy", "msgspec")
+CODE = (".py", ".so", ".pyd")
+LARGEST_BYTES = 50_000_000
+
+
+@cache
+def code_digest() -> str:
+    """Return SHA-256 over Recon's installed code and the versions of the libraries it computes
+    with."""
+    total = sha256(" ".join(f"{name} {version(name)}" for name in COMPUTING).encode())
+    package = Path(recon.__file__).parent
+    for path in sorted(path for path in package.rglob("*") if path.suffix in CODE):
+        total.update(path.relative_to(package).as_posix().encode() + path.read_bytes())
+    return total.hexdigest()
+
+
+def runs_digest(file: Path, scenario: Scenario, code: str) -> str:
+    """Return the digest of what the runs of a scenario's file, with these methods, follow from.
+
+    Raises `ScenarioError` for a file that cannot be read.
+    """
+    methods, conditions = scenario.methods, scenario.conditions
+    chosen = (methods, scenario.survey.planner, conditions.exposure_locked)
+    total = sha256(f"{code} {chosen!r}".encode())
+    try:
+        for path in (file, *scenario.files):
+            content = site_digest(path).encode() if path.is_dir() else path.read_bytes()
+            total.update(len(content).to_bytes(8, "big") + content)
+    except OSError as problem:
+        why = problem.strerror or str(problem)
+        raise ScenarioError(f"{problem.filename}: cannot read scenario file: {why}") from problem
+    return total.hexdigest()
+
+
+@dataclass(frozen=True, slots=True)
+class KeptRuns:
+    """The finished runs of one scenario in a folder of their own."""
+
+    folder: Path
+
+    def found(self, seed: int) -> RunScore | None:
+        """Return a seed's run; None without one, or with a damaged file."""
+        try:
+            path = self._path(seed)
+            if path.stat().st_size > LARGEST_BYTES:
+                return None
+            run: RunScore = msgspec.msgpack.decode(path.read_bytes(), type=RunScore)
+        except (OSError, msgspec.MsgspecError):
+            return None
+        return run if run.seed == seed else None
+
+    def keep(self, run: RunScore) -> None:
+        """Write a run. Raises `ScenarioError`."""
+        path = self._path(run.seed)
+        part = path.with_suffix(".part")
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            part.write_bytes(msgspec.msgpack.encode(run))
+            # A stopped command must not leave half a file.
+            part.replace(path)
+        except OSError as problem:
+            why = problem.strerror or str(problem)
+            raise ScenarioError(f"{path}: expected a place for finished runs, got: {why}") from None
+
+    def _path(self, seed: int) -> Path:
+        return self.folder / f"seed-{seed}.msgpack"
