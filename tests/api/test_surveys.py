@@ -230,7 +230,7 @@ class TestShade:
         assert view.map.in_view is not None
         assert view.map.in_view.model_dump() == pytest.approx(IN_VIEW)
 
-    @pytest.mark.parametrize(("asked_s", "nearest_s"), [(0.0, "0"), (44.0, "30"), (4_000.0, "600")])
+    @pytest.mark.parametrize(("asked_s", "nearest_s"), [(0.0, "0"), (36.0, "30"), (4_000.0, "600")])
     def test_the_nearest_lead_is_drawn_and_named(
         self, client: Client, station: FakeStation, asked_s: float, nearest_s: str
     ) -> None:

@@ -29,7 +29,7 @@ def test_tables_go_to_stdout_and_progress_to_stderr(tmp_path: Path) -> None:
     second = CliRunner().invoke(app, [*command, "--jobs", "2"])
     assert first.exit_code == 0, first.stderr
     assert first.stdout_bytes == second.stdout_bytes
-    assert "ideal, forecast global_shift, planner lawnmower_again; 2 seeds" in first.stdout
+    assert "ideal, forecast advection, planner lawnmower_again; 2 seeds" in first.stdout
     assert "| time to 95 % in sun, min |" in first.stdout
     assert "| shade IoU | 0.9" in first.stdout  # ideal pixels, laid by telemetry
     assert "| unknown, % | 0.0 |" in first.stdout
@@ -58,7 +58,7 @@ def test_all_forecasts_are_compared_with_one(tmp_path: Path) -> None:
     options = ["--seeds", "1", "--against", "persistence"]
     done = CliRunner().invoke(app, ["score", str(written(tmp_path, SHORT)), *options])
     assert done.exit_code == 0
-    assert "| forecast by global_shift | 15 s |" in done.stdout
+    assert "| forecast by advection | 15 s |" in done.stdout
     assert "| Brier, seen | 15 s |" in done.stdout
     heading, _line, *rows = done.stdout.partition("| Brier over that of persistence, seen ")[
         2
@@ -84,7 +84,7 @@ def test_options_choose_methods(tmp_path: Path) -> None:
         (["--planner", "magic"], "--planner: expected lawnmower_once or lawnmower_again, got"),
         (["--detection", "magic"], f"--detection: expected {known('detection')}, got"),
         (["--forecast", "magic"], f"--forecast: expected {known('forecast')}, got"),
-        (["--against", "magic"], "--against: expected global_shift or persistence or"),
+        (["--against", "magic"], "--against: expected advection or global_shift or"),
         (["--against", "persistence", "--forecast", "none"], "expected a forecast to compare"),
         (["--jobs", "0"], "--jobs: expected 1 or more, got 0"),
         (["--cluster", "127.0.0.1:1"], "expected a Dask scheduler at 127.0.0.1:1, got"),

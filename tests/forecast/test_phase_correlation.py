@@ -15,7 +15,11 @@ SETTINGS = ForecastSettings()
 def shift_of(
     before: ShadeMap, now: ShadeMap, settings: ForecastSettings = SETTINGS
 ) -> Shift | None:
-    return shift_between(spectrum_of(before, settings), spectrum_of(now, settings), settings)
+    return shift_between(
+        spectrum_of(before, settings, settings.least_contrast),
+        spectrum_of(now, settings, settings.least_contrast),
+        settings,
+    )
 
 
 @pytest.mark.parametrize("gap_s", [10.0, 20.0])

@@ -132,7 +132,7 @@ def test_ideal_detection_errs_by_latency_and_pose_alone(cumulus: RunScore) -> No
 def test_cells_seen_and_not_seen_add_up(cumulus: RunScore) -> None:
     shares = []
     for lead_s in (15.0, 30.0, 180.0):
-        seen, unseen, every = (cumulus.forecasts["global_shift", lead_s, c] for c in SeenCells)
+        seen, unseen, every = (cumulus.forecasts["advection", lead_s, c] for c in SeenCells)
         assert every.cells == seen.cells + unseen.cells > 0
         shares.append(seen.cells / every.cells)
         assert every.brier is not None
@@ -142,7 +142,7 @@ def test_cells_seen_and_not_seen_add_up(cumulus: RunScore) -> None:
 
 def test_methods_are_compared_on_the_same_maps_and_cells(folder: Path) -> None:
     scenario = small(folder, CALM.replace("limit_min = 10.0", "limit_min = 3.0"))
-    compared = ("persistence", "global_shift", TRUE_MOTION)
+    compared = ("persistence", "advection", TRUE_MOTION)
     found = run(replace(scenario, methods=Methods(compared=compared)), 3).forecasts
     for lead_s in (15.0, 30.0):
         scores = [found[name, lead_s, SeenCells.SEEN] for name in compared]
@@ -156,7 +156,7 @@ def test_methods_are_compared_on_the_same_maps_and_cells(folder: Path) -> None:
     # The station's own is what it is without the others.
     alone = run(scenario, 3).forecasts
     assert {key: alone[key] for key in alone} == {key: found[key] for key in alone}
-    assert {name for name, _lead_s, _cells in alone} == {"global_shift"}
+    assert {name for name, _lead_s, _cells in alone} == {"advection"}
 
 
 def test_a_detector_reads_rendered_frames_with_errors(folder: Path) -> None:

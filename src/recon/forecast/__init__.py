@@ -9,6 +9,7 @@ shade it are in view now.
 from collections.abc import Mapping
 from types import MappingProxyType
 
+from recon.forecast.advection import ADVECTION
 from recon.forecast.forecaster import Forecaster
 from recon.forecast.global_shift import GLOBAL_SHIFT, moved_on
 from recon.forecast.persistence import CLIMATOLOGY, PERSISTENCE
@@ -18,6 +19,11 @@ from recon.forecast.state import ForecastState
 __all__ = ["FORECASTERS", "ForecastSettings", "ForecastState", "Forecaster", "moved_on"]
 
 FORECASTERS: Mapping[str, Forecaster] = MappingProxyType(
-    {"global_shift": GLOBAL_SHIFT, "persistence": PERSISTENCE, "climatology": CLIMATOLOGY}
+    {
+        "advection": ADVECTION,
+        "global_shift": GLOBAL_SHIFT,
+        "persistence": PERSISTENCE,
+        "climatology": CLIMATOLOGY,
+    }
 )
 """The methods by name."""

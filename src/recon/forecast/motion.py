@@ -30,7 +30,7 @@ def with_pairs(state: ForecastState, shade: ShadeMap, settings: ForecastSettings
     every_ns = seconds_to_ns(settings.keep_every_s)
     if state.kept and at_ns // every_ns == state.kept[-1].at_ns // every_ns:
         return state
-    now = spectrum_of(shade, settings)
+    now = spectrum_of(shade, settings, settings.least_contrast)
     found = (_velocity(before, now, settings) for before in _partners(state, at_ns, settings))
     recent_ns = at_ns - seconds_to_ns(settings.motion_window_s)
     velocities = (*state.velocities, *(one for one in found if one is not None))

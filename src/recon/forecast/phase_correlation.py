@@ -58,12 +58,14 @@ class ShadeSpectrum:
     """None without contrast."""
 
 
-def spectrum_of(shade: ShadeMap, settings: ForecastSettings) -> ShadeSpectrum:
-    """Return the spectrum of a map's details."""
+def spectrum_of(
+    shade: ShadeMap, settings: ForecastSettings, least_contrast: float
+) -> ShadeSpectrum:
+    """Return the spectrum of a map's details, without waves for a map of less contrast."""
     grid = shade.grid
     shape = fft.next_fast_len(2 * grid.rows, real=True), fft.next_fast_len(2 * grid.cols, real=True)
     waves: Waves | None = None
-    if _contrast(shade) >= settings.least_contrast:
+    if _contrast(shade) >= least_contrast:
         waves = fft.rfft2(_details(shade, settings.detail_m / grid.cell_m), shape)
     return ShadeSpectrum(grid, shade.captured_at_ns, shape, waves)
 
@@ -75,14 +77,23 @@ def shift_between(
 
     Only shifts up to `fastest_mps`, and shorter than the grid, are searched.
     """
-    if before.waves is None or now.waves is None:
+    agreement, grid = agreement_between(before, now, settings), now.grid
+    if agreement is None:
         return None
-    grid = now.grid
-    agreement = _agreement(before.waves, now.waves, now.shape, settings.smooth_cells)
     reach_m = settings.fastest_mps * ns_to_seconds(now.at_ns - before.at_ns)
     # Within the grid and the fastest motion: peaks beyond are chance.
     reach = int(min(reach_m / grid.cell_m, min(grid.rows, grid.cols) - 1))
     return _best(agreement, max(reach, 1), grid.cell_m)
+
+
+def agreement_between(
+    before: ShadeSpectrum, now: ShadeSpectrum, settings: ForecastSettings
+) -> FloatMap | None:
+    """Return by shift, zero in the middle, the share of phases that agree in two maps of one grid;
+    None without contrast."""
+    if before.waves is None or now.waves is None:
+        return None
+    return _agreement(before.waves, now.waves, now.shape, settings.smooth_cells)
 
 
 def _contrast(shade: ShadeMap) -> float:
@@ -137,13 +148,13 @@ def _best(agreement: FloatMap, reach: int, cell_m: float) -> Shift:
         max(0, row - PEAK_CELLS) : row + PEAK_CELLS + 1,
         max(0, col - PEAK_CELLS) : col + PEAK_CELLS + 1,
     ] = 0.0
-    down = row - reach + _between(near[:, col], row)
-    right = col - reach + _between(near[row], col)
+    down = row - reach + between(near[:, col], row)
+    right = col - reach + between(near[row], col)
     rival = float(others.max()) / peak if peak > 0.0 else 1.0
     return Shift(right * cell_m, -down * cell_m, peak, rival)
 
 
-def _between(line: FloatMap, best: int) -> float:
+def between(line: FloatMap, best: int) -> float:
     """Return the sub-cell peak of a parabola through three neighbours, in [-0.5, 0.5]."""
     if best in (0, len(line) - 1):
         return 0.0

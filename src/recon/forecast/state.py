@@ -20,6 +20,15 @@ class PairVelocity:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Agreement:
+    """The faded sum of all pairs' agreement by velocity, and when it was faded last."""
+
+    at_ns: int
+    by_velocity: FloatMap
+    """(N, N): rows from north to south, columns from west to east."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class ForecastState:
     """One state for all methods, so that the method can be changed in flight; bounded."""
 
@@ -33,6 +42,8 @@ class ForecastState:
     """Spectra of earlier maps to compare with, oldest first."""
     velocities: tuple[PairVelocity, ...] = ()
     """Oldest first."""
+    agreement: Agreement | None = None
+    """Of all recent pairs of maps."""
 
     @property
     def newest(self) -> ShadeMap:
@@ -59,7 +70,7 @@ def with_map(state: ForecastState, shade: ShadeMap, settings: ForecastSettings) 
                 f"expected a newer shade map than the last one, got one {-passed_s:.1f} s older"
             )
     if state.kept and state.kept[-1].grid != shade.grid:
-        state = replace(state, kept=(), velocities=())
+        state = replace(state, kept=(), velocities=(), agreement=None)
     state = replace(state, shade=shade)
     return _with_share(state, shade, passed_s, settings.cover_memory_s)
 

@@ -81,8 +81,8 @@ class SunlitReference:
 class SunForecast:
     """Probability that each cell of `grid` is in sun, by lead time.
 
-    `lead_s` (L,) float64 counts from `issued_at_ns` and rises. Beyond a cell's horizon the
-    forecast knows nothing of that cell: `sun_probability` is `prior_sunlit` there.
+    `lead_s` (L,) float64 counts from `issued_at_ns` and rises. Beyond a cell's horizon nothing that
+    will be over it is seen now: `sun_probability` is `prior_sunlit` there, or an estimate.
     """
 
     grid: GroundGrid

@@ -59,7 +59,7 @@ class Methods:
     """
 
     detection: str = IDEAL
-    forecast: str = "global_shift"
+    forecast: str = "advection"
     compared: tuple[str, ...] = ()
     """Forecast methods that are scored beside the station's own, on the same maps."""
 

@@ -113,7 +113,7 @@ class MethodsTable(Table, frozen=True):
     """The methods of detection, forecast and planning."""
 
     detection: DetectionName = "ideal"
-    forecast: ForecastName = "global_shift"
+    forecast: ForecastName = "advection"
     planner: PlannerName = "lawnmower_again"
 
 

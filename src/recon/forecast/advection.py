@@ -1,0 +1,138 @@
+"""Shadows move with one velocity; where none are seen upwind, the nearest seen ones are the guide.
+
+Theory of operation, per forecast:
+
+1. The velocity is that of all recent pairs of maps together (`pooled_motion`).
+2. At each lead, what will be over a cell is now upwind of it. If that place is seen, its shade is
+   the best estimate; else that of the seen place nearest to it is, and it shows the less the farther
+   off it is: its deviation from the prior counts by 1 / (1 + distance / `shade_scale_m`).
+3. Followed shadows change their shape: deviations fade with `shade_memory_s`.
+4. Without a velocity the shade above each cell is the guide, as far off as shadows usually move.
+"""
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from recon.forecast.forecaster import Forecaster
+from recon.forecast.global_shift import visible_upwind_s, without_single_gaps
+from recon.forecast.motion import ShadowMotion
+from recon.forecast.pooled_motion import pooled_motion, with_agreement
+from recon.forecast.settings import ForecastSettings
+from recon.forecast.state import ForecastState, prior_sunlit, with_map
+from recon.model.geo import GroundGrid
+from recon.model.shade import (
+    SUNLIT_TRANSMITTANCE,
+    SURE,
+    FloatMap,
+    MaskMap,
+    ShadeMap,
+    SunForecast,
+)
+
+Cells: TypeAlias = npt.NDArray[np.intp]
+
+
+def _observed(state: ForecastState, shade: ShadeMap, settings: ForecastSettings) -> ForecastState:
+    return with_agreement(with_map(state, shade, settings), shade, settings)
+
+
+def _forecast(state: ForecastState, settings: ForecastSettings) -> SunForecast:
+    shade, prior = state.newest, prior_sunlit(state, settings)
+    motion = pooled_motion(state, settings)
+    lead_s = np.array(settings.lead_s, dtype=np.float64)
+    probability = np.full((len(lead_s), *shade.valid.shape), prior, dtype=np.float32)
+    horizon_s = np.zeros(shade.valid.shape, dtype=np.float32)
+    if shade.valid.any():
+        seen = _Seen.of(shade)
+        for number, lead in enumerate(settings.lead_s):
+            probability[number] = seen.sun_after(lead, motion, prior, settings)
+        if motion is not None:
+            closed = without_single_gaps(shade.valid)
+            upwind_s = visible_upwind_s(closed, shade.grid, motion, settings)
+            horizon_s = np.where(shade.valid, upwind_s, np.float32(0.0))
+    return SunForecast(
+        grid=shade.grid,
+        issued_at_ns=shade.captured_at_ns,
+        lead_s=lead_s,
+        sun_probability=np.rint(probability * SURE).astype(np.uint8),
+        horizon_s=horizon_s,
+        prior_sunlit=prior,
+        method="advection",
+        velocity_mps=None if motion is None else (motion.east_mps, motion.north_mps),
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Seen:
+    """A map whose unseen cells have the values of the seen ones nearest to them; all (R, C)."""
+
+    grid: GroundGrid
+    transmittance: FloatMap
+    confidence: FloatMap
+    nearest: tuple[Cells, Cells]
+    """Row and column of the seen cell nearest to each."""
+
+    @classmethod
+    def of(cls, shade: ShadeMap) -> "_Seen":
+        nearest = _nearest_seen(shade.valid)
+        return cls(shade.grid, shade.transmittance[nearest], shade.confidence[nearest], nearest)
+
+    def sun_after(
+        self, lead_s: float, motion: ShadowMotion | None, prior: float, settings: ForecastSettings
+    ) -> FloatMap:
+        """Return each cell's probability of sun (R, C) a time after the map."""
+        rows, cols, off_m = self._upwind(lead_s, motion, settings)
+        direct, confidence = (
+            cv2.remap(each, cols, rows, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+            for each in (self.transmittance, self.confidence)
+        )
+        edge = settings.least_soft_edge + settings.soft_edge_per_s * lead_s
+        soft = np.minimum(edge + settings.soft_edge_per_m * off_m, settings.most_soft_edge)
+        sun = (direct - SUNLIT_TRANSMITTANCE) / (2.0 * soft) + 0.5
+        sun = np.clip(sun, 1.0 - settings.surest, settings.surest)
+        weight = confidence * np.exp(-lead_s / settings.shade_memory_s)
+        weight = weight / (1.0 + off_m / settings.shade_scale_m)
+        found: FloatMap = (prior + weight * (sun - prior)).astype(np.float32)
+        return found
+
+    def _upwind(
+        self, lead_s: float, motion: ShadowMotion | None, settings: ForecastSettings
+    ) -> tuple[FloatMap, FloatMap, FloatMap]:
+        """Return the row and column that are read for each cell, and how far in metres they are
+        from the place upwind: 0 where that is seen itself."""
+        cell_m = self.grid.cell_m
+        moved_mps = (0.0, 0.0) if motion is None else (motion.east_mps, motion.north_mps)
+        rows, cols = np.indices(self.transmittance.shape, dtype=np.float32)
+        rows += np.float32(moved_mps[1] * lead_s / cell_m)
+        cols -= np.float32(moved_mps[0] * lead_s / cell_m)
+        inside = (
+            np.rint(rows).clip(0, self.grid.rows - 1).astype(np.intp),
+            np.rint(cols).clip(0, self.grid.cols - 1).astype(np.intp),
+        )
+        near_rows, near_cols = (each[inside].astype(np.float32) for each in self.nearest)
+        off_m = np.hypot(rows - near_rows, cols - near_cols) * np.float32(cell_m)
+        is_there = off_m < cell_m
+        off_m = np.where(is_there, np.float32(0.0), off_m)
+        if motion is None:
+            off_m = off_m + np.float32(settings.usual_speed_mps * lead_s)
+        return np.where(is_there, rows, near_rows), np.where(is_there, cols, near_cols), off_m
+
+
+def _nearest_seen(valid: MaskMap) -> tuple[Cells, Cells]:
+    """Return row and column (R, C) of the seen cell nearest to each."""
+    unseen = (~valid).astype(np.uint8)
+    _far, labels = cv2.distanceTransformWithLabels(
+        unseen, cv2.DIST_L2, 5, labelType=cv2.DIST_LABEL_PIXEL
+    )
+    rows, cols = np.nonzero(valid)
+    number = np.zeros(int(labels.max()) + 1, dtype=np.intp)
+    number[labels[valid]] = np.arange(len(rows))
+    chosen = number[labels]
+    return rows[chosen], cols[chosen]
+
+
+ADVECTION = Forecaster(_observed, _forecast)

@@ -1,0 +1,121 @@
+"""Advection: motion from all pairs together, and what the nearest seen shade shows elsewhere."""
+
+from itertools import pairwise
+from math import hypot
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.detection.shaded_field import FIELD, DriftingShade, centres
+from tests.forecast.moving_shade import SEEN, drawn_velocity, forecasts, noisy_map, shade_map
+
+from recon.forecast import ForecastSettings
+from recon.model.geo import GroundGrid
+from recon.model.shade import SUNLIT_TRANSMITTANCE, ShadeMap
+from recon.score import load_scenario
+from recon.score.interval import log_ratio
+from recon.score.scenario_sky import sky_of
+
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
+LEADS_S = (15.0, 30.0, 60.0, 120.0, 300.0)
+SETTINGS = ForecastSettings(lead_s=(0.0, *LEADS_S))
+EAST_M, NORTH_M = centres(FIELD)
+
+
+@pytest.mark.parametrize("seed", range(940, 946))
+def test_the_motion_is_found_in_half_a_field(seed: int) -> None:
+    velocity = drawn_velocity(seed, 3.0, 8.0)
+    shade = DriftingShade(seed, cover=0.4, velocity_mps=velocity)
+    half = SEEN & (EAST_M > 0.0)
+    maps = [
+        shade_map(shade.transmittance(FIELD, at_s), at_s, half)
+        for at_s in np.arange(0.0, 60.0, 5.0)
+    ]
+    found = forecasts("advection", maps, SETTINGS)[-1].velocity_mps
+    assert found is not None
+    assert hypot(found[0] - velocity[0], found[1] - velocity[1]) < 0.7
+
+
+def test_a_field_nearly_clear_is_enough() -> None:
+    """One small shadow; each pair alone is too faint for `global_shift`."""
+    maps = []
+    for at_s in np.arange(0.0, 60.0, 5.0):
+        spot = np.exp(-(np.hypot(EAST_M + 100.0 - 4.0 * at_s, NORTH_M - 30.0) ** 2) / 900.0)
+        maps.append(shade_map(1.0 - 0.6 * spot, at_s))
+    found = forecasts("advection", maps, SETTINGS)[-1].velocity_mps
+    assert found == pytest.approx((4.0, 0.0), abs=0.4)
+    assert forecasts("global_shift", maps, SETTINGS)[-1].method == "persistence"
+
+
+def test_without_contrast_no_motion_is_claimed() -> None:
+    flat = np.ones(EAST_M.shape)
+    rng = np.random.default_rng(5)
+    maps = [shade_map(flat - rng.random(flat.shape) * 0.05, 5.0 * i) for i in range(15)]
+    last = forecasts("advection", maps, SETTINGS)[-1]
+    assert last.velocity_mps is None
+    assert (last.horizon_s == 0.0).all()
+    # In sun, and less surely so with the lead.
+    sunny = last.sun_probability[:, SEEN] / 255.0
+    assert (np.diff(sunny.mean(axis=1)) < 0.0).all()
+    assert sunny.min() > last.prior_sunlit
+
+
+def test_unrelated_maps_have_no_motion() -> None:
+    claimed = 0
+    for seed in range(8):
+        maps = [
+            noisy_map(DriftingShade(100 * seed + i, cover=0.4, velocity_mps=(0.0, 0.0)), 5.0 * i)
+            for i in range(15)
+        ]
+        claimed += forecasts("advection", maps, SETTINGS)[-1].velocity_mps is not None
+    assert claimed <= 2
+
+
+def test_what_lies_upwind_of_the_view_is_shown_by_its_rim() -> None:
+    """Shadows come from the west, where the view's rim is in shade: so it stays for a while."""
+    stripes = DriftingShade(947, cover=0.5, velocity_mps=(6.0, 0.0))
+    maps = []
+    for at_s in np.arange(0.0, 80.0, 5.0):
+        west = -150.0 + 6.0 * (at_s - 75.0) > EAST_M
+        maps.append(shade_map(np.where(west, 0.0, stripes.transmittance(FIELD, at_s)), at_s))
+    last = forecasts("advection", maps, SETTINGS)[-1]
+    assert last.velocity_mps == pytest.approx((6.0, 0.0), abs=0.6)
+    rim = SEEN & (EAST_M < -150.0)
+    chances = [float((level[rim] / 255.0).mean()) for level in last.sun_probability]
+    assert chances[0] < 0.1
+    assert all(one < other for one, other in pairwise(chances[1:]))
+    assert chances[-1] < last.prior_sunlit
+
+
+def true_maps(seed: int) -> tuple[list[ShadeMap], dict[float, np.ndarray]]:
+    """Two minutes of perfect maps under a scenario's sky, and the truth at each lead after them."""
+    scenario = load_scenario(SCENARIOS / "cumulus-40.toml")
+    sky = sky_of(scenario, seed)
+    grid = GroundGrid(scenario.frame, -256.0, 256.0, 8.0, 64, 64)
+    east_m, north_m = centres(grid)
+    seen = np.hypot(east_m, north_m) < 250.0
+    times_s = np.arange(600.0, 720.0, 5.0)
+    maps = [shade_map(sky.on_grid(grid, at_s), at_s, seen, 1.0, grid) for at_s in times_s]
+    at_s = float(times_s[-1])
+    return maps, {s: sky.on_grid(grid, at_s + s) >= SUNLIT_TRANSMITTANCE for s in LEADS_S}
+
+
+def test_it_is_better_than_every_baseline_under_drawn_skies() -> None:
+    """Brier scores of paired seeds that nothing was tuned on; clear and overcast views too."""
+    names = ("advection", "global_shift", "persistence", "climatology")
+    found: dict[tuple[str, float], list[float]] = {}
+    for seed in range(960, 984):
+        maps, truth = true_maps(seed)
+        for name in names:
+            last = forecasts(name, maps, SETTINGS)[-1]
+            for number, lead_s in enumerate(LEADS_S, start=1):
+                wrong = (last.sun_probability[number] / 255.0 - truth[lead_s])[maps[-1].valid] ** 2
+                found.setdefault((name, lead_s), []).append(float(wrong.mean()))
+    for lead_s in LEADS_S:
+        ours = found["advection", lead_s]
+        for other in names[1:]:
+            ratio = log_ratio(list(zip(ours, found[other, lead_s], strict=True)))
+            assert ratio is not None
+            assert ratio.mean < 1.0, (lead_s, other, ratio)
+            if lead_s <= 60.0:
+                assert ratio.high < 1.0, (lead_s, other, ratio)
