@@ -9,7 +9,9 @@ import pytest
 from tests.detection.shaded_field import FIELD, DriftingShade, centres
 from tests.forecast.moving_shade import SEEN, drawn_velocity, forecasts, noisy_map, shade_map
 
-from recon.forecast import ForecastSettings
+from recon.forecast import ForecastSettings, ForecastState
+from recon.forecast.likeness import shade_scale_m, with_likeness
+from recon.forecast.state import with_map
 from recon.model.geo import GroundGrid
 from recon.model.shade import SUNLIT_TRANSMITTANCE, ShadeMap
 from recon.score import load_scenario
@@ -119,3 +121,35 @@ def test_it_is_better_than_every_baseline_under_drawn_skies() -> None:
             assert ratio.mean < 1.0, (lead_s, other, ratio)
             if lead_s <= 60.0:
                 assert ratio.high < 1.0, (lead_s, other, ratio)
+
+
+def measured_scale_m(period_m: float) -> float:
+    """Return the scale measured in ten minutes of bands of shade of a width that pass."""
+    state = ForecastState()
+    for at_s in np.arange(0.0, 600.0, 5.0):
+        bands = (EAST_M - 7.0 * at_s) % period_m < period_m / 2.0
+        maps = shade_map(np.where(bands, 0.0, 1.0), at_s)
+        state = with_likeness(with_map(state, maps, SETTINGS), maps, SETTINGS)
+    return shade_scale_m(state, SETTINGS)
+
+
+def test_the_scale_is_measured_in_flight() -> None:
+    usual_m = shade_scale_m(ForecastState(), SETTINGS)
+    assert usual_m == pytest.approx(SETTINGS.shade_scale_m)
+    assert measured_scale_m(300.0) < 0.3 * usual_m
+    assert measured_scale_m(300.0) < measured_scale_m(1_500.0) < measured_scale_m(6_000.0)
+    assert measured_scale_m(6_000.0) > 0.8 * usual_m
+
+
+def test_a_clear_sky_does_not_change_the_usual_scale_much() -> None:
+    state = ForecastState()
+    for at_s in np.arange(0.0, 120.0, 5.0):
+        clear = shade_map(np.ones(EAST_M.shape), at_s)
+        state = with_likeness(with_map(state, clear, SETTINGS), clear, SETTINGS)
+    usual_m = shade_scale_m(ForecastState(), SETTINGS)
+    assert usual_m <= shade_scale_m(state, SETTINGS) < 3.0 * usual_m
+    nothing = shade_map(np.ones(EAST_M.shape), 200.0, np.zeros(EAST_M.shape, dtype=np.bool_))
+    after = with_likeness(with_map(state, nothing, SETTINGS), nothing, SETTINGS)
+    assert after.likeness is not None
+    assert state.likeness is not None
+    assert after.likeness.alone < state.likeness.alone

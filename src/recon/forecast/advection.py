@@ -4,13 +4,14 @@ Theory of operation, per forecast:
 
 1. The velocity is that of all recent pairs of maps together (`pooled_motion`).
 2. At each lead, what will be over a cell is now upwind of it. If that place is seen, its shade is
-   the best estimate; else that of the seen place nearest to it is, and it shows the less the farther
-   off it is: its deviation from the prior counts by 1 / (1 + distance / `shade_scale_m`).
+   the best estimate; else that of the seen place nearest to it is. The farther off that is, the
+   less it shows: its deviation from the prior counts by 1 / (1 + distance / scale), where the scale
+   follows from how alike shade is at a distance in this flight (`likeness`).
 3. Followed shadows change their shape: deviations fade with `shade_memory_s`.
 4. Without a velocity the shade above each cell is the guide, as far off as shadows usually move.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import cv2
@@ -19,6 +20,7 @@ import numpy.typing as npt
 
 from recon.forecast.forecaster import Forecaster
 from recon.forecast.global_shift import visible_upwind_s, without_single_gaps
+from recon.forecast.likeness import shade_scale_m, with_likeness
 from recon.forecast.motion import ShadowMotion
 from recon.forecast.pooled_motion import pooled_motion, with_agreement
 from recon.forecast.settings import ForecastSettings
@@ -37,7 +39,8 @@ Cells: TypeAlias = npt.NDArray[np.intp]
 
 
 def _observed(state: ForecastState, shade: ShadeMap, settings: ForecastSettings) -> ForecastState:
-    return with_agreement(with_map(state, shade, settings), shade, settings)
+    state = with_likeness(with_map(state, shade, settings), shade, settings)
+    return with_agreement(state, shade, settings)
 
 
 def _forecast(state: ForecastState, settings: ForecastSettings) -> SunForecast:
@@ -48,8 +51,9 @@ def _forecast(state: ForecastState, settings: ForecastSettings) -> SunForecast:
     horizon_s = np.zeros(shade.valid.shape, dtype=np.float32)
     if shade.valid.any():
         seen = _Seen.of(shade)
+        scaled = replace(settings, shade_scale_m=shade_scale_m(state, settings))
         for number, lead in enumerate(settings.lead_s):
-            probability[number] = seen.sun_after(lead, motion, prior, settings)
+            probability[number] = seen.sun_after(lead, motion, prior, scaled)
         if motion is not None:
             closed = without_single_gaps(shade.valid)
             upwind_s = visible_upwind_s(closed, shade.grid, motion, settings)

@@ -110,6 +110,18 @@ class ForecastSettings:
     """Distance at which the nearest seen shade shows half as much of the sun as shade that is
     followed. Fitted, as the next, to Brier scores under the scenarios' skies, seeds 0 to 7."""
 
+    likeness_apart_m: float = 160.0
+    """Distance at which the likeness of shade is measured: a third of a view."""
+
+    usual_likeness: float = 0.8
+    """Of a cell's deviation from the prior to that of a cell so far away, under usual skies."""
+
+    usual_likeness_s: float = 6.0
+    """Weight of the usual likeness: half a minute of maps with as much sun as shade."""
+
+    least_likeness: float = 0.02
+    most_likeness: float = 0.9
+
     shade_memory_s: float = 3_000.0
     """Time constant of the same for shadows that are followed: they change their shape."""
 

@@ -28,6 +28,17 @@ class Agreement:
     """(N, N): rows from north to south, columns from west to east."""
 
 
+@dataclass(frozen=True, slots=True)
+class Likeness:
+    """Faded sums over the maps so far, of their cells' deviation from the prior; in seconds."""
+
+    at_ns: int
+    together: float
+    """Of the mean product of two cells a fixed distance apart."""
+    alone: float
+    """Of the mean square of these cells."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class ForecastState:
     """One state for all methods, so that the method can be changed in flight; bounded."""
@@ -44,6 +55,7 @@ class ForecastState:
     """Oldest first."""
     agreement: Agreement | None = None
     """Of all recent pairs of maps."""
+    likeness: Likeness | None = None
 
     @property
     def newest(self) -> ShadeMap:
