@@ -141,7 +141,7 @@ def test_cells_seen_and_not_seen_add_up(cumulus: RunScore) -> None:
 
 
 def test_methods_are_compared_on_the_same_maps_and_cells(folder: Path) -> None:
-    scenario = small(folder, CALM.replace("limit_min = 10.0", "limit_min = 3.0"))
+    scenario = small(folder, CALM.replace("limit_min = 10.0", SHORT))
     compared = ("persistence", "advection", TRUE_MOTION)
     found = run(replace(scenario, methods=Methods(compared=compared)), 3).forecasts
     for lead_s in (15.0, 30.0):

@@ -23,7 +23,7 @@ SIMULATOR_ENDS_WITHIN_S = 3.0
 FPS_HZ = 2
 DEMO_SCENARIO = "cumulus-40.toml"
 DEMO_SEED = 11
-"""Its sky starts in sun; shadows follow in the first minutes."""
+"""Its sky has sun and shadows by turns from the first minute on."""
 
 
 def demo_command(

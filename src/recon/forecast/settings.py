@@ -131,5 +131,11 @@ class ForecastSettings:
     least_pooled_contrast: float = 0.02
     """As `least_contrast`, where many pairs are read together."""
 
+    hindcast_lead_s: tuple[float, ...] = (15.0, 30.0, 60.0, 120.0, 300.0)
+    """Leads at which earlier forecasts are compared with what came."""
+
+    hindcast_memory_s: float = 1_200.0
+    """Time constant of fading of these comparisons: what a pilot still remembers of the sky."""
+
     horizon_step_s: float = 5.0
     """Resolution of the horizon, rounded down."""

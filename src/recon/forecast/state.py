@@ -1,12 +1,14 @@
 """The state of a forecaster, and what follows from it alone: the prior, and each cell now."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from recon.forecast.phase_correlation import ShadeSpectrum
 from recon.forecast.settings import ForecastSettings
-from recon.model.shade import SUNLIT_TRANSMITTANCE, FloatMap, ShadeMap
+from recon.model.geo import GroundGrid
+from recon.model.shade import SUNLIT_TRANSMITTANCE, FloatMap, MaskMap, ShadeMap
 from recon.model.units import ns_to_seconds
 
 
@@ -39,6 +41,33 @@ class Likeness:
     """Of the mean square of these cells."""
 
 
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """Faded sums over forecasts of one lead: cells that were right, and cells compared."""
+
+    right: float = 0.0
+    cells: float = 0.0
+
+    def __add__(self, other: "Comparison") -> "Comparison":
+        return Comparison(self.right + other.right, self.cells + other.cells)
+
+    def faded(self, share: float) -> "Comparison":
+        """Return the sums, of which this share is left."""
+        return Comparison(self.right * share, self.cells * share)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class IssuedForecast:
+    """A forecast, kept to be compared with what came; masks are (R, C)."""
+
+    grid: GroundGrid
+    issued_at_ns: int
+    sunlit: Mapping[float, MaskMap]
+    """By lead in seconds."""
+    seen: MaskMap
+    """The cells with a value in its map."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class ForecastState:
     """One state for all methods, so that the method can be changed in flight; bounded."""
@@ -56,6 +85,10 @@ class ForecastState:
     agreement: Agreement | None = None
     """Of all recent pairs of maps."""
     likeness: Likeness | None = None
+    issued: tuple[IssuedForecast, ...] = ()
+    """Oldest first."""
+    compared: Mapping[float, Comparison] = field(default_factory=dict)
+    """By lead in seconds."""
 
     @property
     def newest(self) -> ShadeMap:

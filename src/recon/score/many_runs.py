@@ -18,7 +18,7 @@ from recon.score.run_score import RunScore
 from recon.score.scenario import Scenario
 from recon.score.scenario_schema import ScenarioError
 
-CONNECT_WITHIN_S = 10.0
+CONNECT_WITHIN_S = 5.0
 
 
 def one_by_one(

@@ -1232,6 +1232,11 @@ export interface components {
              * @description probability used where no prediction is available
              */
             prior_sunlit: number;
+            /**
+             * Right
+             * @description how often earlier forecasts of this flight were right; leads compared so far
+             */
+            right: components["schemas"]["HindcastView"][];
             /** Rows */
             rows: number;
             /** Shadows East Mps */
@@ -1361,6 +1366,19 @@ export interface components {
             longitude_deg: number;
             /** Radius M */
             radius_m: number;
+        };
+        /**
+         * HindcastView
+         * @description Earlier forecasts of one lead, compared with the maps of their time.
+         */
+        HindcastView: {
+            /** Lead S */
+            lead_s: number;
+            /**
+             * Right Share
+             * @description of the cells known then and later: called rightly
+             */
+            right_share: number;
         };
         /**
          * HoldPositionOrder

@@ -375,7 +375,7 @@ export function groundImage(changes: Partial<GroundImageView> = {}): GroundImage
 export function shadeLine(changes: Partial<ShadeLineView> = {}): ShadeLineView {
   return {
     detection: "brightness_ratio",
-    forecaster: "global_shift",
+    forecaster: "advection",
     frames_rejected: 0,
     frames_dropped: 0,
     rejected: null,
@@ -394,9 +394,10 @@ export function shadeLine(changes: Partial<ShadeLineView> = {}): ShadeLineView {
     forecast: {
       number: 3,
       issued_age_s: 1.5,
-      method: "global_shift",
+      method: "advection",
       lead_s: [0, 30, 60],
       predicted_share: [0.9, 0.5, 0.2],
+      right: [{ lead_s: 60, right_share: 0.93 }],
       prior_sunlit: 0.6,
       shadows_east_mps: 5,
       shadows_north_mps: 1,

@@ -117,6 +117,13 @@ class ShadeMapView(Message):
     cols: int
 
 
+class HindcastView(Message):
+    """Earlier forecasts of one lead, compared with the maps of their time."""
+
+    lead_s: float
+    right_share: float = Field(description="of the cells known then and later: called rightly")
+
+
 class ForecastView(Message):
     """The newest forecast; leads count from the capture of its shade map."""
 
@@ -128,6 +135,9 @@ class ForecastView(Message):
     lead_s: list[float]
     predicted_share: list[float] = Field(
         description="of all cells, by lead: those predicted from observations"
+    )
+    right: list[HindcastView] = Field(
+        description="how often earlier forecasts of this flight were right; leads compared so far"
     )
     prior_sunlit: float = Field(description="probability used where no prediction is available")
     shadows_east_mps: float | None

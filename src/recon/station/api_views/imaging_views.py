@@ -5,12 +5,13 @@ from collections.abc import Mapping
 import numpy as np
 
 from recon.api import schema
+from recon.forecast import right_shares
 from recon.geo import geo_from_enu
 from recon.model.geo import GroundGrid
 from recon.model.shade import MaskMap, ShadeMap, SunForecast
 from recon.model.units import ns_to_seconds
 from recon.station.imaging.mosaic import alignment_of, newest_images
-from recon.station.state.imaging import ImagerFrames
+from recon.station.state.imaging import ImagerFrames, ShadePipeline
 from recon.station.state.station import Station
 
 
@@ -62,7 +63,7 @@ def shade_view(station: Station, now_ns: int) -> schema.ShadeLineView | None:
         reference=_by_imager(station, {s: m.taken_up.note for s, m in memories.items()}),
         lock_problem=_by_imager(station, {s: m.lock_problem for s, m in memories.items()}),
         map=None if line.shade is None else _map(line.shade, line.seen, line.number, now_ns),
-        forecast=None if line.sun is None else _forecast(line.sun, line.number, now_ns),
+        forecast=None if line.sun is None else _forecast(line.sun, line, now_ns),
     )
 
 
@@ -101,16 +102,20 @@ def _light_shares(shade: ShadeMap, in_view: MaskMap) -> schema.LightSharesView |
     )
 
 
-def _forecast(sun: SunForecast, number: int, now_ns: int) -> schema.ForecastView:
+def _forecast(sun: SunForecast, line: ShadePipeline, now_ns: int) -> schema.ForecastView:
     east_mps, north_mps = sun.velocity_mps or (None, None)
     return schema.ForecastView(
-        number=number,
+        number=line.number,
         issued_age_s=ns_to_seconds(now_ns - sun.issued_at_ns),
         method=sun.method,
         lead_s=sun.lead_s.tolist(),
         # A cell without a horizon was not seen: nothing is known of it at lead 0 either.
         predicted_share=[
             float(((sun.horizon_s > 0.0) & (sun.horizon_s >= lead)).mean()) for lead in sun.lead_s
+        ],
+        right=[
+            schema.HindcastView(lead_s=lead_s, right_share=share)
+            for lead_s, share in right_shares(line.forecast).items()
         ],
         prior_sunlit=sun.prior_sunlit,
         shadows_east_mps=east_mps,

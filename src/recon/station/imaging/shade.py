@@ -15,7 +15,7 @@ from recon.detection import (
     RejectedFrame,
     merged,
 )
-from recon.forecast import FORECASTERS, ForecastSettings, ForecastState, moved_on
+from recon.forecast import FORECASTERS, ForecastSettings, ForecastState, moved_on, with_hindcast
 from recon.geo import nearest_cells
 from recon.model.geo import GroundGrid
 from recon.model.imagery import GroundImage
@@ -97,6 +97,7 @@ def read_shade(work: ReadShade) -> ShadeRead:
     together = _together(own, work.others, work.velocity_mps)
     forecast = forecaster.observed(work.forecast, together.shade, work.forecast_settings)
     sun = forecaster.forecast(forecast, work.forecast_settings)
+    forecast = with_hindcast(forecast, sun, work.forecast_settings)
     return ShadeRead(serial, detection, forecast, own, (together, sun))
 
 

@@ -2,7 +2,7 @@ import { For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { OverlayKind } from "../../map/overlays";
 import type { ForecastView, GroundImageView, ShadeLineView } from "../../protocol";
-import { formatAge, formatFraction } from "../../text/quantities";
+import { formatAge, formatFraction, formatHeading, formatQuantity } from "../../text/quantities";
 import { Panel } from "../Panel";
 import { SeverityMark } from "../SeverityMark";
 import { LightShares } from "./LightShares";
@@ -92,6 +92,15 @@ function exposure(image: GroundImageView, line: ShadeLineView): string {
   return image.exposure_locked ? "locked" : "automatic";
 }
 
+/** The shadows' motion in words. */
+function motion(forecast: ForecastView): string {
+  const { shadows_east_mps: east, shadows_north_mps: north } = forecast;
+  if (east === null || north === null) return "The shadows' motion is not known.";
+  const towards = ((Math.atan2(east, north) * 180) / Math.PI + 360) % 360;
+  const speed = formatQuantity(Math.hypot(east, north), "m/s");
+  return `Shadows move towards ${formatHeading(towards)} at ${speed}.`;
+}
+
 /** Slider over the leads the forecast provides. */
 function ForecastLead(props: { forecast: ForecastView }) {
   const { overlay } = useConsole();
@@ -101,12 +110,18 @@ function ForecastLead(props: { forecast: ForecastView }) {
   };
   const lead_s = () => props.forecast.lead_s[index()] ?? 0;
   const when = () => (lead_s() === 0 ? "Sun now" : `Sun in ${formatAge(lead_s())}`);
-  const covered = () => props.forecast.predicted_share[index()] ?? 0;
+  const predicted = () => props.forecast.predicted_share[index()] ?? 0;
+  const right = () => props.forecast.right.find((each) => each.lead_s === lead_s());
   return (
     <label class="sun-lead">
       <span>
-        <strong>{when()}</strong>: forecast covers {formatFraction(covered())} of the map
+        <strong>{when()}</strong>: {formatFraction(predicted())} of the map predicted from clouds over
+        ground in view
+        <Show when={right()}>
+          {(found) => <>; right lately: {formatFraction(found().right_share)} of cells</>}
+        </Show>
       </span>
+      <span class="muted">{motion(props.forecast)}</span>
       <input
         type="range"
         min={0}

@@ -60,7 +60,19 @@ describe("sun and shade", () => {
     expect(page.shared.overlay.lead_s()).toBe(60);
     expect(page.root.textContent).toContain("Sun in 1 min 0 s: ");
     expect(page.shared.overlay.kind()).toBe("forecast");
-    expect(page.root.textContent).toContain("forecast covers 20\u00a0% of the map");
+    expect(page.root.textContent).toContain("20\u00a0% of the map predicted from clouds over");
+    expect(page.root.textContent).toContain("right lately: 93\u00a0% of cells");
+    expect(page.root.textContent).toContain("Shadows move towards 079° at 5.1\u00a0m/s.");
+  });
+
+  it("claims neither a motion nor a record that it does not have", () => {
+    const forecast = shadeLine().forecast;
+    if (forecast === null) throw new Error("expected a forecast in the fake state");
+    show({
+      forecast: { ...forecast, right: [], shadows_east_mps: null, shadows_north_mps: null },
+    });
+    expect(page.root.textContent).toContain("The shadows' motion is not known.");
+    expect(page.root.textContent).not.toContain("right lately");
   });
 
   it("shows whether an earlier flight's knowledge of the land is used", () => {
