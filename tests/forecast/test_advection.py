@@ -55,7 +55,8 @@ def test_without_contrast_no_motion_is_claimed() -> None:
     maps = [shade_map(flat - rng.random(flat.shape) * 0.05, 5.0 * i) for i in range(15)]
     last = forecasts("advection", maps, SETTINGS)[-1]
     assert last.velocity_mps is None
-    assert (last.horizon_s == 0.0).all()
+    assert (last.horizon_s[SEEN] == 0.0).all()
+    assert np.isnan(last.horizon_s[~SEEN]).all()
     # In sun, and less surely so with the lead.
     sunny = last.sun_probability[:, SEEN] / 255.0
     assert (np.diff(sunny.mean(axis=1)) < 0.0).all()

@@ -110,8 +110,7 @@ def nearest_lead(sun: SunForecast, lead_s: float) -> int:
 def _predicted(sun: SunForecast, lead_s: float) -> tuple[FloatMap, MaskMap]:
     index = nearest_lead(sun, lead_s)
     share = sun.sun_probability[index].astype(np.float32) / SURE
-    is_known = (sun.horizon_s >= sun.lead_s[index]) & (sun.horizon_s > 0.0)
-    return share, is_known
+    return share, sun.horizon_s >= sun.lead_s[index]
 
 
 def _shares_png(sunlit: FloatMap, known: MaskMap, unknown: MaskMap) -> bytes:

@@ -48,7 +48,7 @@ def _forecast(state: ForecastState, settings: ForecastSettings) -> SunForecast:
     motion = pooled_motion(state, settings)
     lead_s = np.array(settings.lead_s, dtype=np.float64)
     probability = np.full((len(lead_s), *shade.valid.shape), prior, dtype=np.float32)
-    horizon_s = np.zeros(shade.valid.shape, dtype=np.float32)
+    horizon_s = np.where(shade.valid, np.float32(0.0), np.float32(np.nan))
     if shade.valid.any():
         seen = _Seen.of(shade)
         scaled = replace(settings, shade_scale_m=shade_scale_m(state, settings))
@@ -57,7 +57,7 @@ def _forecast(state: ForecastState, settings: ForecastSettings) -> SunForecast:
         if motion is not None:
             closed = without_single_gaps(shade.valid)
             upwind_s = visible_upwind_s(closed, shade.grid, motion, settings)
-            horizon_s = np.where(shade.valid, upwind_s, np.float32(0.0))
+            horizon_s = np.where(shade.valid, upwind_s, horizon_s)
     return SunForecast(
         grid=shade.grid,
         issued_at_ns=shade.captured_at_ns,

@@ -53,12 +53,12 @@ def _moving_on(
     lead_s = np.array(settings.lead_s, dtype=np.float64)
     closed = without_single_gaps(shade.valid)
     upwind_s = visible_upwind_s(closed, shade.grid, motion, settings)
-    horizon_s = np.where(shade.valid, upwind_s, np.float32(0.0))
+    horizon_s = np.where(shade.valid, upwind_s, np.float32(np.nan))
     now = _filled(sunlit_now(shade, prior, settings), shade.valid, closed)
     shape = (len(lead_s), *now.shape)
     probability = np.full(shape, round(prior * SURE), dtype=np.uint8)
     for i, lead in enumerate(settings.lead_s):
-        known = shade.valid & (horizon_s >= lead)
+        known = horizon_s >= lead
         if known.any():
             later = _after(now, shade.grid, motion, lead)
             # Shapes decorrelate: fade to the prior even where the motion is known.

@@ -30,7 +30,9 @@ def persisting(shade: ShadeMap, prior: float, settings: ForecastSettings) -> Sun
         issued_at_ns=shade.captured_at_ns,
         lead_s=lead_s,
         sun_probability=np.rint(probability * SURE).astype(np.uint8),
-        horizon_s=np.where(shade.valid, np.float32(settings.persistence_horizon_s), np.float32(0)),
+        horizon_s=np.where(
+            shade.valid, np.float32(settings.persistence_horizon_s), np.float32(np.nan)
+        ),
         prior_sunlit=prior,
         method="persistence",
     )
@@ -45,7 +47,7 @@ def _climatology(state: ForecastState, settings: ForecastSettings) -> SunForecas
         issued_at_ns=shade.captured_at_ns,
         lead_s=lead_s,
         sun_probability=np.full((len(lead_s), *cells), round(prior * SURE), dtype=np.uint8),
-        horizon_s=np.zeros(cells, dtype=np.float32),
+        horizon_s=np.where(shade.valid, np.float32(0.0), np.float32(np.nan)),
         prior_sunlit=prior,
         method="climatology",
     )

@@ -91,7 +91,8 @@ class SunForecast:
     sun_probability: npt.NDArray[np.uint8]
     """(L, R, C), in 255ths."""
     horizon_s: FloatMap
-    """(R, C): the longest lead time with a prediction from observations; 0 where unobserved."""
+    """(R, C): the longest lead whose clouds are over ground seen now; 0 where no more than the
+    present is known, NaN where nothing was seen."""
     prior_sunlit: float
     """The recently observed share in sun, used where there is no prediction."""
     method: str

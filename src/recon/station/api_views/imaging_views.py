@@ -109,10 +109,7 @@ def _forecast(sun: SunForecast, line: ShadePipeline, now_ns: int) -> schema.Fore
         issued_age_s=ns_to_seconds(now_ns - sun.issued_at_ns),
         method=sun.method,
         lead_s=sun.lead_s.tolist(),
-        # A cell without a horizon was not seen: nothing is known of it at lead 0 either.
-        predicted_share=[
-            float(((sun.horizon_s > 0.0) & (sun.horizon_s >= lead)).mean()) for lead in sun.lead_s
-        ],
+        predicted_share=[float((sun.horizon_s >= lead).mean()) for lead in sun.lead_s],
         right=[
             schema.HindcastView(lead_s=lead_s, right_share=share)
             for lead_s, share in right_shares(line.forecast).items()
