@@ -7,9 +7,10 @@ from recon.score.forecast_figures import LeadScore, SeenCells
 from recon.score.interval import Interval, log_ratio, ratio
 from recon.score.run_score import RunScore
 from recon.score.settings import SCORE
-from recon.score.table_rows import NOTHING, Row, fine, table
+from recon.score.table_rows import NOTHING, Row, fine, finest, table
 
 Parts = Callable[[LeadScore], tuple[float, float]]
+Text = Callable[[float], str]
 
 
 def forecast_tables(runs: Sequence[RunScore], own: str, against: str | None) -> list[str]:
@@ -40,7 +41,7 @@ def _head(first: str) -> Row:
 
 
 def _of_method(runs: Sequence[RunScore], method: str) -> str:
-    figures: dict[str, Parts] = {"Brier": _brier, "shade IoU": _iou}
+    figures: dict[str, tuple[Parts, Text]] = {"Brier": (_brier, finest), "shade IoU": (_iou, fine)}
     rows = [
         (
             f"cells {SeenCells.SEEN.value}, %",
@@ -48,8 +49,8 @@ def _of_method(runs: Sequence[RunScore], method: str) -> str:
         )
     ]
     rows += [
-        (f"{name}, {cells.value}", *_by_lead(runs, method, cells, parts))
-        for name, parts in figures.items()
+        (f"{name}, {cells.value}", *_by_lead(runs, method, cells, parts, text))
+        for name, (parts, text) in figures.items()
         for cells in SeenCells
     ]
     pooled = [_pooled(runs, method, lead_s) for lead_s in SCORE.lead_s]
@@ -79,22 +80,24 @@ def _share(parts: tuple[float, float]) -> float:
     return parts[0] / parts[1]
 
 
-def _by_lead(runs: Sequence[RunScore], method: str, cells: SeenCells, parts: Parts) -> list[str]:
+def _by_lead(
+    runs: Sequence[RunScore], method: str, cells: SeenCells, parts: Parts, text: Text
+) -> list[str]:
     return [
-        _text(ratio([parts(_score(run, method, lead_s, cells)) for run in runs]))
+        _text(text, ratio([parts(_score(run, method, lead_s, cells)) for run in runs]))
         for lead_s in SCORE.lead_s
     ]
 
 
-def _text(found: Interval | None) -> str:
+def _text(text: Text, found: Interval | None) -> str:
     if found is None:
         return NOTHING
-    mean = fine(found.mean)
-    return mean if isinf(found.high) else f"{mean} ({fine(found.low)} to {fine(found.high)})"
+    mean = text(found.mean)
+    return mean if isinf(found.high) else f"{mean} ({text(found.low)} to {text(found.high)})"
 
 
 def _side_by_side(runs: Sequence[RunScore], methods: Sequence[str], cells: SeenCells) -> str:
-    rows = [(method, *_by_lead(runs, method, cells, _brier)) for method in methods]
+    rows = [(method, *_by_lead(runs, method, cells, _brier, finest)) for method in methods]
     return table(_head(f"Brier, {cells.value}"), rows)
 
 
@@ -111,5 +114,5 @@ def _against(
                 ]
                 for s in SCORE.lead_s
             ]
-            rows.append((method, *(_text(log_ratio(each)) for each in pairs)))
+            rows.append((method, *(_text(fine, log_ratio(each)) for each in pairs)))
     return table(_head(f"Brier over that of {against}, {cells.value}"), rows)

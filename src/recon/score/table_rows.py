@@ -54,6 +54,11 @@ def fine(value: float) -> str:
     return f"{value:.2f}"
 
 
+def finest(value: float) -> str:
+    """Return a number with three digits."""
+    return f"{value:.3f}"
+
+
 def percent(value: float) -> str:
     """Return a share in per cent."""
     return f"{100.0 * value:.1f}"
