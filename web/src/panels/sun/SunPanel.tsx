@@ -115,8 +115,8 @@ function ForecastLead(props: { forecast: ForecastView }) {
   return (
     <label class="sun-lead">
       <span>
-        <strong>{when()}</strong>: {formatFraction(predicted())} of the map predicted from clouds over
-        ground in view
+        <strong>{when()}</strong>: {formatFraction(predicted())} of the map predicted from clouds
+        over ground in view
         <Show when={right()}>
           {(found) => <>; right lately: {formatFraction(found().right_share)} of cells</>}
         </Show>
