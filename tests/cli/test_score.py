@@ -90,7 +90,10 @@ def test_options_choose_methods(tmp_path: Path) -> None:
         (["--cluster", "127.0.0.1:1"], "expected a Dask scheduler at 127.0.0.1:1, got"),
     ],
 )
-def test_invalid_options_are_one_line(tmp_path: Path, options: list[str], words: str) -> None:
+def test_invalid_options_are_one_line(
+    tmp_path: Path, options: list[str], words: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("recon.score.many_runs.CONNECT_WITHIN_S", 0.5)
     done = CliRunner().invoke(app, ["score", str(written(tmp_path)), *options])
     assert (done.exit_code, done.stdout) == (2, "")
     assert len(done.stderr.splitlines()) == 1

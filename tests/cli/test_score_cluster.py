@@ -11,6 +11,7 @@ from pathlib import Path
 from time import monotonic, sleep
 
 import pytest
+from distributed import Client
 from tests.score.scenes import SMALL, written
 from typer.testing import CliRunner
 
@@ -51,6 +52,8 @@ def address(tmp_path: Path) -> Iterator[str]:
             stack.callback(process.terminate)
             if words[1] == "scheduler":
                 wait_for(port)
+        with Client(here, timeout=PATIENCE_S) as client:
+            client.wait_for_workers(2, timeout=PATIENCE_S)
         yield here
 
 

@@ -63,5 +63,4 @@ def step(
     method: str, state: ForecastState, shade: ShadeMap, settings: ForecastSettings
 ) -> tuple[ForecastState, SunForecast]:
     """Return the state after a map, and its forecast."""
-    state = FORECASTERS[method].observed(state, shade, settings)
-    return state, FORECASTERS[method].forecast(state, settings)
+    return FORECASTERS[method].after(state, shade, settings)

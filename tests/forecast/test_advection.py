@@ -63,6 +63,36 @@ def test_without_contrast_no_motion_is_claimed() -> None:
     assert sunny.min() > last.prior_sunlit
 
 
+def with_standing_pattern(shade: np.ndarray | float, at_s: float, seed: int) -> ShadeMap:
+    """The map of a detector through which the ground's pattern shows."""
+    pattern = np.kron(np.random.default_rng(seed).normal(0.0, 0.06, (32, 32)), np.ones((4, 4)))
+    noise = np.random.default_rng([seed, round(at_s)]).normal(0.0, 0.02, EAST_M.shape)
+    return shade_map(np.clip(shade - 0.1 + pattern + noise, 0.0, 1.0), at_s)
+
+
+@pytest.mark.parametrize("seed", range(950, 954))
+def test_a_pattern_that_stands_still_is_no_motion(seed: int) -> None:
+    """A clear sky: nothing that comes is in view, so nothing is predicted beyond the present."""
+    times_s = np.arange(0.0, 90.0, 5.0)
+    maps = [with_standing_pattern(1.0, at_s, seed) for at_s in times_s]
+    last = forecasts("advection", maps, SETTINGS)[-1]
+    assert last.velocity_mps is None
+    assert (last.horizon_s[SEEN] == 0.0).all()
+
+
+@pytest.mark.parametrize("seed", range(955, 959))
+def test_moving_shade_is_followed_over_a_pattern_that_stands_still(seed: int) -> None:
+    velocity = drawn_velocity(seed, 4.0, 9.0)
+    shade = DriftingShade(seed, cover=0.4, velocity_mps=velocity)
+    maps = [
+        with_standing_pattern(shade.transmittance(FIELD, at_s), at_s, seed)
+        for at_s in np.arange(0.0, 90.0, 5.0)
+    ]
+    found = forecasts("advection", maps, SETTINGS)[-1].velocity_mps
+    assert found is not None
+    assert hypot(found[0] - velocity[0], found[1] - velocity[1]) < 0.7
+
+
 def test_unrelated_maps_have_no_motion() -> None:
     claimed = 0
     for seed in range(8):

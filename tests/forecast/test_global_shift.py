@@ -18,9 +18,9 @@ from tests.forecast.moving_shade import (
 )
 
 from recon.forecast import FORECASTERS, ForecastSettings, ForecastState
-from recon.forecast.global_shift import visible_upwind_s
 from recon.forecast.motion import ShadowMotion, motion_of
 from recon.forecast.state import PairVelocity
+from recon.forecast.upwind import visible_upwind_s
 from recon.model.geo import GroundGrid
 from recon.model.shade import ShadeMap, SunForecast
 

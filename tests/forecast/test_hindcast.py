@@ -5,7 +5,7 @@ import pytest
 from tests.detection.shaded_field import FIELD
 from tests.forecast.moving_shade import SEEN, shade_map, step
 
-from recon.forecast import ForecastSettings, ForecastState, right_shares, with_hindcast
+from recon.forecast import ForecastSettings, ForecastState, right_shares
 from recon.model.geo import GroundGrid
 from recon.model.shade import ShadeMap
 
@@ -17,8 +17,7 @@ WEST = np.arange(GRID.cols) < 1
 def after(maps: list[ShadeMap], method: str = "persistence") -> ForecastState:
     state = ForecastState()
     for one in maps:
-        state, issued = step(method, state, one, SETTINGS)
-        state = with_hindcast(state, issued, SETTINGS)
+        state, _issued = step(method, state, one, SETTINGS)
     return state
 
 
@@ -59,8 +58,8 @@ def test_what_is_kept_is_bounded_and_another_grid_begins_anew() -> None:
     state = after([lit(WEST, 2.0 * i) for i in range(300)])
     assert len(state.issued) <= 62
     other = shade_map(np.ones(SEEN.shape), 700.0)
-    state, issued = step("persistence", state, other, SETTINGS)
-    assert len(with_hindcast(state, issued, SETTINGS).issued) == 1
+    state, _issued = step("persistence", state, other, SETTINGS)
+    assert len(state.issued) == 1
 
 
 def test_maps_at_odd_times_are_compared_within_half_a_step() -> None:

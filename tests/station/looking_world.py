@@ -84,8 +84,7 @@ class LookingWorld:
         shade = ShadeMap(GRID, now_ns, (IMAGER,), values, valid, valid.astype(np.float32), values)
         pipeline = self.station.shade
         settings = ForecastSettings()
-        forecast = FORECASTERS["persistence"].observed(ForecastState(), shade, settings)
-        sun = FORECASTERS["persistence"].forecast(forecast, settings)
+        forecast, sun = FORECASTERS["persistence"].after(ForecastState(), shade, settings)
         number = pipeline.next_job_id
         self.station = replace(
             self.station, shade=replace(pipeline, job_id=number, next_job_id=number + 1)

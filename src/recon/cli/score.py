@@ -80,23 +80,17 @@ def score_command(
         digest = runs_digest(scenario, loaded, code_digest())[:DIGEST_LETTERS]
         kept = KeptRuns(state_folder() / "score" / f"{loaded.name}-{digest}")
         wanted = range(first_seed, first_seed + seeds)
-        runs = {} if fresh else {seed: run for seed in wanted if (run := kept.found(seed))}
+        runs = [] if fresh else [run for seed in wanted if (run := kept.found(seed))]
         if runs:
             _report(f"{len(runs)} of {seeds} runs were flown before (--fresh flies them again)")
-        left = [seed for seed in wanted if seed not in runs]
-        began_s = monotonic()
-        for number, done in enumerate(_flown(loaded, left, jobs, cluster), start=1):
+        missing = sorted(set(wanted) - {run.seed for run in runs})
+        for done in _with_progress(_flown(loaded, missing, jobs, cluster), len(missing)):
             kept.keep(done)
-            runs[done.seed] = done
-            left_s = (monotonic() - began_s) / number * (len(left) - number)
-            _report(
-                f"seed {done.seed}: {done.end}; {len(runs)} of {seeds} runs,"
-                f" about {left_s / 60.0:.0f} min left"
-            )
+            runs.append(done)
     except ReconError as problem:
         print(f"recon score: {problem}", file=sys.stderr)
         raise typer.Exit(2) from None
-    print(tables(loaded, list(runs.values()), against))
+    print(tables(loaded, runs, against))
 
 
 def _check_numbers(seeds: int, first_seed: int, jobs: int | None) -> None:
@@ -114,11 +108,28 @@ def _flown(
 ) -> Iterator[RunScore]:
     if cluster is not None:
         return on_cluster(scenario, seeds, cluster)
-    at_once = min(jobs or len(os.sched_getaffinity(0)), len(seeds))
-    return on_cores(scenario, seeds, at_once) if at_once > 1 else one_by_one(scenario, seeds, _tell)
+    at_once = min(jobs or _cores(), len(seeds))
+    if at_once > 1:
+        return on_cores(scenario, seeds, at_once, _report_minutes)
+    return one_by_one(scenario, seeds, _report_minutes)
 
 
-def _tell(seed: int, minutes: int, in_sun: float) -> None:
+def _cores() -> int:
+    """Return how many cores this process may use; not all systems restrict them."""
+    allowed = getattr(os, "sched_getaffinity", None)
+    return len(allowed(0)) if allowed is not None else os.cpu_count() or 1
+
+
+def _with_progress(flown: Iterator[RunScore], count: int) -> Iterator[RunScore]:
+    began_s = monotonic()
+    for number, done in enumerate(flown, start=1):
+        left_s = (monotonic() - began_s) / number * (count - number)
+        left = f"{number} of {count} runs, about {left_s / 60.0:.0f} min left"
+        _report(f"seed {done.seed}: {done.end}; {left}")
+        yield done
+
+
+def _report_minutes(seed: int, minutes: int, in_sun: float) -> None:
     _report(f"seed {seed}: {minutes} min, {100.0 * in_sun:.0f} % of the region imaged in sun")
 
 

@@ -12,7 +12,7 @@ from types import MappingProxyType
 from recon.forecast.advection import ADVECTION
 from recon.forecast.forecaster import Forecaster
 from recon.forecast.global_shift import GLOBAL_SHIFT, moved_on
-from recon.forecast.hindcast import right_shares, with_hindcast
+from recon.forecast.hindcast import right_shares
 from recon.forecast.persistence import CLIMATOLOGY, PERSISTENCE
 from recon.forecast.settings import ForecastSettings
 from recon.forecast.state import ForecastState
@@ -24,7 +24,6 @@ __all__ = [
     "Forecaster",
     "moved_on",
     "right_shares",
-    "with_hindcast",
 ]
 
 FORECASTERS: Mapping[str, Forecaster] = MappingProxyType(

@@ -19,12 +19,12 @@ import numpy as np
 import numpy.typing as npt
 
 from recon.forecast.forecaster import Forecaster
-from recon.forecast.global_shift import visible_upwind_s, without_single_gaps
 from recon.forecast.likeness import shade_scale_m, with_likeness
 from recon.forecast.motion import ShadowMotion
 from recon.forecast.pooled_motion import pooled_motion, with_agreement
 from recon.forecast.settings import ForecastSettings
 from recon.forecast.state import ForecastState, prior_sunlit, with_map
+from recon.forecast.upwind import visible_upwind_s, without_single_gaps
 from recon.model.geo import GroundGrid
 from recon.model.shade import (
     SUNLIT_TRANSMITTANCE,

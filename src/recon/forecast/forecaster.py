@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from recon.forecast.hindcast import with_hindcast
 from recon.forecast.settings import ForecastSettings
 from recon.forecast.state import ForecastState
 from recon.model.shade import ShadeMap, SunForecast
@@ -21,3 +22,12 @@ class Forecaster:
     forecast: Callable[[ForecastState, ForecastSettings], SunForecast]
     """From the newest map: (L, R, C) probabilities for the L leads of the settings, counted from
     its capture time. Raises `ValueError` before the first map."""
+
+    def after(
+        self, state: ForecastState, shade: ShadeMap, settings: ForecastSettings
+    ) -> tuple[ForecastState, SunForecast]:
+        """Return the state after a map, and the forecast from it; earlier ones are compared with
+        the map. Raises `ValueError` as `observed` does."""
+        state = self.observed(state, shade, settings)
+        sun = self.forecast(state, settings)
+        return with_hindcast(state, sun, settings), sun

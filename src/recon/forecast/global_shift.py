@@ -16,13 +16,13 @@ from dataclasses import replace
 
 import cv2
 import numpy as np
-import numpy.typing as npt
 
 from recon.forecast.forecaster import Forecaster
 from recon.forecast.motion import ShadowMotion, motion_of, with_pairs
 from recon.forecast.persistence import persisting
 from recon.forecast.settings import ForecastSettings
 from recon.forecast.state import ForecastState, prior_sunlit, sunlit_now, with_map
+from recon.forecast.upwind import upwind, visible_upwind_s, without_single_gaps
 from recon.model.geo import GroundGrid
 from recon.model.shade import SURE, FloatMap, MaskMap, ShadeMap, SunForecast
 from recon.model.units import seconds_to_ns
@@ -101,16 +101,6 @@ def moved_on(shade: ShadeMap, velocity_mps: tuple[float, float] | None, seconds:
     )
 
 
-def without_single_gaps(known: MaskMap) -> MaskMap:
-    """Return (R, C): the known cells, and the unknown ones in gaps up to two cells wide.
-
-    Shadows' edges are wider than such a gap, and one unknown cell must not end the horizon of all
-    cells downwind of it.
-    """
-    gaps = cv2.morphologyEx(known.astype(np.uint8), cv2.MORPH_CLOSE, np.ones((3, 3), np.uint8))
-    return gaps > 0
-
-
 def _filled(now: FloatMap, known: MaskMap, closed: MaskMap) -> FloatMap:
     """Return (R, C): the map with the mean of the known neighbours in the closed gaps."""
     weight = known.astype(np.float32)
@@ -122,49 +112,13 @@ def _filled(now: FloatMap, known: MaskMap, closed: MaskMap) -> FloatMap:
     return np.where(gaps, sums / np.maximum(counts, 1.0), now).astype(np.float32)
 
 
-def visible_upwind_s(
-    seen: MaskMap, grid: GroundGrid, motion: ShadowMotion, settings: ForecastSettings
-) -> FloatMap:
-    """Return (R, C): for how long, in s, the place upwind of each cell is visible without a gap.
-
-    0 where the cell itself is not visible; at most the last lead.
-    """
-    horizon_s = np.zeros(seen.shape, dtype=np.float32)
-    alive = seen.copy()
-    lead_s = 0.0
-    while lead_s < settings.lead_s[-1] and alive.any():
-        lead_s = min(lead_s + settings.horizon_step_s, settings.lead_s[-1])
-        # A gap ends the horizon for good: what comes after it was not observed continuously.
-        alive &= _is_visible_upwind(seen, grid, motion, lead_s)
-        horizon_s[alive] = lead_s
-    return horizon_s
-
-
 def _after(now: FloatMap, grid: GroundGrid, motion: ShadowMotion, lead_s: float) -> FloatMap:
     """Return (R, C): the current map moved to a lead, blurred by the position error then."""
     # An odd number of cells, so that blurring does not shift the map.
     box = round(BOX_OVER_SIGMA * motion.spread_mps * lead_s / grid.cell_m) // 2 * 2 + 1
     blurred = cv2.blur(now, (box, box), borderType=cv2.BORDER_REPLICATE) if box > 1 else now
-    to_now = _upwind(grid, motion, lead_s)
+    to_now = upwind(grid, motion, lead_s)
     size = (grid.cols, grid.rows)
     how = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
     later = cv2.warpAffine(blurred, to_now, size, flags=how, borderMode=cv2.BORDER_REPLICATE)
     return later.astype(np.float32, copy=False)
-
-
-def _is_visible_upwind(
-    seen: MaskMap, grid: GroundGrid, motion: ShadowMotion, lead_s: float
-) -> MaskMap:
-    """Return (R, C): whether the place upwind of each cell at a lead is visible now."""
-    to_now = _upwind(grid, motion, lead_s)
-    size = (grid.cols, grid.rows)
-    how = cv2.INTER_NEAREST | cv2.WARP_INVERSE_MAP
-    return cv2.warpAffine(seen.astype(np.uint8), to_now, size, flags=how) > 0
-
-
-def _upwind(grid: GroundGrid, motion: ShadowMotion, lead_s: float) -> npt.NDArray[np.float64]:
-    """Return the affine map (2, 3) from a cell's column and row to those of its upwind place."""
-    # Rows count from the north: north is negative.
-    right = motion.east_mps * lead_s / grid.cell_m
-    down = -motion.north_mps * lead_s / grid.cell_m
-    return np.array([[1.0, 0.0, -right], [0.0, 1.0, -down]])

@@ -4,10 +4,11 @@ Each pair's phase correlation is read as a function of velocity: the agreement a
 velocity makes in the pair's time. True motion agrees in all pairs, chance in none, so the sum has
 its peak at the motion also where each pair alone is unclear: a field seen by half, or nearly clear.
 Older pairs fade out. The peak counts if it stands out from all that is farther from it than a peak
-is wide.
+is wide. A peak at rest is the ground's pattern in the maps, no motion: the next one may be it.
 """
 
 from dataclasses import replace
+from math import hypot
 
 import cv2
 import numpy as np
@@ -44,21 +45,34 @@ def with_agreement(
 
 
 def pooled_motion(state: ForecastState, settings: ForecastSettings) -> ShadowMotion | None:
-    """Return the velocity at the peak; None without one that stands out."""
+    """Return the velocity at the peak; None without one that stands out, or if it stands still."""
     if state.agreement is None:
         return None
-    surface = state.agreement.by_velocity
-    row, col = (int(i) for i in np.unravel_index(int(np.argmax(surface)), surface.shape))
-    near = round(settings.peak_mps / settings.velocity_step_mps)
-    others = surface.copy()
-    others[max(0, row - near) : row + near + 1, max(0, col - near) : col + near + 1] = 0.0
-    peak, middle = float(surface[row, col]), surface.shape[0] // 2
-    if peak <= settings.least_over_rival * float(others.max()) or peak <= 0.0:
+    surface, step = state.agreement.by_velocity, settings.velocity_step_mps
+    middle, near = surface.shape[0] // 2, round(settings.peak_mps / step)
+    row, col = _highest(surface)
+    left = surface
+    if hypot(row - middle, col - middle) * step < settings.slowest_pooled_mps:
+        left = _without(surface, middle, middle, near)
+        row, col = _highest(left)
+    peak, rival = float(left[row, col]), float(_without(left, row, col, near).max())
+    if peak <= settings.least_over_rival * rival or peak <= 0.0:
         return None
     right = col - middle + between(surface[row], col)
     down = row - middle + between(surface[:, col], row)
-    step = settings.velocity_step_mps
     return ShadowMotion(right * step, -down * step, settings.least_spread_mps)
+
+
+def _highest(surface: FloatMap) -> tuple[int, int]:
+    row, col = np.unravel_index(int(np.argmax(surface)), surface.shape)
+    return int(row), int(col)
+
+
+def _without(surface: FloatMap, row: int, col: int, near: int) -> FloatMap:
+    """Return a surface with 0 around a peak."""
+    others = surface.copy()
+    others[max(0, row - near) : row + near + 1, max(0, col - near) : col + near + 1] = 0.0
+    return others
 
 
 def _faded(agreement: Agreement | None, at_ns: int, settings: ForecastSettings) -> FloatMap:

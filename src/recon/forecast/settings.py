@@ -96,6 +96,10 @@ class ForecastSettings:
     peak_mps: float = 3.0
     """Half width of the area around the best velocity without rivals."""
 
+    slowest_pooled_mps: float = 1.0
+    """As `slowest_mps`: the agreement of what stands still has its peak within a step or two of
+    rest."""
+
     least_over_rival: float = 1.25
     """The best velocity's agreement over the next best one's, to count."""
 

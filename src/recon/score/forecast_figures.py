@@ -28,7 +28,6 @@ class SeenCells(Enum):
 class Calibration:
     """Sums over cells by predicted probability, for its reliability."""
 
-    cells: tuple[int, ...] = (0,) * BINS
     predicted: tuple[float, ...] = (0.0,) * BINS
     """Sum of probabilities."""
     sunlit: tuple[int, ...] = (0,) * BINS
@@ -36,7 +35,6 @@ class Calibration:
 
     def __add__(self, other: "Calibration") -> "Calibration":
         return Calibration(
-            tuple(map(sum, zip(self.cells, other.cells, strict=True))),
             tuple(map(sum, zip(self.predicted, other.predicted, strict=True))),
             tuple(map(sum, zip(self.sunlit, other.sunlit, strict=True))),
         )
@@ -107,12 +105,6 @@ def _score(probability: FloatArray, is_sunlit: MaskMap, cells: MaskMap) -> LeadS
 def _calibration(chances: FloatArray, truth: MaskMap) -> Calibration:
     number = np.minimum((chances * BINS).astype(np.intp), BINS - 1)
 
-    def sums(weights: FloatArray | None) -> list[float]:
-        found: list[float] = np.bincount(number, weights, minlength=BINS).tolist()
-        return found
-
-    return Calibration(
-        tuple(map(int, sums(None))),
-        tuple(sums(chances)),
-        tuple(map(int, sums(truth.astype(np.float64)))),
-    )
+    predicted = np.bincount(number, chances, minlength=BINS)
+    sunlit = np.bincount(number, truth.astype(np.float64), minlength=BINS)
+    return Calibration(tuple(predicted.tolist()), tuple(map(int, sunlit)))

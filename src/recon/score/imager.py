@@ -11,7 +11,7 @@ import numpy as np
 from recon.camera import displaced_pose
 from recon.detection import DetectionSettings
 from recon.detection.cells import field_grid
-from recon.forecast import FORECASTERS, with_hindcast
+from recon.forecast import FORECASTERS
 from recon.geo import cell_centres_m, shift_east_north_m
 from recon.model.imagery import CameraPose, GroundImage, RgbImage
 from recon.model.shade import MaskMap, ShadeMap
@@ -130,9 +130,7 @@ class IdealDetection:
         shade = self._shade(work.image)
         own = SeenShade(shade, work.image.valid)
         method = FORECASTERS[work.forecast_settings.method]
-        forecast = method.observed(work.forecast, shade, work.forecast_settings)
-        sun = method.forecast(forecast, work.forecast_settings)
-        forecast = with_hindcast(forecast, sun, work.forecast_settings)
+        forecast, sun = method.after(work.forecast, shade, work.forecast_settings)
         return ShadeRead(IMAGER_SERIAL, work.detection, forecast, own, (own, sun))
 
     def _shade(self, image: GroundImage) -> ShadeMap:

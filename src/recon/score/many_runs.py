@@ -18,7 +18,7 @@ from recon.score.run_score import RunScore
 from recon.score.scenario import Scenario
 from recon.score.scenario_schema import ScenarioError
 
-CONNECT_WITHIN_S = 5.0
+CONNECT_WITHIN_S, WORKERS_WITHIN_S = 10.0, 60.0
 
 
 def one_by_one(
@@ -29,15 +29,17 @@ def one_by_one(
         yield run(scenario, seed, report)
 
 
-def on_cores(scenario: Scenario, seeds: Sequence[int], jobs: int) -> Iterator[RunScore]:
-    """Yield the runs, flown by so many processes of this machine.
+def on_cores(
+    scenario: Scenario, seeds: Sequence[int], jobs: int, report: Report | None = None
+) -> Iterator[RunScore]:
+    """Yield the runs, flown by so many processes of this machine; `report` is called in them.
 
     Raises `ScenarioError` when one of them ends before its run.
     """
     # Forked processes would inherit threads of the linear algebra in any state.
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(max_workers=jobs, mp_context=context) as pool:
-        waiting = [pool.submit(run, scenario, seed) for seed in seeds]
+        waiting = [pool.submit(run, scenario, seed, report) for seed in seeds]
         try:
             for done in as_completed(waiting):
                 yield done.result()
@@ -82,7 +84,7 @@ def on_cluster(scenario: Scenario, seeds: Sequence[int], address: str) -> Iterat
 
 def _wait_for_worker(client: Any) -> None:
     try:
-        client.wait_for_workers(1, timeout=CONNECT_WITHIN_S)
+        client.wait_for_workers(1, timeout=WORKERS_WITHIN_S)
     except TimeoutError:
         raise ScenarioError(
             "--cluster: expected workers at the scheduler, got none: start some"

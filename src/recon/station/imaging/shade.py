@@ -15,7 +15,7 @@ from recon.detection import (
     RejectedFrame,
     merged,
 )
-from recon.forecast import FORECASTERS, ForecastSettings, ForecastState, moved_on, with_hindcast
+from recon.forecast import FORECASTERS, ForecastSettings, ForecastState, moved_on
 from recon.geo import nearest_cells
 from recon.model.geo import GroundGrid
 from recon.model.imagery import GroundImage
@@ -95,9 +95,7 @@ def read_shade(work: ReadShade) -> ShadeRead:
     if newest is not None and shade.captured_at_ns <= newest.captured_at_ns:
         return ShadeRead(serial, detection, work.forecast, own)
     together = _together(own, work.others, work.velocity_mps)
-    forecast = forecaster.observed(work.forecast, together.shade, work.forecast_settings)
-    sun = forecaster.forecast(forecast, work.forecast_settings)
-    forecast = with_hindcast(forecast, sun, work.forecast_settings)
+    forecast, sun = forecaster.after(work.forecast, together.shade, work.forecast_settings)
     return ShadeRead(serial, detection, forecast, own, (together, sun))
 
 
