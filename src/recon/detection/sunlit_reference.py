@@ -23,24 +23,20 @@ from recon.detection.settings import DetectionSettings
 from recon.detection.state import DetectionState
 from recon.detection.sunlit.colour import CellColour, cell_colour, upsampled
 from recon.detection.sunlit.contrast import explained
-from recon.detection.sunlit.drift import followed, since
+from recon.detection.sunlit.course import spread_after
+from recon.detection.sunlit.drift import followed
 from recon.detection.sunlit.earlier import reference_of, taken_up
 from recon.detection.sunlit.hot_spot import shape_of
 from recon.detection.sunlit.keyframes import Keyframe, is_due, with_keyframe
 from recon.detection.sunlit.levels import LEAST_CELLS, Level
-from recon.detection.sunlit.likelihood import Belief, most_likely
 from recon.detection.sunlit.memory import SunlitMemory
-from recon.detection.sunlit.solution import LEAST, solved
+from recon.detection.sunlit.solution import DOUBT, LEAST, solved
 from recon.model.geo import GroundGrid
 from recon.model.imagery import GroundImage
 from recon.model.shade import FloatMap, MaskMap, ShadeMap, SunlitReference
+from recon.model.units import NS_PER_S
 
-DOUBT = 0.25
-"""A frame is unknown when this much of the belief is in another level."""
 NO_CHANGE = Level(0.0, 0.0)
-DRIFT_SPREAD, LOCKED_SPREAD = (0.03, 0.02), (0.004, 0.003)
-"""Errors of light and colour by which the camera's change from frame to frame is known."""
-KEYFRAME_SPREAD = 0.06, 0.04
 SMOOTHED_CELLS = 5
 """Of the median filter over the map: edges of shade are wider than 20 m."""
 
@@ -56,14 +52,14 @@ def sunlit_reference(
     coarse = fine.coarse()
     memory = state.sunlit or SunlitMemory(taken_up(state.references, image, grid, coarse))
     memory = memory.with_detail(fine, coarse)
-    drift = followed(memory.drift, coarse, image.captured_at_ns)
+    drift = followed(memory.drift, coarse, memory.land_shown, image.captured_at_ns)
     is_locked = image.exposure_locked or not settings.follows_exposure
     problem = memory.lock_problem or (drift.lock_problem() if is_locked else "")
     memory = replace(memory, drift=drift, lock_problem=problem)
     is_locked = is_locked and not problem
     memory = _with_keyframe(memory, coarse, image, grid, is_locked)
-    memory = _believed(memory, coarse, is_locked)
-    found = _transmittance(memory, fine) if memory.is_certain else _unknown(fine)
+    memory = _believed(memory, coarse, image.captured_at_ns, is_locked)
+    found = _unknown(fine) if memory.level is None else _transmittance(memory, fine)
     return replace(state, sunlit=memory), shade_map(image, grid, found)
 
 
@@ -85,30 +81,41 @@ def _with_keyframe(
     if not is_due(memory.keyframes, at_ns, shape):
         return memory
     kept = with_keyframe(memory.keyframes, Keyframe(at_ns, coarse, drift.total, shape))
-    kept, land = solved(kept, memory.land, memory.taken_up.earlier, is_locked)
-    level = kept[-1].level
-    belief = None if level is None else Belief(level, *KEYFRAME_SPREAD)
-    return replace(memory, keyframes=kept, land=land, belief=belief, belief_drift=drift.total)
+    found = solved(kept, memory.land, memory.taken_up.earlier, is_locked)
+    return replace(
+        memory,
+        keyframes=found.keyframes,
+        land=found.land,
+        belief=found.belief,
+        believed_at_ns=at_ns,
+        belief_drift=drift.total,
+    )
 
 
-def _believed(memory: SunlitMemory, coarse: CellColour, is_locked: bool) -> SunlitMemory:
+def _believed(
+    memory: SunlitMemory, coarse: CellColour, at_ns: int, is_locked: bool
+) -> SunlitMemory:
     """Return the memory with the level of sun in a frame; without one where that is open."""
     land, drift = memory.land, memory.drift
     if land is None or memory.belief is None:
-        return replace(memory, is_certain=False)
+        return replace(memory, level=None)
     assert drift is not None
+    after_s = (at_ns - memory.believed_at_ns) / NS_PER_S
     cells = coarse.seen & land.known
-    if np.count_nonzero(cells) < LEAST_CELLS:
-        return replace(memory, is_certain=False)
-    changed = NO_CHANGE if is_locked else since(memory.belief_drift, drift.total)
-    spread = LOCKED_SPREAD if is_locked else DRIFT_SPREAD
-    before = memory.belief.later(changed, spread)
-    light, colour = (coarse.light - land.light)[cells], (coarse.colour - land.colour)[cells]
-    belief, doubt = most_likely(light, colour, land.contrast, before)
-    memory = replace(memory, is_certain=doubt < DOUBT)
-    if doubt >= DOUBT:
-        return memory
-    return replace(memory, belief=belief, belief_drift=drift.total)
+    belief = memory.belief
+    if after_s > 0.0:
+        changed = (
+            NO_CHANGE if is_locked else Level(drift.total.light - memory.belief_drift.light, 0.0)
+        )
+        belief = belief.later(changed, spread_after(after_s, is_locked))
+        if np.count_nonzero(cells) >= LEAST_CELLS:
+            light, colour = (coarse.light - land.light)[cells], (coarse.colour - land.colour)[cells]
+            belief = belief.seen(light, colour, land.contrast, after_s)
+    found = belief.estimate(land.contrast)
+    level = found.level if found.doubt < DOUBT else None
+    return replace(
+        memory, belief=belief, level=level, believed_at_ns=at_ns, belief_drift=drift.total
+    )
 
 
 def _unknown(fine: CellColour) -> tuple[FloatMap, MaskMap, FloatMap]:
@@ -121,8 +128,8 @@ def _transmittance(memory: SunlitMemory, fine: CellColour) -> tuple[FloatMap, Ma
     land, detail = memory.land, memory.detail
     assert land is not None
     assert detail is not None
-    assert memory.belief is not None
-    level = memory.belief.level
+    level = memory.level
+    assert level is not None
     shape = fine.light.shape
     light = fine.light - upsampled(land.light, shape) - detail.light - np.float32(level.light)
     colour = fine.colour - upsampled(land.colour, shape) - detail.colour - np.float32(level.colour)

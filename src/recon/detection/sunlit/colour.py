@@ -22,11 +22,13 @@ class CellColour:
     light: FloatMap
     colour: FloatMap
     seen: MaskMap
+    brightest: FloatMap
+    """Linear light of the brightest channel, of the sensor's most: near 1 it shows no detail."""
 
     def coarse(self) -> "CellColour":
         """Return means over blocks of cells, rows and columns cut to whole blocks."""
         light, colour = block_means(self.light), block_means(self.colour)
-        return CellColour(light, colour, np.isfinite(light))
+        return CellColour(light, colour, np.isfinite(light), block_means(self.brightest))
 
 
 def cell_colour(image: GroundImage, grid: GroundGrid, settings: DetectionSettings) -> CellColour:
@@ -40,7 +42,8 @@ def cell_colour(image: GroundImage, grid: GroundGrid, settings: DetectionSetting
     darkest = np.float32(light_of_levels(settings.gamma)[0])
     rgb = np.maximum(means[..., :3] / np.maximum(share, 1e-6)[..., np.newaxis], darkest)
     red, green, blue = (np.where(seen, np.log(rgb[..., i]), np.nan) for i in range(3))
-    return CellColour(green.astype(np.float32), (blue - red).astype(np.float32), seen)
+    brightest = np.where(seen, rgb.max(axis=-1), np.nan).astype(np.float32)
+    return CellColour(green.astype(np.float32), (blue - red).astype(np.float32), seen, brightest)
 
 
 def block_means(values: FloatMap) -> FloatMap:

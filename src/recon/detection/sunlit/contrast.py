@@ -14,9 +14,9 @@ FloatArray = npt.NDArray[np.float64]
 LIGHT_SPAN, LIGHT_STEP = (-2.4, 0.8), 0.04
 COLOUR_SPAN, COLOUR_STEP = (-0.8, 1.6), 0.03
 TRANSMITTANCES = np.linspace(0.0, 1.0, 41)
-ENDS_WEIGHT = 20.0
+ENDS_WEIGHT = 4.0
 """Full sun and full shade are this many times as frequent as any step of 1/40 between them."""
-LIGHT_NOISE, COLOUR_NOISE = 0.10, 0.07
+LIGHT_NOISE, COLOUR_NOISE = 0.06, 0.045
 """Standard deviations of a cell against its reference, frames some decimetres off."""
 RED_SHARE, BLUE_SHARE = -0.55, 0.45
 """How the shift of blue over red divides over the two channels."""
@@ -32,9 +32,17 @@ class Contrast:
     colour: float = 0.6
     """By which blue over red rises: 1.4 to 2.4 times in real frames."""
 
-    LEAST = (0.65, 0.3)
+    LEAST = (0.8, 0.3)
     MOST = (1.9, 1.1)
     """Bounds (light, colour) of what is learned."""
+
+    STEPS = (0.1, 0.08)
+
+    def stepped(self, light: int, colour: int) -> "Contrast":
+        """Return a neighbouring contrast, within the bounds."""
+        return Contrast(
+            self.light + light * self.STEPS[0], self.colour + colour * self.STEPS[1]
+        ).bounded()
 
     def bounded(self) -> "Contrast":
         """Return the contrast within the bounds."""

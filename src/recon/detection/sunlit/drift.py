@@ -1,23 +1,28 @@
 """What exposure and white balance do from frame to frame, whatever is sun and shade.
 
-Between two frames a few seconds apart most cells keep their light: the mode of the cells' changes
-is the camera's. Errors add up, so this only bridges the time between frames that tell the level of
-sun by themselves.
+Shade moves on with the wind, and changes little within seconds: once that motion is taken out, what
+most cells' light still changes by is the camera's. Without it, a slow slope of shade that moves
+over the view would be taken for a change of exposure. The motion is measured with it, by least
+squares of the changes on the slopes of shade (B. Lucas and T. Kanade, IJCAI 1981, over the whole
+view), from the frames of the last minute together. Errors add up.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import expm1
 
+import cv2
 import numpy as np
+import numpy.typing as npt
 
 from recon.detection.sunlit.colour import CellColour
-from recon.detection.sunlit.levels import COLOUR_BIN, LEAST_CELLS, LIGHT_BIN, Level, mode
+from recon.detection.sunlit.levels import LEAST_CELLS, Level
+from recon.model.shade import FloatMap, MaskMap
 from recon.model.units import NS_PER_S, seconds_to_ns
+
+FloatArray = npt.NDArray[np.float64]
 
 LONGEST_GAP_S = 20.0
 """Over a longer one most cells may have changed."""
-SAME_COLOUR = 0.06
-"""Cells whose colour changed by no more than this beside white balance stayed as they were."""
 LOCK_S = 60.0
 """A camera that sets its exposure by itself does so within a minute under moving clouds; the errors
 of so many frames stay below the limits."""
@@ -25,6 +30,33 @@ LOCKED_LIGHT, LOCKED_COLOUR = 0.15, 0.10
 """Changes within that time of a camera that is not locked."""
 CLOUD_COLOUR = 0.25
 """Thin cloud dims the whole view too, but makes it bluer by at least 0.4 of that."""
+SMOOTHED_CELLS = 2.0
+"""Of the slopes of shade, in coarse cells: shade is smooth over 30 m, the land's errors are not."""
+NOISE = 0.03, 0.02
+"""Errors of a cell's change of light and of colour."""
+FARTHEST = 3.0
+"""Standard deviations at which a cell's change is cut off: vehicles, errors of place."""
+FORGOTTEN_S = 60.0
+"""Time in which the weight of what motion is read from halves."""
+STILL = 200.0
+"""Weight of no motion at all."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Motion:
+    """Sums for the least squares of shade's velocity, in cells per second."""
+
+    square: FloatArray
+    product: FloatArray
+
+    @property
+    def velocity(self) -> FloatArray:
+        """Return (2,): cells to the right and downward per second."""
+        found = np.linalg.solve(self.square + STILL * np.eye(2), self.product)
+        return np.asarray(found, np.float64)
+
+
+NO_MOTION = Motion(np.zeros((2, 2)), np.zeros(2))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -36,6 +68,7 @@ class Drift:
     total: Level
     recent: tuple[tuple[int, Level], ...] = ()
     """Capture times and totals of the last minute, without the latest."""
+    motion: Motion = NO_MOTION
 
     def lock_problem(self) -> str:
         """Return what shows that exposure or white balance is not locked; empty if nothing does."""
@@ -49,31 +82,97 @@ class Drift:
         return ""
 
 
-def followed(drift: Drift | None, cells: CellColour, at_ns: int) -> Drift:
-    """Return the drift with one more frame; across a long gap it counts as none."""
+def followed(
+    drift: Drift | None, cells: CellColour, land: tuple[FloatMap, FloatMap] | None, at_ns: int
+) -> Drift:
+    """Return the drift with one more frame; across a long gap it counts as none.
+
+    `land` is its light and colour, as far as known.
+    """
     if drift is None:
         return Drift(at_ns, cells, Level(0.0, 0.0))
     both = drift.cells.seen & cells.seen
-    is_near = at_ns - drift.at_ns <= seconds_to_ns(LONGEST_GAP_S)
-    if not is_near or np.count_nonzero(both) < LEAST_CELLS:
+    after_s = (at_ns - drift.at_ns) / NS_PER_S
+    if after_s > LONGEST_GAP_S or np.count_nonzero(both) < LEAST_CELLS:
         # What the camera did meanwhile is unknown.
-        return Drift(at_ns, cells, drift.total)
-    colours = (cells.colour - drift.cells.colour)[both]
-    colour = mode(colours, COLOUR_BIN)
-    stays = np.abs(colours - np.float32(colour)) < SAME_COLOUR
-    light = mode((cells.light - drift.cells.light)[both][stays], LIGHT_BIN)
+        return Drift(at_ns, cells, drift.total, motion=drift.motion)
+    parts = [
+        _Change.between(before, now, None if land is None else part, after_s)
+        for before, now, part in zip(
+            (drift.cells.light, drift.cells.colour),
+            (cells.light, cells.colour),
+            (None, None) if land is None else land,
+            strict=True,
+        )
+    ]
+    motion = _pooled(drift.motion, parts, after_s)
+    light, colour = (part.common(motion.velocity) for part in parts)
     total = Level(drift.total.light + light, drift.total.colour + colour)
     oldest_ns = at_ns - seconds_to_ns(LOCK_S)
     recent = tuple(each for each in drift.recent if each[0] >= oldest_ns)
-    return Drift(at_ns, cells, total, (*recent, (drift.at_ns, drift.total)))
+    return Drift(at_ns, cells, total, (*recent, (drift.at_ns, drift.total)), motion)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Change:
+    """Cells' changes (N,), and by how much shade's slope moving at 1 cell/s changes them (2, N)."""
+
+    changes: FloatArray
+    by_motion: FloatArray
+
+    @staticmethod
+    def between(
+        before: FloatMap, now: FloatMap, land: FloatMap | None, after_s: float
+    ) -> "_Change":
+        """Return it for one channel of two frames."""
+        if land is None:
+            changes = now - before
+            cells = np.isfinite(changes)
+            none = np.zeros((2, int(cells.sum())))
+            return _Change(changes[cells].astype(np.float64), none)
+        # Smoothed alike: or slopes are too small for the changes, and motion too fast.
+        first, second = _smooth(before - land), _smooth(now - land)
+        changes = second - first
+        down, across = np.gradient(0.5 * (first + second))
+        cells = np.isfinite(changes) & np.isfinite(down) & np.isfinite(across)
+        slopes = np.stack([across[cells], down[cells]]).astype(np.float64)
+        return _Change(changes[cells].astype(np.float64), -after_s * slopes)
+
+    def squares(self, noise: float) -> tuple[FloatArray, FloatArray]:
+        """Return the sums for shade's velocity, the common change taken out."""
+        if not self.changes.size:
+            return NO_MOTION.square, NO_MOTION.product
+        slopes = self.by_motion - self.by_motion.mean(axis=1, keepdims=True)
+        off = self.changes - np.median(self.changes)
+        spread = FARTHEST * 1.48 * float(np.median(np.abs(off)))
+        off = np.clip(off, -spread, spread)
+        return slopes @ slopes.T / noise**2, slopes @ off / noise**2
+
+    def common(self, velocity: FloatArray) -> float:
+        """Return the change that is left in common when shade moves so."""
+        left = self.changes - velocity @ self.by_motion
+        return float(np.median(left)) if left.size else 0.0
+
+
+def _pooled(motion: Motion, parts: list[_Change], after_s: float) -> Motion:
+    kept = float(np.exp2(-after_s / FORGOTTEN_S))
+    square, product = kept * motion.square, kept * motion.product
+    for part, noise in zip(parts, NOISE, strict=True):
+        more_square, more_product = part.squares(noise)
+        square, product = square + more_square, product + more_product
+    return replace(motion, square=square, product=product)
+
+
+def _smooth(values: FloatMap) -> FloatMap:
+    """Return values averaged with their neighbours; NaN where nothing is known."""
+    known: MaskMap = np.isfinite(values)
+    filled = np.where(known, values, np.float32(0.0))
+    total = cv2.GaussianBlur(filled, (0, 0), SMOOTHED_CELLS)
+    share = cv2.GaussianBlur(known.astype(np.float32), (0, 0), SMOOTHED_CELLS)
+    smooth: FloatMap = np.where(known, total / np.maximum(share, 1e-3), np.nan).astype(np.float32)
+    return smooth
 
 
 def since(start: Level, end: Level) -> Level:
     """Return the drift between two totals."""
     return Level(end.light - start.light, end.colour - start.colour)
-
-
-def moved(level: Level, start: Level, end: Level) -> Level:
-    """Return a level of sun, moved by the drift between two totals."""
-    change = since(start, end)
-    return Level(level.light + change.light, level.colour + change.colour)

@@ -16,10 +16,11 @@ from math import acos, degrees, dist
 import numpy as np
 import numpy.typing as npt
 
+from recon.detection.sunlit.belief import WORTH_S, Belief
 from recon.detection.sunlit.colour import CellColour
 from recon.detection.sunlit.contrast import COLOUR_NOISE, LIGHT_NOISE, Contrast, explained
 from recon.detection.sunlit.keyframes import Earlier, Keyframe, SunlitLand
-from recon.detection.sunlit.levels import LEAST_CELLS, Level, Values, above, read
+from recon.detection.sunlit.levels import LEAST_CELLS, Level, Values, level_of
 from recon.model.geo import GroundGrid
 from recon.model.imagery import GroundImage
 from recon.model.shade import SunlitReference
@@ -125,17 +126,15 @@ def _earlier(reference: SunlitReference, is_locked: bool) -> Earlier:
 def _explained_share(coarse: CellColour, land: SunlitLand) -> float:
     """Return the share of a frame's cells that lie between sun and shade over a land.
 
-    The main level may be either, so the better of the two counts.
+    At the level of sun that explains most.
     """
     cells = coarse.seen & land.known
     if np.count_nonzero(cells) < LEAST_CELLS:
         return 0.0
     light, colour = (coarse.light - land.light)[cells], (coarse.colour - land.colour)[cells]
-    main = read(light, colour, land.contrast).main
-    return max(
-        _share_near(light, colour, level, land.contrast)
-        for level in (main, above(main, land.contrast))
-    )
+    unknown = np.zeros((1, 1), np.float32)
+    belief = Belief(level_of(light, colour), unknown).seen(light, colour, land.contrast, WORTH_S)
+    return _share_near(light, colour, belief.estimate(land.contrast).level, land.contrast)
 
 
 def _share_near(light: Values, colour: Values, level: Level, contrast: Contrast) -> float:

@@ -12,7 +12,7 @@ from enum import Enum
 import cv2
 import numpy as np
 
-from recon.detection.sunlit.colour import COARSE
+from recon.detection.sunlit.colour import COARSE, CellColour
 from recon.detection.sunlit.land import FloatStack
 from recon.model.geo import GroundGrid
 from recon.model.imagery import GroundImage
@@ -25,11 +25,15 @@ REACH_DEG = 24.0
 ALIKE = 6.0
 """Samples that are wrong together: neighbours, and frames of one drift of the drone."""
 LEAST_CELLS, LEAST_FRAMES = 20, 4
+BRIGHTEST = 0.7
+"""Linear light (level 217) above which tone curves flatten: dry soil in full sun hides it."""
 WORST_ERROR = 0.04
 """Largest standard error of a strength that is believed: moving edges of shade give larger ones."""
 ABOVE_SHADE, BELOW_SUN = 0.06, 0.10
 """Strengths that a view in shade stays below, and one in sun above: crops have 0.2 to 0.6, of
 which the coarse cells show two thirds."""
+ROUNDS, FARTHEST = 5, 3.0
+"""Of the fit; standard deviations at which a sample is cut off."""
 SURE = 3.0
 """Standard errors between the strength and the bound."""
 
@@ -81,6 +85,11 @@ def shape_of(image: GroundImage, grid: GroundGrid) -> FloatMap | None:
     return shape
 
 
+def with_detail(cells: CellColour) -> FloatMap:
+    """Return the log light of cells that are not so bright that a hot spot would not show."""
+    return np.where(cells.brightest < BRIGHTEST, cells.light, np.float32(np.nan))
+
+
 def hot_spot(light: FloatStack, shapes: Sequence[FloatMap | None]) -> HotSpot | None:
     """Return the hot spot that moves through frames of log light (K, r, c); None without one.
 
@@ -97,13 +106,16 @@ def hot_spot(light: FloatStack, shapes: Sequence[FloatMap | None]) -> HotSpot | 
     if np.count_nonzero(near) < LEAST_CELLS:
         return None
     change, expected = _centred(light[used][:, near]), _centred(shape[:, near])
-    # A few samples that are far off (a vehicle, an error of place) must not decide.
-    spread = 1.48 * float(np.median(np.abs(change)))
-    change = np.clip(change, -3.0 * spread, 3.0 * spread)
-    power = float((expected**2).sum())
-    strength = float((change * expected).sum()) / max(power, 1e-9)
-    rest = change - strength * expected
-    error = float(np.sqrt(ALIKE * np.mean(rest**2) / max(power, 1e-9)))
+    power = max(float((expected**2).sum()), 1e-9)
+    strength = float((change * expected).sum()) / power
+    for _ in range(ROUNDS):
+        # A few samples that are far off (a vehicle, an error of place) must not decide. Far off the
+        # fit: a drone that hovered and then looked aside has few samples that the hot spot changed.
+        rest = change - strength * expected
+        most = FARTHEST * 1.48 * float(np.median(np.abs(rest)))
+        rest = np.clip(rest, -most, most)
+        strength += float((rest * expected).sum()) / power
+    error = float(np.sqrt(ALIKE * np.mean(rest**2) / power))
     return HotSpot(strength, error)
 
 

@@ -4,12 +4,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from recon.detection.sunlit.belief import Belief
 from recon.detection.sunlit.colour import CellColour, upsampled
 from recon.detection.sunlit.drift import Drift
 from recon.detection.sunlit.earlier import TakenUp
 from recon.detection.sunlit.keyframes import Keyframe, SunlitLand
 from recon.detection.sunlit.levels import Level
-from recon.detection.sunlit.likelihood import Belief
 from recon.model.shade import FloatMap
 
 DETAIL_FRAMES = 40
@@ -52,14 +52,20 @@ class SunlitMemory:
     """None while nothing shows which is sun and which shade."""
     detail: Detail | None = None
     belief: Belief | None = None
-    """The level of sun in the latest frame that showed it."""
-    is_certain: bool = False
-    """Whether the latest frame did."""
+    """In the level of sun, in the latest frame that was read."""
+    believed_at_ns: int = 0
+    belief_drift: Level = Level(0.0, 0.0)  # noqa: RUF009
+    """The total drift then."""
+    level: Level | None = None
+    """Of sun in the latest frame; None where it is open."""
     drift: Drift | None = None
     lock_problem: str = ""
     """What has shown that a camera stated to be locked is not; from there on it is not trusted."""
-    belief_drift: Level = Level(0.0, 0.0)  # noqa: RUF009
-    """The total drift at the time of `belief`."""
+
+    @property
+    def land_shown(self) -> tuple[FloatMap, FloatMap] | None:
+        """Return light and colour of the land, as far as known."""
+        return None if self.land is None else (self.land.light, self.land.colour)
 
     def with_detail(self, fine: CellColour, coarse: CellColour) -> "SunlitMemory":
         """Return the memory with a frame's detail."""
