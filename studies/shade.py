@@ -135,9 +135,14 @@ class Tally:
 def main() -> int:
     """Print a row per method, seed and scenario."""
     options = _options()
+    names = options.scenario.split(",")
+    missing = [name for name in names if not (Path("scenarios") / f"{name}.toml").exists()]
+    if missing:
+        print(f"expected names of files in scenarios/ without .toml, got {', '.join(missing)}")
+        return 2
     cv2.setNumThreads(1)
     print(HEAD)
-    for name in options.scenario.split(","):
+    for name in names:
         sums: dict[str, list[tuple[float, ...]]] = {}
         for seed in _numbers(options.seeds):
             flight = Flight(

@@ -334,7 +334,8 @@ class TestDrift:
 
     def test_shade_that_moves_is_no_change_of_exposure(self) -> None:
         """One and the same slope moves on in all frames; only the last ones are exposed longer."""
-        land = np.zeros((50, 60), np.float32), np.zeros((50, 60), np.float32)
+        even = np.zeros((50, 60), np.float32)
+        land = SunlitLand(even, even, np.ones(even.shape, np.bool_), Contrast())
         drift: Drift | None = None
         for i in range(13):
             drift = followed(drift, self.frame(0.03 * i, 3.0 * i), land, seconds_to_ns(5.0 * i))

@@ -23,12 +23,12 @@ from recon.detection.settings import DetectionSettings
 from recon.detection.state import DetectionState
 from recon.detection.sunlit.colour import CellColour, cell_colour, upsampled
 from recon.detection.sunlit.contrast import explained
-from recon.detection.sunlit.course import spread_after
+from recon.detection.sunlit.course import change_between, spread_after
 from recon.detection.sunlit.drift import followed
 from recon.detection.sunlit.earlier import reference_of, taken_up
 from recon.detection.sunlit.hot_spot import shape_of
 from recon.detection.sunlit.keyframes import Keyframe, is_due, with_keyframe
-from recon.detection.sunlit.levels import LEAST_CELLS, Level
+from recon.detection.sunlit.levels import LEAST_CELLS
 from recon.detection.sunlit.memory import SunlitMemory
 from recon.detection.sunlit.solution import DOUBT, LEAST, solved
 from recon.model.geo import GroundGrid
@@ -36,7 +36,6 @@ from recon.model.imagery import GroundImage
 from recon.model.shade import FloatMap, MaskMap, ShadeMap, SunlitReference
 from recon.model.units import NS_PER_S
 
-NO_CHANGE = Level(0.0, 0.0)
 SMOOTHED_CELLS = 5
 """Of the median filter over the map: edges of shade are wider than 20 m."""
 
@@ -52,7 +51,7 @@ def sunlit_reference(
     coarse = fine.coarse()
     memory = state.sunlit or SunlitMemory(taken_up(state.references, image, grid, coarse))
     memory = memory.with_detail(fine, coarse)
-    drift = followed(memory.drift, coarse, memory.land_shown, image.captured_at_ns)
+    drift = followed(memory.drift, coarse, memory.land, image.captured_at_ns)
     is_locked = image.exposure_locked or not settings.follows_exposure
     problem = memory.lock_problem or (drift.lock_problem() if is_locked else "")
     memory = replace(memory, drift=drift, lock_problem=problem)
@@ -104,9 +103,7 @@ def _believed(
     cells = coarse.seen & land.known
     belief = memory.belief
     if after_s > 0.0:
-        changed = (
-            NO_CHANGE if is_locked else Level(drift.total.light - memory.belief_drift.light, 0.0)
-        )
+        changed = change_between(memory.belief_drift, drift.total, is_locked)
         belief = belief.later(changed, spread_after(after_s, is_locked))
         if np.count_nonzero(cells) >= LEAST_CELLS:
             light, colour = (coarse.light - land.light)[cells], (coarse.colour - land.colour)[cells]

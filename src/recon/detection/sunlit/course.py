@@ -53,6 +53,14 @@ COLOUR_SPREAD, ANY_LIGHT = 0.06, 10.0
 """Of the level that an earlier flight had with a locked camera."""
 
 
+def change_between(start: Level, end: Level, is_locked: bool) -> Level:
+    """Return by what the camera is taken to have changed between two totals of the drift.
+
+    Of light alone: white balance walks slowly, and errors of its drift add up to more.
+    """
+    return Level(0.0 if is_locked else end.light - start.light, 0.0)
+
+
 def spread_after(seconds: float, is_locked: bool) -> Spread:
     """Return the errors of light and colour by which a change in this time is known."""
     light, colour = LOCKED_SPREAD if is_locked else DRIFT_SPREAD
@@ -94,10 +102,8 @@ class Stack:
     @property
     def changes(self) -> list[Level]:
         """Return the camera's changes since the newest."""
-        if self.is_locked:
-            return [Level(0.0, 0.0)] * len(self.kept)
         newest = self.kept[-1].drift
-        return [Level(each.drift.light - newest.light, 0.0) for each in self.kept]
+        return [change_between(newest, each.drift, self.is_locked) for each in self.kept]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from recon.detection.sunlit.colour import CellColour
+from recon.detection.sunlit.keyframes import SunlitLand
 from recon.detection.sunlit.levels import LEAST_CELLS, Level
 from recon.model.shade import FloatMap, MaskMap
 from recon.model.units import NS_PER_S, seconds_to_ns
@@ -82,13 +83,8 @@ class Drift:
         return ""
 
 
-def followed(
-    drift: Drift | None, cells: CellColour, land: tuple[FloatMap, FloatMap] | None, at_ns: int
-) -> Drift:
-    """Return the drift with one more frame; across a long gap it counts as none.
-
-    `land` is its light and colour, as far as known.
-    """
+def followed(drift: Drift | None, cells: CellColour, land: SunlitLand | None, at_ns: int) -> Drift:
+    """Return the drift with one more frame over land as far as known; across a long gap none."""
     if drift is None:
         return Drift(at_ns, cells, Level(0.0, 0.0))
     both = drift.cells.seen & cells.seen
@@ -96,14 +92,10 @@ def followed(
     if after_s > LONGEST_GAP_S or np.count_nonzero(both) < LEAST_CELLS:
         # What the camera did meanwhile is unknown.
         return Drift(at_ns, cells, drift.total, motion=drift.motion)
+    was, lands = drift.cells, (None, None) if land is None else (land.light, land.colour)
     parts = [
-        _Change.between(before, now, None if land is None else part, after_s)
-        for before, now, part in zip(
-            (drift.cells.light, drift.cells.colour),
-            (cells.light, cells.colour),
-            (None, None) if land is None else land,
-            strict=True,
-        )
+        _Change.between(was.light, cells.light, lands[0], after_s),
+        _Change.between(was.colour, cells.colour, lands[1], after_s),
     ]
     motion = _pooled(drift.motion, parts, after_s)
     light, colour = (part.common(motion.velocity) for part in parts)

@@ -62,11 +62,6 @@ class SunlitMemory:
     lock_problem: str = ""
     """What has shown that a camera stated to be locked is not; from there on it is not trusted."""
 
-    @property
-    def land_shown(self) -> tuple[FloatMap, FloatMap] | None:
-        """Return light and colour of the land, as far as known."""
-        return None if self.land is None else (self.land.light, self.land.colour)
-
     def with_detail(self, fine: CellColour, coarse: CellColour) -> "SunlitMemory":
         """Return the memory with a frame's detail."""
         nothing = np.full(fine.light.shape, np.nan, dtype=np.float32)
