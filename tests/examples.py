@@ -1,4 +1,4 @@
-"""The number of examples of property tests: a quarter in `make test`, all in `make study`."""
+"""The number of examples of property and drawn tests: few in `make test`, all in `make study`."""
 
 import os
 

@@ -8,6 +8,7 @@ from math import hypot
 from random import Random
 
 import pytest
+from tests.examples import IS_THOROUGH
 from tests.station.returning_world import LEAST_LEVEL_M, ReturningWorld, returning_world
 from tests.station.station_world import square_mission
 
@@ -126,7 +127,8 @@ def test_the_control_all_returning_at_one_height_come_too_near() -> None:
     assert world.nearest.level_m < LEAST_LEVEL_M
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.drawn
+@pytest.mark.parametrize("seed", range(4) if IS_THOROUGH else range(1))
 def test_drawn_fleets_land_by_the_real_gate_on_shared_pads(seed: int) -> None:
     rng = Random(seed)
     places: list[tuple[float, float, float]] = []

@@ -3,6 +3,7 @@
 from random import Random
 
 import pytest
+from tests.examples import IS_THOROUGH
 from tests.station.surveyed_world import SurveyedWorld, asked, field, surveyed_world
 
 from recon.model.command import FlyMission, Hover, LandNow
@@ -225,7 +226,8 @@ def test_one_whose_mission_failed_is_left_to_the_operator() -> None:
     world.fleet.world.order("SIM-1", LandNow())
 
 
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.drawn
+@pytest.mark.parametrize("seed", range(4) if IS_THOROUGH else range(1))
 def test_whatever_the_field_and_the_batteries_they_keep_apart_and_land(seed: int) -> None:
     """Random fields, pads and batteries: vehicles that return early pass those that fly rows."""
     random = Random(seed)
