@@ -191,6 +191,19 @@ class TestLight:
         assert progress.is_sun_known[imaged(progress)].all()
 
     @pytest.mark.parametrize(
+        ("transmittance", "state"), [(0.55, CellState.IN_SHADE), (0.65, CellState.IN_SUN)]
+    )
+    def test_what_is_hardly_in_sun_does_not_count(
+        self, transmittance: float, state: CellState
+    ) -> None:
+        """Maps err: it may have been in shade."""
+        maps = [shade(t) for t in (12.0, 20.0, 28.0, 36.0, 44.0)]
+        maps = [replace(m, transmittance=transmittance * m.transmittance) for m in maps]
+        progress = counted(row_flown(), *maps)
+        assert imaged(progress).any()
+        assert (progress.state[imaged(progress)] == state).all()
+
+    @pytest.mark.parametrize(
         "maps",
         [
             [],

@@ -172,7 +172,9 @@ class _Count:
         cross = crossing(plan.cells, plan.lattice, plan.counted_swath, (start, end), times_ns)
         middle_ns = (a.at_ns + b.at_ns) // 2
         shade = nearest_map(self._progress.shade, middle_ns, plan.settings.shade_age_s)
-        sunlit, known = sunlit_cells(shade, plan.cells.grid, cross.window)
+        sunlit, known = sunlit_cells(
+            shade, plan.cells.grid, cross.window, plan.settings.least_transmittance
+        )
         self._in_view[serial] = self._counted(cross, before, sunlit, known, b.at_ns)
 
     def _counted(

@@ -66,6 +66,10 @@ class SurveySettings:
     shade_age_s: float = 5.0
     """Shade maps farther off in time do not count: shadows move at 10 m/s."""
 
+    least_transmittance: float = 0.6
+    """In a shade map, for a cell to count in sun: half of the beam is sun, and maps err by up to
+    0.1. A photo taken home with shade in it costs more than a row flown again."""
+
     shade_maps_kept: int = 16
     positions_kept: int = 1_000
     """Of each vehicle, waiting to count: at 10 Hz, far more than settling takes."""

@@ -10,7 +10,7 @@ from recon.geo import nearest_cells
 from recon.guidance.survey.cells import BoolArray, CoverageCells, FloatArray, IntArray
 from recon.guidance.survey.lattice import RowLattice, Swath
 from recon.model.geo import GroundGrid
-from recon.model.shade import SUNLIT_TRANSMITTANCE, ShadeMap
+from recon.model.shade import ShadeMap
 from recon.model.units import seconds_to_ns
 
 Place = tuple[float, float]
@@ -136,9 +136,9 @@ def nearest_map(maps: Sequence[ShadeMap], at_ns: int, age_s: float) -> ShadeMap 
 
 
 def sunlit_cells(
-    shade: ShadeMap | None, grid: GroundGrid, window: Window
+    shade: ShadeMap | None, grid: GroundGrid, window: Window, least_transmittance: float
 ) -> tuple[BoolArray, BoolArray]:
-    """Return which cells of a window of `grid` were sunlit, and of which anything is known.
+    """Return which cells of a window of `grid` surely were sunlit, and of which anything is known.
 
     Each cell is looked up at its centre.
     """
@@ -150,4 +150,4 @@ def sunlit_cells(
     at = rows[part[0]], cols[:, part[1]]
     is_known: BoolArray = shade.valid[at] & is_on[part]
     with np.errstate(invalid="ignore"):
-        return is_known & (shade.transmittance[at] >= SUNLIT_TRANSMITTANCE), is_known
+        return is_known & (shade.transmittance[at] >= least_transmittance), is_known
