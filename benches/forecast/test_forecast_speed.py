@@ -3,15 +3,18 @@
 uv run python -m pytest benches/forecast -s
 """
 
+from dataclasses import replace
 from time import process_time
 
 import cv2
 import numpy as np
 import pytest
 from tests.detection.shaded_field import FIELD, DriftingShade
-from tests.forecast.moving_shade import noisy_map, step
+from tests.forecast.moving_shade import noisy_map, shade_map, step
 
-from recon.forecast import FORECASTERS, ForecastSettings, ForecastState
+from recon.forecast import FORECASTERS, ForecastSettings, ForecastState, next_change
+from recon.forecast.next_change import MEMBERS
+from recon.model.shade import SunForecast
 
 MOST_MS = 30.0
 
@@ -45,3 +48,24 @@ def test_a_map_of_128_by_128_takes_under_30_ms(
             flush=True,
         )
     assert np.median(full_ms) < MOST_MS
+
+
+def test_the_next_change_of_150_by_150_cells(capsys: pytest.CaptureFixture[str]) -> None:
+    """By all members, with the whole map in view for two minutes."""
+    cv2.setNumThreads(1)
+    cells_m = 150 * FIELD.cell_m
+    grid = replace(FIELD, west_m=-cells_m / 2, north_m=cells_m / 2, rows=150, cols=150)
+    shade = DriftingShade(2, cover=0.4, velocity_mps=(5.0, 0.0))
+    seen = np.ones((150, 150), np.bool_)
+    one = shade_map(shade.transmittance(grid, 0.0), 0.0, seen, grid=grid)
+    level, horizon_s = np.zeros((1, 150, 150), np.uint8), np.full((150, 150), 120.0, np.float32)
+    sun = SunForecast(grid, 0, np.zeros(1), level, horizon_s, 0.5, "drawn", velocity_mps=(5.0, 0.0))
+    cells = np.argwhere(seen)
+    taken_s = []
+    for _ in range(5):
+        start = process_time()
+        change = next_change(one, sun, cells, ForecastSettings())
+        taken_s.append(process_time() - start)
+    with capsys.disabled():
+        print(f"\nnext change, {MEMBERS} members, 150x150 cells, 120 s: {np.median(taken_s):.2f} s")
+    assert change.is_foreseen.any()

@@ -13,6 +13,7 @@ from recon.api.schema import (
     OrderResponse,
     PreflightView,
     StationState,
+    SunAtView,
     SurveyRequest,
     SurveyResponse,
     SurveyView,
@@ -53,9 +54,10 @@ class FakeStation:
     image: GroundImage | None = None
     asked: list[tuple[list[str], Body, bool]] = field(default_factory=list)
     states_made: int = 0
+    now_ns: int = 1_000_000_000
 
     def __post_init__(self) -> None:
-        self.driver = AsyncioDriver(first_state(self.site), lambda: 1_000_000_000)
+        self.driver = AsyncioDriver(first_state(self.site), lambda: self.now_ns)
         self.driver.worker = WorkerAtOnce(JobRunner(self.site), self.driver)
         self.service = Service.around(self.driver, self.site, None)
 
@@ -180,6 +182,9 @@ class FakeStation:
 
     def forecast(self) -> tuple[int, SunForecast] | None:
         return self.service.forecast()
+
+    def sun_at(self, latitude_deg: float, longitude_deg: float) -> SunAtView | None:
+        return self.service.sun_at(latitude_deg, longitude_deg)
 
     def request_survey(self, asked: SurveyRequest, by: Person) -> SurveyResponse:
         return self.service.request_survey(asked, by)

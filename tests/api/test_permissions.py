@@ -92,7 +92,10 @@ def test_every_role_sees(role: Role) -> None:
     client = Client(app_for(role))
     for method, path in LEAST_ROLE:
         if method == "GET" and "{" not in path:
-            assert client.get(f"{path}?serial=A").status_code in (200, 404)
+            assert client.get(f"{path}?serial=A&latitude_deg=1&longitude_deg=2").status_code in (
+                200,
+                404,
+            )
     assert client.open_stream("/api/stream").is_served
 
 

@@ -241,6 +241,43 @@ class TestShade:
         is_predicted = float(nearest_s) <= 300.0
         assert (drawn[..., 3] == 255).any() == is_predicted
 
+    @pytest.mark.parametrize(
+        ("east_m", "north_m", "light"),
+        [
+            (2.0, -2.0, "shade"),
+            (14.0, -2.0, "sun"),
+            (2.0, -10.0, "unknown"),
+            (-9.0, -2.0, "unknown"),
+        ],
+    )
+    def test_the_light_at_a_place_is_that_of_its_cell(
+        self, client: Client, station: FakeStation, east_m: float, north_m: float, light: str
+    ) -> None:
+        ((lon, lat), _) = ring((east_m, north_m))
+        path = f"/api/sun-at?latitude_deg={lat}&longitude_deg={lon}"
+        assert client.get(path).status_code == 404
+        put(station, *found())
+        answer = client.get(path).json()
+        assert (answer["number"], answer["light"]) == (1, light)
+        # Nothing is known of the shadows' motion.
+        assert (answer["known_ahead_s"], answer["change_after_s"]) == (0.0, None)
+
+    def test_times_at_a_place_count_from_now(self, client: Client, station: FakeStation) -> None:
+        shade, sun = found()
+        coming = replace(
+            sun, velocity_mps=(0.4, 0.0), horizon_s=np.where(shade.valid, 60.0, 0.0).astype("f4")
+        )
+        put(station, shade, coming)
+        ((lon, lat), _) = ring((14.0, -2.0))
+        path = f"/api/sun-at?latitude_deg={lat}&longitude_deg={lon}"
+        first = client.get(path).json()
+        assert first["change_chance"] > 0.5
+        assert first["change_early_s"] <= first["change_after_s"] <= first["change_late_s"] <= 60.0
+        station.now_ns += 4_000_000_000
+        later = client.get(path).json()
+        for name in ("change_after_s", "known_ahead_s"):
+            assert first[name] - later[name] == pytest.approx(4.0)
+
     @pytest.mark.parametrize("authority", ["-1", "nan", "soon"])
     def test_a_lead_that_is_none_is_refused(self, client: Client, authority: str) -> None:
         assert client.get(f"/api/forecast.png?lead_s={authority}").status_code == 422

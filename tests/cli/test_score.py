@@ -34,6 +34,7 @@ def test_tables_go_to_stdout_and_progress_to_stderr(tmp_path: Path) -> None:
     assert "| shade IoU | 0.9" in first.stdout  # ideal pixels, laid by telemetry
     assert "| unknown, % | 0.0 |" in first.stdout
     assert "| Brier, not seen |" in first.stdout
+    assert "| time to shade, within the horizon |" in first.stdout
     assert "| violations: outside the fence | 0.0 |" in first.stdout
     assert [line.split(":")[0] for line in first.stderr.splitlines()] == ["seed 7", "seed 8"]
     assert "2 of 2 runs, about 0 min left" in second.stderr

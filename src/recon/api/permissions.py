@@ -34,6 +34,7 @@ LEAST_ROLE: dict[tuple[str, str], Role] = {
     ("GET", "/api/ground-image.tif"): Role.OBSERVER,
     ("GET", "/api/shade.png"): Role.OBSERVER,
     ("GET", "/api/forecast.png"): Role.OBSERVER,
+    ("GET", "/api/sun-at"): Role.OBSERVER,
     ("GET", "/api/surveys"): Role.OBSERVER,
     ("GET", "/api/surveys/{survey_id}"): Role.OBSERVER,
     ("GET", "/api/surveys/{survey_id}/ways"): Role.OBSERVER,

@@ -1,4 +1,4 @@
-"""Routes for pictures: camera frames, ground images, shade and predicted sun."""
+"""Routes for pictures: camera frames, ground images, shade and predicted sun; sun at a place."""
 
 import asyncio
 from typing import Annotated, Literal
@@ -8,6 +8,7 @@ from fastapi import FastAPI, Query, Response
 from recon.api import pictures
 from recon.api.port import StationPort
 from recon.api.responses import PNG, PROBLEMS, found, png
+from recon.api.schema import SunAtView
 
 Form = Annotated[
     Literal["picture", "values"],
@@ -71,3 +72,11 @@ def _add_sun(app: FastAPI, port: StationPort) -> None:
         nearest_s = newest.lead_s[pictures.nearest_lead(newest, lead_s)]
         response.headers["X-Lead-S"] = f"{nearest_s:g}"
         return response
+
+    @app.get("/api/sun-at", responses=PROBLEMS)
+    async def sun_at(
+        latitude_deg: Annotated[float, Query(ge=-90.0, le=90.0)],
+        longitude_deg: Annotated[float, Query(ge=-180.0, le=180.0)],
+    ) -> SunAtView:
+        """The light at a place now, and when it changes next."""
+        return found(await asyncio.to_thread(port.sun_at, latitude_deg, longitude_deg), NO_SHADE)

@@ -12,6 +12,7 @@ from recon.api.schema import (
     OrderResponse,
     PreflightView,
     StationState,
+    SunAtView,
     SurveyRequest,
     SurveyResponse,
     SurveyView,
@@ -156,6 +157,9 @@ class StationPort(Protocol):
 
     def forecast(self) -> tuple[int, SunForecast] | None:
         """Return the newest forecast and its number."""
+
+    def sun_at(self, latitude_deg: float, longitude_deg: float) -> SunAtView | None:
+        """Return the light at a place and its next change; None before the first map."""
 
     def request_survey(self, asked: SurveyRequest, by: Person) -> SurveyResponse:
         """Request a survey; it is planned in the background, see `survey`."""

@@ -13,6 +13,7 @@ from recon.forecast.advection import ADVECTION
 from recon.forecast.forecaster import Forecaster
 from recon.forecast.global_shift import GLOBAL_SHIFT, moved_on
 from recon.forecast.hindcast import right_shares
+from recon.forecast.next_change import NextChange, next_change
 from recon.forecast.persistence import CLIMATOLOGY, PERSISTENCE
 from recon.forecast.settings import ForecastSettings
 from recon.forecast.state import ForecastState
@@ -22,7 +23,9 @@ __all__ = [
     "ForecastSettings",
     "ForecastState",
     "Forecaster",
+    "NextChange",
     "moved_on",
+    "next_change",
     "right_shares",
 ]
 

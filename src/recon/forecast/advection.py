@@ -12,11 +12,9 @@ Theory of operation, per forecast:
 """
 
 from dataclasses import dataclass, replace
-from typing import TypeAlias
 
 import cv2
 import numpy as np
-import numpy.typing as npt
 
 from recon.forecast.forecaster import Forecaster
 from recon.forecast.likeness import shade_scale_m, with_likeness
@@ -24,18 +22,15 @@ from recon.forecast.motion import ShadowMotion
 from recon.forecast.pooled_motion import pooled_motion, with_agreement
 from recon.forecast.settings import ForecastSettings
 from recon.forecast.state import ForecastState, prior_sunlit, with_map
-from recon.forecast.upwind import visible_upwind_s, without_single_gaps
+from recon.forecast.upwind import Cells, nearest_seen, visible_upwind_s, without_single_gaps
 from recon.model.geo import GroundGrid
 from recon.model.shade import (
     SUNLIT_TRANSMITTANCE,
     SURE,
     FloatMap,
-    MaskMap,
     ShadeMap,
     SunForecast,
 )
-
-Cells: TypeAlias = npt.NDArray[np.intp]
 
 
 def _observed(state: ForecastState, shade: ShadeMap, settings: ForecastSettings) -> ForecastState:
@@ -82,7 +77,7 @@ class _Seen:
 
     @classmethod
     def of(cls, shade: ShadeMap) -> "_Seen":
-        nearest = _nearest_seen(shade.valid)
+        nearest = nearest_seen(shade.valid)
         return cls(shade.grid, shade.transmittance[nearest], shade.confidence[nearest], nearest)
 
     def sun_after(
@@ -124,19 +119,6 @@ class _Seen:
         if motion is None:
             off_m = off_m + np.float32(settings.usual_speed_mps * lead_s)
         return np.where(is_there, rows, near_rows), np.where(is_there, cols, near_cols), off_m
-
-
-def _nearest_seen(valid: MaskMap) -> tuple[Cells, Cells]:
-    """Return row and column (R, C) of the seen cell nearest to each."""
-    unseen = (~valid).astype(np.uint8)
-    _far, labels = cv2.distanceTransformWithLabels(
-        unseen, cv2.DIST_L2, 5, labelType=cv2.DIST_LABEL_PIXEL
-    )
-    rows, cols = np.nonzero(valid)
-    number = np.zeros(int(labels.max()) + 1, dtype=np.intp)
-    number[labels[valid]] = np.arange(len(rows))
-    chosen = number[labels]
-    return rows[chosen], cols[chosen]
 
 
 ADVECTION = Forecaster(_observed, _forecast)

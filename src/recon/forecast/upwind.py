@@ -1,5 +1,7 @@
 """What is upwind of each cell, and for how long the way there is in view."""
 
+from typing import TypeAlias
+
 import cv2
 import numpy as np
 import numpy.typing as npt
@@ -8,6 +10,8 @@ from recon.forecast.motion import ShadowMotion
 from recon.forecast.settings import ForecastSettings
 from recon.model.geo import GroundGrid
 from recon.model.shade import FloatMap, MaskMap
+
+Cells: TypeAlias = npt.NDArray[np.intp]
 
 
 def without_single_gaps(known: MaskMap) -> MaskMap:
@@ -54,3 +58,16 @@ def upwind(grid: GroundGrid, motion: ShadowMotion, lead_s: float) -> npt.NDArray
     right = motion.east_mps * lead_s / grid.cell_m
     down = -motion.north_mps * lead_s / grid.cell_m
     return np.array([[1.0, 0.0, -right], [0.0, 1.0, -down]])
+
+
+def nearest_seen(valid: MaskMap) -> tuple[Cells, Cells]:
+    """Return row and column (R, C) of the seen cell nearest to each."""
+    unseen = (~valid).astype(np.uint8)
+    _far, labels = cv2.distanceTransformWithLabels(
+        unseen, cv2.DIST_L2, 5, labelType=cv2.DIST_LABEL_PIXEL
+    )
+    rows, cols = np.nonzero(valid)
+    number = np.zeros(int(labels.max()) + 1, dtype=np.intp)
+    number[labels[valid]] = np.arange(len(rows))
+    chosen = number[labels]
+    return rows[chosen], cols[chosen]

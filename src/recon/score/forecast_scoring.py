@@ -10,11 +10,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from recon.forecast import FORECASTERS, ForecastSettings, ForecastState
+from recon.forecast import FORECASTERS, ForecastSettings, ForecastState, next_change
+from recon.forecast.next_change import STEP_S
 from recon.geo import nearest_cells
 from recon.model.geo import GroundGrid
 from recon.model.shade import SUNLIT_TRANSMITTANCE, MaskMap, ShadeMap, SunForecast
 from recon.model.units import NS_PER_S
+from recon.score.change_figures import GRACE_S, ChangeScore, score_change
 from recon.score.forecast_figures import FloatArray, LeadScore, SeenCells, score_cells
 from recon.score.forecast_figures import sun_probability as probability_on
 from recon.score.scenario import TRUE_MOTION
@@ -39,6 +41,8 @@ class ForecastScoring:
     """Names of `FORECASTERS`, and `TRUE_MOTION`: the map of the present, moved without error."""
     settings: ForecastSettings
     sums: dict[ForecastKey, LeadScore] = field(default_factory=dict)
+    changes: ChangeScore = field(default_factory=ChangeScore)
+    """Of the station's own."""
     _states: dict[str, ForecastState] = field(default_factory=dict)
     _number: int = 0
     _due_s: float = 0.0
@@ -56,6 +60,7 @@ class ForecastScoring:
         if now_s >= self._due_s:
             self._due_s = now_s + SCORE.score_forecasts_every_s
             self._score(line.sun, line.shade, line.seen)
+            self.changes += self._changes(line.sun, line.shade)
 
     def _score(self, own: SunForecast, shade: ShadeMap, seen: MaskMap | None) -> None:
         issued = {
@@ -92,6 +97,20 @@ class ForecastScoring:
             rows, cols, is_on = nearest_cells(grid, self.grid, (east_m, north_m))
             is_seen &= view[rows, cols] & is_on
         return is_seen
+
+    def _changes(self, own: SunForecast, shade: ShadeMap) -> ChangeScore:
+        """Return the score of the times to shade that follow from a forecast and its map."""
+        rows, cols, is_on = np.broadcast_arrays(*nearest_cells(shade.grid, self.grid))
+        counted = self.counted & is_on
+        cells = np.stack([rows[counted], cols[counted]], axis=1)
+        found = next_change(shade, own, cells, self.settings)
+        until_s = float(found.horizon_s.max(initial=0.0)) + GRACE_S
+        true_s = np.full(len(found.horizon_s), np.inf)
+        for lead_s in np.arange(STEP_S, until_s + STEP_S, STEP_S).tolist():
+            later_s = shade.captured_at_ns / NS_PER_S + lead_s
+            is_shade = self.sky.on_grid(self.grid, later_s)[counted] < SUNLIT_TRANSMITTANCE
+            true_s = np.where(is_shade & np.isinf(true_s), lead_s, true_s)
+        return score_change(found, true_s)
 
     def _true_motion(
         self, own: SunForecast, is_seen: MaskMap, at_s: float, later_s: float

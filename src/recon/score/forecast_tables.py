@@ -3,11 +3,21 @@
 from collections.abc import Callable, Sequence
 from math import isinf
 
+from recon.score.change_figures import ChangeScore
 from recon.score.forecast_figures import LeadScore, SeenCells
 from recon.score.interval import Interval, log_ratio, ratio
 from recon.score.run_score import RunScore
 from recon.score.settings import SCORE
-from recon.score.table_rows import NOTHING, Row, fine, finest, table
+from recon.score.table_rows import (
+    NOTHING,
+    Row,
+    fine,
+    finest,
+    formatted,
+    percent,
+    plain,
+    table,
+)
 
 Parts = Callable[[LeadScore], tuple[float, float]]
 Text = Callable[[float], str]
@@ -16,7 +26,7 @@ Text = Callable[[float], str]
 def forecast_tables(runs: Sequence[RunScore], own: str, against: str | None) -> list[str]:
     """Return the tables of the station's method, and of all methods if one is named to compare
     them with."""
-    found = [_of_method(runs, own)]
+    found = [_of_method(runs, own), _changes(runs)]
     if against is not None:
         methods = sorted({method for run in runs for method, _lead_s, _cells in run.forecasts})
         found += [_side_by_side(runs, methods, cells) for cells in SeenCells]
@@ -57,6 +67,22 @@ def _of_method(runs: Sequence[RunScore], method: str) -> str:
     errors = [NOTHING if one.cells == 0 else fine(_share(_calibration(one))) for one in pooled]
     rows.append((f"calibration error, {SeenCells.SEEN.value}", *errors))
     return table(_head(f"forecast by {method}"), rows)
+
+
+def _changes(runs: Sequence[RunScore]) -> str:
+    found = [run.changes for run in runs]
+
+    def share(name: str, parts: Sequence[int], of: Sequence[int]) -> Row:
+        return formatted(name, ratio(list(zip(parts, of, strict=True))), percent, 1.0)
+
+    error_s = sum(found, ChangeScore()).median_error_s
+    error = NOTHING if error_s is None else plain(error_s)
+    rows = [
+        ("median error, s", error, NOTHING, f"{len(runs)}"),
+        share("false alarms, %", [f.false_alarms for f in found], [f.foreseen for f in found]),
+        share("missed, %", [f.missed for f in found], [f.came for f in found]),
+    ]
+    return table(("time to shade, within the horizon", "figure", "95 %", "runs"), rows)
 
 
 def _seen_percent(runs: Sequence[RunScore], method: str, lead_s: float) -> str:

@@ -171,6 +171,7 @@ class StationRun:
             to_right_s=shade.to_right_s,
             registration_m=registration_quantiles_m(shade.registration_errors_m),
             forecasts=shade.forecasts,
+            changes=shade.changes,
             in_sun_share=shares_by(first_in_sun_s, curve_s),
             to_95_imaged_s=time_to_share(found.first_s[inside], ENOUGH, limit_s),
             to_95_in_sun_s=time_to_share(first_in_sun_s, ENOUGH, limit_s),

@@ -1,11 +1,12 @@
 """The figures of one run."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
 
+from recon.score.change_figures import ChangeScore
 from recon.score.forecast_figures import LeadScore
 from recon.score.forecast_scoring import ForecastKey
 from recon.score.shade_figures import ShadeFigures
@@ -44,6 +45,7 @@ class RunScore:
     """Landings with less than the battery reserve."""
     end: str
     """Why the survey ended."""
+    changes: ChangeScore = field(default_factory=ChangeScore)
     simulated_s: float = 0.0
     breaches: int = 0
     """Times that a drone in the air left the boundary or entered a keep-out zone."""

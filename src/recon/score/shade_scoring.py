@@ -10,6 +10,7 @@ from recon.model.geo import GroundGrid
 from recon.model.imagery import FloatArray, GroundImage
 from recon.model.shade import MaskMap, ShadeMap
 from recon.model.units import NS_PER_S, seconds_to_ns
+from recon.score.change_figures import ChangeScore
 from recon.score.forecast_figures import LeadScore
 from recon.score.forecast_scoring import ForecastKey, ForecastScoring
 from recon.score.scenario import NO_FORECAST, Scenario
@@ -32,6 +33,8 @@ class ImagerScore:
     registration_errors_m: list[FloatArray] = field(default_factory=list)
     """Of points of each ground image."""
     forecasts: dict[ForecastKey, LeadScore] = field(default_factory=dict)
+    changes: ChangeScore = field(default_factory=ChangeScore)
+    """Of the times to shade that the station's own forecasts give."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -106,6 +109,7 @@ class ShadeScoring:
             self._note_right(line.shade, now_s)
         if self._forecasts is not None:
             self._forecasts.update(line, now_s)
+            self.score.changes = self._forecasts.changes
         self._score_pose(station.imaging.imagers[IMAGER_SERIAL].ground_image)
 
     def _score_map(self, shade: ShadeMap | None, now_s: float) -> None:

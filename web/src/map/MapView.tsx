@@ -16,6 +16,7 @@ import { HazardLayer } from "./hazardLayer";
 import type { Box } from "./localGrid";
 import { ForecastLayer, ShadeLayer, SurveyCellsLayer } from "./overlays";
 import { PadLayer } from "./padLayer";
+import { createSunHere, SunHereNote } from "./SunHere";
 import { type Layer, type PlannedTarget, positionOf, wholeView } from "./scene";
 import { SteeringLayer } from "./steeringLayer";
 import { SurveyRowsLayer } from "./surveyRowsLayer";
@@ -36,6 +37,7 @@ export function MapView() {
   const { aim, setMapCentre } = useConsole();
   const [map, setMap] = createSignal<MapLibre | null>(null);
   const ground = createDisplayedGround(source);
+  const sunHere = createSunHere(source, overlay, () => source.state()?.shade?.map?.number ?? null);
   let holder!: HTMLDivElement;
   let labels!: HTMLDivElement;
   let scaleBar!: HTMLDivElement;
@@ -65,6 +67,14 @@ export function MapView() {
       new VehicleLayer({ select: selection.only, toggle: selection.toggle }, [tools, notes]),
     ];
     made.on("click", ({ lngLat }) => aim({ lon: lngLat.lng, lat: lngLat.lat }));
+    // A tap moves no pointer, and the keyboard moves the map under its centre.
+    for (const kind of ["mousemove", "click"] as const)
+      made.on(kind, ({ lngLat }) => sunHere.point({ lon: lngLat.lng, lat: lngLat.lat }));
+    made.on("mouseout", () => sunHere.point(null));
+    made.on("moveend", () => {
+      const { lng: lon, lat } = made.getCenter();
+      if (made.getCanvas().matches(":focus-visible")) sunHere.point({ lon, lat });
+    });
     setMapCentre(() => ({ lon: made.getCenter().lng, lat: made.getCenter().lat }));
     made.on("load", () => {
       for (const layer of layers) layer.add(made, readColours(document));
@@ -158,6 +168,7 @@ export function MapView() {
       </div>
       <div class="map-notes" ref={notes}>
         <GroundImageNote shown={ground.shown()} />
+        <SunHereNote here={sunHere} />
         <UnplacedNote />
       </div>
     </section>

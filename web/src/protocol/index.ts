@@ -34,6 +34,7 @@ export type LightSharesView = Schemas["LightSharesView"];
 export type ReturningView = Schemas["ReturningView"];
 export type ShadeLineView = Schemas["ShadeLineView"];
 export type ForecastView = Schemas["ForecastView"];
+export type SunAtView = Schemas["SunAtView"];
 export type SurveyView = Schemas["SurveyView"];
 export type SurveyingView = Schemas["SurveyingView"];
 export type SurveyRequest = Schemas["SurveyRequest"];

@@ -415,6 +415,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/sun-at": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Sun At
+         * @description The light at a place now, and when it changes next.
+         */
+        get: operations["sun_at_api_sun_at_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/surveys": {
         parameters: {
             query?: never;
@@ -2138,6 +2158,47 @@ export interface components {
             serials: string[] | null;
         };
         /**
+         * SunAtView
+         * @description The light at a place now, and when it changes next; times count from now.
+         */
+        SunAtView: {
+            /**
+             * Change After S
+             * @description median time until the light changes; null where no change is foreseen
+             */
+            change_after_s: number | null;
+            /**
+             * Change Chance
+             * @description of a change of light within `known_ahead_s`
+             */
+            change_chance: number;
+            /**
+             * Change Early S
+             * @description exceeded in nine of ten cases
+             */
+            change_early_s: number | null;
+            /**
+             * Change Late S
+             * @description not exceeded in nine of ten cases
+             */
+            change_late_s: number | null;
+            /**
+             * Known Ahead S
+             * @description how far ahead clouds over this place are seen coming; 0: no more than now
+             */
+            known_ahead_s: number;
+            /**
+             * Light
+             * @enum {string}
+             */
+            light: "sun" | "shade" | "unknown";
+            /**
+             * Number
+             * @description number of the shade map
+             */
+            number: number;
+        };
+        /**
          * SurveyBudgetRequest
          * @description Limits that end the survey before it is complete; null: no limit.
          */
@@ -3316,6 +3377,47 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["StationState"];
+                };
+            };
+        };
+    };
+    sun_at_api_sun_at_get: {
+        parameters: {
+            query: {
+                latitude_deg: number;
+                longitude_deg: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SunAtView"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
                 };
             };
         };

@@ -214,6 +214,10 @@ export class LiveSource implements StationSource {
     return this.requests.picture(`/api/forecast.png?id=${number}&lead_s=${lead_s}`);
   }
 
+  sunAt(latitudeDeg: number, longitudeDeg: number) {
+    return this.requests.sunAt(latitudeDeg, longitudeDeg);
+  }
+
   close(): void {
     this.stream.close();
   }

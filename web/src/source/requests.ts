@@ -5,6 +5,7 @@ import type {
   AuthorityHolder,
   OrderResult,
   PreflightView,
+  SunAtView,
   SurveyRequest,
   SurveyResponse,
   SurveyWays,
@@ -136,6 +137,11 @@ export class Requests {
       () => this.client.GET("/api/surveys/{survey_id}/ways", options),
       (data) => data as SurveyWays,
     );
+  }
+
+  sunAt(latitude_deg: number, longitude_deg: number): Promise<Outcome<SunAtView>> {
+    const options = { params: { query: { latitude_deg, longitude_deg } }, signal: timeout() };
+    return answered(() => this.client.GET("/api/sun-at", options), identity);
   }
 
   dismissHazard(serial: string): Promise<Outcome<null>> {

@@ -7,6 +7,7 @@ import type {
   OrderResult,
   PreflightView,
   StationState,
+  SunAtView,
   SurveyRequest,
   SurveyResponse,
   SurveyWays,
@@ -113,5 +114,7 @@ export interface StationSource {
   surveyCells(id: number, number: number): Promise<Outcome<Picture>>;
   shadePicture(number: number): Promise<Outcome<Picture>>;
   forecastPicture(number: number, lead_s: number): Promise<Outcome<Picture>>;
+  /** The light at a place, and when it changes next. */
+  sunAt(latitudeDeg: number, longitudeDeg: number): Promise<Outcome<SunAtView>>;
   close(): void;
 }

@@ -254,6 +254,7 @@ function fakeSource(
     surveyCells: noPicture,
     shadePicture: noPicture,
     forecastPicture: noPicture,
+    sunAt: noPicture,
     close: () => {},
   };
 }

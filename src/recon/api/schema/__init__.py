@@ -51,6 +51,7 @@ from recon.api.schema.site import (
     ShadeLineView,
     ShadeMapView,
     SiteView,
+    SunAtView,
 )
 from recon.api.schema.station import (
     FleetReturnView,
@@ -160,6 +161,7 @@ __all__ = [
     "StopLatchView",
     "StopReleaseRequest",
     "StrictMessage",
+    "SunAtView",
     "SurveyBudgetRequest",
     "SurveyCameraRequest",
     "SurveyCellsView",

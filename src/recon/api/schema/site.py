@@ -148,6 +148,22 @@ class ForecastView(Message):
     cols: int
 
 
+class SunAtView(Message):
+    """The light at a place now, and when it changes next; times count from now."""
+
+    number: int = Field(description="number of the shade map")
+    light: Literal["sun", "shade", "unknown"]
+    known_ahead_s: float = Field(
+        description="how far ahead clouds over this place are seen coming; 0: no more than now"
+    )
+    change_chance: float = Field(description="of a change of light within `known_ahead_s`")
+    change_after_s: float | None = Field(
+        description="median time until the light changes; null where no change is foreseen"
+    )
+    change_early_s: float | None = Field(description="exceeded in nine of ten cases")
+    change_late_s: float | None = Field(description="not exceeded in nine of ten cases")
+
+
 class ShadeLineView(Message):
     """State of shade detection and sun forecast from the imaging drone's frames."""
 

@@ -1,13 +1,15 @@
 """Ground images, shade and the forecast of sun, as the API sends them."""
 
 from collections.abc import Mapping
+from math import floor
+from typing import Literal
 
 import numpy as np
 
 from recon.api import schema
-from recon.forecast import right_shares
-from recon.geo import geo_from_enu
-from recon.model.geo import GroundGrid
+from recon.forecast import next_change, right_shares
+from recon.geo import enu_from_point, geo_from_enu
+from recon.model.geo import GeoPoint, GroundGrid
 from recon.model.shade import MaskMap, ShadeMap, SunForecast
 from recon.model.units import ns_to_seconds
 from recon.station.imaging.mosaic import alignment_of, newest_images
@@ -121,6 +123,47 @@ def _forecast(sun: SunForecast, line: ShadePipeline, now_ns: int) -> schema.Fore
         cell_m=sun.grid.cell_m,
         rows=sun.grid.rows,
         cols=sun.grid.cols,
+    )
+
+
+def sun_at_view(
+    station: Station, place_deg: tuple[float, float], now_ns: int
+) -> schema.SunAtView | None:
+    """Return the light at a latitude and longitude and its next change; None before a map."""
+    line = station.shade
+    shade, sun = line.shade, line.sun
+    if shade is None or sun is None:
+        return None
+    cell = _cell_at(shade.grid, place_deg)
+    row, col = cell
+    is_on = 0 <= row < shade.grid.rows and 0 <= col < shade.grid.cols
+    light: Literal["sun", "shade", "unknown"] = "unknown"
+    if is_on and shade.valid[row, col]:
+        light = "sun" if shade.is_sunlit[row, col] else "shade"
+    change = next_change(shade, sun, np.array([cell]), station.settings.forecast)
+    age_s = ns_to_seconds(now_ns - shade.captured_at_ns)
+    after_s, early_s, late_s = (
+        max(0.0, float(each[0]) - age_s) if change.is_foreseen[0] else None
+        for each in (change.after_s, change.early_s, change.late_s)
+    )
+    return schema.SunAtView(
+        number=line.number,
+        light=light,
+        known_ahead_s=max(0.0, float(change.horizon_s[0]) - age_s),
+        change_chance=float(change.chance[0]),
+        change_after_s=after_s,
+        change_early_s=early_s,
+        change_late_s=late_s,
+    )
+
+
+def _cell_at(grid: GroundGrid, place_deg: tuple[float, float]) -> tuple[int, int]:
+    """Return row and column of a latitude and longitude; beyond the grid too."""
+    latitude_deg, longitude_deg = place_deg
+    ground = GeoPoint(latitude_deg, longitude_deg, grid.frame.origin.ellipsoid_height_m)
+    east_m, north_m, _up_m = enu_from_point(grid.frame, ground).tolist()
+    return floor((grid.north_m - north_m) / grid.cell_m), floor(
+        (east_m - grid.west_m) / grid.cell_m
     )
 
 

@@ -38,6 +38,7 @@ from recon.record.audit import NumberedEntry, harmless
 from recon.record.audit_log import AuditLog
 from recon.site import Site
 from recon.station.api_views import RunningStation
+from recon.station.api_views.imaging_views import sun_at_view
 from recon.station.api_views.order_service import OrderService, order_of
 from recon.station.api_views.site_view import site_view
 from recon.station.api_views.state_view import DriverState, state_view
@@ -241,6 +242,11 @@ class Service:
         """Return the newest forecast and its number."""
         line = self.driver.station.shade
         return None if line.sun is None else (line.number, line.sun)
+
+    def sun_at(self, latitude_deg: float, longitude_deg: float) -> schema.SunAtView | None:
+        """Return the light at a place and its next change."""
+        station, now_ns = self.driver.station, self.driver.now_ns()
+        return sun_at_view(station, (latitude_deg, longitude_deg), now_ns)
 
     def request_survey(self, asked: schema.SurveyRequest, by: Person) -> schema.SurveyResponse:
         """Request a survey."""
