@@ -153,6 +153,12 @@ class TestDriftingShade:
         assert np.mean(errors) < 0.07
 
 
+def moving_shape(east_cells: float) -> np.ndarray:
+    """The hot spot's shape on 40 x 40 cells, 8 cells to 1/e, so far east of the middle."""
+    away = np.hypot(*np.meshgrid(np.arange(40) - 19.5 - east_cells, np.arange(40) - 19.5))
+    return np.exp(-away / 8.0).astype(np.float32)
+
+
 class TestFlatScenes:
     """All sun or all shade: unknown, until the hot spot tells."""
 
@@ -176,10 +182,39 @@ class TestFlatScenes:
         assert max(float(found.is_sunlit[FOOTPRINT].mean()) for found, _ in maps) == 0.0
 
     def test_a_hot_spot_is_believed_only_with_a_small_error(self) -> None:
-        assert HotSpot(0.4, 0.05).scene is FlatScene.UNKNOWN
-        assert HotSpot(0.3, 0.02).scene is FlatScene.SUN
-        assert HotSpot(0.0, 0.02).scene is FlatScene.SHADE
-        assert HotSpot(0.08, 0.02).scene is FlatScene.UNKNOWN
+        assert HotSpot(0.4, 0.05, 0.3, 0.5).scene is FlatScene.UNKNOWN
+        assert HotSpot(0.3, 0.02, 0.2, 0.4).scene is FlatScene.SUN
+        assert HotSpot(0.0, 0.02, -0.05, 0.05).scene is FlatScene.SHADE
+        assert HotSpot(0.08, 0.02, 0.05, 0.11).scene is FlatScene.UNKNOWN
+
+    def test_a_hot_spot_is_believed_only_with_all_its_sides(self) -> None:
+        assert HotSpot(0.3, 0.02, 0.05, 0.4).scene is FlatScene.UNKNOWN
+        assert HotSpot(0.0, 0.02, -0.05, 0.11).scene is FlatScene.UNKNOWN
+
+    @pytest.mark.parametrize(("east", "scene"), [(1.0, "sun"), (0.0, "unknown")])
+    def test_what_brightens_one_side_alone_is_no_hot_spot(self, east: float, scene: str) -> None:
+        """Shade that leaves one side of the middle imitates a hot spot that comes there."""
+        rng = np.random.default_rng(9_234)
+        shapes = [moving_shape(0.5 * step) for step in range(12)]
+        share = np.where(np.arange(40) < 20, 1.0, east).astype(np.float32)
+        light = np.stack([0.4 * share * shape for shape in shapes])
+        light += rng.normal(0.0, 0.02, light.shape).astype(np.float32)
+        found = hot_spot(light, shapes)
+        assert found is not None
+        assert found.scene is FlatScene(scene)
+
+    def test_frames_with_passing_shade_do_not_hide_it(self) -> None:
+        rng = np.random.default_rng(9_235)
+        shapes = [moving_shape(0.5 * step) for step in range(12)]
+        light = np.stack([0.4 * shape for shape in shapes])
+        light += rng.normal(0.0, 0.02, light.shape).astype(np.float32)
+        clear = hot_spot(light, shapes)
+        light[:4] += rng.normal(0.0, 0.2, (4, 40, 40)).astype(np.float32)
+        disturbed = hot_spot(light, shapes)
+        assert clear is not None
+        assert disturbed is not None
+        assert disturbed.scene is clear.scene is FlatScene.SUN
+        assert disturbed.strength == pytest.approx(0.4, abs=3.0 * disturbed.standard_error)
 
 
 def cells(level: Level, contrast: Contrast, shares: Sequence[float]) -> list[Values]:

@@ -41,8 +41,9 @@ class LookAsideSettings:
     unknown_share: float = 0.5
     """From this share of the ground in view on, light is mostly unknown."""
 
-    unknown_for_s: float = 60.0
-    """Unknown for so long before the imaging drone moves by itself: clouds mostly come sooner."""
+    unknown_for_s: float = 20.0
+    """Unknown for so long before the imaging drone moves by itself. Edges of shade pass six times
+    an hour: most flat views stay flat for minutes, and surveys are flown in them."""
 
     map_within_s: float = 10.0
     """An older shade map does not show the present light."""

@@ -11,6 +11,7 @@ from enum import Enum
 
 import cv2
 import numpy as np
+import numpy.typing as npt
 
 from recon.detection.sunlit.colour import COARSE, CellColour
 from recon.detection.sunlit.land import FloatStack
@@ -32,8 +33,8 @@ WORST_ERROR = 0.04
 ABOVE_SHADE, BELOW_SUN = 0.06, 0.10
 """Strengths that a view in shade stays below, and one in sun above: crops have 0.2 to 0.6, of
 which the coarse cells show two thirds."""
-ROUNDS, FARTHEST = 5, 3.0
-"""Of the fit; standard deviations at which a sample is cut off."""
+ROUNDS, FARTHEST, EVEN = 5, 3.0, 4.0
+"""Of the fit; standard deviations at which a sample is cut off; bound of the weights."""
 SURE = 3.0
 """Standard errors between the strength and the bound."""
 
@@ -52,6 +53,10 @@ class HotSpot:
 
     strength: float
     standard_error: float
+    least: float
+    most: float
+    """Of the strengths on each side of its middle: a hot spot is the same there, moving shade is
+    not."""
 
     @property
     def scene(self) -> FlatScene:
@@ -59,9 +64,9 @@ class HotSpot:
         if self.standard_error > WORST_ERROR:
             return FlatScene.UNKNOWN
         margin = SURE * self.standard_error
-        if self.strength - margin > ABOVE_SHADE:
+        if self.strength - margin > ABOVE_SHADE and self.least > ABOVE_SHADE:
             return FlatScene.SUN
-        if self.strength + margin < BELOW_SUN:
+        if self.strength + margin < BELOW_SUN and self.most < BELOW_SUN:
             return FlatScene.SHADE
         return FlatScene.UNKNOWN
 
@@ -93,7 +98,8 @@ def with_detail(cells: CellColour) -> FloatMap:
 def hot_spot(light: FloatStack, shapes: Sequence[FloatMap | None]) -> HotSpot | None:
     """Return the hot spot that moves through frames of log light (K, r, c); None without one.
 
-    Least squares of light on shape, both less each cell's mean over time and each frame's mean.
+    Weighted least squares of light on shape, both less each cell's mean over time and each frame's
+    mean.
     """
     used = [i for i, shape in enumerate(shapes) if shape is not None]
     if len(used) < LEAST_FRAMES:
@@ -105,21 +111,57 @@ def hot_spot(light: FloatStack, shapes: Sequence[FloatMap | None]) -> HotSpot | 
     near: MaskMap = (shape.max(axis=0) > np.exp(-REACH_DEG / FOLD_DEG)) & inside
     if np.count_nonzero(near) < LEAST_CELLS:
         return None
-    change, expected = _centred(light[used][:, near]), _centred(shape[:, near])
-    power = max(float((expected**2).sum()), 1e-9)
-    strength = float((change * expected).sum()) / power
+    cells, theirs = light[used][:, near], shape[:, near]
+    whole = _fitted(cells, theirs)
+    halves = [_fitted(cells[:, half], theirs[:, half])[0] for half in _halves(shape, near)]
+    return HotSpot(*whole, min(halves), max(halves))
+
+
+def _halves(shape: FloatStack, near: MaskMap) -> Sequence[npt.NDArray[np.bool_]]:
+    """Return which near cells (N,) lie east, west, south and north of its middle."""
+    rows, cols = np.nonzero(near)
+    weight = shape.max(axis=0)[near]
+    east, south = cols > np.average(cols, weights=weight), rows > np.average(rows, weights=weight)
+    return east, ~east, south, ~south
+
+
+def _fitted(light: FloatStack, shape: FloatStack) -> tuple[float, float]:
+    """Return the strength that explains light (K, N) by the shape, and its standard error.
+
+    Frames and cells count by how little is left in them: shade that moves over some of the view, or
+    through some of the frames, must not hide what the others show.
+    """
+    by_frame, by_cell = (
+        np.ones((len(light), 1), np.float32),
+        np.ones((1, light.shape[1]), np.float32),
+    )
+    strength, error = 0.0, np.inf
     for _ in range(ROUNDS):
+        change, expected = (_centred(each, by_frame, by_cell) for each in (light, shape))
+        weight = by_frame * by_cell
+        power = max(float((weight * expected**2).sum()), 1e-9)
         # A few samples that are far off (a vehicle, an error of place) must not decide. Far off the
         # fit: a drone that hovered and then looked aside has few samples that the hot spot changed.
         rest = change - strength * expected
         most = FARTHEST * 1.48 * float(np.median(np.abs(rest)))
         rest = np.clip(rest, -most, most)
-        strength += float((rest * expected).sum()) / power
-    error = float(np.sqrt(ALIKE * np.mean(rest**2) / power))
-    return HotSpot(strength, error)
+        strength += float((weight * rest * expected).sum()) / power
+        error = float(np.sqrt(ALIKE * (weight * rest**2).mean() / weight.mean() / power))
+        by_frame = _weights(rest**2 * by_cell, 1)
+        by_cell = _weights(rest**2 * by_frame, 0)
+    return strength, error
 
 
-def _centred(values: FloatStack) -> FloatStack:
-    values = values - values.mean(axis=0)
-    centred: FloatStack = values - values.mean(axis=1, keepdims=True)
+def _weights(squares: FloatStack, axis: int) -> FloatStack:
+    """Return weights along the other axis, 1 on average; those that fit best count no more than
+    EVEN times as much as usual ones."""
+    variance = squares.mean(axis=axis, keepdims=True)
+    weight = 1.0 / np.maximum(variance, max(float(np.median(variance)) / EVEN, 1e-12))
+    weights: FloatStack = (weight / weight.mean()).astype(np.float32)
+    return weights
+
+
+def _centred(values: FloatStack, by_frame: FloatStack, by_cell: FloatStack) -> FloatStack:
+    values = values - (by_frame * values).mean(axis=0) / by_frame.mean()
+    centred: FloatStack = values - (by_cell * values).mean(axis=1, keepdims=True) / by_cell.mean()
     return centred
