@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from recon.forecast.advection import ADVECTION
+from recon.forecast.dense_flow import DENSE_FLOW
 from recon.forecast.forecaster import Forecaster
 from recon.forecast.global_shift import GLOBAL_SHIFT, moved_on
 from recon.forecast.hindcast import right_shares
@@ -33,6 +34,7 @@ FORECASTERS: Mapping[str, Forecaster] = MappingProxyType(
     {
         "advection": ADVECTION,
         "global_shift": GLOBAL_SHIFT,
+        "dense_flow": DENSE_FLOW,
         "persistence": PERSISTENCE,
         "climatology": CLIMATOLOGY,
     }

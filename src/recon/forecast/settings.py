@@ -113,6 +113,9 @@ class ForecastSettings:
     """As `soft_edge`, of shadows that are followed: they keep their edges, less so with the lead,
     and least where another place must stand for the one upwind."""
 
+    flow_over_s: float = 15.0
+    """Between the two maps that dense flow is read from: shadows move 10 to 40 cells in it."""
+
     shade_scale_m: float = 2_500.0
     """Distance at which the nearest seen shade shows half as much of the sun as shade that is
     followed. Fitted, as the next, to Brier scores under the scenarios' skies, seeds 0 to 7."""

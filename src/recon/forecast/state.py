@@ -85,6 +85,8 @@ class ForecastState:
     agreement: Agreement | None = None
     """Of all recent pairs of maps."""
     likeness: Likeness | None = None
+    recent: tuple[ShadeMap, ...] = ()
+    """Whole maps, oldest first."""
     issued: tuple[IssuedForecast, ...] = ()
     """Oldest first."""
     compared: Mapping[float, Comparison] = field(default_factory=dict)

@@ -38,7 +38,7 @@ describe("the light at a place in words", () => {
 
 const done = (value: SunAtView): Outcome<SunAtView> => ({ kind: "answered", value });
 
-/** A source that answers when told to. */
+/** A source that answers when asked to. */
 function asked() {
   const waiting: ((outcome: Outcome<SunAtView>) => void)[] = [];
   const sunAt = vi.fn(
