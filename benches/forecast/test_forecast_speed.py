@@ -68,4 +68,4 @@ def test_the_next_change_of_150_by_150_cells(capsys: pytest.CaptureFixture[str])
         taken_s.append(process_time() - start)
     with capsys.disabled():
         print(f"\nnext change, {MEMBERS} members, 150x150 cells, 120 s: {np.median(taken_s):.2f} s")
-    assert change.is_foreseen.any()
+    assert change.is_predicted.any()

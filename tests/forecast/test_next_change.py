@@ -49,7 +49,7 @@ def test_shade_comes_when_its_edge_has_moved_so_far_and_sun_when_it_has_passed()
     ahead_m = np.where(change.is_sunlit, EAST_M + 60.0, EAST_M + 120.0)
     true_s = ahead_m / SPEED_MPS
     coming = (EAST_M > -120.0) & (true_s < 55.0)
-    assert change.is_foreseen[coming].all()
+    assert change.is_predicted[coming].all()
     assert np.abs(change.after_s - true_s)[coming].max() <= 1.5 * STEP_S
     assert (change.early_s <= change.after_s)[coming].all()
     assert (change.after_s <= change.late_s)[coming].all()
@@ -85,9 +85,9 @@ def test_the_chance_is_the_share_of_members_that_see_a_change() -> None:
     ],
     ids=["no motion", "a clear view", "nothing seen"],
 )
-def test_nothing_is_foreseen(shade: ShadeMap, velocity_mps: tuple[float, float] | None) -> None:
+def test_nothing_is_predicted(shade: ShadeMap, velocity_mps: tuple[float, float] | None) -> None:
     change = found(shade, velocity_mps)
-    assert not change.is_foreseen.any()
+    assert not change.is_predicted.any()
     assert (change.chance == 0.0).all()
 
 
@@ -97,7 +97,7 @@ def test_off_the_map_nothing_is_known() -> None:
     change = next_change(shade, forecast(shade, (SPEED_MPS, 0.0)), away, SETTINGS)
     assert not change.is_sunlit.any()
     assert (change.horizon_s == 0.0).all()
-    assert not change.is_foreseen.any()
+    assert not change.is_predicted.any()
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -115,7 +115,7 @@ def test_it_follows_from_a_methods_own_forecast(seed: int) -> None:
         true_s[np.isinf(true_s) & differs] = lead_s
     came = np.isfinite(true_s) & (true_s <= change.horizon_s)
     assert came.sum() > 1_000
-    assert change.is_foreseen[came].mean() > 0.9
-    assert np.median(np.abs(change.after_s - true_s)[came & change.is_foreseen]) <= STEP_S
-    false = change.is_foreseen & (true_s > change.horizon_s + 15.0)
-    assert false.sum() < 0.1 * change.is_foreseen.sum()
+    assert change.is_predicted[came].mean() > 0.9
+    assert np.median(np.abs(change.after_s - true_s)[came & change.is_predicted]) <= STEP_S
+    false = change.is_predicted & (true_s > change.horizon_s + 15.0)
+    assert false.sum() < 0.1 * change.is_predicted.sum()

@@ -119,9 +119,11 @@ def test_ranges_and_the_parts_are_the_whole(
     assert len(Calibration().sunlit) == BINS
 
 
-def changes(foreseen_s: list[float], horizon_s: float = 60.0, is_sunlit: bool = True) -> NextChange:
-    """Times to shade that are foreseen; NaN where none is."""
-    after_s = np.array(foreseen_s)
+def changes(
+    predicted_s: list[float], horizon_s: float = 60.0, is_sunlit: bool = True
+) -> NextChange:
+    """Times to shade that are predicted; NaN where none is."""
+    after_s = np.array(predicted_s)
     count = len(after_s)
     chance = np.isfinite(after_s).astype(np.float64)
     lit = np.full(count, is_sunlit)
@@ -132,15 +134,15 @@ NEVER = np.inf
 
 
 def test_times_to_shade_are_scored_as_counted_by_hand() -> None:
-    foreseen_s = [20.0, 30.0, 40.0, 50.0, np.nan, np.nan]
+    predicted_s = [20.0, 30.0, 40.0, 50.0, np.nan, np.nan]
     true_s = [20.0, 42.0, 74.0, 76.0, 30.0, NEVER]
-    found = score_change(changes(foreseen_s), np.array(true_s))
+    found = score_change(changes(predicted_s), np.array(true_s))
     # The third comes within the grace after the horizon, the fourth too late for it.
-    assert (found.foreseen, found.false_alarms, found.came, found.missed) == (4, 1, 3, 1)
+    assert (found.predicted, found.false_alarms, found.came, found.missed) == (4, 1, 3, 1)
     assert [i for i, n in enumerate(found.errors) if n] == [0, 2, 6]
     assert found.median_error_s == 12.5
     twice = found + found
-    assert (twice.foreseen, twice.median_error_s) == (8, 12.5)
+    assert (twice.predicted, twice.median_error_s) == (8, 12.5)
 
 
 def test_cells_in_shade_or_with_no_view_ahead_do_not_count() -> None:
@@ -151,8 +153,8 @@ def test_cells_in_shade_or_with_no_view_ahead_do_not_count() -> None:
 
 
 @given(arrays(np.float64, 12, elements=st.floats(0.0, 200.0)), st.floats(5.0, 100.0))
-def test_what_is_foreseen_as_it_comes_is_no_error(true_s: FloatArray, horizon_s: float) -> None:
+def test_what_is_predicted_as_it_comes_is_no_error(true_s: FloatArray, horizon_s: float) -> None:
     known_s = np.where(true_s <= horizon_s, true_s, np.nan)
     found = score_change(changes(known_s.tolist(), horizon_s), true_s)
     assert (found.false_alarms, found.missed) == (0, 0)
-    assert found.foreseen == found.came == sum(found.errors) == found.errors[0]
+    assert found.predicted == found.came == sum(found.errors) == found.errors[0]

@@ -99,6 +99,10 @@ COMMANDS = {
         "detect:detect_command",
         "Find shade in a recorded flight: GeoTIFFs, a contact sheet, cover over time.",
     ),
+    "verify": CommandSource(
+        "verify:verify_command",
+        "Run all forecast methods over recorded maps and compare them with what came.",
+    ),
     "inspect": CommandSource("inspect:inspect_command", "Print the packets of a captured stream."),
     "openapi": CommandSource("run:openapi_command", "Print the API's OpenAPI document."),
 }

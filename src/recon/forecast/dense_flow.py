@@ -1,7 +1,7 @@
 """A baseline: every place has a motion of its own, read from two maps, and shadows follow it.
 
 Dense optical flow (T. Kroeger et al., Fast Optical Flow using Dense Inverse Search, ECCV 2016, as
-OpenCV has it) between two maps a quarter of a minute apart; where the maps are even it says
+OpenCV has it) between two maps a quarter of a minute apart; where the maps are even it shows
 nothing, so it is averaged with weights of the slopes of shade. Shadows then follow it backwards in
 steps from each cell (semi-Lagrangian advection; U. Germann and I. Zawadzki, Monthly Weather Review
 130, 2002). Without an earlier map, or without slopes, the forecast is that of `persistence`.

@@ -24,7 +24,7 @@ FloatArray = npt.NDArray[np.float64]
 MEMBERS = 20
 STEP_S = 5.0
 CHANGED_SHARE = 0.5
-"""Of the members, for a change to be foreseen."""
+"""Of the members, for a change to be predicted."""
 SPREAD = 0.1, 0.9
 SEED = 12
 WIDEST = 30_000
@@ -42,13 +42,13 @@ class NextChange:
     chance: FloatArray
     """Of a change before the horizon."""
     after_s: FloatArray
-    """Median time until then; NaN where none is foreseen."""
+    """Median time until then; NaN where none is predicted."""
     early_s: FloatArray
     late_s: FloatArray
     """SPREAD of that time."""
 
     @property
-    def is_foreseen(self) -> MaskMap:
+    def is_predicted(self) -> MaskMap:
         """Return where a change is likelier than none before the horizon."""
         return np.isfinite(self.after_s)
 
@@ -58,7 +58,7 @@ def next_change(
 ) -> NextChange:
     """Return the next change of light of `cells` (N, 2), rows and columns of the map.
 
-    `sun` is the forecast from the map. Without a motion, and off the map, nothing is foreseen.
+    `sun` is the forecast from the map. Without a motion, and off the map, nothing is predicted.
     """
     rows, cols = cells[:, 0], cells[:, 1]
     is_on = (rows >= 0) & (rows < shade.grid.rows) & (cols >= 0) & (cols < shade.grid.cols)

@@ -1,7 +1,7 @@
-"""Figures of foreseen times to shade against the true sky, as sums that add up over forecasts.
+"""Figures of predicted times to shade against the true sky, as sums that add up over forecasts.
 
 Counted are cells that are in sun on the map, as far ahead as their clouds are seen coming. A false
-alarm is shade that was foreseen and does not come until `GRACE_S` after that.
+alarm is shade that was predicted and does not come until `GRACE_S` after that.
 """
 
 from dataclasses import dataclass
@@ -20,18 +20,18 @@ GRACE_S = 15.0
 class ChangeScore:
     """Sums over cells; they add up over forecasts."""
 
-    foreseen: int = 0
+    predicted: int = 0
     false_alarms: int = 0
     came: int = 0
-    """Cells that shade came over in time to be foreseen."""
+    """Cells that shade came over in time to be predicted."""
     missed: int = 0
-    """Of these, without having been foreseen."""
+    """Of these, without having been predicted."""
     errors: tuple[int, ...] = (0,) * BINS
-    """Counts of the error of the time, where shade was foreseen and came, in bins of `BIN_S`."""
+    """Counts of the error of the time, where shade was predicted and came, in bins of `BIN_S`."""
 
     def __add__(self, other: "ChangeScore") -> "ChangeScore":
         return ChangeScore(
-            self.foreseen + other.foreseen,
+            self.predicted + other.predicted,
             self.false_alarms + other.false_alarms,
             self.came + other.came,
             self.missed + other.missed,
@@ -50,15 +50,15 @@ class ChangeScore:
 def score_change(found: NextChange, true_s: FloatArray) -> ChangeScore:
     """Return the score of N cells; `true_s` (N,) is when shade truly comes, infinite if never."""
     counted = found.is_sunlit & (found.horizon_s > 0.0)
-    foreseen = counted & found.is_foreseen
-    false = foreseen & (true_s > found.horizon_s + GRACE_S)
+    predicted = counted & found.is_predicted
+    false = predicted & (true_s > found.horizon_s + GRACE_S)
     came = counted & (true_s <= found.horizon_s)
-    errors_s = np.abs(found.after_s - true_s)[foreseen & ~false]
+    errors_s = np.abs(found.after_s - true_s)[predicted & ~false]
     bins = np.minimum(errors_s / BIN_S, BINS - 1).astype(np.intp)
     return ChangeScore(
-        foreseen=int(foreseen.sum()),
+        predicted=int(predicted.sum()),
         false_alarms=int(false.sum()),
         came=int(came.sum()),
-        missed=int((came & ~foreseen).sum()),
+        missed=int((came & ~predicted).sum()),
         errors=tuple(map(int, np.bincount(bins, minlength=BINS))),
     )

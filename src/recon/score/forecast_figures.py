@@ -32,11 +32,13 @@ class Calibration:
     """Sum of probabilities."""
     sunlit: tuple[int, ...] = (0,) * BINS
     """In truth."""
+    cells: tuple[int, ...] = (0,) * BINS
 
     def __add__(self, other: "Calibration") -> "Calibration":
         return Calibration(
             tuple(map(sum, zip(self.predicted, other.predicted, strict=True))),
             tuple(map(sum, zip(self.sunlit, other.sunlit, strict=True))),
+            tuple(map(sum, zip(self.cells, other.cells, strict=True))),
         )
 
     @property
@@ -107,4 +109,5 @@ def _calibration(chances: FloatArray, truth: MaskMap) -> Calibration:
 
     predicted = np.bincount(number, chances, minlength=BINS)
     sunlit = np.bincount(number, truth.astype(np.float64), minlength=BINS)
-    return Calibration(tuple(predicted.tolist()), tuple(map(int, sunlit)))
+    cells = np.bincount(number, minlength=BINS)
+    return Calibration(tuple(predicted.tolist()), tuple(map(int, sunlit)), tuple(map(int, cells)))

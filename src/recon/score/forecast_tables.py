@@ -79,7 +79,7 @@ def _changes(runs: Sequence[RunScore]) -> str:
     error = NOTHING if error_s is None else plain(error_s)
     rows = [
         ("median error, s", error, NOTHING, f"{len(runs)}"),
-        share("false alarms, %", [f.false_alarms for f in found], [f.foreseen for f in found]),
+        share("false alarms, %", [f.false_alarms for f in found], [f.predicted for f in found]),
         share("missed, %", [f.missed for f in found], [f.came for f in found]),
     ]
     return table(("time to shade, within the horizon", "figure", "95 %", "runs"), rows)

@@ -2164,7 +2164,7 @@ export interface components {
         SunAtView: {
             /**
              * Change After S
-             * @description median time until the light changes; null where no change is foreseen
+             * @description median time until the light changes; null where no change is predicted
              */
             change_after_s: number | null;
             /**

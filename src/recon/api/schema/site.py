@@ -158,7 +158,7 @@ class SunAtView(Message):
     )
     change_chance: float = Field(description="of a change of light within `known_ahead_s`")
     change_after_s: float | None = Field(
-        description="median time until the light changes; null where no change is foreseen"
+        description="median time until the light changes; null where no change is predicted"
     )
     change_early_s: float | None = Field(description="exceeded in nine of ten cases")
     change_late_s: float | None = Field(description="not exceeded in nine of ten cases")

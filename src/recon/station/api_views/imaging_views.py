@@ -143,7 +143,7 @@ def sun_at_view(
     change = next_change(shade, sun, np.array([cell]), station.settings.forecast)
     age_s = ns_to_seconds(now_ns - shade.captured_at_ns)
     after_s, early_s, late_s = (
-        max(0.0, float(each[0]) - age_s) if change.is_foreseen[0] else None
+        max(0.0, float(each[0]) - age_s) if change.is_predicted[0] else None
         for each in (change.after_s, change.early_s, change.late_s)
     )
     return schema.SunAtView(
