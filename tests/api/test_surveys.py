@@ -241,6 +241,20 @@ class TestShade:
         is_predicted = float(nearest_s) <= 300.0
         assert (drawn[..., 3] == 255).any() == is_predicted
 
+    def test_beyond_the_horizon_the_estimate_is_drawn_under_the_hatching(
+        self, client: Client, station: FakeStation
+    ) -> None:
+        """And nothing under it where nothing was seen."""
+        shade, sun = found()
+        put(station, shade, replace(sun, horizon_s=np.where(shade.valid, 0.0, np.nan).astype("f4")))
+        for lead_s, drawn in ((0.0, 1.0), (600.0, 1.0)):
+            picture = decoded(client.get("/api/forecast.png", params={"lead_s": lead_s}).content)
+            cells = (picture[..., 3] > 0).reshape(3, 8, 4, 8).mean(axis=(1, 3))
+            assert (cells[:2] == drawn).all()
+            assert (cells[2] == 0.25).all()
+            greys = (picture[..., :3] == 120).all(axis=2).reshape(3, 8, 4, 8).mean(axis=(1, 3))
+            assert (greys[:2] == (0.25 if lead_s else 0.0)).all()
+
     @pytest.mark.parametrize(
         ("east_m", "north_m", "light"),
         [

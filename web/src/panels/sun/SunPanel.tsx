@@ -72,7 +72,14 @@ function ShadeStatus(props: { line: ShadeLineView }) {
       <Show when={props.line.reference}>
         {(text) => <p class="muted wire-text">Land in full sun: {text()}.</p>}
       </Show>
-      <Show when={props.line.forecast}>{(forecast) => <ForecastLead forecast={forecast()} />}</Show>
+      <Show when={props.line.forecast}>
+        {(forecast) => (
+          <>
+            <ForecastLead forecast={forecast()} />
+            <ForecastLegend />
+          </>
+        )}
+      </Show>
       <Show when={problem()}>
         {(text) => (
           <p class="problem wire-text">
@@ -134,6 +141,35 @@ function ForecastLead(props: { forecast: ForecastView }) {
           overlay.show("forecast");
         }}
       />
+      <LeadScale leads={props.forecast.lead_s} />
     </label>
+  );
+}
+
+/** The first, middle and last lead, where the slider has them. */
+function LeadScale(props: { leads: readonly number[] }) {
+  const ticks = () => {
+    const last = props.leads.length - 1;
+    return [0, Math.round(last / 2), last].map((index) => props.leads[index] ?? 0);
+  };
+  return (
+    <span class="lead-scale muted" aria-hidden="true">
+      <For each={ticks()}>
+        {(lead_s) => <span>{lead_s === 0 ? "now" : `${lead_s / 60} min`}</span>}
+      </For>
+    </span>
+  );
+}
+
+/** The forecast's colours and pattern on the map. */
+function ForecastLegend() {
+  return (
+    <p class="forecast-legend">
+      <span>shade</span>
+      <span class="forecast-ramp" aria-hidden="true" />
+      <span>sun</span>
+      <span class="light-swatch is-unknown" aria-hidden="true" />
+      <span>estimate: its clouds are not in view</span>
+    </p>
   );
 }

@@ -65,6 +65,16 @@ describe("sun and shade", () => {
     expect(page.root.textContent).toContain("Shadows move towards 079° at 5.1\u00a0m/s.");
   });
 
+  it("has a scale on the slider and a legend beside it", () => {
+    show();
+    const scale = [...page.root.querySelectorAll(".lead-scale span")].map((s) => s.textContent);
+    const leads = shadeLine().forecast?.lead_s ?? [];
+    expect(scale[0]).toBe("now");
+    expect(scale[2]).toBe(`${(leads.at(-1) ?? 0) / 60} min`);
+    expect(find(page.root, ".forecast-legend").textContent).toContain("clouds are not in view");
+    expect(find(page.root, "label.sun-lead").textContent).not.toContain("estimate");
+  });
+
   it("claims neither a motion nor a record that it does not have", () => {
     const forecast = shadeLine().forecast;
     if (forecast === null) throw new Error("expected a forecast in the fake state");
