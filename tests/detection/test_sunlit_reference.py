@@ -184,8 +184,13 @@ class TestFlatScenes:
     def test_a_hot_spot_is_believed_only_with_a_small_error(self) -> None:
         assert HotSpot(0.4, 0.05, 0.3, 0.5).scene is FlatScene.UNKNOWN
         assert HotSpot(0.3, 0.02, 0.2, 0.4).scene is FlatScene.SUN
-        assert HotSpot(0.0, 0.02, -0.05, 0.05).scene is FlatScene.SHADE
+        assert HotSpot(0.0, 0.01, -0.05, 0.05).scene is FlatScene.SHADE
         assert HotSpot(0.08, 0.02, 0.05, 0.11).scene is FlatScene.UNKNOWN
+        assert HotSpot(0.0, 0.03, -0.05, 0.05).scene is FlatScene.UNKNOWN
+
+    def test_a_weak_hot_spot_is_one(self) -> None:
+        """Over bright soil a tone curve leaves half of what crops have."""
+        assert HotSpot(0.09, 0.003, 0.08, 0.10).scene is FlatScene.SUN
 
     def test_a_hot_spot_is_believed_only_with_all_its_sides(self) -> None:
         assert HotSpot(0.3, 0.02, 0.05, 0.4).scene is FlatScene.UNKNOWN

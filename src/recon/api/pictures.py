@@ -71,7 +71,7 @@ def shade_values_png(shade: ShadeMap) -> bytes:
 def forecast_png(sun: SunForecast, lead_s: float) -> bytes:
     """Return the probability of sun at a lead as a picture; beyond a cell's horizon hatched.
 
-    The hatching is over the estimate; where nothing was seen there is none under it.
+    The hatching is over the estimate; where nothing was seen it is alone.
     """
     share, is_known = _predicted(sun, lead_s)
     return _shares_png(share, np.isfinite(sun.horizon_s), ~is_known)

@@ -30,9 +30,10 @@ BRIGHTEST = 0.7
 """Linear light (level 217) above which tone curves flatten: dry soil in full sun hides it."""
 WORST_ERROR = 0.04
 """Largest standard error of a strength that is believed: moving edges of shade give larger ones."""
-ABOVE_SHADE, BELOW_SUN = 0.06, 0.10
-"""Strengths that a view in shade stays below, and one in sun above: crops have 0.2 to 0.6, of
-which the coarse cells show two thirds."""
+BETWEEN = 0.06
+"""The strength that a view in shade stays below, and one in sun above. Crops have 0.2 to 0.6, of
+which the coarse cells show half at least, and less where a tone curve flattens; shade shows 0.00 to
+0.02."""
 ROUNDS, FARTHEST, EVEN = 5, 3.0, 4.0
 """Of the fit; standard deviations at which a sample is cut off; bound of the weights."""
 SURE = 3.0
@@ -64,9 +65,9 @@ class HotSpot:
         if self.standard_error > WORST_ERROR:
             return FlatScene.UNKNOWN
         margin = SURE * self.standard_error
-        if self.strength - margin > ABOVE_SHADE and self.least > ABOVE_SHADE:
+        if self.strength - margin > BETWEEN and self.least > BETWEEN:
             return FlatScene.SUN
-        if self.strength + margin < BELOW_SUN and self.most < BELOW_SUN:
+        if self.strength + margin < BETWEEN and self.most < BETWEEN:
             return FlatScene.SHADE
         return FlatScene.UNKNOWN
 
