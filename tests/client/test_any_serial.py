@@ -61,7 +61,7 @@ async def station_with(serial: str) -> AsyncIterator[str]:
 def test_every_request_reaches_the_vehicle(serial: str) -> None:
     async def main() -> None:
         async with station_with(serial) as url, Station(url) as station:
-            vehicle = await station.vehicle(next(iter(await shown(url))))
+            vehicle = await station.vehicle(next(iter(await shown(url))), timeout_s=120.0)
             assert (await vehicle.preflight()).serial == vehicle.serial
             assert await vehicle.take() is None
             assert await vehicle.override_preflight("a test") is None
