@@ -9,7 +9,7 @@ from recon.model.imagery import RgbImage
 from recon.score.forecast_figures import Calibration
 
 SIDE_PX, MARGIN_PX, LEGEND_PX = 480, 64, 190
-PAPER, INK, GRID = (255, 255, 255), (40, 40, 40), (210, 210, 210)
+INK, GRID = (40, 40, 40), (210, 210, 210)
 # Okabe and Ito's colours, which colour-blind eyes tell apart; here in red, green, blue.
 COLOURS = ((0, 114, 178), (213, 94, 0), (0, 158, 115), (204, 121, 167), (86, 180, 233), (0, 0, 0))
 FEWEST = 50

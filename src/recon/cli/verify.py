@@ -17,7 +17,7 @@ from recon.forecast import FORECASTERS
 from recon.model.errors import ReconError, RecordError
 from recon.model.shade import ShadeMap
 from recon.model.units import seconds_to_ns
-from recon.record.map_sequence import RecordedMap, map_files, read_map
+from recon.record.map_sequence import RecordedMap, captured_utc, map_files, read_map
 from recon.score.forecast_figures import Calibration, LeadScore, SeenCells
 from recon.score.forecast_scoring import ForecastKey
 from recon.score.settings import SCORE
@@ -45,7 +45,7 @@ def verify_command(
         if step_s is not None and not 0.1 <= step_s <= 86_400.0:
             raise RecordError(f"--step-s: expected 0.1 to 86400 seconds, got {step_s:g}")
         files = map_files(folder)
-        step_s = step_s or _step_s(files, sun, shade)
+        step_s = step_s or _step_s(files)
         scale = time_scale(step_s)
         maps = _maps(files, step_s / scale, sun, shade)
         sums = verified(maps, tuple(FORECASTERS), step_s / scale)
@@ -58,11 +58,10 @@ def verify_command(
         raise typer.Exit(WRONG_USE) from None
 
 
-def _step_s(files: Sequence[Path], sun: float, shade: float) -> float:
+def _step_s(files: Sequence[Path]) -> float:
     """Return the usual time between maps, from the times in them."""
-    times = [each.captured_utc for each in (read_map(path, sun, shade) for path in files)]
-    known = [each for each in times if each is not None]
-    if len(known) < len(times):
+    known = [each for each in map(captured_utc, files) if each is not None]
+    if len(known) < len(files):
         raise RecordError(f"{files[0].parent}: expected --step-s, for not all maps have a time")
     gaps_s = np.diff([datetime.timestamp(each) for each in known])
     usual_s = float(np.median(gaps_s))

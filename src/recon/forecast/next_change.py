@@ -110,7 +110,7 @@ class _Members:
         shade: ShadeMap, velocity_mps: tuple[float, float], settings: ForecastSettings
     ) -> "_Members":
         normal, error = _drawn()
-        velocity = np.array(velocity_mps) + settings.velocity_sigma_mps * normal
+        velocity = np.array(velocity_mps) + settings.least_spread_mps * normal
         right, down = (velocity / shade.grid.cell_m * (1.0, -1.0)).astype(np.float32).T
         return _Members(
             shade.transmittance[nearest_seen(shade.valid)],

@@ -64,9 +64,6 @@ class ForecastSettings:
     """Slower pairs are ignored: they show the ground's pattern in the maps, or persistence is as
     good."""
 
-    velocity_sigma_mps: float = 0.3
-    """Standard deviation of the members' velocities, each component: as the found motion errs."""
-
     fastest_mps: float = 30.0
     """Search limit: high clouds move at 18 m/s."""
 

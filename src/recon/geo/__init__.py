@@ -4,7 +4,7 @@ Lengths are metres; local coordinates are east, north, up of the site's origin. 
 and return (N, 2) or (N, 3) float64; NaN or infinity gives the safe answer, never an exception.
 """
 
-from recon.geo.grid_cells import cell_centres_m, nearest_cells
+from recon.geo.grid_cells import cell_at, cell_centres_m, nearest_cells
 from recon.geo.local_frame import (
     OnGlobe,
     TangentPlane,
@@ -31,6 +31,7 @@ __all__ = [
     "SunPosition",
     "Surface",
     "TangentPlane",
+    "cell_at",
     "cell_centres_m",
     "corner_hulls",
     "enu_from_geo",

@@ -1,6 +1,7 @@
 """Cells of ground grids: where their centres are, and which cell of another grid is there."""
 
 from functools import lru_cache
+from math import floor
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +18,13 @@ def cell_centres_m(grid: GroundGrid) -> tuple[FloatArray, FloatArray]:
     east_m = grid.west_m + (np.arange(grid.cols, dtype=np.float64) + 0.5) * grid.cell_m
     north_m = grid.north_m - (np.arange(grid.rows, dtype=np.float64) + 0.5) * grid.cell_m
     return east_m, north_m
+
+
+def cell_at(grid: GroundGrid, east_m: float, north_m: float) -> tuple[int, int]:
+    """Return row and column of a place; beyond the grid too."""
+    return floor((grid.north_m - north_m) / grid.cell_m), floor(
+        (east_m - grid.west_m) / grid.cell_m
+    )
 
 
 @lru_cache(maxsize=32)

@@ -20,6 +20,8 @@ from recon.model.geo import LocalFrame
 from recon.model.imagery import GroundImage
 
 TILE_SIDE_PX = 256
+CAPTURED_UTC_TAG = "RECON_CAPTURED_UTC"
+"""ISO 8601."""
 
 
 def projected_crs(frame: LocalFrame) -> str:
@@ -112,7 +114,7 @@ def _tags(image: GroundImage, captured_utc: str | None, rms_px: float | None) ->
     if image.registration_residual_m is not None:
         tags["RECON_REGISTRATION_RESIDUAL_M"] = f"{image.registration_residual_m:.3f}"
     if captured_utc is not None:
-        tags["RECON_CAPTURED_UTC"] = captured_utc
+        tags[CAPTURED_UTC_TAG] = captured_utc
     if rms_px is not None:
         tags["RECON_MARKED_FRAME_RMS_PX"] = f"{rms_px:.3f}"
     return tags

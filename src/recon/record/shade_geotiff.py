@@ -5,7 +5,7 @@ from rasterio.io import MemoryFile
 from rasterio.transform import Affine
 
 from recon.model.shade import ShadeMap
-from recon.record.geotiff import projected_crs
+from recon.record.geotiff import CAPTURED_UTC_TAG, projected_crs
 
 
 def shade_cog_bytes(shade: ShadeMap, captured_utc: str | None = None) -> bytes:
@@ -32,5 +32,5 @@ def shade_cog_bytes(shade: ShadeMap, captured_utc: str | None = None) -> bytes:
             dataset.set_band_description(1, "transmittance")
             dataset.set_band_description(2, "confidence")
             if captured_utc is not None:
-                dataset.update_tags(RECON_CAPTURED_UTC=captured_utc)
+                dataset.update_tags(**{CAPTURED_UTC_TAG: captured_utc})
         return bytes(memory.read())

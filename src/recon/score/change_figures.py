@@ -1,7 +1,7 @@
 """Figures of predicted times to shade against the true sky, as sums that add up over forecasts.
 
 Counted are cells that are in sun on the map, as far ahead as their clouds are seen coming. A false
-alarm is shade that was predicted and does not come until `GRACE_S` after that.
+alarm is shade that was predicted and does not come until `GRACE_S` after the horizon.
 """
 
 from dataclasses import dataclass

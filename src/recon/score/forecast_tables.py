@@ -13,9 +13,8 @@ from recon.score.table_rows import (
     Row,
     fine,
     finest,
-    formatted,
-    percent,
     plain,
+    share,
     table,
 )
 
@@ -71,9 +70,6 @@ def _of_method(runs: Sequence[RunScore], method: str) -> str:
 
 def _changes(runs: Sequence[RunScore]) -> str:
     found = [run.changes for run in runs]
-
-    def share(name: str, parts: Sequence[int], of: Sequence[int]) -> Row:
-        return formatted(name, ratio(list(zip(parts, of, strict=True))), percent, 1.0)
 
     error_s = sum(found, ChangeScore()).median_error_s
     error = NOTHING if error_s is None else plain(error_s)

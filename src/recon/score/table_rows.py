@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from math import inf
 
-from recon.score.interval import Interval, interval, times
+from recon.score.interval import Interval, interval, ratio, times
 
 Row = tuple[str, ...]
 NOTHING = "-"
@@ -24,6 +24,11 @@ def formatted(
     if found is None:
         return name, NOTHING, NOTHING, "0"
     return name, text(found.mean), bounds(found, text, most), f"{found.count}"
+
+
+def share(name: str, parts: Sequence[float], of: Sequence[float]) -> Row:
+    """Return the row of a share in per cent, over all runs together."""
+    return formatted(name, ratio(list(zip(parts, of, strict=True))), percent, 1.0)
 
 
 def time(name: str, values: Sequence[float | None], limit_s: float) -> Row:

@@ -16,6 +16,7 @@ from recon.score.table_rows import (
     percent,
     plain,
     row,
+    share,
     table,
     time,
 )
@@ -80,9 +81,6 @@ def _shade(runs: Sequence[RunScore]) -> str:
     known = [figure.known for figure in figures]
     places = [run.registration_m for run in runs if run.registration_m is not None]
     longest_s = max((run.simulated_s for run in runs), default=0.0)
-
-    def share(name: str, parts: Sequence[float], of: Sequence[float]) -> Row:
-        return formatted(name, ratio(list(zip(parts, of, strict=True))), percent, 1.0)
 
     rows = [
         _overlaps("shade IoU", [f.shade for f in figures]),

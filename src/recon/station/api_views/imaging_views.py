@@ -1,14 +1,13 @@
 """Ground images, shade and the forecast of sun, as the API sends them."""
 
 from collections.abc import Mapping
-from math import floor
 from typing import Literal
 
 import numpy as np
 
 from recon.api import schema
 from recon.forecast import next_change, right_shares
-from recon.geo import enu_from_point, geo_from_enu
+from recon.geo import cell_at, enu_from_point, geo_from_enu
 from recon.model.geo import GeoPoint, GroundGrid
 from recon.model.shade import MaskMap, ShadeMap, SunForecast
 from recon.model.units import ns_to_seconds
@@ -134,13 +133,15 @@ def sun_at_view(
     shade, sun = line.shade, line.sun
     if shade is None or sun is None:
         return None
-    cell = _cell_at(shade.grid, place_deg)
-    row, col = cell
+    frame = shade.grid.frame
+    ground = GeoPoint(*place_deg, frame.origin.ellipsoid_height_m)
+    east_m, north_m, _up_m = enu_from_point(frame, ground).tolist()
+    row, col = cell_at(shade.grid, east_m, north_m)
     is_on = 0 <= row < shade.grid.rows and 0 <= col < shade.grid.cols
     light: Literal["sun", "shade", "unknown"] = "unknown"
     if is_on and shade.valid[row, col]:
         light = "sun" if shade.is_sunlit[row, col] else "shade"
-    change = next_change(shade, sun, np.array([cell]), station.settings.forecast)
+    change = next_change(shade, sun, np.array([(row, col)]), station.settings.forecast)
     age_s = ns_to_seconds(now_ns - shade.captured_at_ns)
     after_s, early_s, late_s = (
         max(0.0, float(each[0]) - age_s) if change.is_predicted[0] else None
@@ -154,16 +155,6 @@ def sun_at_view(
         change_after_s=after_s,
         change_early_s=early_s,
         change_late_s=late_s,
-    )
-
-
-def _cell_at(grid: GroundGrid, place_deg: tuple[float, float]) -> tuple[int, int]:
-    """Return row and column of a latitude and longitude; beyond the grid too."""
-    latitude_deg, longitude_deg = place_deg
-    ground = GeoPoint(latitude_deg, longitude_deg, grid.frame.origin.ellipsoid_height_m)
-    east_m, north_m, _up_m = enu_from_point(grid.frame, ground).tolist()
-    return floor((grid.north_m - north_m) / grid.cell_m), floor(
-        (east_m - grid.west_m) / grid.cell_m
     )
 
 
