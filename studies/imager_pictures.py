@@ -11,7 +11,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from recon.camera import TelemetryReference, level_pose
+from recon.camera import TelemetryReference, mounted_pose
 from recon.sim.camera.field import FieldRenderer
 from recon.sim.camera.frames import CameraView
 from recon.sim.world import LayerSettings, Sky, SkySettings
@@ -37,7 +37,7 @@ def shot(height_m: float, east_m: float, north_m: float, cover: float, time_s: f
         imager.camera, imager.image_circle, SEED, Sky(SkySettings(SEED, layers=(clouds,)))
     )
     reference = TelemetryReference(0.0, 0.0, height_m, 15.0)
-    pose = level_pose(reference, np.array([east_m, north_m, height_m]))
+    pose = mounted_pose(reference, np.array([east_m, north_m, height_m]))
     picture = frames.render(CameraView(time_s, 0, pose))[frames.lens.window]
     return cv2.resize(picture, (SIDE_PX, SIDE_PX), interpolation=cv2.INTER_AREA)
 

@@ -21,7 +21,7 @@ from tests.camera.registered_scenes import displacements_m
 from tests.real_footage.footage import FootageSettings, footage
 from tests.real_footage.places import PLACES, load_place
 
-from recon.camera import TelemetryReference, decode_frame, decode_jpeg, level_pose
+from recon.camera import TelemetryReference, decode_frame, decode_jpeg, mounted_pose
 from recon.camera.registration import (
     LensView,
     RegistrationSettings,
@@ -90,7 +90,7 @@ def rendered(seed: int, hover: HoverSettings, cover: float, count: int) -> tuple
     sky = Sky(SkySettings(seed, layers=layers))
     settings = CameraSettings(seed, hover=hover)
     renderer = FieldRenderer(imager.camera, imager.image_circle, seed, sky, settings)
-    prior = level_pose(TelemetryReference(0.0, 0.0, 120.0, 20.0), np.array([0.0, 0.0, 120.0]))
+    prior = mounted_pose(TelemetryReference(0.0, 0.0, 120.0, 20.0), np.array([0.0, 0.0, 120.0]))
 
     def frames() -> Frames:
         for number in range(count):

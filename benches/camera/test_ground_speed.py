@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from recon.camera import GroundProjector, ground_maps
-from recon.camera.motion import TelemetryReference, level_pose
+from recon.camera.motion import TelemetryReference, mounted_pose
 from recon.camera.omnidirectional import OmnidirectionalCamera
 from recon.model.geo import GroundGrid
 from recon.model.imagery import CameraPose
@@ -56,7 +56,7 @@ def test_a_frame_of_a_hovering_imager_is_laid_in_under_5_ms_on_one_core(
     rgb = np.random.default_rng(1).integers(0, 256, (720, 1280, 3), dtype=np.uint8)
     # A hovering eye is a little elsewhere in every frame, so no map can be used twice.
     poses = [
-        level_pose(
+        mounted_pose(
             TelemetryReference(0.0, 0.0, 120.0, 20.0 + 0.1 * turn),
             np.array([0.02 * turn, -0.01 * turn, 120.0 + 0.005 * turn]),
         )

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from recon.camera import TelemetryReference, level_pose
+from recon.camera import TelemetryReference, mounted_pose
 from recon.camera.registration import (
     RegistrationSettings,
     RegistrationState,
@@ -32,7 +32,7 @@ def test_a_frame_is_registered_in_under_80_ms(tilt_deg: float) -> None:
     imager = load_site(demo_site_folder()).imager
     assert imager is not None
     renderer = FieldRenderer(imager.camera, imager.image_circle, 0)
-    prior = level_pose(TelemetryReference(0.0, 0.0, 120.0, 20.0), np.array([0.0, 0.0, 120.0]))
+    prior = mounted_pose(TelemetryReference(0.0, 0.0, 120.0, 20.0), np.array([0.0, 0.0, 120.0]))
     turn = Rotation.from_rotvec(np.deg2rad((tilt_deg, -0.5 * tilt_deg, tilt_deg))).as_matrix()
     tilted = CameraPose(turn @ prior.rotation_enu_camera, prior.position_enu_m)
     first, later = (

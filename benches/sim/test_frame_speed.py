@@ -11,7 +11,7 @@ import cv2
 import numpy as np
 import pytest
 
-from recon.camera import TelemetryReference, level_pose
+from recon.camera import TelemetryReference, mounted_pose
 from recon.sim.camera.field import FieldRenderer
 from recon.sim.camera.frames import CameraView
 from recon.sim.land.farmland import lay_out
@@ -40,7 +40,9 @@ def test_a_hovering_imager(height_m: float) -> None:
     assert imager is not None
     sky = Sky(SkySettings(3, layers=(LOW, HIGH)))
     frames = FieldRenderer(imager.camera, imager.image_circle, 0, sky)
-    pose = level_pose(TelemetryReference(0.0, 0.0, height_m, 20.0), np.array([0.0, 0.0, height_m]))
+    pose = mounted_pose(
+        TelemetryReference(0.0, 0.0, height_m, 20.0), np.array([0.0, 0.0, height_m])
+    )
     frames.prepare()
     frames.render(CameraView(0.0, 0, pose))
     found_s = [

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.camera.constructions import FRAME, LEVEL, moved, tilted_pose
 
-from recon.camera import TelemetryReference, level_pose
+from recon.camera import TelemetryReference, mounted_pose
 from recon.geo import geo_from_enu
 from recon.model.geo import GeoPoint
 from recon.model.vehicle import Attitude, Mount
@@ -42,16 +42,28 @@ def test_the_camera_moves_as_the_aircraft_does(east_m: float, north_m: float, up
 @pytest.mark.parametrize("mount", list(Mount))
 def test_a_turn_to_the_right_swings_the_frames_top_from_north_to_east(mount: Mount) -> None:
     level = replace(MARKED, yaw_deg=0.0, pitch_deg=0.0, roll_deg=0.0)
-    marked_pose = level_pose(level, np.array([0.0, 0.0, 120.0]))
+    marked_pose = mounted_pose(level, np.array([0.0, 0.0, 120.0]))
     assert np.abs(marked_pose.rotation_enu_camera - LEVEL).max() < 1e-12
     turned = moved(marked_pose, level, replace(level, yaw_deg=90.0), mount)
     top_enu = turned.rotation_enu_camera @ [0.0, -1.0, 0.0]
     assert top_enu == pytest.approx([1.0, 0.0, 0.0], abs=1e-12)
 
 
+def test_a_tilted_camera_looks_to_the_front_and_turns_with_the_aircraft() -> None:
+    level = replace(MARKED, yaw_deg=0.0, pitch_deg=0.0, roll_deg=0.0)
+    tilted = mounted_pose(level, np.array([0.0, 0.0, 120.0]), 20.0)
+    sine, cosine = math.sin(math.radians(20.0)), math.cos(math.radians(20.0))
+    assert tilted.rotation_enu_camera[:, 2] == pytest.approx([0.0, sine, -cosine], abs=1e-12)
+    assert np.linalg.det(tilted.rotation_enu_camera) == pytest.approx(1.0)
+    # A gimbal keeps the tilt; only the heading turns it.
+    to_the_east = replace(level, yaw_deg=90.0, pitch_deg=5.0)
+    axis = moved(tilted, level, to_the_east, Mount.GIMBAL).rotation_enu_camera[:, 2]
+    assert axis == pytest.approx([sine, 0.0, -cosine], abs=1e-12)
+
+
 def test_a_gimbal_takes_out_pitch_and_roll_and_a_fixed_mount_does_not() -> None:
     level = replace(MARKED, yaw_deg=0.0, pitch_deg=0.0, roll_deg=0.0)
-    marked_pose = level_pose(level, np.array([0.0, 0.0, 120.0]))
+    marked_pose = mounted_pose(level, np.array([0.0, 0.0, 120.0]))
     nose_up = replace(level, pitch_deg=10.0)
     axis = moved(marked_pose, level, nose_up, Mount.GIMBAL).rotation_enu_camera[:, 2]
     assert axis == pytest.approx([0.0, 0.0, -1.0], abs=1e-12)

@@ -11,7 +11,7 @@ from recon.camera import (
     GroundProjector,
     find_image_circle,
     format_camera,
-    level_pose,
+    mounted_pose,
     parse_camera,
     parse_control_points,
 )
@@ -78,7 +78,7 @@ def test_it_loads_and_its_pose_is_the_one_it_was_made_with() -> None:
     assert solution is not None
     assert 0.0 < solution.rms_px < 0.5
     assert solution.height_above_ground_m == pytest.approx(IMAGER_HEIGHT_M, abs=0.3)
-    made_with = level_pose(demo_marked_telemetry(), np.array([0.0, 0.0, IMAGER_HEIGHT_M]))
+    made_with = mounted_pose(demo_marked_telemetry(), np.array([0.0, 0.0, IMAGER_HEIGHT_M]))
     assert np.abs(solution.pose.position_enu_m - made_with.position_enu_m).max() < 0.4
     assert solution.pose.rotation_enu_camera == pytest.approx(
         made_with.rotation_enu_camera, abs=0.003

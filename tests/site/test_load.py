@@ -269,6 +269,11 @@ def vehicle(line: str) -> str:
             MINIMAL + BY_TELEMETRY + 'control_points = "GCPs.txt"',
             "imager.control_points belongs to control points: remove it",
         ),
+        (MINIMAL + IMAGER + "tilt_deg = 20", "imager.tilt_deg belongs to a camera that telemetry"),
+        (
+            MINIMAL + BY_TELEMETRY + "tilt_deg = 61",
+            "tilt_deg: expected a number of 0 to 60, got 61",
+        ),
         (MINIMAL + IMAGER + 'placed_by = "guess"', "imager.placed_by: expected "),
         (MINIMAL + IMAGER.replace("2160", "3000"), "GCPs.txt: expected a frame of 3840 x 3000"),
         (MINIMAL + IMAGER.replace("3840", "0"), "_px[0]: expected a whole number of 2 to 16384"),

@@ -16,7 +16,7 @@ from recon.camera.errors import (
 )
 from recon.camera.ground import GroundProjector, ground_maps
 from recon.camera.image_circle import ImageCircle, find_image_circle
-from recon.camera.motion import TelemetryReference, displaced_pose, level_pose, placing_error_m
+from recon.camera.motion import TelemetryReference, displaced_pose, mounted_pose, placing_error_m
 from recon.camera.omnidirectional import OmnidirectionalCamera
 from recon.camera.pose import PointResidual, PoseSolution, pose_from_points
 from recon.camera.text_files import (
@@ -51,9 +51,9 @@ __all__ = [
     "format_control_points",
     "ground_maps",
     "jpeg_size",
-    "level_pose",
     "load_camera",
     "load_control_points",
+    "mounted_pose",
     "parse_camera",
     "parse_control_points",
     "placing_error_m",

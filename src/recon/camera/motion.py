@@ -5,7 +5,7 @@ What remains (drift of barometer, GNSS and compass) is unknown here: a moved pos
 """
 
 from dataclasses import dataclass
-from math import hypot, radians
+from math import cos, hypot, radians, sin
 from typing import Self
 
 import numpy as np
@@ -114,7 +114,15 @@ def _body_rotation(telemetry: TelemetryReference, mount: Mount) -> FloatArray:
     return rotation
 
 
-def level_pose(telemetry: TelemetryReference, position_enu_m: FloatArray) -> CameraPose:
-    """Return the pose of a camera pointing straight down, the top of the frame towards the yaw."""
+def mounted_pose(
+    telemetry: TelemetryReference, position_enu_m: FloatArray, tilt_deg: float = 0.0
+) -> CameraPose:
+    """Return the pose of a camera pointing down, the top of the frame towards the yaw.
+
+    `tilt_deg` is the angle from straight down to its axis, towards the aircraft's front.
+    """
     forward, right, down = _body_rotation(telemetry, Mount.GIMBAL).T
-    return CameraPose(np.stack([right, -forward, down], axis=1), position_enu_m)
+    tilt = radians(tilt_deg)
+    axis = cos(tilt) * down + sin(tilt) * forward
+    top = cos(tilt) * forward - sin(tilt) * down
+    return CameraPose(np.stack([right, -top, axis], axis=1), position_enu_m)

@@ -18,9 +18,9 @@ from recon.camera import (
     OmnidirectionalCamera,
     PoseError,
     TelemetryReference,
-    level_pose,
     load_camera,
     load_control_points,
+    mounted_pose,
     pose_from_points,
 )
 from recon.camera.image_circle import find_image_circle
@@ -155,7 +155,7 @@ def _start_by_height(
         )
     telemetry = TelemetryReference(latitude_deg, longitude_deg, height_m, yaw_deg)
     frame = LocalFrame(GeoPoint(latitude_deg, longitude_deg, 0.0))
-    return Start(frame, level_pose(telemetry, np.array([0.0, 0.0, height_m])), None)
+    return Start(frame, mounted_pose(telemetry, np.array([0.0, 0.0, height_m])), None)
 
 
 def _write_all(

@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 
+from recon.forecast.followed import with_followed, with_recent
 from recon.forecast.forecaster import Forecaster
 from recon.forecast.likeness import shade_scale_m, with_likeness
 from recon.forecast.motion import ShadowMotion
@@ -35,11 +36,13 @@ from recon.model.shade import (
 
 def _observed(state: ForecastState, shade: ShadeMap, settings: ForecastSettings) -> ForecastState:
     state = with_likeness(with_map(state, shade, settings), shade, settings)
-    return with_agreement(state, shade, settings)
+    state = with_recent(with_agreement(state, shade, settings), shade, settings)
+    return with_followed(state, pooled_motion(state, settings), settings)
 
 
 def _forecast(state: ForecastState, settings: ForecastSettings) -> SunForecast:
-    shade, prior = state.newest, prior_sunlit(state, settings)
+    newest, prior = state.newest, prior_sunlit(state, settings)
+    shade = state.followed or newest
     motion = pooled_motion(state, settings)
     lead_s = np.array(settings.lead_s, dtype=np.float64)
     probability = np.full((len(lead_s), *shade.valid.shape), prior, dtype=np.float32)

@@ -8,12 +8,12 @@ steps from each cell (semi-Lagrangian advection; U. Germann and I. Zawadzki, Mon
 """
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 import cv2
 import numpy as np
 import numpy.typing as npt
 
+from recon.forecast.followed import with_recent
 from recon.forecast.forecaster import Forecaster
 from recon.forecast.persistence import persisting
 from recon.forecast.settings import ForecastSettings
@@ -34,14 +34,7 @@ which on a pair of maps shows a motion."""
 
 
 def _observed(state: ForecastState, shade: ShadeMap, settings: ForecastSettings) -> ForecastState:
-    state = with_map(state, shade, settings)
-    at_ns, every_ns = shade.captured_at_ns, seconds_to_ns(settings.keep_every_s)
-    recent = tuple(one for one in state.recent if one.grid == shade.grid)
-    if recent and at_ns // every_ns == recent[-1].captured_at_ns // every_ns:
-        return state
-    oldest_ns = at_ns - seconds_to_ns(settings.flow_over_s + settings.keep_every_s)
-    recent = tuple(one for one in recent if one.captured_at_ns >= oldest_ns)
-    return replace(state, recent=(*recent, shade))
+    return with_recent(with_map(state, shade, settings), shade, settings)
 
 
 def _forecast(state: ForecastState, settings: ForecastSettings) -> SunForecast:

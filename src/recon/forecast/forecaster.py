@@ -1,12 +1,12 @@
 """What a forecast method is: two pure functions, one per map and one per forecast."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from recon.forecast.hindcast import with_hindcast
 from recon.forecast.settings import ForecastSettings
 from recon.forecast.state import ForecastState
-from recon.model.shade import ShadeMap, SunForecast
+from recon.model.shade import MaskMap, ShadeMap, SunForecast
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,10 +24,18 @@ class Forecaster:
     its capture time. Raises `ValueError` before the first map."""
 
     def after(
-        self, state: ForecastState, shade: ShadeMap, settings: ForecastSettings
+        self,
+        state: ForecastState,
+        shade: ShadeMap,
+        settings: ForecastSettings,
+        in_view: MaskMap | None = None,
     ) -> tuple[ForecastState, SunForecast]:
         """Return the state after a map, and the forecast from it; earlier ones are compared with
-        the map. Raises `ValueError` as `observed` does."""
-        state = self.observed(state, shade, settings)
+        the map.
+
+        `in_view` (R, C) are the cells that the map's frames show: shade may be followed beyond
+        them. Without it none is. Raises `ValueError` as `observed` does.
+        """
+        state = self.observed(replace(state, in_view=in_view), shade, settings)
         sun = self.forecast(state, settings)
         return with_hindcast(state, sun, settings), sun

@@ -113,6 +113,13 @@ class ForecastSettings:
     flow_over_s: float = 15.0
     """Between the two maps that dense flow is read from: shadows move 10 to 40 cells in it."""
 
+    followed_for_s: float = 60.0
+    """Shade that has left the view is followed for so long: one seen cell in twelve is wrong then
+    by its motion alone."""
+
+    followed_memory_s: float = 300.0
+    """Time constant of the confidence in it."""
+
     shade_scale_m: float = 2_500.0
     """Distance at which the nearest seen shade shows half as much of the sun as shade that is
     followed. Fitted, as the next, to Brier scores under the scenarios' skies, seeds 0 to 7."""

@@ -87,6 +87,11 @@ class ForecastState:
     likeness: Likeness | None = None
     recent: tuple[ShadeMap, ...] = ()
     """Whole maps, oldest first."""
+    in_view: MaskMap | None = None
+    """(R, C): the cells that the newest map's frames show, unknown ones too; None if not given."""
+    followed: ShadeMap | None = None
+    """The newest map, and the shade that has left the view where it is by now; None if the method
+    follows none."""
     issued: tuple[IssuedForecast, ...] = ()
     """Oldest first."""
     compared: Mapping[float, Comparison] = field(default_factory=dict)
@@ -118,7 +123,7 @@ def with_map(state: ForecastState, shade: ShadeMap, settings: ForecastSettings) 
             )
     if state.kept and state.kept[-1].grid != shade.grid:
         state = replace(state, kept=(), velocities=(), agreement=None)
-    state = replace(state, shade=shade)
+    state = replace(state, shade=shade, followed=None)
     return _with_share(state, shade, passed_s, settings.cover_memory_s)
 
 

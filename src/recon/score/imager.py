@@ -130,7 +130,7 @@ class IdealDetection:
         shade = self._shade(work.image)
         own = SeenShade(shade, work.image.valid)
         method = FORECASTERS[work.forecast_settings.method]
-        forecast, sun = method.after(work.forecast, shade, work.forecast_settings)
+        forecast, sun = method.after(work.forecast, shade, work.forecast_settings, own.seen)
         return ShadeRead(IMAGER_SERIAL, work.detection, forecast, own, (own, sun))
 
     def _shade(self, image: GroundImage) -> ShadeMap:

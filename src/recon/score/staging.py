@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from recon.camera import ImageCircle, TelemetryReference, level_pose
+from recon.camera import ImageCircle, TelemetryReference, mounted_pose
 from recon.geo import enu_from_point, point_from_enu
 from recon.model.airspace import FlightLimits, LandingPad, Region
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
@@ -117,7 +117,7 @@ def _generated_imager(frame: LocalFrame, imager: ScenarioImager) -> Imager:
         field = radians(imager.field_deg)
         (rim_px,) = camera.project(np.array([[sin(field), 0.0, cos(field)]]))
         radius_px = float(rim_px[0]) - CENTRE_COL_PX
-    pose = level_pose(marked, np.array([*imager.over_m, imager.height_m]))
+    pose = mounted_pose(marked, np.array([*imager.over_m, imager.height_m]))
     return Imager(
         serial=IMAGER_SERIAL,
         camera=camera,

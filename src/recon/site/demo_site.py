@@ -21,7 +21,7 @@ from recon.camera import (
     TelemetryReference,
     format_camera,
     format_control_points,
-    level_pose,
+    mounted_pose,
 )
 from recon.geo import geo_from_enu
 from recon.model.geo import GeoPoint, LocalFrame
@@ -219,7 +219,7 @@ def demo_marked_telemetry() -> TelemetryReference:
 
 
 def _control_points(camera: OmnidirectionalCamera) -> tuple[ControlPoint, ...]:
-    pose = level_pose(demo_marked_telemetry(), np.array([0.0, 0.0, IMAGER_HEIGHT_M]))
+    pose = mounted_pose(demo_marked_telemetry(), np.array([0.0, 0.0, IMAGER_HEIGHT_M]))
     points_enu = np.array([(*point, 0.0) for point in POINTS_EAST_NORTH_M.values()])
     marked_camera = camera.scaled_to(MARKED_SIZE_PX[1], MARKED_SIZE_PX[0])
     pixels = marked_camera.project((points_enu - pose.position_enu_m) @ pose.rotation_enu_camera)

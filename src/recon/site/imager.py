@@ -13,9 +13,9 @@ from recon.camera import (
     ImageCircle,
     OmnidirectionalCamera,
     TelemetryReference,
-    level_pose,
     load_camera,
     load_control_points,
+    mounted_pose,
     pose_from_points,
 )
 from recon.geo import enu_from_geo, enu_from_points
@@ -54,7 +54,8 @@ def imager_from_table(site_file: Path, table: ImagerTable, frame: LocalFrame) ->
 def _placed_by_telemetry(
     path: Path, table: ImagerTable, camera: OmnidirectionalCamera, frame: LocalFrame
 ) -> Imager:
-    """Return an imaging drone whose camera points straight down, its top to the drone's front."""
+    """Return an imaging drone whose camera points down or is tilted to the front, where its top
+    is."""
     marks = {
         "control_points": table.control_points,
         "control_points_image_size_px": table.control_points_image_size_px,
@@ -68,13 +69,19 @@ def _placed_by_telemetry(
             )
     origin = frame.origin
     marked = TelemetryReference(origin.latitude_deg, origin.longitude_deg, 0.0, 0.0)
-    return Imager(table.serial, camera, level_pose(marked, np.zeros(3)), marked)
+    pose = mounted_pose(marked, np.zeros(3), table.tilt_deg or 0.0)
+    return Imager(table.serial, camera, pose, marked)
 
 
 def _placed_by_points(
     site_file: Path, table: ImagerTable, camera: OmnidirectionalCamera, frame: LocalFrame
 ) -> Imager:
     """Return an imaging drone whose camera's pose its control points give."""
+    if table.tilt_deg is not None:
+        raise SiteError(
+            f"{site_file}: imager.tilt_deg belongs to a camera that telemetry places: remove it, "
+            "for the control points measure the tilt"
+        )
     name, size_px = table.control_points or USUAL_POINTS, table.control_points_image_size_px
     points_file = file_inside(site_file, name, "imager.control_points")
     if size_px is None:

@@ -9,8 +9,8 @@ from recon.camera import (
     ImageCircle,
     OmnidirectionalCamera,
     TelemetryReference,
-    level_pose,
     load_camera,
+    mounted_pose,
 )
 from recon.model.imagery import CameraPose
 from recon.site import demo_site_folder
@@ -34,6 +34,6 @@ def pose() -> MakePose:
         height_m: float = 120.0, east_m: float = 0.0, north_m: float = 0.0, yaw_deg: float = 0.0
     ) -> CameraPose:
         reference = TelemetryReference(0.0, 0.0, height_m, yaw_deg)
-        return level_pose(reference, np.array([east_m, north_m, height_m]))
+        return mounted_pose(reference, np.array([east_m, north_m, height_m]))
 
     return make

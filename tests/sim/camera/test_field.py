@@ -6,9 +6,10 @@ import cv2
 import numpy as np
 import pytest
 
-from recon.camera import TelemetryReference, level_pose, load_camera
+from recon.camera import TelemetryReference, load_camera, mounted_pose
 from recon.camera.image_circle import ImageCircle
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
+from recon.model.imagery import CameraPose
 from recon.sim.camera import CameraSettings, field
 from recon.sim.camera.frames import CameraView
 from recon.sim.errors import FrameSourceError
@@ -34,9 +35,11 @@ def frames(camera):
     return field.FieldRenderer(camera, circle, SEED, imager=CameraSettings.perfect())
 
 
-def pose(east_m: float = 0.0, north_m: float = 0.0, yaw_deg: float = 0.0):
+def pose(
+    east_m: float = 0.0, north_m: float = 0.0, yaw_deg: float = 0.0, tilt_deg: float = 0.0
+) -> CameraPose:
     reference = TelemetryReference(0.0, 0.0, HEIGHT_M, yaw_deg)
-    return level_pose(reference, np.array([east_m, north_m, HEIGHT_M]))
+    return mounted_pose(reference, np.array([east_m, north_m, HEIGHT_M]), tilt_deg)
 
 
 def correlation(a: np.ndarray, b: np.ndarray) -> float:
@@ -44,13 +47,19 @@ def correlation(a: np.ndarray, b: np.ndarray) -> float:
 
 
 @pytest.mark.parametrize(
-    ("east_m", "north_m", "yaw_deg"), [(0.0, 0.0, 0.0), (40.0, -70.0, 33.0), (-90.0, 20.0, -140.0)]
+    ("east_m", "north_m", "yaw_deg", "tilt_deg"),
+    [
+        (0.0, 0.0, 0.0, 0.0),
+        (40.0, -70.0, 33.0, 0.0),
+        (-90.0, 20.0, -140.0, 0.0),
+        (40.0, -70.0, 33.0, 20.0),
+    ],
 )
 def test_a_picture_laid_on_the_ground_shows_the_land_where_it_is(
-    frames, camera, east_m, north_m, yaw_deg
+    frames, camera, east_m, north_m, yaw_deg, tilt_deg
 ) -> None:
     """Render, take the picture back to the ground by the camera room, compare with the raster."""
-    there = pose(east_m, north_m, yaw_deg)
+    there = pose(east_m, north_m, yaw_deg, tilt_deg)
     picture = frames.render(CameraView(0.0, 0, there))
     grid = GroundGrid(
         LocalFrame(GeoPoint(0.0, 0.0, 0.0)), east_m - 100, north_m + 100, 1.0, 200, 200

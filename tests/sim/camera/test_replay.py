@@ -11,8 +11,8 @@ from recon.camera import (
     TelemetryReference,
     format_camera,
     format_control_points,
-    level_pose,
     load_camera,
+    mounted_pose,
 )
 from recon.geo import enu_from_point, geo_from_enu
 from recon.model.geo import GeoPoint, LocalFrame
@@ -30,7 +30,7 @@ PLACES_M = [(-100, 80), (20, 120), (110, 60), (90, -90), (-60, -120), (0, 10)]
 def make_field(folder: Path) -> None:
     camera = load_camera(demo_site_folder() / "camera-model.txt")
     large = camera.scaled_to(2160, 3840)
-    pose = level_pose(TelemetryReference(0.0, 0.0, 118.0, 50.0), TRUE_POSITION_M)
+    pose = mounted_pose(TelemetryReference(0.0, 0.0, 118.0, 50.0), TRUE_POSITION_M)
     places = np.array([(*p, 0.0) for p in PLACES_M])
     pixels = large.project((places - TRUE_POSITION_M) @ pose.rotation_enu_camera)
     globe = zip(*geo_from_enu(LocalFrame(ORIGIN), places), strict=True)

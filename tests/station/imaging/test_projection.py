@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 from tests.camera.registered_scenes import CAMERA, displacements_m, seen
 
-from recon.camera import TelemetryReference, level_pose
+from recon.camera import TelemetryReference, mounted_pose
 from recon.camera.registration import RegistrationState
 from recon.geo import point_from_enu
 from recon.model.imagery import CameraPose, Frame, Registration, RgbImage
@@ -94,7 +94,7 @@ def test_without_control_points_the_frame_lies_where_telemetry_has_the_drone(sit
     assert site.frame is not None
     origin = site.frame.origin
     start = TelemetryReference(origin.latitude_deg, origin.longitude_deg, 0.0, 0.0)
-    level = level_pose(start, np.zeros(3))
+    level = mounted_pose(start, np.zeros(3))
     imager = replace(site.imager, marked_pose=level, marked_frame=start, solution=None)
     bare = site.with_imager(imager)
     place = point_from_enu(site.frame, (30.0, -40.0, 0.0))

@@ -95,7 +95,9 @@ def read_shade(work: ReadShade) -> ShadeRead:
     if newest is not None and shade.captured_at_ns <= newest.captured_at_ns:
         return ShadeRead(serial, detection, work.forecast, own)
     together = _together(own, work.others, work.velocity_mps)
-    forecast, sun = forecaster.after(work.forecast, together.shade, work.forecast_settings)
+    forecast, sun = forecaster.after(
+        work.forecast, together.shade, work.forecast_settings, together.seen
+    )
     return ShadeRead(serial, detection, forecast, own, (together, sun))
 
 

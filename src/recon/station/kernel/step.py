@@ -144,7 +144,7 @@ def _core(
 def _job_done(station: Station, event: JobDone[Any, Any], now_ns: int) -> Stepped:
     number = station.shade.number
     station, outputs = event.kind.done(station, event.job_id, event.result, now_ns)
-    shade = station.shade.shade
+    shade = station.shade.followed
     if shade is not None and station.shade.number != number:
         for take in _SHADE_TAKERS:
             station = take(station, shade)

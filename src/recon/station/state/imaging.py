@@ -128,6 +128,11 @@ class ShadePipeline:
     references: "ReferenceKeeping | None" = None
     """How what is learned is kept for later flights; None without a site's folder."""
 
+    @property
+    def followed(self) -> ShadeMap | None:
+        """The newest map, with the shade that has left the view where it is by now."""
+        return self.forecast.followed or self.shade
+
 
 @dataclass(frozen=True, slots=True)
 class ReferenceKeeping:
