@@ -26,6 +26,8 @@ own samples."""
 SUN_WEIGHT, SHADE_WEIGHT, EDGE_WEIGHT = 1.0, 0.5, 0.2
 HINT_SPREAD = 0.12, 0.07
 """Errors of light and colour of what was known before."""
+ALL_ALIKE = 0.05
+"""Largest share of cells that differ where everything is in sun, or in shade."""
 
 
 Hints = list[Level | None]
@@ -102,7 +104,8 @@ def _levels(
     """Return the belief in every keyframe's level, and the level; None where it is open.
 
     What the keyframes show by themselves counts first; then what was known before; then what the
-    hot spot shows.
+    hot spot shows. Minutes of sun that is nearly even can look like shade that is: where the hot
+    spot contradicts, the next one decides.
     """
     course = Course.over(stack, land, earlier)
     for known in (_nothing, _newest_known, _by_hot_spot):
@@ -110,8 +113,21 @@ def _levels(
         found = [belief.estimate(land.contrast) for belief in beliefs]
         levels = [each.level if each.doubt < DOUBT else None for each in found]
         if levels[-1] is not None:
-            break
+            if not _is_contradicted(stack, land, levels):
+                return beliefs, levels
+            levels[-1] = None
+            beliefs[-1] = replace(beliefs[-1], score=np.zeros_like(beliefs[-1].score))
     return beliefs, levels
+
+
+def _is_contradicted(stack: Stack, land: SunlitLand, levels: Hints) -> bool:
+    """Return whether the hot spot shows sun where all would be in shade, or the other way round."""
+    light = _relative(stack, land, levels)[0]
+    sunlit = light[np.isfinite(light)] > -0.5 * land.contrast.light
+    share = float(sunlit.mean()) if sunlit.size else 0.5
+    if ALL_ALIKE < share < 1.0 - ALL_ALIKE:
+        return False
+    return _flat_scene(stack) is (FlatScene.SUN if share <= ALL_ALIKE else FlatScene.SHADE)
 
 
 def _hinted(middles: list[Level], hints: Hints) -> FloatGrid:
@@ -150,9 +166,7 @@ def _carried_over(stack: Stack, land: SunlitLand, before: SunlitLand | None) -> 
 def _by_hot_spot(stack: Stack, land: SunlitLand, before: SunlitLand | None) -> Hints:
     """Return the levels of flat frames that are all in sun, or all in shade."""
     hints: Hints = [None] * len(stack.kept)
-    light = np.stack([with_detail(each.cells) for each in stack.kept])
-    found = hot_spot(light, [each.hot_spot for each in stack.kept])
-    scene = FlatScene.UNKNOWN if found is None else found.scene
+    scene = _flat_scene(stack)
     if scene is FlatScene.UNKNOWN:
         return hints
     for i in range(len(hints)):
@@ -165,6 +179,12 @@ def _by_hot_spot(stack: Stack, land: SunlitLand, before: SunlitLand | None) -> H
         by = Contrast(0.0, 0.0) if scene is FlatScene.SUN else land.contrast
         hints[i] = Level(main.light + by.light, main.colour - by.colour)
     return hints
+
+
+def _flat_scene(stack: Stack) -> FlatScene:
+    light = np.stack([with_detail(each.cells) for each in stack.kept])
+    found = hot_spot(light, [each.hot_spot for each in stack.kept])
+    return FlatScene.UNKNOWN if found is None else found.scene
 
 
 def _relative(stack: Stack, land: SunlitLand, levels: Hints) -> tuple[FloatStack, FloatStack]:
