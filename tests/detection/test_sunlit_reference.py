@@ -28,7 +28,7 @@ from recon.detection.sunlit.keyframes import MOST, Keyframe, SunlitLand, is_due,
 from recon.detection.sunlit.land import land_of
 from recon.detection.sunlit.levels import Level, Values
 from recon.detection.sunlit.likelihood import REACH, STEPS
-from recon.detection.sunlit.solution import DOUBT, HINT_SPREAD
+from recon.detection.sunlit.solution import DOUBT, HINT_SPREAD, solved
 from recon.geo.sun import SunPosition
 from recon.model.imagery import GroundImage
 from recon.model.shade import SUNLIT_TRANSMITTANCE, ShadeMap
@@ -361,6 +361,41 @@ class TestCourse:
         course = Course.over(Stack.of(kept, is_locked=False), self.EVEN, None)
         found = course.beliefs(Contrast(), ANYWHERE)[-1].estimate(Contrast())
         assert found.level.light == pytest.approx(level.light, abs=0.12)
+
+
+class TestContradiction:
+    """An even view, known as what it is not: the hot spot has the last word."""
+
+    def newest(self, transmittance: float, strength: float, known_off: float) -> float | None:
+        """Return the level found of an even view, relative to the true one.
+
+        All frames before were known at a level that is off by so much.
+        """
+        true = Level(-0.5, 0.1)
+        even = [np.full((40, 40), transmittance)] * 12
+        shapes = [moving_shape(0.5 * i) for i in range(12)]
+        known = Level(true.light + known_off, true.colour - 0.6 * known_off)
+        kept = tuple(
+            replace(
+                each,
+                cells=replace(each.cells, light=each.cells.light + np.float32(strength) * shape),
+                hot_spot=shape,
+                level=known,
+            )
+            for each, shape in zip(keyframes(Contrast(), [true] * 12, even), shapes, strict=True)
+        )
+        found = solved(kept, TestCourse.EVEN, None, is_locked=False).keyframes[-1].level
+        return None if found is None else found.light - true.light
+
+    def test_what_is_known_and_not_contradicted_stays(self) -> None:
+        assert self.newest(1.0, 0.3, 0.0) == pytest.approx(0.0, abs=0.1)
+        assert self.newest(0.0, 0.0, 0.0) == pytest.approx(0.0, abs=0.1)
+
+    def test_sun_that_was_known_as_shade_is_sun(self) -> None:
+        assert self.newest(1.0, 0.3, Contrast().light) == pytest.approx(0.0, abs=0.2)
+
+    def test_shade_that_was_known_as_sun_is_shade(self) -> None:
+        assert self.newest(0.0, 0.0, -Contrast().light) == pytest.approx(0.0, abs=0.2)
 
 
 class TestDrift:
