@@ -19,6 +19,7 @@ from recon.api.schema import (
     SurveyView,
     SurveyWays,
     TemporaryZoneResponse,
+    UpwindPlaceView,
 )
 from recon.api.security import Access, AccessCheck
 from recon.model.command import Body
@@ -185,6 +186,9 @@ class FakeStation:
 
     def sun_at(self, latitude_deg: float, longitude_deg: float) -> SunAtView | None:
         return self.service.sun_at(latitude_deg, longitude_deg)
+
+    def upwind_place(self, serial: str | None, region: str | None) -> UpwindPlaceView | str:
+        return self.service.upwind_place(serial, region)
 
     def request_survey(self, asked: SurveyRequest, by: Person) -> SurveyResponse:
         return self.service.request_survey(asked, by)

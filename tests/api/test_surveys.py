@@ -292,6 +292,15 @@ class TestShade:
         for name in ("change_after_s", "known_ahead_s"):
             assert first[name] - later[name] == pytest.approx(4.0)
 
+    def test_without_a_place_upwind_the_answer_states_why(
+        self, client: Client, station: FakeStation
+    ) -> None:
+        answer = client.get("/api/upwind-place")
+        assert answer.status_code == 404
+        assert "expected " in answer.text
+        unknown = client.get("/api/upwind-place?region=moon").text
+        assert "expected a survey region of the site" in unknown
+
     @pytest.mark.parametrize("authority", ["-1", "nan", "soon"])
     def test_a_lead_that_is_none_is_refused(self, client: Client, authority: str) -> None:
         assert client.get(f"/api/forecast.png?lead_s={authority}").status_code == 422

@@ -24,6 +24,7 @@ from recon.camera import (
     load_control_points,
 )
 from recon.camera.ground import lattice_step, source_mask
+from recon.camera.sight import COARSEST_M, farthest_sight_m
 from recon.geo import enu_from_geo
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.imagery import CameraPose, Frame, Registration
@@ -167,7 +168,10 @@ def test_what_the_lens_cannot_see_is_invalid_however_it_is_turned(
     limit_deg = np.rad2deg(DEMO.largest_angle_rad)
     slack_deg = (limit_deg - angle_deg).reshape(200, 200)
     assert not valid[(edge_px < -0.6) | (slack_deg < -0.3)].any()
-    assert valid[(edge_px > 1.6) & (slack_deg > 0.3)].all()
+    most_m = farthest_sight_m(60.0, DEMO.pixels_per_radian, COARSEST_M)
+    is_near = (np.linalg.norm(rays, axis=1) <= most_m).reshape(200, 200)
+    assert valid[(edge_px > 1.6) & (slack_deg > 0.3) & is_near].all()
+    assert not valid[~is_near].any(), "a pixel shows too much ground there"
 
 
 def test_the_circle_is_searched_until_a_frame_shows_it() -> None:

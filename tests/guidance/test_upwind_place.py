@@ -5,11 +5,11 @@ from math import cos, hypot, radians, sin, tan
 import numpy as np
 import pytest
 
+from recon.camera.sight import farthest_sight_m
 from recon.guidance.upwind_place import (
     LEAD_S,
     GroundView,
     best_place,
-    farthest_sight_m,
     field_points_m,
     seen_from,
     upwind_deg,

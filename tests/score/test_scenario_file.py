@@ -37,6 +37,8 @@ EXPECTED = {
     "low-sun",
     "auto-exposure-hard",
     "cumulus-40-wide",
+    "cumulus-40-upwind",
+    "cumulus-40-tilted",
     "two-layers-wide",
     "stress/cumulus-20",
     "stress/cumulus-40",

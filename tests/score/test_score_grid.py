@@ -13,13 +13,13 @@ from recon.model.geo import GroundGrid
 from recon.model.shade import ShadeMap
 from recon.score import Scenario
 from recon.score.score_grid import (
-    RIM_SHARE,
     score_grid,
     score_radius_m,
     scored_cells,
 )
 from recon.score.shade_scoring import ScoredGround
 from recon.sim.world import LayerSettings, Sky, SkySettings
+from recon.site.site import RIM_SHARE
 
 CLEAR = Sky(SkySettings(layers=()))
 

@@ -66,6 +66,7 @@ def test_a_site_folder_defines_pads_and_imager_position(tmp_path: Path) -> None:
             "over_m = [0.0, 0.0]\nradius_m",
             "imager.over_m: expected only without a folder",
         ),
+        ("radius_m", "tilt_deg = 9\nradius_m", "imager.tilt_deg: expected only without a folder"),
         (
             "survey_drones = 2",
             "survey_drones = 9",
@@ -84,6 +85,22 @@ def test_keys_that_conflict_with_a_site_folder_are_errors(
     with pytest.raises(ScenarioError) as caught:
         small(tmp_path, ON_DEMO.replace(old, new))
     assert words in str(caught.value)
+
+
+def test_a_generated_camera_is_tilted_and_its_maps_reach_farther(tmp_path: Path) -> None:
+    keys = "[imager]\ntilt_deg = 25.0\nreach_m = 500.0\nupwind = true"
+    scenario, plain = small(tmp_path, SMALL.replace("[imager]", keys)), small(tmp_path)
+    assert scenario.site.imager is not None
+    assert np.degrees(scenario.site.imager.outlook.tilt_rad) == pytest.approx(25.0)
+    assert scenario.site.imager.outlook.off_front_deg == pytest.approx(0.0)
+    assert plain.site.imager is not None
+    assert plain.site.imager.outlook.tilt_rad == pytest.approx(0.0)
+    grid = scenario.site.ground_grid
+    assert grid is not None
+    assert grid.rows * grid.cell_m == pytest.approx(1000.0)
+    boundaries = [each.site.layers.boundary for each in (scenario, plain)]
+    wide, narrow = (Polygon(each).area_m2 for each in boundaries if each is not None)
+    assert wide > narrow + 300.0**2
 
 
 def test_an_incomplete_origin_is_an_error(tmp_path: Path) -> None:

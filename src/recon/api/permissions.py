@@ -35,6 +35,7 @@ LEAST_ROLE: dict[tuple[str, str], Role] = {
     ("GET", "/api/shade.png"): Role.OBSERVER,
     ("GET", "/api/forecast.png"): Role.OBSERVER,
     ("GET", "/api/sun-at"): Role.OBSERVER,
+    ("GET", "/api/upwind-place"): Role.OBSERVER,
     ("GET", "/api/surveys"): Role.OBSERVER,
     ("GET", "/api/surveys/{survey_id}"): Role.OBSERVER,
     ("GET", "/api/surveys/{survey_id}/ways"): Role.OBSERVER,

@@ -21,6 +21,7 @@ from recon.camera.decode import decode_frame
 from recon.camera.errors import PoseError
 from recon.camera.image_circle import ImageCircle, find_image_circle
 from recon.camera.omnidirectional import OmnidirectionalCamera
+from recon.camera.sight import COARSEST_M, farthest_sight_m, sight2_m2
 from recon.model.geo import GroundGrid
 from recon.model.imagery import CameraPose, Frame, GroundImage, Registration, RgbImage
 
@@ -193,10 +194,18 @@ class GroundProjector:
             *maps, cv2.CV_16SC2, dstmap1=self._whole, dstmap2=self._fraction
         )
         seen = cv2.remap(source.mask, *maps, cv2.INTER_NEAREST)
+        seen[self._is_too_far(pose)] = 0
         self._laid = cv2.remap(rgb, self._whole, self._fraction, cv2.INTER_LINEAR, dst=self._laid)
         # remap samples meaningless pixels beyond the lens: blacken them.
         shown = cv2.bitwise_and(self._laid, self._laid, mask=seen)
         return shown.astype(np.uint8, copy=False), seen > 0
+
+    def _is_too_far(self, pose: CameraPose) -> npt.NDArray[np.bool_]:
+        """(R, C): the cells at which a pixel shows too much ground."""
+        height_m = float(pose.position_enu_m[2])
+        most_m = farthest_sight_m(height_m, self.camera.pixels_per_radian, COARSEST_M)
+        too_far: npt.NDArray[np.bool_] = sight2_m2(self.grid, pose.position_enu_m) > most_m**2
+        return too_far
 
     def lens_of(self, rgb: RgbImage) -> tuple[OmnidirectionalCamera, ImageCircle | None] | None:
         """Return lens and image circle for frames like this one; None while it is searched for."""

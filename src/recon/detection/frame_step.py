@@ -12,6 +12,7 @@ from typing import TypeVar
 import cv2
 import numpy as np
 
+from recon.camera.sight import sight2_m2
 from recon.detection.cells import GREEN, CellSamples, field_grid
 from recon.detection.settings import DetectionSettings
 from recon.detection.state import DetectionState
@@ -105,14 +106,11 @@ def _level_fault(image: GroundImage, settings: DetectionSettings) -> RejectedFra
 def metres_per_pixel(grid: GroundGrid, pose: CameraPose, pixels_per_radian: float) -> FloatMap:
     """Return (R, C): the length of a pixel's footprint along its longer side, in metres.
 
-    A fisheye has about the same number of pixels per radian f in every direction, so only distance
-    d and height h over flat ground count: d / f across the view, d^2 / (h f) along it.
+    That is the side along the view (`recon.camera.sight`).
     """
-    east_m = grid.west_m + (np.arange(grid.cols) + 0.5) * grid.cell_m - pose.position_enu_m[0]
-    north_m = grid.north_m - (np.arange(grid.rows) + 0.5) * grid.cell_m - pose.position_enu_m[1]
     height_m = float(pose.position_enu_m[2])
-    distance2_m2 = np.add.outer(north_m**2, east_m**2) + height_m**2
-    coarser: FloatMap = (distance2_m2 / (height_m * pixels_per_radian)).astype(np.float32)
+    sight2 = sight2_m2(grid, pose.position_enu_m)
+    coarser: FloatMap = (sight2 / (height_m * pixels_per_radian)).astype(np.float32)
     return coarser
 
 

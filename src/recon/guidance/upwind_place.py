@@ -4,13 +4,14 @@ What shades a cell in a minute lies now as far upwind of it as shadows move in a
 middle of the field a lens sees as much downwind, where nothing comes from, as upwind. Farther
 upwind it sees longer ahead, and less of the field itself; what has passed through the view is
 followed, with a little less certainty. A camera tilted upwind sees both. So the places of a lattice
-are compared by one figure: how much of the field's shade is seen or followed, now and in the next
-two minutes, the present counting as much as all the rest. Pure.
+from which at least half of the field is in view are compared by one figure: how much of its shade
+is seen or followed, now and in the next two minutes, the present counting as much as all the rest.
+Pure.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import atan2, cos, degrees, hypot, radians, sin, sqrt
+from math import atan2, cos, degrees, hypot, radians, sin
 
 import numpy as np
 import numpy.typing as npt
@@ -24,8 +25,10 @@ SAMPLE_M = 20.0
 """Between the points that stand for the field: shares are right to about two per cent."""
 STEP_M = 40.0
 """Between places: nearer ones differ by less than the wind turns."""
-FOLLOWED_FOR_S, FOLLOWED_WORTH = 60.0, 0.7
+FOLLOWED_FOR_S, FOLLOWED_WORTH = 60.0, 0.9
 """Shade that has left the view is followed for so long, and is worth so much of what is seen."""
+LEAST_NOW = 0.5
+"""Share of the field that stays in view, of the most that any place shows: drones fly there now."""
 FARTHEST_UPWIND_M, FARTHEST_ASIDE_M = 320.0, 80.0
 LEAST_SPEED_MPS = 0.5
 """Slower shadows come from nowhere in particular: the place above the field is the best."""
@@ -51,16 +54,6 @@ class GroundView:
         along_axis_m = ahead_m * sin(self.tilt_rad) + self.height_m * cos(self.tilt_rad)
         in_field: BoolArray = along_axis_m >= sight_m * cos(self.field_rad)
         return in_field & (sight_m <= self.farthest_m)
-
-
-def farthest_sight_m(
-    height_m: float, pixels_per_radian: float, most_metres_per_pixel: float
-) -> float:
-    """Return the line of sight at which a pixel shows so much level ground, along its longer side.
-
-    That side grows with the square of the distance: s^2 / (h p).
-    """
-    return sqrt(most_metres_per_pixel * height_m * pixels_per_radian)
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,7 +116,7 @@ def best_place(
     view: GroundView,
     is_allowed: Callable[[FloatArray], BoolArray],
 ) -> UpwindPlace | None:
-    """Return the place that predicts most of a field; None where none is allowed.
+    """Return the place from which most of a field is predicted; None where none is allowed.
 
     `is_allowed` states of places (N, 2) where the drone may hover. Equal places: the nearest to the
     middle of the field.
@@ -135,7 +128,9 @@ def best_place(
         seen_from(field_m, (east_m, north_m), heading_deg, velocity_mps, view)
         for east_m, north_m in places_m.tolist()
     ]
-    return max(found, key=lambda each: each.worth, default=None)
+    least_now = LEAST_NOW * max((each.predicted[0] for each in found), default=0.0)
+    showing = [each for each in found if each.predicted[0] >= least_now]
+    return max(showing, key=lambda each: each.worth, default=None)
 
 
 def upwind_deg(velocity_mps: tuple[float, float]) -> float:

@@ -42,6 +42,20 @@ class CameraPose:
     covariance: FloatArray | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class Outlook:
+    """What a camera on its aircraft shows, whatever the aircraft's place and heading."""
+
+    field_rad: float
+    """From the lens's axis to the rim that all frames show."""
+    tilt_rad: float = 0.0
+    """From straight down to the axis."""
+    off_front_deg: float = 0.0
+    """Direction of the tilt, clockwise from the aircraft's front."""
+    pixels_per_radian: float = 250.0
+    """Near the axis."""
+
+
 class Registration(Enum):
     """How a ground image was georeferenced."""
 

@@ -60,7 +60,7 @@ class ForecastScoring:
         if now_s >= self._due_s:
             self._due_s = now_s + SCORE.score_forecasts_every_s
             self._score(line.sun, line.shade, line.seen)
-            self.changes += self._changes(line.sun, line.shade)
+            self.changes += self._changes(line.sun, line.followed or line.shade)
 
     def _score(self, own: SunForecast, shade: ShadeMap, seen: MaskMap | None) -> None:
         issued = {

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from recon.camera import displaced_pose
+from recon.camera.sight import farthest_sight_m
 from recon.detection import DetectionSettings
 from recon.detection.cells import field_grid
 from recon.forecast import FORECASTERS
@@ -18,7 +19,6 @@ from recon.model.shade import MaskMap, ShadeMap
 from recon.model.vehicle import VehicleProfile
 from recon.score.scenario import IDEAL, NO_FORECAST, Scenario
 from recon.score.scenario_conditions import conditions_of
-from recon.score.score_grid import field_angle_rad
 from recon.score.simulation import simulation_of
 from recon.score.true_frames import TrueFrames, ground_seen
 from recon.sim.camera.field import FieldRenderer
@@ -105,7 +105,9 @@ class IdealDetection:
         self._grid = field_grid(site.ground_grid, detection)
         east_m, north_m = (part.ravel() for part in np.meshgrid(*cell_centres_m(self._grid)))
         self._points_m = np.column_stack([east_m, north_m])
-        self._field_rad = field_angle_rad(site.imager)
+        self._field_rad = site.imager.outlook.field_rad
+        self._pixels_per_radian = site.imager.outlook.pixels_per_radian
+        self._coarsest_m = scenario.imager.coarsest_m
 
     def lay(self, work: LayFrame) -> LaidFrame:
         """Return a frame's time and believed pose, without pixels."""
@@ -158,5 +160,8 @@ class IdealDetection:
         """(N,): whether the lens shows the points, were the pose true."""
         level = np.column_stack([self._points_m, np.zeros(len(self._points_m))])
         rays = (level - pose.position_enu_m) @ pose.rotation_enu_camera
-        seen: MaskMap = np.arctan2(np.hypot(rays[:, 0], rays[:, 1]), rays[:, 2]) <= self._field_rad
+        in_field = np.arctan2(np.hypot(rays[:, 0], rays[:, 1]), rays[:, 2]) <= self._field_rad
+        height_m = float(pose.position_enu_m[2])
+        most_m = farthest_sight_m(height_m, self._pixels_per_radian, self._coarsest_m)
+        seen: MaskMap = in_field & (np.linalg.norm(rays, axis=1) <= most_m)
         return seen

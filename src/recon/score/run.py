@@ -82,7 +82,7 @@ class StationRun:
             app.settings.serial: true_path(app, scenario.frame) for app in self.apps.apps
         }
         operator = ScriptedOperator(scenario.fleet.serials, scenario.limit_s)
-        self._operator = StationOperator(scenario.survey, operator)
+        self._operator = StationOperator(scenario.survey, operator, scenario.imager.is_upwind)
         self._shade = ShadeScoring(scenario, self._sky, frames)
         self._refused: set[int] = set()
 
@@ -161,6 +161,7 @@ class StationRun:
         assert record.state is not None
         found = self._imaged(record)
         inside = record.state.plan.cells.is_inside
+        counted = (record.state.progress.state == CellState.IN_SUN) & inside
         first_in_sun_s = found.first_in_sun_s[inside]
         limit_s = scenario.limit_s
         curve_s = np.array([60.0 * m for m in SCORE.curve_min if 60.0 * m <= limit_s])
@@ -175,7 +176,8 @@ class StationRun:
             in_sun_share=shares_by(first_in_sun_s, curve_s),
             to_95_imaged_s=time_to_share(found.first_s[inside], ENOUGH, limit_s),
             to_95_in_sun_s=time_to_share(first_in_sun_s, ENOUGH, limit_s),
-            wrongly_in_sun_share=_wrongly(record, found),
+            counted_in_sun=int(counted.sum()),
+            wrongly_in_sun=int(np.isinf(found.first_in_sun_s[counted]).sum()),
             survey_s=landed_s,
             flight_s=sum(path.flown_s for path in self.drones),
             missions=record.state.missions,
@@ -199,13 +201,6 @@ class StationRun:
             for path, phase_s in zip(self.drones, phases, strict=True)
         ]
         return imaged(photos, plan, self._sky)
-
-
-def _wrongly(record: SurveyRecord, found: Imaged) -> float | None:
-    assert record.state is not None
-    inside = record.state.plan.cells.is_inside
-    counted = (record.state.progress.state == CellState.IN_SUN) & inside
-    return float(np.isinf(found.first_in_sun_s[counted]).mean()) if counted.any() else None
 
 
 def _captures(apps: Sequence[SimulatedApp]) -> deque[CaptureTimes]:

@@ -30,8 +30,10 @@ class RunScore:
     """Of the region, truly on a photo in sun, at each of `SCORE.curve_min` within the limit."""
     to_95_imaged_s: float | None
     to_95_in_sun_s: float | None
-    wrongly_in_sun_share: float | None
-    """Of the cells that the survey counts as in sun: on no photo in sun in truth."""
+    counted_in_sun: int
+    """Cells that the survey counts as in sun."""
+    wrongly_in_sun: int
+    """Of these, on no photo in sun in truth."""
     survey_s: float
     """Until the survey had ended and all drones had landed."""
     flight_s: float

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from pathlib import Path
 
+from recon.camera.sight import COARSEST_M
 from recon.model.geo import LocalFrame
 from recon.model.survey import Survey
 from recon.sim.app.faults import InjectedFault, RandomFault
@@ -48,6 +49,14 @@ class ScenarioImager:
     """Of shade maps and their score."""
     field_deg: float | None = None
     """Of a generated site's lens, from its axis; None: as the demonstration's."""
+    tilt_deg: float = 0.0
+    """Of a generated site's camera, from straight down to the front."""
+    reach_m: float | None = None
+    """Of a generated site's shade maps; None: as the scored ground."""
+    coarsest_m: float = COARSEST_M
+    """Ground that a pixel may show, for ideal detection to see it."""
+    is_upwind: bool = False
+    """Whether the operator moves it to where it sees most of the shade to come."""
 
 
 @dataclass(frozen=True, slots=True)

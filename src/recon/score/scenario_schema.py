@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias, TypeVar
 import msgspec
 from msgspec import Meta
 
+from recon.camera.sight import COARSEST_M
 from recon.detection import DETECTORS
 from recon.forecast import FORECASTERS
 from recon.guidance.survey import PLANNERS
@@ -103,8 +104,16 @@ class ScenarioImagerTable(Table, frozen=True):
     """At most as high as drones may fly in most countries."""
     field_deg: Annotated[float, Meta(ge=30.0, le=85.0)] | None = None
     """Of a generated site's lens, from its axis: 66, as that of real ones."""
+    tilt_deg: Annotated[float, Meta(ge=0.0, le=60.0)] | None = None
+    """Of a generated site's camera, from straight down to the front."""
+    coarsest_m: Annotated[float, Meta(ge=0.1, le=100.0)] = COARSEST_M
+    """Ground that a pixel may show, for ideal detection to see it."""
+    upwind: bool = False
+    """The operator has it hover where it sees most of the shade to come."""
     radius_m: Annotated[float, Meta(ge=20.0, le=2000.0)] = 300.0
     """Of the scored ground, if the lens shows as much."""
+    reach_m: Annotated[float, Meta(ge=20.0, le=2000.0)] | None = None
+    """Of a generated site's shade maps, from where it hovers first; as `radius_m` by default."""
     cell_m: Annotated[float, Meta(ge=1.0, le=50.0)] = 4.0
     """Of shade maps and their score; larger for more ground."""
 

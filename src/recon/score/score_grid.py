@@ -13,10 +13,6 @@ from recon.geo import cell_centres_m
 from recon.model.geo import GroundGrid
 from recon.model.shade import MaskMap
 from recon.score.scenario import Scenario
-from recon.site import Imager
-
-RIM_SHARE = 0.98
-"""Of the image circle's radius: its rim is dark, and leaves the view when the camera wobbles."""
 
 FloatArray = npt.NDArray[np.float64]
 IndexArray = npt.NDArray[np.intp]
@@ -26,18 +22,7 @@ def score_radius_m(scenario: Scenario) -> float:
     """Return the radius of the scored ground: the scenario's, within the lens's field."""
     imager = scenario.site.imager
     assert imager is not None  # or it would not have been read
-    return min(scenario.imager.radius_m, scenario.imager.height_m * tan(field_angle_rad(imager)))
-
-
-def field_angle_rad(imager: Imager) -> float:
-    """Return the angle from a lens's axis that all its frames show."""
-    camera, circle = imager.camera, imager.image_circle
-    if circle is None:
-        return camera.largest_angle_rad
-    rim = [circle.centre_col_px + RIM_SHARE * circle.radius_px, circle.centre_row_px]
-    (ray,) = camera.unproject([rim])
-    angle_rad = float(np.arccos(np.clip(ray[2], -1.0, 1.0)))
-    return angle_rad if np.isfinite(angle_rad) else camera.largest_angle_rad
+    return min(scenario.imager.radius_m, scenario.imager.height_m * tan(imager.outlook.field_rad))
 
 
 def score_grid(scenario: Scenario, least_cell_m: float = 0.0) -> GroundGrid:

@@ -101,7 +101,7 @@ class ShadeScoring:
         if now_s >= self._maps_due_s:
             self._maps_due_s += SCORE.score_maps_every_s
             oldest_ns = now_ns - seconds_to_ns(SCORE.oldest_map_s)
-            shade = line.shade
+            shade = line.followed
             is_new = shade is not None and shade.captured_at_ns >= oldest_ns
             self._score_map(shade if is_new else None, now_s)
         if self.score.to_right_s is None and line.number != self._map_number:

@@ -32,6 +32,8 @@ from recon.site.site import Layers
 
 FENCE_OFF_M = 80.0
 """Around everything flown over: for turns, gusts and the margin to the fence."""
+UPWIND_ROOM_M = 350.0
+"""Around an imaging drone that moves upwind."""
 BEYOND_HOME_M = 150.0
 """Past the farthest corner: the distance limit does not restrict a task."""
 ABOVE_IMAGER_M = 10.0
@@ -63,7 +65,7 @@ def generated_site(
         imagers={IMAGER_SERIAL: _generated_imager(frame, imager)},
         profiles=_profiles(frame, fleet, imager, photo_interval_s, ceiling_m),
         layers=Layers(
-            boundary=_boundary([*region.outline_m.tolist(), *fleet.pads_m, imager.over_m]),
+            boundary=_boundary([*region.outline_m.tolist(), *fleet.pads_m, *_hovered_m(imager)]),
             landing_pads=_pads(frame, fleet, imager),
             survey_regions={name: region},
         ),
@@ -85,6 +87,13 @@ def _pads(
     )
 
 
+def _hovered_m(imager: ScenarioImager) -> Iterable[EastNorth]:
+    """Yield the corners of where the imaging drone may hover."""
+    (east_m, north_m), room_m = imager.over_m, UPWIND_ROOM_M if imager.is_upwind else 0.0
+    yield (east_m - room_m, north_m - room_m)
+    yield (east_m + room_m, north_m + room_m)
+
+
 def _boundary(places_m: Iterable[EastNorth | list[float]]) -> Region:
     places = np.array(list(places_m), dtype=np.float64)
     (west, south), (east, north) = places.min(axis=0), places.max(axis=0)
@@ -101,14 +110,14 @@ def _farthest_m(pads_m: tuple[EastNorth, ...], region: Region) -> float:
 
 def _grid(frame: LocalFrame, imager: ScenarioImager) -> GroundGrid:
     cell_m = imager.cell_m / IMAGE_CELLS_PER_CELL
-    half_m = ceil(imager.radius_m / cell_m) * cell_m
+    half_m = ceil((imager.reach_m or imager.radius_m) / cell_m) * cell_m
     west_m, north_m = imager.over_m[0] - half_m, imager.over_m[1] + half_m
     cells = round(2.0 * half_m / cell_m)
     return GroundGrid(frame, west_m, north_m, cell_m, cells, cells)
 
 
 def _generated_imager(frame: LocalFrame, imager: ScenarioImager) -> Imager:
-    """Return the demonstration's lens, pointing straight down, with a pose that needs no fit."""
+    """Return the demonstration's lens, with a pose that needs no fit."""
     beneath = point_from_enu(frame, (*imager.over_m, 0.0))
     marked = TelemetryReference(beneath.latitude_deg, beneath.longitude_deg, imager.height_m, 0.0)
     camera = demo_camera()
@@ -117,7 +126,7 @@ def _generated_imager(frame: LocalFrame, imager: ScenarioImager) -> Imager:
         field = radians(imager.field_deg)
         (rim_px,) = camera.project(np.array([[sin(field), 0.0, cos(field)]]))
         radius_px = float(rim_px[0]) - CENTRE_COL_PX
-    pose = mounted_pose(marked, np.array([*imager.over_m, imager.height_m]))
+    pose = mounted_pose(marked, np.array([*imager.over_m, imager.height_m]), imager.tilt_deg)
     return Imager(
         serial=IMAGER_SERIAL,
         camera=camera,
@@ -210,7 +219,7 @@ def _on_folder(folder: Path, file: ScenarioFile, errors: ScenarioErrors) -> Stag
     origin = (table.latitude_deg, table.longitude_deg, table.ground_altitude_m)
     if any(each is not None for each in origin):
         raise errors.error("expected a folder or an origin, got both", "site")
-    for key in ("over_m", "height_m", "field_deg"):
+    for key in ("over_m", "height_m", "field_deg", "tilt_deg", "reach_m"):
         if getattr(file.imager, key) is not None:
             raise errors.error(f"{key}: expected only without a folder", "imager")
     if file.fleet.pads_m is not None:
@@ -276,4 +285,14 @@ def _imager(
 ) -> ScenarioImager:
     over_m = beneath_m if table.over_m is None else (table.over_m[0], table.over_m[1])
     over_ground_m = height_m if table.height_m is None else table.height_m
-    return ScenarioImager(over_m, over_ground_m, table.radius_m, table.cell_m, table.field_deg)
+    return ScenarioImager(
+        over_m,
+        over_ground_m,
+        table.radius_m,
+        table.cell_m,
+        table.field_deg,
+        table.tilt_deg or 0.0,
+        table.reach_m,
+        table.coarsest_m,
+        table.upwind,
+    )

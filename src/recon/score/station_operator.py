@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from recon.fleet.state import staleness
-from recon.model.command import ReturnHome
+from recon.model.command import Body, GoTo, ReturnHome
 from recon.model.control import AuthorityHolder
 from recon.model.event import (
     AuthorityTaken,
@@ -29,10 +29,13 @@ from recon.score.scripted_operator import (
     SurveyStage,
     TakeAuthority,
 )
+from recon.station.imaging.upwind import SPEED_MPS, proposed
 from recon.station.state.station import Station
 from recon.station.state.survey_record import SurveyRecord
 
 BY = "scripted operator"
+MOVES_EVERY_S = 60.0
+"""Between two moves of the imaging drone: the wind turns in minutes."""
 SURVEY_ID = 1
 BATTERY_RULE = "battery_home"
 DESCENDING = (FlightMode.GO_HOME, FlightMode.AUTO_LANDING, FlightMode.CONFIRM_LANDING)
@@ -45,12 +48,29 @@ class StationOperator:
 
     survey: Survey
     operator: ScriptedOperator
+    moves_upwind: bool = False
+    """Whether it has the imaging drone hover where it sees most of the shade to come."""
+    _moves_due_s: float = 0.0
     _next_order: int = FIRST_ORDER
 
     def events(self, station: Station, now_ns: int) -> Iterator[Event]:
         """Yield what the operator commands now."""
+        if self.moves_upwind and now_ns >= self._moves_due_s * NS_PER_S:
+            yield from self._move_upwind(station, now_ns)
         for action in self.operator.decide(view_of(station, now_ns), now_ns / NS_PER_S):
             yield self._event(action)
+
+    def _move_upwind(self, station: Station, now_ns: int) -> Iterator[Event]:
+        found = proposed(station, [self.survey.region], None, now_ns)
+        if isinstance(found, str) or found.there is found.here:
+            return
+        self._moves_due_s = now_ns / NS_PER_S + MOVES_EVERY_S
+        body = GoTo(found.place, found.height_above_takeoff_m, SPEED_MPS, found.yaw_deg)
+        yield self._order(body, found.serial)
+
+    def _order(self, body: Body, serial: str) -> OperatorOrder:
+        self._next_order += 1
+        return OperatorOrder(self._next_order - 1, body, BY, serial=serial)
 
     def _event(self, action: OperatorAction) -> Event:
         match action:
@@ -63,8 +83,7 @@ class StationOperator:
             case AbortSurvey():
                 return SurveyStopped(SURVEY_ID, BY, is_aborted=True)
             case CallHome(serial):
-                self._next_order += 1
-                return OperatorOrder(self._next_order - 1, ReturnHome(), BY, serial=serial)
+                return self._order(ReturnHome(), serial)
 
 
 def view_of(station: Station, now_ns: int) -> FieldView:

@@ -53,11 +53,10 @@ def _survey(scenario: Scenario, runs: Sequence[RunScore]) -> str:
         shares = [r.in_sun_share[index] for r in runs]
         rows.append(row(f"in sun after {minute:g} min, %", shares, percent, 1.0))
     rows += [
-        row(
+        share(
             "counted in sun, but on no photo in sun, %",
-            _of(runs, "wrongly_in_sun_share"),
-            percent,
-            1.0,
+            [each.wrongly_in_sun for each in runs],
+            [each.counted_in_sun for each in runs],
         ),
         row("until all drones have landed, min", _of(runs, "survey_s"), minutes),
         row("flight time of all drones, min", _of(runs, "flight_s"), minutes),

@@ -2,6 +2,9 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from math import atan2, degrees, hypot
+
+import numpy as np
 
 from recon.camera import (
     ImageCircle,
@@ -12,9 +15,13 @@ from recon.camera import (
 from recon.model.airspace import Airspace, ElevationModel, FlightLimits, LandingPad, Region, Zone
 from recon.model.failsafe_matrix import FailsafeMatrix
 from recon.model.geo import GroundGrid, LocalFrame
-from recon.model.imagery import CameraPose
+from recon.model.imagery import CameraPose, Outlook
+from recon.model.units import wrap_degrees
 from recon.model.vehicle import VehicleProfile
 from recon.safety.failsafe import DEFAULT_MATRIX
+
+RIM_SHARE = 0.98
+"""Of the image circle's radius: its rim is dark, and leaves the view when the camera wobbles."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,6 +51,29 @@ class Imager:
         position, so the station warns about it.
         """
         return self.marked_frame is None
+
+    @property
+    def outlook(self) -> Outlook:
+        """What the camera shows from wherever the aircraft is."""
+        east, north, up = self.marked_pose.rotation_enu_camera[:, 2].tolist()
+        tilt_rad = atan2(hypot(east, north), -up)
+        yaw_deg = 0.0 if self.marked_frame is None else self.marked_frame.yaw_deg
+        looks_deg = degrees(atan2(east, north))
+        return Outlook(
+            self._field_rad(),
+            tilt_rad,
+            wrap_degrees(looks_deg - yaw_deg),
+            self.camera.pixels_per_radian,
+        )
+
+    def _field_rad(self) -> float:
+        camera, circle = self.camera, self.image_circle
+        if circle is None:
+            return camera.largest_angle_rad
+        rim = [circle.centre_col_px + RIM_SHARE * circle.radius_px, circle.centre_row_px]
+        (ray,) = camera.unproject([rim])
+        angle_rad = float(np.arccos(np.clip(ray[2], -1.0, 1.0)))
+        return angle_rad if np.isfinite(angle_rad) else camera.largest_angle_rad
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -35,6 +35,7 @@ export type ReturningView = Schemas["ReturningView"];
 export type ShadeLineView = Schemas["ShadeLineView"];
 export type ForecastView = Schemas["ForecastView"];
 export type SunAtView = Schemas["SunAtView"];
+export type UpwindPlaceView = Schemas["UpwindPlaceView"];
 export type SurveyView = Schemas["SurveyView"];
 export type SurveyingView = Schemas["SurveyingView"];
 export type SurveyRequest = Schemas["SurveyRequest"];

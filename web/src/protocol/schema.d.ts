@@ -561,6 +561,29 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/upwind-place": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Upwind Place
+         * @description Where an imaging drone sees most of the shade that comes over a region.
+         *
+         *     It flies there by a goto. By default the site's first imaging drone, and the region of the
+         *     running survey, or all of the site's.
+         */
+        get: operations["upwind_place_api_upwind_place_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/vehicle": {
         parameters: {
             query?: never;
@@ -1892,6 +1915,26 @@ export interface components {
             wave: number | null;
         };
         /**
+         * SeenFromView
+         * @description What an imaging drone sees of the shade over a region, from a place.
+         */
+        SeenFromView: {
+            /**
+             * In 30 S
+             * @description share whose shade in so many seconds is in view now
+             */
+            in_30_s: number;
+            /** In 60 S */
+            in_60_s: number;
+            /** In 90 S */
+            in_90_s: number;
+            /**
+             * Now
+             * @description share of the region in view, 0 to 1
+             */
+            now: number;
+        };
+        /**
          * ShadeLineView
          * @description State of shade detection and sun forecast from the imaging drone's frames.
          */
@@ -2612,6 +2655,33 @@ export interface components {
                 number,
                 number
             ][];
+        };
+        /**
+         * UpwindPlaceView
+         * @description Where an imaging drone sees most of the shade that comes over a region.
+         */
+        UpwindPlaceView: {
+            /**
+             * Distance M
+             * @description from where it is; 0: it hovers well there
+             */
+            distance_m: number;
+            /** Height Above Takeoff M */
+            height_above_takeoff_m: number;
+            here: components["schemas"]["SeenFromView"];
+            /** Latitude Deg */
+            latitude_deg: number;
+            /** Longitude Deg */
+            longitude_deg: number;
+            /** Serial */
+            serial: string;
+            /** Speed Mps */
+            speed_mps: number;
+            /** Takes S */
+            takes_s: number;
+            there: components["schemas"]["SeenFromView"];
+            /** Yaw Deg */
+            yaw_deg: number;
         };
         /** ValidationError */
         ValidationError: {
@@ -3643,6 +3713,47 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["SurveyWays"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    upwind_place_api_upwind_place_get: {
+        parameters: {
+            query?: {
+                region?: string | null;
+                serial?: string | null;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["UpwindPlaceView"];
                 };
             };
             /** @description Not Found */

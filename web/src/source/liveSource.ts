@@ -218,6 +218,10 @@ export class LiveSource implements StationSource {
     return this.requests.sunAt(latitudeDeg, longitudeDeg);
   }
 
+  upwindPlace(serial: string) {
+    return this.requests.upwindPlace(serial);
+  }
+
   close(): void {
     this.stream.close();
   }

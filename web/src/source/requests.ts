@@ -11,6 +11,7 @@ import type {
   SurveyWays,
   TemporaryZoneRequest,
   TemporaryZoneResponse,
+  UpwindPlaceView,
 } from "../protocol";
 import type { paths } from "../protocol/schema";
 import type { NamedOrder, NewSurvey, NewZone, Outcome, Picture } from "./stationSource";
@@ -142,6 +143,11 @@ export class Requests {
   sunAt(latitude_deg: number, longitude_deg: number): Promise<Outcome<SunAtView>> {
     const options = { params: { query: { latitude_deg, longitude_deg } }, signal: timeout() };
     return answered(() => this.client.GET("/api/sun-at", options), identity);
+  }
+
+  upwindPlace(serial: string): Promise<Outcome<UpwindPlaceView>> {
+    const options = { params: { query: { serial } }, signal: timeout() };
+    return answered(() => this.client.GET("/api/upwind-place", options), identity);
   }
 
   dismissHazard(serial: string): Promise<Outcome<null>> {

@@ -13,6 +13,7 @@ import type {
   SurveyWays,
   TemporaryZoneRequest,
   TemporaryZoneResponse,
+  UpwindPlaceView,
 } from "../protocol";
 import type { Instant } from "./clock";
 
@@ -116,5 +117,7 @@ export interface StationSource {
   forecastPicture(number: number, lead_s: number): Promise<Outcome<Picture>>;
   /** The light at a place, and when it changes next. */
   sunAt(latitudeDeg: number, longitudeDeg: number): Promise<Outcome<SunAtView>>;
+  /** Where an imaging drone sees most of the shade that comes over the region. */
+  upwindPlace(serial: string): Promise<Outcome<UpwindPlaceView>>;
   close(): void;
 }

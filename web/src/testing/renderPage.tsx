@@ -8,6 +8,7 @@ import type {
   OrderResult,
   PreflightView,
   StationState,
+  UpwindPlaceView,
 } from "../protocol";
 import type {
   Connection,
@@ -36,6 +37,8 @@ export interface RenderedPage {
   answerWith(results: readonly OrderResult[]): void;
   /** Sets the answer to every further request other than orders. */
   answerRequestsWith(response: ActionResponse): void;
+  /** Sets the place upwind of further answers. */
+  findUpwind(place: UpwindPlaceView): void;
   showPreflight(preflight: PreflightView): void;
   failPreflight(problem: string): void;
   /** Sets how vehicle pictures are fetched. */
@@ -85,6 +88,7 @@ interface Recorded {
   allStops: number;
   answer: readonly OrderResult[];
   fetchFrame: StationSource["vehicleFrame"];
+  upwindPlace: Outcome<UpwindPlaceView>;
 }
 
 const noPicture = async () => ({ kind: "failed", problem: "no picture in this test" }) as const;
@@ -108,6 +112,7 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
     allStops: 0,
     answer: [],
     fetchFrame: noPicture,
+    upwindPlace: { kind: "failed", problem: "no place upwind in this test" },
   };
   let behindS = 0;
   const source = fakeSource(state, connection, person, () => behindS, recorded);
@@ -135,6 +140,9 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
     },
     answerRequestsWith: (response) => {
       recorded.response = response;
+    },
+    findUpwind: (value) => {
+      recorded.upwindPlace = { kind: "answered", value };
     },
     showPreflight: (value) => {
       recorded.preflight = { kind: "answered", value };
@@ -255,6 +263,7 @@ function fakeSource(
     shadePicture: noPicture,
     forecastPicture: noPicture,
     sunAt: noPicture,
+    upwindPlace: async () => recorded.upwindPlace,
     close: () => {},
   };
 }

@@ -48,10 +48,12 @@ from recon.api.schema.site import (
     LightSharesView,
     LimitsView,
     PadView,
+    SeenFromView,
     ShadeLineView,
     ShadeMapView,
     SiteView,
     SunAtView,
+    UpwindPlaceView,
 )
 from recon.api.schema.station import (
     FleetReturnView,
@@ -150,6 +152,7 @@ __all__ = [
     "Problem",
     "RefuseAppRequest",
     "ReturningView",
+    "SeenFromView",
     "Severity",
     "ShadeLineView",
     "ShadeMapView",
@@ -177,6 +180,7 @@ __all__ = [
     "TemporaryZoneRequest",
     "TemporaryZoneResponse",
     "TemporaryZoneView",
+    "UpwindPlaceView",
     "VehicleView",
     "VelocityView",
     "WaitingAppView",

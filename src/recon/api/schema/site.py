@@ -164,6 +164,30 @@ class SunAtView(Message):
     change_late_s: float | None = Field(description="not exceeded in nine of ten cases")
 
 
+class SeenFromView(Message):
+    """What an imaging drone sees of the shade over a region, from a place."""
+
+    now: float = Field(description="share of the region in view, 0 to 1")
+    in_30_s: float = Field(description="share whose shade in so many seconds is in view now")
+    in_60_s: float
+    in_90_s: float
+
+
+class UpwindPlaceView(Message):
+    """Where an imaging drone sees most of the shade that comes over a region."""
+
+    serial: str
+    latitude_deg: float
+    longitude_deg: float
+    height_above_takeoff_m: float
+    yaw_deg: float
+    speed_mps: float
+    distance_m: float = Field(description="from where it is; 0: it hovers well there")
+    takes_s: float
+    here: SeenFromView
+    there: SeenFromView
+
+
 class ShadeLineView(Message):
     """State of shade detection and sun forecast from the imaging drone's frames."""
 

@@ -8,10 +8,13 @@ import numpy as np
 from recon.api import schema
 from recon.forecast import next_change, right_shares
 from recon.geo import cell_at, enu_from_point, geo_from_enu
+from recon.guidance.upwind_place import UpwindPlace
 from recon.model.geo import GeoPoint, GroundGrid
 from recon.model.shade import MaskMap, ShadeMap, SunForecast
 from recon.model.units import ns_to_seconds
+from recon.site import Site
 from recon.station.imaging.mosaic import alignment_of, newest_images
+from recon.station.imaging.upwind import SPEED_MPS, proposed
 from recon.station.state.imaging import ImagerFrames, ShadePipeline
 from recon.station.state.station import Station
 
@@ -130,7 +133,7 @@ def sun_at_view(
 ) -> schema.SunAtView | None:
     """Return the light at a latitude and longitude and its next change; None before a map."""
     line = station.shade
-    shade, sun = line.shade, line.sun
+    shade, sun = line.followed, line.sun
     if shade is None or sun is None:
         return None
     frame = shade.grid.frame
@@ -170,3 +173,38 @@ def corners_lon_lat(grid: GroundGrid) -> list[tuple[float, float]]:
     )
     latitude_deg, longitude_deg, _height_m = geo_from_enu(grid.frame, corners_enu_m)
     return [(float(lon), float(lat)) for lon, lat in zip(longitude_deg, latitude_deg, strict=True)]
+
+
+def upwind_place_view(
+    station: Station, site: Site, serial: str | None, region: str | None, now_ns: int
+) -> schema.UpwindPlaceView | str:
+    """Return where an imaging drone sees most of a region's shade; else why none is known."""
+    named = site.layers.survey_regions
+    if region is not None and region not in named:
+        return f"expected a survey region of the site ({', '.join(named) or 'none'}), got {region}"
+    running = [each.survey.region for each in station.surveys.records.values() if each.is_running]
+    regions = [named[region]] if region is not None else running or list(named.values())
+    found = proposed(station, regions, serial, now_ns)
+    if isinstance(found, str):
+        return found
+    return schema.UpwindPlaceView(
+        serial=found.serial,
+        latitude_deg=found.place.latitude_deg,
+        longitude_deg=found.place.longitude_deg,
+        height_above_takeoff_m=found.height_above_takeoff_m,
+        yaw_deg=found.yaw_deg,
+        speed_mps=SPEED_MPS,
+        distance_m=found.distance_m,
+        takes_s=found.takes_s,
+        here=_seen_from(found.here),
+        there=_seen_from(found.there),
+    )
+
+
+def _seen_from(place: UpwindPlace) -> schema.SeenFromView:
+    return schema.SeenFromView(
+        now=place.predicted_at(0.0),
+        in_30_s=place.predicted_at(30.0),
+        in_60_s=place.predicted_at(60.0),
+        in_90_s=place.predicted_at(90.0),
+    )

@@ -30,4 +30,5 @@ def _frames_of(imager: Imager) -> ImagerFrames:
         reference=imager.marked_frame,
         is_reference_assumed=imager.marked_frame is None,
         is_placed_by_telemetry=imager.solution is None,
+        outlook=imager.outlook,
     )

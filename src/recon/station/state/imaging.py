@@ -10,7 +10,7 @@ from recon.camera.motion import TelemetryReference
 from recon.camera.registration import RegistrationState
 from recon.detection import DetectionState, RejectedFrame
 from recon.forecast import ForecastState
-from recon.model.imagery import Frame, GroundImage
+from recon.model.imagery import Frame, GroundImage, Outlook
 from recon.model.shade import MaskMap, ShadeMap, SunForecast, SunlitReference
 
 WAITING_KEPT = 8
@@ -60,6 +60,8 @@ class ImagerFrames:
     is_reference_assumed: bool = True
     is_placed_by_telemetry: bool = False
     """Whether the site has no control points, so that telemetry alone places the camera."""
+    outlook: Outlook | None = None
+    """What its camera shows, by the site's files."""
     samples: tuple[ImagerSample, ...] = ()
     ground_image: GroundImage | None = None
     captured_sigma_s: float = 0.0

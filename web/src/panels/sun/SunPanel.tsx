@@ -7,6 +7,7 @@ import { Panel } from "../Panel";
 import { SeverityMark } from "../SeverityMark";
 import { LightShares } from "./LightShares";
 import { LookAside } from "./LookAside";
+import { UpwindPlace } from "./UpwindPlace";
 import "./sun.css";
 
 const OVERLAYS: readonly (readonly [OverlayKind, string])[] = [
@@ -41,6 +42,7 @@ export function SunPanel() {
         {(line) => (
           <>
             <ShadeStatus line={line()} />
+            <UpwindPlace />
             <LookAside />
           </>
         )}

@@ -1,5 +1,5 @@
 import { afterEach, describe, expect, it } from "vitest";
-import type { LookAsideView } from "../../protocol";
+import type { LookAsideView, UpwindPlaceView } from "../../protocol";
 import { groundImage, shadeLine, station, survey, vehicle } from "../../testing/fakeState";
 import { find, type RenderedPage, renderPage } from "../../testing/renderPage";
 import { lightPercents } from "../../text/light";
@@ -174,6 +174,63 @@ describe("look aside", () => {
     const text = find(page.root, "[data-testid=look-aside]").textContent;
     expect(text).toContain("Alder stopped its look aside, bearing 123°");
     expect(text).toContain("hover, ordered by bob");
+  });
+});
+
+describe("view upwind", () => {
+  const place: UpwindPlaceView = {
+    serial: "SN-001",
+    latitude_deg: 41.9,
+    longitude_deg: -93.6,
+    height_above_takeoff_m: 118,
+    yaw_deg: 250,
+    speed_mps: 8,
+    distance_m: 224,
+    takes_s: 28,
+    here: { now: 0.98, in_30_s: 0.45, in_60_s: 0.02, in_90_s: 0 },
+    there: { now: 0.62, in_30_s: 0.9, in_60_s: 0.55, in_90_s: 0.16 },
+  };
+
+  async function showPlace(changes: Partial<UpwindPlaceView>) {
+    page = renderPage(SunPanel, station([vehicle(1, { is_imager: true })], { shade: shadeLine() }));
+    page.findUpwind({ ...place, ...changes });
+    await settled();
+    page.clock.advance(10_000);
+    await settled();
+  }
+
+  const settled = () => new Promise((resolve) => setTimeout(resolve));
+  const text = () => find(page.root, "[data-testid=upwind-place]").textContent;
+  const buttons = () =>
+    page.root.querySelectorAll<HTMLButtonElement>("section[aria-label='View upwind'] button");
+
+  it("states what the flight costs and what is seen from there", async () => {
+    await showPlace({});
+    expect(text()).toContain("Alder sees 98\u00a0% of the region now and 2\u00a0% of its shade in");
+    expect(text()).toContain("224\u00a0m away, in 28 s, it would see 62\u00a0%");
+    expect(text()).toContain("55\u00a0% of its shade in 60 s");
+  });
+
+  it("sends the drone there by a held button, with its heading", async () => {
+    await showPlace({});
+    buttons()[0]?.dispatchEvent(new PointerEvent("pointerdown", { bubbles: true, button: 0 }));
+    page.clock.advance(GUARD_MS);
+    const { latitude_deg, longitude_deg, height_above_takeoff_m, yaw_deg, speed_mps } = place;
+    const order = { latitude_deg, longitude_deg, height_above_takeoff_m, yaw_deg, speed_mps };
+    expect(page.orders).toEqual([{ serials: ["SN-001"], order: { kind: "goto", ...order } }]);
+  });
+
+  it("offers no flight from the best place", async () => {
+    await showPlace({ distance_m: 0, there: place.here });
+    expect(text()).toContain("Alder is at the best place upwind");
+    expect(buttons()).toHaveLength(0);
+  });
+
+  it("shows why no place is known", async () => {
+    page = renderPage(SunPanel, station([vehicle(1, { is_imager: true })], { shade: shadeLine() }));
+    await settled();
+    expect(text()).toBe("no place upwind in this test");
+    expect(buttons()).toHaveLength(0);
   });
 });
 
