@@ -25,7 +25,7 @@ SAMPLE_M = 20.0
 """Between the points that stand for the field: shares are right to about two per cent."""
 STEP_M = 40.0
 """Between places: nearer ones differ by less than the wind turns."""
-FOLLOWED_FOR_S, FOLLOWED_WORTH = 60.0, 0.9
+FOLLOWED_FOR_S, FOLLOWED_WORTH = 60.0, 0.7
 """Shade that has left the view is followed for so long, and is worth so much of what is seen."""
 LEAST_NOW = 0.5
 """Share of the field that stays in view, of the most that any place shows: drones fly there now."""

@@ -18,7 +18,7 @@ from recon.safety import PreparedAirspace
 from recon.station.imaging.upwind import SPEED_MPS, UpwindProposal, proposed
 
 EASTWARD = (5.0, 0.0)
-SQUARE = Region(np.array([[-100.0, -100.0], [100.0, -100.0], [100.0, 100.0], [-100.0, 100.0]]))
+SQUARE = Region(190.0 * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]))
 LEVEL, TILTED = Outlook(radians(65.0)), Outlook(radians(65.0), radians(20.0), 30.0)
 
 
@@ -40,7 +40,7 @@ def knowing(
     outlook: Outlook = LEVEL, velocity: tuple[float, float] | None = EASTWARD, age_s: float = 0.0
 ) -> LookingWorld:
     """An imaging drone above the middle of the region, and a forecast with this motion."""
-    world = looking_world(place_m=(0.0, 0.0), height_m=60.0)
+    world = looking_world(place_m=(0.0, 0.0), height_m=118.0)
     station, now_ns = world.station, world.surveyed.driver.now_ns
     imager = replace(station.imaging.imagers[IMAGER], outlook=outlook)
     sun = forecast(now_ns - round(age_s * 1e9), velocity)
@@ -76,7 +76,7 @@ def test_it_lies_where_the_shade_comes_from_and_sees_more() -> None:
     assert answer.there.predicted_at(30.0) > answer.here.predicted_at(30.0)
     assert answer.distance_m == pytest.approx(hypot(east_m, north_m), abs=3.0)
     assert answer.takes_s == pytest.approx(answer.distance_m / SPEED_MPS)
-    assert answer.height_above_takeoff_m == pytest.approx(60.0, abs=1.0)
+    assert answer.height_above_takeoff_m == pytest.approx(118.0, abs=1.0)
 
 
 def test_a_level_camera_keeps_its_heading_and_a_tilted_one_looks_upwind() -> None:
