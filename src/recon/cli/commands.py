@@ -99,6 +99,10 @@ COMMANDS = {
         "detect:detect_command",
         "Find shade in a recorded flight: GeoTIFFs, a contact sheet, cover over time.",
     ),
+    "forecast": CommandSource(
+        "forecast:forecast_command",
+        "Forecast the sun after the newest of recorded maps: a GeoTIFF for each lead.",
+    ),
     "verify": CommandSource(
         "verify:verify_command",
         "Run all forecast methods over recorded maps and compare them with what came.",
