@@ -253,6 +253,23 @@ def test_an_imaging_drone_told_to_goes_upwind_and_sees_what_comes(folder: Path) 
     assert toward @ upwind > 0.98
 
 
+def test_two_imaging_drones_make_one_map(folder: Path) -> None:
+    """Each sees 150 m around itself, 200 m apart: all of the scored ground is known."""
+    two = "[imager]\nalso_over_m = [[245.0, 30.0]]\nreach_m = 400.0\ncell_m = 8.0"
+    text = CALM.replace("[imager]", two).replace("limit_min = 10.0", SHORT)
+    run_ = StationRun(small(folder, text), 5)
+    while run_.now_s < 50.0:
+        run_.advance_a_second()
+    shade = run_.driver.station.shade.shade
+    assert shade is not None
+    assert set(shade.source_serials) == set(run_.scenario.site.imagers)
+    figures = run_.shade_score.shade
+    assert figures.cells > 0
+    assert figures.unknown < 0.02 * figures.cells
+    assert figures.shade.iou is None or figures.shade.iou > 0.9
+    assert len(run_.drones) == 2
+
+
 def test_time_to_a_share_is_that_of_the_last_needed_cell() -> None:
     first_s = np.array([50.0, 10.0, np.inf, 20.0])
     assert time_to_share(first_s, 0.5, 100.0) == 20.0

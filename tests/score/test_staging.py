@@ -8,8 +8,10 @@ from tests.score.scenes import SMALL, small
 
 from recon.geo import Polygon, enu_from_point
 from recon.score import Scenario, ScenarioError, load_scenario
+from recon.score.score_grid import score_grid, scored_cells
 from recon.score.simulation import simulation_of
 from recon.sim.app.faults import FaultKind
+from recon.sim.camera.field import FieldRenderer
 from recon.sim.fleet import IMAGER_SERIAL, build_fleet
 
 FOLDER = Path(__file__).parents[2] / "scenarios"
@@ -66,6 +68,11 @@ def test_a_site_folder_defines_pads_and_imager_position(tmp_path: Path) -> None:
             "over_m = [0.0, 0.0]\nradius_m",
             "imager.over_m: expected only without a folder",
         ),
+        (
+            "radius_m",
+            "also_over_m = [[9.0, 9.0]]\nradius_m",
+            "imager.also_over_m: expected only without a folder",
+        ),
         ("radius_m", "tilt_deg = 9\nradius_m", "imager.tilt_deg: expected only without a folder"),
         (
             "survey_drones = 2",
@@ -101,6 +108,32 @@ def test_a_generated_camera_is_tilted_and_its_maps_reach_farther(tmp_path: Path)
     boundaries = [each.site.layers.boundary for each in (scenario, plain)]
     wide, narrow = (Polygon(each).area_m2 for each in boundaries if each is not None)
     assert wide > narrow + 300.0**2
+
+
+TWO = "[imager]\nalso_over_m = [[400.0, 75.0]]\nreach_m = 600.0\ncell_m = 8.0"
+
+
+def test_several_imaging_drones_have_lens_pad_profile_and_wobble_each(tmp_path: Path) -> None:
+    scenario = small(tmp_path, SMALL.replace("[imager]", TWO))
+    assert list(scenario.site.imagers) == [IMAGER_SERIAL, f"{IMAGER_SERIAL}-2"]
+    second = scenario.site.imagers[f"{IMAGER_SERIAL}-2"]
+    assert second.marked_pose.position_enu_m == pytest.approx([400.0, 75.0, 120.0])
+    config = simulation_of(scenario, 3)
+    apps = build_fleet(config, 0)
+    serials = [app.settings.serial for app in apps]
+    assert serials == [IMAGER_SERIAL, f"{IMAGER_SERIAL}-2", "SIM-1", "SIM-2"]
+    assert apps[1].aircraft.motion.height_m == pytest.approx(120.0)
+    home_m = enu_from_point(scenario.frame, apps[1].settings.home)
+    assert home_m[:2] == pytest.approx((400.0, 75.0), abs=0.01)
+    first, other = (each.source for each in config.imagers.values())
+    assert isinstance(first, FieldRenderer)
+    assert isinstance(other, FieldRenderer)
+    assert first.seed == other.seed, "both see the same land"
+    assert first.imager.seed != other.imager.seed
+    counted = scored_cells(score_grid(scenario), scenario)
+    alone = small(tmp_path, SMALL.replace("[imager]", "[imager]\ncell_m = 8.0"))
+    one = scored_cells(score_grid(alone), alone)
+    assert counted.sum() == pytest.approx(2 * one.sum(), rel=0.02)
 
 
 def test_an_incomplete_origin_is_an_error(tmp_path: Path) -> None:

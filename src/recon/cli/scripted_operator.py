@@ -24,7 +24,6 @@ from recon.score.scripted_operator import (
     SurveyStage,
     TakeAuthority,
 )
-from recon.sim.fleet import IMAGER_SERIAL
 
 LOOK_EVERY_S = 1.0
 LIVE_WITHIN_S = 60.0
@@ -50,7 +49,7 @@ async def fly_surveys(url: str, scenario: Scenario, report: Report) -> None:
     while True:
         try:
             async with Station(url) as station:
-                for serial in (IMAGER_SERIAL, *scenario.fleet.serials):
+                for serial in (*scenario.site.imagers, *scenario.fleet.serials):
                     await station.vehicle(serial, LIVE_WITHIN_S)
                 return await _HttpOperator(station, scenario, survey, report_new).run()
         except ClientError as problem:

@@ -1,4 +1,4 @@
-"""The imaging drone of a run: rendered frames for the station's detector, or true shade maps.
+"""The imaging drones of a run: rendered frames for the station's detector, or true shade maps.
 
 With ideal detection, frames of a few pixels are sent over the link, with latency and faults; the
 worker then returns the true sky of each frame instead of reading its pixels.
@@ -12,24 +12,23 @@ from recon.camera import displaced_pose
 from recon.camera.sight import farthest_sight_m
 from recon.detection import DetectionSettings
 from recon.detection.cells import field_grid
-from recon.forecast import FORECASTERS
 from recon.geo import cell_centres_m, shift_east_north_m
-from recon.model.imagery import CameraPose, GroundImage, RgbImage
+from recon.model.imagery import CameraPose, GroundImage, Outlook, RgbImage
 from recon.model.shade import MaskMap, ShadeMap
 from recon.model.vehicle import VehicleProfile
 from recon.score.scenario import IDEAL, NO_FORECAST, Scenario
 from recon.score.scenario_conditions import conditions_of
 from recon.score.simulation import simulation_of
-from recon.score.true_frames import TrueFrames, ground_seen
+from recon.score.true_frames import Frames, ground_seen
 from recon.sim.camera.field import FieldRenderer
 from recon.sim.camera.frames import CameraView
-from recon.sim.fleet import IMAGER_SERIAL, SimulationConfig
+from recon.sim.fleet import SimulationConfig
 from recon.sim.world import Sky
 from recon.station.imaging.frames import LAY_FRAME
 from recon.station.imaging.projection import LaidFrame
-from recon.station.imaging.shade import READ_SHADE, ReadShade, ShadeRead
+from recon.station.imaging.shade import READ_SHADE, ReadShade, ShadeRead, with_forecast
 from recon.station.kernel.worker import JobRunner
-from recon.station.state.imaging import LayFrame, SeenShade
+from recon.station.state.imaging import LayFrame
 from recon.station.state.settings import StationSettings
 
 PLACEHOLDER_PX = 8
@@ -49,20 +48,26 @@ class Placeholders:
         return np.full((PLACEHOLDER_PX, PLACEHOLDER_PX, 3), level, dtype=np.uint8)
 
 
-def renderer_of(scenario: Scenario, seed: int) -> FieldRenderer:
-    """Return the renderer of the scenario's frames, which knows their true poses."""
-    imager = simulation_of(scenario, seed).imagers[IMAGER_SERIAL]
-    assert isinstance(imager.source, FieldRenderer)
-    return imager.source
+def renderers_of(config: SimulationConfig) -> dict[str, FieldRenderer]:
+    """Return the renderers of the frames, which know their true poses, by serial."""
+    renderers = {}
+    for serial, imager in config.imagers.items():
+        assert isinstance(imager.source, FieldRenderer)
+        renderers[serial] = imager.source
+    return renderers
 
 
 def config_of(scenario: Scenario, seed: int) -> SimulationConfig:
-    """Return the scenario's simulation, with rendered frames only where they are read."""
-    config = simulation_of(scenario, seed, conditions_of(scenario, seed).feed)
+    """Return the scenario's simulation, with frames as they are rendered."""
+    return simulation_of(scenario, seed, conditions_of(scenario, seed).feed)
+
+
+def sent_by(config: SimulationConfig, scenario: Scenario) -> SimulationConfig:
+    """Return the simulation with rendered frames only where they are read."""
     if scenario.methods.detection != IDEAL:
         return config
-    unread = replace(config.imagers[IMAGER_SERIAL], source=Placeholders())
-    return replace(config, imagers={IMAGER_SERIAL: unread})
+    unread = {s: replace(each, source=Placeholders()) for s, each in config.imagers.items()}
+    return replace(config, imagers=unread)
 
 
 def settings_of(scenario: Scenario) -> StationSettings:
@@ -77,7 +82,7 @@ def settings_of(scenario: Scenario) -> StationSettings:
     return settings
 
 
-def jobs_of(scenario: Scenario, sky: Sky, frames: TrueFrames) -> JobRunner:
+def jobs_of(scenario: Scenario, sky: Sky, frames: Frames) -> JobRunner:
     """Return the runner of the station's jobs; with ideal detection it reads the truth of `sky`."""
     jobs = JobRunner(scenario.site)
     if scenario.methods.detection == IDEAL:
@@ -94,28 +99,27 @@ class IdealDetection:
     pose, and is laid on the station's grid by the pose from telemetry. Only the pixels are ideal.
     """
 
-    def __init__(self, scenario: Scenario, sky: Sky, frames: TrueFrames) -> None:
+    def __init__(self, scenario: Scenario, sky: Sky, frames: Frames) -> None:
         site = scenario.site
-        assert site.imager is not None  # or it would not have been read
-        assert site.ground_grid is not None
-        self._frame, self._imager = scenario.frame, site.imager
-        self._mount = site.profiles.get(IMAGER_SERIAL, VehicleProfile(IMAGER_SERIAL)).mount
+        assert site.ground_grid is not None  # or it would not have been read
+        self._frame, self._site = scenario.frame, site
         self._sky, self._frames = sky, frames
         detection = DetectionSettings(cell_m=scenario.imager.cell_m)
         self._grid = field_grid(site.ground_grid, detection)
         east_m, north_m = (part.ravel() for part in np.meshgrid(*cell_centres_m(self._grid)))
         self._points_m = np.column_stack([east_m, north_m])
-        self._field_rad = site.imager.outlook.field_rad
-        self._pixels_per_radian = site.imager.outlook.pixels_per_radian
+        self._outlooks = {serial: each.outlook for serial, each in site.imagers.items()}
         self._coarsest_m = scenario.imager.coarsest_m
 
     def lay(self, work: LayFrame) -> LaidFrame:
         """Return a frame's time and believed pose, without pixels."""
         marked, now, frame = work.reference, work.telemetry, work.frame
+        imager = self._site.imagers[frame.serial]
+        mount = self._site.profiles.get(frame.serial, VehicleProfile(frame.serial)).mount
         shift_m = shift_east_north_m(self._frame, marked, now)
-        pose = displaced_pose(self._imager.marked_pose, marked, now, shift_m, self._mount)
+        pose = displaced_pose(imager.marked_pose, marked, now, shift_m, mount)
         nothing = np.zeros((self._grid.rows, self._grid.cols, 3), dtype=np.uint8)
-        is_seen = self._seen(pose).reshape(nothing.shape[:2])
+        is_seen = self._seen(pose, self._outlooks[frame.serial]).reshape(nothing.shape[:2])
         image = GroundImage(
             self._grid,
             frame.id,
@@ -123,17 +127,13 @@ class IdealDetection:
             nothing,
             is_seen,
             pose,
-            serial=IMAGER_SERIAL,
+            serial=frame.serial,
         )
         return LaidFrame(image)
 
     def read(self, work: ReadShade) -> ShadeRead:
         """Return the true sky of an image as a shade map, and the forecast from it."""
-        shade = self._shade(work.image)
-        own = SeenShade(shade, work.image.valid)
-        method = FORECASTERS[work.forecast_settings.method]
-        forecast, sun = method.after(work.forecast, shade, work.forecast_settings, own.seen)
-        return ShadeRead(IMAGER_SERIAL, work.detection, forecast, own, (own, sun))
+        return with_forecast(work, work.detection, self._shade(work.image), work.image.valid)
 
     def _shade(self, image: GroundImage) -> ShadeMap:
         """Return the true sky as this image shows it; raises `ValueError` without its frame."""
@@ -149,19 +149,19 @@ class IdealDetection:
         return ShadeMap(
             image.grid,
             image.captured_at_ns,
-            (IMAGER_SERIAL,),
+            (image.serial,),
             transmittance,
             known,
             known.astype(np.float32),
             fine,
         )
 
-    def _seen(self, pose: CameraPose) -> MaskMap:
+    def _seen(self, pose: CameraPose, outlook: Outlook) -> MaskMap:
         """(N,): whether the lens shows the points, were the pose true."""
         level = np.column_stack([self._points_m, np.zeros(len(self._points_m))])
         rays = (level - pose.position_enu_m) @ pose.rotation_enu_camera
-        in_field = np.arctan2(np.hypot(rays[:, 0], rays[:, 1]), rays[:, 2]) <= self._field_rad
+        in_field = np.arctan2(np.hypot(rays[:, 0], rays[:, 1]), rays[:, 2]) <= outlook.field_rad
         height_m = float(pose.position_enu_m[2])
-        most_m = farthest_sight_m(height_m, self._pixels_per_radian, self._coarsest_m)
+        most_m = farthest_sight_m(height_m, outlook.pixels_per_radian, self._coarsest_m)
         seen: MaskMap = in_field & (np.linalg.norm(rays, axis=1) <= most_m)
         return seen

@@ -12,7 +12,7 @@ from recon.model.command import Phase
 from recon.model.survey import CellState
 from recon.model.units import NS_PER_S
 from recon.score.connected_apps import ConnectedApps
-from recon.score.imager import config_of, jobs_of, renderer_of, settings_of
+from recon.score.imager import config_of, jobs_of, renderers_of, sent_by, settings_of
 from recon.score.run_score import (
     ENOUGH,
     RunScore,
@@ -27,7 +27,7 @@ from recon.score.scripted_operator import ScriptedOperator
 from recon.score.settings import SCORE
 from recon.score.shade_scoring import ImagerScore, ShadeScoring
 from recon.score.station_operator import SURVEY_ID, StationOperator
-from recon.score.true_frames import TrueFrames
+from recon.score.true_frames import FleetFrames
 from recon.score.true_paths import (
     Imaged,
     TruePath,
@@ -40,7 +40,7 @@ from recon.score.true_paths import (
 )
 from recon.sim.app.app import SimulatedApp
 from recon.sim.app.camera_feed import CaptureTimes
-from recon.sim.fleet import IMAGER_SERIAL, build_fleet
+from recon.sim.fleet import build_fleet
 from recon.station.kernel.build import first_state
 from recon.station.kernel.virtual import VirtualDriver
 from recon.station.state.survey_record import SurveyRecord
@@ -67,8 +67,9 @@ class StationRun:
     def __init__(self, scenario: Scenario, seed: int) -> None:
         self.scenario, self.seed = scenario, seed
         self._sky = sky_of(scenario, seed)
-        apps = build_fleet(config_of(scenario, seed), 0)
-        frames = TrueFrames.of(scenario, _captures(apps), renderer_of(scenario, seed))
+        config = config_of(scenario, seed)
+        apps = build_fleet(sent_by(config, scenario), 0)
+        frames = FleetFrames.of(scenario, _captures(apps), renderers_of(config))
         self.driver = VirtualDriver(
             first_state(scenario.site, settings_of(scenario)),
             jobs=jobs_of(scenario, self._sky, frames),
@@ -138,7 +139,8 @@ class StationRun:
     @property
     def drones(self) -> Sequence[TruePath]:
         """The survey drones' true paths."""
-        return [path for serial, path in self._paths.items() if serial != IMAGER_SERIAL]
+        imagers = self.scenario.site.imagers
+        return [path for serial, path in self._paths.items() if serial not in imagers]
 
     def _record_refusals(self) -> None:
         """Remember refused orders: the station drops old records."""
@@ -203,8 +205,6 @@ class StationRun:
         return imaged(photos, plan, self._sky)
 
 
-def _captures(apps: Sequence[SimulatedApp]) -> deque[CaptureTimes]:
-    """Return the imaging drone's frames, as they are taken."""
-    feeds = [app.feed for app in apps if app.feed is not None]
-    assert len(feeds) == 1  # a scenario has one imaging drone
-    return feeds[0].captures
+def _captures(apps: Sequence[SimulatedApp]) -> dict[str, deque[CaptureTimes]]:
+    """Return the imaging drones' frames, as they are taken, by serial."""
+    return {app.settings.serial: app.feed.captures for app in apps if app.feed is not None}

@@ -8,6 +8,7 @@ from recon.model.geo import LocalFrame
 from recon.model.survey import Survey
 from recon.sim.app.faults import InjectedFault, RandomFault
 from recon.sim.conditions import ConditionRanges, Range
+from recon.sim.fleet import IMAGER_SERIAL
 from recon.sim.world import LayerSettings, SunSettings, WindSettings
 from recon.site import Site
 
@@ -39,9 +40,10 @@ class ScenarioFleet:
 
 @dataclass(frozen=True, slots=True)
 class ScenarioImager:
-    """The imaging drone hovers over a place and sees a circle of the ground."""
+    """The imaging drones, each over a place; each sees a circle of the ground."""
 
     over_m: EastNorth
+    """Of the first one."""
     height_m: float
     radius_m: float
     """Of the scored ground, if the lens shows as much."""
@@ -56,7 +58,15 @@ class ScenarioImager:
     coarsest_m: float = COARSEST_M
     """Ground that a pixel may show, for ideal detection to see it."""
     is_upwind: bool = False
-    """Whether the operator moves it to where it sees most of the shade to come."""
+    """Whether the operator moves the first one to where it sees most of the shade to come."""
+    also_over_m: tuple[EastNorth, ...] = ()
+    """Of the others."""
+
+    @property
+    def places_m(self) -> dict[str, EastNorth]:
+        """Where each hovers first, by serial."""
+        others = {f"{IMAGER_SERIAL}-{n}": place for n, place in enumerate(self.also_over_m, 2)}
+        return {IMAGER_SERIAL: self.over_m, **others}
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,7 +26,6 @@ from recon.score.scenario_sky import clouds_of
 from recon.score.staging import staged
 from recon.sim.app.fault_file import FaultScript, load_faults
 from recon.sim.app.faults import InjectedFault, RandomFault, parse_fault
-from recon.sim.fleet import IMAGER_SERIAL
 from recon.sim.world import SunSettings, WindSettings
 from recon.site.reading import validation_error
 
@@ -166,10 +165,10 @@ def _check_faults(scenario: Scenario, errors: ScenarioErrors) -> None:
     serials = scenario.fleet.serials
     all_faults: list[InjectedFault | RandomFault] = [*scenario.faults, *scenario.chances]
     for index, fault in enumerate(all_faults):
-        if fault.is_for(IMAGER_SERIAL, 0):
+        if any(fault.is_for(serial, 0) for serial in scenario.site.imagers):
             continue
         if not any(fault.is_for(serial, i + 1) for i, serial in enumerate(serials)):
-            known = ", ".join((*serials, IMAGER_SERIAL))
+            known = ", ".join((*serials, *scenario.site.imagers))
             text = f"expected a vehicle of {known}, its number or *, got {fault.vehicle!a}"
             if fault.source:
                 raise errors.error(f"{fault.source}{text}", "fault_file")

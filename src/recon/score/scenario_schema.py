@@ -100,6 +100,8 @@ class ScenarioImagerTable(Table, frozen=True):
     """
 
     over_m: PlacePair | None = None
+    also_over_m: Annotated[list[PlacePair], Meta(max_length=3)] = []
+    """Of further imaging drones, on a generated site."""
     height_m: Annotated[float, Meta(ge=10.0, le=120.0)] | None = None
     """At most as high as drones may fly in most countries."""
     field_deg: Annotated[float, Meta(ge=30.0, le=85.0)] | None = None

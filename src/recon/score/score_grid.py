@@ -27,23 +27,20 @@ def score_radius_m(scenario: Scenario) -> float:
 
 def score_grid(scenario: Scenario, least_cell_m: float = 0.0) -> GroundGrid:
     """Return the grid around the scored ground."""
-    cell_m = max(scenario.imager.cell_m, least_cell_m)
-    half = int(np.ceil(score_radius_m(scenario) / cell_m))
-    east_m, north_m = scenario.imager.over_m
-    return GroundGrid(
-        scenario.frame,
-        east_m - half * cell_m,
-        north_m + half * cell_m,
-        cell_m,
-        2 * half,
-        2 * half,
-    )
+    cell_m, radius_m = max(scenario.imager.cell_m, least_cell_m), score_radius_m(scenario)
+    east_m, north_m = zip(*scenario.imager.places_m.values(), strict=True)
+    half = int(np.ceil(radius_m / cell_m))
+    cols = 2 * half + int(np.ceil((max(east_m) - min(east_m)) / cell_m))
+    rows = 2 * half + int(np.ceil((max(north_m) - min(north_m)) / cell_m))
+    west_m, top_m = min(east_m) - half * cell_m, max(north_m) + half * cell_m
+    return GroundGrid(scenario.frame, west_m, top_m, cell_m, rows, cols)
 
 
 def scored_cells(grid: GroundGrid, scenario: Scenario) -> MaskMap:
-    """Return the cells of a grid that are scored (rows, cols)."""
+    """Return the cells of a grid that are scored (rows, cols): those near an imaging drone."""
     east_m, north_m = cell_centres_m(grid)
-    over_east_m, over_north_m = scenario.imager.over_m
-    across_m = np.hypot.outer(north_m - over_north_m, east_m - over_east_m)
-    inside: MaskMap = across_m <= score_radius_m(scenario)
+    inside: MaskMap = np.zeros((grid.rows, grid.cols), dtype=np.bool_)
+    for over_east_m, over_north_m in scenario.imager.places_m.values():
+        away_m = np.hypot.outer(north_m - over_north_m, east_m - over_east_m)
+        inside |= away_m <= score_radius_m(scenario)
     return inside

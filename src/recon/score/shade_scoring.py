@@ -17,8 +17,7 @@ from recon.score.scenario import NO_FORECAST, Scenario
 from recon.score.score_grid import score_grid, scored_cells
 from recon.score.settings import SCORE
 from recon.score.shade_figures import ShadeFigures, map_figures
-from recon.score.true_frames import TrueFrames, registration_errors_m
-from recon.sim.fleet import IMAGER_SERIAL
+from recon.score.true_frames import Frames, registration_errors_m
 from recon.sim.world import Sky
 from recon.station.state.station import Station
 
@@ -70,11 +69,11 @@ class ShadeScoring:
 
     scenario: Scenario
     sky: Sky
-    frames: TrueFrames
+    frames: Frames
     score: ImagerScore = field(default_factory=ImagerScore)
     _maps_due_s: float = SCORE.score_maps_every_s
     _map_number: int = 0
-    _image: GroundImage | None = None
+    _images: dict[str, GroundImage] = field(default_factory=dict)
     _ground: ScoredGround = field(init=False)
     _coarse: ScoredGround = field(init=False)
     _forecasts: ForecastScoring | None = None
@@ -110,7 +109,8 @@ class ShadeScoring:
         if self._forecasts is not None:
             self._forecasts.update(line, now_s)
             self.score.changes = self._forecasts.changes
-        self._score_pose(station.imaging.imagers[IMAGER_SERIAL].ground_image)
+        for imager in station.imaging.imagers.values():
+            self._score_pose(imager.ground_image)
 
     def _score_map(self, shade: ShadeMap | None, now_s: float) -> None:
         at_s = now_s if shade is None else shade.captured_at_ns / NS_PER_S
@@ -124,9 +124,9 @@ class ShadeScoring:
             self.score.to_right_s = now_s
 
     def _score_pose(self, image: GroundImage | None) -> None:
-        if image is None or image is self._image:
+        if image is None or image is self._images.get(image.serial):
             return
-        self._image = image
+        self._images[image.serial] = image
         true = self.frames.of_image(image)
         if true is not None:
             errors_m = registration_errors_m(true.pose, image.pose)

@@ -13,12 +13,14 @@ from recon.sim.app.telemetry import FIELD_SENSORS
 from recon.sim.camera.field import FieldRenderer
 from recon.sim.camera.replay import rig_over
 from recon.sim.camera.rig import CameraRig
-from recon.sim.fleet import IMAGER_SERIAL, Airborne, ImagerSetup, SimulationConfig
+from recon.sim.fleet import Airborne, ImagerSetup, SimulationConfig
 from recon.sim.world.relief import Relief, ReliefSettings
 from recon.site import Imager, Site
 
 FaultOrChance = TypeVar("FaultOrChance", InjectedFault, RandomFault)
 
+APART = 1_000_003
+"""Between the seeds of two cameras."""
 IMAGER_ENDURANCE_S = 36_000.0
 """The imaging drone stays up for the whole scenario: its battery changes are not modelled."""
 
@@ -32,28 +34,19 @@ def simulation_of(
     """
     site = scenario.site
     fleet = scenario.fleet
-    frame, imager = scenario.frame, site.imager
-    assert imager is not None  # or it would not have been read
-    rig, conditions = rig_of(frame, imager), conditions_of(scenario, seed)
-    source = FieldRenderer(
-        rig.camera,
-        imager.image_circle,
-        seed,
-        sky_of(scenario, seed),
-        conditions.camera,
-        _relief(conditions.relief_m, seed),
-        conditions.light,
-    )
-    silent = FeedSettings(starts_on=False)
+    conditions = conditions_of(scenario, seed)
+    sent = FeedSettings(starts_on=False) if feed is None else feed
+    imagers = {
+        serial: _setup(scenario, imager, number, seed, sent)
+        for number, (serial, imager) in enumerate(site.imagers.items())
+    }
     return SimulationConfig(
-        home=frame.origin,
-        vehicle_count=len(fleet.serials) + 1,
-        imagers={
-            IMAGER_SERIAL: ImagerSetup(source, silent if feed is None else feed, rig),
-        },
+        home=scenario.frame.origin,
+        vehicle_count=len(fleet.serials) + len(imagers),
+        imagers=imagers,
         airborne=Airborne.IMAGER,
         endurance_s=fleet.endurance_s,
-        endurances_s={IMAGER_SERIAL: IMAGER_ENDURANCE_S},
+        endurances_s=dict.fromkeys(imagers, IMAGER_ENDURANCE_S),
         battery_swap_s=fleet.swap_s,
         sensors=replace(FIELD_SENSORS, yaw_error_deg=conditions.yaw_error_deg),
         wind=replace(scenario.wind, seed=seed),
@@ -63,6 +56,24 @@ def simulation_of(
         pads=pads_of(site),
         go_home_heights_m=go_home_heights_of(site),
     )
+
+
+def _setup(
+    scenario: Scenario, imager: Imager, number: int, seed: int, feed: FeedSettings
+) -> ImagerSetup:
+    """Return one imaging drone's frames; all see the same land and sky, each wobbles by itself."""
+    rig, conditions = rig_of(scenario.frame, imager), conditions_of(scenario, seed)
+    camera = replace(conditions.camera, seed=conditions.camera.seed + APART * number)
+    source = FieldRenderer(
+        rig.camera,
+        imager.image_circle,
+        seed,
+        sky_of(scenario, seed),
+        camera,
+        _relief(conditions.relief_m, seed),
+        conditions.light,
+    )
+    return ImagerSetup(source, feed, rig)
 
 
 def pads_of(site: Site) -> dict[str, GeoPoint]:

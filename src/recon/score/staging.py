@@ -62,7 +62,10 @@ def generated_site(
         name=name,
         frame=frame,
         ground_grid=_grid(frame, imager),
-        imagers={IMAGER_SERIAL: _generated_imager(frame, imager)},
+        imagers={
+            serial: _generated_imager(frame, imager, serial, over_m)
+            for serial, over_m in imager.places_m.items()
+        },
         profiles=_profiles(frame, fleet, imager, photo_interval_s, ceiling_m),
         layers=Layers(
             boundary=_boundary([*region.outline_m.tolist(), *fleet.pads_m, *_hovered_m(imager)]),
@@ -80,18 +83,19 @@ def generated_site(
 def _pads(
     frame: LocalFrame, fleet: ScenarioFleet, imager: ScenarioImager
 ) -> tuple[LandingPad, ...]:
-    serials, places_m = (*fleet.serials, IMAGER_SERIAL), (*fleet.pads_m, imager.over_m)
+    pads_m = {**dict(zip(fleet.serials, fleet.pads_m, strict=True)), **imager.places_m}
     return tuple(
         LandingPad(serial, serial, point_from_enu(frame, (*pad_m, 0.0)))
-        for serial, pad_m in zip(serials, places_m, strict=True)
+        for serial, pad_m in pads_m.items()
     )
 
 
 def _hovered_m(imager: ScenarioImager) -> Iterable[EastNorth]:
-    """Yield the corners of where the imaging drone may hover."""
+    """Yield the corners of where imaging drones may hover."""
     (east_m, north_m), room_m = imager.over_m, UPWIND_ROOM_M if imager.is_upwind else 0.0
     yield (east_m - room_m, north_m - room_m)
     yield (east_m + room_m, north_m + room_m)
+    yield from imager.also_over_m
 
 
 def _boundary(places_m: Iterable[EastNorth | list[float]]) -> Region:
@@ -116,9 +120,11 @@ def _grid(frame: LocalFrame, imager: ScenarioImager) -> GroundGrid:
     return GroundGrid(frame, west_m, north_m, cell_m, cells, cells)
 
 
-def _generated_imager(frame: LocalFrame, imager: ScenarioImager) -> Imager:
+def _generated_imager(
+    frame: LocalFrame, imager: ScenarioImager, serial: str, over_m: EastNorth
+) -> Imager:
     """Return the demonstration's lens, with a pose that needs no fit."""
-    beneath = point_from_enu(frame, (*imager.over_m, 0.0))
+    beneath = point_from_enu(frame, (*over_m, 0.0))
     marked = TelemetryReference(beneath.latitude_deg, beneath.longitude_deg, imager.height_m, 0.0)
     camera = demo_camera()
     radius_px = IMAGE_CIRCLE_RADIUS_PX
@@ -126,9 +132,9 @@ def _generated_imager(frame: LocalFrame, imager: ScenarioImager) -> Imager:
         field = radians(imager.field_deg)
         (rim_px,) = camera.project(np.array([[sin(field), 0.0, cos(field)]]))
         radius_px = float(rim_px[0]) - CENTRE_COL_PX
-    pose = mounted_pose(marked, np.array([*imager.over_m, imager.height_m]), imager.tilt_deg)
+    pose = mounted_pose(marked, np.array([*over_m, imager.height_m]), imager.tilt_deg)
     return Imager(
-        serial=IMAGER_SERIAL,
+        serial=serial,
         camera=camera,
         marked_pose=pose,
         marked_frame=marked,
@@ -159,18 +165,21 @@ def _profiles(
         )
         for number, (serial, pad_m) in enumerate(zip(fleet.serials, fleet.pads_m, strict=True))
     }
-    imager = VehicleProfile(
-        IMAGER_SERIAL,
-        name="Imager",
-        model="simulated",
-        waypoint_altitude=AltitudeReference.TAKEOFF,
-        pad=point_from_enu(frame, (*over.over_m, 0.0)),
-        endurance_s=fleet.endurance_s,
-        go_home_height_m=LOWEST_GO_HOME_M,
-        failsafe=Failsafe.GO_HOME,
-        priority=IMAGER_PRIORITY,
-    )
-    return {**drones, IMAGER_SERIAL: imager}
+    imagers = {
+        serial: VehicleProfile(
+            serial,
+            name=f"Imager {number}" if over.also_over_m else "Imager",
+            model="simulated",
+            waypoint_altitude=AltitudeReference.TAKEOFF,
+            pad=point_from_enu(frame, (*over_m, 0.0)),
+            endurance_s=fleet.endurance_s,
+            go_home_height_m=LOWEST_GO_HOME_M,
+            failsafe=Failsafe.GO_HOME,
+            priority=IMAGER_PRIORITY,
+        )
+        for number, (serial, over_m) in enumerate(over.places_m.items(), 1)
+    }
+    return {**drones, **imagers}
 
 
 PADS_APART_M = 20.0
@@ -219,8 +228,8 @@ def _on_folder(folder: Path, file: ScenarioFile, errors: ScenarioErrors) -> Stag
     origin = (table.latitude_deg, table.longitude_deg, table.ground_altitude_m)
     if any(each is not None for each in origin):
         raise errors.error("expected a folder or an origin, got both", "site")
-    for key in ("over_m", "height_m", "field_deg", "tilt_deg", "reach_m"):
-        if getattr(file.imager, key) is not None:
+    for key in ("over_m", "also_over_m", "height_m", "field_deg", "tilt_deg", "reach_m"):
+        if getattr(file.imager, key) not in (None, []):
             raise errors.error(f"{key}: expected only without a folder", "imager")
     if file.fleet.pads_m is not None:
         raise errors.error("pads_m: expected only without a folder", "fleet")
@@ -295,4 +304,5 @@ def _imager(
         table.reach_m,
         table.coarsest_m,
         table.upwind,
+        tuple((east_m, north_m) for east_m, north_m in table.also_over_m),
     )

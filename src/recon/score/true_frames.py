@@ -1,16 +1,17 @@
 """When the imaging drone's frames were truly taken, and from where."""
 
 from collections import deque
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from recon.model.imagery import CameraPose, FloatArray, GroundImage
 from recon.model.units import NS_PER_S, seconds_to_ns
+from recon.model.vehicle import VehicleProfile
 from recon.score.scenario import Scenario
 from recon.sim.app.camera_feed import CaptureTimes
 from recon.sim.camera.field import FieldRenderer
-from recon.sim.fleet import IMAGER_SERIAL
 
 NEAR_PER_HEIGHT = 195.0 / 120.0
 """Registration is measured this far around the point below the camera, in heights."""
@@ -30,21 +31,13 @@ class TrueFrame:
 
 @dataclass(slots=True)
 class TrueFrames:
-    """The frames that the imaging drone's feed has sent."""
+    """The frames that one imaging drone's feed has sent."""
 
     captures: deque[CaptureTimes]
     """In the order in which they were taken."""
     renderer: FieldRenderer
     latency_s: float
     """The latency that the station assumes; added to its capture time it gives the arrival."""
-
-    @classmethod
-    def of(
-        cls, scenario: Scenario, captures: deque[CaptureTimes], renderer: FieldRenderer
-    ) -> "TrueFrames":
-        """Return the frames of a scenario's imaging drone."""
-        profile = scenario.site.profiles.get(IMAGER_SERIAL)
-        return cls(captures, renderer, 0.0 if profile is None else profile.video_latency_s)
 
     def of_image(self, image: GroundImage) -> TrueFrame | None:
         """Return the truth of a ground image's frame; None if the feed has sent none by then."""
@@ -55,6 +48,39 @@ class TrueFrames:
             return None
         pose = self.renderer.true_pose(newest.view)
         return TrueFrame(newest.taken_at_ns / NS_PER_S, pose)
+
+
+@dataclass(frozen=True, slots=True)
+class FleetFrames:
+    """The frames of all imaging drones of a run, by serial."""
+
+    imagers: Mapping[str, TrueFrames]
+
+    @classmethod
+    def of(
+        cls,
+        scenario: Scenario,
+        captures: Mapping[str, deque[CaptureTimes]],
+        renderers: Mapping[str, FieldRenderer],
+    ) -> "FleetFrames":
+        """Return the frames that a scenario's feeds send."""
+        usual, profiles = VehicleProfile(""), scenario.site.profiles
+        return cls(
+            {
+                serial: TrueFrames(
+                    sent, renderers[serial], profiles.get(serial, usual).video_latency_s
+                )
+                for serial, sent in captures.items()
+            }
+        )
+
+    def of_image(self, image: GroundImage) -> TrueFrame | None:
+        """Return the truth of a ground image's frame; None if its feed has sent none by then."""
+        return self.imagers[image.serial].of_image(image)
+
+
+Frames = TrueFrames | FleetFrames
+"""Of one imaging drone, or of all."""
 
 
 def ground_seen(true: CameraPose, believed: CameraPose, points_m: FloatArray) -> FloatArray:

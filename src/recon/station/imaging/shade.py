@@ -19,7 +19,7 @@ from recon.forecast import FORECASTERS, ForecastSettings, ForecastState, moved_o
 from recon.geo import nearest_cells
 from recon.model.geo import GroundGrid
 from recon.model.imagery import GroundImage
-from recon.model.shade import MaskMap, SunForecast
+from recon.model.shade import MaskMap, ShadeMap, SunForecast
 from recon.model.units import ns_to_seconds
 from recon.station.imaging import references
 from recon.station.state.alarm_book import Condition, Severity
@@ -85,13 +85,21 @@ def read_shade(work: ReadShade) -> ShadeRead:
     Raises `ValueError` for an unknown method.
     """
     detect = _method(DETECTORS, work.detection_settings.method, "detection")
-    forecaster = _method(FORECASTERS, work.forecast_settings.method, "forecast")
-    serial = work.image.serial
     detection, shade = detect(work.detection, work.image, work.detection_settings)
     if isinstance(shade, RejectedFrame):
-        return ShadeRead(serial, detection, work.forecast, shade)
-    own = SeenShade(shade, seen_cells(work.image, shade.grid))
-    newest = work.forecast.shade
+        return ShadeRead(work.image.serial, detection, work.forecast, shade)
+    return with_forecast(work, detection, shade, seen_cells(work.image, shade.grid))
+
+
+def with_forecast(
+    work: ReadShade, detection: DetectionState, shade: ShadeMap, seen: MaskMap
+) -> ShadeRead:
+    """Return what follows from an image's own map: the map of all imaging drones, and a forecast.
+
+    Raises `ValueError` for an unknown method.
+    """
+    forecaster = _method(FORECASTERS, work.forecast_settings.method, "forecast")
+    own, newest, serial = SeenShade(shade, seen), work.forecast.shade, work.image.serial
     if newest is not None and shade.captured_at_ns <= newest.captured_at_ns:
         return ShadeRead(serial, detection, work.forecast, own)
     together = _together(own, work.others, work.velocity_mps)
