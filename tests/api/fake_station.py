@@ -19,7 +19,7 @@ from recon.api.schema import (
     SurveyView,
     SurveyWays,
     TemporaryZoneResponse,
-    UpwindPlaceView,
+    UpwindView,
 )
 from recon.api.security import Access, AccessCheck
 from recon.model.command import Body
@@ -187,7 +187,7 @@ class FakeStation:
     def sun_at(self, latitude_deg: float, longitude_deg: float) -> SunAtView | None:
         return self.service.sun_at(latitude_deg, longitude_deg)
 
-    def upwind_place(self, serial: str | None, region: str | None) -> UpwindPlaceView | str:
+    def upwind_place(self, serial: str | None, region: str | None) -> UpwindView:
         return self.service.upwind_place(serial, region)
 
     def request_survey(self, asked: SurveyRequest, by: Person) -> SurveyResponse:

@@ -295,11 +295,11 @@ class TestShade:
     def test_without_a_place_upwind_the_answer_states_why(
         self, client: Client, station: FakeStation
     ) -> None:
-        answer = client.get("/api/upwind-place")
-        assert answer.status_code == 404
-        assert "expected " in answer.text
-        unknown = client.get("/api/upwind-place?region=moon").text
-        assert "expected a survey region of the site" in unknown
+        answer = client.get("/api/upwind-place").json()
+        assert answer["place"] is None
+        assert "expected " in answer["reason"]
+        unknown = client.get("/api/upwind-place?region=moon").json()
+        assert "expected a survey region of the site" in unknown["reason"]
 
     @pytest.mark.parametrize("authority", ["-1", "nan", "soon"])
     def test_a_lead_that_is_none_is_refused(self, client: Client, authority: str) -> None:

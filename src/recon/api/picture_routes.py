@@ -3,12 +3,12 @@
 import asyncio
 from typing import Annotated, Literal
 
-from fastapi import FastAPI, HTTPException, Query, Response
+from fastapi import FastAPI, Query, Response
 
 from recon.api import pictures
 from recon.api.port import StationPort
 from recon.api.responses import PNG, PROBLEMS, found, png
-from recon.api.schema import SunAtView, UpwindPlaceView
+from recon.api.schema import SunAtView, UpwindView
 
 Form = Annotated[
     Literal["picture", "values"],
@@ -81,14 +81,11 @@ def _add_sun(app: FastAPI, port: StationPort) -> None:
         """The light at a place now, and when it changes next."""
         return found(await asyncio.to_thread(port.sun_at, latitude_deg, longitude_deg), NO_SHADE)
 
-    @app.get("/api/upwind-place", responses=PROBLEMS)
-    async def upwind_place(serial: str | None = None, region: str | None = None) -> UpwindPlaceView:
+    @app.get("/api/upwind-place")
+    async def upwind_place(serial: str | None = None, region: str | None = None) -> UpwindView:
         """Where an imaging drone sees most of the shade that comes over a region.
 
         It flies there by a goto. By default the site's first imaging drone, and the region of the
         running survey, or all of the site's.
         """
-        answer = await asyncio.to_thread(port.upwind_place, serial, region)
-        if isinstance(answer, str):
-            raise HTTPException(404, answer)
-        return answer
+        return await asyncio.to_thread(port.upwind_place, serial, region)

@@ -18,7 +18,7 @@ from recon.api.schema import (
     SurveyView,
     SurveyWays,
     TemporaryZoneResponse,
-    UpwindPlaceView,
+    UpwindView,
 )
 from recon.model.command import Body
 from recon.model.control import AuthorityHolder
@@ -162,11 +162,10 @@ class StationPort(Protocol):
     def sun_at(self, latitude_deg: float, longitude_deg: float) -> SunAtView | None:
         """Return the light at a place and its next change; None before the first map."""
 
-    def upwind_place(self, serial: str | None, region: str | None) -> UpwindPlaceView | str:
+    def upwind_place(self, serial: str | None, region: str | None) -> UpwindView:
         """Return where an imaging drone sees most of the shade that comes over a region.
 
-        None: the site's first one; the region of the running survey, or all of the site's. Where
-        no place is known, a sentence.
+        None: the site's first one; the region of the running survey, or all of the site's.
         """
 
     def request_survey(self, asked: SurveyRequest, by: Person) -> SurveyResponse:

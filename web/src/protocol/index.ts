@@ -36,6 +36,7 @@ export type ShadeLineView = Schemas["ShadeLineView"];
 export type ForecastView = Schemas["ForecastView"];
 export type SunAtView = Schemas["SunAtView"];
 export type UpwindPlaceView = Schemas["UpwindPlaceView"];
+export type UpwindView = Schemas["UpwindView"];
 export type SurveyView = Schemas["SurveyView"];
 export type SurveyingView = Schemas["SurveyingView"];
 export type SurveyRequest = Schemas["SurveyRequest"];

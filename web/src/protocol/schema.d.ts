@@ -2683,6 +2683,18 @@ export interface components {
             /** Yaw Deg */
             yaw_deg: number;
         };
+        /**
+         * UpwindView
+         * @description A place upwind, or why none is known: both are usual answers.
+         */
+        UpwindView: {
+            place: components["schemas"]["UpwindPlaceView"] | null;
+            /**
+             * Reason
+             * @description why no place is known; empty with one
+             */
+            reason: string;
+        };
         /** ValidationError */
         ValidationError: {
             /** Context */
@@ -3753,16 +3765,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["UpwindPlaceView"];
-                };
-            };
-            /** @description Not Found */
-            404: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Problem"];
+                    "application/json": components["schemas"]["UpwindView"];
                 };
             };
             /** @description Validation Error */

@@ -11,7 +11,7 @@ import type {
   SurveyWays,
   TemporaryZoneRequest,
   TemporaryZoneResponse,
-  UpwindPlaceView,
+  UpwindView,
 } from "../protocol";
 import type { paths } from "../protocol/schema";
 import type { NamedOrder, NewSurvey, NewZone, Outcome, Picture } from "./stationSource";
@@ -145,7 +145,7 @@ export class Requests {
     return answered(() => this.client.GET("/api/sun-at", options), identity);
   }
 
-  upwindPlace(serial: string): Promise<Outcome<UpwindPlaceView>> {
+  upwindPlace(serial: string): Promise<Outcome<UpwindView>> {
     const options = { params: { query: { serial } }, signal: timeout() };
     return answered(() => this.client.GET("/api/upwind-place", options), identity);
   }

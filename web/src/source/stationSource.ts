@@ -13,7 +13,7 @@ import type {
   SurveyWays,
   TemporaryZoneRequest,
   TemporaryZoneResponse,
-  UpwindPlaceView,
+  UpwindView,
 } from "../protocol";
 import type { Instant } from "./clock";
 
@@ -118,6 +118,6 @@ export interface StationSource {
   /** The light at a place, and when it changes next. */
   sunAt(latitudeDeg: number, longitudeDeg: number): Promise<Outcome<SunAtView>>;
   /** Where an imaging drone sees most of the shade that comes over the region. */
-  upwindPlace(serial: string): Promise<Outcome<UpwindPlaceView>>;
+  upwindPlace(serial: string): Promise<Outcome<UpwindView>>;
   close(): void;
 }

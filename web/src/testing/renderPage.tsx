@@ -9,6 +9,7 @@ import type {
   PreflightView,
   StationState,
   UpwindPlaceView,
+  UpwindView,
 } from "../protocol";
 import type {
   Connection,
@@ -88,7 +89,7 @@ interface Recorded {
   allStops: number;
   answer: readonly OrderResult[];
   fetchFrame: StationSource["vehicleFrame"];
-  upwindPlace: Outcome<UpwindPlaceView>;
+  upwindPlace: Outcome<UpwindView>;
 }
 
 const noPicture = async () => ({ kind: "failed", problem: "no picture in this test" }) as const;
@@ -112,7 +113,10 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
     allStops: 0,
     answer: [],
     fetchFrame: noPicture,
-    upwindPlace: { kind: "failed", problem: "no place upwind in this test" },
+    upwindPlace: {
+      kind: "answered",
+      value: { place: null, reason: "no place upwind in this test" },
+    },
   };
   let behindS = 0;
   const source = fakeSource(state, connection, person, () => behindS, recorded);
@@ -141,8 +145,8 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
     answerRequestsWith: (response) => {
       recorded.response = response;
     },
-    findUpwind: (value) => {
-      recorded.upwindPlace = { kind: "answered", value };
+    findUpwind: (place) => {
+      recorded.upwindPlace = { kind: "answered", value: { place, reason: "" } };
     },
     showPreflight: (value) => {
       recorded.preflight = { kind: "answered", value };

@@ -54,6 +54,7 @@ from recon.api.schema.site import (
     SiteView,
     SunAtView,
     UpwindPlaceView,
+    UpwindView,
 )
 from recon.api.schema.station import (
     FleetReturnView,
@@ -181,6 +182,7 @@ __all__ = [
     "TemporaryZoneResponse",
     "TemporaryZoneView",
     "UpwindPlaceView",
+    "UpwindView",
     "VehicleView",
     "VelocityView",
     "WaitingAppView",

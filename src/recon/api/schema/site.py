@@ -188,6 +188,13 @@ class UpwindPlaceView(Message):
     there: SeenFromView
 
 
+class UpwindView(Message):
+    """A place upwind, or why none is known: both are usual answers."""
+
+    place: UpwindPlaceView | None
+    reason: str = Field(description="why no place is known; empty with one")
+
+
 class ShadeLineView(Message):
     """State of shade detection and sun forecast from the imaging drone's frames."""
 

@@ -14,7 +14,7 @@ from recon.model.shade import MaskMap, ShadeMap, SunForecast
 from recon.model.units import ns_to_seconds
 from recon.site import Site
 from recon.station.imaging.mosaic import alignment_of, newest_images
-from recon.station.imaging.upwind import SPEED_MPS, proposed
+from recon.station.imaging.upwind import SPEED_MPS, UpwindProposal, proposed
 from recon.station.state.imaging import ImagerFrames, ShadePipeline
 from recon.station.state.station import Station
 
@@ -175,18 +175,24 @@ def corners_lon_lat(grid: GroundGrid) -> list[tuple[float, float]]:
     return [(float(lon), float(lat)) for lon, lat in zip(longitude_deg, latitude_deg, strict=True)]
 
 
-def upwind_place_view(
+def upwind_view(
     station: Station, site: Site, serial: str | None, region: str | None, now_ns: int
-) -> schema.UpwindPlaceView | str:
+) -> schema.UpwindView:
     """Return where an imaging drone sees most of a region's shade; else why none is known."""
     named = site.layers.survey_regions
     if region is not None and region not in named:
-        return f"expected a survey region of the site ({', '.join(named) or 'none'}), got {region}"
+        known = ", ".join(named) or "none"
+        reason = f"expected a survey region of the site ({known}), got {region}"
+        return schema.UpwindView(place=None, reason=reason)
     running = [each.survey.region for each in station.surveys.records.values() if each.is_running]
     regions = [named[region]] if region is not None else running or list(named.values())
     found = proposed(station, regions, serial, now_ns)
     if isinstance(found, str):
-        return found
+        return schema.UpwindView(place=None, reason=found)
+    return schema.UpwindView(place=_upwind_place(found), reason="")
+
+
+def _upwind_place(found: UpwindProposal) -> schema.UpwindPlaceView:
     return schema.UpwindPlaceView(
         serial=found.serial,
         latitude_deg=found.place.latitude_deg,

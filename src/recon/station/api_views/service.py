@@ -38,7 +38,7 @@ from recon.record.audit import NumberedEntry, harmless
 from recon.record.audit_log import AuditLog
 from recon.site import Site
 from recon.station.api_views import RunningStation
-from recon.station.api_views.imaging_views import sun_at_view, upwind_place_view
+from recon.station.api_views.imaging_views import sun_at_view
 from recon.station.api_views.order_service import OrderService, order_of
 from recon.station.api_views.site_view import site_view
 from recon.station.api_views.state_view import DriverState, state_view
@@ -248,11 +248,10 @@ class Service:
         station, now_ns = self.driver.station, self.driver.now_ns()
         return sun_at_view(station, (latitude_deg, longitude_deg), now_ns)
 
-    def upwind_place(self, serial: str | None, region: str | None) -> schema.UpwindPlaceView | str:
+    def upwind_place(self, serial: str | None, region: str | None) -> schema.UpwindView:
         """Return where an imaging drone sees most of a region's shade; else why none is known."""
-        return upwind_place_view(
-            self.driver.station, self.site, serial, region, self.driver.now_ns()
-        )
+        station, now_ns = self.driver.station, self.driver.now_ns()
+        return upwind_view(station, self.site, serial, region, now_ns)
 
     def request_survey(self, asked: schema.SurveyRequest, by: Person) -> schema.SurveyResponse:
         """Request a survey."""

@@ -1,6 +1,6 @@
 import { createSignal, For, onCleanup, Show } from "solid-js";
 import { useConsole } from "../../console";
-import type { Order, UpwindPlaceView, VehicleView } from "../../protocol";
+import type { Order, UpwindPlaceView, UpwindView, VehicleView } from "../../protocol";
 import type { Outcome } from "../../source/stationSource";
 import { vehicleLabel } from "../../text/names";
 import { formatAge, formatFraction, formatQuantity } from "../../text/quantities";
@@ -22,7 +22,7 @@ export function UpwindPlace() {
 
 function Place(props: { vehicle: VehicleView }) {
   const { clock, orderApi, source } = useConsole();
-  const [answer, setAnswer] = createSignal<Outcome<UpwindPlaceView> | null>(null);
+  const [answer, setAnswer] = createSignal<Outcome<UpwindView> | null>(null);
   const serial = () => props.vehicle.serial ?? "";
   let cancel = () => {};
   let isClosed = false;
@@ -39,10 +39,11 @@ function Place(props: { vehicle: VehicleView }) {
   });
   const place = () => {
     const outcome = answer();
-    return outcome?.kind === "answered" ? outcome.value : null;
+    return outcome?.kind === "answered" ? outcome.value.place : null;
   };
   const problem = () => {
     const outcome = answer();
+    if (outcome?.kind === "answered") return outcome.value.reason;
     return outcome?.kind === "failed" ? outcome.problem : null;
   };
   const target = () => {
