@@ -38,7 +38,7 @@ from recon.record.audit import NumberedEntry, harmless
 from recon.record.audit_log import AuditLog
 from recon.site import Site
 from recon.station.api_views import RunningStation
-from recon.station.api_views.imaging_views import sun_at_view
+from recon.station.api_views.imaging_views import sun_at_view, upwind_view
 from recon.station.api_views.order_service import OrderService, order_of
 from recon.station.api_views.site_view import site_view
 from recon.station.api_views.state_view import DriverState, state_view
