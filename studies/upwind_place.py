@@ -15,6 +15,7 @@ import cv2
 import numpy as np
 
 from recon.camera.sight import COARSEST_M, farthest_sight_m
+from recon.forecast import ForecastSettings
 from recon.guidance.upwind_place import (
     GroundView,
     UpwindPlace,
@@ -33,6 +34,7 @@ FIELD_M = field_points_m(
 )
 SPEEDS_MPS, DIRECTIONS = (5.0, 7.5, 10.0), 12
 TILTS_DEG = (0.0, 15.0, 20.0, 25.0)
+FOLLOWED_FOR_S = ForecastSettings().followed_for_s
 SHOWN_S = (0.0, 30.0, 60.0, 90.0)
 SIDE_PX, PIXEL_M, WEST_M, NORTH_M = 460, 2.6, -890.0, 430.0
 SEEN, BLUE, RED, INK = (255, 232, 170), (20, 80, 130), (190, 40, 30), (30, 30, 30)
@@ -47,8 +49,8 @@ def view_of(tilt_deg: float) -> GroundView:
 def places(tilt_deg: float, velocity: tuple[float, float]) -> tuple[UpwindPlace, UpwindPlace]:
     """Return the middle of the field, looking upwind, and the best place."""
     view = view_of(tilt_deg)
-    middle = seen_from(FIELD_M, (0.0, 0.0), upwind_deg(velocity), velocity, view)
-    best = best_place(FIELD_M, velocity, view, lambda p: np.ones(len(p), np.bool_))
+    middle = seen_from(FIELD_M, (0.0, 0.0), upwind_deg(velocity), velocity, view, FOLLOWED_FOR_S)
+    best = best_place(FIELD_M, velocity, view, FOLLOWED_FOR_S, lambda p: np.ones(len(p), np.bool_))
     assert best is not None
     return middle, best
 

@@ -73,7 +73,7 @@ def test_a_slower_sequence_counts_in_its_own_seconds(tmp_path: Path) -> None:
         (("--leads", "soon"), "--leads: expected seconds with commas"),
         (("--leads", "0"), "--leads: expected seconds"),
         (("--method", "guess"), "--method: expected advection or"),
-        (("--out", "{maps}"), "expected a new folder"),
+        (("--out", "{maps}"), "expected a new or empty folder, got one in use"),
         (("--step-s", "nan"), "--step-s: expected 0.1 to"),
     ],
 )

@@ -63,7 +63,7 @@ def test_the_shares_are_those_of_shifted_areas() -> None:
     """A lens that sees a half plane: what remains of the square when it is moved upwind."""
     half_plane = GroundView(HEIGHT_M, radians(89.999), 0.0, 300.0)
     square = field_points_m(0.5 * SQUARE_M, everywhere)
-    found = seen_from(square, (0.0, 0.0), 270.0, (4.0, 0.0), half_plane)
+    found = seen_from(square, (0.0, 0.0), 270.0, (4.0, 0.0), half_plane, 60.0)
     assert found.predicted_at(0.0) == 1.0
     radius_m = np.sqrt(300.0**2 - HEIGHT_M**2)
     for lead_s in LEAD_S[1:]:
@@ -77,9 +77,9 @@ def test_the_best_place_lies_upwind_and_foresees_more_than_the_middle(
     view: GroundView, bearing: float
 ) -> None:
     velocity = (7.5 * sin(radians(bearing)), 7.5 * cos(radians(bearing)))
-    best = best_place(FIELD_M, velocity, view, everywhere)
+    best = best_place(FIELD_M, velocity, view, 60.0, everywhere)
     assert best is not None
-    middle = seen_from(FIELD_M, (0.0, 0.0), upwind_deg(velocity), velocity, view)
+    middle = seen_from(FIELD_M, (0.0, 0.0), upwind_deg(velocity), velocity, view, 60.0)
     assert best.worth > middle.worth
     assert best.predicted_at(60.0) > middle.predicted_at(60.0)
     upwind_m = -(best.east_m * velocity[0] + best.north_m * velocity[1]) / 7.5
@@ -90,15 +90,15 @@ def test_only_allowed_places_are_chosen() -> None:
     def is_near(points_m: np.ndarray) -> np.ndarray:
         return np.hypot(*points_m.T) < 100.0
 
-    best = best_place(FIELD_M, (7.5, 0.0), LEVEL, is_near)
+    best = best_place(FIELD_M, (7.5, 0.0), LEVEL, 60.0, is_near)
     assert best is not None
     assert hypot(best.east_m, best.north_m) < 100.0
-    nowhere = best_place(FIELD_M, (7.5, 0.0), LEVEL, lambda p: ~everywhere(p))
+    nowhere = best_place(FIELD_M, (7.5, 0.0), LEVEL, 60.0, lambda p: ~everywhere(p))
     assert nowhere is None
 
 
 def test_shadows_that_stand_still_are_seen_best_from_the_middle() -> None:
-    best = best_place(FIELD_M, (0.1, 0.0), LEVEL, everywhere)
+    best = best_place(FIELD_M, (0.1, 0.0), LEVEL, 60.0, everywhere)
     assert best is not None
     assert (best.east_m, best.north_m) == pytest.approx((0.0, 0.0), abs=10.0)
 
@@ -108,3 +108,17 @@ def test_a_region_smaller_than_a_sample_is_its_corners() -> None:
     assert field_points_m(tiny, everywhere).tolist() == tiny.tolist()
     hollow = field_points_m(SQUARE_M, lambda p: np.hypot(*p.T) > 100.0)
     assert 0 < len(hollow) < len(FIELD_M)
+
+
+def test_a_field_of_any_size_has_few_points() -> None:
+    assert 1_000 < len(field_points_m(100.0 * SQUARE_M, everywhere)) < 2_500
+
+
+def test_without_following_more_of_the_field_stays_in_view() -> None:
+    """What has left the view is lost then: places far upwind are worth less."""
+    velocity = (7.5, 0.0)
+    followed, plain = (best_place(FIELD_M, velocity, LEVEL, s, everywhere) for s in (60.0, 0.0))
+    assert followed is not None
+    assert plain is not None
+    assert plain.predicted_at(0.0) > followed.predicted_at(0.0)
+    assert max(plain.followed) == 0.0

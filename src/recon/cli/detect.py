@@ -31,6 +31,7 @@ from recon.cli.contact_sheet import MOST_TILES, sheet_png, tile
 from recon.cli.output import print_line, printable
 from recon.cli.progress import progress_over
 from recon.cli.recorded_frames import RecordedFrame, Recording, open_recording
+from recon.cli.recorded_maps import refuse_used
 from recon.detection import DETECTORS, DetectionSettings, DetectionState, RejectedFrame
 from recon.geo import enu_from_points
 from recon.geo.sun import sun_position
@@ -107,7 +108,7 @@ def detect_command(
     try:
         if method not in DETECTORS:
             raise RecordError(f"--method: expected {' or '.join(DETECTORS)}, got {method!a}")
-        _refuse_used(out)
+        refuse_used(out)
         lens = load_camera(camera)
         recording = open_recording(source, step_s)
         if gcps is not None:
@@ -118,11 +119,6 @@ def detect_command(
     except ReconError as problem:
         print(f"recon detect: {printable(str(problem))}", file=sys.stderr)
         raise typer.Exit(WRONG_USE) from None
-
-
-def _refuse_used(out: Path) -> None:
-    if out.exists() and (not out.is_dir() or any(out.iterdir())):
-        raise RecordError(f"{out}: expected a new or empty folder, got one in use")
 
 
 def _start_by_points(

@@ -16,6 +16,7 @@ from recon.cli.recorded_maps import (
     StepOption,
     SunOption,
     recorded_maps,
+    refuse_used,
 )
 from recon.forecast import FORECASTERS, ForecastSettings, ForecastState
 from recon.model.errors import ReconError, RecordError
@@ -28,7 +29,7 @@ USUAL_LEADS = "15,30,60,120,300"
 
 def forecast_command(
     folder: FolderArgument,
-    out: Annotated[Path, typer.Option(help="New folder for the GeoTIFFs.")],
+    out: Annotated[Path, typer.Option(help="New or empty folder for the GeoTIFFs.")],
     leads: Annotated[str, typer.Option(help="Seconds ahead, with commas.")] = USUAL_LEADS,
     method: Annotated[str, typer.Option(help="A forecast method.")] = "advection",
     step_s: StepOption = None,
@@ -39,8 +40,9 @@ def forecast_command(
     try:
         if method not in FORECASTERS:
             raise RecordError(f"--method: expected {' or '.join(FORECASTERS)}, got {method}")
-        recorded = recorded_maps(folder, step_s, sun, shade)
         leads_s = _leads_s(leads)
+        refuse_used(out)
+        recorded = recorded_maps(folder, step_s, sun, shade)
         found = _forecast(recorded, method, leads_s)
         _create(out)
         rows = [_written(out, recorded, found, lead_s) for lead_s in leads_s]
@@ -72,7 +74,7 @@ def _forecast(recorded: RecordedMaps, method: str, leads_s: tuple[float, ...]) -
 
 def _create(out: Path) -> None:
     try:
-        out.mkdir(parents=True)
+        out.mkdir(parents=True, exist_ok=True)
     except OSError as problem:
         raise RecordError(
             f"{out}: expected a new folder, got: {problem.strerror or problem}"

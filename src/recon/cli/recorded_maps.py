@@ -1,4 +1,4 @@
-"""A folder of recorded maps as `recon verify` and `recon forecast` read it."""
+"""Folders of maps: as `recon verify` and `recon forecast` read them, and where one is written."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -85,3 +85,9 @@ def _shade_map(found: RecordedMap, at_ns: int) -> ShadeMap:
     known = found.valid.astype(np.float32)
     grid = unplaced_grid(rows, cols)
     return ShadeMap(grid, at_ns, (), found.transmittance, found.valid, known, known)
+
+
+def refuse_used(out: Path) -> None:
+    """Raise `RecordError` for a folder that cannot take new maps: it holds something."""
+    if out.exists() and (not out.is_dir() or any(out.iterdir())):
+        raise RecordError(f"{out}: expected a new or empty folder, got one in use")

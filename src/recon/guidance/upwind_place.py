@@ -11,7 +11,7 @@ Pure.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import atan2, cos, degrees, hypot, radians, sin
+from math import atan2, cos, degrees, hypot, radians, sin, sqrt
 
 import numpy as np
 import numpy.typing as npt
@@ -21,12 +21,13 @@ BoolArray = npt.NDArray[np.bool_]
 
 LEAD_S = (0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 90.0, 105.0, 120.0)
 """The present, a photo, a row, and the rows until the next decision."""
-SAMPLE_M = 20.0
-"""Between the points that stand for the field: shares are right to about two per cent."""
+SAMPLE_M, MOST_SAMPLES = 20.0, 2_000
+"""Between the points that stand for the field: shares are right to about two per cent. A field of
+more than 80 ha has them farther apart."""
 STEP_M = 40.0
 """Between places: nearer ones differ by less than the wind turns."""
-FOLLOWED_FOR_S, FOLLOWED_WORTH = 60.0, 0.7
-"""Shade that has left the view is followed for so long, and is worth so much of what is seen."""
+FOLLOWED_WORTH = 0.7
+"""What shade that has left the view and is followed is worth, against shade that is seen."""
 LEAST_NOW = 0.5
 """Share of the field that stays in view, of the most that any place shows: drones fly there now."""
 FARTHEST_UPWIND_M, FARTHEST_ASIDE_M = 320.0, 80.0
@@ -89,22 +90,24 @@ def seen_from(
     heading_deg: float,
     velocity_mps: tuple[float, float],
     view: GroundView,
+    followed_for_s: float,
 ) -> UpwindPlace:
     """Return what a place sees of a field, given as points (N, 2) east and north in metres.
 
-    The shadows' velocity is east and north.
+    The shadows' velocity is east and north. For so long shade that has left the view is followed.
     """
     ahead = np.array([sin(radians(heading_deg)), cos(radians(heading_deg))])
     axes = np.column_stack([ahead, (ahead[1], -ahead[0])])
     moved = np.array(velocity_mps) @ axes
     start = (field_m - np.array(place_m)) @ axes
     every_s = LEAD_S[1]
-    steps = len(LEAD_S) + round(FOLLOWED_FOR_S / every_s)
+    followed_steps = round(followed_for_s / every_s)
+    steps = len(LEAD_S) + followed_steps
     # What will be over a cell later lies farther upwind now; it was in view before it is here.
     in_view = np.array([view.shows(*(start - every_s * step * moved).T) for step in range(steps)])
     predicted, followed = [], []
     for step in range(len(LEAD_S)):
-        was_seen = in_view[step + 1 : step + 1 + round(FOLLOWED_FOR_S / every_s)].any(axis=0)
+        was_seen = in_view[step + 1 : step + 1 + followed_steps].any(axis=0)
         predicted.append(float(in_view[step].mean()))
         followed.append(float((was_seen & ~in_view[step]).mean()))
     return UpwindPlace(*place_m, heading_deg, tuple(predicted), tuple(followed))
@@ -114,6 +117,7 @@ def best_place(
     field_m: FloatArray,
     velocity_mps: tuple[float, float],
     view: GroundView,
+    followed_for_s: float,
     is_allowed: Callable[[FloatArray], BoolArray],
 ) -> UpwindPlace | None:
     """Return the place from which most of a field is predicted; None where none is allowed.
@@ -125,7 +129,7 @@ def best_place(
     places_m = places_m[is_allowed(places_m)]
     heading_deg = upwind_deg(velocity_mps)
     found = [
-        seen_from(field_m, (east_m, north_m), heading_deg, velocity_mps, view)
+        seen_from(field_m, (east_m, north_m), heading_deg, velocity_mps, view, followed_for_s)
         for east_m, north_m in places_m.tolist()
     ]
     least_now = LEAST_NOW * max((each.predicted[0] for each in found), default=0.0)
@@ -144,8 +148,9 @@ def field_points_m(
 ) -> FloatArray:
     """Return points (N, 2) that stand for a region with this outline; its corners if it is tiny."""
     (west, south), (east, north) = outline_m.min(axis=0), outline_m.max(axis=0)
-    easts = np.arange(west + SAMPLE_M / 2.0, east, SAMPLE_M)
-    norths = np.arange(south + SAMPLE_M / 2.0, north, SAMPLE_M)
+    apart_m = max(SAMPLE_M, sqrt((east - west) * (north - south) / MOST_SAMPLES))
+    easts = np.arange(west + apart_m / 2.0, east, apart_m)
+    norths = np.arange(south + apart_m / 2.0, north, apart_m)
     points_m = np.stack([each.ravel() for each in np.meshgrid(easts, norths)], axis=1)
     inside: FloatArray = points_m[contains(points_m)]
     return inside if len(inside) > 0 else outline_m

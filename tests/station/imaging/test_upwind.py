@@ -7,19 +7,26 @@ import numpy as np
 import pytest
 from tests.station.looking_world import GRID, IMAGER, LookingWorld, looking_world
 
+from recon.forecast import ForecastState
 from recon.geo import enu_from_point
 from recon.model.airspace import Airspace, Region, Zone, ZoneKind
 from recon.model.command import GoTo
 from recon.model.event import OperatorOrder
 from recon.model.geo import GeoPoint, LatLon
 from recon.model.imagery import Outlook
-from recon.model.shade import SunForecast
+from recon.model.shade import ShadeMap, SunForecast
 from recon.safety import PreparedAirspace
 from recon.station.imaging.upwind import SPEED_MPS, UpwindProposal, proposed
 
 EASTWARD = (5.0, 0.0)
 SQUARE = Region(190.0 * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]))
 LEVEL, TILTED = Outlook(radians(65.0)), Outlook(radians(65.0), radians(20.0), 30.0)
+
+
+NO_VALUE = np.full((GRID.rows, GRID.cols), np.nan, np.float32)
+NOTHING = ShadeMap(
+    GRID, 0, (), NO_VALUE, np.zeros(NO_VALUE.shape, np.bool_), np.zeros_like(NO_VALUE), NO_VALUE
+)
 
 
 def forecast(at_ns: int, velocity: tuple[float, float] | None) -> SunForecast:
@@ -47,7 +54,7 @@ def knowing(
     world.station = replace(
         station,
         imaging=replace(station.imaging, imagers={IMAGER: imager}),
-        shade=replace(station.shade, sun=sun),
+        shade=replace(station.shade, sun=sun, forecast=ForecastState(followed=NOTHING)),
     )
     return world
 
@@ -150,3 +157,26 @@ def test_another_drone_no_region_and_one_on_the_ground_are_said() -> None:
     answer = proposal(world)
     assert isinstance(answer, str)
     assert "not in the air" in answer
+
+
+@pytest.mark.parametrize("height_m", [-3.0, 2.0])
+def test_a_drone_that_is_too_low_has_no_place(height_m: float) -> None:
+    """Below the takeoff point on a slope: a sentence, no mathematical error."""
+    world = knowing()
+    vehicle = world.station.fleet.vehicles[IMAGER]
+    low = replace(
+        vehicle, height_above_takeoff_m=replace(vehicle.height_above_takeoff_m, value=height_m)
+    )
+    fleet = replace(world.station.fleet, vehicles={**world.station.fleet.vehicles, IMAGER: low})
+    world.station = world.station.with_fleet(fleet)
+    answer = proposal(world)
+    assert isinstance(answer, str)
+    assert "lower than 10 m above takeoff" in answer
+
+
+def test_old_telemetry_is_no_place_to_fly_from() -> None:
+    world = knowing()
+    later_ns = world.surveyed.driver.now_ns + 20_000_000_000
+    answer = proposed(world.station, [SQUARE], None, later_ns)
+    assert isinstance(answer, str)
+    assert "needs position, velocity, height and heading" in answer

@@ -115,7 +115,7 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
     fetchFrame: noPicture,
     upwindPlace: {
       kind: "answered",
-      value: { place: null, reason: "no place upwind in this test" },
+      value: { place: null, reason: "no region in this test" },
     },
   };
   let behindS = 0;

@@ -25,12 +25,14 @@ from recon.model.geo import GeoPoint, LatLon, LocalFrame
 from recon.model.imagery import Outlook
 from recon.model.units import ns_to_seconds, wrap_degrees
 from recon.station.state.station import Station
-from recon.station.steering.kinematic_state import kinematic_state
+from recon.station.steering.kinematic_state import kinematic_state, refusal_without_telemetry
 
 SPEED_MPS = 8.0
 EDGE_M = 30.0
 """From the boundary and from keep-out zones: the gate wants less, and has the last word."""
 OLDEST_FORECAST_S = 60.0
+LEAST_HEIGHT_M = 10.0
+"""Lower, it sees no field from anywhere."""
 LEAST_GAIN = 0.03
 """In what a place is worth, for a flight there."""
 LEAST_TILT_RAD = 0.1
@@ -75,15 +77,28 @@ def proposed(
     if ns_to_seconds(now_ns - sun.issued_at_ns) > OLDEST_FORECAST_S:
         return "the newest forecast is more than a minute old: expected frames of the imaging drone"
     seen = None if vehicle is None else kinematic_state(vehicle, now_ns)
-    if vehicle is None or seen is None or vehicle.is_flying.value is not True:
-        return f"{imager.serial} is not in the air, or its position is unknown"
+    if vehicle is None or vehicle.is_flying.value is not True:
+        return f"{imager.serial} is not in the air"
+    unseen = refusal_without_telemetry(vehicle, now_ns, station.settings.streams)
+    if seen is None or unseen is not None:
+        return f"{imager.serial} has no recent telemetry" if unseen is None else unseen.reason
+    if seen.height_above_takeoff_m < LEAST_HEIGHT_M:
+        return f"{vehicle.display_name} is lower than {LEAST_HEIGHT_M:g} m above takeoff"
     frame, outlook = sun.grid.frame, imager.outlook
     view = _view(outlook, seen.height_above_takeoff_m)
     field_m = np.concatenate([_points_m(region) for region in regions])
     here_m = _east_north_m(frame, seen.position)
     looks_deg = wrap_degrees(seen.yaw_deg + outlook.off_front_deg)
-    here = seen_from(field_m, here_m, looks_deg, sun.velocity_mps, view)
-    there = best_place(field_m, sun.velocity_mps, view, lambda places: _may_hover(station, places))
+    is_following = station.shade.forecast.followed is not None
+    followed_for_s = station.settings.forecast.followed_for_s if is_following else 0.0
+    here = seen_from(field_m, here_m, looks_deg, sun.velocity_mps, view, followed_for_s)
+    there = best_place(
+        field_m,
+        sun.velocity_mps,
+        view,
+        followed_for_s,
+        lambda places: _may_hover(station, places),
+    )
     if there is None or there.worth < here.worth + LEAST_GAIN:
         there = here
     is_turned = there is not here and outlook.tilt_rad >= LEAST_TILT_RAD

@@ -56,10 +56,13 @@ function Place(props: { vehicle: VehicleView }) {
     void orderApi.order({ serials: [serial()], order: gotoOf(to) }, [vehicleLabel(props.vehicle)]);
   };
   const name = () => vehicleLabel(props.vehicle);
+  const missing = () => (problem() === null ? "" : `No place upwind for ${name()}: ${problem()}.`);
   return (
     <>
       <p class="muted wire-text" data-testid="upwind-place">
-        {place() === null ? problem() : upwindText(name(), place() as UpwindPlaceView)}
+        <Show when={place()} fallback={missing()}>
+          {(found) => upwindText(name(), found())}
+        </Show>
       </p>
       <Show when={target()}>
         {(to) => (
@@ -81,7 +84,8 @@ export function upwindText(name: string, place: UpwindPlaceView): string {
   const { here, there, distance_m, takes_s } = place;
   const sees = ({ now, in_60_s }: UpwindPlaceView["here"]) =>
     `${formatFraction(now)} of the region now and ${formatFraction(in_60_s)} of its shade in 60 s`;
-  if (distance_m === 0) return `${name} is at the best place upwind: it sees ${sees(here)}.`;
+  if (distance_m === 0)
+    return `${name} sees ${sees(here)}; no place that is allowed sees much more.`;
   return (
     `${name} sees ${sees(here)}; ${formatQuantity(distance_m, "m", 0)} away, in ` +
     `${formatAge(takes_s)}, it would see ${sees(there)}.`

@@ -222,14 +222,15 @@ describe("view upwind", () => {
 
   it("offers no flight from the best place", async () => {
     await showPlace({ distance_m: 0, there: place.here });
-    expect(text()).toContain("Alder is at the best place upwind");
+    expect(text()).toContain("no place that is allowed sees much more");
     expect(buttons()).toHaveLength(0);
   });
 
   it("shows why no place is known", async () => {
     page = renderPage(SunPanel, station([vehicle(1, { is_imager: true })], { shade: shadeLine() }));
     await settled();
-    expect(text()).toBe("no place upwind in this test");
+    expect(text()).toContain("No place upwind for ");
+    expect(text()).toContain("Alder: no region in this test.");
     expect(buttons()).toHaveLength(0);
   });
 });
