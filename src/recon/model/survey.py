@@ -122,7 +122,11 @@ class CellState(IntEnum):
 
 
 PLANNER_GOALS: Mapping[str, CellState] = MappingProxyType(
-    {"lawnmower_once": CellState.IN_SHADE, "lawnmower_again": CellState.IN_SUN}
+    {
+        "lawnmower_once": CellState.IN_SHADE,
+        "lawnmower_again": CellState.IN_SUN,
+        "sunlit_first": CellState.IN_SUN,
+    }
 )
 """The state up to which each planner, by name, images every cell."""
 
@@ -142,3 +146,8 @@ class MissionAssignment:
     approach: tuple[LatLon, ...] = ()
     """Corners on the way to the first waypoint, from where the vehicle was, round keep-out zones;
     none where it is straight or none is known."""
+    may_go_straight: bool = False
+    """Whether it may go to its first row at the rows' height, and stay there after the last: the
+    next mission follows at once."""
+    stands_by: bool = False
+    """Whether it only goes to its first waypoint, in its layer, and waits there."""

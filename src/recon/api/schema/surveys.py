@@ -104,6 +104,7 @@ class SurveyingView(Message):
     vehicle_name: str
     is_flying_rows: bool = Field(description="a mission of the survey is in flight")
     not_flying_reason: str | None = Field(description="why it does not fly for the survey now")
+    decision: str | None = Field(description="what it flies or waits for now, and why")
     refused: str | None = Field(
         description="why its newest mission was refused; null if it was not"
     )

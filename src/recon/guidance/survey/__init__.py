@@ -16,8 +16,8 @@ from recon.guidance.survey.life import (
     step,
 )
 from recon.guidance.survey.plan import SurveyPlan, SurveySurroundings, plan_survey
+from recon.guidance.survey.planners import PLANNERS, Planner
 from recon.guidance.survey.progress import CoverageProgress, PositionSample
-from recon.guidance.survey.rounds import PLANNERS, Planner, lawnmower_again, lawnmower_once
 from recon.guidance.survey.settings import SurveySettings
 from recon.guidance.survey.state import (
     AssignedMission,
@@ -42,8 +42,6 @@ __all__ = [
     "abort",
     "create",
     "figures",
-    "lawnmower_again",
-    "lawnmower_once",
     "observe",
     "observe_shade",
     "pause",

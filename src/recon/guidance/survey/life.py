@@ -28,6 +28,7 @@ from types import MappingProxyType
 
 from recon.guidance.survey.missions import apart_m, track_of
 from recon.guidance.survey.plan import RULE, SurveyPlan
+from recon.guidance.survey.planners import PLANNERS
 from recon.guidance.survey.progress import (
     PositionSample,
     no_progress,
@@ -35,11 +36,11 @@ from recon.guidance.survey.progress import (
     with_seen,
     with_shade,
 )
-from recon.guidance.survey.rounds import PLANNERS, Step, ended, lasts
+from recon.guidance.survey.rounds import Step, ended, lasts
 from recon.guidance.survey.route import Route, route_of
 from recon.guidance.survey.state import Refused, Surveyor, SurveyState
 from recon.model.command import Refusal
-from recon.model.shade import ShadeMap
+from recon.model.shade import ShadeMap, SunForecast
 from recon.model.survey import PLANNER_GOALS, SurveyPhase
 from recon.model.units import seconds_to_ns
 
@@ -136,7 +137,12 @@ def observe_shade(state: SurveyState, shade: ShadeMap) -> SurveyState:
     return replace(state, progress=with_shade(state.progress, shade, state.plan))
 
 
-def step(state: SurveyState, positions: Sequence[Surveyor], now_ns: int) -> Step:
+def step(
+    state: SurveyState,
+    positions: Sequence[Surveyor],
+    now_ns: int,
+    sun: SunForecast | None = None,
+) -> Step:
     """Return the next state and the missions to give; called about once a second.
 
     Vehicles of other surveys are ignored; vehicles without a position count as dropped out.
@@ -147,7 +153,7 @@ def step(state: SurveyState, positions: Sequence[Surveyor], now_ns: int) -> Step
     if state.phase is SurveyPhase.PAUSED:
         return state, ()
     own = [each for each in positions if each.serial in state.serials]
-    return PLANNERS[state.plan.survey.planner](state, own, now_ns)
+    return PLANNERS[state.plan.survey.planner](state, own, sun, now_ns)
 
 
 def _wrong_phase(state: SurveyState, asked: str) -> Refusal:

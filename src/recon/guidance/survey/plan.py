@@ -152,10 +152,10 @@ class SurveyPlan:
                 wanted[-1] = (each.piece, Piece(row, previous[1].start_m, each.end_m))
             else:
                 wanted.append((each.piece, Piece(row, each.start_m, each.end_m)))
-        return tuple(self._long_enough(index, piece) for index, piece in wanted)
+        return tuple(self.long_enough(index, piece) for index, piece in wanted)
 
-    def _long_enough(self, index: int, part: Piece) -> Piece:
-        """A part made long enough for a photo, inside its whole piece as far as that is."""
+    def long_enough(self, index: int, part: Piece) -> Piece:
+        """Return a part made long enough for a photo, inside its whole piece if that is."""
         whole = self.pieces[index]
         short_m = self.swath.least_row_m - 2.0 * self.swath.lead_m - part.length_m
         if short_m <= 0.0:

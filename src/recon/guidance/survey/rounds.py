@@ -1,13 +1,13 @@
-"""The survey planners: share the missing rows among able vehicles, fly them, and repeat.
+"""Planners in rounds: share the missing rows among able vehicles, fly them, and repeat.
 
-A planner is pure: the running survey, its vehicles and the time in; the survey and the missions to
-give out. It is asked about once a second. `PLANNERS` has them by name; all fly rounds.
+These planners are pure: the running survey, its vehicles and the time in; the survey and the
+missions to give out. They are asked about once a second.
 
 Theory of operation. One call of `fly_rounds` does the first of these that applies:
 
 1. Missions of vehicles that ended or dropped out are removed. Rows they did not image are missing.
 2. Each able vehicle without a mission gets the longest start of its share that its battery allows
-   (`_sortie`, flight time times `flight_time_share`).
+   (`sortie`, flight time times `flight_time_share`).
 3. While any vehicle flies, wait: its rows may still be imaged.
 4. Budget spent: DONE.
 5. No vehicle can fly: wait, or pause when all missions were refused.
@@ -21,7 +21,7 @@ sum of distances to their starts (linear assignment; Kuhn 1955, as in `scipy.opt
 """
 
 from bisect import bisect_left
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 
@@ -51,7 +51,7 @@ def fly_rounds(
 ) -> Step:
     """Return the next state and the missions to give, for cells up to the `wanted` state."""
     able = {each.serial: each for each in positions if each.is_able}
-    state = _without_ended(state, able, now_ns)
+    state = without_ended(state, able, now_ns)
     spent = spent_budget(state, wanted, now_ns)
     if spent is None:
         state, missions = _given(state, able, now_ns)
@@ -88,8 +88,8 @@ def ended(state: SurveyState, phase: SurveyPhase, reason: str, now_ns: int) -> S
     )
 
 
-def _without_ended(state: SurveyState, able: Mapping[str, Surveyor], now_ns: int) -> SurveyState:
-    """Return it without missions that have ended or whose vehicle has dropped out."""
+def without_ended(state: SurveyState, able: Mapping[str, Surveyor], now_ns: int) -> SurveyState:
+    """Return the survey without missions that have ended or whose vehicle has dropped out."""
     flights = {
         serial: flight
         for serial, flight in state.flights.items()
@@ -159,29 +159,30 @@ def _given(state: SurveyState, able: Mapping[str, Surveyor], now_ns: int) -> Ste
     """Give each idle vehicle as much of its share as its battery allows."""
     missions: list[MissionAssignment] = []
     for serial, route in state.waiting.items():
-        if not _may_ask(state, serial, able, now_ns):
+        if not may_ask(state, serial, able, now_ns):
             continue
-        track, count = _sortie(state.plan, route, able[serial])
+        track, count = sortie(state.plan, route, able[serial])
         if track is None:
             continue
         number = state.missions + 1
         flight = AssignedMission(number, route[:count], track.corners_m, track.length_m)
-        state, mission = _flying(state, able[serial], flight, route[count:])
+        state, mission = flying(state, able[serial], flight, route[count:])
         missions.append(mission)
     return state, tuple(missions)
 
 
-def _may_ask(state: SurveyState, serial: str, able: Mapping[str, Surveyor], now_ns: int) -> bool:
-    """Whether a mission for a vehicle may be requested now."""
+def may_ask(state: SurveyState, serial: str, able: Mapping[str, Surveyor], now_ns: int) -> bool:
+    """Return whether a mission for a vehicle may be requested now."""
     if serial not in able or serial in state.flights or serial in state.barred:
         return False
     refused = state.refusals.get(serial)
     return refused is None or now_ns >= refused.again_ns
 
 
-def _flying(
+def flying(
     state: SurveyState, surveyor: Surveyor, flight: AssignedMission, rest: Route
 ) -> tuple[SurveyState, MissionAssignment]:
+    """Return the survey with a vehicle on a mission, and that mission; `rest` waits for it."""
     survey, serial, frame = state.plan.survey, surveyor.serial, state.plan.frame
     purpose = f"survey {survey.name}: round {state.round}"
     track = Track(flight.corners_m)
@@ -200,8 +201,8 @@ def _flying(
     return state, MissionAssignment(serial, flight.number, mission, flight.length_m, approach)
 
 
-def _sortie(plan: SurveyPlan, route: Route, surveyor: Surveyor) -> tuple[Track | None, int]:
-    """The longest beginning of a route that the battery lasts for, and how many legs it has.
+def sortie(plan: SurveyPlan, route: Route, surveyor: Surveyor) -> tuple[Track | None, int]:
+    """Return the longest beginning of a route that the battery lasts for, and how many legs it has.
 
     It ends where there is no way on to the next row: what comes then is a mission of its own, and
     the gate judges the way there.
@@ -225,9 +226,6 @@ def lasts(plan: SurveyPlan, track: Track | None, surveyor: Surveyor) -> bool:
     return needed_s <= surveyor.time_left_s * plan.settings.flight_time_share
 
 
-Planner = Callable[[SurveyState, Sequence[Surveyor], int], Step]
-
-
 def lawnmower_once(state: SurveyState, positions: Sequence[Surveyor], now_ns: int) -> Step:
     """Fly all rows once, in whatever light; again only what was not imaged, as by a dropout."""
     return fly_rounds(state, positions, now_ns, PLANNER_GOALS["lawnmower_once"])
@@ -239,8 +237,3 @@ def lawnmower_again(state: SurveyState, positions: Sequence[Surveyor], now_ns: i
     It does not wait for sun: the survey's budget ends it under a closed sky.
     """
     return fly_rounds(state, positions, now_ns, PLANNER_GOALS["lawnmower_again"])
-
-
-PLANNERS: Mapping[str, Planner] = MappingProxyType(
-    {"lawnmower_once": lawnmower_once, "lawnmower_again": lawnmower_again}
-)

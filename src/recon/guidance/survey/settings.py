@@ -82,6 +82,83 @@ class SurveySettings:
     """A mission refused for what may end by itself, such as late telemetry, is asked for again
     after this: telemetry comes ten times a second, and a link is open again within seconds."""
 
+    segment_m: float = 60.0
+    """Of a row, decided on at once: shorter ones take longer to plan, shade's edges are wider."""
+
+    planned_s: float = 300.0
+    """How far ahead a flight is planned; beyond, forecasts know little but the share of sun."""
+
+    moment_s: float = 10.0
+    """Between two moments at which the expected sun is looked up: an edge of shade takes 15 s."""
+
+    patience_s: float = 150.0
+    """Ground in sun this much later counts for a third: what is forecast so far may not come."""
+
+    beam_step_s: float = 5.0
+    beam_width: int = 24
+    """Flights that are followed at each step; twice as many image no more."""
+
+    rows_looked_at: int = 5
+    """Nearest rows with something left on which a flight may go on."""
+
+    expected_rate: float = 0.8
+    """Of flying rows without a stop, to compare flights that end at different moments."""
+
+    gap_costs_s: float = 6.0
+    """What a gap left in a row costs: a stop at both of its ends, later."""
+
+    taken_from: float = 0.3
+    """Probability of sun from which ground counts as imaged when it is flown over in the plan."""
+
+    least_gain: float = 0.02
+    """Of a segment's ground; a row is not flown for less."""
+
+    near_m: float = 90.0
+    """A row this near is flown to at the rows' height, where the gate sees room."""
+
+    near_rows: float = 2.6
+    """Rows this far apart are within one mission; farther ones cost the way in a layer."""
+
+    start_s: float = 3.5
+    """From the decision until an aircraft that hovers moves: upload and start."""
+
+    takeoff_s: float = 5.0
+    climb_mps: float = 2.5
+    corner_s: float = 0.8
+    """Beside braking and starting, an aircraft stands this long at a corner."""
+
+    layer_s: float = 14.0
+    """Up to a layer of its own and down again to its first row."""
+
+    committed_s: float = 90.0
+    """A mission takes the rows begun by then; what comes later is decided anew, with a newer
+    forecast. Each mission costs some seconds."""
+
+    clear_from: float = 0.85
+    """With this mean probability of sun for as long as is planned, nothing is gained by choosing:
+    a share is flown row by row."""
+
+    share_worth: float = 0.15
+    """Of a share's missing ground that must be expected in sun; else its vehicle helps others."""
+
+    least_worth: float = 0.2
+    """Ground in shade counts this much when shares are made: it must be flown some time."""
+
+    standby_s: float = 60.0
+    """A vehicle on the ground takes off so long before sun is expected at its first row."""
+
+    standby_m: float = 30.0
+    """A vehicle this near to its next row waits where it is."""
+
+    decided_again_s: float = 3.0
+    """A waiting vehicle looks for a flight again after this."""
+
+    forecast_age_s: float = 15.0
+    """A forecast older than this is not used; one comes with each shade map."""
+
+    shade_persists_s: float = 120.0
+    """Observed sun or shade is worth a third after this long, and nothing from then on."""
+
     way_home_waits_s: float = 60.0
     """A vehicle that waits for others' rows keeps this beside its return: there it may wait too."""
 

@@ -34,6 +34,7 @@ class Surveyor:
     time_left_s: float | None = None
     home_m: Place | None = None
     """Where it lands; None: at its present place."""
+    is_flying: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +46,8 @@ class AssignedMission:
     corners_m: tuple[Place, ...]
     """East-north metres of the site, for display."""
     length_m: float
+    ends_at_ns: int = 0
+    """As planned, for planners that share rows by it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +56,22 @@ class Refused:
 
     reason: str
     again_ns: int
+
+
+@dataclass(frozen=True, slots=True)
+class Decision:
+    """What a vehicle does and why, for operators; a vehicle that waits is asked again then."""
+
+    text: str
+    again_ns: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class JustFlown:
+    """Rows of a mission that has ended, until all photos of them have counted."""
+
+    route: Route
+    until_ns: int
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -75,6 +94,9 @@ class SurveyState:
     waiting: Routes = field(default_factory=lambda: NO_ROUTES)
     refusals: Mapping[str, Refused] = field(default_factory=lambda: MappingProxyType({}))
     barred: frozenset[str] = frozenset()
+    decisions: Mapping[str, Decision] = field(default_factory=lambda: MappingProxyType({}))
+    """The newest of each vehicle, of planners that explain themselves."""
+    just_flown: Mapping[str, JustFlown] = field(default_factory=lambda: MappingProxyType({}))
     missions: int = 0
     flown_m: float = 0.0
     """Planned metres of all missions given and not refused."""

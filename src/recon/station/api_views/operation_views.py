@@ -86,6 +86,7 @@ def _member(
     vehicle = station.fleet.vehicles.get(member.serial)
     is_active = record.is_running or is_under_way(station, member)
     waits = hindrance(station, member, now_ns) if is_active else None
+    decision = state.decisions.get(member.serial) if is_active and waits is None else None
     flies = is_flown(station, member)
     refused = None if record.is_over or flies else state.refusals.get(member.serial)
     return schema.SurveyingView(
@@ -93,6 +94,7 @@ def _member(
         vehicle_name=member.serial if vehicle is None else vehicle.display_name,
         is_flying_rows=flies,
         not_flying_reason=waits,
+        decision=None if decision is None else decision.text,
         refused=None if refused is None else refused.reason,
         has_come_home=member.return_reason is not None and is_on_ground(station, member),
         mission_command_id=member.command_id,

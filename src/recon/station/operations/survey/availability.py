@@ -34,6 +34,7 @@ def available_vehicles(station: Station, record: SurveyRecord, now_ns: int) -> I
             ended_mission=member.number - is_flown(station, member),
             time_left_s=time_left_s(vehicle, station.airspace, station.settings.safety.energy),
             home_m=None if home_m is None else (float(home_m[0]), float(home_m[1])),
+            is_flying=vehicle.is_flying.value is True,
         )
 
 

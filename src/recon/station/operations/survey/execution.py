@@ -236,7 +236,9 @@ def _start_step(station: Station, survey_id: int, settings: SurveyTimes, now_ns:
     assert record.state is not None  # or it would not be due
     vehicles = tuple(available_vehicles(station, record, now_ns))
     positions, shade_maps = record.positions, record.shade_maps
-    work = StepSurvey(record.state, positions.items, shade_maps.items, vehicles, now_ns)
+    work = StepSurvey(
+        record.state, positions.items, shade_maps.items, vehicles, now_ns, station.shade.sun
+    )
     job = Job(surveys.next_job_id, STEP_SURVEY, work)
     pending = PendingStep(job.id, survey_id, now_ns, positions.end, shade_maps.end)
     record = replace(record, step_due_ns=now_ns + seconds_to_ns(settings.step_every_s))

@@ -41,6 +41,9 @@ LOWEST_M = 20.0
 NEAR_M = 20.0
 """A vehicle this near to its first row, at its height, flies straight there."""
 
+STRAIGHT_M = 90.0
+"""The same for a mission that may go straight, where the gate approves all of it."""
+
 LEVEL_M = 3.0
 """Heights that differ by less count as the same: barometers are no better."""
 
@@ -57,6 +60,9 @@ def order_of(
     The first height is taken that no height rule refuses. If all are refused, the first is ordered,
     so that the gate's refusal is on record.
     """
+    straight = _straight(station, record, given, vehicle)
+    if straight is not None and _is_approved(station, straight, now_ns):
+        return straight, ""
     first, *others = orders = _orders(station, record, given, vehicle)
     if not others:
         return first, ""
@@ -68,13 +74,42 @@ def order_of(
     return first, "; no other height of its approach is free"
 
 
+def _straight(
+    station: Station, record: SurveyRecord, given: MissionAssignment, vehicle: VehicleState
+) -> OperatorOrder | None:
+    """The order to fly its rows from where it is, at their height; None where that is too far."""
+    here, height_m = vehicle.position.value, vehicle.height_above_takeoff_m.value
+    if not given.may_go_straight or here is None or height_m is None or given.approach:
+        return None
+    first = given.mission.waypoints[0]
+    far_m = horizontal_distance_m(here, LatLon(first.latitude_deg, first.longitude_deg))
+    is_level = abs(height_m - first.height_above_takeoff_m) < LEVEL_M
+    if not is_level or far_m > STRAIGHT_M:
+        return None
+    return replace(_order(record, given, vehicle), body=FlyMission(given.mission))
+
+
+def _is_approved(station: Station, order: OperatorOrder, now_ns: int) -> bool:
+    command = command_of(station, order, now_ns)
+    return judge(command, situation(station, command, now_ns)) is None
+
+
 def _orders(
     station: Station, record: SurveyRecord, given: MissionAssignment, vehicle: VehicleState
 ) -> tuple[OperatorOrder, ...]:
-    member = record.members[given.serial]
     number, count = tuple(record.members).index(given.serial), len(record.members)
     limits = station.airspace.airspace.limits
-    order = OperatorOrder(
+    order = _order(record, given, vehicle)
+    if given.stands_by:
+        missions = standing_by(given.mission, vehicle, number, count, limits, given.approach)
+    else:
+        missions = with_approaches(given.mission, vehicle, number, count, limits, given.approach)
+    return tuple(replace(order, body=FlyMission(mission)) for mission in missions)
+
+
+def _order(record: SurveyRecord, given: MissionAssignment, vehicle: VehicleState) -> OperatorOrder:
+    member = record.members[given.serial]
+    return OperatorOrder(
         0,
         FlyMission(given.mission),
         f"{record.started_by}: survey {record.survey.name}",
@@ -82,8 +117,25 @@ def _orders(
         takeoff=member.may_take_off and vehicle.is_flying.value is False,
         role=AuthorityHolder.GUIDANCE,
     )
-    missions = with_approaches(given.mission, vehicle, number, count, limits, given.approach)
-    return tuple(replace(order, body=FlyMission(mission)) for mission in missions)
+
+
+def standing_by(
+    mission: Mission,
+    vehicle: VehicleState,
+    number: int,
+    count: int,
+    limits: FlightLimits,
+    corners: tuple[LatLon, ...] = (),
+) -> tuple[Mission, ...]:
+    """Return the mission to the mission's first waypoint, at each of the vehicle's own heights."""
+    rows_m = mission.waypoints[0].height_above_takeoff_m
+    first = replace(mission, waypoints=mission.waypoints[:1])
+    flown = []
+    for layer_m in _own_layers_m(rows_m, number, count, limits):
+        approach = _with_approach(first, vehicle, layer_m, corners).waypoints[:-1]
+        if approach:
+            flown.append(replace(first, waypoints=approach))
+    return tuple(dict.fromkeys(flown)) or (first,)
 
 
 def with_approaches(
@@ -102,8 +154,7 @@ def with_approaches(
     they share the last one. The way across turns at `corners`; zones are left to the gate.
     """
     rows_m = mission.waypoints[0].height_above_takeoff_m
-    layers_m = _layers_m(rows_m, limits)
-    own_m = layers_m[number::count] or layers_m[-1:]
+    own_m = _own_layers_m(rows_m, number, count, limits)
     flown = tuple(_with_approach(mission, vehicle, layer_m, corners) for layer_m in own_m)
     if count > 1:
         flown = tuple(_with_end(each, layer_m) for each, layer_m in zip(flown, own_m, strict=True))
@@ -141,6 +192,11 @@ def _with_end(mission: Mission, layer_m: float) -> Mission:
         return mission
     end = replace(last, height_above_takeoff_m=layer_m, gimbal_pitch_deg=None)
     return replace(mission, waypoints=(*mission.waypoints, end))
+
+
+def _own_layers_m(rows_m: float, number: int, count: int, limits: FlightLimits) -> list[float]:
+    layers_m = _layers_m(rows_m, limits)
+    return layers_m[number::count] or layers_m[-1:]
 
 
 def _layers_m(rows_m: float, limits: FlightLimits) -> list[float]:

@@ -24,7 +24,7 @@ from recon.model.airspace import ZoneKind
 from recon.model.command import Refusal
 from recon.model.event import SurveyRequested
 from recon.model.geo import LocalFrame
-from recon.model.shade import ShadeMap
+from recon.model.shade import ShadeMap, SunForecast
 from recon.model.survey import MissionAssignment, Survey
 from recon.station.state.station import Station
 from recon.station.state.steps import Job, JobKind, Stepped
@@ -53,6 +53,8 @@ class StepSurvey:
     shade_maps: tuple[ShadeMap, ...]
     vehicles: tuple[Surveyor, ...]
     now_ns: int
+    sun: SunForecast | None = None
+    """The newest forecast."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -77,7 +79,7 @@ def step_survey(work: StepSurvey) -> SurveyStepped:
         state = observe_shade(state, shade)
     for serial, samples in _by_vehicle(work.positions).items():
         state = observe(state, serial, samples)
-    state, missions = step(state, work.vehicles, work.now_ns)
+    state, missions = step(state, work.vehicles, work.now_ns, work.sun)
     return SurveyStepped(state, missions, spent(state, work.vehicles))
 
 

@@ -1,0 +1,25 @@
+"""The survey planners, by name."""
+
+from collections.abc import Callable, Mapping, Sequence
+from types import MappingProxyType
+
+from recon.guidance.survey.rounds import Step, lawnmower_again, lawnmower_once
+from recon.guidance.survey.state import Surveyor, SurveyState
+from recon.guidance.survey.sunlit_first import sunlit_first
+from recon.model.shade import SunForecast
+
+Planner = Callable[[SurveyState, Sequence[Surveyor], SunForecast | None, int], Step]
+"""Pure: the survey, its vehicles, the newest forecast and the time in; the survey and the missions
+to give out. Asked about once a second."""
+
+PLANNERS: Mapping[str, Planner] = MappingProxyType(
+    {
+        "lawnmower_once": lambda state, positions, _sun, now_ns: lawnmower_once(
+            state, positions, now_ns
+        ),
+        "lawnmower_again": lambda state, positions, _sun, now_ns: lawnmower_again(
+            state, positions, now_ns
+        ),
+        "sunlit_first": sunlit_first,
+    }
+)

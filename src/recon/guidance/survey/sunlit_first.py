@@ -1,0 +1,301 @@
+"""A planner that flies what is in sun, and what will be, before what is in shade.
+
+Theory of operation. Nobody waits for others: a vehicle whose mission has ended is decided on at
+once. One call of `sunlit_first`:
+
+1. Missions of vehicles that ended or dropped out are removed; their rows count as flown until their
+   photos have counted.
+2. Without known light it is `lawnmower_once`: rows are flown in whatever light, until it is known.
+3. The survey is done when enough is imaged in sun, or its budget is spent, and all have ended.
+4. For each vehicle without a mission: its **share** of the missing ground is what it would fly if
+   all finished at the same time, in rows side by side, so that vehicles keep apart. Over its share
+   the best flight is searched (`search`): which parts of rows, in which order and direction, when.
+5. If that begins at once, the vehicle gets its rows up to `committed_s` as a mission. If it begins
+   later, the vehicle goes to its first row and stands by in its layer; one on the ground stays
+   there until it is time to take off. If nothing is expected in sun, it waits where it is.
+
+Each decision leaves a sentence. What a forecast does not know is its prior, so flights over ground
+whose light is unknown are worth something, and rows in shade are flown when nothing else is left:
+under broken cloud it costs battery alone, and sometimes sun comes.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import takewhile
+from math import hypot
+from types import MappingProxyType
+
+import numpy as np
+
+from recon.guidance.survey.cells import BoolArray
+from recon.guidance.survey.plan import SurveyPlan
+from recon.guidance.survey.rounds import (
+    Step,
+    ended,
+    fly_rounds,
+    flying,
+    may_ask,
+    sortie,
+    without_ended,
+)
+from recon.guidance.survey.route import Place, Route, RowLeg, route_of
+from recon.guidance.survey.search import Flight, Leg, Pace, Search
+from recon.guidance.survey.segments import (
+    NONE,
+    ExpectedSun,
+    Segments,
+    expected_sun,
+    segments_of,
+)
+from recon.guidance.survey.settings import SurveySettings
+from recon.guidance.survey.state import (
+    NO_ROUTES,
+    AssignedMission,
+    Decision,
+    JustFlown,
+    Surveyor,
+    SurveyState,
+    end_between_rounds,
+    is_enough,
+    spent_budget,
+)
+from recon.model.shade import SunForecast
+from recon.model.survey import CellState, MissionAssignment, SurveyPhase
+from recon.model.units import ns_to_seconds, seconds_to_ns
+
+WANTED = CellState.IN_SUN
+
+
+def sunlit_first(
+    state: SurveyState, positions: Sequence[Surveyor], sun: SunForecast | None, now_ns: int
+) -> Step:
+    """Fly what is in sun first, wait for the rest near where it will come, until all is in sun."""
+    able = {each.serial: each for each in positions if each.is_able}
+    state = _with_just_flown(state, without_ended(state, able, now_ns), now_ns)
+    spent = spent_budget(state, WANTED, now_ns)
+    if spent is not None or is_enough(state, WANTED):
+        if state.flights:
+            return state, ()
+        reason = spent or end_between_rounds(state, WANTED) or "Complete"
+        return ended(state, SurveyPhase.DONE, reason, now_ns), ()
+    idle = [each for serial, each in able.items() if _is_asked(state, serial, able, now_ns)]
+    if not idle:
+        return state, ()
+    segments = segments_of(state.plan)
+    expected = expected_sun(segments, state.plan, state.progress, sun, now_ns)
+    if expected is None:
+        return fly_rounds(state, positions, now_ns, CellState.IN_SHADE)
+    state = replace(state, waiting=NO_ROUTES, round=max(1, state.round), reason="under way")
+    missions: list[MissionAssignment] = []
+    for surveyor in idle:
+        choice = _Choice(state, segments, expected, tuple(able.values()), surveyor, now_ns)
+        state, mission = choice.made()
+        missions += mission
+    return state, tuple(missions)
+
+
+def _with_just_flown(before: SurveyState, state: SurveyState, now_ns: int) -> SurveyState:
+    """Keep the rows of missions that have just ended until their photos have counted."""
+    until_ns = now_ns + seconds_to_ns(state.plan.settings.settle_s + 2.0)
+    kept = {key: each for key, each in state.just_flown.items() if now_ns < each.until_ns}
+    for serial, flight in before.flights.items():
+        if serial not in state.flights and flight.route:
+            kept[serial] = JustFlown(flight.route, until_ns)
+    return replace(state, just_flown=MappingProxyType(kept))
+
+
+def _is_asked(state: SurveyState, serial: str, able: Mapping[str, Surveyor], now_ns: int) -> bool:
+    decision = state.decisions.get(serial)
+    return may_ask(state, serial, able, now_ns) and (
+        decision is None or now_ns >= decision.again_ns
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Choice:
+    """What one vehicle without a mission does now."""
+
+    state: SurveyState
+    segments: Segments
+    expected: ExpectedSun
+    able: tuple[Surveyor, ...]
+    surveyor: Surveyor
+    now_ns: int
+
+    @property
+    def plan(self) -> SurveyPlan:
+        return self.state.plan
+
+    @property
+    def settings(self) -> SurveySettings:
+        return self.state.plan.settings
+
+    def made(self) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
+        """Return the survey with the decision, and the vehicle's mission if it gets one."""
+        free = self._free()
+        if not free.any():
+            return self._waits("waits: others are on what is left")
+        share = self._share(free)
+        if self._is_clear(share):
+            return self._flies_all(share)
+        flight = self._best(share)
+        if not flight.legs:
+            minutes = self.settings.planned_s / 60.0
+            return self._waits(f"waits: no sun is expected on its rows for {minutes:.0f} min")
+        if flight.waits_s > 0.0:
+            return self._stands_by(flight)
+        legs = self._committed(flight)
+        return self._flies(tuple(self._long_enough(leg) for leg in legs), flown_text(legs))
+
+    def _free(self) -> BoolArray:
+        """(S,): segments with missing ground that no vehicle flies, or has just flown."""
+        state = self.state
+        flown = [leg for flight in state.flights.values() for leg in flight.route]
+        flown += [leg for each in state.just_flown.values() for leg in each.route]
+        free: BoolArray = (self.expected.missing_m2 > 0.0) & ~self.segments.under(flown)
+        return free
+
+    def _share(self, free: BoolArray) -> BoolArray:
+        """(S,): the free segments of its own share; all free ones where its share has no sun."""
+        share = free & self._own_share(free)
+        missing_m2 = np.where(share, self.expected.missing_m2, 0.0)
+        lit_m2 = float(missing_m2 @ self.expected.probability.max(axis=1))
+        is_worth = lit_m2 > self.settings.share_worth * missing_m2.sum()
+        return share if is_worth else free
+
+    def _is_clear(self, share: BoolArray) -> bool:
+        missing_m2 = np.where(share, self.expected.missing_m2, 0.0)
+        sun = float((missing_m2 @ self.expected.probability).mean() / missing_m2.sum())
+        return sun >= self.settings.clear_from
+
+    def _flies_all(self, share: BoolArray) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
+        """Fly a share row by row, to and fro."""
+        plan, of_cell = self.plan, self.segments.of_cell
+        is_missing = (self.state.progress.state < WANTED) & (of_cell != NONE) & share[of_cell]
+        start_m = self._along_across_m(self.surveyor.place_m)
+        route = route_of(plan.pieces_over(is_missing), plan.lattice, start_m)
+        rows = sorted({leg.piece.row + 1 for leg in route})
+        return self._flies(route, f"flies rows {rows[0]} to {rows[-1]}: clear sky")
+
+    def _best(self, share: BoolArray) -> Flight:
+        search = Search(
+            self.segments, self.expected, share, self.plan.lattice, self._pace, self.settings
+        )
+        return search.best(self._along_across_m(self.surveyor.place_m), self._starts_s)
+
+    @property
+    def _pace(self) -> Pace:
+        speed_mps, settings = self.plan.survey.speed_mps, self.settings
+        stop_s = speed_mps / settings.turning_mps2 + settings.corner_s
+        return Pace(speed_mps, stop_s, settings.layer_s)
+
+    @property
+    def _starts_s(self) -> float:
+        if self.surveyor.is_flying:
+            return self.settings.start_s
+        climb_s = self.plan.survey.height_above_takeoff_m / self.settings.climb_mps
+        return self.settings.start_s + self.settings.takeoff_s + climb_s
+
+    def _own_share(self, free: BoolArray) -> BoolArray:
+        """(S,): the vehicle's part of the free segments, by row and along, so that all vehicles
+        would finish together; in the order in which they, or their missions' ends, lie across."""
+        across_m = {each.serial: self._next_across_m(each) for each in self.able}
+        order = sorted(across_m, key=lambda serial: (across_m[serial], serial))
+        rate = self._pace.speed_mps * self.plan.lattice.spacing_m
+        lit = np.maximum(self.settings.least_worth, self.expected.probability.max(axis=1))
+        work_s = np.where(free, self.expected.missing_m2 * lit, 0.0) / rate
+        done_s = np.cumsum(work_s)
+        busy_s = np.array([self._busy_s(serial) for serial in order])
+        share_s = np.maximum(0.0, finished_together_s(busy_s, float(done_s[-1])) - busy_s)
+        until_s = np.cumsum(share_s)
+        own = order.index(self.surveyor.serial)
+        middle_s = done_s - work_s / 2.0
+        is_own: BoolArray = (middle_s <= until_s[own]) & (middle_s >= until_s[own] - share_s[own])
+        return is_own
+
+    def _next_across_m(self, surveyor: Surveyor) -> float:
+        flight = self.state.flights.get(surveyor.serial)
+        place_m = surveyor.place_m if flight is None else flight.corners_m[-1]
+        return self._along_across_m(place_m)[1]
+
+    def _busy_s(self, serial: str) -> float:
+        flight = self.state.flights.get(serial)
+        return 0.0 if flight is None else max(0.0, ns_to_seconds(flight.ends_at_ns - self.now_ns))
+
+    def _along_across_m(self, place_m: Place) -> Place:
+        ((along_m, across_m),) = self.plan.lattice.along_across_m([place_m]).tolist()
+        return along_m, across_m
+
+    def _committed(self, flight: Flight) -> tuple[Leg, ...]:
+        """The legs of a flight that are flown before it is decided anew; the first one always."""
+        first, *others = flight.legs
+        until_s = self.settings.committed_s
+        return first, *takewhile(lambda leg: leg.until_s <= until_s, others)
+
+    def _flies(self, route: Route, text: str) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
+        state = self.state
+        track, count = sortie(self.plan, route, self.surveyor)
+        if track is None:
+            return self._waits("waits: its battery lasts for no row, the way there and the return")
+        stops_s = self._pace.stop_s * len(track.corners_m)
+        ends_s = self._starts_s + track.length_m / self._pace.speed_mps + stops_s
+        mission = AssignedMission(
+            state.missions + 1,
+            route[:count],
+            track.corners_m,
+            track.length_m,
+            self.now_ns + seconds_to_ns(ends_s),
+        )
+        state, given = flying(self._decided(text), self.surveyor, mission, ())
+        return state, (replace(given, may_go_straight=True),)
+
+    def _long_enough(self, leg: Leg) -> RowLeg:
+        piece = self.segments.parts[leg.segments[0]].piece
+        return replace(leg.route, piece=self.plan.long_enough(piece, leg.route.piece))
+
+    def _stands_by(self, flight: Flight) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
+        plan, state, surveyor = self.plan, self.state, self.surveyor
+        first = flight.legs[0]
+        entry, _ = first.route.ends_m(plan.lattice, plan.swath.lead_m)
+        ((east_m, north_m),) = plan.lattice.east_north_m([entry]).tolist()
+        far_m = hypot(east_m - surveyor.place_m[0], north_m - surveyor.place_m[1])
+        row = first.route.piece.row + 1
+        sun = f"row {row} in {flight.waits_s:.0f} s, probability {first.probability:.1f}"
+        if surveyor.is_flying and far_m <= self.settings.standby_m:
+            return self._waits(f"waits: sun is expected on {sun}")
+        travel_s = self._starts_s + far_m / self._pace.speed_mps + self.settings.layer_s
+        if not surveyor.is_flying and flight.waits_s > travel_s + self.settings.standby_s:
+            return self._waits(f"waits on the ground: sun is expected on {sun}")
+        corners_m = ((east_m, north_m),)
+        ends_ns = self.now_ns + seconds_to_ns(max(travel_s, flight.waits_s))
+        mission = AssignedMission(state.missions + 1, (), corners_m, 0.0, ends_ns)
+        state = self._decided(f"goes to row {row} and stands by: sun is expected on {sun}")
+        state, given = flying(state, surveyor, mission, ())
+        return state, (replace(given, stands_by=True),)
+
+    def _waits(self, text: str) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
+        again_ns = self.now_ns + seconds_to_ns(self.settings.decided_again_s)
+        return self._decided(text, again_ns), ()
+
+    def _decided(self, text: str, again_ns: int = 0) -> SurveyState:
+        decisions = {**self.state.decisions, self.surveyor.serial: Decision(text, again_ns)}
+        return replace(self.state, decisions=MappingProxyType(decisions))
+
+
+def finished_together_s(busy_s: np.ndarray, work_s: float) -> float:
+    """Return when vehicles that are busy for (N,) seconds finish so much work together, if each
+    takes its part as soon as it can."""
+    ordered = np.sort(busy_s)
+    for count in range(1, len(ordered)):
+        together_s = (work_s + float(ordered[:count].sum())) / count
+        if together_s <= ordered[count]:
+            return together_s
+    return (work_s + float(ordered.sum())) / len(ordered)
+
+
+def flown_text(legs: Sequence[Leg]) -> str:
+    """Return what a vehicle flies and why."""
+    rows = sorted({leg.route.piece.row + 1 for leg in legs})
+    named = f"row {rows[0]}" if len(rows) == 1 else f"rows {rows[0]} to {rows[-1]}"
+    sun = sum(leg.probability for leg in legs) / len(legs)
+    return f"flies {named}: probability of sun {sun:.1f}"
