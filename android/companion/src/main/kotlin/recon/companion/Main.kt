@@ -1,0 +1,172 @@
+package recon.companion
+
+import picocli.CommandLine
+import picocli.CommandLine.Command
+import picocli.CommandLine.Option
+import picocli.CommandLine.ParameterException
+import recon.aircraft.AltitudeReference
+import recon.aircraft.LatLon
+import recon.errors.ReconError
+import recon.geo.LocalPlane
+import recon.link.Companion
+import recon.link.CompanionListener
+import recon.link.FrameEncoder
+import recon.link.RawFrameEncoder
+import recon.link.StationAddress
+import recon.session.HoverOnGround
+import recon.session.LinkLossAction
+import recon.session.Output
+import recon.session.SessionSettings
+import recon.sim.SimulatedAircraft
+import recon.sim.SimulatedSettings
+import java.util.concurrent.Callable
+import java.util.concurrent.CountDownLatch
+import kotlin.system.exitProcess
+
+/** PID 2 of the first revision, or PID 5 of the later ones. */
+enum class ImageFormat { RAW, JPEG }
+
+@Command(
+    name = "recon-companion",
+    mixinStandardHelpOptions = true,
+    versionProvider = Version::class,
+    sortOptions = false,
+    description = ["Companion apps with simulated aircraft, connected to a station until Ctrl+C."],
+)
+class RunCompanions : Callable<Int> {
+    @Option(names = ["--station"], paramLabel = "HOST:PORT", required = true, description = ["Where the station listens."])
+    lateinit var station: String
+
+    @Option(names = ["--vehicles"], defaultValue = "1", description = ["Number of aircraft. [\${DEFAULT-VALUE}]"])
+    var vehicles = 1
+
+    @Option(
+        names = ["--serial"],
+        defaultValue = "SIM-1",
+        description = ["Serial of the first; the others count on. [\${DEFAULT-VALUE}]"],
+    )
+    lateinit var serial: String
+
+    @Option(
+        names = ["--home"],
+        paramLabel = "LAT,LON,ALT",
+        defaultValue = "41.9012,-93.6034,275",
+        description = ["Pad of the first, WGS84 degrees and metres. [\${DEFAULT-VALUE}]"],
+    )
+    lateinit var home: String
+
+    @Option(names = ["--spacing-m"], defaultValue = "20", description = ["Pads stand in a row to the east. [\${DEFAULT-VALUE}]"])
+    var spacingM = 20.0
+
+    @Option(names = ["--airborne-m"], description = ["Start hovering at this height above takeoff."])
+    var airborneM: Double? = null
+
+    @Option(names = ["--endurance-min"], defaultValue = "25", description = ["Minutes on a battery. [\${DEFAULT-VALUE}]"])
+    var enduranceMin = 25.0
+
+    @Option(
+        names = ["--waypoint-altitude"],
+        defaultValue = "TAKEOFF",
+        description = ["As the vehicle's waypoint_altitude in site.toml: \${COMPLETION-CANDIDATES}. [\${DEFAULT-VALUE}]"],
+    )
+    lateinit var waypointAltitude: AltitudeReference
+
+    @Option(
+        names = ["--mission-on-lost-link"],
+        defaultValue = "HOLD",
+        description = ["\${COMPLETION-CANDIDATES}. [\${DEFAULT-VALUE}]"],
+    )
+    lateinit var missionOnLostLink: LinkLossAction
+
+    @Option(
+        names = ["--hover-on-ground"],
+        defaultValue = "IGNORE",
+        description = ["\${COMPLETION-CANDIDATES}. [\${DEFAULT-VALUE}]"],
+    )
+    lateinit var hoverOnGround: HoverOnGround
+
+    @Option(names = ["--images"], defaultValue = "JPEG", description = ["\${COMPLETION-CANDIDATES}. [\${DEFAULT-VALUE}]"])
+    lateinit var images: ImageFormat
+
+    @CommandLine.Spec
+    lateinit var spec: CommandLine.Model.CommandSpec
+
+    override fun call(): Int {
+        val companions = (0 until vehicles).map(::companion)
+        val end = CountDownLatch(1)
+        Runtime.getRuntime().addShutdownHook(Thread {
+            companions.forEach { it.close() }
+            end.countDown()
+        })
+        companions.forEach { it.start() }
+        end.await()
+        return 0
+    }
+
+    private fun companion(index: Int): Companion {
+        val settings = SessionSettings(
+            altitudeReference = waypointAltitude,
+            missionOnLinkLoss = missionOnLostLink,
+            hoverOnGround = hoverOnGround,
+            appName = "Recon companion ${Version.TEXT}, simulated aircraft",
+        )
+        val aircraft = aircraftSettings(index)
+        return Companion(settings, SimulatedAircraft(aircraft), address(), encoder(), Printed(aircraft.serial))
+    }
+
+    private fun aircraftSettings(index: Int): SimulatedSettings {
+        val (latitude, longitude, altitude) = homeNumbers()
+        val pad = LocalPlane(LatLon(latitude, longitude)).position(0.0, index * spacingM)
+        return SimulatedSettings(
+            serial = serialOf(serial, index),
+            home = pad,
+            takeoffAltitudeM = altitude,
+            // Vehicles that return at once are separated by their heights.
+            goHomeHeightM = 40.0 + 8.0 * index,
+            enduranceMin = enduranceMin,
+            startHeightM = airborneM,
+        )
+    }
+
+    private fun homeNumbers(): List<Double> {
+        val numbers = home.split(",").mapNotNull { it.trim().toDoubleOrNull() }
+        if (numbers.size != 3) throw wrong("--home must be LAT,LON,ALT; got '$home'")
+        return numbers
+    }
+
+    private fun address(): StationAddress = try {
+        StationAddress.parse(station)
+    } catch (error: ReconError) {
+        throw wrong(error.message)
+    }
+
+    private fun wrong(message: String) = ParameterException(spec.commandLine(), message)
+
+    private fun encoder(): FrameEncoder = if (images == ImageFormat.RAW) RawFrameEncoder else JpegEncoder
+}
+
+/** `SIM-3` and 2 is `SIM-5`; a serial without a number at its end gets one. */
+internal fun serialOf(first: String, index: Int): String {
+    if (index == 0) return first
+    val digits = first.takeLastWhile { it.isDigit() }
+    val number = digits.toLongOrNull() ?: return "$first-${index + 1}"
+    return first.dropLast(digits.length) + (number + index)
+}
+
+private class Printed(private val serial: String) : CompanionListener {
+    override fun notice(notice: Output.Notice) = println("$serial: ${notice.severity.name.lowercase()}: ${notice.text}")
+}
+
+class Version : CommandLine.IVersionProvider {
+    override fun getVersion() = arrayOf(TEXT)
+
+    companion object {
+        /** As in the jar's manifest; empty when run from classes. */
+        val TEXT: String = Version::class.java.`package`?.implementationVersion.orEmpty()
+    }
+}
+
+fun main(arguments: Array<String>) {
+    val commandLine = CommandLine(RunCompanions()).setCaseInsensitiveEnumValuesAllowed(true)
+    exitProcess(commandLine.execute(*arguments))
+}

@@ -1,0 +1,83 @@
+package recon.aircraft
+
+/**
+ * The aircraft as the session commands it: DJI's SDK behind an adapter, or a simulated one.
+ *
+ * Calls come from one thread. [execute] returns at once; the answer comes once, from any thread, when
+ * the aircraft has accepted or refused the command. Acceptance is not execution: state shows that.
+ */
+interface Aircraft {
+    /** The newest state, or null while no aircraft is connected. */
+    fun state(): AircraftState?
+
+    fun execute(command: AircraftCommand, answered: (Answer) -> Unit)
+
+    /** Passes every frame of the camera feed to [listener], from any thread, until replaced by null. */
+    fun onFrame(listener: ((VideoFrame) -> Unit)?)
+}
+
+/** What the session asks of an aircraft. Each ends what the aircraft did before; none takes off but [TakeOff]. */
+sealed interface AircraftCommand {
+    /** Stop mission, return, landing or sticks, and hold position. Never starts motors. */
+    data object Hover : AircraftCommand
+
+    /** Start motors, climb to the aircraft's own takeoff height, hover. */
+    data object TakeOff : AircraftCommand
+
+    data object Land : AircraftCommand
+
+    /** Continue a landing that waits at 0.3 m. */
+    data object ConfirmLanding : AircraftCommand
+
+    /** Climb to the go-home height set in the aircraft, fly home, land. */
+    data object GoHome : AircraftCommand
+
+    data class FlyMission(val plan: MissionPlan) : AircraftCommand
+
+    /** Fly one setpoint; the session repeats it ten times a second. */
+    data class SetStick(val setpoint: StickSetpoint) : AircraftCommand
+
+    data class SetVideo(val isOn: Boolean) : AircraftCommand
+}
+
+/** The aircraft's answer to a command. */
+sealed interface Answer {
+    data object Accepted : Answer
+
+    /** [reason] is a sentence for the operator. */
+    data class Refused(val reason: String) : Answer
+}
+
+/** Velocity setpoint of the virtual stick: heading and height are held, whatever the velocity. */
+data class StickSetpoint(
+    /** X and Y are forward and right of the aircraft, instead of north and east. */
+    val isBodyFrame: Boolean,
+    val yawDeg: Double,
+    val velocityXMps: Double,
+    val velocityYMps: Double,
+    val heightAboveTakeoffM: Double,
+) {
+    /** The same without horizontal velocity. */
+    val stopped: StickSetpoint get() = copy(velocityXMps = 0.0, velocityYMps = 0.0)
+}
+
+/** A mission in the aircraft's own terms: heights above takeoff, actions or none. */
+data class MissionPlan(val points: List<PlanPoint>, val isCurved: Boolean, val landsAtEnd: Boolean)
+
+data class PlanPoint(
+    val position: LatLon,
+    val heightAboveTakeoffM: Double,
+    /** From here to the next point. */
+    val speedMps: Double,
+    val cornerRadiusM: Double,
+    val loiterS: Double? = null,
+    val gimbalPitchDeg: Double? = null,
+)
+
+/** One frame of the camera feed: NV21 (full-resolution luma, then V and U of 2 x 2 pixels interleaved). */
+class VideoFrame(val width: Int, val height: Int, val nv21: ByteArray) {
+    init {
+        require(width % 2 == 0 && height % 2 == 0) { "NV21 needs even sides; got $width x $height" }
+        require(nv21.size == width * height * 3 / 2) { "NV21 of $width x $height; got ${nv21.size} bytes" }
+    }
+}
