@@ -54,7 +54,8 @@ private fun pointOf(waypoint: Waypoint, heightM: Double) = PlanPoint(
     heightM,
     waypoint.speedMps.toDouble(),
     waypoint.cornerRadiusM.toDouble(),
-    waypoint.loiterTimeS.toDouble().takeUnless { it.isNaN() },
+    // WPML has no stay of 0 s; NaN is none either.
+    waypoint.loiterTimeS.toDouble().takeIf { it > 0.0 },
     waypoint.gimbalPitchDeg.toDouble().takeUnless { it.isNaN() },
 )
 

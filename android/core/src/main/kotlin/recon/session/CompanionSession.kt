@@ -222,7 +222,8 @@ class CompanionSession(val settings: SessionSettings) {
                 fly(AircraftCommand.Hover, "Hover after the stick's timeout", null, nowNs)
                 report(Severity.INFO, "No stick command before its timeout: stopped and hovering", nowNs)
             }
-            is StickStep.PilotTookOver -> report(Severity.WARNING, "Virtual stick ended: the pilot has taken over", nowNs)
+            is StickStep.PilotTookOver ->
+                report(Severity.WARNING, "Virtual stick ended: the pilot has taken over", nowNs)
         }
     }
 
@@ -264,7 +265,7 @@ class CompanionSession(val settings: SessionSettings) {
 
     private fun checkMission(nowNs: Long) {
         if (mission.failedToStart(nowNs)) {
-            report(Severity.ERROR, "The aircraft accepted the mission and did not start it: check it in DJI's app", nowNs)
+            report(Severity.ERROR, MISSION_NOT_STARTED, nowNs)
         }
         val action = mission.linkLossAction(nowNs) ?: return
         val command = if (action == LinkLossAction.RETURN) AircraftCommand.GoHome else AircraftCommand.Hover
@@ -281,7 +282,7 @@ class CompanionSession(val settings: SessionSettings) {
 
     private fun noticeStaleState(nowNs: Long) {
         val isStale = state != null && freshState(nowNs) == null
-        if (isStale && !wasStale) report(Severity.WARNING, "Telemetry of the aircraft lost: check its controller", nowNs)
+        if (isStale && !wasStale) report(Severity.WARNING, TELEMETRY_LOST, nowNs)
         wasStale = isStale
     }
 
@@ -307,6 +308,9 @@ class CompanionSession(val settings: SessionSettings) {
     private companion object {
         /** First message of a simulated app: the station then marks its vehicle. */
         const val SIMULATED_HELLO = "recon-sim simulated vehicle"
+        const val TELEMETRY_LOST = "Telemetry of the aircraft lost: check its controller"
+        const val MISSION_NOT_STARTED =
+            "The aircraft accepted the mission and did not start it: check its limits and warnings"
 
         fun isMotion(command: AircraftCommand): Boolean =
             command !is AircraftCommand.SetVideo && command !is AircraftCommand.ConfirmLanding

@@ -1,7 +1,8 @@
 package recon.session
 
 /**
- * Packets that wait for the socket, most urgent first: acknowledgments, telemetry, messages, images. Bounded: of telemetry only the newest waits; the oldest of the others gives way.
+ * Packets that wait for the socket, most urgent first: acknowledgments, telemetry, messages, images.
+ * Bounded: of telemetry only the newest waits; the oldest of the others gives way.
  */
 class Outbox {
     private val acknowledgments = ArrayDeque<ByteArray>()
