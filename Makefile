@@ -13,10 +13,10 @@ RUN := $(UV) run --locked --quiet
 FUZZ_SECONDS ?= 60
 WEB_SOURCES := $(shell find web/src web/public -type f 2>/dev/null) web/index.html web/package.json web/vite.config.ts
 
-.PHONY: help setup demo run test test-rust test-safety test-python test-web test-e2e coverage check format bench fuzz study mutants docs web clean
+.PHONY: help setup demo run test test-rust test-safety test-python test-web test-e2e android test-android study-android fuzz-android coverage check format bench fuzz study mutants docs web clean
 
 help: ## List the targets
-	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 demo: setup web ## Run a survey under broken cloud: station, simulated drones, console at http://127.0.0.1:8080
 	$(RUN) recon demo
@@ -71,7 +71,11 @@ coverage: setup ## Line coverage of every room, by all Python tests
 	$(PYTEST) --cov=recon --cov-report=term
 
 test-python: setup ## Tests of everything else in Python
-	$(PYTEST) --ignore=tests/safety --ignore=tests/architecture
+	$(PYTEST) --ignore=tests/safety --ignore=tests/architecture --ignore=tests/android
+
+MAVEN := mvn --batch-mode --quiet --file android/pom.xml
+COMPANION_JAR := $(CURDIR)/android/companion/target/recon-companion.jar
+ANDROID_TESTS := RECON_COMPANION_JAR=$(COMPANION_JAR) $(PYTEST) tests/android
 
 test-web: web/node_modules/.stamp ## Tests of the console
 	npm --prefix web test --silent
@@ -79,6 +83,20 @@ test-web: web/node_modules/.stamp ## Tests of the console
 test-e2e: setup web ## Console tests in a headless browser with a running station
 	@tools/chromium.sh
 	npm --prefix web run e2e --silent
+
+android: ## Build the companion app's core and its runnable jar, with their tests (needs a JDK 17 and Maven)
+	@tools/require.sh java mvn
+	$(MAVEN) verify
+
+test-android: setup android ## The companion app's tests, and its jar against the real station
+	$(ANDROID_TESTS)
+
+study-android: setup android fuzz-android ## Long runs of the same: a survey of eight, every bad link, ten minutes without a loss
+	RECON_THOROUGH=1 $(ANDROID_TESTS) -s
+
+fuzz-android: ## A million hostile inputs for the companion app's codec, and as many for its session
+	@tools/require.sh java mvn
+	$(MAVEN) test -pl core -Dtest='*FuzzTest' -Dfuzz.inputs=1000000
 
 bench: setup ## Measurements, each beside a baseline of the same run
 	cargo bench -p recon-wire
@@ -125,4 +143,4 @@ format: setup web/node_modules/.stamp ## Format all sources
 	$(RUN) ruff check --fix .
 
 clean: ## Remove build output
-	rm -rf .venv target web/dist web/node_modules .tools
+	rm -rf .venv target android/target android/*/target web/dist web/node_modules .tools

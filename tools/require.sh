@@ -7,6 +7,8 @@ for tool in "$@"; do
         python3) hint="install Python 3.11 or newer (Debian: apt-get install python3 python3-venv)" ;;
         cargo) hint="install Rust 1.88 or newer from https://rustup.rs" ;;
         node | npm) hint="install Node.js 20 or newer with npm from https://nodejs.org" ;;
+        java) hint="install a JDK 17 (Debian: apt-get install openjdk-17-jdk-headless)" ;;
+        mvn) hint="install Maven 3.8 or newer (Debian: apt-get install maven)" ;;
         *) hint="install it and try again" ;;
     esac
     echo "recon: '$tool' is missing: $hint." >&2

@@ -9,6 +9,8 @@ from recon.model.geo import GeoPoint, LocalFrame
 ORIGIN = GeoPoint(41.9012, -93.6034, 275.0)
 SPACING_M = 20.0
 VEHICLES = 8
+GO_HOME_M = 24
+"""Of the first vehicle; the others are 8 m apart, as the companions'."""
 BOUNDARY = ((-250.0, -250.0), (350.0, -250.0), (350.0, 350.0), (-250.0, 350.0))
 REGION = ((-20.0, 60.0), (160.0, 60.0), (160.0, 240.0), (-20.0, 240.0))
 
@@ -42,7 +44,7 @@ model = "simulated"
 waypoint_altitude = "takeoff"
 mount = "gimbal"
 endurance_min = 25
-go_home_height_m = {40 + 8 * (number - 1)}
+go_home_height_m = {GO_HOME_M + 8 * (number - 1)}
 failsafe = "go_home"
 camera_interval_s = 2.0
 """

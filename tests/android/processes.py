@@ -5,14 +5,19 @@ import os
 import re
 import signal
 import sys
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Coroutine
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
+from functools import wraps
 from pathlib import Path
+from typing import Any, ParamSpec
 
-from tests.android.field import ORIGIN, SPACING_M
+from tests.android.field import GO_HOME_M, ORIGIN, SPACING_M
 
+P = ParamSpec("P")
 JAR = os.environ.get("RECON_COMPANION_JAR", "")
+IS_THOROUGH = os.environ.get("RECON_THOROUGH") == "1"
+"""In `make study-android`: minutes more of the same."""
 RECON = str(Path(sys.executable).with_name("recon"))
 PATIENCE_S = 60.0
 
@@ -110,8 +115,18 @@ async def proxy(link_port: int, *options: str) -> AsyncIterator[int]:
 def companion_command(link_port: int, *options: str) -> tuple[str, ...]:
     """Return the command of companions with pads as in `field`."""
     home = f"{ORIGIN.latitude_deg},{ORIGIN.longitude_deg},{ORIGIN.ellipsoid_height_m}"
-    places = ("--home", home, "--spacing-m", f"{SPACING_M:g}")
+    places = ("--home", home, "--spacing-m", f"{SPACING_M:g}", "--go-home-m", f"{GO_HOME_M:g}")
     return ("java", "-jar", JAR, "--station", f"127.0.0.1:{link_port}", *places, *options)
+
+
+def in_loop(test: Callable[P, Coroutine[Any, Any, None]]) -> Callable[P, None]:
+    """Run an asynchronous test in an event loop of its own."""
+
+    @wraps(test)
+    def run(*args: P.args, **kwargs: P.kwargs) -> None:
+        asyncio.run(test(*args, **kwargs))
+
+    return run
 
 
 async def until(is_so: Callable[[], bool], what: str, patience_s: float = PATIENCE_S) -> None:

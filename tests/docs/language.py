@@ -50,7 +50,7 @@ _BANNED = [
     (re.compile(rf"(?<![a-z])(?:{pattern})(?![a-z])", re.IGNORECASE), instead)
     for pattern, instead in INSTEAD.items()
 ]
-SOURCES = {".py", ".ts", ".tsx", ".css", ".md", ".html", ".toml", ".rs"}
+SOURCES = {".py", ".ts", ".tsx", ".css", ".md", ".html", ".toml", ".rs", ".kt"}
 QUOTED = ("docs/icd.md", "src/protocol/schema.d.ts")
 """Pages that quote the protocol, and files made from others."""
 
@@ -71,7 +71,7 @@ def sources(place: Path) -> list[Path]:
         for file in files
         if file.suffix in SOURCES
         and file.is_file()
-        and "node_modules" not in file.parts
+        and not {"node_modules", "target"} & set(file.parts)
         and not str(file).endswith(QUOTED)
     ]
 

@@ -61,6 +61,13 @@ class RunCompanions : Callable<Int> {
     @Option(names = ["--airborne-m"], description = ["Start hovering at this height above takeoff."])
     var airborneM: Double? = null
 
+    @Option(
+        names = ["--go-home-m"],
+        defaultValue = "40",
+        description = ["Go-home height of the first; the others are set 8 m apart. [\${DEFAULT-VALUE}]"],
+    )
+    var goHomeM = 40.0
+
     @Option(names = ["--endurance-min"], defaultValue = "25", description = ["Minutes on a battery. [\${DEFAULT-VALUE}]"])
     var enduranceMin = 25.0
 
@@ -122,7 +129,7 @@ class RunCompanions : Callable<Int> {
             home = pad,
             takeoffAltitudeM = altitude,
             // Vehicles that return at once are separated by their heights.
-            goHomeHeightM = 40.0 + 8.0 * index,
+            goHomeHeightM = goHomeM + 8.0 * index,
             enduranceMin = enduranceMin,
             startHeightM = airborneM,
         )

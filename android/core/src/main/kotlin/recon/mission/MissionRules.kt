@@ -9,7 +9,7 @@ import recon.wire.ExecuteWaypointMission
 import recon.wire.Waypoint
 import kotlin.math.abs
 
-/** A plan, or the sentence why the packet is none. */
+/** A plan, or the sentence why the packet cannot be flown. */
 sealed interface PlanResult {
     data class Ready(val plan: MissionPlan) : PlanResult
 
@@ -18,7 +18,7 @@ sealed interface PlanResult {
 
 /**
  * What DJI's waypoint missions accept (WPML reference, and the limits of Mobile SDK 4 where narrower).
- * The aircraft drops what does not fit without a word, so the app says it first.
+ * The aircraft drops what does not fit without a word, so the app refuses it first, with a reason.
  */
 object MissionLimits {
     const val LEAST_WAYPOINTS = 2
@@ -54,14 +54,14 @@ private fun pointOf(waypoint: Waypoint, heightM: Double) = PlanPoint(
     heightM,
     waypoint.speedMps.toDouble(),
     waypoint.cornerRadiusM.toDouble(),
-    // WPML has no stay of 0 s; NaN is none either.
+    // WPML has no stay of 0 s, and NaN means no action.
     waypoint.loiterTimeS.toDouble().takeIf { it > 0.0 },
     waypoint.gimbalPitchDeg.toDouble().takeUnless { it.isNaN() },
 )
 
 private fun flagProblem(packet: ExecuteWaypointMission): String? = when {
-    packet.landAtEnd !in 0..1 -> "LandAtEnd must be 0 or 1; got ${packet.landAtEnd}"
-    packet.curvedFlight !in 0..1 -> "CurvedFlight must be 0 or 1; got ${packet.curvedFlight}"
+    packet.landAtEnd > 1 -> "LandAtEnd must be 0 or 1; got ${packet.landAtEnd}"
+    packet.curvedFlight > 1 -> "CurvedFlight must be 0 or 1; got ${packet.curvedFlight}"
     else -> null
 }
 
@@ -90,7 +90,7 @@ private fun rangeProblem(what: String, value: Double, low: Double, high: Double,
 /** Why DJI's waypoint missions cannot fly a plan, as a sentence, or null. */
 fun planProblem(plan: MissionPlan): String? {
     val count = plan.points.size
-    if (count !in MissionLimits.LEAST_WAYPOINTS..MissionLimits.MOST_WAYPOINTS) {
+    if (count < MissionLimits.LEAST_WAYPOINTS || count > MissionLimits.MOST_WAYPOINTS) {
         return "A mission has ${MissionLimits.LEAST_WAYPOINTS} to ${MissionLimits.MOST_WAYPOINTS} waypoints; got $count"
     }
     return spacingProblem(plan) ?: if (plan.isCurved) curveProblem(plan) else null

@@ -155,13 +155,18 @@ class CompanionSession(val settings: SessionSettings) {
         val pid = arrived.packet.pid
         lastOrder = nameOf(arrived.packet)
         val refusal = refusalOf(order)
-        when {
-            refusal != null -> refuse(pid, refusal, nowNs)
-            order is Order.Fly -> flyOrder(order, pid, nowNs)
-            order is Order.Stick -> commandStick(order, arrived, nowNs)
-            order is Order.StartVideo -> startVideo(order, nowNs)
-            order is Order.StopVideo -> stopVideo(pid, nowNs)
-            order is Order.Done -> link.acknowledge(pid, isPositive = true)
+        if (refusal != null) refuse(pid, refusal, nowNs) else obey(order, arrived, nowNs)
+    }
+
+    private fun obey(order: Order, arrived: ArrivedPacket, nowNs: Long) {
+        val pid = arrived.packet.pid
+        when (order) {
+            is Order.Fly -> flyOrder(order, pid, nowNs)
+            is Order.Stick -> commandStick(order, arrived, nowNs)
+            is Order.StartVideo -> startVideo(order, nowNs)
+            is Order.StopVideo -> stopVideo(pid, nowNs)
+            is Order.Done -> link.acknowledge(pid, isPositive = true)
+            is Order.Refused -> refuse(pid, order.reason, nowNs)
         }
     }
 
@@ -170,7 +175,6 @@ class CompanionSession(val settings: SessionSettings) {
         val isStop = order is Order.Fly && order.command is AircraftCommand.Hover
         val isMotion = order is Order.Fly || order is Order.Stick
         return when {
-            order is Order.Refused -> order.reason
             isReleased && isMotion && !isStop -> "The pilot has control: released in the app"
             isMotion && !isStop && calls.isFull -> "Too many orders without an answer of the aircraft: wait"
             isMission && calls.hasMission -> "A mission is being uploaded: send the next one when it is answered"

@@ -109,7 +109,7 @@ class Orders(private val settings: SessionSettings) {
     }
 
     private fun stickProblem(packet: VirtualStickCommand): String? {
-        if (packet.mode !in 0..1) return "Stick mode must be 0 or 1; got ${packet.mode}"
+        if (packet.mode > 1) return "Stick mode must be 0 or 1; got ${packet.mode}"
         if (!(packet.timeoutS > 0f)) return "Stick timeout must be over 0 s; got ${shown(packet.timeoutS.toDouble())}"
         return outside("Stick velocity X", packet.velocityXMps, -FASTEST_MPS, FASTEST_MPS, "m/s")
             ?: outside("Stick velocity Y", packet.velocityYMps, -FASTEST_MPS, FASTEST_MPS, "m/s")

@@ -64,16 +64,12 @@ class SimulatedAircraft(
 
 /** A picture with a gradient and coloured quarters, so that a turned or torn frame shows. */
 fun testPicture(width: Int, height: Int): VideoFrame {
-    val nv21 = ByteArray(width * height * 3 / 2)
-    for (row in 0 until height) {
-        for (col in 0 until width) nv21[row * width + col] = (40 + 180 * col / width).toByte()
+    val luma = ByteArray(width * height) { (40 + 180 * (it % width) / width).toByte() }
+    val chroma = ByteArray(width * height / 2) { index ->
+        val isUpper = index / width < height / 4
+        val isLeft = index % width < width / 2
+        // V and U alternate: one shows above and below, the other left and right.
+        if ((index % 2 == 0 && isUpper) || (index % 2 == 1 && isLeft)) 90 else 170.toByte()
     }
-    for (row in 0 until height / 2) {
-        for (col in 0 until width step 2) {
-            val at = width * height + row * width + col
-            nv21[at] = (if (row < height / 4) 90 else 170).toByte()
-            nv21[at + 1] = (if (col < width / 2) 90 else 170).toByte()
-        }
-    }
-    return VideoFrame(width, height, nv21)
+    return VideoFrame(width, height, luma + chroma)
 }

@@ -39,7 +39,7 @@ fun hovering(updatedNs: Long = 0, mode: FlightMode = FlightMode.GPS_ATTI) = Airc
 
 fun standing(updatedNs: Long = 0) = hovering(updatedNs).copy(isFlying = false, heightAboveTakeoffM = 0.0)
 
-/** A session with a clock of its own, an aircraft that answers when the test says so, and a station that reads. */
+/** A session with a clock of its own, an aircraft that answers at once or when the test does, and a station that reads. */
 class Harness(settings: SessionSettings = SessionSettings(), private val isReading: Boolean = true) {
     val session = CompanionSession(settings)
     var nowNs = 0L

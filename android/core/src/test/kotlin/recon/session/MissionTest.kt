@@ -144,6 +144,29 @@ class MissionTest {
     }
 
     @Test
+    fun `released control ends a mission, flown or still being uploaded, with a hover`() {
+        flyMission()
+        harness.session.releaseControl(harness.nowNs)
+        harness.settle()
+        assertEquals(listOf<AircraftCommand>(AircraftCommand.Hover), harness.commands)
+        val uploading = Harness().connect().apply { answers = null }
+        uploading.receive(mission())
+        uploading.session.releaseControl(uploading.nowNs)
+        uploading.settle()
+        uploading.answer(uploading.executed.first(), Answer.Accepted)
+        assertEquals(listOf(AircraftCommand.Hover, AircraftCommand.Hover), uploading.commands.drop(1))
+    }
+
+    @Test
+    fun `a hover of its own that the aircraft refuses is an error for the operator`() {
+        flyMission()
+        harness.answers = Answer.Refused("SDK not registered")
+        harness.session.releaseControl(harness.nowNs)
+        harness.settle()
+        assertTrue("Hover for the pilot refused by the aircraft: SDK not registered" in harness.messages)
+    }
+
+    @Test
     fun `mission numbers stay within 16 bits and are never zero`() {
         val run = MissionRun(SessionSettings())
         val flown = hovering(mode = FlightMode.WAYPOINT)

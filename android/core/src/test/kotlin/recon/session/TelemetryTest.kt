@@ -15,7 +15,7 @@ class TelemetryTest {
     private val harness = Harness()
 
     @Test
-    fun `a link begins with the identity, then tells the settings`() {
+    fun `a link begins with the identity, then reports the settings`() {
         harness.session.aircraftState(hovering(), 0)
         harness.session.linkOpened(0)
         harness.settle()
@@ -28,7 +28,7 @@ class TelemetryTest {
     }
 
     @Test
-    fun `a simulated aircraft says so first`() {
+    fun `a simulated aircraft is announced first`() {
         harness.session.aircraftState(hovering().copy(isSimulated = true), 0)
         harness.session.linkOpened(0)
         harness.settle()

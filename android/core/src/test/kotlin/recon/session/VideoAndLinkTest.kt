@@ -59,6 +59,11 @@ class VideoAndLinkTest {
         assertEquals(0, encoded(harness).size)
         harness.closeLink()
         assertEquals(2, harness.commands.size)
+        harness.session.imageEncoded(CompressedImage(5f, Bytes.of("late")))
+        harness.session.linkOpened(harness.nowNs)
+        harness.session.imageEncoded(CompressedImage(5f, Bytes.of("late")))
+        harness.settle()
+        assertEquals(emptyList(), harness.packets<CompressedImage>())
     }
 
     @Test

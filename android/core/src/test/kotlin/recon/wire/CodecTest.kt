@@ -69,7 +69,7 @@ class CodecTest {
     }
 
     @Test
-    fun `a frame that is none is refused with what was expected`() {
+    fun `bytes that are no frame are refused with what was expected`() {
         assertMessage("The packet needs 7 bytes; got 1") { decode(byteArrayOf(SYNC_FIRST)) }
         assertMessage("Sync must be DA A7; got 00 01") { decode(byteArrayOf(0, 1, 2)) }
         assertMessage("Hash must be 8A7D; got 8A7C") { decode(bytesOf("daa70000000aff008a7c")) }
