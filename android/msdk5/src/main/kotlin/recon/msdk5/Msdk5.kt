@@ -1,0 +1,187 @@
+package recon.msdk5
+
+import dji.sdk.keyvalue.key.BatteryKey
+import dji.sdk.keyvalue.key.DJIActionKeyInfo
+import dji.sdk.keyvalue.key.DJIKeyInfo
+import dji.sdk.keyvalue.key.FlightControllerKey
+import dji.sdk.keyvalue.key.KeyTools
+import dji.sdk.keyvalue.value.common.ComponentIndexType
+import dji.sdk.keyvalue.value.common.EmptyMsg
+import dji.sdk.keyvalue.value.flightcontroller.FlightCoordinateSystem
+import dji.sdk.keyvalue.value.flightcontroller.RollPitchControlMode
+import dji.sdk.keyvalue.value.flightcontroller.VerticalControlMode
+import dji.sdk.keyvalue.value.flightcontroller.VirtualStickFlightControlParam
+import dji.sdk.keyvalue.value.flightcontroller.YawControlMode
+import dji.v5.common.callback.CommonCallbacks
+import dji.v5.common.error.IDJIError
+import dji.v5.manager.KeyManager
+import dji.v5.manager.aircraft.virtualstick.VirtualStickManager
+import dji.v5.manager.aircraft.waypoint3.WaypointMissionManager
+import dji.v5.manager.datacenter.MediaDataCenter
+import dji.v5.manager.interfaces.ICameraStreamManager
+import java.io.File
+
+/**
+ * DJI's Mobile SDK 5.18.0 behind [DjiSdk]: one call for each call, and no decision. Compiled and linked
+ * against DJI's signatures; never run, because the SDK runs only on a phone with an aircraft.
+ *
+ * Made after the SDK has registered. [folder] holds the mission files.
+ */
+class Msdk5(private val folder: File, private val clockNs: () -> Long) : DjiSdk, AutoCloseable {
+    private val keys = KeyManager.getInstance()
+    private val missions = WaypointMissionManager.getInstance()
+    private val sticks = VirtualStickManager.getInstance()
+    private val streams: ICameraStreamManager = MediaDataCenter.getInstance().cameraStreamManager
+    private var frames: ICameraStreamManager.CameraFrameListener? = null
+
+    @Volatile
+    private var updatedNs: Long? = null
+
+    @Volatile
+    private var missionState: String? = null
+
+    @Volatile
+    private var hasCamera: Boolean? = null
+
+    init {
+        sticks.init()
+        missions.init()
+        keys.listen(KeyTools.createKey(FlightControllerKey.KeyAircraftAttitude), this) { _, _ -> updatedNs = clockNs() }
+        missions.addWaypointMissionExecuteStateListener { missionState = it?.name }
+        streams.addAvailableCameraUpdatedListener { hasCamera = it.isNotEmpty() }
+    }
+
+    override fun close() {
+        keys.cancelListen(this)
+        missions.clearAllWaypointMissionExecuteStateListener()
+        onFrame(null)
+    }
+
+    override fun snapshot(): DjiSnapshot? {
+        val location = value(FlightControllerKey.KeyAircraftLocation3D)
+        val velocity = value(FlightControllerKey.KeyAircraftVelocity)
+        val attitude = value(FlightControllerKey.KeyAircraftAttitude)
+        return DjiSnapshot(
+            updatedNs = updatedNs ?: return null,
+            serial = value(FlightControllerKey.KeySerialNumber),
+            isFlying = value(FlightControllerKey.KeyIsFlying),
+            flightMode = value(FlightControllerKey.KeyFCFlightMode)?.name,
+            latitudeDeg = location?.latitude,
+            longitudeDeg = location?.longitude,
+            altitudeM = location?.altitude,
+            takeoffAltitudeM = value(FlightControllerKey.KeyTakeoffLocationAltitude),
+            velocityNorthMps = velocity?.x,
+            velocityEastMps = velocity?.y,
+            velocityDownMps = velocity?.z,
+            yawDeg = attitude?.yaw,
+            pitchDeg = attitude?.pitch,
+            rollDeg = attitude?.roll,
+            satellites = value(FlightControllerKey.KeyGPSSatelliteCount),
+            gpsLevel = value(FlightControllerKey.KeyGPSSignalLevel)?.name,
+            isNearHeightLimit = value(FlightControllerKey.KeyIsNearHeightLimit),
+            isNearDistanceLimit = value(FlightControllerKey.KeyIsNearDistanceLimit),
+            batteryPercent = value(BatteryKey.KeyChargeRemainingInPercent),
+            isLowBattery = value(FlightControllerKey.KeyIsLowBatteryWarning),
+            isSeriousLowBattery = value(FlightControllerKey.KeyIsSeriousLowBatteryWarning),
+            windWarning = value(FlightControllerKey.KeyWindWarning)?.name,
+            isLandingConfirmationNeeded = value(FlightControllerKey.KeyIsLandingConfirmationNeeded),
+            goHomeHeightM = value(FlightControllerKey.KeyGoHomeHeight),
+            failsafe = value(FlightControllerKey.KeyFailsafeAction)?.name,
+            isVirtualStickSupported = keys.isKeySupported(KeyTools.createKey(FlightControllerKey.KeyVirtualStickEnabled)),
+            isVirtualStickEnabled = value(FlightControllerKey.KeyVirtualStickEnabled),
+            missionState = missionState,
+            hasCamera = hasCamera,
+        )
+    }
+
+    override fun perform(action: FlightAction, done: Done) {
+        val key = when (action) {
+            FlightAction.START_TAKEOFF -> FlightControllerKey.KeyStartTakeoff
+            FlightAction.STOP_TAKEOFF -> FlightControllerKey.KeyStopTakeoff
+            FlightAction.START_AUTO_LANDING -> FlightControllerKey.KeyStartAutoLanding
+            FlightAction.STOP_AUTO_LANDING -> FlightControllerKey.KeyStopAutoLanding
+            FlightAction.CONFIRM_LANDING -> FlightControllerKey.KeyConfirmLanding
+            FlightAction.START_GO_HOME -> FlightControllerKey.KeyStartGoHome
+            FlightAction.STOP_GO_HOME -> FlightControllerKey.KeyStopGoHome
+        }
+        perform(key, done)
+    }
+
+    override fun enableVirtualStick(done: Done) {
+        sticks.enableVirtualStick(completion { error ->
+            if (error == null) sticks.setVirtualStickAdvancedModeEnabled(true)
+            done(error)
+        })
+    }
+
+    override fun disableVirtualStick(done: Done) = sticks.disableVirtualStick(completion(done))
+
+    override fun sendStick(stick: DjiStick) {
+        val frame = if (stick.isBodyFrame) FlightCoordinateSystem.BODY else FlightCoordinateSystem.GROUND
+        sticks.sendVirtualStickAdvancedParam(
+            VirtualStickFlightControlParam(
+                stick.pitchMps,
+                stick.rollMps,
+                stick.yawDeg,
+                stick.verticalMps,
+                VerticalControlMode.VELOCITY,
+                RollPitchControlMode.VELOCITY,
+                YawControlMode.ANGLE,
+                frame,
+            ),
+        )
+    }
+
+    override fun pushMission(name: String, kmz: ByteArray, done: Done) {
+        val file = File(folder, "$name.kmz").apply { writeBytes(kmz) }
+        missions.pushKMZFileToAircraft(
+            file.path,
+            object : CommonCallbacks.CompletionCallbackWithProgress<Double> {
+                override fun onProgressUpdate(progress: Double?) = Unit
+
+                override fun onSuccess() = done(null)
+
+                override fun onFailure(error: IDJIError) = done(described(error))
+            },
+        )
+    }
+
+    override fun startMission(name: String, done: Done) = missions.startMission(name, completion(done))
+
+    override fun stopMission(name: String, done: Done) = missions.stopMission(name, completion(done))
+
+    override fun onFrame(listener: ((ByteArray, Int, Int) -> Unit)?) {
+        frames?.let(streams::removeFrameListener)
+        frames = listener?.let { frameListener(it) }?.also {
+            streams.addFrameListener(ComponentIndexType.LEFT_OR_MAIN, ICameraStreamManager.FrameFormat.NV21, it)
+        }
+    }
+
+    private fun frameListener(listener: (ByteArray, Int, Int) -> Unit) =
+        ICameraStreamManager.CameraFrameListener { data, offset, length, width, height, _ ->
+            // Copied: the SDK reuses its buffer for the next frame.
+            listener(data.copyOfRange(offset, offset + length), width, height)
+        }
+
+    private fun <T> value(key: DJIKeyInfo<T>): T? = keys.getValue(KeyTools.createKey(key))
+
+    private fun perform(key: DJIActionKeyInfo<EmptyMsg, EmptyMsg>, done: Done) {
+        keys.performAction(
+            KeyTools.createKey(key),
+            object : CommonCallbacks.CompletionCallbackWithParam<EmptyMsg> {
+                override fun onSuccess(result: EmptyMsg?) = done(null)
+
+                override fun onFailure(error: IDJIError) = done(described(error))
+            },
+        )
+    }
+
+    private fun completion(done: Done) = object : CommonCallbacks.CompletionCallback {
+        override fun onSuccess() = done(null)
+
+        override fun onFailure(error: IDJIError) = done(described(error))
+    }
+
+    private fun described(error: IDJIError): String =
+        "${error.description() ?: "no description"} (${error.errorCode() ?: "no code"})"
+}
