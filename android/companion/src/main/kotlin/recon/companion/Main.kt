@@ -5,10 +5,10 @@ import picocli.CommandLine.Command
 import picocli.CommandLine.Option
 import picocli.CommandLine.ParameterException
 import recon.aircraft.AltitudeReference
-import recon.aircraft.LatLon
 import recon.errors.ReconError
+import recon.geo.LatLon
 import recon.geo.LocalPlane
-import recon.link.Companion
+import recon.link.CompanionApp
 import recon.link.CompanionListener
 import recon.link.FrameEncoder
 import recon.link.RawFrameEncoder
@@ -34,7 +34,12 @@ enum class ImageFormat { RAW, JPEG }
     description = ["Companion apps with simulated aircraft, connected to a station until Ctrl+C."],
 )
 class RunCompanions : Callable<Int> {
-    @Option(names = ["--station"], paramLabel = "HOST:PORT", required = true, description = ["Where the station listens."])
+    @Option(
+        names = ["--station"],
+        paramLabel = "HOST:PORT",
+        required = true,
+        description = ["Where the station listens."],
+    )
     lateinit var station: String
 
     @Option(names = ["--vehicles"], defaultValue = "1", description = ["Number of aircraft. [\${DEFAULT-VALUE}]"])
@@ -55,7 +60,11 @@ class RunCompanions : Callable<Int> {
     )
     lateinit var home: String
 
-    @Option(names = ["--spacing-m"], defaultValue = "20", description = ["Pads stand in a row to the east. [\${DEFAULT-VALUE}]"])
+    @Option(
+        names = ["--spacing-m"],
+        defaultValue = "20",
+        description = ["Pads stand in a row to the east. [\${DEFAULT-VALUE}]"],
+    )
     var spacingM = 20.0
 
     @Option(names = ["--airborne-m"], description = ["Start hovering at this height above takeoff."])
@@ -68,13 +77,19 @@ class RunCompanions : Callable<Int> {
     )
     var goHomeM = 40.0
 
-    @Option(names = ["--endurance-min"], defaultValue = "25", description = ["Minutes on a battery. [\${DEFAULT-VALUE}]"])
+    @Option(
+        names = ["--endurance-min"],
+        defaultValue = "25",
+        description = ["Minutes on a battery. [\${DEFAULT-VALUE}]"],
+    )
     var enduranceMin = 25.0
 
     @Option(
         names = ["--waypoint-altitude"],
         defaultValue = "TAKEOFF",
-        description = ["As the vehicle's waypoint_altitude in site.toml: \${COMPLETION-CANDIDATES}. [\${DEFAULT-VALUE}]"],
+        description = [
+            "As the vehicle's waypoint_altitude in site.toml: \${COMPLETION-CANDIDATES}. [\${DEFAULT-VALUE}]",
+        ],
     )
     lateinit var waypointAltitude: AltitudeReference
 
@@ -92,13 +107,18 @@ class RunCompanions : Callable<Int> {
     )
     lateinit var hoverOnGround: HoverOnGround
 
-    @Option(names = ["--images"], defaultValue = "JPEG", description = ["\${COMPLETION-CANDIDATES}. [\${DEFAULT-VALUE}]"])
+    @Option(
+        names = ["--images"],
+        defaultValue = "JPEG",
+        description = ["\${COMPLETION-CANDIDATES}. [\${DEFAULT-VALUE}]"],
+    )
     lateinit var images: ImageFormat
 
     @CommandLine.Spec
     lateinit var spec: CommandLine.Model.CommandSpec
 
     override fun call(): Int {
+        if (vehicles !in 1..MOST_VEHICLES) throw wrong("--vehicles must be 1 to $MOST_VEHICLES; got $vehicles")
         val companions = (0 until vehicles).map(::companion)
         val end = CountDownLatch(1)
         Runtime.getRuntime().addShutdownHook(Thread {
@@ -110,7 +130,7 @@ class RunCompanions : Callable<Int> {
         return 0
     }
 
-    private fun companion(index: Int): Companion {
+    private fun companion(index: Int): CompanionApp {
         val settings = SessionSettings(
             altitudeReference = waypointAltitude,
             missionOnLinkLoss = missionOnLostLink,
@@ -118,7 +138,7 @@ class RunCompanions : Callable<Int> {
             appName = "Recon companion ${Version.TEXT}, simulated aircraft",
         )
         val aircraft = aircraftSettings(index)
-        return Companion(settings, SimulatedAircraft(aircraft), address(), encoder(), Printed(aircraft.serial))
+        return CompanionApp(settings, SimulatedAircraft(aircraft), address(), encoder(), Printed(aircraft.serial))
     }
 
     private fun aircraftSettings(index: Int): SimulatedSettings {
@@ -150,6 +170,11 @@ class RunCompanions : Callable<Int> {
     private fun wrong(message: String) = ParameterException(spec.commandLine(), message)
 
     private fun encoder(): FrameEncoder = if (images == ImageFormat.RAW) RawFrameEncoder else JpegEncoder
+
+    private companion object {
+        /** Each has four threads of its own. */
+        const val MOST_VEHICLES = 64
+    }
 }
 
 /** `SIM-3` and 2 is `SIM-5`; a serial without a number at its end gets one. */

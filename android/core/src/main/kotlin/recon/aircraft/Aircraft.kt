@@ -1,5 +1,6 @@
 package recon.aircraft
 
+import recon.geo.LatLon
 /**
  * The aircraft as the session commands it: DJI's SDK behind an adapter, or a simulated one.
  *

@@ -1,7 +1,6 @@
 package recon.aircraft
 
-/** A WGS84 position, degrees. */
-data class LatLon(val latitudeDeg: Double, val longitudeDeg: Double)
+import recon.geo.LatLon
 
 /** Metres per second; [downMps] positive down. */
 data class VelocityNed(val northMps: Double, val eastMps: Double, val downMps: Double)

@@ -1,6 +1,5 @@
 package recon.geo
 
-import recon.aircraft.LatLon
 import kotlin.math.cos
 import kotlin.math.sin
 import kotlin.math.sqrt

@@ -1,9 +1,9 @@
 package recon.mission
 
 import org.w3c.dom.Element
-import recon.aircraft.LatLon
 import recon.aircraft.MissionPlan
 import recon.aircraft.PlanPoint
+import recon.geo.LatLon
 import java.io.ByteArrayInputStream
 import java.io.ByteArrayOutputStream
 import java.io.IOException
@@ -106,4 +106,5 @@ private fun Element.only(name: String): Element {
 private fun Element.text(name: String): String = only(name).textContent.trim()
 
 private fun numberOf(text: String): Double =
-    text.trim().toDoubleOrNull()?.takeIf { it.isFinite() } ?: throw KmzError("A number was expected; got '${text.take(40)}'")
+    text.trim().toDoubleOrNull()?.takeIf { it.isFinite() }
+        ?: throw KmzError("A number was expected; got '${text.take(40)}'")

@@ -1,9 +1,9 @@
 package recon.mission
 
 import recon.aircraft.AltitudeReference
-import recon.aircraft.LatLon
 import recon.aircraft.MissionPlan
 import recon.aircraft.PlanPoint
+import recon.geo.LatLon
 import recon.geo.distanceM
 import recon.wire.ExecuteWaypointMission
 import recon.wire.Waypoint

@@ -10,10 +10,10 @@ import recon.aircraft.Capabilities
 import recon.aircraft.Capability
 import recon.aircraft.Failsafe
 import recon.aircraft.FlightMode
-import recon.aircraft.LatLon
 import recon.aircraft.MissionPlan
 import recon.aircraft.StickSetpoint
 import recon.aircraft.VelocityNed
+import recon.geo.LatLon
 import recon.geo.LocalPlane
 import java.util.Random
 import kotlin.math.hypot

@@ -1,5 +1,6 @@
 package recon.aircraft
 
+import recon.geo.LatLon
 import recon.geo.LocalPlane
 import recon.geo.distanceM
 import recon.session.hovering

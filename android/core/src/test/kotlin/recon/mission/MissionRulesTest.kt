@@ -24,15 +24,18 @@ class MissionRulesTest {
     fun `each limit has a sentence with value and range`() {
         val good = waypoint(0.001)
         assertRefused("Waypoint 1: latitude must be -90 to 90 degrees; got 95", good.copy(latitudeDeg = 95.0))
-        assertRefused("Waypoint 1: longitude must be -180 to 180 degrees; got NaN", good.copy(longitudeDeg = Double.NaN))
+        val nowhere = good.copy(longitudeDeg = Double.NaN)
+        assertRefused("Waypoint 1: longitude must be -180 to 180 degrees; got NaN", nowhere)
         assertRefused("Waypoint 1: height above takeoff must be -200 to 500 m; got 501", good.copy(altitudeM = 501.0))
         assertRefused("Waypoint 1: speed must be 1 to 15 m/s; got 0.50", good.copy(speedMps = 0.5f))
-        assertRefused("Waypoint 1: speed must be 1 to 15 m/s; got Infinity", good.copy(speedMps = Float.POSITIVE_INFINITY))
+        val endless = good.copy(speedMps = Float.POSITIVE_INFINITY)
+        assertRefused("Waypoint 1: speed must be 1 to 15 m/s; got Infinity", endless)
         assertRefused("Waypoint 1: loiter must be 0 to 32.77 s; got 40", good.copy(loiterTimeS = 40f))
         assertRefused("Waypoint 1: gimbal pitch must be -90 to 0 degrees; got 30", good.copy(gimbalPitchDeg = 30f))
         assertRefused("Waypoints must be 0.50 to 2000 m apart; got 0 m", waypoint(0.0))
         // 0.2 degrees of latitude, at 111.1 km each.
-        assertTrue(reason(mission(waypoint(0.2), waypoint(0.0))).startsWith("Waypoints must be 0.50 to 2000 m apart; got 222"))
+        val far = reason(mission(waypoint(0.2), waypoint(0.0)))
+        assertTrue(far.startsWith("Waypoints must be 0.50 to 2000 m apart; got 222"))
     }
 
     @Test
@@ -48,7 +51,9 @@ class MissionRulesTest {
     fun `what a curved mission cannot have is refused`() {
         fun curved(vararg change: Pair<Int, (recon.wire.Waypoint) -> recon.wire.Waypoint>): ExecuteWaypointMission {
             val changes = change.toMap()
-            val points = List(3) { index -> (changes[index] ?: { it })(waypoint(0.001 * index).copy(cornerRadiusM = 20f)) }
+            val points = List(3) { index ->
+                (changes[index] ?: { it })(waypoint(0.001 * index).copy(cornerRadiusM = 20f))
+            }
             return mission(*points.toTypedArray()).copy(curvedFlight = 1)
         }
         assertIs<PlanResult.Ready>(planned(curved()))

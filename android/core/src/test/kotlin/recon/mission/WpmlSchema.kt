@@ -122,8 +122,10 @@ fun wpmlRules(isTemplate: Boolean): Map<String, Map<String, Rule>> = mapOf(
 fun wpmlViolations(root: Element, isTemplate: Boolean): List<String> {
     val rules = wpmlRules(isTemplate)
     fun check(element: Element): List<String> {
-        val children = (0 until element.childNodes.length).map { element.childNodes.item(it) }.filterIsInstance<Element>()
-        val own = rules[ruleName(element, children)] ?: return if (children.isEmpty()) emptyList() else listOf(element.tagName)
+        val nodes = (0 until element.childNodes.length).map { element.childNodes.item(it) }
+        val children = nodes.filterIsInstance<Element>()
+        val own = rules[ruleName(element, children)]
+            ?: return if (children.isEmpty()) emptyList() else listOf(element.tagName)
         val unknown = children.filter { it.localName !in own }.map { "unknown ${it.tagName} in ${element.tagName}" }
         val missing = own.filter { (name, rule) -> rule.isRequired && children.none { it.localName == name } }
             .map { "${element.tagName} lacks ${it.key}" }

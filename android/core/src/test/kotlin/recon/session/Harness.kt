@@ -8,8 +8,8 @@ import recon.aircraft.CameraState
 import recon.aircraft.Capabilities
 import recon.aircraft.Capability
 import recon.aircraft.FlightMode
-import recon.aircraft.LatLon
 import recon.aircraft.VelocityNed
+import recon.geo.LatLon
 import recon.wire.Acknowledgment
 import recon.wire.Deframer
 import recon.wire.MessageString
@@ -39,7 +39,7 @@ fun hovering(updatedNs: Long = 0, mode: FlightMode = FlightMode.GPS_ATTI) = Airc
 
 fun standing(updatedNs: Long = 0) = hovering(updatedNs).copy(isFlying = false, heightAboveTakeoffM = 0.0)
 
-/** A session with a clock of its own, an aircraft that answers at once or when the test does, and a station that reads. */
+/** A session with a clock of its own, an aircraft that answers as the test wants, and a station that reads. */
 class Harness(settings: SessionSettings = SessionSettings(), private val isReading: Boolean = true) {
     val session = CompanionSession(settings)
     var nowNs = 0L

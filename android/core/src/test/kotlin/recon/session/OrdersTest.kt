@@ -1,17 +1,17 @@
 package recon.session
 
 import recon.aircraft.AircraftCommand
-import recon.aircraft.Answer
 import recon.aircraft.AltitudeReference
+import recon.aircraft.Answer
 import recon.aircraft.Capabilities
 import recon.aircraft.Capability
 import recon.aircraft.FlightMode
 import recon.wire.Acknowledgment
+import recon.wire.Bytes
 import recon.wire.CameraControl
 import recon.wire.EmergencyCommand
 import recon.wire.ExecuteWaypointMission
 import recon.wire.MessageString
-import recon.wire.Bytes
 import recon.wire.Packet
 import recon.wire.VirtualStickCommand
 import recon.wire.Waypoint
@@ -135,7 +135,8 @@ class OrdersTest {
         assertRefused("Stick mode must be 0 or 1; got 2", STICK.copy(mode = 2))
         assertRefused("Stick timeout must be over 0 s; got NaN", STICK.copy(timeoutS = Float.NaN))
         assertRefused("Stick timeout must be 0 to 60 s; got 61", STICK.copy(timeoutS = 61f))
-        assertRefused("Stick velocity X must be -15 to 15 m/s; got Infinity", STICK.copy(velocityXMps = Float.POSITIVE_INFINITY))
+        val endless = STICK.copy(velocityXMps = Float.POSITIVE_INFINITY)
+        assertRefused("Stick velocity X must be -15 to 15 m/s; got Infinity", endless)
         assertRefused("Stick velocity Y must be -15 to 15 m/s; got -15.50", STICK.copy(velocityYMps = -15.5f))
         assertRefused("Stick yaw must be -180 to 180 degrees; got 181", STICK.copy(yawDeg = 181f))
         assertRefused(

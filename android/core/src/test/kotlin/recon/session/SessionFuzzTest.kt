@@ -49,7 +49,8 @@ class SessionFuzzTest {
     }
 
     private fun commandLike(random: Random): ByteArray {
-        val stick = OrdersTest.STICK.copy(timeoutS = random.nextFloat() * 70f, yawDeg = random.nextFloat() * 400f - 200f)
+        val yawDeg = random.nextFloat() * 400f - 200f
+        val stick = OrdersTest.STICK.copy(timeoutS = random.nextFloat() * 70f, yawDeg = yawDeg)
         return recon.wire.encode(if (random.nextBoolean()) stick else mission())
     }
 

@@ -7,10 +7,10 @@ import recon.aircraft.BatteryWarning
 import recon.aircraft.CameraState
 import recon.aircraft.Capabilities
 import recon.aircraft.FlightMode
-import recon.aircraft.LatLon
 import recon.aircraft.MissionPlan
 import recon.aircraft.PlanPoint
 import recon.aircraft.StickSetpoint
+import recon.geo.LatLon
 import recon.geo.LocalPlane
 import kotlin.math.abs
 import kotlin.math.hypot

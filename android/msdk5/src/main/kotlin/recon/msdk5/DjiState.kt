@@ -8,8 +8,8 @@ import recon.aircraft.Capabilities
 import recon.aircraft.Capability
 import recon.aircraft.Failsafe
 import recon.aircraft.FlightMode
-import recon.aircraft.LatLon
 import recon.aircraft.VelocityNed
+import recon.geo.LatLon
 
 /** DJI's flight modes by name; those that are not listed are reported as other. */
 private val FLIGHT_MODES = mapOf(

@@ -87,7 +87,7 @@ class Msdk5(private val folder: File, private val clockNs: () -> Long) : DjiSdk,
             isLandingConfirmationNeeded = value(FlightControllerKey.KeyIsLandingConfirmationNeeded),
             goHomeHeightM = value(FlightControllerKey.KeyGoHomeHeight),
             failsafe = value(FlightControllerKey.KeyFailsafeAction)?.name,
-            isVirtualStickSupported = keys.isKeySupported(KeyTools.createKey(FlightControllerKey.KeyVirtualStickEnabled)),
+            isVirtualStickSupported = isSupported(FlightControllerKey.KeyVirtualStickEnabled),
             isVirtualStickEnabled = value(FlightControllerKey.KeyVirtualStickEnabled),
             missionState = missionState,
             hasCamera = hasCamera,
@@ -162,6 +162,8 @@ class Msdk5(private val folder: File, private val clockNs: () -> Long) : DjiSdk,
             // Copied: the SDK reuses its buffer for the next frame.
             listener(data.copyOfRange(offset, offset + length), width, height)
         }
+
+    private fun isSupported(key: DJIKeyInfo<*>): Boolean = keys.isKeySupported(KeyTools.createKey(key))
 
     private fun <T> value(key: DJIKeyInfo<T>): T? = keys.getValue(KeyTools.createKey(key))
 

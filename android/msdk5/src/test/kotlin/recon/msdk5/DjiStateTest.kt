@@ -1,14 +1,15 @@
 package recon.msdk5
 
 import dji.sdk.keyvalue.value.flightcontroller.FCFlightMode
+import recon.aircraft.AircraftState
 import recon.aircraft.BatteryWarning
 import recon.aircraft.CameraState
 import recon.aircraft.Capability
 import recon.aircraft.Failsafe
 import recon.aircraft.FlightMode
-import recon.aircraft.LatLon
 import recon.aircraft.VelocityNed
 import recon.aircraft.altitudeM
+import recon.geo.LatLon
 import kotlin.test.Test
 import kotlin.test.assertEquals
 import kotlin.test.assertNull
@@ -34,9 +35,10 @@ class DjiStateTest {
         val state = aircraftState(DjiSnapshot(updatedNs = 1, isFlying = false), isVideoOn = false)!!
         assertNull(state.position)
         assertNull(state.serial)
-        assertTrue(state.heightAboveTakeoffM.isNaN() && state.velocity.northMps.isNaN() && state.attitude.yawDeg.isNaN())
+        val values = listOf(state.heightAboveTakeoffM, state.velocity.northMps, state.attitude.yawDeg)
+        assertTrue(values.all { it.isNaN() })
         assertEquals(FlightMode.OTHER, state.flightMode)
-        assertEquals(List(3) { Capability.UNKNOWN }, state.capabilities.run { listOf(waypointMissions, virtualStick, camera) })
+        assertEquals(List(3) { Capability.UNKNOWN }, functions(state))
     }
 
     @Test
@@ -51,7 +53,7 @@ class DjiStateTest {
     fun `functions are those that the aircraft reports`() {
         val mini3 = FLYING.copy(missionState = "NOT_SUPPORTED", isVirtualStickSupported = false, hasCamera = false)
         val state = aircraftState(mini3, isVideoOn = true)!!
-        assertEquals(List(3) { Capability.UNSUPPORTED }, state.capabilities.run { listOf(waypointMissions, virtualStick, camera) })
+        assertEquals(List(3) { Capability.UNSUPPORTED }, functions(state))
         assertEquals(CameraState.NOT_CONNECTED, state.cameraState)
         assertEquals(CameraState.FEED_OFF, aircraftState(FLYING, isVideoOn = false)!!.cameraState)
     }
@@ -68,11 +70,15 @@ class DjiStateTest {
     @Test
     fun `every flight mode that is mapped exists in DJI's SDK`() {
         val names = enumNames(FCFlightMode::class.java)
-        val mapped = names.associateWith { DjiSnapshot(1, flightMode = it).mode }.filterValues { it != FlightMode.OTHER }
+        val mapped =
+            names.associateWith { DjiSnapshot(1, flightMode = it).mode }.filterValues { it != FlightMode.OTHER }
         assertEquals(24, mapped.size)
         assertEquals(FlightMode.WAYPOINT, mapped["NAVI_GO"])
         assertEquals(FlightMode.JOYSTICK, mapped["JOYSTICK"])
     }
+
+    private fun functions(state: AircraftState) =
+        state.capabilities.run { listOf(waypointMissions, virtualStick, camera) }
 
     private fun warning(isLow: Boolean, isSerious: Boolean) =
         aircraftState(FLYING.copy(isLowBattery = isLow, isSeriousLowBattery = isSerious), false)!!.batteryWarning

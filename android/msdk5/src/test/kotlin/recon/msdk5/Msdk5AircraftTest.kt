@@ -2,11 +2,11 @@ package recon.msdk5
 
 import recon.aircraft.AircraftCommand
 import recon.aircraft.Answer
-import recon.aircraft.LatLon
 import recon.aircraft.MissionPlan
 import recon.aircraft.PlanPoint
 import recon.aircraft.StickSetpoint
 import recon.aircraft.VideoFrame
+import recon.geo.LatLon
 import recon.mission.planOfKmz
 import kotlin.test.Test
 import kotlin.test.assertEquals

@@ -54,5 +54,6 @@ fun bytesOf(name: String): ByteArray? =
 /** The names of an enumeration's values, read from its file. */
 fun enumNames(type: Class<*>): Set<String> {
     val name = type.name.replace('.', '/')
-    return ProvidedClasses().find(name)!!.fields.filter { it.endsWith(" L$name;") }.map { it.substringBefore(' ') }.toSet()
+    val values = ProvidedClasses().find(name)!!.fields.filter { it.endsWith(" L$name;") }
+    return values.map { it.substringBefore(' ') }.toSet()
 }

@@ -4,8 +4,8 @@ import recon.aircraft.Aircraft
 import recon.aircraft.AircraftCommand
 import recon.aircraft.AircraftState
 import recon.aircraft.Answer
-import recon.aircraft.LatLon
 import recon.aircraft.VideoFrame
+import recon.geo.LatLon
 import recon.session.CompanionSession
 import recon.session.HOVER
 import recon.session.Output
@@ -36,7 +36,7 @@ import kotlin.test.assertTrue
 private const val PATIENCE_MS = 30_000
 
 /** Real sockets and threads; the tests wait for what must happen, not for a time. */
-class CompanionTest {
+class CompanionAppTest {
     private val server = ServerSocket(0, 5, InetAddress.getLoopbackAddress())
     private val notices = CopyOnWriteArrayList<String>()
     private val opened = mutableListOf<AutoCloseable>(server)
@@ -131,7 +131,7 @@ class CompanionTest {
 
     private fun simulated() = SimulatedAircraft(settings, testPicture(4, 2)).also { opened.add(it) }
 
-    private fun start(aircraft: Aircraft, settings: SessionSettings = SessionSettings()): Companion {
+    private fun start(aircraft: Aircraft, settings: SessionSettings = SessionSettings()): CompanionApp {
         val listener = object : CompanionListener {
             override fun notice(notice: Output.Notice) {
                 notices.add(notice.text)
@@ -142,7 +142,7 @@ class CompanionTest {
             }
         }
         val address = StationAddress("127.0.0.1", server.localPort)
-        return Companion(settings, aircraft, address, RawFrameEncoder, listener).also {
+        return CompanionApp(settings, aircraft, address, RawFrameEncoder, listener).also {
             opened.add(it)
             it.start()
         }

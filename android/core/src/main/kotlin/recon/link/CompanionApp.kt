@@ -32,7 +32,7 @@ interface CompanionListener {
  * Everything that happens is a task for one thread, which owns the session. The tasks of bytes read
  * are limited, so that a station that sends faster than the app works is slowed down by TCP.
  */
-class Companion(
+class CompanionApp(
     settings: SessionSettings,
     private val aircraft: Aircraft,
     address: StationAddress,
