@@ -17,7 +17,7 @@ from tests.android.processes import (
 from recon.client import Station
 
 SECONDS = 600.0 if IS_THOROUGH else 15.0
-HEAP_GROWTH_KB = 4_096
+HEAP_GROWTH_KB = 1_024
 FPS_HZ = 2.0
 
 
@@ -51,12 +51,15 @@ async def test_ten_hertz_and_video_lose_nothing(site: Path, tmp_path: Path) -> N
 
 
 async def _heap_kb(pid: int) -> int:
-    """Return the heap in use after a collection."""
-    await _output("jcmd", str(pid), "GC.run")
-    lines = await _output("jcmd", str(pid), "GC.heap_info")
-    found = re.search(r"used (\d+)K", "\n".join(lines))
-    assert found is not None, lines
-    return int(found[1])
+    """Return the heap in use after a collection: the least of several, as frames come between."""
+    used_kb = []
+    for _ in range(5):
+        await _output("jcmd", str(pid), "GC.run")
+        lines = await _output("jcmd", str(pid), "GC.heap_info")
+        found = re.search(r"used (\d+)K", "\n".join(lines))
+        assert found is not None, lines
+        used_kb.append(int(found[1]))
+    return min(used_kb)
 
 
 async def _output(*command: str) -> list[str]:

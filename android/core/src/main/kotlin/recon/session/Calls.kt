@@ -2,14 +2,18 @@ package recon.session
 
 import recon.aircraft.AircraftCommand
 
-/** A command that the aircraft has not answered. [sourcePid] null: the session's own, unacknowledged. */
+/** A command that the aircraft has not answered. */
 class Call(
     val id: Long,
     val command: AircraftCommand,
     val what: String,
-    val sourcePid: Int?,
+    sourcePid: Int?,
     val issuedNs: Long,
 ) {
+    /** PID to acknowledge; null for the session's own commands, and those of a link that has ended. */
+    var sourcePid = sourcePid
+        internal set
+
     /** A newer order to move came before the answer: an acceptance is undone. */
     var isSuperseded = false
 
@@ -37,6 +41,11 @@ class Calls(private val settings: SessionSettings) {
 
     /** The call that this answer ends; null for one that has ended already. */
     fun end(id: Long): Call? = open.remove(id)
+
+    /** The link of these calls has ended: on the next one an acknowledgment would answer another command. */
+    fun forgetSources() {
+        open.values.forEach { it.sourcePid = null }
+    }
 
     /** Undoes missions that are accepted after a newer order to move. */
     fun supersedeMissions() {

@@ -75,6 +75,7 @@ class CompanionSession(val settings: SessionSettings) {
     fun linkClosed(reason: String, nowNs: Long) {
         if (!link.isOpen) return
         link.close()
+        calls.forgetSources()
         if (video.isOn) stopVideo(null, nowNs)
         notice(Severity.WARNING, "Link to the station lost: $reason")
         if (!stick.isIdle) {
@@ -247,7 +248,8 @@ class CompanionSession(val settings: SessionSettings) {
         if (call.command is AircraftCommand.SetStick) stick.stop()
         if (call.command is AircraftCommand.SetVideo) video.stop()
         val text = "${call.what} refused by the aircraft: $reason"
-        if (call.sourcePid != null) refuse(call.sourcePid, text, nowNs) else report(Severity.ERROR, text, nowNs)
+        val pid = call.sourcePid
+        if (pid != null) refuse(pid, text, nowNs) else report(Severity.ERROR, text, nowNs)
     }
 
     private fun refuse(pid: Int, reason: String, nowNs: Long) {
@@ -262,7 +264,7 @@ class CompanionSession(val settings: SessionSettings) {
     }
 
     private fun observe(newest: AircraftState, nowNs: Long) {
-        stick.observe(newest.flightMode)?.let { flyStick(it, nowNs) }
+        stick.observe(newest.flightMode, nowNs)?.let { flyStick(it, nowNs) }
         mission.observe(newest, nowNs)
         if (landing.isDue(newest, nowNs)) fly(AircraftCommand.ConfirmLanding, "Landing confirmation", null, nowNs)
     }
@@ -305,7 +307,8 @@ class CompanionSession(val settings: SessionSettings) {
     private fun introduction(): String =
         "${settings.appName}: waypoint altitude ${settings.altitudeReference.shownName}, " +
             "mission on lost link ${settings.missionOnLinkLoss.shownName}, " +
-            "hover on the ground ${settings.hoverOnGround.shownName}"
+            "hover on the ground ${settings.hoverOnGround.shownName}" +
+            if (isReleased) ", control released to the pilot" else ""
 
     private fun stalledS(): Long = settings.stalledWriteNs / 1_000_000_000
 

@@ -33,6 +33,8 @@ data class SessionSettings(
     val stickPeriodNs: Long = 100_000_000,
     /** Zero velocity for this long after a stick's timeout, then a hover gives the sticks back. */
     val stickNeutralNs: Long = 2_000_000_000,
+    /** From the first stick until the flight mode shows what the aircraft and its pilot make of it. */
+    val stickModeSettlesNs: Long = 1_000_000_000,
     /** A longer timeout is no dead-man: refused. */
     val longestStickTimeoutS: Double = 60.0,
     /** The station waits 2 s for an acknowledgment; an answer that takes longer is announced. */

@@ -46,6 +46,8 @@ class StationLink(private val settings: SessionSettings) {
 
     fun close() {
         isOpen = false
+        // A command behind half a packet must not come out of a link that has ended.
+        deframer = Deframer(Limits.FROM_STATION)
         outbox.clear()
         sendingSinceNs = null
         core.stop()

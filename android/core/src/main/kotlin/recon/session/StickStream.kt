@@ -29,7 +29,8 @@ sealed interface StickStep {
  *   with zero velocity is sent, as the document asks. After 2 s a hover leaves virtual stick, so that
  *   the pilot's sticks work again.
  * - *Pilot*: once state has shown virtual stick, any other mode was chosen by the pilot or by the
- *   aircraft; repeating would take it back from them.
+ *   aircraft; repeating would take it back from them. Modes of the first second do not count: they may be
+ *   those of a hover just before.
  */
 class StickStream(private val settings: SessionSettings) {
     private sealed interface Phase {
@@ -43,6 +44,7 @@ class StickStream(private val settings: SessionSettings) {
     private var phase: Phase = Phase.Idle
     private val cadence = Cadence(settings.stickPeriodNs)
     private var hasShownMode = false
+    private var modeCountsNs = 0L
 
     val isIdle: Boolean get() = phase is Phase.Idle
 
@@ -56,7 +58,10 @@ class StickStream(private val settings: SessionSettings) {
 
     /** Starts or replaces the setpoint; the caller sends it now. */
     fun command(setpoint: StickSetpoint, timesOutNs: Long, nowNs: Long) {
-        if (isIdle) hasShownMode = false
+        if (isIdle) {
+            hasShownMode = false
+            modeCountsNs = nowNs + settings.stickModeSettlesNs
+        }
         phase = Phase.Active(setpoint, timesOutNs)
         cadence.startAt(nowNs + settings.stickPeriodNs)
     }
@@ -74,7 +79,8 @@ class StickStream(private val settings: SessionSettings) {
     }
 
     /** Takes the flight mode that the aircraft reports. */
-    fun observe(mode: FlightMode): StickStep? {
+    fun observe(mode: FlightMode, nowNs: Long): StickStep? {
+        if (nowNs < modeCountsNs) return null
         if (mode == FlightMode.JOYSTICK) hasShownMode = true
         if (isIdle || mode == FlightMode.JOYSTICK || !hasShownMode) return null
         stop()

@@ -178,6 +178,16 @@ class OrdersTest {
     }
 
     @Test
+    fun `an answer that comes on the next link is not acknowledged there`() {
+        harness.answers = null
+        harness.receive(LAND)
+        harness.closeLink()
+        harness.session.linkOpened(harness.nowNs)
+        harness.answer(harness.executed.single(), Answer.Accepted)
+        assertEquals(emptyList(), harness.acknowledgments)
+    }
+
+    @Test
     fun `orders without answers are limited, and a stop is not`() {
         harness.answers = null
         repeat(70) { harness.receive(RETURN) }

@@ -67,14 +67,35 @@ class StickTest {
     @Test
     fun `the pilot who leaves virtual stick keeps the aircraft`() {
         harness.receive(STICK.copy(timeoutS = 60f))
-        harness.pass(1 * SECOND)
-        assertEquals(11, harness.commands.size)
         harness.state = hovering(mode = FlightMode.JOYSTICK)
-        harness.pass(100 * MS)
+        harness.pass(1_100 * MS)
+        assertEquals(12, harness.commands.size)
         harness.state = hovering(mode = FlightMode.SPORT)
         harness.pass(2 * SECOND)
         assertEquals(12, harness.commands.size)
         assertEquals(listOf("Virtual stick ended: the pilot has taken over"), harness.messages)
+    }
+
+    @Test
+    fun `modes that linger from a hover just before are not taken for the pilot`() {
+        harness.state = hovering(mode = FlightMode.JOYSTICK)
+        harness.receive(STICK.copy(timeoutS = 60f))
+        harness.pass(100 * MS)
+        harness.state = hovering()
+        harness.pass(500 * MS)
+        harness.state = hovering(mode = FlightMode.JOYSTICK)
+        harness.pass(2 * SECOND)
+        assertTrue(harness.messages.isEmpty())
+        assertEquals(27, harness.commands.size)
+    }
+
+    @Test
+    fun `a command behind half a packet does not come out of a link that has ended`() {
+        val header = byteArrayOf(0xDA.toByte(), 0xA7.toByte(), 0, 0, 40, 0, 9)
+        harness.session.received(header + encode(STICK.copy(timeoutS = 60f)), harness.nowNs)
+        harness.closeLink()
+        harness.pass(5 * SECOND)
+        assertEquals(emptyList(), harness.commands)
     }
 
     @Test
