@@ -82,7 +82,10 @@ def test_options_choose_methods(tmp_path: Path) -> None:
     [
         (["--seeds", "0"], "expected --seeds of 1 to 10000"),
         (["--first-seed", "-1"], "--first-seed of 0 or more"),
-        (["--planner", "magic"], "--planner: expected lawnmower_once or lawnmower_again, got"),
+        (
+            ["--planner", "magic"],
+            "--planner: expected lawnmower_once or lawnmower_again or sunlit_first, got",
+        ),
         (["--detection", "magic"], f"--detection: expected {known('detection')}, got"),
         (["--forecast", "magic"], f"--forecast: expected {known('forecast')}, got"),
         (["--against", "magic"], "--against: expected advection or global_shift or"),

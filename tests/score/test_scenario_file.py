@@ -167,7 +167,7 @@ def test_every_registered_method_is_accepted(tmp_path: Path, kind: str, name: st
         ("[200.0, 150.0]", "[inf, 150.0]", "task.region_m[2][0]: expected a number of -50000 to"),
         ("2025-06-20T16:00:00Z", "2025-06-20T16:00:00", "expected a moment like 2025-06-20T16:00"),
         ("2025-06-20T16:00:00Z", '"today"', "start_utc: expected a moment like 2025-06-20T16:00"),
-        ("[imager]", '[methods]\nplanner = "magic"\n[imager]', "or 'lawnmower_once', got 'magic'"),
+        ("[imager]", '[methods]\nplanner = "magic"\n[imager]', "or 'sunlit_first', got 'magic'"),
     ],
 )
 def test_errors_name_file_and_line(tmp_path: Path, old: str, new: str, words: str) -> None:

@@ -3,7 +3,7 @@
 import os
 import sys
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
 from time import monotonic
@@ -17,6 +17,7 @@ from recon.record.users_file import state_folder
 from recon.score import Methods, RunScore, Scenario, ScenarioError, load_scenario, tables
 from recon.score.kept_runs import KeptRuns, code_digest, runs_digest
 from recon.score.many_runs import on_cluster, on_cores, one_by_one
+from recon.score.planner_table import planner_table
 from recon.score.scenario import NO_FORECAST, TRUE_MOTION
 from recon.score.scenario_conditions import with_exposure
 from recon.score.scenario_schema import METHOD_NAMES
@@ -30,7 +31,10 @@ FirstOption = Annotated[int, typer.Option(help="Seed of the first run; counts up
 MethodOption = Annotated[str | None, typer.Option(help="Overrides the scenario's method.")]
 AgainstOption = Annotated[
     str | None,
-    typer.Option(help="Score all forecast methods, and compare them with this one by seed."),
+    typer.Option(
+        help="A forecast: score all forecast methods, and compare them with this one by seed."
+        " A planner: fly each seed with it too, and compare."
+    ),
 ]
 JobsOption = Annotated[
     int | None, typer.Option(help="Runs flown at once; default: one for each core.")
@@ -75,22 +79,44 @@ def score_command(
         loaded = with_methods(load_scenario(scenario), planner, detection, forecast)
         if exposure is not None:
             loaded = with_exposure(loaded, exposure is ExposureChoice.LOCKED)
-        if against is not None:
+        is_planner = against in METHOD_NAMES["planner"]
+        if against is not None and not is_planner:
             loaded = _compared(loaded, against)
-        digest = runs_digest(scenario, loaded, code_digest())[:DIGEST_LETTERS]
-        kept = KeptRuns(state_folder() / "score" / f"{loaded.name}-{digest}")
-        wanted = range(first_seed, first_seed + seeds)
-        runs = [] if fresh else [run for seed in wanted if (run := kept.found(seed))]
-        if runs:
-            _report(f"{len(runs)} of {seeds} runs were flown before (--fresh flies them again)")
-        missing = sorted(set(wanted) - {run.seed for run in runs})
-        for done in _with_progress(_flown(loaded, missing, jobs, cluster), len(missing)):
-            kept.keep(done)
-            runs.append(done)
+        flying = _Flying(scenario, range(first_seed, first_seed + seeds), jobs, cluster, fresh)
+        runs = flying.runs_of(loaded)
+        others = flying.runs_of(with_methods(loaded, against, None, None)) if is_planner else []
     except ReconError as problem:
         print(f"recon score: {problem}", file=sys.stderr)
         raise typer.Exit(2) from None
-    print(tables(loaded, runs, against))
+    print(tables(loaded, runs, None if is_planner else against))
+    if against is not None and is_planner:
+        print(f"\n{planner_table(runs, others, against, loaded.limit_s)}")
+
+
+@dataclass(frozen=True, slots=True)
+class _Flying:
+    """Which runs of a scenario's file are wanted, and where they are flown."""
+
+    path: Path
+    seeds: range
+    jobs: int | None
+    cluster: str | None
+    fresh: bool
+
+    def runs_of(self, scenario: Scenario) -> list[RunScore]:
+        """Return the runs of a scenario: those flown before, and the others, which are kept."""
+        digest = runs_digest(self.path, scenario, code_digest())[:DIGEST_LETTERS]
+        kept = KeptRuns(state_folder() / "score" / f"{scenario.name}-{digest}")
+        runs = [] if self.fresh else [run for seed in self.seeds if (run := kept.found(seed))]
+        if runs:
+            count = f"{len(runs)} of {len(self.seeds)}"
+            _report(f"{count} runs were flown before (--fresh flies them again)")
+        missing = sorted(set(self.seeds) - {run.seed for run in runs})
+        flown = _flown(scenario, missing, self.jobs, self.cluster)
+        for done in _with_progress(flown, len(missing)):
+            kept.keep(done)
+            runs.append(done)
+        return runs
 
 
 def _check_numbers(seeds: int, first_seed: int, jobs: int | None) -> None:
@@ -137,7 +163,8 @@ def _compared(scenario: Scenario, against: str) -> Scenario:
     """Return the scenario with all forecasts scored. Raises `ScenarioError`."""
     known = (*FORECASTERS, TRUE_MOTION)
     if against not in known:
-        raise ScenarioError(f"--against: expected {' or '.join(known)}, got {against!a}")
+        names = " or ".join((*known, *METHOD_NAMES["planner"]))
+        raise ScenarioError(f"--against: expected {names}, got {against!a}")
     if scenario.methods.forecast == NO_FORECAST:
         raise ScenarioError(f"--against: expected a forecast to compare, got {NO_FORECAST}")
     return replace(scenario, methods=replace(scenario.methods, compared=known))

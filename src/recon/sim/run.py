@@ -20,6 +20,8 @@ from recon.sim.closing import close
 from recon.sim.fleet import SimulationConfig, build_fleet
 
 SECOND_LINK = 1
+STICK = "stick"
+"""What the app reports of a stick command it flies."""
 READ_BYTES = 65_536
 FIRST_BACKOFF_S = 0.2
 LONGEST_BACKOFF_S = 2.0
@@ -53,6 +55,7 @@ class _AppShell:
     port: int
     say: Say
     _side_tasks: set[asyncio.Task[None]] = field(default_factory=set)
+    _newest_line: str = ""
 
     async def run(self) -> None:
         """Connect, serve, and connect again."""
@@ -189,7 +192,10 @@ class _AppShell:
         task.add_done_callback(self._side_tasks.discard)
 
     def _log(self, line: str) -> None:
-        self.say(f"{self.app.settings.serial}: {line}")
+        """Say a line; of ten stick commands a second only the first one."""
+        if line != STICK or self._newest_line != STICK:
+            self.say(f"{self.app.settings.serial}: {line}")
+        self._newest_line = line
 
 
 async def _hold_open(writer: asyncio.StreamWriter, seconds: float) -> None:

@@ -23,7 +23,7 @@ from recon.guidance.survey import (
 )
 from recon.model.geo import GroundGrid
 from recon.model.mission import Mission
-from recon.model.shade import ShadeMap
+from recon.model.shade import ShadeMap, SunForecast
 from recon.model.survey import MissionAssignment, SurveyPhase
 from recon.model.units import NS_PER_S, seconds_to_ns
 
@@ -129,6 +129,8 @@ class Flights:
     sky: Sky = clear
     time_s: float = 0.0
     tells_shade: bool = True
+    foresees: bool = False
+    """Whether the planner gets the sky of the next five minutes, as a forecast that is right."""
     shown: BoolArray | None = None
     shown_in_sun: BoolArray | None = None
     given: list[MissionAssignment] = field(default_factory=list)
@@ -158,7 +160,8 @@ class Flights:
                 if index % flyer.every == 0:
                     self._tell(flyer)
         positions = [flyer.surveyor() for flyer in self.flyers]
-        self.state, missions = step(self.state, positions, seconds_to_ns(self.time_s))
+        sun = self.forecast() if self.foresees else None
+        self.state, missions = step(self.state, positions, seconds_to_ns(self.time_s), sun)
         self.given += missions
         for mission in missions:
             next(f for f in self.flyers if f.serial == mission.serial).take(mission, self.plan)
@@ -189,6 +192,26 @@ class Flights:
             np.ones(shape, np.bool_),
             np.ones(shape, np.float32),
             np.ones(shape, np.float32),
+        )
+
+    def forecast(self) -> SunForecast:
+        """Return the true sky of the next five minutes, in cells of 15 m."""
+        cells = self.plan.cells.grid
+        size = (
+            cells.rows * round(cells.cell_m) // 15 + 2,
+            cells.cols * round(cells.cell_m) // 15 + 2,
+        )
+        grid = GroundGrid(cells.frame, cells.west_m, cells.north_m, 15.0, *size)
+        leads_s = np.arange(0.0, 301.0, 20.0)
+        lit = [self.sky(middles_m(grid), self.time_s + lead_s).reshape(size) for lead_s in leads_s]
+        return SunForecast(
+            grid=grid,
+            issued_at_ns=seconds_to_ns(self.time_s),
+            lead_s=leads_s,
+            sun_probability=np.where(lit, 255, 0).astype(np.uint8),
+            horizon_s=np.full(size, 300.0, np.float32),
+            prior_sunlit=0.5,
+            method="true",
         )
 
     def _tell(self, flyer: Flyer) -> None:

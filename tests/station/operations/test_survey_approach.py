@@ -11,7 +11,7 @@ from recon.model.geo import LatLon
 from recon.model.mission import Mission
 from recon.model.units import Stamped
 from recon.model.vehicle import VehicleState
-from recon.station.operations.survey.mission_dispatch import with_approaches
+from recon.station.operations.survey.mission_dispatch import standing_by, with_approaches
 
 LIMITS = FlightLimits()
 ROWS = square_mission(height_m=60.0)
@@ -55,6 +55,18 @@ def test_one_that_begins_at_its_first_row_still_ends_in_its_layer() -> None:
     flown = with_approaches(ROWS, level, 1, 2, LIMITS)[0]
     assert flown.waypoints[:-1] == ROWS.waypoints
     assert heights_m(flown)[-1] != 60.0
+
+
+def test_one_that_stands_by_waits_in_its_layer_above_its_first_row() -> None:
+    for number in range(2):
+        flown = standing_by(ROWS, standing(-80.0), number, 2, LIMITS)[0]
+        first = ROWS.waypoints[0]
+        assert heights_m(flown) == heights_m(flown)[:1] * 2
+        approached = with_approaches(ROWS, standing(-80.0), number, 2, LIMITS)[0]
+        assert heights_m(flown)[0] == heights_m(approached)[0]
+        last = flown.waypoints[-1]
+        assert (last.latitude_deg, last.longitude_deg) == (first.latitude_deg, first.longitude_deg)
+        assert all(each.gimbal_pitch_deg is None for each in flown.waypoints)
 
 
 def test_without_room_for_layers_all_stay_at_the_rows_height() -> None:

@@ -2333,6 +2333,11 @@ export interface components {
          */
         SurveyingView: {
             /**
+             * Decision
+             * @description what it flies or waits for now, and why
+             */
+            decision: string | null;
+            /**
              * Has Come Home
              * @description landed after the survey returned it home
              */

@@ -108,7 +108,9 @@ def refused(
     flights = {key: each for key, each in state.flights.items() if key != serial}
     route = (*flight.route, *state.waiting.get(serial, ()))
     settings = state.plan.settings
-    again_ns = now_ns + seconds_to_ns(settings.retry_soon_s if may_end else settings.retry_s)
+    # A rolling planner may find other rows at once.
+    is_soon = may_end or serial in state.decisions
+    again_ns = now_ns + seconds_to_ns(settings.retry_soon_s if is_soon else settings.retry_s)
     is_barred = not flights and not may_end
     return replace(
         state,

@@ -42,7 +42,7 @@ class Node(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Leg:
+class PlannedLeg:
     """A part of a row to be flown: its segments in order, and when its end is reached."""
 
     route: RowLeg
@@ -58,7 +58,7 @@ class Flight:
     """What a vehicle does best: wait until `from_s`, then fly these legs. Without legs there is
     nothing in sun to be gained within the time looked at."""
 
-    legs: tuple[Leg, ...]
+    legs: tuple[PlannedLeg, ...]
     waits_s: float
 
     @property
@@ -150,7 +150,10 @@ class Search:
             if on != NONE:
                 yield self._flown(node, on, node.heading, node.at_s)
         for segment, heading in self._entries(node):
-            yield self._flown(node, segment, heading, self._arrives_s(node, segment, heading))
+            arrives_s = self._arrives_s(node, segment, heading)
+            flown = self._flown(node, segment, heading, arrives_s)
+            if self._worth(flown)[0] > 0.0:
+                yield flown
         yield node._replace(at_s=node.at_s + self._step_s, heading=WAITS, before=node)
 
     def _entries(self, node: Node) -> set[tuple[int, int]]:
@@ -212,23 +215,22 @@ class Search:
         return gain_m2 - (beside - 1) * self._gap_m2 * self._fade[moment], taken | bit
 
     def _flight(self, best: Node) -> Flight:
-        """The flight that ends in a node, as far as it goes without waiting."""
+        """The flight that ends in a node: its waiting, and its legs as far as it then goes without
+        waiting again."""
         nodes: list[Node] = []
         node: Node | None = best
         while node is not None and node.before is not None:
             nodes.append(node)
             node = node.before
         nodes.reverse()
-        first = next((i for i, each in enumerate(nodes) if each.heading != WAITS), None)
+        first = next((i for i, each in enumerate(nodes) if self._worth(each)[0] > 0.0), None)
         if first is None:
             return Flight((), self._end_s)
         flown = nodes[first:]
         until = next((i for i, each in enumerate(flown) if each.heading == WAITS), len(flown))
-        legs = tuple(self._legs(flown[:until]))
-        waits_s = nodes[first - 1].at_s if first else 0.0
-        return Flight(legs, waits_s if legs else self._end_s)
+        return Flight(tuple(self._legs(flown[:until])), nodes[first - 1].at_s if first else 0.0)
 
-    def _legs(self, nodes: Sequence[Node]) -> Iterator[Leg]:
+    def _legs(self, nodes: Sequence[Node]) -> Iterator[PlannedLeg]:
         run: list[Node] = []
         for node in nodes:
             if run and not _goes_on(run[-1], node, self._parts):
@@ -237,7 +239,7 @@ class Search:
             run.append(node)
         yield from self._leg(run)
 
-    def _leg(self, run: Sequence[Node]) -> Iterator[Leg]:
+    def _leg(self, run: Sequence[Node]) -> Iterator[PlannedLeg]:
         """The run as a leg, without the ends that gain nothing; no leg where it all does."""
         gains = [self._worth(node) for node in run]
         useful = [i for i, (gain_m2, _) in enumerate(gains) if gain_m2 > 0.0]
@@ -249,7 +251,7 @@ class Search:
         piece = Piece(parts[0].row, start_m, end_m)
         sums = [gains[i] for i in useful]
         sun = sum(gain for gain, _ in sums) / sum(missing for _, missing in sums)
-        yield Leg(
+        yield PlannedLeg(
             RowLeg(piece, flown[0].heading == BACK),
             tuple(node.segment for node in flown),
             flown[0].at_s - parts[0].length_m / self._pace.speed_mps,
@@ -261,7 +263,7 @@ class Search:
         """Of a flown segment the ground that will be imaged in sun, and the missing ground;
         nothing where less than a fiftieth of the segment is gained, or it was taken before."""
         part, before = self._parts[node.segment], node.before
-        if before is None or before.taken >> node.segment & 1:
+        if node.heading == WAITS or before is None or before.taken >> node.segment & 1:
             return 0.0, 0.0
         half_s = part.length_m / self._pace.speed_mps / 2.0
         moment = min(int((node.at_s - half_s) / self._step_s), len(self._fade) - 1)

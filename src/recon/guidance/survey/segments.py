@@ -18,7 +18,7 @@ from recon.model.survey import CellState
 from recon.model.units import ns_to_seconds
 
 NONE = -1
-"""Instead of the number of a segment: there is none."""
+"""Instead of the number of a segment, where it has no such neighbour."""
 
 
 @dataclass(frozen=True, slots=True)

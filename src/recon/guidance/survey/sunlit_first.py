@@ -1,6 +1,6 @@
 """A planner that flies what is in sun, and what will be, before what is in shade.
 
-Theory of operation. Nobody waits for others: a vehicle whose mission has ended is decided on at
+Theory of operation. No vehicle waits for another: one whose mission has ended is decided on at
 once. One call of `sunlit_first`:
 
 1. Missions of vehicles that ended or dropped out are removed; their rows count as flown until their
@@ -39,7 +39,7 @@ from recon.guidance.survey.rounds import (
     without_ended,
 )
 from recon.guidance.survey.route import Place, Route, RowLeg, route_of
-from recon.guidance.survey.search import Flight, Leg, Pace, Search
+from recon.guidance.survey.search import Flight, Pace, PlannedLeg, Search
 from recon.guidance.survey.segments import (
     NONE,
     ExpectedSun,
@@ -84,7 +84,7 @@ def sunlit_first(
     segments = segments_of(state.plan)
     expected = expected_sun(segments, state.plan, state.progress, sun, now_ns)
     if expected is None:
-        return fly_rounds(state, positions, now_ns, CellState.IN_SHADE)
+        return _in_any_light(state, positions, now_ns)
     state = replace(state, waiting=NO_ROUTES, round=max(1, state.round), reason="under way")
     missions: list[MissionAssignment] = []
     for surveyor in idle:
@@ -92,6 +92,18 @@ def sunlit_first(
         state, mission = choice.made()
         missions += mission
     return state, tuple(missions)
+
+
+def _in_any_light(state: SurveyState, positions: Sequence[Surveyor], now_ns: int) -> Step:
+    """Fly what is not imaged yet; then wait for light to become known, if it ever was."""
+    if not is_enough(state, CellState.IN_SHADE):
+        return fly_rounds(state, positions, now_ns, CellState.IN_SHADE)
+    if state.flights:
+        return state, ()
+    end = end_between_rounds(state, WANTED)
+    if end is not None:
+        return ended(state, SurveyPhase.DONE, end, now_ns), ()
+    return replace(state, reason="waiting: the light over the field is not known now"), ()
 
 
 def _with_just_flown(before: SurveyState, state: SurveyState, now_ns: int) -> SurveyState:
@@ -226,7 +238,7 @@ class _Choice:
         ((along_m, across_m),) = self.plan.lattice.along_across_m([place_m]).tolist()
         return along_m, across_m
 
-    def _committed(self, flight: Flight) -> tuple[Leg, ...]:
+    def _committed(self, flight: Flight) -> tuple[PlannedLeg, ...]:
         """The legs of a flight that are flown before it is decided anew; the first one always."""
         first, *others = flight.legs
         until_s = self.settings.committed_s
@@ -249,7 +261,7 @@ class _Choice:
         state, given = flying(self._decided(text), self.surveyor, mission, ())
         return state, (replace(given, may_go_straight=True),)
 
-    def _long_enough(self, leg: Leg) -> RowLeg:
+    def _long_enough(self, leg: PlannedLeg) -> RowLeg:
         piece = self.segments.parts[leg.segments[0]].piece
         return replace(leg.route, piece=self.plan.long_enough(piece, leg.route.piece))
 
@@ -260,14 +272,13 @@ class _Choice:
         ((east_m, north_m),) = plan.lattice.east_north_m([entry]).tolist()
         far_m = hypot(east_m - surveyor.place_m[0], north_m - surveyor.place_m[1])
         row = first.route.piece.row + 1
-        sun = f"row {row} in {flight.waits_s:.0f} s, probability {first.probability:.1f}"
+        sun = f"row {row} in {first.from_s:.0f} s, probability {first.probability:.1f}"
         if surveyor.is_flying and far_m <= self.settings.standby_m:
             return self._waits(f"waits: sun is expected on {sun}")
-        travel_s = self._starts_s + far_m / self._pace.speed_mps + self.settings.layer_s
-        if not surveyor.is_flying and flight.waits_s > travel_s + self.settings.standby_s:
+        if not surveyor.is_flying and flight.waits_s > self._starts_s + self.settings.standby_s:
             return self._waits(f"waits on the ground: sun is expected on {sun}")
         corners_m = ((east_m, north_m),)
-        ends_ns = self.now_ns + seconds_to_ns(max(travel_s, flight.waits_s))
+        ends_ns = self.now_ns + seconds_to_ns(first.from_s)
         mission = AssignedMission(state.missions + 1, (), corners_m, 0.0, ends_ns)
         state = self._decided(f"goes to row {row} and stands by: sun is expected on {sun}")
         state, given = flying(state, surveyor, mission, ())
@@ -293,7 +304,7 @@ def finished_together_s(busy_s: np.ndarray, work_s: float) -> float:
     return (work_s + float(ordered.sum())) / len(ordered)
 
 
-def flown_text(legs: Sequence[Leg]) -> str:
+def flown_text(legs: Sequence[PlannedLeg]) -> str:
     """Return what a vehicle flies and why."""
     rows = sorted({leg.route.piece.row + 1 for leg in legs})
     named = f"row {rows[0]}" if len(rows) == 1 else f"rows {rows[0]} to {rows[-1]}"

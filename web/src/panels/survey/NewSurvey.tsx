@@ -6,6 +6,7 @@ import type { Outcome } from "../../source/stationSource";
 const PLANNERS = [
   ["lawnmower_once", "All rows once"],
   ["lawnmower_again", "Repeat until all is in sun"],
+  ["sunlit_first", "What is in sun first"],
 ] as const;
 
 const WHEN_DONE = [

@@ -105,7 +105,9 @@ function SurveyVehicle(props: { vehicle: SurveyingView; isDone: boolean }) {
   return (
     <p class="wire-text">
       <strong>{props.vehicle.vehicle_name}</strong> {activity()}
-      <Show when={props.vehicle.not_flying_reason ?? props.vehicle.refused}>
+      <Show
+        when={props.vehicle.not_flying_reason ?? props.vehicle.refused ?? props.vehicle.decision}
+      >
         {(why) => <span class="muted survey-reason">{why()}</span>}
       </Show>
     </p>

@@ -71,6 +71,14 @@ describe("a survey in the list", () => {
     expect(page.requests).toEqual([{ stoppedSurvey: 7, word: "abort" }]);
   });
 
+  it("shows what a vehicle does and why", () => {
+    const decision = "flies rows 3 to 5: probability of sun 0.9";
+    const vehicles = survey(7).vehicles.map((one) => ({ ...one, decision }));
+    show(survey(7, { vehicles }));
+    const reasons = [...page.root.querySelectorAll(".survey-reason")].map((e) => e.textContent);
+    expect(reasons).toEqual(["round 1", decision, "battery too low"]);
+  });
+
   it("that is over has no buttons", () => {
     const home = { is_flying_rows: false, not_flying_reason: null };
     const vehicles = survey(7).vehicles.map((one) => ({ ...one, ...home }));

@@ -35,7 +35,7 @@ from recon.safety.rules.battery import RULE as BATTERY
 from recon.station.control import authority, order_gateway
 from recon.station.operations.settings import SURVEY_TIMES, SurveyTimes
 from recon.station.operations.survey.availability import after_mission, available_vehicles, is_flown
-from recon.station.operations.survey.mission_dispatch import order_of
+from recon.station.operations.survey.mission_dispatch import dispatch
 from recon.station.operations.survey.planning import StepSurvey, SurveyStepped, step_survey
 from recon.station.operations.survey.return_to_home import (
     IS_DONE,
@@ -255,14 +255,18 @@ def _order_mission(
     vehicle = station.fleet.vehicles.get(given.serial)
     if member is None or state is None or vehicle is None:
         return station, ()
+    ready = dispatch(station, record, given, vehicle, now_ns)
+    if ready.in_the_way is not None:
+        why = f"{ready.in_the_way.reason}{ready.tried}"
+        state = refused(state, given.serial, given.number, why, now_ns)
+        return replace(station, surveys=station.surveys.put(replace(record, state=state))), ()
     station, number = take_id(station)
-    order, tried = order_of(station, record, given, vehicle, now_ns)
-    station, sent = order_gateway.submit(station, replace(order, command_id=number), now_ns)
+    station, sent = order_gateway.submit(station, replace(ready.order, command_id=number), now_ns)
     refusal = station.orders.records[number].refusal
     if refusal is None:
         used = replace(member, number=given.number, command_id=number, may_take_off=False)
         return replace(station, surveys=station.surveys.put(record.put(used))), sent
-    why = f"{refusal.reason}{tried}"
+    why = f"{refusal.reason}{ready.tried}"
     if may_end(refusal):
         record = asked_again(record, member, given.number, why, now_ns)
         return replace(station, surveys=station.surveys.put(record)), sent

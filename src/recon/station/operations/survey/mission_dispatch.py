@@ -6,11 +6,11 @@ is gone. So each vehicle of a survey has heights of its own: it flies to its fir
 them, and climbs or sinks back to it after the last row.
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from recon.geo.distance import horizontal_distance_m
 from recon.model.airspace import FlightLimits
-from recon.model.command import FlyMission
+from recon.model.command import FlyMission, Refusal
 from recon.model.control import AuthorityHolder
 from recon.model.event import OperatorOrder
 from recon.model.geo import LatLon
@@ -22,11 +22,12 @@ from recon.safety.rules.height_zones import RULE as HEIGHT_ZONES
 from recon.safety.rules.keep_out import RULE as KEEP_OUT
 from recon.safety.rules.max_height import RULE as MAX_HEIGHT
 from recon.safety.rules.min_height import RULE as MIN_HEIGHT
+from recon.safety.rules.separation import RULE as SEPARATION
 from recon.station.control.situation_builder import command_of, situation
 from recon.station.state.station import Station
 from recon.station.state.survey_record import SurveyRecord
 
-HEIGHT_RULES = frozenset({HEIGHT_ZONES, KEEP_OUT, MAX_HEIGHT, MIN_HEIGHT})
+OTHER_HEIGHT_RULES = frozenset({HEIGHT_ZONES, KEEP_OUT, MAX_HEIGHT, MIN_HEIGHT, SEPARATION})
 """Rules that another height of the approach may satisfy; others refuse every height."""
 
 LAYER_M = 8.0
@@ -48,30 +49,41 @@ LEVEL_M = 3.0
 """Heights that differ by less count as the same: barometers are no better."""
 
 
-def order_of(
+@dataclass(frozen=True, slots=True)
+class Dispatch:
+    """The order for a mission, and words to add to a refusal by the gate; without number."""
+
+    order: OperatorOrder
+    tried: str = ""
+    in_the_way: Refusal | None = None
+    """Another vehicle is in its way at all its heights: it is not ordered now."""
+
+
+def dispatch(
     station: Station,
     record: SurveyRecord,
     given: MissionAssignment,
     vehicle: VehicleState,
     now_ns: int,
-) -> tuple[OperatorOrder, str]:
-    """Return the order without its number, and words to add to a refusal by the gate.
+) -> Dispatch:
+    """Return the order for a mission, judged beforehand by the gate's own rules.
 
-    The first height is taken that no height rule refuses. If all are refused, the first is ordered,
-    so that the gate's refusal is on record.
+    The first height is taken that neither a height rule nor another vehicle rules out. If height
+    rules refuse all, the first is ordered, so that the gate's refusal is on record.
     """
     straight = _straight(station, record, given, vehicle)
-    if straight is not None and _is_approved(station, straight, now_ns):
-        return straight, ""
-    first, *others = orders = _orders(station, record, given, vehicle)
-    if not others:
-        return first, ""
+    if straight is not None and _refusal(station, straight, now_ns) is None:
+        return Dispatch(straight)
+    orders = _orders(station, record, given, vehicle)
+    refusals: list[Refusal] = []
     for order in orders:
-        command = command_of(station, order, now_ns)
-        refusal = judge(command, situation(station, command, now_ns))
-        if refusal is None or refusal.rule not in HEIGHT_RULES:
-            return order, ""
-    return first, "; no other height of its approach is free"
+        refusal = _refusal(station, order, now_ns)
+        if refusal is None or refusal.rule not in OTHER_HEIGHT_RULES:
+            return Dispatch(order)
+        refusals.append(refusal)
+    tried = "; no other height of its approach is free" if len(orders) > 1 else ""
+    near = next((each for each in refusals if each.rule == SEPARATION), None)
+    return Dispatch(orders[0], tried, near)
 
 
 def _straight(
@@ -89,9 +101,9 @@ def _straight(
     return replace(_order(record, given, vehicle), body=FlyMission(given.mission))
 
 
-def _is_approved(station: Station, order: OperatorOrder, now_ns: int) -> bool:
+def _refusal(station: Station, order: OperatorOrder, now_ns: int) -> Refusal | None:
     command = command_of(station, order, now_ns)
-    return judge(command, situation(station, command, now_ns)) is None
+    return judge(command, situation(station, command, now_ns))
 
 
 def _orders(

@@ -1,0 +1,333 @@
+"""The planner that flies what is in sun first: whole surveys, and single decisions."""
+
+from dataclasses import replace
+from itertools import combinations, pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from tests.guidance.survey.fields import FRAME, planned, rectangle, survey_of
+from tests.guidance.survey.flyers import (
+    BoolArray,
+    Flights,
+    FloatArray,
+    Flyer,
+    clear,
+    fleet,
+    serials,
+)
+
+from recon.guidance.survey import (
+    Surveyor,
+    SurveyPlan,
+    SurveyState,
+    create,
+    figures,
+    observe_shade,
+    refused,
+    start,
+    step,
+)
+from recon.guidance.survey.segments import NONE, expected_sun, segments_of
+from recon.guidance.survey.sunlit_first import finished_together_s
+from recon.model.geo import GroundGrid
+from recon.model.shade import ShadeMap, SunForecast
+from recon.model.survey import CellState, MissionAssignment, SurveyBudget, SurveyPhase
+from recon.model.units import seconds_to_ns
+
+FIELD = rectangle(360.0, 240.0)
+SURVEY = survey_of(FIELD, planner="sunlit_first", bearing_deg=90.0)
+PLAN = planned(SURVEY)
+
+
+def begun(flyers: list[Flyer], planner: str = "sunlit_first") -> SurveyState:
+    survey = replace(SURVEY, planner=planner, budget=SurveyBudget(rounds=20))
+    created = create(planned(survey))
+    assert isinstance(created, SurveyState)
+    started = start(created, serials(flyers), 0)
+    assert isinstance(started, SurveyState)
+    return started
+
+
+def leaves_eastwards(places_m: FloatArray, time_s: float) -> BoolArray:
+    """Shade over all but the western rim at first; its edge moves east at 1 m/s."""
+    return np.asarray(places_m[:, 0] < 60.0 + 1.0 * time_s)
+
+
+def in_bands(places_m: FloatArray, time_s: float) -> BoolArray:
+    """Bands of shade, 150 m wide and as far apart, move north-east at 2 m/s."""
+    along_m = (places_m[:, 0] + places_m[:, 1]) / np.sqrt(2.0) - 2.0 * time_s
+    return np.asarray(np.mod(along_m, 300.0) < 150.0)
+
+
+class TestSurveys:
+    @pytest.mark.parametrize("sky", [clear, leaves_eastwards, in_bands])
+    def test_all_is_imaged_in_sun_as_photos_truly_show(self, sky: object) -> None:
+        flights = Flights(begun(fleet(3)), fleet(3), sky=sky)  # type: ignore[arg-type]
+        state = flights.run()
+        assert state.phase is SurveyPhase.DONE
+        assert state.reason == "Complete: all reachable ground photographed in sun"
+        counted = state.progress.state == CellState.IN_SUN
+        assert flights.shown_in_sun is not None
+        assert not (counted & ~flights.shown_in_sun).any()
+        assert figures(state).in_sun_m2 > 0.98 * figures(state).reached_m2
+
+    def test_under_broken_shade_it_is_sooner_done_than_flying_all_again(self) -> None:
+        ratios = []
+        for phase_m in (0.0, 100.0, 200.0):
+
+            def sky(places_m: FloatArray, time_s: float, phase_m: float = phase_m) -> BoolArray:
+                return in_bands(places_m - phase_m, time_s)
+
+            took_s = []
+            for planner in ("sunlit_first", "lawnmower_again"):
+                flights = Flights(begun(fleet(3), planner), fleet(3), sky=sky, foresees=True)
+                took_s.append(figures(flights.run()).time_to_95_in_sun_s)
+            assert took_s[0] is not None
+            assert took_s[1] is not None
+            ratios.append(np.log(took_s[0] / took_s[1]))
+        assert np.mean(ratios) < np.log(0.95)
+
+    def test_under_a_clear_sky_it_costs_little_over_one_round(self) -> None:
+        took_s = []
+        for planner in ("sunlit_first", "lawnmower_once"):
+            flights = Flights(begun(fleet(3), planner), fleet(3))
+            took_s.append(figures(flights.run()).time_to_95_imaged_s)
+        assert took_s[0] is not None
+        assert took_s[1] is not None
+        assert took_s[0] < 1.05 * took_s[1]
+
+    def test_two_vehicles_never_fly_the_same_ground_at_once(self) -> None:
+        segments = segments_of(PLAN)
+        flights = Flights(begun(fleet(3)), fleet(3), sky=in_bands)
+
+        def check(now: Flights) -> None:
+            under = [segments.under(flight.route) for flight in now.state.flights.values()]
+            assert not any((a & b).any() for a, b in combinations(under, 2))
+
+        flights.run(each_second=check)
+        assert len(flights.given) > 3
+
+    def test_the_rest_is_flown_without_a_vehicle_that_drops_out(self) -> None:
+        flyers = fleet(3)
+        flights = Flights(begun(flyers), flyers, sky=in_bands)
+        flights.run(60.0)
+        flyers[1].stop()
+        flyers[1].is_able = False
+        state = flights.run()
+        assert state.phase is SurveyPhase.DONE
+        assert figures(state).in_sun_m2 > 0.98 * figures(state).reached_m2
+
+    def test_without_any_light_it_is_flown_once(self) -> None:
+        flights = Flights(begun(fleet(2)), fleet(2), tells_shade=False)
+        state = flights.run()
+        assert state.phase is SurveyPhase.DONE
+        assert "light unknown" in state.reason
+        assert state.round == 1
+
+    def test_a_low_battery_gets_what_it_lasts_for(self) -> None:
+        flyers = fleet(1, endurance_s=160.0, home_m=(0.0, -40.0))
+        flights = Flights(begun(flyers), flyers)
+        flights.run(400.0)
+        assert flights.state.phase is SurveyPhase.RUNNING
+        assert flyers[0].flown_s < 160.0
+        assert flights.state.decisions["S-1"].text == (
+            "waits: its battery lasts for no row, the way there and the return"
+        )
+        assert 0.0 < figures(flights.state).in_sun_m2 < figures(flights.state).region_m2
+
+    def test_the_same_survey_is_flown_again_to_the_last_waypoint(self) -> None:
+        given = []
+        for _ in range(2):
+            flights = Flights(begun(fleet(3)), fleet(3), sky=in_bands)
+            flights.run(200.0)
+            given.append(flights.given)
+        assert given[0] == given[1]
+
+
+GRID = GroundGrid(FRAME, -40.0, 280.0, 8.0, 42, 55)
+LEADS_S = np.arange(0.0, 330.0, 15.0)
+
+
+def forecast(sunlit: object, now_s: float = 0.0) -> SunForecast:
+    """A forecast that is sure: `sunlit(east_m, north_m, lead_s)`."""
+    east_m = GRID.west_m + GRID.cell_m * (np.arange(GRID.cols) + 0.5)
+    north_m = GRID.north_m - GRID.cell_m * (np.arange(GRID.rows) + 0.5)
+    east, north = np.meshgrid(east_m, north_m)
+    by_lead = np.stack([np.broadcast_to(sunlit(east, north, lead), east.shape) for lead in LEADS_S])  # type: ignore[operator]
+    return SunForecast(
+        grid=GRID,
+        issued_at_ns=seconds_to_ns(now_s),
+        lead_s=LEADS_S,
+        sun_probability=np.where(by_lead, 255, 0).astype(np.uint8),
+        horizon_s=np.full(east.shape, 300.0, np.float32),
+        prior_sunlit=0.5,
+        method="made",
+    )
+
+
+def decided(
+    sun: SunForecast, *surveyors: Surveyor, state: SurveyState | None = None, now_s: float = 0.0
+) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
+    if state is None:
+        made = create(PLAN)
+        assert isinstance(made, SurveyState)
+        started = start(made, [each.serial for each in surveyors], 0)
+        assert isinstance(started, SurveyState)
+        state = started
+    return step(state, surveyors, seconds_to_ns(now_s), sun)
+
+
+def flown_rows(state: SurveyState, serial: str) -> list[int]:
+    return [leg.piece.row for leg in state.flights[serial].route]
+
+
+class TestDecisions:
+    def test_what_will_be_shaded_is_flown_before_what_stays_in_sun(self) -> None:
+        """The north is in sun for two minutes more, the rim in the south for good."""
+        sun = forecast(
+            lambda _east, north, lead: (north < 60.0) | ((north > 120.0) & (lead < 120.0))
+        )
+        state, _ = decided(sun, Surveyor("S-1", (0.0, 90.0)))
+        across_m = PLAN.lattice.row_across_m(flown_rows(state, "S-1")[0])
+        ((_east_m, north_m),) = PLAN.lattice.east_north_m([(0.0, across_m)]).tolist()
+        assert north_m > 120.0
+
+    def test_it_stands_by_where_sun_will_come(self) -> None:
+        """Sun comes from the east in 80 s."""
+        sun = forecast(lambda east, _north, lead: (lead >= 80.0) & (east > 200.0))
+        state, (mission,) = decided(sun, Surveyor("S-1", (0.0, 100.0)))
+        assert mission.stands_by
+        assert len(mission.mission.waypoints) == 1
+        assert state.flights["S-1"].route == ()
+        assert "stands by: sun is expected" in state.decisions["S-1"].text
+        ((east_m, _north_m),) = state.flights["S-1"].corners_m
+        assert east_m > 180.0
+
+    def test_one_that_is_there_waits_and_is_asked_again(self) -> None:
+        sun = forecast(lambda east, _north, lead: (lead >= 80.0) & (east > 200.0))
+        first, (mission,) = decided(sun, Surveyor("S-1", (0.0, 100.0)))
+        place_m = first.flights["S-1"].corners_m[0]
+        there = Surveyor("S-1", place_m, ended_mission=mission.number)
+        state, missions = decided(sun, there, state=first, now_s=5.0)
+        assert missions == ()
+        assert state.decisions["S-1"].text.startswith("waits: sun is expected on row")
+        assert decided(sun, there, state=state, now_s=6.0)[0].decisions == state.decisions
+        lit = forecast(lambda east, _north, _lead: east > 200.0, now_s=9.0)
+        _, (flown,) = decided(lit, there, state=state, now_s=9.0)
+        assert not flown.stands_by
+
+    def test_one_on_the_ground_takes_off_in_time_and_no_sooner(self) -> None:
+        sun = forecast(lambda _east, _north, lead: lead >= 200.0)
+        on_ground = Surveyor("S-1", (0.0, -40.0), is_flying=False)
+        state, missions = decided(sun, on_ground)
+        assert missions == ()
+        assert "waits on the ground: sun is expected" in state.decisions["S-1"].text
+        later = forecast(lambda _east, _north, lead: lead >= 80.0, now_s=120.0)
+        _, (mission,) = decided(later, on_ground, state=state, now_s=120.0)
+        assert mission.stands_by
+
+    def test_under_a_closed_sky_nothing_takes_off(self) -> None:
+        sun = forecast(lambda _east, _north, _lead: False)
+        state, missions = decided(sun, Surveyor("S-1", (0.0, -40.0), is_flying=False))
+        assert missions == ()
+        assert state.decisions["S-1"].text == "waits: no sun is expected on its rows for 5 min"
+
+    def test_vehicles_side_by_side_get_rows_side_by_side(self) -> None:
+        sun = forecast(lambda _east, _north, _lead: True)
+        places = {f"S-{n}": (0.0, 60.0 + 60.0 * n) for n in range(3)}
+        state, missions = decided(sun, *(Surveyor(s, at) for s, at in places.items()))
+        assert len(missions) == 3
+        across = [
+            np.mean([PLAN.lattice.row_across_m(row) for row in flown_rows(state, serial)])
+            for serial in places
+        ]
+        own = [PLAN.lattice.along_across_m([at])[0][1] for at in places.values()]
+        assert np.argsort(across).tolist() == np.argsort(own).tolist()
+        assert all(mission.may_go_straight for mission in missions)
+
+    def test_a_refused_vehicle_is_decided_on_again_soon(self) -> None:
+        sun = forecast(lambda _east, _north, _lead: True)
+        here = Surveyor("S-1", (0.0, 60.0)), Surveyor("S-2", (0.0, 180.0))
+        state, (first, _) = decided(sun, *here)
+        state = refused(state, "S-1", first.number, "in the way", seconds_to_ns(1.0))
+        assert decided(sun, *here, state=state, now_s=2.0)[1] == ()
+        assert [m.serial for m in decided(sun, *here, state=state, now_s=4.5)[1]] == ["S-1"]
+
+
+class TestSegments:
+    def test_they_fill_each_piece_without_gap(self) -> None:
+        segments = segments_of(PLAN)
+        longest_m = PLAN.settings.segment_m + PLAN.lattice.mark_m
+        for index, piece in enumerate(PLAN.pieces):
+            parts = [each for each in segments.parts if each.piece == index]
+            assert parts[0].start_m == piece.start_m
+            assert parts[-1].end_m == piece.end_m
+            assert parts[0].before == NONE
+            assert parts[-1].after == NONE
+            for a, b in pairwise(parts):
+                assert a.end_m == b.start_m
+                assert segments.parts[a.after] == b
+                assert segments.parts[b.before] == a
+            assert all(each.length_m <= longest_m for each in parts)
+
+    def test_each_reached_cell_is_in_one(self) -> None:
+        segments = segments_of(PLAN)
+        assert ((segments.of_cell != NONE) == PLAN.cells.is_reached).all()
+
+
+def state_with(shade: ShadeMap | None) -> SurveyState:
+    made = create(PLAN)
+    assert isinstance(made, SurveyState)
+    return made if shade is None else observe_shade(made, shade)
+
+
+def half_lit(at_s: float) -> ShadeMap:
+    """The west in sun, the east in shade."""
+    lit = np.zeros((GRID.rows, GRID.cols), np.float32)
+    lit[:, : GRID.cols // 2] = 1.0
+    known, ones = np.ones(lit.shape, np.bool_), np.ones(lit.shape, np.float32)
+    return ShadeMap(GRID, seconds_to_ns(at_s), (), lit, known, ones, ones)
+
+
+def expected_of(
+    state: SurveyState, sun: SunForecast | None, now_s: float, plan: SurveyPlan = PLAN
+) -> object:
+    return expected_sun(segments_of(plan), plan, state.progress, sun, seconds_to_ns(now_s))
+
+
+class TestExpectedSun:
+    def test_a_forecast_is_read_at_its_leads_and_between(self) -> None:
+        sun = forecast(lambda _east, _north, lead: lead >= 60.0)
+        found = expected_sun(segments_of(PLAN), PLAN, state_with(None).progress, sun, 0)
+        assert found is not None
+        at = dict(zip(found.moments_s.tolist(), found.probability[0].tolist(), strict=True))
+        assert at[40.0] == 0.0
+        assert at[50.0] == pytest.approx(1.0 / 3.0)
+        assert at[60.0] == at[300.0] == 1.0
+        reached_m2 = PLAN.cells.is_reached.sum() * PLAN.cells.cell_m2
+        assert found.missing_m2.sum() == pytest.approx(reached_m2)
+
+    def test_an_old_forecast_gives_way_to_what_is_seen(self) -> None:
+        state, old = state_with(half_lit(58.0)), forecast(lambda _e, _n, _lead: False)
+        found = expected_sun(segments_of(PLAN), PLAN, state.progress, old, seconds_to_ns(60.0))
+        assert found is not None
+        now, late = found.probability[:, 0], found.probability[:, -1]
+        assert now.max() > 0.95
+        assert now.min() < 0.05
+        assert 0.5 < late.max() < 0.6
+        assert 0.4 < late.min() < 0.5
+
+    def test_without_recent_light_nothing_is_expected(self) -> None:
+        assert expected_of(state_with(None), None, 0.0) is None
+        assert expected_of(state_with(half_lit(0.0)), None, 130.0) is None
+
+
+@given(
+    st.lists(st.floats(0.0, 500.0), min_size=1, max_size=8),
+    st.floats(0.001, 5_000.0),
+)
+def test_vehicles_finish_together(busy_s: list[float], work_s: float) -> None:
+    together_s = finished_together_s(np.array(busy_s), work_s)
+    assert sum(max(0.0, together_s - each) for each in busy_s) == pytest.approx(work_s)

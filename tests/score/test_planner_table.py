@@ -1,0 +1,43 @@
+"""Two planners compared seed by seed."""
+
+from recon.score.planner_table import planner_table
+from recon.score.run_score import RunScore
+from recon.score.shade_figures import ShadeFigures
+
+
+def run_score(seed: int, to_95_in_sun_s: float | None) -> RunScore:
+    return RunScore(
+        seed=seed,
+        shade=ShadeFigures(),
+        to_right_s=None,
+        registration_m=None,
+        forecasts={},
+        in_sun_share=(),
+        to_95_imaged_s=300.0,
+        to_95_in_sun_s=to_95_in_sun_s,
+        counted_in_sun=0,
+        wrongly_in_sun=0,
+        survey_s=4_000.0,
+        flight_s=1_000.0,
+        missions=10,
+        photos=0,
+        shaded_photos=0,
+        encounters=0,
+        low_landings=0,
+        end="",
+    )
+
+
+def test_it_pairs_the_seeds_and_counts_an_unfinished_survey_as_the_limit() -> None:
+    ours = [run_score(seed=1, to_95_in_sun_s=500.0), run_score(seed=2, to_95_in_sun_s=1_000.0)]
+    theirs = [
+        run_score(seed=2, to_95_in_sun_s=None),
+        run_score(seed=1, to_95_in_sun_s=400.0),
+        run_score(seed=3, to_95_in_sun_s=1.0),
+    ]
+    lines = planner_table(ours, theirs, "lawnmower_again", 3_200.0).splitlines()
+    assert lines[0] == "| over lawnmower_again | ratio | 95 % | runs |"
+    # The geometric mean of 500/400 and 1000/3200.
+    assert lines[2].startswith("| time to 95 % in sun | 0.62 |")
+    assert lines[2].endswith("| 2 |")
+    assert lines[3].startswith("| seeds lost by more than 5 %, % | 50.0 |")
