@@ -92,7 +92,7 @@ class TestSurveys:
     def test_under_a_clear_sky_it_costs_little_over_one_round(self) -> None:
         took_s = []
         for planner in ("sunlit_first", "lawnmower_once"):
-            flights = Flights(begun(fleet(3), planner), fleet(3))
+            flights = Flights(begun(fleet(3), planner), fleet(3), foresees=True)
             took_s.append(figures(flights.run()).time_to_95_imaged_s)
         assert took_s[0] is not None
         assert took_s[1] is not None

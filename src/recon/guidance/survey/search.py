@@ -199,14 +199,13 @@ class Search:
     def _taken(self, segment: int, moment: int, taken: int) -> tuple[float, int]:
         """What a segment adds when it is flown at a moment, and the segments taken then.
 
-        Most likely in shade, it stays to be flown.
+        Most likely in shade, it adds nothing and stays to be flown: in shade once, it would most
+        likely be so again a moment later.
         """
         bit = 1 << segment
-        if taken & bit or not self._missing_m2[segment]:
+        if taken & bit or self._sun[segment][moment] < self._settings.taken_from:
             return 0.0, taken
         gain_m2 = self._gain[segment][moment]
-        if self._sun[segment][moment] < self._settings.taken_from:
-            return gain_m2, taken
         part = self._parts[segment]
         beside = sum(
             each != NONE and self._missing_m2[each] > 0.0 and not taken >> each & 1
@@ -267,8 +266,8 @@ class Search:
             return 0.0, 0.0
         half_s = part.length_m / self._pace.speed_mps / 2.0
         moment = min(int((node.at_s - half_s) / self._step_s), len(self._fade) - 1)
-        missing_m2 = self._missing_m2[node.segment]
-        gain_m2 = missing_m2 * self._sun[node.segment][moment]
+        missing_m2, sun = self._missing_m2[node.segment], self._sun[node.segment][moment]
+        gain_m2 = missing_m2 * sun if sun >= self._settings.taken_from else 0.0
         is_worth = gain_m2 > self._settings.least_gain * part.length_m * self._lattice.spacing_m
         return (gain_m2, missing_m2) if is_worth else (0.0, 0.0)
 

@@ -107,8 +107,8 @@ class SurveySettings:
     gap_costs_s: float = 6.0
     """What a gap left in a row costs: a stop at both of its ends, later."""
 
-    taken_from: float = 0.3
-    """Probability of sun from which ground counts as imaged when it is flown over in the plan."""
+    taken_from: float = 0.15
+    """Probability of sun from which flying over ground is worth it."""
 
     least_gain: float = 0.02
     """Of a segment's ground; a row is not flown for less."""

@@ -187,7 +187,7 @@ class _Choice:
         start_m = self._along_across_m(self.surveyor.place_m)
         route = route_of(plan.pieces_over(is_missing), plan.lattice, start_m)
         rows = sorted({leg.piece.row + 1 for leg in route})
-        return self._flies(route, f"flies rows {rows[0]} to {rows[-1]}: clear sky")
+        return self._flies(route, f"flies rows {rows[0]} to {rows[-1]}: in sun throughout")
 
     def _best(self, share: BoolArray) -> Flight:
         search = Search(
