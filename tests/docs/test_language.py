@@ -6,7 +6,14 @@ import pytest
 from tests.docs.language import findings, sources
 
 ROOT = Path(__file__).parents[2]
-PLACES = ("src", "web/src", "docs", "android", *sorted(page.name for page in ROOT.glob("*.md")), "Makefile")
+PLACES = (
+    "src",
+    "web/src",
+    "docs",
+    "android",
+    *sorted(page.name for page in ROOT.glob("*.md")),
+    "Makefile",
+)
 
 
 @pytest.mark.parametrize("place", PLACES)
