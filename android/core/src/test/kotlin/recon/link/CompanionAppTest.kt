@@ -87,6 +87,8 @@ class CompanionAppTest {
     fun `release and permission of control reach the station`() {
         val companion = start(simulated())
         val link = accept()
+        // A release before the link has opened is part of the introduction instead.
+        assertIs<ExtendedTelemetry>(link.next())
         companion.releaseControl()
         assertTrue(link.message { it.startsWith("Control released") }.isNotEmpty())
         companion.allowControl()
@@ -169,9 +171,12 @@ private class StationEnd(val socket: Socket) : AutoCloseable {
 
     fun write(packet: Packet) = socket.getOutputStream().write(encode(packet))
 
+    /** The next packet that is wanted; telemetry never stops coming, so the wait has an end. */
     fun next(isWanted: (Packet) -> Boolean = { true }): Packet {
         val buffer = ByteArray(65_536)
+        val endNs = System.nanoTime() + PATIENCE_MS * 1_000_000L
         while (true) {
+            check(System.nanoTime() < endNs) { "no such packet within $PATIENCE_MS ms" }
             val packet = deframer.poll()?.packet
             if (packet != null && isWanted(packet)) return packet
             if (packet == null) {
