@@ -69,6 +69,18 @@ def test_all_forecasts_are_compared_with_one(tmp_path: Path) -> None:
     assert "15 s" in heading
 
 
+def test_two_planners_are_compared_seed_by_seed(tmp_path: Path) -> None:
+    path = str(written(tmp_path, SHORT))
+    options = ["--planner", "sunlit_first", "--seeds", "1", "--first-seed", "7"]
+    done = CliRunner().invoke(app, ["score", path, *options, "--against", "lawnmower_again"])
+    assert done.exit_code == 0, done.stderr
+    assert "planner sunlit_first; 1 seeds" in done.stdout
+    assert "| over lawnmower_again | ratio | 95 % | runs |" in done.stdout
+    # The other planner's run is kept like any other.
+    other = ["score", path, "--planner", "lawnmower_again", *options[2:]]
+    assert "1 of 1 runs were flown before" in CliRunner().invoke(app, other).stderr
+
+
 def test_options_choose_methods(tmp_path: Path) -> None:
     options = ["--planner", "lawnmower_once", "--forecast", "none", "--seeds", "1"]
     done = CliRunner().invoke(app, ["score", str(written(tmp_path, SHORT)), *options])

@@ -10,6 +10,7 @@ from math import atan2, hypot, tan
 
 import numpy as np
 import numpy.typing as npt
+from tests.guidance.survey.fields import planned
 
 from recon.geo import enu_from_geo
 from recon.guidance.survey import (
@@ -17,14 +18,16 @@ from recon.guidance.survey import (
     Surveyor,
     SurveyPlan,
     SurveyState,
+    create,
     observe,
     observe_shade,
+    start,
     step,
 )
 from recon.model.geo import GroundGrid
 from recon.model.mission import Mission
 from recon.model.shade import ShadeMap, SunForecast
-from recon.model.survey import MissionAssignment, SurveyPhase
+from recon.model.survey import MissionAssignment, Survey, SurveyPhase
 from recon.model.units import NS_PER_S, seconds_to_ns
 
 FloatArray = npt.NDArray[np.float64]
@@ -275,6 +278,15 @@ def fleet(count: int, seed: int = 1, **changes: object) -> list[Flyer]:
         for i in range(count)
     ]
     return [replace(flyer, **changes) for flyer in made]
+
+
+def begun(survey: Survey, flyers: list[Flyer]) -> SurveyState:
+    """The survey as started with these vehicles."""
+    created = create(planned(survey))
+    assert isinstance(created, SurveyState)
+    started = start(created, serials(flyers), 0)
+    assert isinstance(started, SurveyState)
+    return started
 
 
 def serials(flyers: Sequence[Flyer]) -> list[str]:

@@ -9,10 +9,9 @@ from tests.guidance.survey.flyers import (
     BoolArray,
     Flights,
     FloatArray,
-    Flyer,
+    begun,
     clear,
     fleet,
-    serials,
 )
 
 from recon.guidance.survey import (
@@ -32,16 +31,8 @@ from recon.guidance.survey import (
 from recon.guidance.survey.settings import DEFAULT
 from recon.model.airspace import Region
 from recon.model.command import Refusal
-from recon.model.survey import CellState, Survey, SurveyBudget, SurveyPhase
+from recon.model.survey import CellState, SurveyBudget, SurveyPhase
 from recon.model.units import seconds_to_ns
-
-
-def begun(survey: Survey, flyers: list[Flyer]) -> SurveyState:
-    created = create(planned(survey))
-    assert isinstance(created, SurveyState)
-    started = start(created, serials(flyers), 0)
-    assert isinstance(started, SurveyState)
-    return started
 
 
 def half_shaded(places_m: FloatArray, time_s: float) -> BoolArray:

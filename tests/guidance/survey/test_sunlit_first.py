@@ -13,9 +13,9 @@ from tests.guidance.survey.flyers import (
     Flights,
     FloatArray,
     Flyer,
+    begun,
     clear,
     fleet,
-    serials,
 )
 
 from recon.guidance.survey import (
@@ -41,13 +41,8 @@ SURVEY = survey_of(FIELD, planner="sunlit_first", bearing_deg=90.0)
 PLAN = planned(SURVEY)
 
 
-def begun(flyers: list[Flyer], planner: str = "sunlit_first") -> SurveyState:
-    survey = replace(SURVEY, planner=planner, budget=SurveyBudget(rounds=20))
-    created = create(planned(survey))
-    assert isinstance(created, SurveyState)
-    started = start(created, serials(flyers), 0)
-    assert isinstance(started, SurveyState)
-    return started
+def started(flyers: list[Flyer], planner: str = "sunlit_first") -> SurveyState:
+    return begun(replace(SURVEY, planner=planner, budget=SurveyBudget(rounds=20)), flyers)
 
 
 def leaves_eastwards(places_m: FloatArray, time_s: float) -> BoolArray:
@@ -64,7 +59,7 @@ def in_bands(places_m: FloatArray, time_s: float) -> BoolArray:
 class TestSurveys:
     @pytest.mark.parametrize("sky", [clear, leaves_eastwards, in_bands])
     def test_all_is_imaged_in_sun_as_photos_truly_show(self, sky: object) -> None:
-        flights = Flights(begun(fleet(3)), fleet(3), sky=sky)  # type: ignore[arg-type]
+        flights = Flights(started(fleet(3)), fleet(3), sky=sky)  # type: ignore[arg-type]
         state = flights.run()
         assert state.phase is SurveyPhase.DONE
         assert state.reason == "Complete: all reachable ground photographed in sun"
@@ -82,7 +77,7 @@ class TestSurveys:
 
             took_s = []
             for planner in ("sunlit_first", "lawnmower_again"):
-                flights = Flights(begun(fleet(3), planner), fleet(3), sky=sky, foresees=True)
+                flights = Flights(started(fleet(3), planner), fleet(3), sky=sky, foresees=True)
                 took_s.append(figures(flights.run()).time_to_95_in_sun_s)
             assert took_s[0] is not None
             assert took_s[1] is not None
@@ -92,7 +87,7 @@ class TestSurveys:
     def test_under_a_clear_sky_it_costs_little_over_one_round(self) -> None:
         took_s = []
         for planner in ("sunlit_first", "lawnmower_once"):
-            flights = Flights(begun(fleet(3), planner), fleet(3), foresees=True)
+            flights = Flights(started(fleet(3), planner), fleet(3), foresees=True)
             took_s.append(figures(flights.run()).time_to_95_imaged_s)
         assert took_s[0] is not None
         assert took_s[1] is not None
@@ -100,7 +95,7 @@ class TestSurveys:
 
     def test_two_vehicles_never_fly_the_same_ground_at_once(self) -> None:
         segments = segments_of(PLAN)
-        flights = Flights(begun(fleet(3)), fleet(3), sky=in_bands)
+        flights = Flights(started(fleet(3)), fleet(3), sky=in_bands)
 
         def check(now: Flights) -> None:
             under = [segments.under(flight.route) for flight in now.state.flights.values()]
@@ -111,7 +106,7 @@ class TestSurveys:
 
     def test_the_rest_is_flown_without_a_vehicle_that_drops_out(self) -> None:
         flyers = fleet(3)
-        flights = Flights(begun(flyers), flyers, sky=in_bands)
+        flights = Flights(started(flyers), flyers, sky=in_bands)
         flights.run(60.0)
         flyers[1].stop()
         flyers[1].is_able = False
@@ -120,7 +115,7 @@ class TestSurveys:
         assert figures(state).in_sun_m2 > 0.98 * figures(state).reached_m2
 
     def test_without_any_light_it_is_flown_once(self) -> None:
-        flights = Flights(begun(fleet(2)), fleet(2), tells_shade=False)
+        flights = Flights(started(fleet(2)), fleet(2), tells_shade=False)
         state = flights.run()
         assert state.phase is SurveyPhase.DONE
         assert "light unknown" in state.reason
@@ -128,7 +123,7 @@ class TestSurveys:
 
     def test_a_low_battery_gets_what_it_lasts_for(self) -> None:
         flyers = fleet(1, endurance_s=160.0, home_m=(0.0, -40.0))
-        flights = Flights(begun(flyers), flyers)
+        flights = Flights(started(flyers), flyers)
         flights.run(400.0)
         assert flights.state.phase is SurveyPhase.RUNNING
         assert flyers[0].flown_s < 160.0
@@ -140,7 +135,7 @@ class TestSurveys:
     def test_the_same_survey_is_flown_again_to_the_last_waypoint(self) -> None:
         given = []
         for _ in range(2):
-            flights = Flights(begun(fleet(3)), fleet(3), sky=in_bands)
+            flights = Flights(started(fleet(3)), fleet(3), sky=in_bands)
             flights.run(200.0)
             given.append(flights.given)
         assert given[0] == given[1]
@@ -173,9 +168,9 @@ def decided(
     if state is None:
         made = create(PLAN)
         assert isinstance(made, SurveyState)
-        started = start(made, [each.serial for each in surveyors], 0)
-        assert isinstance(started, SurveyState)
-        state = started
+        running = start(made, [each.serial for each in surveyors], 0)
+        assert isinstance(running, SurveyState)
+        state = running
     return step(state, surveyors, seconds_to_ns(now_s), sun)
 
 
@@ -245,7 +240,7 @@ class TestDecisions:
         ]
         own = [PLAN.lattice.along_across_m([at])[0][1] for at in places.values()]
         assert np.argsort(across).tolist() == np.argsort(own).tolist()
-        assert all(mission.may_go_straight for mission in missions)
+        assert {mission.straight_within_m for mission in missions} == {PLAN.settings.near_m}
 
     def test_a_refused_vehicle_is_decided_on_again_soon(self) -> None:
         sun = forecast(lambda _east, _north, _lead: True)

@@ -108,8 +108,9 @@ def refused(
     flights = {key: each for key, each in state.flights.items() if key != serial}
     route = (*flight.route, *state.waiting.get(serial, ()))
     settings = state.plan.settings
-    # A rolling planner may find other rows at once.
+    # A planner that decides vehicle by vehicle may find other rows at once.
     is_soon = may_end or serial in state.decisions
+    decisions = {key: each for key, each in state.decisions.items() if key != serial}
     again_ns = now_ns + seconds_to_ns(settings.retry_soon_s if is_soon else settings.retry_s)
     is_barred = not flights and not may_end
     return replace(
@@ -118,6 +119,7 @@ def refused(
         waiting=MappingProxyType({**state.waiting, serial: route}),
         refusals=MappingProxyType({**state.refusals, serial: Refused(reason, again_ns)}),
         barred=state.barred | {serial} if is_barred else state.barred,
+        decisions=MappingProxyType(decisions),
         flown_m=state.flown_m - flight.length_m,
     )
 

@@ -14,12 +14,8 @@ to give out. Asked about once a second."""
 
 PLANNERS: Mapping[str, Planner] = MappingProxyType(
     {
-        "lawnmower_once": lambda state, positions, _sun, now_ns: lawnmower_once(
-            state, positions, now_ns
-        ),
-        "lawnmower_again": lambda state, positions, _sun, now_ns: lawnmower_again(
-            state, positions, now_ns
-        ),
+        "lawnmower_once": lawnmower_once,
+        "lawnmower_again": lawnmower_again,
         "sunlit_first": sunlit_first,
     }
 )

@@ -40,6 +40,7 @@ from recon.guidance.survey.state import (
     end_between_rounds,
     spent_budget,
 )
+from recon.model.shade import SunForecast
 from recon.model.survey import PLANNER_GOALS, CellState, MissionAssignment, SurveyPhase
 from recon.model.units import seconds_to_ns
 
@@ -83,6 +84,7 @@ def ended(state: SurveyState, phase: SurveyPhase, reason: str, now_ns: int) -> S
         reason=reason,
         flights=MappingProxyType({}),
         waiting=NO_ROUTES,
+        decisions=MappingProxyType({}),
         ended_at_ns=now_ns if phase.is_final else None,
         quiet_since_ns=now_ns,
     )
@@ -226,12 +228,16 @@ def lasts(plan: SurveyPlan, track: Track | None, surveyor: Surveyor) -> bool:
     return needed_s <= surveyor.time_left_s * plan.settings.flight_time_share
 
 
-def lawnmower_once(state: SurveyState, positions: Sequence[Surveyor], now_ns: int) -> Step:
+def lawnmower_once(
+    state: SurveyState, positions: Sequence[Surveyor], _sun: SunForecast | None, now_ns: int
+) -> Step:
     """Fly all rows once, in whatever light; again only what was not imaged, as by a dropout."""
     return fly_rounds(state, positions, now_ns, PLANNER_GOALS["lawnmower_once"])
 
 
-def lawnmower_again(state: SurveyState, positions: Sequence[Surveyor], now_ns: int) -> Step:
+def lawnmower_again(
+    state: SurveyState, positions: Sequence[Surveyor], _sun: SunForecast | None, now_ns: int
+) -> Step:
     """Fly all rows, and again what was imaged in shade, until all is imaged in sun.
 
     It does not wait for sun: the survey's budget ends it under a closed sky.

@@ -19,7 +19,7 @@ import numpy as np
 
 from recon.guidance.survey.cells import BoolArray
 from recon.guidance.survey.lattice import RowLattice
-from recon.guidance.survey.route import Place, Route, RowLeg
+from recon.guidance.survey.route import Place, RowLeg
 from recon.guidance.survey.rows import Piece
 from recon.guidance.survey.segments import NONE, ExpectedSun, Segment, Segments
 from recon.guidance.survey.settings import SurveySettings
@@ -38,6 +38,8 @@ class Node(NamedTuple):
     """A bit for each segment."""
     segment: int
     heading: int
+    gain_m2: float
+    """Of `segment`: ground that will most likely be imaged in sun, 0 if it is too little."""
     before: "Node | None"
 
 
@@ -60,11 +62,6 @@ class Flight:
 
     legs: tuple[PlannedLeg, ...]
     waits_s: float
-
-    @property
-    def route(self) -> Route:
-        """The legs to be flown."""
-        return tuple(leg.route for leg in self.legs)
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,9 +93,6 @@ class Search:
         missing = np.where(free, expected.missing_m2, 0.0)
         self._missing_m2: list[float] = missing.tolist()
         self._sun: list[list[float]] = expected.probability.tolist()
-        self._gain: list[list[float]] = (
-            missing[:, np.newaxis] * expected.probability * fade
-        ).tolist()
         self._rate = settings.expected_rate * float(
             (missing @ expected.probability).mean() / max(missing.sum(), 1.0)
         ) * (pace.speed_mps * lattice.spacing_m)  # fmt: skip
@@ -114,7 +108,7 @@ class Search:
 
     def best(self, place_m: Place, starts_s: float) -> Flight:
         """Return the best flight of a vehicle that can start on its way from a place then."""
-        best = start = Node(0.0, starts_s, place_m, 0, NONE, WAITS, None)
+        best = start = Node(0.0, starts_s, place_m, 0, NONE, WAITS, 0.0, None)
         self._steps = {0: [start]}
         for step in range(int(self._end_s / self._settings.beam_step_s) + 1):
             for node in self._kept(step):
@@ -152,9 +146,10 @@ class Search:
         for segment, heading in self._entries(node):
             arrives_s = self._arrives_s(node, segment, heading)
             flown = self._flown(node, segment, heading, arrives_s)
-            if self._worth(flown)[0] > 0.0:
+            if flown.gain_m2 > 0.0:
                 yield flown
-        yield node._replace(at_s=node.at_s + self._step_s, heading=WAITS, before=node)
+        at_s = node.at_s + self._step_s
+        yield node._replace(at_s=at_s, heading=WAITS, gain_m2=0.0, before=node)
 
     def _entries(self, node: Node) -> set[tuple[int, int]]:
         """Where a flight may go on on the nearest rows that have something left: at the ends of
@@ -191,27 +186,36 @@ class Search:
         part = self._parts[segment]
         until_s = from_s + part.length_m / self._pace.speed_mps
         moment = min(int((from_s + until_s) / 2.0 / self._step_s), len(self._fade) - 1)
-        gain_m2, taken = self._taken(segment, moment, node.taken)
-        end_m = part.end_m if heading == AHEAD else part.start_m
-        place_m = (end_m, part.across_m)
-        return Node(node.value_m2 + gain_m2, until_s, place_m, taken, segment, heading, node)
+        gain_m2 = self._gain_m2(segment, moment, node.taken)
+        value_m2, taken = node.value_m2, node.taken
+        if gain_m2 > 0.0:
+            value_m2 += (gain_m2 - self._gaps_m2(segment, taken)) * self._fade[moment]
+            taken |= 1 << segment
+        place_m = (part.end_m if heading == AHEAD else part.start_m, part.across_m)
+        return Node(value_m2, until_s, place_m, taken, segment, heading, gain_m2, node)
 
-    def _taken(self, segment: int, moment: int, taken: int) -> tuple[float, int]:
-        """What a segment adds when it is flown at a moment, and the segments taken then.
+    def _gain_m2(self, segment: int, moment: int, taken: int) -> float:
+        """What a segment gains when it is flown at a moment.
 
-        Most likely in shade, it adds nothing and stays to be flown: in shade once, it would most
+        Most likely in shade, it gains nothing and stays to be flown: in shade once, it would most
         likely be so again a moment later.
         """
-        bit = 1 << segment
-        if taken & bit or self._sun[segment][moment] < self._settings.taken_from:
-            return 0.0, taken
-        gain_m2 = self._gain[segment][moment]
+        sun = self._sun[segment][moment]
+        if taken >> segment & 1 or sun < self._settings.taken_from:
+            return 0.0
+        part, gain_m2 = self._parts[segment], self._missing_m2[segment] * sun
+        least_m2 = self._settings.least_gain * part.length_m * self._lattice.spacing_m
+        return gain_m2 if gain_m2 > least_m2 else 0.0
+
+    def _gaps_m2(self, segment: int, taken: int) -> float:
+        """What a segment costs when it is taken: one gap more between two that are left, one less
+        where it was the last of its gap."""
         part = self._parts[segment]
         beside = sum(
             each != NONE and self._missing_m2[each] > 0.0 and not taken >> each & 1
             for each in (part.before, part.after)
         )
-        return gain_m2 - (beside - 1) * self._gap_m2 * self._fade[moment], taken | bit
+        return (beside - 1) * self._gap_m2
 
     def _flight(self, best: Node) -> Flight:
         """The flight that ends in a node: its waiting, and its legs as far as it then goes without
@@ -222,7 +226,7 @@ class Search:
             nodes.append(node)
             node = node.before
         nodes.reverse()
-        first = next((i for i, each in enumerate(nodes) if self._worth(each)[0] > 0.0), None)
+        first = next((i for i, each in enumerate(nodes) if each.gain_m2 > 0.0), None)
         if first is None:
             return Flight((), self._end_s)
         flown = nodes[first:]
@@ -240,16 +244,15 @@ class Search:
 
     def _leg(self, run: Sequence[Node]) -> Iterator[PlannedLeg]:
         """The run as a leg, without the ends that gain nothing; no leg where it all does."""
-        gains = [self._worth(node) for node in run]
-        useful = [i for i, (gain_m2, _) in enumerate(gains) if gain_m2 > 0.0]
+        useful = [index for index, node in enumerate(run) if node.gain_m2 > 0.0]
         if not useful:
             return
         flown = run[useful[0] : useful[-1] + 1]
         parts = [self._parts[node.segment] for node in flown]
         start_m, end_m = min(p.start_m for p in parts), max(p.end_m for p in parts)
         piece = Piece(parts[0].row, start_m, end_m)
-        sums = [gains[i] for i in useful]
-        sun = sum(gain for gain, _ in sums) / sum(missing for _, missing in sums)
+        missing_m2 = sum(self._missing_m2[run[index].segment] for index in useful)
+        sun = sum(node.gain_m2 for node in flown) / missing_m2
         yield PlannedLeg(
             RowLeg(piece, flown[0].heading == BACK),
             tuple(node.segment for node in flown),
@@ -257,19 +260,6 @@ class Search:
             flown[-1].at_s,
             sun,
         )
-
-    def _worth(self, node: Node) -> tuple[float, float]:
-        """Of a flown segment the ground that will be imaged in sun, and the missing ground;
-        nothing where less than a fiftieth of the segment is gained, or it was taken before."""
-        part, before = self._parts[node.segment], node.before
-        if node.heading == WAITS or before is None or before.taken >> node.segment & 1:
-            return 0.0, 0.0
-        half_s = part.length_m / self._pace.speed_mps / 2.0
-        moment = min(int((node.at_s - half_s) / self._step_s), len(self._fade) - 1)
-        missing_m2, sun = self._missing_m2[node.segment], self._sun[node.segment][moment]
-        gain_m2 = missing_m2 * sun if sun >= self._settings.taken_from else 0.0
-        is_worth = gain_m2 > self._settings.least_gain * part.length_m * self._lattice.spacing_m
-        return (gain_m2, missing_m2) if is_worth else (0.0, 0.0)
 
 
 def _goes_on(node: Node, following: Node, parts: Sequence[Segment]) -> bool:

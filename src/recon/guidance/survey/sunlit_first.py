@@ -73,11 +73,9 @@ def sunlit_first(
     able = {each.serial: each for each in positions if each.is_able}
     state = _with_just_flown(state, without_ended(state, able, now_ns), now_ns)
     spent = spent_budget(state, WANTED, now_ns)
-    if spent is not None or is_enough(state, WANTED):
-        if state.flights:
-            return state, ()
-        reason = spent or end_between_rounds(state, WANTED) or "Complete"
-        return ended(state, SurveyPhase.DONE, reason, now_ns), ()
+    end = end_between_rounds(state, WANTED) if is_enough(state, WANTED) else spent
+    if end is not None:
+        return (state if state.flights else ended(state, SurveyPhase.DONE, end, now_ns)), ()
     idle = [each for serial, each in able.items() if _is_asked(state, serial, able, now_ns)]
     if not idle:
         return state, ()
@@ -96,6 +94,7 @@ def sunlit_first(
 
 def _in_any_light(state: SurveyState, positions: Sequence[Surveyor], now_ns: int) -> Step:
     """Fly what is not imaged yet; then wait for light to become known, if it ever was."""
+    state = replace(state, decisions=MappingProxyType({}))
     if not is_enough(state, CellState.IN_SHADE):
         return fly_rounds(state, positions, now_ns, CellState.IN_SHADE)
     if state.flights:
@@ -259,7 +258,7 @@ class _Choice:
             self.now_ns + seconds_to_ns(ends_s),
         )
         state, given = flying(self._decided(text), self.surveyor, mission, ())
-        return state, (replace(given, may_go_straight=True),)
+        return state, (replace(given, straight_within_m=self.settings.near_m),)
 
     def _long_enough(self, leg: PlannedLeg) -> RowLeg:
         piece = self.segments.parts[leg.segments[0]].piece

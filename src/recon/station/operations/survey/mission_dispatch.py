@@ -42,9 +42,6 @@ LOWEST_M = 20.0
 NEAR_M = 20.0
 """A vehicle this near to its first row, at its height, flies straight there."""
 
-STRAIGHT_M = 90.0
-"""The same for a mission that may go straight, where the gate approves all of it."""
-
 LEVEL_M = 3.0
 """Heights that differ by less count as the same: barometers are no better."""
 
@@ -91,12 +88,12 @@ def _straight(
 ) -> OperatorOrder | None:
     """The order to fly its rows from where it is, at their height; None where that is too far."""
     here, height_m = vehicle.position.value, vehicle.height_above_takeoff_m.value
-    if not given.may_go_straight or here is None or height_m is None or given.approach:
+    if here is None or height_m is None or given.approach:
         return None
     first = given.mission.waypoints[0]
     far_m = horizontal_distance_m(here, LatLon(first.latitude_deg, first.longitude_deg))
     is_level = abs(height_m - first.height_above_takeoff_m) < LEVEL_M
-    if not is_level or far_m > STRAIGHT_M:
+    if not is_level or far_m > given.straight_within_m or given.stands_by:
         return None
     return replace(_order(record, given, vehicle), body=FlyMission(given.mission))
 

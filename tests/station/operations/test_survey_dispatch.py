@@ -1,0 +1,89 @@
+"""A survey's mission becomes an order, or waits: judged beforehand by the gate's own rules."""
+
+from dataclasses import replace
+
+import pytest
+from tests.station.surveyed_world import HEIGHT_M, SurveyedWorld, asked, surveyed_world
+
+from recon.geo import geo_from_enu
+from recon.model.command import FlyMission
+from recon.model.mission import Mission, Waypoint
+from recon.model.survey import MissionAssignment
+from recon.station.operations.survey.mission_dispatch import Dispatch, dispatch
+
+
+def started(count: int) -> SurveyedWorld:
+    """Vehicles that hover at the rows' height south of the field, 40 m apart."""
+    world = surveyed_world(count)
+    world.asks(asked())
+    world.starts(*(f"SIM-{number + 1}" for number in range(count)))
+    return world
+
+
+def rows(world: SurveyedWorld, *places_m: tuple[float, float]) -> MissionAssignment:
+    """A mission of SIM-1 along places, in east-north metres."""
+    frame = world.driver.station.airspace.airspace.frame
+    waypoints = []
+    for east_m, north_m in places_m:
+        latitude, longitude, _ = geo_from_enu(frame, [(east_m, north_m, 0.0)])
+        waypoints.append(Waypoint(float(latitude[0]), float(longitude[0]), HEIGHT_M, 5.0))
+    return MissionAssignment("SIM-1", 1, Mission(tuple(waypoints)), 100.0)
+
+
+def dispatched(world: SurveyedWorld, given: MissionAssignment) -> Dispatch:
+    station = world.driver.station
+    vehicle = station.fleet.vehicles["SIM-1"]
+    return dispatch(station, world.record(), given, vehicle, world.driver.now_ns)
+
+
+def mission_of(found: Dispatch) -> Mission:
+    assert isinstance(found.order.body, FlyMission)
+    return found.order.body.mission
+
+
+FREE = ((0.0, 0.0), (0.0, 60.0))
+PAST_THE_OTHER = ((20.0, -40.0), (60.0, -40.0))
+
+
+class TestStraight:
+    def test_near_its_row_it_goes_there_and_stays_at_its_end(self) -> None:
+        world = started(2)
+        given = replace(rows(world, *FREE), straight_within_m=90.0)
+        assert mission_of(dispatched(world, given)) == given.mission
+
+    @pytest.mark.parametrize("within_m", [0.0, 30.0])
+    def test_farther_off_it_goes_by_its_layer(self, within_m: float) -> None:
+        world = started(2)
+        given = replace(rows(world, *FREE), straight_within_m=within_m)
+        flown = mission_of(dispatched(world, given))
+        assert flown.waypoints[0].height_above_takeoff_m != HEIGHT_M
+        assert flown.waypoints[-1].height_above_takeoff_m != HEIGHT_M
+
+    def test_where_the_gate_refuses_that_it_goes_by_its_layer(self) -> None:
+        """Straight, it would pass the other vehicle on its way to the row."""
+        world = started(2)
+        behind = rows(world, (80.0, -40.0), (80.0, 30.0))
+        given = replace(behind, straight_within_m=90.0)
+        found = dispatched(world, given)
+        assert found.in_the_way is None
+        assert mission_of(found).waypoints[0].height_above_takeoff_m != HEIGHT_M
+
+
+class TestInTheWay:
+    def test_rows_past_a_hovering_vehicle_are_not_ordered(self) -> None:
+        world = started(2)
+        found = dispatched(world, rows(world, *PAST_THE_OTHER))
+        assert found.in_the_way is not None
+        assert found.in_the_way.rule == "separation"
+        assert "SIM-2" in found.in_the_way.reason or "Drone 2" in found.in_the_way.reason
+
+    def test_alone_the_same_rows_are(self) -> None:
+        world = started(1)
+        assert dispatched(world, rows(world, *PAST_THE_OTHER)).in_the_way is None
+
+    def test_one_that_stands_by_goes_no_farther_than_above_its_row(self) -> None:
+        world = started(2)
+        given = replace(rows(world, (0.0, 60.0)), stands_by=True)
+        waypoints = mission_of(dispatched(world, given)).waypoints
+        assert len({each.height_above_takeoff_m for each in waypoints} - {HEIGHT_M}) == 1
+        assert all(each.height_above_takeoff_m != HEIGHT_M for each in waypoints)
