@@ -81,6 +81,15 @@ def test_two_planners_are_compared_seed_by_seed(tmp_path: Path) -> None:
     assert "1 of 1 runs were flown before" in CliRunner().invoke(app, other).stderr
 
 
+def test_a_detection_is_compared_with_the_ideal_one_seed_by_seed(tmp_path: Path) -> None:
+    path = str(written(tmp_path, SHORT))
+    options = ["--detection", "otsu", "--forecast", "none", "--seeds", "1"]
+    done = CliRunner().invoke(app, ["score", path, *options, "--against", "ideal"])
+    assert done.exit_code == 0, done.stderr
+    assert "detection otsu" in done.stdout
+    assert "| over ideal | ratio | 95 % | runs |" in done.stdout
+
+
 def test_options_choose_methods(tmp_path: Path) -> None:
     options = ["--planner", "lawnmower_once", "--forecast", "none", "--seeds", "1"]
     done = CliRunner().invoke(app, ["score", str(written(tmp_path, SHORT)), *options])

@@ -17,10 +17,10 @@ from recon.record.users_file import state_folder
 from recon.score import Methods, RunScore, Scenario, ScenarioError, load_scenario, tables
 from recon.score.kept_runs import KeptRuns, code_digest, runs_digest
 from recon.score.many_runs import on_cluster, on_cores, one_by_one
-from recon.score.planner_table import planner_table
 from recon.score.scenario import NO_FORECAST, TRUE_MOTION
 from recon.score.scenario_conditions import with_exposure
 from recon.score.scenario_schema import METHOD_NAMES
+from recon.score.survey_table import survey_table
 
 MOST_SEEDS = 10_000
 DIGEST_LETTERS = 16
@@ -33,7 +33,7 @@ AgainstOption = Annotated[
     str | None,
     typer.Option(
         help="A forecast: score all forecast methods, and compare them with this one by seed."
-        " A planner: fly each seed with it too, and compare."
+        " A planner or detection: fly each seed with it too, and compare the surveys."
     ),
 ]
 JobsOption = Annotated[
@@ -79,18 +79,27 @@ def score_command(
         loaded = with_methods(load_scenario(scenario), planner, detection, forecast)
         if exposure is not None:
             loaded = with_exposure(loaded, exposure is ExposureChoice.LOCKED)
-        is_planner = against in METHOD_NAMES["planner"]
-        if against is not None and not is_planner:
+        other = _other(loaded, against)
+        if against is not None and other is None:
             loaded = _compared(loaded, against)
         flying = _Flying(scenario, range(first_seed, first_seed + seeds), jobs, cluster, fresh)
         runs = flying.runs_of(loaded)
-        others = flying.runs_of(with_methods(loaded, against, None, None)) if is_planner else []
+        others = flying.runs_of(other) if other is not None else []
     except ReconError as problem:
         print(f"recon score: {problem}", file=sys.stderr)
         raise typer.Exit(2) from None
-    print(tables(loaded, runs, None if is_planner else against))
-    if against is not None and is_planner:
-        print(f"\n{planner_table(runs, others, against, loaded.limit_s)}")
+    print(tables(loaded, runs, against if other is None else None))
+    if against is not None and other is not None:
+        print(f"\n{survey_table(runs, others, against, loaded.limit_s)}")
+
+
+def _other(scenario: Scenario, against: str | None) -> Scenario | None:
+    """Return the scenario with the other planner or detection; None if it is not one of these."""
+    if against in METHOD_NAMES["planner"]:
+        return with_methods(scenario, against, None, None)
+    if against in METHOD_NAMES["detection"]:
+        return with_methods(scenario, None, against, None)
+    return None
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,7 +172,7 @@ def _compared(scenario: Scenario, against: str) -> Scenario:
     """Return the scenario with all forecasts scored. Raises `ScenarioError`."""
     known = (*FORECASTERS, TRUE_MOTION)
     if against not in known:
-        names = " or ".join((*known, *METHOD_NAMES["planner"]))
+        names = " or ".join((*known, *METHOD_NAMES["planner"], *METHOD_NAMES["detection"]))
         raise ScenarioError(f"--against: expected {names}, got {against!a}")
     if scenario.methods.forecast == NO_FORECAST:
         raise ScenarioError(f"--against: expected a forecast to compare, got {NO_FORECAST}")

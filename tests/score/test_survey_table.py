@@ -1,8 +1,8 @@
-"""Two planners compared seed by seed."""
+"""Two planners or detections compared seed by seed."""
 
-from recon.score.planner_table import planner_table
 from recon.score.run_score import RunScore
 from recon.score.shade_figures import ShadeFigures
+from recon.score.survey_table import survey_table
 
 
 def run_score(seed: int, to_95_in_sun_s: float | None) -> RunScore:
@@ -35,7 +35,7 @@ def test_it_pairs_the_seeds_and_counts_an_unfinished_survey_as_the_limit() -> No
         run_score(seed=1, to_95_in_sun_s=400.0),
         run_score(seed=3, to_95_in_sun_s=1.0),
     ]
-    lines = planner_table(ours, theirs, "lawnmower_again", 3_200.0).splitlines()
+    lines = survey_table(ours, theirs, "lawnmower_again", 3_200.0).splitlines()
     assert lines[0] == "| over lawnmower_again | ratio | 95 % | runs |"
     # The geometric mean of 500/400 and 1000/3200.
     assert lines[2].startswith("| time to 95 % in sun | 0.62 |")

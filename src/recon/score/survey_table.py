@@ -1,4 +1,4 @@
-"""Surveys of one planner against those of another, seed by seed."""
+"""Surveys of one planner or detection against those of another, seed by seed."""
 
 from collections.abc import Sequence
 
@@ -10,10 +10,10 @@ LOST_FROM = 1.05
 """A seed counts as lost when the survey takes longer than this times the other."""
 
 
-def planner_table(
+def survey_table(
     runs: Sequence[RunScore], others: Sequence[RunScore], against: str, limit_s: float
 ) -> str:
-    """Return the ratios of `runs` over `others`, the runs of planner `against`, by seed.
+    """Return the ratios of `runs` over `others`, the runs with `against`, by seed.
 
     A survey that has not reached 95 % in sun counts as the limit. Ratios are geometric means over
     the seeds that both have flown, with 95 % intervals of the logarithms.
