@@ -362,6 +362,28 @@ class TestCourse:
         found = course.beliefs(Contrast(), ANYWHERE)[-1].estimate(Contrast())
         assert found.level.light == pytest.approx(level.light, abs=0.12)
 
+    def test_the_brightest_ground_of_a_view_without_full_sun_is_not_taken_for_it(self) -> None:
+        level = Level(-0.5, 0.1)
+        kept = keyframes(Contrast(), [level] * 10, moving_edge(10, 0.1, 0.85))
+        course = Course.over(Stack.of(kept, is_locked=False), self.EVEN, None)
+        decided = [b.estimate(Contrast()).level for b in course.beliefs(Contrast(), ANYWHERE)]
+        refined = course.refined(Contrast(), decided)[-1]
+        assert refined is not None
+        assert abs(refined.light - level.light) < 0.5 * abs(decided[-1].light - level.light)
+
+    def test_levels_of_views_with_full_sun_and_full_shade_stay(self) -> None:
+        level = Level(-0.5, 0.1)
+        kept = keyframes(Contrast(), [level] * 10, moving_edge(10, 0.0, 1.0))
+        course = Course.over(Stack.of(kept, is_locked=False), self.EVEN, None)
+        for refined in course.refined(Contrast(), [level] * 10):
+            assert refined is not None
+            assert refined.light == pytest.approx(level.light, abs=0.06)
+
+    def test_an_open_level_stays_open(self) -> None:
+        kept = keyframes(Contrast(), [Level(-0.5, 0.1)] * 10, moving_edge(10, 0.0, 1.0))
+        course = Course.over(Stack.of(kept, is_locked=False), self.EVEN, None)
+        assert course.refined(Contrast(), [None] * 10) == [None] * 10
+
 
 class TestContradiction:
     """An even view, known as what it is not: the hot spot has the last word."""

@@ -5,8 +5,8 @@ Theory of operation, per frame:
 1. `cell_colour` averages light and colour (blue over red) over each cell of the field grid.
 2. Every ten seconds or more a keyframe is kept. From all keyframes, `solution.solved` finds the
    land: edges that stand still are land, edges that move are shade.
-3. With the land taken out, a frame has one or two levels. `levels.read` names them sun and shade,
-   or leaves a flat frame to its neighbours in time.
+3. With the land taken out, `course` finds the level of sun of all keyframes together, and `belief`
+   follows it from frame to frame; a flat frame that both explain is left open.
 4. `contrast.explained` finds each cell's transmittance from its light and colour against full sun.
 
 While nothing shows which is sun and which shade, no cell is valid. What the flight has learned is
@@ -86,6 +86,7 @@ def _with_keyframe(
         keyframes=found.keyframes,
         land=found.land,
         belief=found.belief,
+        correction=found.correction,
         believed_at_ns=at_ns,
         belief_drift=drift.total,
     )
@@ -109,7 +110,7 @@ def _believed(
             light, colour = (coarse.light - land.light)[cells], (coarse.colour - land.colour)[cells]
             belief = belief.seen(light, colour, land.contrast, after_s)
     found = belief.estimate(land.contrast)
-    level = found.level if found.doubt < DOUBT else None
+    level = found.level + memory.correction if found.doubt < DOUBT else None
     return replace(
         memory, belief=belief, level=level, believed_at_ns=at_ns, belief_drift=drift.total
     )

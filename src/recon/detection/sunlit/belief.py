@@ -66,8 +66,7 @@ class Belief:
 
     def later(self, change: Level, spread: Spread) -> "Belief":
         """Return the belief after a change of light and colour known with these errors."""
-        middle = Level(self.middle.light + change.light, self.middle.colour + change.colour)
-        return Belief(middle, diffused(self.score, spread))
+        return Belief(self.middle + change, diffused(self.score, spread))
 
     def seen(self, light: Values, colour: Values, contrast: Contrast, after_s: float) -> "Belief":
         """Return the belief after a frame's cells (N,), with the land taken out."""
@@ -88,8 +87,7 @@ class Belief:
         local = np.where(near, weight, 0.0)
         light = float(local.sum(axis=1) @ LIGHTS / local.sum())
         colour = float(local.sum(axis=0) @ COLOURS / local.sum())
-        level = Level(self.middle.light + light, self.middle.colour + colour)
-        return Estimate(level, float(weight[~near].max()))
+        return Estimate(self.middle + Level(light, colour), float(weight[~near].max()))
 
 
 def worth(after_s: float) -> float:

@@ -5,6 +5,7 @@ thin cloud about as well, so either alone is found wrong. For each contrast that
 course of levels is scored (`belief`); the contrast is bettered by a step with each keyframe.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -19,11 +20,12 @@ from recon.detection.sunlit.belief import (
     smoothed,
     worth,
 )
-from recon.detection.sunlit.contrast import Contrast
+from recon.detection.sunlit.contrast import TRANSMITTANCES, Contrast, curve
 from recon.detection.sunlit.keyframes import Earlier, Keyframe, SunlitLand
 from recon.detection.sunlit.land import FloatStack
 from recon.detection.sunlit.levels import LEAST_CELLS, Level
 from recon.detection.sunlit.likelihood import (
+    LIGHT_BINS,
     REACH,
     FloatGrid,
     Spectra,
@@ -51,6 +53,13 @@ COLOUR_NEAR = 0.25
 """Distance from sun or from shade at which a view's colour shows it, as a share of the contrast."""
 COLOUR_SPREAD, ANY_LIGHT = 0.06, 10.0
 """Of the level that an earlier flight had with a locked camera."""
+BETWEEN, MOST_BETWEEN = (0.1, 0.9), 0.6
+"""Transmittances that are neither full sun nor full shade, and the share of a view's cells from
+which edges are as wide as the view."""
+UNEVEN = 0.1
+"""Standard deviation of such a view's light from which it shows by its slope where it lies."""
+REFINED_WITHIN, REFINED_FLOOR = (0.1, 0.06), 1e-9
+"""Errors of light and colour of a level that is decided, and how likely it is wrong altogether."""
 
 
 def change_between(start: Level, end: Level, is_locked: bool) -> Level:
@@ -115,13 +124,15 @@ class Course:
     worth: FloatStack
     spreads: list[Spread]
     first: FloatGrid
+    lights: FloatGrid
+    """Shares (K, bins) of each view's cells by light, relative to its middle."""
 
     @staticmethod
     def over(stack: Stack, land: SunlitLand, earlier: Earlier | None) -> "Course":
         """Return it for keyframes over a land."""
         changes = stack.changes
         newest = _middle(stack, land, changes)
-        middles = [Level(newest.light + by.light, newest.colour + by.colour) for by in changes]
+        middles = [newest + by for by in changes]
         shown, weight = [], []
         for i, (middle, after_s) in enumerate(zip(middles, [1e9, *stack.gaps_s], strict=True)):
             cells = stack.seen[i] & land.known
@@ -136,7 +147,8 @@ class Course:
             first = near(middles[0], there, (ANY_LIGHT, COLOUR_SPREAD), HINT_FLOOR)
         spreads = [spread_after(gap_s, stack.is_locked) for gap_s in stack.gaps_s]
         by_frame = np.array(weight, np.float32)[:, np.newaxis, np.newaxis]
-        return Course(middles, spectra_of(shown), by_frame, spreads, first)
+        lights = np.stack(shown).sum(axis=2)
+        return Course(middles, spectra_of(shown), by_frame, spreads, first, lights)
 
     def best_contrast(self, begin: Contrast, usual: Contrast) -> Contrast:
         """Return the contrast with which the best course of levels explains most.
@@ -166,6 +178,42 @@ class Course:
         evidence = self.worth * lacking(fits(self.shown, contrast))
         found = smoothed(evidence + hints, self.spreads, self.first)
         return [Belief(middle, each) for middle, each in zip(self.middles, found, strict=True)]
+
+    def refined(self, contrast: Contrast, levels: Sequence[Level | None]) -> list[Level | None]:
+        """Return decided levels (K) again, found from where on the curve each view's cells lie.
+
+        Levels are decided as if full sun and full shade were frequent in every view, which they
+        are not where edges are as wide as the view: there the brightest ground would pass for full
+        sun. Such a view shows by its slope where on the curve it lies, and needs no such ends.
+        """
+        has_no_ends = np.array(
+            [
+                level is not None and _is_between(lights, level.light - middle.light, contrast)
+                for lights, level, middle in zip(self.lights, levels, self.middles, strict=True)
+            ]
+        )[:, np.newaxis, np.newaxis]
+        likelihood = np.where(
+            has_no_ends, fits(self.shown, contrast, ends_share=0.0), fits(self.shown, contrast)
+        )
+        near_decided = np.zeros_like(likelihood)
+        for i, level in enumerate(levels):
+            if level is not None:
+                near_decided[i] = near(self.middles[i], level, REFINED_WITHIN, REFINED_FLOOR)
+        found = smoothed(self.worth * likelihood + near_decided, self.spreads, self.first)
+        return [
+            None if level is None else Belief(middle, score).estimate(contrast).level
+            for middle, score, level in zip(self.middles, found, levels, strict=True)
+        ]
+
+
+def _is_between(shares: FloatGrid, level: float, contrast: Contrast) -> bool:
+    """Return whether most of a view, by its light (bins), is neither in full sun nor full shade."""
+    light = LIGHT_BINS - np.float32(level)
+    mean = float(shares @ light)
+    spread = max(float(shares @ (light - mean) ** 2), 0.0) ** 0.5
+    dark, bright = np.interp(BETWEEN, TRANSMITTANCES, curve(contrast)[0])
+    between = float(shares[(light > dark) & (light < bright)].sum())
+    return spread >= UNEVEN and between >= MOST_BETWEEN
 
 
 def _middle(stack: Stack, land: SunlitLand, changes: list[Level]) -> Level:

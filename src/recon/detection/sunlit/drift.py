@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from recon.detection.sunlit.colour import CellColour
 from recon.detection.sunlit.keyframes import SunlitLand
-from recon.detection.sunlit.levels import LEAST_CELLS, Level
+from recon.detection.sunlit.levels import LEAST_CELLS, UNCHANGED, Level
 from recon.model.shade import FloatMap, MaskMap
 from recon.model.units import NS_PER_S, seconds_to_ns
 
@@ -74,7 +74,7 @@ class Drift:
     def lock_problem(self) -> str:
         """Return what shows that exposure or white balance is not locked; empty if nothing does."""
         for at_ns, total in self.recent:
-            change, after_s = since(total, self.total), (self.at_ns - at_ns) / NS_PER_S
+            change, after_s = self.total - total, (self.at_ns - at_ns) / NS_PER_S
             light, colour = abs(change.light), abs(change.colour)
             if light > LOCKED_LIGHT and colour < CLOUD_COLOUR * light:
                 return f"exposure changed by {expm1(light):.0%} within {after_s:.0f} s"
@@ -86,7 +86,7 @@ class Drift:
 def followed(drift: Drift | None, cells: CellColour, land: SunlitLand | None, at_ns: int) -> Drift:
     """Return the drift with one more frame over land as far as known; across a long gap none."""
     if drift is None:
-        return Drift(at_ns, cells, Level(0.0, 0.0))
+        return Drift(at_ns, cells, UNCHANGED)
     both = drift.cells.seen & cells.seen
     after_s = (at_ns - drift.at_ns) / NS_PER_S
     if after_s > LONGEST_GAP_S or np.count_nonzero(both) < LEAST_CELLS:
@@ -99,7 +99,7 @@ def followed(drift: Drift | None, cells: CellColour, land: SunlitLand | None, at
     ]
     motion = _pooled(drift.motion, parts, after_s)
     light, colour = (part.common(motion.velocity) for part in parts)
-    total = Level(drift.total.light + light, drift.total.colour + colour)
+    total = drift.total + Level(light, colour)
     oldest_ns = at_ns - seconds_to_ns(LOCK_S)
     recent = tuple(each for each in drift.recent if each[0] >= oldest_ns)
     return Drift(at_ns, cells, total, (*recent, (drift.at_ns, drift.total)), motion)
@@ -163,8 +163,3 @@ def _smooth(values: FloatMap) -> FloatMap:
     share = cv2.GaussianBlur(known.astype(np.float32), (0, 0), SMOOTHED_CELLS)
     smooth: FloatMap = np.where(known, total / np.maximum(share, 1e-3), np.nan).astype(np.float32)
     return smooth
-
-
-def since(start: Level, end: Level) -> Level:
-    """Return the drift between two totals."""
-    return Level(end.light - start.light, end.colour - start.colour)

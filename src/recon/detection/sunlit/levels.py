@@ -20,6 +20,15 @@ class Level:
     light: float
     colour: float
 
+    def __add__(self, change: "Level") -> "Level":
+        return Level(self.light + change.light, self.colour + change.colour)
+
+    def __sub__(self, other: "Level") -> "Level":
+        return Level(self.light - other.light, self.colour - other.colour)
+
+
+UNCHANGED = Level(0.0, 0.0)
+
 
 def level_of(light: Values, colour: Values) -> Level:
     """Return the modes of both: what most cells (N,) have."""

@@ -32,6 +32,8 @@ STEPS = 0.06, 0.045
 LOWEST = -2.2, -1.0
 """Light and colour of the first bin, relative to the level expected."""
 BINS = 59, 56
+LIGHT_BINS = (LOWEST[0] + STEPS[0] * (np.arange(BINS[0]) + 0.5)).astype(np.float32)
+"""Light in the middle of each bin."""
 REACH = 21, 20
 """Bins to either side of the level expected in which the level is looked for."""
 OUTLIERS = 2e-3
@@ -61,11 +63,11 @@ def spectra_of(shown: Sequence[FloatGrid]) -> Spectra:
     return found
 
 
-def fits(spectra: Spectra, contrast: Contrast) -> FloatGrid:
+def fits(spectra: Spectra, contrast: Contrast, ends_share: float = ENDS_SHARE) -> FloatGrid:
     """Return (K, 2 REACH + 1): the mean log likelihood of each frame's cells for each level."""
     # Rounded: few tables are ever made.
-    rounded = (0.04 * round(part / 0.04) for part in (contrast.light, contrast.colour))
-    found = irfft2(spectra * _spectrum(*rounded), PADDED)
+    light, colour = (0.04 * round(part / 0.04) for part in (contrast.light, contrast.colour))
+    found = irfft2(spectra * _spectrum(light, colour, ends_share), PADDED)
     # A cell's place on the curve moves down as the level goes up.
     return np.ascontiguousarray(found[:, 2 * REACH[0] :: -1, 2 * REACH[1] :: -1])
 
@@ -76,12 +78,12 @@ PADDED = tuple(
 
 
 @lru_cache(maxsize=256)
-def _spectrum(light: float, colour: float) -> Spectra:
-    found: Spectra = rfft2(_log_likelihood(light, colour), PADDED)
+def _spectrum(light: float, colour: float, ends_share: float) -> Spectra:
+    found: Spectra = rfft2(_log_likelihood(light, colour, ends_share), PADDED)
     return found
 
 
-def _log_likelihood(light: float, colour: float) -> FloatGrid:
+def _log_likelihood(light: float, colour: float, ends_share: float) -> FloatGrid:
     """Return (BINS + 2 REACH): the log of how often a cell has this light and colour."""
     axes = [
         low + step * (np.arange(-reach, bins + reach) + 0.5)
@@ -91,7 +93,7 @@ def _log_likelihood(light: float, colour: float) -> FloatGrid:
     # As frequent per noise along the curve: a flat view is explained equally well anywhere on it.
     steps = np.hypot(np.diff(by_light) / LIGHT_NOISE, np.diff(by_colour) / COLOUR_NOISE)
     weight = 0.5 * (np.append(steps, 0.0) + np.append(0.0, steps)) / USUAL_LENGTH
-    weight[[0, -1]] += ENDS_SHARE
+    weight[[0, -1]] += ends_share
 
     def seen(values: npt.NDArray[Any], means: FloatArray, noise: float) -> FloatArray:
         density: FloatArray = np.exp(-0.5 * (np.subtract.outer(values, means) / noise) ** 2)

@@ -9,7 +9,7 @@ from recon.detection.sunlit.colour import CellColour, upsampled
 from recon.detection.sunlit.drift import Drift
 from recon.detection.sunlit.earlier import TakenUp
 from recon.detection.sunlit.keyframes import Keyframe, SunlitLand
-from recon.detection.sunlit.levels import Level
+from recon.detection.sunlit.levels import UNCHANGED, Level
 from recon.model.shade import FloatMap
 
 DETAIL_FRAMES = 40
@@ -54,7 +54,9 @@ class SunlitMemory:
     belief: Belief | None = None
     """In the level of sun, in the latest frame that was read."""
     believed_at_ns: int = 0
-    belief_drift: Level = Level(0.0, 0.0)  # noqa: RUF009
+    correction: Level = UNCHANGED
+    """Of the level of sun that the belief shows, found with the newest keyframe."""
+    belief_drift: Level = UNCHANGED
     """The total drift then."""
     level: Level | None = None
     """Of sun in the latest frame; None where it is open."""

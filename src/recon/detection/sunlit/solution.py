@@ -10,7 +10,7 @@ from recon.detection.sunlit.course import HINT_FLOOR, Course, Stack
 from recon.detection.sunlit.hot_spot import FlatScene, hot_spot, with_detail
 from recon.detection.sunlit.keyframes import Earlier, Keyframe, SunlitLand
 from recon.detection.sunlit.land import FloatStack, land_of
-from recon.detection.sunlit.levels import LEAST_CELLS, Level, level_of
+from recon.detection.sunlit.levels import LEAST_CELLS, UNCHANGED, Level, level_of
 from recon.detection.sunlit.likelihood import REACH, FloatGrid
 from recon.model.shade import MaskMap
 
@@ -44,6 +44,8 @@ class Solution:
     """None while too little was seen."""
     belief: Belief | None
     """In the newest keyframe's level."""
+    correction: Level = UNCHANGED
+    """Of that level, once it is decided: see `Course.refined`."""
 
 
 def solved(
@@ -69,10 +71,12 @@ def solved(
     if levels[-1] is not None:
         land = _with_samples(stack, first, levels, weight)
         beliefs, levels = _levels(stack, land, before, earlier)
+    decided = beliefs[-1].estimate(land.contrast).level
+    correction = UNCHANGED if levels[-1] is None else levels[-1] - decided
     if levels[-1] is None:
         levels = _carried_over(stack, land, before)
     named = (replace(each, level=level) for each, level in zip(kept, levels, strict=True))
-    return Solution(tuple(named), land, beliefs[-1])
+    return Solution(tuple(named), land, beliefs[-1], correction)
 
 
 def _known(seen: MaskMap, before: SunlitLand | None, earlier: Earlier | None) -> MaskMap:
@@ -114,7 +118,7 @@ def _levels(
         levels = [each.level if each.doubt < DOUBT else None for each in found]
         if levels[-1] is not None:
             if not _is_contradicted(stack, land, levels):
-                return beliefs, levels
+                return beliefs, course.refined(land.contrast, levels)
             levels[-1] = None
             beliefs[-1] = replace(beliefs[-1], score=np.zeros_like(beliefs[-1].score))
     return beliefs, levels
@@ -157,10 +161,8 @@ def _carried_over(stack: Stack, land: SunlitLand, before: SunlitLand | None) -> 
         return [None] * len(stack.kept)
     light = float(np.median((before.light - land.light)[both]))
     colour = float(np.median((before.colour - land.colour)[both]))
-    return [
-        None if each.level is None else Level(each.level.light + light, each.level.colour + colour)
-        for each in stack.kept
-    ]
+    by = Level(light, colour)
+    return [None if each.level is None else each.level + by for each in stack.kept]
 
 
 def _by_hot_spot(stack: Stack, land: SunlitLand, before: SunlitLand | None) -> Hints:
@@ -177,7 +179,7 @@ def _by_hot_spot(stack: Stack, land: SunlitLand, before: SunlitLand | None) -> H
             (stack.light[i] - land.light)[cells], (stack.colour[i] - land.colour)[cells]
         )
         by = Contrast(0.0, 0.0) if scene is FlatScene.SUN else land.contrast
-        hints[i] = Level(main.light + by.light, main.colour - by.colour)
+        hints[i] = main + Level(by.light, -by.colour)
     return hints
 
 
