@@ -247,7 +247,8 @@ class _Choice:
         state = self.state
         track, count = sortie(self.plan, route, self.surveyor)
         if track is None:
-            return self._waits("waits: its battery lasts for no row, the way there and the return")
+            text = "waits: its battery lasts for no row, the way there and the return"
+            return self._waits(text, self.settings.retry_s)
         stops_s = self._pace.stop_s * len(track.corners_m)
         ends_s = self._starts_s + track.length_m / self._pace.speed_mps + stops_s
         mission = AssignedMission(
@@ -283,9 +284,11 @@ class _Choice:
         state, given = flying(state, surveyor, mission, ())
         return state, (replace(given, stands_by=True),)
 
-    def _waits(self, text: str) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
-        again_ns = self.now_ns + seconds_to_ns(self.settings.decided_again_s)
-        return self._decided(text, again_ns), ()
+    def _waits(
+        self, text: str, again_s: float | None = None
+    ) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
+        again_s = self.settings.decided_again_s if again_s is None else again_s
+        return self._decided(text, self.now_ns + seconds_to_ns(again_s)), ()
 
     def _decided(self, text: str, again_ns: int = 0) -> SurveyState:
         decisions = {**self.state.decisions, self.surveyor.serial: Decision(text, again_ns)}
