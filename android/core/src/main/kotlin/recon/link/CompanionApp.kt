@@ -68,25 +68,28 @@ class CompanionApp(
 
     fun allowControl() = tasks.add { session.allowControl(it) }
 
+    /** A sentence about the phone, for the station and the person beside it. */
+    fun report(severity: Severity, text: String) = tasks.add { session.report(severity, text, it) }
+
+    /** Ends the app, and with a hover what the aircraft flies for the station: nobody could stop it later. */
     override fun close() {
         isClosed = true
         aircraft.onFrame(null)
-        connection.close()
-        thread.interrupt()
         thread.join(JOIN_MS)
+        connection.close()
         encoderThread.shutdownNow()
     }
 
     private fun run() {
-        try {
-            while (!isClosed) stepIsolated()
-        } catch (_: InterruptedException) {
-            // Closed while it waited.
+        while (!isClosed) isolated(::step)
+        isolated {
+            session.releaseControl(System.nanoTime())
+            session.takeOutputs().filterIsInstance<Output.Execute>().forEach(::carryOut)
         }
     }
 
     /** An error in the app's own code costs one step; the aircraft must not lose its app. */
-    private fun stepIsolated() {
+    private fun isolated(step: () -> Unit) {
         try {
             step()
         } catch (error: RuntimeException) {

@@ -41,9 +41,12 @@ class CompanionSession(val settings: SessionSettings) {
     private val mission = MissionRun(settings)
     private val landing = LandingConfirmation(settings)
     private val video = VideoPacer(settings)
-    private var state: AircraftState? = null
     private var lastMotion: AircraftCommand = AircraftCommand.Hover
     private var wasStale = false
+
+    /** The newest state of the aircraft; null while none is connected. */
+    var state: AircraftState? = null
+        private set
 
     /** Whether the person beside the phone has taken the aircraft from the station. */
     var isReleased = false
@@ -54,6 +57,11 @@ class CompanionSession(val settings: SessionSettings) {
         private set
 
     val isLinkOpen: Boolean get() = link.isOpen
+
+    val hasMission: Boolean get() = mission.isRunning || calls.hasMission
+
+    /** Whether sticks of the station move the aircraft, or are being ended. */
+    val hasStick: Boolean get() = !stick.isIdle
 
     /** Images and telemetry packets that gave way to newer ones because the station reads too slowly. */
     val dropped: Pair<Long, Long> get() = link.droppedImages to link.droppedTelemetry
@@ -125,7 +133,7 @@ class CompanionSession(val settings: SessionSettings) {
     /** The person beside the phone takes the aircraft: what the station started ends with a hover. */
     fun releaseControl(nowNs: Long) {
         isReleased = true
-        val isMoving = !stick.isIdle || mission.isRunning || calls.hasMission
+        val isMoving = hasStick || hasMission
         endMotion()
         if (isMoving) fly(AircraftCommand.Hover, "Hover for the pilot", null, nowNs)
         report(Severity.WARNING, "Control released to the pilot: only stops are accepted", nowNs)
@@ -295,7 +303,8 @@ class CompanionSession(val settings: SessionSettings) {
     private fun freshState(nowNs: Long): AircraftState? =
         state?.takeIf { nowNs - it.updatedNs <= settings.stateTimeoutNs }
 
-    private fun report(severity: Severity, text: String, nowNs: Long) {
+    /** A sentence for the station and for the person beside the phone. */
+    fun report(severity: Severity, text: String, nowNs: Long) {
         link.report(severity, text, nowNs)
         notice(severity, text)
     }

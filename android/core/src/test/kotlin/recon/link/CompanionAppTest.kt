@@ -8,8 +8,10 @@ import recon.aircraft.VideoFrame
 import recon.geo.LatLon
 import recon.session.CompanionSession
 import recon.session.HOVER
+import recon.session.OrdersTest.Companion.STICK
 import recon.session.Output
 import recon.session.SessionSettings
+import recon.session.Severity
 import recon.sim.SimulatedAircraft
 import recon.sim.SimulatedSettings
 import recon.sim.testPicture
@@ -96,6 +98,41 @@ class CompanionAppTest {
     }
 
     @Test
+    fun `control released before the first link is reported by the introduction`() {
+        start(simulated()) { it.releaseControl() }
+        assertTrue(accept().message { it.endsWith("control released to the pilot") }.isNotEmpty())
+    }
+
+    @Test
+    fun `a sentence about the phone reaches the station and the person`() {
+        val companion = start(simulated())
+        val link = accept()
+        assertIs<ExtendedTelemetry>(link.next())
+        companion.report(Severity.WARNING, "Phone battery 12 %")
+        assertEquals("Phone battery 12 %", link.message { it.startsWith("Phone") })
+        assertTrue("Phone battery 12 %" in notices)
+    }
+
+    @Test
+    fun `closing the app ends what the aircraft flies for the station`() {
+        val aircraft = simulated()
+        val commands = CopyOnWriteArrayList<AircraftCommand>()
+        val recorded = object : Aircraft by aircraft {
+            override fun execute(command: AircraftCommand, answered: (Answer) -> Unit) {
+                commands.add(command)
+                aircraft.execute(command, answered)
+            }
+        }
+        val companion = start(recorded)
+        val link = accept()
+        link.write(STICK.copy(timeoutS = 30f))
+        assertEquals(Acknowledgment(1, STICK.pid), link.next { it is Acknowledgment })
+        companion.close()
+        assertIs<AircraftCommand.SetStick>(commands.first())
+        assertEquals(AircraftCommand.Hover, commands.last())
+    }
+
+    @Test
     fun `garbage from the station changes nothing`() {
         start(simulated())
         val link = accept()
@@ -133,7 +170,11 @@ class CompanionAppTest {
 
     private fun simulated() = SimulatedAircraft(settings, testPicture(4, 2)).also { opened.add(it) }
 
-    private fun start(aircraft: Aircraft, settings: SessionSettings = SessionSettings()): CompanionApp {
+    private fun start(
+        aircraft: Aircraft,
+        settings: SessionSettings = SessionSettings(),
+        beforeStart: (CompanionApp) -> Unit = {},
+    ): CompanionApp {
         val listener = object : CompanionListener {
             override fun notice(notice: Output.Notice) {
                 notices.add(notice.text)
@@ -146,6 +187,7 @@ class CompanionAppTest {
         val address = StationAddress("127.0.0.1", server.localPort)
         return CompanionApp(settings, aircraft, address, RawFrameEncoder, listener).also {
             opened.add(it)
+            beforeStart(it)
             it.start()
         }
     }

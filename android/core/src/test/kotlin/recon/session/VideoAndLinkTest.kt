@@ -107,7 +107,9 @@ class VideoAndLinkTest {
     fun `released control ends what the station started, and only stops pass`() {
         val harness = Harness().connect()
         harness.receive(STICK.copy(timeoutS = 30f))
+        assertTrue(harness.session.hasStick && !harness.session.hasMission)
         harness.session.releaseControl(harness.nowNs)
+        assertFalse(harness.session.hasStick)
         harness.settle()
         assertEquals(AircraftCommand.Hover, harness.commands.last())
         assertTrue(harness.session.isReleased)
