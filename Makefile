@@ -13,7 +13,7 @@ RUN := $(UV) run --locked --quiet
 FUZZ_SECONDS ?= 60
 WEB_SOURCES := $(shell find web/src web/public -type f 2>/dev/null) web/index.html web/package.json web/vite.config.ts
 
-.PHONY: help setup demo run test test-rust test-safety test-python test-web test-e2e android test-android study-android fuzz-android coverage check format bench fuzz study mutants docs web clean
+.PHONY: help setup demo run test test-rust test-safety test-python test-web test-e2e android-core android test-android study-android fuzz-android coverage check format bench fuzz study mutants docs web clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -84,11 +84,15 @@ test-e2e: setup web ## Console tests in a headless browser with a running statio
 	@tools/chromium.sh
 	npm --prefix web run e2e --silent
 
-android: ## Build the companion app's core and its runnable jar, with their tests (needs a JDK 17 and Maven)
+android-core: ## Build the companion app's core, its runnable jar and the adapter, with their tests (needs a JDK 17 and Maven)
 	@tools/require.sh java mvn
 	$(MAVEN) verify
 
-test-android: setup android ## The companion app's tests, and its jar against the real station
+android: ## The same, and the app with its APK where the tools for it are
+	@tools/require.sh java mvn
+	$(MAVEN) $$(tools/android.sh) verify
+
+test-android: setup android ## The companion app's tests, its jar against the real station, and its APK
 	$(ANDROID_TESTS)
 
 study-android: setup android fuzz-android ## Long runs of the same: a survey of eight, every bad link, ten minutes without a loss

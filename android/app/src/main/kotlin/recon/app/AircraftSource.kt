@@ -2,6 +2,7 @@ package recon.app
 
 import recon.aircraft.Aircraft
 import recon.geo.LatLon
+import recon.session.Severity
 import recon.sim.SimulatedAircraft
 import recon.sim.SimulatedSettings
 
@@ -13,9 +14,13 @@ interface AircraftSource {
     /** What a person must know about this build before anything else; shown on the first screen. */
     val note: String
 
-    /** The aircraft from now on; its state is null until one is connected. */
-    fun open(): Aircraft
+    /**
+     * The aircraft from now on; its state is null until one is connected. [report] takes sentences about
+     * it for the person, from any thread.
+     */
+    fun open(report: (Severity, String) -> Unit): Aircraft
 
+    /** The connection to the station has ended. */
     fun close()
 }
 
@@ -28,8 +33,8 @@ class SimulatedSource(private val serial: String) : AircraftSource {
     private var aircraft: SimulatedAircraft? = null
 
     /** One aircraft for the life of the process: it goes on flying when the app connects anew. */
-    override fun open(): Aircraft = aircraft ?: SimulatedAircraft(SimulatedSettings(serial, HOME, HOME_ALTITUDE_M))
-        .also { aircraft = it }
+    override fun open(report: (Severity, String) -> Unit): Aircraft =
+        aircraft ?: SimulatedAircraft(SimulatedSettings(serial, HOME, HOME_ALTITUDE_M)).also { aircraft = it }
 
     override fun close() {
         aircraft?.close()

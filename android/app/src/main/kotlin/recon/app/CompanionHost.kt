@@ -106,6 +106,13 @@ class CompanionHost(
 
     private fun notifyObservers() = observers.toList().forEach { it() }
 
+    /** Shows, speaks and logs a sentence, from any thread. */
+    private fun report(severity: Severity, text: String) {
+        log.add(severity.name.lowercase(), text)
+        val message = Message(clockMs(), severity, text)
+        mainThread.post { take(message) }
+    }
+
     private fun take(message: Message) {
         messages = (messages + message).takeLast(MOST_MESSAGES)
         spoken.notice(Output.Notice(message.severity, message.text), message.atMs * NS_PER_MS)
@@ -114,7 +121,7 @@ class CompanionHost(
 
     /** One companion app from start to stop; the listener's functions are called by its thread. */
     private inner class Run(val station: StationAddress) : CompanionListener {
-        val app = CompanionApp(settings.session(source.appName), source.open(), station, JpegEncoder, this) {
+        val app = CompanionApp(settings.session(source.appName), source.open(::report), station, JpegEncoder, this) {
             tune(station, it)
         }
         private val newest = AtomicReference<Status?>()
@@ -122,11 +129,7 @@ class CompanionHost(
 
         val status: Status? get() = newest.get()
 
-        override fun notice(notice: Output.Notice) {
-            log.add(notice.severity.name.lowercase(), notice.text)
-            val message = Message(clockMs(), notice.severity, notice.text)
-            mainThread.post { take(message) }
-        }
+        override fun notice(notice: Output.Notice) = report(notice.severity, notice.text)
 
         override fun changed(session: CompanionSession) {
             val nowNs = System.nanoTime()

@@ -71,6 +71,7 @@ class Screen(private val activity: Activity) {
         show(R.id.aircraft, activity.getString(R.string.aircraft), status.aircraft)
         show(R.id.control, activity.getString(R.string.control), status.control)
         show(R.id.altitude_reference, activity.getString(R.string.altitude_reference), status.altitudeReference)
+        show(R.id.link_loss, activity.getString(R.string.lost_link_choice), status.missionOnLinkLoss)
         show(R.id.last_order, activity.getString(R.string.last_order), status.lastOrder)
         messages.text = host.messages.reversed().take(SHOWN_MESSAGES).joinToString("\n", transform = ::line)
             .ifEmpty { activity.getString(R.string.no_messages) }
@@ -103,6 +104,10 @@ class Screen(private val activity: Activity) {
             Level.CAUTION to (R.color.caution to R.color.on_caution),
             Level.PROBLEM to (R.color.problem to R.color.on_problem),
         )
-        val CONNECTING = Status(Row("Connecting"), Row("-"), Row("-"), Row("-"), Row("-"), false, false)
+        val NOTHING = Row("-")
+        val CONNECTING = Status(
+            Row("Connecting"), NOTHING, NOTHING, NOTHING, NOTHING, NOTHING,
+            isReleased = false, isFlyingForStation = false,
+        )
     }
 }

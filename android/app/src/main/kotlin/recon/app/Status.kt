@@ -4,6 +4,7 @@ import recon.aircraft.AircraftState
 import recon.aircraft.AltitudeReference
 import recon.aircraft.BatteryWarning
 import recon.session.CompanionSession
+import recon.session.LinkLossAction
 import kotlin.math.roundToInt
 
 /** How a row of the screen is marked; its words state the same. */
@@ -17,6 +18,7 @@ data class Status(
     val aircraft: Row,
     val control: Row,
     val altitudeReference: Row,
+    val missionOnLinkLoss: Row,
     val lastOrder: Row,
     val isReleased: Boolean,
     /** Whether the aircraft flies something for the station. */
@@ -29,6 +31,7 @@ fun statusOf(session: CompanionSession, nowNs: Long): Status = Status(
     aircraft = aircraftRow(session.state, nowNs - session.settings.stateTimeoutNs),
     control = controlRow(session),
     altitudeReference = altitudeRow(session.settings.altitudeReference),
+    missionOnLinkLoss = linkLossRow(session.settings.missionOnLinkLoss),
     lastOrder = Row(session.lastOrder.ifEmpty { "None yet" }),
     isReleased = session.isReleased,
     isFlyingForStation = session.hasMission || session.hasStick,
@@ -50,7 +53,7 @@ private fun batteryLevel(warning: BatteryWarning): Level = when (warning) {
 }
 
 private fun controlRow(session: CompanionSession): Row = when {
-    session.isReleased -> Row("Pilot: released, station may only stop", Level.CAUTION)
+    session.isReleased -> Row("Pilot: released", Level.CAUTION)
     session.hasStick -> Row("Station: virtual stick")
     session.hasMission -> Row("Station: mission")
     session.isLinkOpen -> Row("Station")
@@ -60,4 +63,10 @@ private fun controlRow(session: CompanionSession): Row = when {
 private fun altitudeRow(reference: AltitudeReference): Row = when (reference) {
     AltitudeReference.TAKEOFF -> Row("Above takeoff")
     AltitudeReference.WGS84 -> Row("WGS84", Level.CAUTION)
+}
+
+private fun linkLossRow(action: LinkLossAction): Row = when (action) {
+    LinkLossAction.CONTINUE -> Row("Continue", Level.CAUTION)
+    LinkLossAction.HOLD -> Row("Hold")
+    LinkLossAction.RETURN -> Row("Return")
 }

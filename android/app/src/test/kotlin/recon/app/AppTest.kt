@@ -251,7 +251,7 @@ class AppTest {
 
     /** Takes off as the pilot would, and has the station steer. */
     private fun fly() {
-        application.source.open().execute(AircraftCommand.TakeOff) {}
+        application.source.open { _, _ -> }.execute(AircraftCommand.TakeOff) {}
         station.next { it is CoreTelemetry && it.isFlying == 1 }
         station.send(VirtualStickCommand(0, 90f, 0f, 0f, 5f, 60f))
     }

@@ -10,6 +10,7 @@ import recon.aircraft.FlightMode
 import recon.aircraft.VelocityNed
 import recon.geo.LatLon
 import recon.session.CompanionSession
+import recon.session.LinkLossAction
 import recon.session.Output
 import recon.session.SessionSettings
 import recon.session.Severity
@@ -74,16 +75,21 @@ class StatusTest {
         assertTrue(statusOf(session, 0).isFlyingForStation)
         assertEquals(Row("Stick"), statusOf(session, 0).lastOrder)
         session.releaseControl(0)
-        assertEquals(Row("Pilot: released, station may only stop", Level.CAUTION), control())
+        assertEquals(Row("Pilot: released", Level.CAUTION), control())
         assertFalse(statusOf(session, 0).isFlyingForStation)
         session.received(encode(EmergencyCommand(EmergencyCommand.LAND)), 0)
         assertEquals(Row("Land"), statusOf(session, 0).lastOrder)
     }
 
     @Test
-    fun `the reference that most stations do not expect is marked`() {
-        val wgs84 = CompanionSession(SessionSettings(altitudeReference = AltitudeReference.WGS84))
-        assertEquals(Row("WGS84", Level.CAUTION), statusOf(wgs84, 0).altitudeReference)
+    fun `settings that are less usual or less safe are marked`() {
+        val settings = SessionSettings(AltitudeReference.WGS84, LinkLossAction.CONTINUE)
+        val status = statusOf(CompanionSession(settings), 0)
+        assertEquals(Row("WGS84", Level.CAUTION), status.altitudeReference)
+        assertEquals(Row("Continue", Level.CAUTION), status.missionOnLinkLoss)
+        assertEquals(Row("Hold"), statusOf(session, 0).missionOnLinkLoss)
+        val returning = CompanionSession(SessionSettings(missionOnLinkLoss = LinkLossAction.RETURN))
+        assertEquals(Row("Return"), statusOf(returning, 0).missionOnLinkLoss)
     }
 
     private fun aircraft(state: AircraftState, nowNs: Long = 0): Row {
