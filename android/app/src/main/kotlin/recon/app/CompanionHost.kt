@@ -10,6 +10,7 @@ import recon.session.Output
 import recon.session.Severity
 import java.net.Socket
 import java.util.concurrent.Executor
+import java.util.concurrent.atomic.AtomicBoolean
 import java.util.concurrent.atomic.AtomicReference
 
 /** A sentence with the time it came, milliseconds since 1970. */
@@ -37,6 +38,10 @@ class CompanionHost(
 ) {
     private var run: Run? = null
     private val observers = mutableListOf<() -> Unit>()
+
+    /** Messages that the main thread has not taken yet; under a flood the oldest go. */
+    private val arrived = ArrayDeque<Message>()
+    private val isNewsPosted = AtomicBoolean()
 
     /** The newest last, at most [MOST_MESSAGES]. */
     var messages: List<Message> = emptyList()
@@ -109,13 +114,23 @@ class CompanionHost(
     /** Shows, speaks and logs a sentence, from any thread. */
     private fun report(severity: Severity, text: String) {
         log.add(severity.name.lowercase(), text)
-        val message = Message(clockMs(), severity, text)
-        mainThread.post { take(message) }
+        synchronized(arrived) {
+            arrived += Message(clockMs(), severity, text)
+            if (arrived.size > MOST_MESSAGES) arrived.removeFirst()
+        }
+        postNews()
     }
 
-    private fun take(message: Message) {
-        messages = (messages + message).takeLast(MOST_MESSAGES)
-        spoken.notice(Output.Notice(message.severity, message.text), message.atMs * NS_PER_MS)
+    /** However much comes, one task waits for the main thread. */
+    private fun postNews() {
+        if (isNewsPosted.compareAndSet(false, true)) mainThread.post(::takeNews)
+    }
+
+    private fun takeNews() {
+        isNewsPosted.set(false)
+        val news = synchronized(arrived) { arrived.toList().also { arrived.clear() } }
+        messages = (messages + news).takeLast(MOST_MESSAGES)
+        news.forEach { spoken.notice(it.severity, it.text, it.atMs) }
         notifyObservers()
     }
 
@@ -134,7 +149,7 @@ class CompanionHost(
         override fun changed(session: CompanionSession) {
             val nowNs = System.nanoTime()
             val status = statusOf(session, nowNs)
-            if (status != newest.getAndSet(status)) mainThread.post(::notifyObservers)
+            if (status != newest.getAndSet(status)) postNews()
             if (nowNs - loggedNs < LOG_PERIOD_NS) return
             loggedNs = nowNs
             log.add("state", stateLine(session))
@@ -150,7 +165,6 @@ class CompanionHost(
 
     private companion object {
         const val MOST_MESSAGES = 20
-        const val NS_PER_MS = 1_000_000L
         const val LOG_PERIOD_NS = 1_000_000_000L
     }
 }

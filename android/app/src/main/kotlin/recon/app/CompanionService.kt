@@ -71,6 +71,7 @@ class CompanionService : Service() {
         host.stop()
     }
 
+    @NewerAndroid
     private fun showInForeground() {
         val channel = NotificationChannel(CHANNEL, getString(R.string.channel), NotificationManager.IMPORTANCE_LOW)
         getSystemService(NotificationManager::class.java).createNotificationChannel(channel)

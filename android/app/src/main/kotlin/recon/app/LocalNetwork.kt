@@ -50,6 +50,7 @@ class LocalNetwork(connectivity: ConnectivityManager) {
             properties.routes.any { !it.isDefaultRoute && it.matches(address) }
 
         /** An address in digits; names are left to Android. */
+        @NewerAndroid
         private fun numeric(host: String): InetAddress? = when {
             Build.VERSION.SDK_INT < Build.VERSION_CODES.Q -> DIGITS.find(host)?.let { InetAddress.getByName(host) }
             InetAddresses.isNumericAddress(host) -> InetAddresses.parseNumericAddress(host)

@@ -54,6 +54,7 @@ class PhoneMonitor(private val context: Context, private val report: (PhoneWarni
     }
     private var stopThermal: () -> Unit = {}
 
+    @NewerAndroid
     fun start() {
         // The broadcast is sticky: the first one comes at once.
         context.registerReceiver(battery, IntentFilter(Intent.ACTION_BATTERY_CHANGED))

@@ -73,6 +73,8 @@ class Screen(private val activity: Activity) {
         show(R.id.altitude_reference, activity.getString(R.string.altitude_reference), status.altitudeReference)
         show(R.id.link_loss, activity.getString(R.string.lost_link_choice), status.missionOnLinkLoss)
         show(R.id.last_order, activity.getString(R.string.last_order), status.lastOrder)
+        activity.findViewById<View>(R.id.hover_row).visibility = visible(status.hoverOnGround != null)
+        status.hoverOnGround?.let { show(R.id.hover_row, activity.getString(R.string.hover_choice), it) }
         messages.text = host.messages.reversed().take(SHOWN_MESSAGES).joinToString("\n", transform = ::line)
             .ifEmpty { activity.getString(R.string.no_messages) }
     }
@@ -106,7 +108,7 @@ class Screen(private val activity: Activity) {
         )
         val NOTHING = Row("-")
         val CONNECTING = Status(
-            Row("Connecting"), NOTHING, NOTHING, NOTHING, NOTHING, NOTHING,
+            Row("Connecting"), NOTHING, NOTHING, NOTHING, NOTHING, hoverOnGround = null, lastOrder = NOTHING,
             isReleased = false, isFlyingForStation = false,
         )
     }

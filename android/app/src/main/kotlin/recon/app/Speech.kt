@@ -2,7 +2,6 @@ package recon.app
 
 import android.content.Context
 import android.speech.tts.TextToSpeech
-import recon.session.Output
 import recon.session.Severity
 import java.util.Locale
 
@@ -11,21 +10,24 @@ fun interface Voice {
     fun say(text: String, isUrgent: Boolean)
 }
 
-/** Which sentences are spoken: warnings and errors, the same one at most every ten seconds. */
+/**
+ * Which sentences are spoken: warnings and errors, the same one at most every ten seconds, and no more in
+ * that time than can be listened to.
+ */
 class SpokenWarnings(private val voice: Voice) {
-    private val spokenNs = LinkedHashMap<String, Long>()
+    private val spokenMs = LinkedHashMap<String, Long>()
 
-    fun notice(notice: Output.Notice, nowNs: Long) {
-        if (notice.severity == Severity.INFO) return
-        val last = spokenNs[notice.text]
-        if (last != null && nowNs - last < PAUSE_NS) return
-        spokenNs.entries.removeAll { nowNs - it.value >= PAUSE_NS }
-        spokenNs[notice.text] = nowNs
-        voice.say(notice.text, isUrgent = notice.severity == Severity.ERROR)
+    fun notice(severity: Severity, text: String, nowMs: Long) {
+        if (severity == Severity.INFO) return
+        spokenMs.entries.removeAll { nowMs - it.value >= PAUSE_MS }
+        if (text in spokenMs || spokenMs.size >= MOST_IN_PAUSE) return
+        spokenMs[text] = nowMs
+        voice.say(text, isUrgent = severity == Severity.ERROR)
     }
 
     private companion object {
-        const val PAUSE_NS = 10_000_000_000L
+        const val PAUSE_MS = 10_000L
+        const val MOST_IN_PAUSE = 5
     }
 }
 

@@ -4,6 +4,7 @@ import recon.aircraft.AircraftState
 import recon.aircraft.AltitudeReference
 import recon.aircraft.BatteryWarning
 import recon.session.CompanionSession
+import recon.session.HoverOnGround
 import recon.session.LinkLossAction
 import kotlin.math.roundToInt
 
@@ -19,6 +20,8 @@ data class Status(
     val control: Row,
     val altitudeReference: Row,
     val missionOnLinkLoss: Row,
+    /** Null for the usual setting: hover is ignored on the ground. */
+    val hoverOnGround: Row?,
     val lastOrder: Row,
     val isReleased: Boolean,
     /** Whether the aircraft flies something for the station. */
@@ -32,6 +35,7 @@ fun statusOf(session: CompanionSession, nowNs: Long): Status = Status(
     control = controlRow(session),
     altitudeReference = altitudeRow(session.settings.altitudeReference),
     missionOnLinkLoss = linkLossRow(session.settings.missionOnLinkLoss),
+    hoverOnGround = Row("Takes off", Level.CAUTION).takeIf { session.settings.hoverOnGround == HoverOnGround.TAKEOFF },
     lastOrder = Row(session.lastOrder.ifEmpty { "None yet" }),
     isReleased = session.isReleased,
     isFlyingForStation = session.hasMission || session.hasStick,

@@ -166,6 +166,16 @@ class AppTest {
     }
 
     @Test
+    fun `a station that floods the app with orders is answered, and the screen keeps the newest messages`() {
+        val screen = connect()
+        repeat(2_000) { station.send(EmergencyCommand(it % 200 + 3)) }
+        station.send(EmergencyCommand(EmergencyCommand.HOVER))
+        station.message("On the ground: hover is ignored")
+        await { "hover is ignored" in screen.text(R.id.messages) }
+        assertTrue(application.host.messages.size <= 20)
+    }
+
+    @Test
     fun `disconnecting asks first while the aircraft flies for the station`() {
         val screen = connect()
         station.next { it is ExtendedTelemetry }

@@ -10,8 +10,8 @@ import recon.aircraft.FlightMode
 import recon.aircraft.VelocityNed
 import recon.geo.LatLon
 import recon.session.CompanionSession
+import recon.session.HoverOnGround
 import recon.session.LinkLossAction
-import recon.session.Output
 import recon.session.SessionSettings
 import recon.session.Severity
 import recon.wire.EmergencyCommand
@@ -83,10 +83,12 @@ class StatusTest {
 
     @Test
     fun `settings that are less usual or less safe are marked`() {
-        val settings = SessionSettings(AltitudeReference.WGS84, LinkLossAction.CONTINUE)
+        val settings = SessionSettings(AltitudeReference.WGS84, LinkLossAction.CONTINUE, HoverOnGround.TAKEOFF)
         val status = statusOf(CompanionSession(settings), 0)
         assertEquals(Row("WGS84", Level.CAUTION), status.altitudeReference)
         assertEquals(Row("Continue", Level.CAUTION), status.missionOnLinkLoss)
+        assertEquals(Row("Takes off", Level.CAUTION), status.hoverOnGround)
+        assertNull(statusOf(session, 0).hoverOnGround)
         assertEquals(Row("Hold"), statusOf(session, 0).missionOnLinkLoss)
         val returning = CompanionSession(SessionSettings(missionOnLinkLoss = LinkLossAction.RETURN))
         assertEquals(Row("Return"), statusOf(returning, 0).missionOnLinkLoss)
@@ -106,16 +108,22 @@ class SpokenWarningsTest {
 
     @Test
     fun `warnings are spoken and errors interrupt them, information is not`() {
-        spoken.notice(Output.Notice(Severity.INFO, "Connected to the station"), 0)
-        spoken.notice(Output.Notice(Severity.WARNING, "Link to the station lost"), 0)
-        spoken.notice(Output.Notice(Severity.ERROR, "Mission refused"), 0)
+        spoken.notice(Severity.INFO, "Connected to the station", 0)
+        spoken.notice(Severity.WARNING, "Link to the station lost", 0)
+        spoken.notice(Severity.ERROR, "Mission refused", 0)
         assertEquals(listOf("Link to the station lost" to false, "Mission refused" to true), said)
     }
 
     @Test
     fun `the same sentence is spoken once in ten seconds`() {
-        for (second in 0L..20L) spoken.notice(Output.Notice(Severity.WARNING, "No station"), second * SECOND_NS)
+        for (second in 0L..20L) spoken.notice(Severity.WARNING, "No station", second * 1_000)
         assertEquals(3, said.size)
+    }
+
+    @Test
+    fun `a flood of warnings is not spoken to its end`() {
+        repeat(1_000) { spoken.notice(Severity.WARNING, "Refused: $it", 0) }
+        assertEquals(5, said.size)
     }
 }
 

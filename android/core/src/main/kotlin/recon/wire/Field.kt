@@ -1,5 +1,6 @@
 package recon.wire
 
+import java.nio.Buffer
 import java.nio.ByteBuffer
 
 /**
@@ -51,7 +52,7 @@ class FieldReader(bytes: ByteArray, from: Int = 0, to: Int = bytes.size) {
     }
 
     fun skip(count: Int) {
-        wanted(count).position(buffer.position() + count)
+        advance(wanted(count), count)
     }
 
     private fun wanted(count: Int): ByteBuffer {
@@ -106,7 +107,7 @@ class FieldWriter {
     fun bytes(value: Bytes) {
         room(value.size)
         value.copyTo(buffer.array(), buffer.position())
-        buffer.position(buffer.position() + value.size)
+        advance(buffer, value.size)
     }
 
     fun toByteArray(): ByteArray = buffer.array().copyOf(buffer.position())
@@ -127,8 +128,13 @@ class FieldWriter {
     private fun room(count: Int): ByteBuffer {
         if (buffer.remaining() < count) {
             val capacity = maxOf(2 * buffer.capacity(), buffer.position() + count)
-            buffer = ByteBuffer.allocate(capacity).put(buffer.flip())
+            buffer = ByteBuffer.allocate(capacity).put(buffer.array(), 0, buffer.position())
         }
         return buffer
     }
+}
+
+/** As a [Buffer]: Android 8 and 9 lack the same function of [ByteBuffer], to which the compiler would refer. */
+private fun advance(buffer: Buffer, count: Int) {
+    buffer.position(buffer.position() + count)
 }
