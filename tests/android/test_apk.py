@@ -1,4 +1,4 @@
-"""The APK as a phone would judge it, by Debian's Android tools: `make android` builds it where they are."""
+"""The APK as a phone would judge it: `make android` builds it where its tools are."""
 
 import re
 import subprocess
@@ -19,7 +19,9 @@ PERMISSIONS = {
     "POST_NOTIFICATIONS",
     "WAKE_LOCK",
 }
-pytestmark = pytest.mark.skipif(not APK.is_file(), reason="no APK: its tools are missing, see make android")
+pytestmark = pytest.mark.skipif(
+    not APK.is_file(), reason="no APK: its tools are missing, see make android"
+)
 
 
 def _run(*command: str | Path) -> subprocess.CompletedProcess[str]:
@@ -45,7 +47,9 @@ def test_its_manifest_says_what_it_is_and_asks_for_no_more_than_it_needs() -> No
     assert lines[0].startswith("package: name='recon.app' ")
     assert "sdkVersion:'26'" in lines
     assert "targetSdkVersion:'34'" in lines
-    assert any(line.startswith("launchable-activity: name='recon.app.MainActivity'") for line in lines)
+    assert any(
+        line.startswith("launchable-activity: name='recon.app.MainActivity'") for line in lines
+    )
     assert "application-debuggable" not in lines
     asked = re.findall(r"uses-permission: name='android\.permission\.(\w+)'", badging.stdout)
     assert set(asked) == PERMISSIONS

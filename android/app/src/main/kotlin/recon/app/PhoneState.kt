@@ -52,22 +52,28 @@ class PhoneMonitor(private val context: Context, private val report: (PhoneWarni
     private val battery = object : BroadcastReceiver() {
         override fun onReceive(context: Context, intent: Intent) = batteryChanged(intent)
     }
-    private var stopThermal: () -> Unit = {}
 
-    @NewerAndroid
+    /** The listener; Android 8 does not have its type. */
+    private var heat: Any? = null
+
     fun start() {
         // The broadcast is sticky: the first one comes at once.
         context.registerReceiver(battery, IntentFilter(Intent.ACTION_BATTERY_CHANGED))
-        if (Build.VERSION.SDK_INT >= Build.VERSION_CODES.Q) {
-            val listener = PowerManager.OnThermalStatusChangedListener { state.thermal(it)?.let(report) }
-            power.addThermalStatusListener(listener)
-            stopThermal = { power.removeThermalStatusListener(listener) }
-        }
+        if (Build.VERSION.SDK_INT >= Build.VERSION_CODES.Q) listenToHeat()
     }
 
+    @NewerAndroid
+    private fun listenToHeat() {
+        val listener = PowerManager.OnThermalStatusChangedListener { state.thermal(it)?.let(report) }
+        power.addThermalStatusListener(listener)
+        heat = listener
+    }
+
+    @NewerAndroid
     fun stop() {
         context.unregisterReceiver(battery)
-        stopThermal()
+        val listener = heat as? PowerManager.OnThermalStatusChangedListener ?: return
+        power.removeThermalStatusListener(listener)
     }
 
     private fun batteryChanged(intent: Intent) {
