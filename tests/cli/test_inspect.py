@@ -1,19 +1,24 @@
-"""`recon inspect` on bare streams, captures and damage."""
+"""`recon inspect` on bare streams, flight records, network captures and damage."""
 
 import io
 import json
+import struct
 import subprocess
 import sys
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
 import typer
+from hypothesis import given
+from hypothesis import strategies as st
 
 from recon import wire
 from recon.cli.inspect import inspect, inspect_command, printable_bytes
-from recon.link.capture import MAGIC, RECORD_HEADER
+from recon.record.link_bytes import LINKS_TOPIC, LinkMessage
+from recon.record.mcap_file import McapFile
 
 ACK = wire.encode(wire.Acknowledgment(positive=1, source_pid=253))
 HOVER = wire.encode(wire.EmergencyCommand(action=0))
@@ -32,8 +37,45 @@ def objects(stream: bytes) -> list[dict[str, Any]]:
     return [json.loads(line) for line in out.getvalue().splitlines()]
 
 
-def record(time_ns: int, direction: int, data: bytes) -> bytes:
-    return RECORD_HEADER.pack(time_ns, direction, len(data)) + data
+def flight_record(path: Path, *reads: tuple[int, int, bool, bytes]) -> bytes:
+    """A record of reads: time in ns, link, whether from its app, bytes."""
+    file = McapFile(path / "a.mcap", "test")
+    channel = file.add_channel(LINKS_TOPIC, "msgpack")
+    for number, (at_ns, *read) in enumerate(reads):
+        data = msgspec.msgpack.encode(LinkMessage(*read))
+        file.add_message(channel, number, at_ns, data)
+    file.finish()
+    return (path / "a.mcap").read_bytes()
+
+
+def tcp(seq: int, data: bytes, from_port: int = 40000, to_port: int = 3001, syn: int = 0) -> bytes:
+    """An Ethernet frame with a TCP segment over IPv4."""
+    segment = struct.pack(">HHIIBBHHH", from_port, to_port, seq, 0, 5 << 4, syn, 0, 0, 0) + data
+    addresses = bytes([10, 0, 0, 5, 10, 0, 0, 1])
+    head = struct.pack(">BBHIBBH", 0x45, 0, 20 + len(segment), 0, 64, 6, 0) + addresses
+    return bytes(12) + b"\x08\x00" + head + segment
+
+
+def pcap(*packets: bytes, order: str = "<") -> bytes:
+    data = struct.pack(f"{order}IHHiIII", 0xA1B2C3D4, 2, 4, 0, 0, 65535, 1)
+    for number, packet in enumerate(packets):
+        data += struct.pack(f"{order}4I", 7, number * 1000, len(packet), len(packet)) + packet
+    return data
+
+
+def pcapng(*packets: bytes) -> bytes:
+    def block(kind: int, body: bytes) -> bytes:
+        body += bytes(-len(body) % 4)
+        size = struct.pack("<I", len(body) + 12)
+        return struct.pack("<I", kind) + size + body + size
+
+    data = block(0x0A0D0D0A, struct.pack("<IHHq", 0x1A2B3C4D, 1, 0, -1))
+    # One interface, Ethernet, whose times are in nanoseconds.
+    data += block(1, struct.pack("<HHI", 1, 0, 0) + struct.pack("<HHB3x", 9, 1, 9))
+    for packet in packets:
+        head = struct.pack("<5I", 0, 0, 123, len(packet), len(packet))
+        data += block(6, head + packet)
+    return data
 
 
 def test_a_bare_stream_shows_each_packet_and_the_counters() -> None:
@@ -94,35 +136,94 @@ def test_a_mission_shows_its_waypoints() -> None:
     assert shown["fields"]["waypoints"][0]["loiter_time_s"] == "nan"
 
 
-def test_a_capture_shows_times_and_keeps_the_directions_apart() -> None:
-    capture = (
-        MAGIC
-        + record(1_500_000_000, 0, ACK[:5])
-        + record(1_600_000_000, 1, HOVER)
-        + record(1_700_000_000, 0, ACK[5:])
+def test_a_record_shows_times_and_keeps_the_directions_apart(tmp_path: Path) -> None:
+    record = flight_record(
+        tmp_path,
+        (1_500_000_000, 3, True, ACK[:5]),
+        (1_600_000_000, 3, False, HOVER),
+        (1_700_000_000, 3, True, ACK[5:]),
+    )
+    shown = lines(record)
+    assert shown[0] == "1.600000 s  link 3 to app  EmergencyCommand action=0"
+    assert shown[1] == "1.700000 s  link 3 from app  Acknowledgment positive=1 source_pid=253"
+    assert [line.split(":")[0] for line in shown[2:]] == ["link 3 from app", "link 3 to app"]
+    [first, *_] = objects(record)
+    assert (first["time_ns"], first["stream"]) == (1_600_000_000, "link 3 to app")
+
+
+def test_a_record_that_was_cut_shows_what_is_whole(tmp_path: Path) -> None:
+    record = flight_record(tmp_path, (0, 1, True, ACK), (2**63, 1, True, HOVER))
+    end = record.index(b"zstd") + 120
+    shown = lines(record[:end])
+    assert shown[0].endswith("Acknowledgment positive=1 source_pid=253")
+    assert shown[-1].startswith("the file ends without MCAP's summary")
+
+
+@pytest.mark.parametrize("order", ["<", ">"])
+def test_streams_of_a_network_capture_are_put_in_order(order: str) -> None:
+    capture = pcap(
+        tcp(99, b"", syn=2),
+        tcp(105, ACK[5:]),
+        tcp(100, ACK[:5]),
+        tcp(100, ACK[:5]),
+        tcp(500, HOVER, 3001, 40000),
+        b"no packet",
+        order=order,
     )
     shown = lines(capture)
-    assert shown[0] == "1.600000 s  to app    EmergencyCommand action=0"
-    assert shown[1] == "1.700000 s  from app  Acknowledgment positive=1 source_pid=253"
-    assert [line.split(":")[0] for line in shown[2:]] == ["from app", "to app"]
-    [first, *_] = objects(capture)
-    assert (first["time_ns"], first["direction"]) == (1_600_000_000, "to_app")
-
-
-@pytest.mark.parametrize("cut", range(1, len(record(0, 0, HOVER))))
-def test_a_truncated_last_record_is_tolerated(cut: int) -> None:
-    capture = MAGIC + record(0, 0, ACK) + record(2**64 - 1, 0, HOVER)
-    shown = lines(capture[:-cut])
-    assert shown[0].endswith("Acknowledgment positive=1 source_pid=253")
-    assert len(shown) == 2
-
-
-def test_a_damaged_capture_is_located() -> None:
-    shown = lines(MAGIC + record(0, 1, HOVER) + record(0, 7, ACK))
-    assert shown[0].endswith("EmergencyCommand action=0")
-    assert shown[-1] == (
-        "the capture is damaged at byte 33: expected direction 0 or 1, got 7; the rest is skipped"
+    assert shown[0] == (
+        "7.002000 s  10.0.0.5:40000 > 10.0.0.1:3001  Acknowledgment positive=1 source_pid=253"
     )
+    assert shown[1].endswith("10.0.0.5:3001 > 10.0.0.1:40000  EmergencyCommand action=0")
+    assert shown[2].startswith("10.0.0.5:40000 > 10.0.0.1:3001: packets 1")
+
+
+def test_a_stream_goes_on_behind_a_gap_that_is_never_filled() -> None:
+    shown = lines(pcap(tcp(0, ACK), tcp(500, HOVER)))
+    assert [line.split("  ")[-1].split(" ")[0] for line in shown[:2]] == [
+        "Acknowledgment",
+        "EmergencyCommand",
+    ]
+
+
+def test_numbers_of_a_stream_wrap_around() -> None:
+    shown = lines(pcap(tcp(2**32 - 5, ACK[:5]), tcp(0, ACK[5:])))
+    assert "Acknowledgment" in shown[0]
+
+
+def test_pcapng_states_the_unit_of_its_times() -> None:
+    [first, *_] = objects(pcapng(tcp(0, HOVER)))
+    assert (first["packet"], first["time_ns"]) == ("EmergencyCommand", 123)
+
+
+@given(st.binary(max_size=200), st.sampled_from([pcap(), pcapng(), b"\x89MCAP0\r\n"]))
+def test_any_bytes_behind_a_files_beginning_are_no_crash(data: bytes, start: bytes) -> None:
+    assert lines(start + data)[-1:] != [""] or not data
+
+
+@given(st.data())
+def test_a_damaged_capture_is_no_crash(data: st.DataObject) -> None:
+    whole = bytearray(
+        pcapng(tcp(0, ACK), tcp(10, HOVER))
+        if data.draw(st.booleans())
+        else pcap(tcp(0, ACK), tcp(10, HOVER))
+    )
+    at = data.draw(st.integers(4, len(whole) - 1))
+    whole[at] = data.draw(st.integers(0, 255))
+    lines(bytes(whole[: data.draw(st.integers(0, len(whole)))]))
+
+
+def test_bytes_without_a_packet_are_an_error(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "text").write_bytes(b"no packet at all")
+    (tmp_path / "good").write_bytes(HOVER)
+    with pytest.raises(typer.Exit) as left:
+        inspect_command([str(tmp_path / "text"), str(tmp_path / "good")])
+    assert left.value.exit_code == 1
+    output = capsys.readouterr()
+    assert output.err.endswith("text holds no packet of the protocol\n")
+    assert "EmergencyCommand" in output.out
 
 
 def test_a_missing_file_is_one_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -8,9 +8,9 @@ from typing import TypeVar
 
 import uvloop
 
-from recon.link.capture import Capture
 from recon.link.server import LinkServer
 from recon.link.settings import LinkSettings
+from recon.link.tap import Tap
 from recon.model.event import Event, LinkClosed, LinkOpened, PacketReceived
 from recon.model.report import Report
 
@@ -39,11 +39,11 @@ def run_on(loop: str, main: Callable[[], Awaitable[None]]) -> None:
 class Listening:
     """A server whose events are kept; `react` may act on each, as the station does."""
 
-    def __init__(self, settings: LinkSettings, capture: Capture | None = None) -> None:
+    def __init__(self, settings: LinkSettings, tap: Tap | None = None) -> None:
         self.events: list[Event] = []
         self.times_ns: list[int] = []
         self.react: Callable[[Event], None] = lambda event: None
-        self.server = LinkServer(self._handle, self._now_ns, settings, capture)
+        self.server = LinkServer(self._handle, self._now_ns, settings, tap)
         self._changed = asyncio.Event()
         self._ahead_ns = 0
 
@@ -91,10 +91,10 @@ class Listening:
 
 @asynccontextmanager
 async def listening(
-    settings: LinkSettings | None = None, capture: Capture | None = None
+    settings: LinkSettings | None = None, tap: Tap | None = None
 ) -> AsyncIterator[Listening]:
     """Listen on a free port; nothing stays open afterwards."""
-    station = Listening(settings or LinkSettings(), capture)
+    station = Listening(settings or LinkSettings(), tap)
     await station.server.start("127.0.0.1", 0)
     try:
         yield station

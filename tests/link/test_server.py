@@ -13,9 +13,9 @@ from tests.link.approved import MS, ack, approved, core, extended, mission, stic
 from tests.link.harness import LOOPS, PATIENCE_S, Listening, close, listening, run_on
 
 from recon import wire
-from recon.link.capture import Capture
 from recon.link.server import LinkServer
 from recon.link.settings import LinkSettings
+from recon.link.tap import Direction
 from recon.model.command import Hover, LandNow, Phase, StartCamera
 from recon.model.event import (
     CommandDropped,
@@ -501,11 +501,14 @@ class TestServer:
 
         run_on(loop, main)
 
-    def test_the_capture_holds_both_directions(self, loop: str, tmp_path: Path) -> None:
+    def test_the_tap_gets_both_directions(self, loop: str) -> None:
         async def main() -> None:
-            capture = Capture(tmp_path, "run", MIB)
-            capture.start()
-            async with listening(capture=capture) as station:
+            taken: list[tuple[int, Direction, bytes]] = []
+            async with listening(
+                tap=lambda link_id, direction, data, _at_ns: taken.append(
+                    (link_id, direction, data)
+                )
+            ) as station:
                 link_id, reader, writer = await station.connect()
                 writer.write(core())
                 await station.until(lambda: len(station.reports(link_id)) == 1)
@@ -513,11 +516,9 @@ class TestServer:
                 assert isinstance(await packet_from(reader), wire.EmergencyCommand)
                 await close(writer)
                 await station.until(lambda: station.closed_reason(link_id) is not None)
-            capture.close()
-            (path,) = tmp_path.iterdir()
-            data = path.read_bytes()
-            assert core() in data
-            assert bytes.fromhex("daa70000000aff008a7d") in data
+            assert (link_id, Direction.FROM_APP, core()) in taken
+            hover = bytes.fromhex("daa70000000aff008a7d")
+            assert (link_id, Direction.TO_APP, hover) in taken
 
         run_on(loop, main)
 

@@ -52,8 +52,10 @@ def numbers(path: Path) -> dict[str, list[int]]:
         for _schema, channel, message in reader.iter_messages():
             found.setdefault(channel.topic, []).append(message.sequence)
             assert message.data == content(channel.id, message.sequence)
-        counts = {summary.channels[n].topic: c for n, c in
-                  summary.statistics.channel_message_counts.items()}
+        counts = {
+            summary.channels[n].topic: c
+            for n, c in summary.statistics.channel_message_counts.items()
+        }
     assert counts == {topic: len(each) for topic, each in found.items()}
     return found
 

@@ -107,6 +107,9 @@ COMMANDS = {
         "verify:verify_command",
         "Run all forecast methods over recorded maps and compare them with what came.",
     ),
+    "replay": CommandSource(
+        "replay:replay_command", "Run a recorded flight again and compare every output."
+    ),
     "inspect": CommandSource("inspect:inspect_command", "Print the packets of a captured stream."),
     "openapi": CommandSource("run:openapi_command", "Print the API's OpenAPI document."),
 }

@@ -1,4 +1,8 @@
-"""`recon inspect`: the packets of a captured byte stream, one per line or as JSON lines."""
+"""`recon inspect`: the packets in a file, one per line or as JSON lines.
+
+A flight record (MCAP) and a network capture (pcap, pcapng) hold several streams, each with its own
+deframer; anything else is one stream of bare bytes.
+"""
 
 import json
 import math
@@ -13,81 +17,86 @@ from typing import Annotated, Any, BinaryIO, NamedTuple, TextIO
 import typer
 
 from recon import wire
-from recon.link.capture import MAGIC, RECORD_HEADER, Direction
+from recon.cli.pcap import PcapError, is_pcap, tcp_segments
+from recon.model.errors import RecordError
 
 READ_BYTES = 64 * 1024
 LATEST_NS = 2**63 - 1
+MCAP_START = b"\x89MCAP0\r\n"
 
 
 class Read(NamedTuple):
-    """Bytes of one read; direction and time only in a capture."""
+    """Bytes of one read; stream and time only where the file holds several."""
 
     data: bytes
-    direction: Direction | None = None
+    stream: str | None = None
     time_ns: int | None = None
-
-
-class DamagedCaptureError(Exception):
-    """A capture file contains something that is not a record."""
 
 
 def inspect_command(
     files: Annotated[
         list[str],
-        typer.Argument(metavar="FILE...", help="Raw streams or capture files; - for stdin."),
+        typer.Argument(
+            metavar="FILE...", help="Flight records, network captures or bare streams; - for stdin."
+        ),
     ],
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object per line.")] = False,
 ) -> None:
-    """Print the packets of a captured stream.
+    """Print the packets of a flight record, a network capture or bare bytes.
 
-    After them come the deframer's counters.
+    After them come the deframer's counters. Exit code 1: a file holds no packet.
     """
+    are_packets = True
     for file in files:
+        name = printable_bytes(file.encode(errors="replace"))
         if len(files) > 1 and not as_json:
-            typer.echo(f"== {printable_bytes(file.encode(errors='replace'))}")
-        _inspect_file(file, as_json)
+            typer.echo(f"== {name}")
+        if not _inspect_file(file, as_json):
+            are_packets = False
+            typer.echo(f"recon inspect: {name} holds no packet of the protocol", err=True)
+    if not are_packets:
+        raise typer.Exit(1)
 
 
-def _inspect_file(file: str, as_json: bool) -> None:
+def _inspect_file(file: str, as_json: bool) -> bool:
+    """Return whether there was a packet, or nobody to show it to."""
     try:
         if file == "-":
-            inspect(sys.stdin.buffer, as_json, sys.stdout)
+            found = inspect(sys.stdin.buffer, as_json, sys.stdout)
         else:
             with Path(file).open("rb") as source:
-                inspect(source, as_json, sys.stdout)
+                found = inspect(source, as_json, sys.stdout)
         sys.stdout.flush()
+        return found
     except BrokenPipeError:
         # The reader has ended (`| head`); nothing may be written any later, not even at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return True
     except OSError as problem:
         name = printable_bytes(file.encode(errors="replace"))
         typer.echo(f"recon inspect: cannot read {name}: {problem.strerror}", err=True)
         raise typer.Exit(2) from None
 
 
-def inspect(source: BinaryIO, json_lines: bool, out: TextIO) -> None:
-    """Write every packet of `source` to `out`, then the counters.
-
-    A source that begins with the capture's magic line is read as a capture: two directions, each
-    with its own deframer, and times. Anything else is one direction of a bare stream.
-    """
-    deframers: dict[Direction | None, wire.Deframer] = {}
-    latest: dict[Direction | None, Read] = {}
+def inspect(source: BinaryIO, json_lines: bool, out: TextIO) -> bool:
+    """Write every packet of `source` to `out`, then the counters; return whether there was one."""
+    deframers: dict[str | None, wire.Deframer] = {}
+    latest: dict[str | None, Read] = {}
     show = _show_json if json_lines else _show_line
     trouble = ""
-    reads = _reads(source)
     try:
-        for read in reads:
-            deframer = deframers.setdefault(read.direction, wire.Deframer())
-            latest[read.direction] = read
+        for read in _reads(source):
+            deframer = deframers.setdefault(read.stream, wire.Deframer())
+            latest[read.stream] = read
             for packet in deframer.feed(read.data, read.time_ns or 0):
                 show(read, packet, out)
-    except DamagedCaptureError as problem:
+    except (PcapError, RecordError) as problem:
         trouble = str(problem)
-    for direction, deframer in deframers.items():
+    for stream, deframer in deframers.items():
         for packet in deframer.finish():
-            show(latest[direction], packet, out)
+            show(latest[stream], packet, out)
     _show_summary(deframers, trouble, json_lines, out)
+    return any(deframer.counters.packets for deframer in deframers.values())
 
 
 def printable_bytes(data: bytes) -> str:
@@ -102,9 +111,14 @@ def printable_bytes(data: bytes) -> str:
 
 
 def _reads(source: BinaryIO) -> Iterator[Read]:
-    start = _exactly(source, len(MAGIC))
-    if start == MAGIC:
-        yield from _capture_reads(source)
+    start = _exactly(source, 4)
+    if is_pcap(start):
+        for stream, time_ns, data in tcp_segments(source, start):
+            yield Read(data, stream, min(time_ns, LATEST_NS))
+        return
+    start += _exactly(source, len(MCAP_START) - len(start))
+    if start == MCAP_START:
+        yield from _record_reads(source)
         return
     yield Read(start)
     # read1 returns what a pipe has now instead of waiting for a full buffer.
@@ -113,19 +127,12 @@ def _reads(source: BinaryIO) -> Iterator[Read]:
         yield Read(data)
 
 
-def _capture_reads(source: BinaryIO) -> Iterator[Read]:
-    position = len(MAGIC)
-    while len(header := _exactly(source, RECORD_HEADER.size)) == RECORD_HEADER.size:
-        time_ns, direction, length = RECORD_HEADER.unpack(header)
-        if direction not in tuple(Direction):
-            raise DamagedCaptureError(
-                f"the capture is damaged at byte {position}: "
-                f"expected direction 0 or 1, got {direction}; the rest is skipped"
-            )
-        position += RECORD_HEADER.size + length
-        while length > 0 and (data := source.read(min(length, READ_BYTES))):
-            length -= len(data)
-            yield Read(data, Direction(direction), min(time_ns, LATEST_NS))
+def _record_reads(source: BinaryIO) -> Iterator[Read]:
+    from recon.record.link_bytes import link_bytes
+
+    for each in link_bytes(source):
+        way = "from app" if each.is_from_app else "to app"
+        yield Read(each.data, f"link {each.link_id} {way}", min(each.at_ns, LATEST_NS))
 
 
 def _exactly(source: BinaryIO, count: int) -> bytes:
@@ -166,9 +173,8 @@ def _fields(packet: Any) -> dict[str, Any]:
 
 def _show_line(read: Read, packet: wire.Packet, out: TextIO) -> None:
     where = ""
-    if read.time_ns is not None and read.direction is not None:
-        way = "from app" if read.direction is Direction.FROM_APP else "to app  "
-        where = f"{read.time_ns / 1e9:.6f} s  {way}  "
+    if read.time_ns is not None and read.stream is not None:
+        where = f"{read.time_ns / 1e9:.6f} s  {read.stream}  "
     parts = [type(packet).__name__]
     for name, value in _fields(packet).items():
         quoted = isinstance(value, str) and name in ("serial", "text")
@@ -179,8 +185,8 @@ def _show_line(read: Read, packet: wire.Packet, out: TextIO) -> None:
 def _show_json(read: Read, packet: wire.Packet, out: TextIO) -> None:
     pid = packet.pid if isinstance(packet, wire.UnknownPacket) else packet.PID
     line: dict[str, Any] = {"packet": type(packet).__name__, "pid": pid}
-    if read.direction is not None:
-        line |= {"time_ns": read.time_ns, "direction": read.direction.name.lower()}
+    if read.stream is not None:
+        line |= {"time_ns": read.time_ns, "stream": read.stream}
     print(json.dumps(line | {"fields": _fields(packet)}), file=out)
 
 
@@ -199,15 +205,15 @@ def _counters(deframer: wire.Deframer) -> dict[str, Any]:
 
 
 def _show_summary(
-    deframers: dict[Direction | None, wire.Deframer], trouble: str, json_lines: bool, out: TextIO
+    deframers: dict[str | None, wire.Deframer], trouble: str, json_lines: bool, out: TextIO
 ) -> None:
-    for direction, deframer in deframers.items():
-        name = "stream" if direction is None else direction.name.lower()
+    for stream, deframer in deframers.items():
+        name = "stream" if stream is None else stream
         counters = _counters(deframer)
         if json_lines:
-            print(json.dumps({"counters": counters, "direction": name}), file=out)
+            print(json.dumps({"counters": counters, "stream": name}), file=out)
         else:
             line = ", ".join(f"{key} {value}" for key, value in counters.items())
-            print(f"{name.replace('_', ' ')}: {line}", file=out)
+            print(f"{name}: {line}", file=out)
     if trouble:
         print(json.dumps({"trouble": trouble}) if json_lines else trouble, file=out)

@@ -69,7 +69,9 @@ def run_command(
     ] = None,
     key: Annotated[Path | None, typer.Option(help="PEM file of the certificate's key.")] = None,
     users: UsersOption = None,
-    capture: Annotated[Path | None, typer.Option(help="Folder for every link's raw bytes.")] = None,
+    record: Annotated[
+        Path | None, typer.Option(help="Folder of flight records; default: in your state folder.")
+    ] = None,
     audit: Annotated[
         Path | None,
         typer.Option(help="Folder of the audit; default: one per link port."),
@@ -94,7 +96,7 @@ def run_command(
         http_port=http_port,
         stop_port=guard_port(stop_port, http_port) if guard else None,
         site_folder=site,
-        capture_folder=capture,
+        record_folder=record,
         audit=None if audit is None else AuditPlace(audit),
         users_file=users,
         https_host=https_host,
@@ -140,6 +142,7 @@ def announce(started: Started) -> None:
     if started.apps_listed is not None:
         print_now(f"apps admitted: {started.apps_listed} entries; others wait, see recon pair")
     print_now(f"audit: {started.audit_folder}")
+    print_now(f"records: {started.record_folder}")
     if started.taken_up:
         print_now(f"from the last run: {shown(started.taken_up)}; nothing is ordered")
     if started.stop_url is not None:

@@ -9,9 +9,9 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any, cast
 
-from recon.link.capture import Direction
 from recon.link.session import Session
 from recon.link.settings import LinkSettings
+from recon.link.tap import Direction
 from recon.model.errors import describe_fault
 from recon.model.event import CommandDropped, Event, LinkOpened, StationFaulted
 from recon.safety import ApprovedCommand
@@ -254,8 +254,8 @@ class Connection(asyncio.BufferedProtocol):
             self._is_handling = False
 
     def _record(self, direction: Direction, data: bytes, now_ns: int) -> None:
-        if self.server.capture is not None and self.session is not None:
-            self.server.capture.record(self.session.link_id, direction, data, now_ns)
+        if self.server.tap is not None and self.session is not None:
+            self.server.tap(self.session.link_id, direction, data, now_ns)
 
 
 def _prepare_socket(transport: asyncio.Transport, settings: LinkSettings) -> None:

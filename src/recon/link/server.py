@@ -8,11 +8,11 @@ import asyncio
 from collections.abc import Callable
 from typing import Any, Protocol
 
-from recon.link.capture import Capture
 from recon.link.connection import Connection, address_text
 from recon.link.session import Objection, Session, no_objection
 from recon.link.settings import LinkSettings
 from recon.link.shared_limits import MEMORY, PLACES, BufferBudget, LimitAlarms
+from recon.link.tap import Tap
 from recon.model.event import Event, LinkClosed
 from recon.safety import ApprovedCommand
 
@@ -40,12 +40,12 @@ class LinkServer:
         handle: HandleEvent,
         now_ns: Clock,
         settings: LinkSettings,
-        capture: Capture | None = None,
+        tap: Tap | None = None,
     ) -> None:
         self.handle = handle
         self.now_ns = now_ns
         self.settings = settings
-        self.capture = capture
+        self.tap = tap
         self.objection: Objection = no_objection
         """Judges an order again at the moment of sending."""
         self.watch: SocketWatch | None = None
@@ -127,8 +127,6 @@ class LinkServer:
         self.note_buffered(connection, 0)
         del self.unfinished[connection.link_id]
         self.handle(LinkClosed(connection.link_id, reason))
-        if self.capture is not None:
-            self.capture.end_link(connection.link_id)
 
     def _is_identified(self, link_id: int) -> bool:
         return self.unfinished[link_id].is_identified

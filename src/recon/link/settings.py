@@ -84,6 +84,3 @@ class LinkSettings:
     max_image_rows: int = 2160
     max_image_cols: int = 3840
     """A larger raw image is invalid (decisions on the ICD, framing 2)."""
-
-    capture_limit_bytes: int = 2 * 1024 * MIB
-    """All capture files of a run together."""

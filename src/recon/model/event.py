@@ -321,6 +321,13 @@ class AuditFailed:
 
 
 @dataclass(frozen=True, slots=True)
+class RecordFailed:
+    """A part of the flight is not recorded; `problem` is None when everything is again."""
+
+    problem: str | None
+
+
+@dataclass(frozen=True, slots=True)
 class LinkLimitReached:
     """The link server reached a limit; `problem` is None when it is no longer reached."""
 
@@ -428,6 +435,7 @@ Event = (
     | SurveyStopped
     | AlarmAcknowledged
     | AuditFailed
+    | RecordFailed
     | LinkLimitReached
     | StationFaulted
     | GuardActed

@@ -20,8 +20,6 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable
-from importlib import import_module
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -36,6 +34,7 @@ from recon.record.audit import (
     line_hash,
 )
 from recon.record.audit_files import RunEnd, audit_files, next_file_name
+from recon.record.file_lock import lock_file
 
 WAITING_ENTRIES = 4096
 """A minute of the busiest traffic; some 4 MiB."""
@@ -229,7 +228,7 @@ class AuditLog:
         files = audit_files(self.folder) + ([] if self.path is None else [self.path])
         path = self.folder / next_file_name(files, self._utc_ns())
         self._file = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_APPEND, 0o600)
-        _lock(self._file)
+        lock_file(self._file)
         previous = self._run_before if self.path is None else self._file_before(self.path)
         self.path = path
         entry = AuditEntry(OPENED_KIND, "the audit begins", details={"previous": previous})
@@ -248,7 +247,7 @@ def refuse_other_writer(folder: Path) -> None:
         except OSError:
             continue
         try:
-            _lock(file)
+            lock_file(file)
         except OSError as problem:
             raise RecordError(
                 f"another running station writes its audit to {folder}: give each station a "
@@ -256,10 +255,3 @@ def refuse_other_writer(folder: Path) -> None:
             ) from problem
         finally:
             os.close(file)
-
-
-def _lock(file: int) -> None:
-    """Lock a file for its process, where the system knows how; ends with the process however."""
-    if find_spec("fcntl") is not None:
-        fcntl: Any = import_module("fcntl")
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)

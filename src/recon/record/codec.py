@@ -1,9 +1,9 @@
 """Frozen values as msgpack and back, by their type hints: no pickle, because files are hostile.
 
 A dataclass is a map of its fields by name; where a union allows several types, the key `TAG` names
-the one. Arrays are raw bytes with dtype and shape. A type decodes to itself only: the set of classes
-that a file can make is closed, each field is checked against its hint, and a field that the file
-lacks takes its default. What has no plain dataclass gets a `Custom` codec.
+the one. Arrays are raw bytes with dtype and shape. A type decodes to itself only: the set of
+classes that a file can make is closed, each field is checked against its hint, and a field that the
+file lacks takes its default. What is no plain dataclass gets a `Custom` codec.
 """
 
 import dataclasses
@@ -208,7 +208,7 @@ class Codec:
         for each in dataclasses.fields(kind):
             if each.init:
                 hint = _substituted(hints[each.name], variables)
-                # Numbers of numpy may stand in a field of numbers: only these types stay as they are.
+                # Numbers of numpy may stand in a field of numbers: only these stay as they are.
                 plain = hint if hint in (str, bytes) else None
                 is_required = each.default is MISSING and each.default_factory is MISSING
                 codec = None if plain is not None else self._both(hint)
@@ -396,5 +396,3 @@ def _name(hint: Any) -> str:
 
 def _never_read(_value: Any) -> Any:
     raise CodecError("this value is written for comparison only and never read back")
-
-

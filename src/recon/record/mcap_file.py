@@ -88,12 +88,12 @@ class McapIndex:
         offsets_at = start + builder.count
         for offset in offsets:
             offset.write(builder)
-        summary = builder.end()
+        summary = _taken(builder)
         footer = struct.pack("<BQQQ", Opcode.FOOTER, 20, start, offsets_at)
         last = RecordBuilder()
         crc = zlib.crc32(footer, zlib.crc32(summary))
         Footer(summary_start=start, summary_offset_start=offsets_at, summary_crc=crc).write(last)
-        return bytes(data_end.end() + summary + last.end() + MCAP0_MAGIC)
+        return _taken(data_end) + summary + _taken(last) + MCAP0_MAGIC
 
     def _statistics(self) -> Statistics:
         return Statistics(
@@ -154,8 +154,8 @@ def chunk_record(
 class McapFile:
     """One file being written, by one thread. Nothing is in the file before `flush`.
 
-    A write that fails raises OSError and leaves the file as it was; what was to be written waits for
-    the next `flush`.
+    A write that fails raises OSError and leaves the file as it was; what was to be written waits
+    for the next `flush`.
     """
 
     def __init__(self, path: Path, library: str) -> None:
@@ -168,7 +168,7 @@ class McapFile:
         self._size = 0
         header = RecordBuilder()
         Header(PROFILE, library).write(header)
-        self._unwritten = bytearray(MCAP0_MAGIC + header.end())
+        self._unwritten = bytearray(MCAP0_MAGIC + _taken(header))
 
     @property
     def size(self) -> int:
@@ -279,10 +279,14 @@ def message_indexes(
     for channel_id, records in entries.items():
         offsets[channel_id] = at + builder.count
         MessageIndex(channel_id, records).write(builder)
-    return builder.end(), offsets
+    return _taken(builder), offsets
 
 
 def _record_bytes(record: McapRecord) -> bytes:
     builder = RecordBuilder()
     record.write(builder)
-    return builder.end()
+    return _taken(builder)
+
+
+def _taken(builder: RecordBuilder) -> bytes:
+    return bytes(builder.end())  # type: ignore[no-untyped-call]

@@ -68,13 +68,16 @@ class DamagedMcapError(RecordError):
 class McapReading:
     """One pass over a file. `trouble` says afterwards why it ended early; empty if it did not."""
 
-    def __init__(self, file: BinaryIO) -> None:
-        """Take a file open at its start; raises `DamagedMcapError` without MCAP's first bytes."""
+    def __init__(self, file: BinaryIO, start: bytes = b"") -> None:
+        """Take a file open at its start, or with its first 8 bytes read already.
+
+        It need not be seekable. Raises `DamagedMcapError` without MCAP's first bytes.
+        """
         self.trouble = ""
         self._file = file
         self._channels: dict[int, Channel] = {}
         self._schemas: dict[int, Schema] = {}
-        start = file.read(len(MAGIC))
+        start = start or file.read(len(MAGIC))
         if start != MAGIC:
             raise DamagedMcapError(f"expected an MCAP file, got one that begins with {start!a}")
 
@@ -137,14 +140,10 @@ class McapReading:
             yield RecordAttachment(attachment.name, attachment.media_type, attachment.data)
 
 
-_READ = frozenset(
-    (Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE, Opcode.CHUNK, Opcode.ATTACHMENT)
-)
+_READ = frozenset((Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE, Opcode.CHUNK, Opcode.ATTACHMENT))
 
 
-def raw_records(
-    file: BinaryIO, at: int, is_read: Callable[[int], bool]
-) -> Iterator[RawRecord]:
+def raw_records(file: BinaryIO, at: int, is_read: Callable[[int], bool]) -> Iterator[RawRecord]:
     """Yield the records of a file's top level from byte `at` on, where the file stands.
 
     Content is read of those that `is_read` names by opcode. Ends at the last whole record's end;
@@ -162,13 +161,18 @@ def raw_records(
             content = file.read(length)
             is_whole = len(content) == length
         else:
-            is_whole = length == 0 or (
-                file.seek(length - 1, 1) >= 0 and len(file.read(1)) == 1
-            )
+            is_whole = _skip(file, length)
         if not is_whole:
             return
         yield RawRecord(opcode, at, RECORD_HEAD.size + length, content)
         at += RECORD_HEAD.size + length
+
+
+def _skip(file: BinaryIO, length: int) -> bool:
+    """Go on behind so many bytes; return whether they are all there."""
+    if not file.seekable():
+        return len(file.read(length)) == length
+    return length == 0 or (file.seek(length - 1, 1) >= 0 and len(file.read(1)) == 1)
 
 
 def unpacked_chunk(content: bytes, at: int) -> bytes:

@@ -193,10 +193,12 @@ def _other(record: RawRecord) -> Schema | Channel | AttachmentIndex:
     assert record.content is not None
     stream = ReadDataStream(BytesIO(record.content))
     if record.opcode == Opcode.SCHEMA:
-        return Schema.read(stream)
+        schema: Schema = Schema.read(stream)
+        return schema
     if record.opcode == Opcode.CHANNEL:
-        return Channel.read(stream)
-    each = Attachment.read(stream)
+        channel: Channel = Channel.read(stream)
+        return channel
+    each: Attachment = Attachment.read(stream)
     return AttachmentIndex(
         record.at,
         record.length,

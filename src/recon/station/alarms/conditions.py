@@ -99,6 +99,7 @@ def _present(station: Station, now_ns: int) -> Iterator[Condition]:
     yield from _temporary_zones(station, now_ns)
     yield from app_conditions.conditions(station)
     yield from _audit(station)
+    yield from _record(station)
     for limit, problem in station.link_limits.items():
         yield Condition(f"link_limit:{limit}", Severity.ERROR, "link_limit", "", problem)
 
@@ -353,3 +354,9 @@ def _audit(station: Station) -> Iterator[Condition]:
                 "may restore an old state: free disk space or restore the folder"
             ),
         )
+
+
+def _record(station: Station) -> Iterator[Condition]:
+    if station.record_problem is not None:
+        text = f"{station.record_problem}. Flying continues: free disk space or restore the folder"
+        yield Condition("record", Severity.WARNING, "record", "", text)

@@ -62,6 +62,8 @@ class Service:
     audit_log: AuditLog | None
     _ids: Callable[[], int]
     guard_stop_url: str | None = None
+    lost_bytes: Callable[[], int] = lambda: 0
+    """How many bytes of links the record has lost so far."""
 
     @classmethod
     def around(
@@ -323,7 +325,6 @@ class Service:
 
     def _station_view(self, now_ns: int) -> schema.StationView:
         links = self.driver.links
-        capture = None if links is None else links.capture
         listed = self.driver.station.fleet.admission.listed
         return schema.StationView(
             version=version(),
@@ -333,7 +334,7 @@ class Service:
                 each.frames_dropped for each in self.driver.station.imaging.imagers.values()
             ),
             capture_folder=self.capture_folder,
-            capture_dropped_bytes=0 if capture is None else capture.dropped_bytes,
+            capture_dropped_bytes=self.lost_bytes(),
             guard_stop_url=self.guard_stop_url,
             separation_hold_on=self.driver.station.watchdog_state.is_hold_on,
             connections_refused=0 if links is None else links.refused_connections,

@@ -30,6 +30,7 @@ from recon.model.event import (
     LoginAccepted,
     LoginRefused,
     PreflightOverridden,
+    RecordFailed,
     SeparationHoldSwitched,
     StopReleased,
     Tick,
@@ -126,6 +127,9 @@ def _commands(before: Station, event: Event, after: Station, now_ns: int) -> Ite
         case AuditFailed(problem):
             text = problem or "audit and recovery snapshot are written again"
             yield AuditEntry("audit.trouble", text, details={"is_troubled": problem is not None})
+        case RecordFailed(problem):
+            text = problem or "everything is recorded again"
+            yield AuditEntry("record.trouble", text, details={"is_troubled": problem is not None})
         case LoginAccepted(by, role):
             yield AuditEntry("login.accepted", f"logged in as {role}", by, details={"role": role})
         case LoginRefused(address, failures):

@@ -85,6 +85,7 @@ WRITE_REFERENCE: JobKind[WriteReference, None] = JobKind(
     lambda station, _job_id, _done, _now_ns: _with_problem(station, ""),
     lambda station, _job_id, error, _now_ns: _with_problem(station, error),
     lambda station, _job_id, _now_ns: (station, ()),
+    acts=True,
 )
 """Writes what a flight has learned of the land into the site's folder."""
 

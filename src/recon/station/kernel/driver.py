@@ -21,7 +21,7 @@ from recon.station.kernel.fault_isolation import after_fault
 from recon.station.kernel.step import TICK_PARTS, step
 from recon.station.kernel.worker import Worker
 from recon.station.state.station import Station
-from recon.station.state.steps import Job, Output, SendCommand, WithdrawMotion
+from recon.station.state.steps import Job, Output, SendCommand, StepTaken, WithdrawMotion
 from recon.station.steering.setpoint_streams import next_due_ns
 
 TICK_NS = 50_000_000
@@ -75,6 +75,8 @@ class AsyncioDriver:
     ) -> None:
         self.station = station
         self.observe = observe
+        self.record: Callable[[StepTaken], None] | None = None
+        """Called with every step, after its outputs are carried out."""
         self.now_ns = now_ns
         self.started_at_ns = now_ns()
         self.links: LinkServer | None = None
@@ -150,6 +152,9 @@ class AsyncioDriver:
         for output in outputs:
             with self._isolated(f"carrying out {type(output).__name__}", event):
                 self._carry_out(output)
+        if self.record is not None:
+            with self._isolated("recording the flight", event):
+                self.record(StepTaken(event, now_ns, before, self.station, outputs))
 
     @contextmanager
     def _isolated(self, where: str, event: Event) -> Iterator[None]:

@@ -6,6 +6,7 @@ from collections.abc import Awaitable, Callable
 from contextlib import AsyncExitStack
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from tempfile import TemporaryFile
 
 from recon import version
 from recon.api.addresses import SharedAddress
@@ -14,13 +15,12 @@ from recon.api.certificate import Certificate
 from recon.api.login import Login
 from recon.api.servers import HttpServer
 from recon.fleet.admission import AllowedApp
-from recon.link.capture import Capture
 from recon.link.server import LinkServer
 from recon.link.settings import LinkSettings
 from recon.model.errors import RecordError
 from recon.model.event import Event
-from recon.model.units import ns_to_seconds
-from recon.record.users_file import default_users_file
+from recon.record.record_writer import RecordWriter
+from recon.record.users_file import default_users_file, state_folder
 from recon.site import Site, demo_site_folder
 from recon.site.reading import site_digest
 from recon.station.api_views.service import Service
@@ -51,6 +51,8 @@ from recon.station.kernel.http_servers import (
     stopped_by_signals,
     url_of,
 )
+from recon.station.kernel.recorded_values import Start
+from recon.station.kernel.recording import Recorder, record_writer
 from recon.station.kernel.users_watch import UsersWatch
 from recon.station.kernel.worker import JobRunner, ThreadWorker
 from recon.station.recovery.restart import LastRun, restart_entries, restored
@@ -72,7 +74,8 @@ class RunConfig:
     """Of the guard, on loopback; None: no guard."""
     site_folder: Path | None = None
     """Where the site was read from; its digest goes into the audit."""
-    capture_folder: Path | None = None
+    record_folder: Path | None = None
+    """Of the flight records; None: the place in the user's state folder."""
     audit: AuditPlace | None = None
     """None: the place in the user's state folder that belongs to the link port."""
     users_file: Path | None = None
@@ -109,6 +112,7 @@ class Started:
     stop_url: str | None = None
     """Where a person stops all vehicles when the station does not answer; None without a guard."""
     audit_folder: str = ""
+    record_folder: str = ""
     apps_listed: int | None = None
     """Entries of the list of apps; None without a list."""
     network: SharedAddress | None = None
@@ -147,15 +151,17 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
             snapshots.start(station)
             stack.callback(snapshots.close)
         _write_app_list(config, driver, stack)
-        service = Service.around(
-            driver, config.site, _text(config.capture_folder), begun.log, last_run.first_ids[0]
-        )
+        writer, recorder = _start_record(config, driver, stack)
+        folder = str(writer.folder)
+        service = Service.around(driver, config.site, folder, begun.log, last_run.first_ids[0])
+        service.lost_bytes = lambda: writer.dropped_bytes
         line = _start_guard(config, driver, service, doors, place.folder, stack)
-        links = await _start_links_and_worker(config, driver, service, line, stack)
+        links = await _start_links_and_worker(config, driver, service, line, recorder, stack)
         started = replace(
             _started(config, service, links, doors),
             stop_url=None if line is None else line.stop_url,
             audit_folder=str(begun.log.folder),
+            record_folder=folder,
             apps_listed=None if config.apps is None else len(config.apps),
             taken_up=_taken_up(station, (*begun.troubles, *last_run.troubles)),
         )
@@ -167,13 +173,11 @@ async def _start_links_and_worker(
     driver: AsyncioDriver,
     service: Service,
     line: GuardLine | None,
+    recorder: Recorder,
     stack: AsyncExitStack,
 ) -> LinkServer:
-    capture = _start_capture(config, driver)
-    if capture is not None:
-        stack.callback(capture.close)
     driver.worker = worker = ThreadWorker(JobRunner(config.site), driver.handle_from_thread)
-    driver.links = links = LinkServer(driver.handle, driver.now_ns, config.link, capture)
+    driver.links = links = LinkServer(driver.handle, driver.now_ns, config.link, recorder.tap)
     links.objection = driver.objection
     links.watch = line
     service.link_addresses = await _listen_for_links(links, config)
@@ -369,19 +373,33 @@ async def _listen_for_links(links: LinkServer, config: RunConfig) -> list[str]:
         raise cannot_listen(config.link_host, config.link_port, "--link-port", problem) from problem
 
 
-def _start_capture(config: RunConfig, driver: AsyncioDriver) -> Capture | None:
-    if config.capture_folder is None:
-        return None
-    run_name = f"{ns_to_seconds(driver.started_at_ns):.0f}"
-    capture = Capture(config.capture_folder, run_name, config.link.capture_limit_bytes)
+def _start_record(
+    config: RunConfig, driver: AsyncioDriver, stack: AsyncExitStack
+) -> tuple[RecordWriter, Recorder]:
+    """Record the run from before its first event; it is closed when nothing can happen any more."""
+    folder = config.record_folder or state_folder() / "records"
+    if config.record_folder is not None:
+        _require_writable(folder)
+    start = Start.now(config.site, driver.station, driver.started_at_ns)
+    writer = record_writer(folder, start)
+    recorder = Recorder(writer, driver.handle)
+    driver.record = recorder.take
+    writer.start()
+    stack.callback(writer.close)
+    return writer, recorder
+
+
+def _require_writable(folder: Path) -> None:
+    """Raise `StartError` for a folder that was asked for and cannot be written."""
     try:
-        capture.start()
+        folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+        with TemporaryFile(dir=folder):
+            pass
     except OSError as problem:
         raise StartError(
-            f"cannot write captures to {config.capture_folder}: {problem.strerror}; give a folder "
-            "that can be written with --capture"
+            f"cannot write records to {folder}: {problem.strerror}; give a folder that can be "
+            "written with --record"
         ) from problem
-    return capture
 
 
 def _started(config: RunConfig, service: Service, links: LinkServer, doors: _Doors) -> Started:

@@ -37,6 +37,7 @@ from recon.model.event import (
     PersonConnected,
     PersonDisconnected,
     PreflightOverridden,
+    RecordFailed,
     SeparationHoldSwitched,
     SetpointsDue,
     StationFaulted,
@@ -188,6 +189,10 @@ def _audit_failed(station: Station, event: AuditFailed, _now_ns: int) -> Station
     return replace(station, audit_problem=event.problem)
 
 
+def _record_failed(station: Station, event: RecordFailed, _now_ns: int) -> Station:
+    return replace(station, record_problem=event.problem)
+
+
 def _link_limit(station: Station, event: LinkLimitReached, _now_ns: int) -> Station:
     others = {key: text for key, text in station.link_limits.items() if key != event.limit}
     reached = {} if event.problem is None else {event.limit: event.problem}
@@ -268,6 +273,7 @@ HANDLERS: Mapping[type[Any], Handler] = dict(
         changing(StationFaulted, event_alarms.note_fault),
         on(GuardActed, _guard_acted),
         changing(AuditFailed, _audit_failed),
+        changing(RecordFailed, _record_failed),
         changing(LinkLimitReached, _link_limit),
         changing(AlarmAcknowledged, _acknowledged),
         changing(LoginAccepted, _audited_only),

@@ -13,6 +13,7 @@ from typing import Protocol
 from recon.fleet.step import CloseLink
 from recon.link.session import Session
 from recon.link.settings import LinkSettings
+from recon.link.tap import Direction, Tap
 from recon.model.command import Refusal
 from recon.model.event import (
     ClockRead,
@@ -30,7 +31,14 @@ from recon.station.kernel.event_queue import EventQueue
 from recon.station.kernel.step import step
 from recon.station.kernel.worker import AnyJob, JobRunner
 from recon.station.state.station import Station
-from recon.station.state.steps import Job, JobFailed, Output, SendCommand, WithdrawMotion
+from recon.station.state.steps import (
+    Job,
+    JobFailed,
+    Output,
+    SendCommand,
+    StepTaken,
+    WithdrawMotion,
+)
 from recon.station.steering.setpoint_streams import next_due_ns
 
 STEP_NS = 10_000_000
@@ -104,6 +112,10 @@ class VirtualDriver:
         """Every event of the station, in order; not kept in long studies, images fill memory."""
         self.observe: Callable[[Station, Station, Event], None] | None = None
         """Called with every step, as the asyncio driver's observer is."""
+        self.record: Callable[[StepTaken], None] | None = None
+        """Called with every step, as the asyncio driver's is."""
+        self.tap: Tap | None = None
+        """Called with all bytes of all links, as the link server's is."""
         self._keeps_log = keeps_log
         self._jobs = jobs
         self._settings = link_settings or LinkSettings()
@@ -164,6 +176,8 @@ class VirtualDriver:
             self.observe(before, self.station, event)
         for output in outputs:
             self._carry_out(output)
+        if self.record is not None:
+            self.record(StepTaken(event, self.now_ns, before, self.station, outputs))
 
     def _next_step_ns(self) -> int:
         """Return the next step at which anything is due."""
@@ -214,6 +228,7 @@ class VirtualDriver:
     def _arrive(self, link_id: int, data: bytes) -> None:
         wire = self._wires.get(link_id)
         if wire is not None and data and not wire.link.is_dead:
+            self._tap(link_id, Direction.FROM_APP, data)
             self._handle_all(wire.session.receive(data, self.now_ns))
             while wire.session.is_busy:
                 self._handle_all(wire.session.resume())
@@ -227,9 +242,14 @@ class VirtualDriver:
             if isinstance(outgoing, CommandDropped):
                 self.handle(outgoing)
                 continue
+            self._tap(wire.session.link_id, Direction.TO_APP, outgoing.data)
             self.handle(outgoing.event)
             if not wire.link.is_dead:
                 self._post_to_app(wire, outgoing.data)
+
+    def _tap(self, link_id: int, direction: Direction, data: bytes) -> None:
+        if self.tap is not None:
+            self.tap(link_id, direction, data, self.now_ns)
 
     def _post_to_app(self, wire: _Wire, data: bytes) -> None:
         arrives_at_ns = self.now_ns + self._delay_ns(wire.link)

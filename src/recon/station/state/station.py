@@ -90,6 +90,8 @@ class Station:
     """When the last run's snapshot was restored; None without one."""
     audit_problem: str | None = None
     """Why the audit cannot be written, while it cannot."""
+    record_problem: str | None = None
+    """What of the flight is not recorded, and why, while that is so."""
     app_list_problem: str | None = None
     """Why the list of apps cannot be written, while it cannot."""
     link_limits: Mapping[str, str] = field(default_factory=dict)

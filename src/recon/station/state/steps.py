@@ -13,7 +13,7 @@ from typing import Any, Generic, TypeVar
 
 from recon.fleet.step import CloseLink
 from recon.model.command import Command, Refusal
-from recon.model.event import JobEnded
+from recon.model.event import Event, JobEnded
 from recon.safety import ApprovedCommand
 from recon.site import Site
 from recon.station.state.station import Station
@@ -36,6 +36,9 @@ class JobKind(Generic[InputT, ResultT]):
     done: Callable[[Station, int, ResultT, int], Stepped] = field(repr=False)
     failed: Callable[[Station, int, str, int], Stepped] = field(repr=False)
     dropped: Callable[[Station, int, int], Stepped] = field(repr=False)
+    acts: bool = False
+    """Whether the work does more than return a result, as writing a file does: a replay takes its
+    end as recorded and does not do it again. Its result is None."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -87,6 +90,17 @@ class WithdrawMotion:
 
 Output = SendCommand | CloseLink | WithdrawMotion | Job[Any, Any]
 """A `Job` is started by the worker and comes back as an event."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StepTaken:
+    """One step as a driver took it, for the record."""
+
+    event: Event
+    now_ns: int
+    before: Station
+    after: Station
+    outputs: tuple[Output, ...]
 
 
 EventT = TypeVar("EventT")

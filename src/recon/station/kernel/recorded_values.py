@@ -1,0 +1,205 @@
+"""How the station's values stand in a record: the codec's special cases, and a file's start.
+
+Pixels stand in the topics of images; an event names its frame by number. The result of a job does
+not stand in the file: jobs are pure, so a replay runs them again. Orders and the inputs of jobs are
+outputs: they are compared and never read back.
+"""
+
+import platform
+import sys
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from ipaddress import IPv4Network, IPv6Network, ip_network
+from typing import Any
+
+import msgspec
+import numpy as np
+
+from recon import version
+from recon.fleet.step import CloseLink
+from recon.model.airspace import Airspace, Zone
+from recon.model.command import Command
+from recon.model.event import JobEnded
+from recon.model.report import ImageReport
+from recon.model.vehicle import VehicleProfile
+from recon.record.audit import AuditEntry
+from recon.record.codec import Codec, CodecError, Custom
+from recon.record.digest import digest
+from recon.safety import ApprovedCommand, PreparedAirspace
+from recon.safety.airspace import prepared_zone
+from recon.site import Site
+from recon.station.state.station import Station
+from recon.station.state.steps import (
+    Job,
+    JobDone,
+    JobDropped,
+    JobFailed,
+    Output,
+    SendCommand,
+    WithdrawMotion,
+)
+from recon.station.state.vehicle_control import VehicleSnapshot
+
+START_NAME = "recon/start"
+START_TYPE = "application/vnd.recon.start+zstd"
+ABOUT_NAME = "recon/about.json"
+STEPS_TOPIC = "/recon/steps"
+MSGPACK = "msgpack"
+
+DONE, FAILED, DROPPED = "done", "failed", "dropped"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Start:
+    """What a run begins with: the site and the station before its first event."""
+
+    version: str
+    python: str
+    numpy: str
+    machine: str
+    started_at_ns: int
+    site: Site
+    station: Station
+
+    @classmethod
+    def now(cls, site: Site, station: Station, started_at_ns: int) -> "Start":
+        """Return the start of a run by this version on this computer."""
+        python, machine = sys.version.split()[0], f"{platform.system()} {platform.machine()}"
+        return cls(version(), python, np.__version__, machine, started_at_ns, site, station)
+
+
+@dataclass(frozen=True, slots=True)
+class EndOfJob:
+    """How a recorded job ended; what it returned is worked out again."""
+
+    kind: str
+    job_id: int
+    how: str
+    error: str = ""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FrameReport:
+    """An image report as it stands in the record: its pixels are in the frame of that number; 0:
+    they were not recorded."""
+
+    target_fps_hz: float | None
+    frame: int
+
+
+def values_codec(frame_of: Callable[[ImageReport], int]) -> Codec:
+    """Return the codec of a record; `frame_of` numbers the frame of an image report."""
+
+    def image(report: ImageReport) -> dict[str, Any]:
+        return {"target_fps_hz": report.target_fps_hz, "frame": frame_of(report)}
+
+    customs: dict[type[Any], Custom] = {
+        ImageReport: Custom(image, _frame_report),
+        JobEnded: Custom(_end_of_job, _read_end_of_job),
+        PreparedAirspace: Custom(
+            lambda air: codec.to_builtins(_airspace_parts(air), _AirspaceParts),
+            lambda value: _airspace(codec.from_builtins(value, _AirspaceParts)),
+        ),
+        VehicleSnapshot: Custom(
+            msgspec.to_builtins, lambda value: msgspec.convert(value, VehicleSnapshot)
+        ),
+        **{kind: Custom(str, ip_network) for kind in (IPv4Network, IPv6Network)},
+    }
+    codec = Codec(customs)
+    return codec
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _AirspaceParts:
+    site: Airspace
+    temporary: tuple[Zone, ...]
+
+
+def _airspace_parts(air: PreparedAirspace) -> _AirspaceParts:
+    temporary = tuple(each.zone for each in air.temporary_zones)
+    zones = air.airspace.zones
+    own = zones[: len(zones) - len(temporary)]
+    return _AirspaceParts(replace(air.airspace, zones=own), temporary)
+
+
+def _airspace(parts: _AirspaceParts) -> PreparedAirspace:
+    air = PreparedAirspace(parts.site)
+    if not parts.temporary:
+        return air
+    return air.with_temporary_zones(prepared_zone(zone) for zone in parts.temporary)
+
+
+def _frame_report(value: Any) -> FrameReport:
+    frame, fps_hz = value.get("frame"), value.get("target_fps_hz")
+    if type(frame) is not int or type(fps_hz) not in (float, int, type(None)):
+        raise CodecError(f"expected the number of a frame, got {value!a:.80}")
+    return FrameReport(fps_hz, frame)
+
+
+def _end_of_job(event: Any) -> dict[str, Any]:
+    ways = {JobDone: DONE, JobFailed: FAILED, JobDropped: DROPPED}
+    error = event.error if isinstance(event, JobFailed) else ""
+    return {
+        "kind": event.kind.name,
+        "job_id": event.job_id,
+        "how": ways[type(event)],
+        "error": error,
+    }
+
+
+_END_CODEC = Codec()
+
+
+def _read_end_of_job(value: Any) -> EndOfJob:
+    end: EndOfJob = _END_CODEC.from_builtins(value, EndOfJob)
+    return end
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Sent:
+    """An order as an output."""
+
+    command: Command
+    link_ids: tuple[int, ...]
+    profile: VehicleProfile | None
+    altitude_offset_m: float | None
+    approved_at_ns: int
+
+
+def output_builtins(codec: Codec, output: Output, *, with_input: bool = True) -> dict[str, Any]:
+    """Return an output of a step as maps and lists, with the name of its kind."""
+    match output:
+        case SendCommand(approved):
+            return {"send": codec.to_builtins(_sent(approved), _Sent)}
+        case Job():
+            found = digest(output.input).hex() if with_input else None
+            return {"job": {"kind": output.kind.name, "id": output.id, "input": found}}
+        case CloseLink():
+            return {"close_link": codec.to_builtins(output, CloseLink)}
+        case WithdrawMotion():
+            return {"withdraw_motion": codec.to_builtins(output, WithdrawMotion)}
+
+
+def _sent(approved: ApprovedCommand) -> _Sent:
+    return _Sent(
+        approved.command,
+        approved.link_ids,
+        approved.profile,
+        approved.altitude_offset_m,
+        approved.approved_at_ns,
+    )
+
+
+def audit_builtins(entries: Iterable[AuditEntry]) -> list[dict[str, Any]]:
+    """Return audit entries as maps and lists."""
+    return [
+        {
+            "kind": each.kind,
+            "text": each.text,
+            "by": each.by,
+            "serial": each.serial,
+            "vehicle": each.vehicle,
+            "details": msgspec.to_builtins(each.details),
+        }
+        for each in entries
+    ]
