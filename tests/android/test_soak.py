@@ -23,9 +23,9 @@ FPS_HZ = 2.0
 
 @in_loop
 async def test_ten_hertz_and_video_lose_nothing(site: Path, tmp_path: Path) -> None:
-    captures = tmp_path / "captures"
+    records = tmp_path / "records"
     async with (
-        station(site, "--capture", str(captures)) as base,
+        station(site, "--record", str(records)) as base,
         running(*companion_command(base.link_port, "--airborne-m", "20")) as app,
     ):
         async with Station(base.url) as client:
@@ -37,7 +37,7 @@ async def test_ten_hertz_and_video_lose_nothing(site: Path, tmp_path: Path) -> N
             after_kb = await _heap_kb(app.process.pid)
             await finish(await drone.stop_camera())
         assert not [line for line in app.lines if "lost" in line]
-    lines = await _output(RECON, "inspect", *map(str, captures.glob("*.reconcap")))
+    lines = await _output(RECON, "inspect", *map(str, records.glob("*.mcap")))
     core_s = [float(line.split()[0]) for line in lines if " CoreTelemetry " in line]
     image_s = [float(line.split()[0]) for line in lines if " CompressedImage " in line]
     print(f"{len(core_s)} core, {len(image_s)} images, heap {before_kb} to {after_kb} kB")

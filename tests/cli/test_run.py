@@ -6,11 +6,17 @@ import signal
 import socket
 import urllib.request
 from pathlib import Path
+from time import monotonic, sleep
 
 import pytest
-from tests.cli.processes import started
+from mcap.reader import make_reader
+from tests.cli.processes import PATIENCE_S, started
 
 from recon import wire
+from recon.model.errors import RecordError
+from recon.record.link_bytes import LINKS_TOPIC, link_bytes
+from recon.record.mcap_repair import is_finished
+from recon.station.kernel.replay import check
 
 FREE = ("--link-port", "0", "--http-port", "0", "--no-guard")
 HELLO = wire.encode(wire.MessageString(type=1, text=b"hello"))
@@ -22,8 +28,8 @@ def link_port(line: str) -> int:
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_it_prints_its_addresses_and_ends_cleanly(number: int, tmp_path: Path) -> None:
-    """Also with an app connected: what it sent is in the capture."""
-    with started("run", *FREE, "--capture", str(tmp_path / "raw")) as recon:
+    """Also with an app connected: what it sent is in the record."""
+    with started("run", *FREE, "--record", str(tmp_path / "raw")) as recon:
         port = link_port(recon.line_with("companion apps: 127.0.0.1:"))
         console = recon.line_with("console: http://127.0.0.1:").partition(": ")[2]
         with urllib.request.urlopen(f"{console}/api/state", timeout=120) as response:
@@ -35,12 +41,55 @@ def test_it_prints_its_addresses_and_ends_cleanly(number: int, tmp_path: Path) -
             recon.line_with("app disconnected")
             assert recon.end(number) == 0
         assert "Traceback" not in recon.text
-    (capture,) = (tmp_path / "raw").iterdir()
-    assert HELLO in capture.read_bytes()
+    (record,) = (tmp_path / "raw").iterdir()
+    assert is_finished(record)
+    assert HELLO in received(record)
 
 
-def test_an_app_still_connected_at_the_end_is_captured(tmp_path: Path) -> None:
-    with started("run", *FREE, "--capture", str(tmp_path)) as recon:
+def received(record: Path) -> bytes:
+    """What apps have sent, by a record that may be in the making."""
+    with record.open("rb") as file:
+        if file.read(8) != b"\x89MCAP0\r\n":
+            return b""
+        with contextlib.suppress(RecordError):
+            parts = []
+            for each in link_bytes(file):
+                parts += [each.data] if each.is_from_app else []
+    return b"".join(parts)
+
+
+def test_a_killed_stations_record_is_finished_by_the_next_start(tmp_path: Path) -> None:
+    options = ("run", *FREE, "--record", str(tmp_path))
+    with started(*options) as recon:
+        port = link_port(recon.line_with("companion apps: 127.0.0.1:"))
+        recon.line_with("console")
+        with socket.create_connection(("127.0.0.1", port)) as app:
+            app.sendall(HELLO)
+            end_s = monotonic() + PATIENCE_S
+            (record,) = tmp_path.iterdir()
+            while HELLO not in received(record):
+                assert monotonic() < end_s
+                sleep(0.02)
+            recon.end(signal.SIGKILL)
+    assert not is_finished(record)
+    with started(*options) as recon:
+        recon.line_with("console")
+        end_s = monotonic() + PATIENCE_S
+        while not is_finished(record):
+            assert monotonic() < end_s
+            sleep(0.02)
+        assert recon.end(signal.SIGTERM) == 0
+    with record.open("rb") as file:
+        summary = make_reader(file).get_summary()
+    assert summary is not None
+    assert LINKS_TOPIC in {each.topic for each in summary.channels.values()}
+    found = check(record)
+    assert (found.differences, found.trouble) == ([], "")
+    assert found.steps > 0
+
+
+def test_an_app_still_connected_at_the_end_is_recorded(tmp_path: Path) -> None:
+    with started("run", *FREE, "--record", str(tmp_path)) as recon:
         port = link_port(recon.line_with("companion apps"))
         recon.line_with("console")
         with socket.create_connection(("127.0.0.1", port)) as app:
@@ -102,7 +151,7 @@ def test_a_port_bound_but_not_yet_listening_is_in_use() -> None:
         (("--certificate", "/nowhere.pem"), "--certificate and --key belong together"),
         (("--link-host", "203.0.113.77"), "--link-port"),
         (("--link-host", "no.such.host.invalid"), "no.such.host.invalid"),
-        (("--capture", "/proc/none"), "--capture"),
+        (("--record", "/proc/none"), "--record"),
         (("--link-port", "70000"), "--link-port"),
         (("--nonsense",), "nonsense"),
     ],

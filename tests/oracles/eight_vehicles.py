@@ -5,7 +5,7 @@ seven survey drones and the imaging drone, with a station, its sessions and ever
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from recon.geo import point_from_enu
 from recon.model.command import Body, FlyMission, GoTo, Hover
@@ -15,7 +15,7 @@ from recon.model.mission import Mission, Waypoint
 from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.score.connected_apps import ConnectedApps
 from recon.sim.app.app import SimulatedApp
-from recon.sim.app.camera_feed import FeedSettings
+from recon.sim.app.camera_feed import FeedSettings, ImageFormat
 from recon.sim.app.faults import parse_fault
 from recon.sim.app.telemetry import FIELD_SENSORS
 from recon.sim.camera.field import FieldRenderer
@@ -152,21 +152,24 @@ def eight_vehicles(
     *,
     steers: bool = True,
     sees: bool = False,
+    jpeg_quality: int | None = None,
     faults: Sequence[str] = (),
     make_link: Callable[[], FakeLink] = FakeLink,
     keeps_log: bool = False,
 ) -> EightVehicles:
     """Return the scene: with `steers` each drone is also led by sticks for a fifth of the time;
-    with `sees` the imaging drone sends rendered frames, which the station reads."""
+    with `sees` the imaging drone sends rendered frames, which the station reads, raw or as JPEG."""
     site = load_site(demo_site_folder())
     driver = VirtualDriver(first_state(site), jobs=JobRunner(site), keeps_log=keeps_log)
-    fleet = build_fleet(_config(site, seed, sees, faults), driver.now_ns)
+    fleet = build_fleet(_config(site, seed, sees, faults, jpeg_quality), driver.now_ns)
     connected = ConnectedApps(driver, make_link)
     connected.connect_all(fleet)
     return EightVehicles(connected, site, steers)
 
 
-def _config(site: Site, seed: int, sees: bool, faults: Sequence[str]) -> SimulationConfig:
+def _config(
+    site: Site, seed: int, sees: bool, faults: Sequence[str], jpeg_quality: int | None
+) -> SimulationConfig:
     assert site.frame is not None
     assert site.imager is not None
     assert site.imager.marked_frame is not None
@@ -183,7 +186,10 @@ def _config(site: Site, seed: int, sees: bool, faults: Sequence[str]) -> Simulat
         CameraSettings(seed),
     )
     pads = {s: profile.pad for s, profile in site.profiles.items() if profile.pad is not None}
-    setup = ImagerSetup(source, FeedSettings(PICTURES_HZ, starts_on=sees), rig)
+    feed = FeedSettings(PICTURES_HZ, starts_on=sees)
+    if jpeg_quality is not None:
+        feed = replace(feed, image_format=ImageFormat.JPEG, jpeg_quality=jpeg_quality)
+    setup = ImagerSetup(source, feed, rig)
     return SimulationConfig(
         home=origin,
         vehicle_count=VEHICLES,

@@ -39,7 +39,7 @@ def scenes(seed: int) -> Mapping[str, EightVehicles]:
     """Return the scenes by name, at their start."""
     return {
         "flights": eight_vehicles(seed),
-        "faults": eight_vehicles(seed, faults=FAULTS, make_link=lambda: _bad_link(seed)),
+        "faults": eight_vehicles(seed, faults=FAULTS, make_link=lambda: bad_link(seed)),
         "pictures": eight_vehicles(seed, sees=True),
     }
 
@@ -54,7 +54,8 @@ def digests(seed: int, seconds: float) -> dict[str, str]:
     return found
 
 
-def _bad_link(seed: int) -> FakeLink:
+def bad_link(seed: int) -> FakeLink:
+    """Return a link that delays and damages."""
     return FakeLink(jitter_s=0.05, damage=_damaged, seed=seed)
 
 

@@ -9,7 +9,7 @@ import typer
 
 from recon import version
 from recon.record.audit import shown
-from recon.station.kernel.recorded_values import Start
+from recon.station.kernel.recorded_values import Start, this_machine
 from recon.station.kernel.replay import Checked, check
 
 DIFFERS, CUT_SHORT = 1, 3
@@ -66,7 +66,7 @@ def _other_versions(start: Start) -> list[str]:
         "version": version(),
         "python": platform.python_version(),
         "numpy": np.__version__,
-        "machine": f"{platform.system()} {platform.machine()}",
+        "machine": this_machine(),
     }
     return [
         f"recorded with {name} {shown(getattr(start, name))}, compared with {now}"

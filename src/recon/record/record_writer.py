@@ -164,12 +164,12 @@ class RecordWriter:
         self._waiting.put((item, size_bytes))
         return True
 
-    def close(self) -> None:
+    def close(self, within_s: float = CLOSE_WITHIN_S) -> None:
         """Write what is queued and finish the file, as far as the disk takes it in time."""
         if self._thread.is_alive():
             self._is_ending = True
             self._waiting.put(None)
-            self._thread.join(CLOSE_WITHIN_S)
+            self._thread.join(within_s)
 
     def _run(self) -> None:
         while not self._try(self._open):

@@ -8,8 +8,11 @@ outputs: they are compared and never read back.
 import platform
 import sys
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import cache
 from ipaddress import IPv4Network, IPv6Network, ip_network
+from pathlib import Path
 from typing import Any
 
 import msgspec
@@ -57,6 +60,7 @@ class Start:
     python: str
     numpy: str
     machine: str
+    """System and processor: libraries choose their instructions, and so last bits, by it."""
     started_at_ns: int
     site: Site
     station: Station
@@ -64,8 +68,19 @@ class Start:
     @classmethod
     def now(cls, site: Site, station: Station, started_at_ns: int) -> "Start":
         """Return the start of a run by this version on this computer."""
-        python, machine = sys.version.split()[0], f"{platform.system()} {platform.machine()}"
-        return cls(version(), python, np.__version__, machine, started_at_ns, site, station)
+        python = sys.version.split()[0]
+        return cls(version(), python, np.__version__, this_machine(), started_at_ns, site, station)
+
+
+@cache
+def this_machine() -> str:
+    """Return this computer's system and processor."""
+    model = platform.processor() or platform.machine()
+    with suppress(OSError):
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+        names = (line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
+        model = next(names, model)
+    return f"{platform.system()} {platform.machine()}, {model}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -51,6 +51,8 @@ from recon.station.state.steps import Job, JobDone, JobDropped, JobFailed, Stepp
 FRAMES_KEPT = 16
 """Frames read that no event has named yet; each stands right before its own."""
 
+REPORT_EVERY_STEPS = 2000
+
 MOST_DIFFERENCES = 20
 """After the first one the replayed station is another one: more of them tell no more."""
 
@@ -95,12 +97,14 @@ def check(path: Path, report: Callable[[Checked], None] | None = None) -> Checke
     with path.open("rb") as file:
         reading = McapReading(file)
         replay = Replay()
+        reported = 0
         for item in reading.items():
             replay.take(item)
             found = replay.found
             if found.trouble or len(found.differences) >= MOST_DIFFERENCES:
                 return found
-            if report is not None and found.steps % 1000 == 0:
+            if report is not None and found.steps >= reported + REPORT_EVERY_STEPS:
+                reported = found.steps
                 report(found)
     if replay.found.start is None:
         raise RecordError(f"{path}: expected a flight record of Recon, got another MCAP file")

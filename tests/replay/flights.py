@@ -1,0 +1,72 @@
+"""The reference flights: made in virtual time, kept as records beside their test.
+
+    python -m tests.replay.flights [NAME...]
+
+makes them anew. Do so to accept an intended change of behaviour, and state the change in the
+commit; `recon replay --check tests/replay/flights/NAME.mcap` shows it before.
+"""
+
+import shutil
+import sys
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from tests.oracles.eight_vehicles import eight_vehicles
+from tests.oracles.same_again import FAULTS, bad_link
+from tests.replay.record_flight import recording
+from tests.station.surveyed_world import surveyed_world
+
+from recon.site import Site
+
+FOLDER = Path(__file__).parent / "flights"
+
+
+def faults(folder: Path) -> Path:
+    """Orders, missions and sticks for eight vehicles, over bad links and with faults."""
+    scene = eight_vehicles(3, faults=FAULTS, make_link=lambda: bad_link(3))
+    with recording(scene.driver, scene.site, folder) as record:
+        scene.run_for(14.0)
+    return record.path
+
+
+def survey(folder: Path) -> Path:
+    """Two vehicles survey a field, are paused, and are called home."""
+    world = surveyed_world(2)
+    with recording(world.driver, Site("reference"), folder) as record:
+        world.asks()
+        world.starts("SIM-1", "SIM-2")
+        world.runs(20.0)
+        world.pauses()
+        world.runs(4.0)
+        world.starts("SIM-1", "SIM-2")
+        world.runs(4.0)
+        world.fleet.call("SIM-1", "SIM-2")
+        world.runs(20.0)
+    return record.path
+
+
+def pictures(folder: Path) -> Path:
+    """An imaging drone's frames become shade maps and forecasts."""
+    scene = eight_vehicles(3, sees=True, jpeg_quality=30)
+    with recording(scene.driver, scene.site, folder) as record:
+        scene.run_for(4.5)
+    return record.path
+
+
+FLIGHTS: Mapping[str, Callable[[Path], Path]] = {
+    each.__name__: each for each in (faults, survey, pictures)
+}
+
+
+def main(*names: str) -> None:
+    """Make flights anew; all of them without a name."""
+    FOLDER.mkdir(exist_ok=True)
+    for name in names or FLIGHTS:
+        with TemporaryDirectory() as folder:
+            shutil.copy(FLIGHTS[name](Path(folder)), FOLDER / f"{name}.mcap")
+        print(f"{FOLDER / name}.mcap: {(FOLDER / f'{name}.mcap').stat().st_size} bytes")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,202 @@
+"""What stands in a record: read by the libraries' own readers, compared with the flight."""
+
+import json
+from collections import defaultdict
+from pathlib import Path
+from typing import Any
+
+import cv2
+import msgspec
+import numpy as np
+import pytest
+from mcap.reader import make_reader
+from mcap_protobuf.decoder import DecoderFactory
+from tests.replay.flights import FOLDER
+from tests.replay.record_flight import recording
+from tests.station.station_world import square_mission, world
+
+from recon import wire
+from recon.link.tap import Direction
+from recon.model.command import FlyMission
+from recon.model.event import PacketReceived, RecordFailed, Tick
+from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
+from recon.model.report import ImageReport
+from recon.model.shade import ShadeMap, SunForecast
+from recon.record import foxglove
+from recon.record.link_bytes import LINKS_TOPIC
+from recon.record.mcap_read import McapReading, RecordMessage
+from recon.record.record_writer import RecordWriter
+from recon.site import Site
+from recon.station.kernel.recorded_values import STEPS_TOPIC, Start
+from recon.station.kernel.recording import Recorder, RecordTranslator
+from recon.station.kernel.step import step
+from recon.station.state.station import Station
+from recon.station.state.steps import StepTaken
+
+GRID = GroundGrid(LocalFrame(GeoPoint(45.0, -93.0, 300.0)), -20.0, 10.0, 5.0, 4, 6)
+
+
+def decoded(path: Path) -> dict[str, list[Any]]:
+    """The messages in Foxglove's schemas, by topic, as Foxglove's own decoder reads them."""
+    found = defaultdict(list)
+    with path.open("rb") as file:
+        reader = make_reader(file, validate_crcs=True, decoder_factories=[DecoderFactory()])
+        topics = [f"/{t}" for t in ("log", "shade", "forecast")]
+        summary = reader.get_summary()
+        assert summary is not None
+        topics += [c.topic for c in summary.channels.values() if c.topic.startswith("/vehicles")]
+        for each in reader.iter_decoded_messages(topics=topics):
+            found[each.channel.topic].append(each.decoded_message)
+    return dict(found)
+
+
+def test_a_flight_opens_with_the_libraries_own_readers(tmp_path: Path) -> None:
+    scene = world(1, keeps_log=False)
+    sent: list[tuple[Direction, bytes]] = []
+    with recording(scene.driver, Site("test"), tmp_path) as record:
+        tap = scene.driver.tap
+        assert tap is not None
+
+        def both(link_id: int, direction: Direction, data: bytes, at_ns: int) -> None:
+            sent.append((direction, data))
+            tap(link_id, direction, data, at_ns)
+
+        scene.driver.tap = both
+        scene.run_for(3.0)
+        order = scene.order("SIM-1", FlyMission(square_mission()))
+        scene.run_for(1.0)
+    assert scene.record(order).refusal is None, scene.record(order).refusal
+    found = decoded(record.path)
+    vehicle = scene.vehicle("SIM-1").position.value
+    assert vehicle is not None
+    fix = found["/vehicles/SIM-1/location"][-1]
+    assert (fix.latitude, fix.longitude) == (vehicle.latitude_deg, vehicle.longitude_deg)
+    assert fix.timestamp.ToNanoseconds() <= scene.driver.now_ns
+    (plan,) = found["/vehicles/SIM-1/mission"]
+    line = json.loads(plan.geojson)["geometry"]
+    flown = square_mission().waypoints
+    assert line["type"] == "LineString"
+    assert line["coordinates"][0][:2] == [flown[0].longitude_deg, flown[0].latitude_deg]
+    assert any("SIM-1" in each.message or "mission" in each.message for each in found["/log"])
+    with record.path.open("rb") as file:
+        kept = [
+            msgspec.msgpack.decode(item.data)
+            for item in McapReading(file).items()
+            if isinstance(item, RecordMessage) and item.topic == LINKS_TOPIC
+        ]
+    is_from_app = {Direction.FROM_APP: True, Direction.TO_APP: False}
+    assert [(m["from_app"], m["data"]) for m in kept] == [(is_from_app[d], b) for d, b in sent]
+    assert any(not m["from_app"] for m in kept)
+
+
+def test_frames_maps_and_forecasts_are_in_it() -> None:
+    found = decoded(FOLDER / "pictures.mcap")
+    (topic,) = (each for each in found if each.endswith("/jpeg"))
+    for image in found[topic]:
+        assert image.format == "jpeg"
+        assert cv2.imdecode(np.frombuffer(image.data, np.uint8), cv2.IMREAD_COLOR).shape[2] == 3
+    assert len(found["/shade"]) == len(found["/forecast"]) >= 1
+    assert found["/shade"][0].fields[0].name == "transmittance"
+    assert found["/forecast"][0].fields[0].name == "sun_in_0_s"
+
+
+def test_a_map_begins_at_its_lower_left_corner() -> None:
+    transmittance = np.arange(24, dtype=np.float32).reshape(4, 6) / 24
+    valid = np.ones((4, 6), bool)
+    valid[0, 0] = False
+    ones = np.ones((4, 6), np.float32)
+    grid = foxglove.shade_grid(ShadeMap(GRID, 0, (), transmittance, valid, ones, ones), 5)
+    cells = np.frombuffer(grid.data, "<f4").reshape(4, 6, 3)
+    assert (grid.pose.position.x, grid.pose.position.y) == (-20.0, 10.0 - 4 * 5.0)
+    assert (grid.cell_size.x, grid.column_count, grid.row_stride) == (5.0, 6, 72)
+    assert cells[0, 0, 0] == transmittance[3, 0]
+    assert np.isnan(cells[3, 0, 0])
+    assert cells[3, 5, 0] == transmittance[0, 5]
+    leads = np.arange(48, dtype=np.uint8).reshape(2, 4, 6)
+    horizon = np.zeros((4, 6), np.float32)
+    sun = SunForecast(GRID, 0, np.array([0.0, 60.0]), leads, horizon, 0.5, "test")
+    grid = foxglove.forecast_grid(sun, 5)
+    cells = np.frombuffer(grid.data, np.uint8).reshape(4, 6, 2)
+    assert [field.name for field in grid.fields] == ["sun_in_0_s", "sun_in_60_s"]
+    assert (cells[0, 2] == leads[:, 3, 2]).all()
+
+
+class SlowWriter(RecordWriter):
+    """A writer whose disk takes nothing: what is put waits."""
+
+    def __init__(self, folder: Path) -> None:
+        start = Start.now(Site("test"), Station(), 0)
+        super().__init__(folder, RecordTranslator(start), "test")
+        self.items: list[Any] = []
+
+    def put(self, item: Any, size_bytes: int) -> bool:
+        self.items.append(item)
+        return super().put(item, size_bytes)
+
+
+def taken(event: Any) -> StepTaken:
+    before = Station()
+    after, outputs = step(before, event, 5)
+    return StepTaken(event, 5, before, after, outputs)
+
+
+def test_when_the_disk_is_slow_pixels_and_bytes_go_first(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("recon.record.record_writer.WAITING_BYTES", 10_000)
+    writer = SlowWriter(tmp_path)
+    recorder = Recorder(writer, lambda _event: None)
+    image = PacketReceived(1, ImageReport(1.0, rgb=np.zeros((60, 60, 3), np.uint8)))
+    recorder.take(taken(image))
+    assert writer.items[0].event.report.rgb is not None
+    recorder.take(taken(image))
+    recorder.tap(1, Direction.FROM_APP, b"12345", 5)
+    recorder.take(taken(Tick()))
+    without, tick = writer.items[1:]
+    assert without.event.report.rgb is None
+    assert isinstance(tick.event, Tick)
+    assert writer.dropped_bytes == 5
+    assert [each.number for each in writer.items] == [1, 2, 3]
+
+
+def test_without_images_telemetry_orders_and_audit_stay(tmp_path: Path) -> None:
+    start = Start.now(Site("test"), Station(), 0)
+    free_bytes = [10**12]
+    writer = RecordWriter(tmp_path, RecordTranslator(start), "test", lambda _f: free_bytes[0])
+    seen: list[Any] = []
+    recorder = Recorder(writer, seen.append)
+    free_bytes[0] = 0
+    image = PacketReceived(1, ImageReport(1.0, jpeg=b"123"))
+    recorder.take(taken(image))
+    writer._look_at_disk()
+    recorder.tap(1, Direction.FROM_APP, wire.encode(wire.EmergencyCommand(action=0)), 5)
+    recorder.tap(1, Direction.TO_APP, b"order", 5)
+    recorder.take(taken(Tick()))
+    writer.start()
+    writer.close()
+    assert writer.path is not None
+    with writer.path.open("rb") as file:
+        messages = [i for i in McapReading(file).items() if isinstance(i, RecordMessage)]
+    by_topic = defaultdict(list)
+    for message in messages:
+        by_topic[message.topic].append(message)
+    assert not any(topic.endswith("/jpeg") for topic in by_topic)
+    assert len(by_topic[STEPS_TOPIC]) == 2
+    (kept,) = by_topic[LINKS_TOPIC]
+    assert msgspec.msgpack.decode(kept.data)["data"] == b"order"
+    (reported,) = seen
+    assert "without images" in reported.problem
+
+
+def test_a_failed_record_is_an_alarm_until_it_is_written_again() -> None:
+    scene = world(1)
+    driver = scene.driver
+    driver.handle(RecordFailed("less than 2 GiB are free in /x: the record goes on without images"))
+    scene.run_for(0.2)
+    (alarm,) = (a for a in driver.station.alarms.alarms.values() if a.condition.rule == "record")
+    assert "without images. Flying continues: free disk space" in alarm.condition.text
+    assert alarm.is_active
+    driver.handle(RecordFailed(None))
+    scene.run_for(0.2)
+    found = [a for a in driver.station.alarms.alarms.values() if a.condition.rule == "record"]
+    assert not any(each.is_active for each in found)
