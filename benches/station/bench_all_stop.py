@@ -2,10 +2,11 @@
 
     python -m benches.station.bench_all_stop [--apps 64] [--streams 4] [--repeats 60]
 
-A station as `recon run` starts it, with its audit and its log, in a process of its own; apps at
-10 Hz core and 2 Hz extended telemetry in another, some with raw 1280x720 images at 5 fps that the
-station's worker lays on the ground; and a reader of the stream of states, as a console. Again and
-again one HTTP request orders an all stop. Told are, from just before the request is written,
+A station as `recon run` starts it, with its audit, its log and its record, in a process of its own;
+apps at 10 Hz core and 2 Hz extended telemetry in another, some with raw 1280x720 images at 5 fps
+that the station's worker lays on the ground; and a reader of the stream of states, as a console.
+Again and again one HTTP request orders an all stop. From just before the request is written, these
+are measured:
 
     on the wires   until the station has handed each packet to its socket, as its audit says
     read           until the last app has read its packet, as the apps' process says
@@ -101,6 +102,7 @@ def start_station(folder: Path, stack: ExitStack) -> tuple[subprocess.Popen[str]
     """Start `recon run`; its output goes into a file, as under a service manager."""
     log = stack.enter_context((folder / "log").open("w+", encoding="utf-8"))
     options = ["--link-port", "0", "--http-port", "0", "--site", str(demo_site_folder())]
+    options += ["--record", str(folder / "records")]
     process = subprocess.Popen(
         [sys.executable, "-m", "recon", "run", *options, "--audit", str(folder / "audit")],
         stdout=log,

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from recon.record.record_writer import RecordWriter
 from recon.site import Site
-from recon.station.kernel.recorded_values import Start
+from recon.station.kernel.recorded_values import FlightStart
 from recon.station.kernel.recording import Recorder, record_writer
 from recon.station.kernel.virtual import VirtualDriver
 from recon.station.state.steps import StepTaken
@@ -29,7 +29,7 @@ class Recorded:
 @contextmanager
 def recording(driver: VirtualDriver, site: Site, folder: Path) -> Iterator[Recorded]:
     """Record what a driver does within the block."""
-    writer = record_writer(folder, Start.now(site, driver.station, driver.now_ns))
+    writer = record_writer(folder, FlightStart.now(site, driver.station, driver.now_ns))
     recorder = Recorder(writer, driver.handle)
 
     def take(step: StepTaken) -> None:

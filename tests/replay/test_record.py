@@ -27,7 +27,7 @@ from recon.record.link_bytes import LINKS_TOPIC
 from recon.record.mcap_read import McapReading, RecordMessage
 from recon.record.record_writer import RecordWriter
 from recon.site import Site
-from recon.station.kernel.recorded_values import STEPS_TOPIC, Start
+from recon.station.kernel.recorded_values import STEPS_TOPIC, FlightStart
 from recon.station.kernel.recording import Recorder, RecordTranslator
 from recon.station.kernel.step import step
 from recon.station.state.station import Station
@@ -125,7 +125,7 @@ class SlowWriter(RecordWriter):
     """A writer whose disk takes nothing: what is put waits."""
 
     def __init__(self, folder: Path) -> None:
-        start = Start.now(Site("test"), Station(), 0)
+        start = FlightStart.now(Site("test"), Station(), 0)
         super().__init__(folder, RecordTranslator(start), "test")
         self.items: list[Any] = []
 
@@ -160,7 +160,7 @@ def test_when_the_disk_is_slow_pixels_and_bytes_go_first(
 
 
 def test_without_images_telemetry_orders_and_audit_stay(tmp_path: Path) -> None:
-    start = Start.now(Site("test"), Station(), 0)
+    start = FlightStart.now(Site("test"), Station(), 0)
     free_bytes = [10**12]
     writer = RecordWriter(tmp_path, RecordTranslator(start), "test", lambda _f: free_bytes[0])
     seen: list[Any] = []

@@ -59,7 +59,7 @@ def inspect_command(
 
 
 def _inspect_file(file: str, as_json: bool) -> bool:
-    """Return whether there was a packet, or nobody to show it to."""
+    """Return whether there was a packet, or no reader to show it to."""
     try:
         if file == "-":
             found = inspect(sys.stdin.buffer, as_json, sys.stdout)

@@ -32,7 +32,7 @@ class PcapError(Exception):
     """The file is no capture, or damaged: what was expected and what came."""
 
 
-class Segment(NamedTuple):
+class TcpSegment(NamedTuple):
     """Bytes of one TCP stream in their order."""
 
     stream: str
@@ -104,7 +104,7 @@ def is_pcap(start: bytes) -> bool:
     return start[:4] in _MAGIC or start[:4] == PCAPNG
 
 
-def tcp_segments(file: BinaryIO, start: bytes) -> Iterator[Segment]:
+def tcp_segments(file: BinaryIO, start: bytes) -> Iterator[TcpSegment]:
     """Yield the bytes of every TCP stream; `start` are the 4 bytes read already.
 
     Raises `PcapError` for a damaged file, after what came before.
@@ -122,10 +122,10 @@ def tcp_segments(file: BinaryIO, start: bytes) -> Iterator[Segment]:
             continue
         ready = streams.setdefault(name, _Stream()).take(seq, is_syn, data)
         if ready:
-            yield Segment(name, time_ns, ready)
+            yield TcpSegment(name, time_ns, ready)
     for name, stream in streams.items():
         while left := stream.skip_gap():
-            yield Segment(name, time_ns, left)
+            yield TcpSegment(name, time_ns, left)
 
 
 def _pcap(file: BinaryIO, order: str, unit_ns: int) -> Iterator[_Packet]:

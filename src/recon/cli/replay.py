@@ -9,7 +9,7 @@ import typer
 
 from recon import version
 from recon.record.audit import shown
-from recon.station.kernel.recorded_values import Start, this_machine
+from recon.station.kernel.recorded_values import FlightStart, this_machine
 from recon.station.kernel.replay import Checked, check
 
 DIFFERS, CUT_SHORT = 1, 3
@@ -60,7 +60,7 @@ def lines(found: Checked) -> list[str]:
     return text
 
 
-def _other_versions(start: Start) -> list[str]:
+def _other_versions(start: FlightStart) -> list[str]:
     """Numbers may differ in their last bits between versions of libraries and processors."""
     here = {
         "version": version(),

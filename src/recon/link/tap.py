@@ -1,4 +1,4 @@
-"""What passes on every link, for whoever records it: all bytes, in both directions."""
+"""All bytes of every link, in both directions, for the flight record."""
 
 from collections.abc import Callable
 from enum import IntEnum

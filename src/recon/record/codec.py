@@ -222,10 +222,10 @@ class Codec:
 
     def _optional(self, hint: Any) -> _Both:
         both = self._both(hint)
-        encode, decode = both.encode, both.decode
+        write, read = both.encode, both.decode
         return _Both(
-            lambda value: None if value is None else encode(value),
-            lambda value: None if value is None else decode(value),
+            lambda value: None if value is None else write(value),
+            lambda value: None if value is None else read(value),
         )
 
     def _tagged(self, hints: list[Any], is_optional: bool) -> _Both:

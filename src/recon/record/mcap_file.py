@@ -110,7 +110,7 @@ class McapIndex:
 
 
 @dataclass(slots=True)
-class _Chunk:
+class _ChunkInHand:
     """Messages that are not written yet."""
 
     parts: list[bytes] = field(default_factory=list)
@@ -163,7 +163,7 @@ class McapFile:
         self.path = path
         self._file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o600)
         self._index = McapIndex()
-        self._chunk = _Chunk()
+        self._chunk = _ChunkInHand()
         self._compress = compressor().compress
         self._size = 0
         header = RecordBuilder()
@@ -267,7 +267,7 @@ class McapFile:
                 uncompressed_size=len(data),
             )
         )
-        self._chunk = _Chunk()
+        self._chunk = _ChunkInHand()
 
 
 def message_indexes(

@@ -25,7 +25,7 @@ _FOOTER_BYTES = RECORD_HEAD.size + 20
 
 
 @dataclass(slots=True)
-class _Chunk:
+class _FoundChunk:
     """A chunk and the indexes of its messages, as found in the file."""
 
     at: int
@@ -37,7 +37,7 @@ class _Chunk:
 
 
 @dataclass(frozen=True, slots=True)
-class Repaired:
+class RepairedFile:
     """What a repair has cut off."""
 
     path: Path
@@ -57,7 +57,7 @@ def is_finished(path: Path) -> bool:
     return tail.endswith(MCAP0_MAGIC) and (opcode, length) == (Opcode.FOOTER, 20)
 
 
-def repair(path: Path) -> Repaired | None:
+def repair(path: Path) -> RepairedFile | None:
     """Finish a file that was cut anywhere; None where nothing was to do.
 
     Raises `RecordError` for a file that is no record, and OSError.
@@ -84,7 +84,7 @@ def repair(path: Path) -> Repaired | None:
         file.write(found.index().end_of_file(end + len(tail)))
         file.flush()
         os.fsync(file.fileno())
-    return Repaired(path, size - end)
+    return RepairedFile(path, size - end)
 
 
 def _is_read(opcode: int) -> bool:
@@ -96,7 +96,7 @@ class _Found:
 
     def __init__(self, descriptor: int) -> None:
         self._descriptor = descriptor
-        self._chunks: list[_Chunk] = []
+        self._chunks: list[_FoundChunk] = []
         self._others: list[tuple[int, Schema | Channel | AttachmentIndex]] = []
         self._end = len(MCAP0_MAGIC)
         self._last_data: bytes | None = None
@@ -104,7 +104,7 @@ class _Found:
     def take(self, record: RawRecord) -> None:
         end = record.at + record.length
         if record.opcode == Opcode.CHUNK:
-            self._chunks.append(_Chunk(record.at, record.length, end))
+            self._chunks.append(_FoundChunk(record.at, record.length, end))
         elif record.opcode == Opcode.MESSAGE_INDEX and self._chunks:
             assert record.content is not None
             self._take_index(self._chunks[-1], record.content, record.at, end)
@@ -113,7 +113,7 @@ class _Found:
         self._end = end
 
     @staticmethod
-    def _take_index(chunk: _Chunk, content: bytes, at: int, end: int) -> None:
+    def _take_index(chunk: _FoundChunk, content: bytes, at: int, end: int) -> None:
         channel_id, entry_bytes = struct.unpack_from("<HI", content)
         chunk.offsets[channel_id] = at
         chunk.counts[channel_id] = entry_bytes // 16
@@ -136,7 +136,7 @@ class _Found:
         self._others = [each for each in self._others if each[0] < last.at]
         return last.end
 
-    def _data_of(self, chunk: _Chunk) -> bytes | None:
+    def _data_of(self, chunk: _FoundChunk) -> bytes | None:
         content = os.pread(self._descriptor, chunk.length, chunk.at)[RECORD_HEAD.size :]
         try:
             return unpacked_chunk(content, chunk.at)
@@ -170,7 +170,7 @@ class _Found:
                 index.message_counts[channel_id] += count
         return index
 
-    def _chunk_index(self, chunk: _Chunk) -> ChunkIndex:
+    def _chunk_index(self, chunk: _FoundChunk) -> ChunkIndex:
         start = chunk.at + RECORD_HEAD.size
         head = os.pread(self._descriptor, CHUNK_HEAD.size, start)
         first_ns, last_ns, size, _crc = CHUNK_HEAD.unpack(head)

@@ -119,6 +119,8 @@ class RecordWriter:
         self.path: Path | None = None
         """This run's file, once there is one."""
         self.dropped_bytes = self.dropped_steps = 0
+        self.cpu_s = 0.0
+        """Processor time of the thread, as of its last chunk."""
         self.repaired: list[Path] = []
         """Files of earlier runs that were finished at the start."""
         self._library = library
@@ -183,6 +185,7 @@ class RecordWriter:
         while not is_over:
             is_over = self._take_until(time.monotonic() + FLUSH_EVERY_S)
             self._look_at_disk()
+            self.cpu_s = time.thread_time()
             while not self._try(file.flush) and not self._is_ending:
                 time.sleep(RETRY_AFTER_S)
         self._try(file.finish)

@@ -53,7 +53,7 @@ DONE, FAILED, DROPPED = "done", "failed", "dropped"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Start:
+class FlightStart:
     """What a run begins with: the site and the station before its first event."""
 
     version: str
@@ -66,7 +66,7 @@ class Start:
     station: Station
 
     @classmethod
-    def now(cls, site: Site, station: Station, started_at_ns: int) -> "Start":
+    def now(cls, site: Site, station: Station, started_at_ns: int) -> "FlightStart":
         """Return the start of a run by this version on this computer."""
         python = sys.version.split()[0]
         return cls(version(), python, np.__version__, this_machine(), started_at_ns, site, station)

@@ -30,7 +30,7 @@ from recon.station.kernel.recorded_values import (
     START_NAME,
     START_TYPE,
     STEPS_TOPIC,
-    Start,
+    FlightStart,
     audit_builtins,
     output_builtins,
     values_codec,
@@ -144,8 +144,8 @@ def _vehicle_name(step: StepTaken, link_id: int) -> str:
 class RecordTranslator:
     """Makes messages of steps and bytes."""
 
-    def __init__(self, start: Start) -> None:
-        self._start: Start | None = start
+    def __init__(self, start: FlightStart) -> None:
+        self._start: FlightStart | None = start
         self._frame = self._event_frame = 0
         self._image_links: set[int] = set()
         self._codec = values_codec(lambda _report: self._event_frame)
@@ -155,7 +155,7 @@ class RecordTranslator:
         start = self._start
         assert start is not None
         at_ns = start.started_at_ns
-        packed = compressor().compress(self._codec.encode(start, Start))
+        packed = compressor().compress(self._codec.encode(start, FlightStart))
         topics.file.add_attachment(START_NAME, START_TYPE, packed, at_ns)
         about = {
             "version": version(),
@@ -249,6 +249,6 @@ def _add(topics: Topics, topic: str, message: Any, at_ns: int, number: int | Non
     )
 
 
-def record_writer(folder: Path, start: Start) -> RecordWriter:
+def record_writer(folder: Path, start: FlightStart) -> RecordWriter:
     """Return the writer of a run's record into a folder."""
     return RecordWriter(folder, RecordTranslator(start), f"recon {version()}")

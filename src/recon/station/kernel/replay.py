@@ -37,8 +37,8 @@ from recon.station.kernel.recorded_values import (
     START_NAME,
     STEPS_TOPIC,
     EndOfJob,
+    FlightStart,
     FrameReport,
-    Start,
     audit_builtins,
     output_builtins,
     values_codec,
@@ -83,7 +83,7 @@ class Difference:
 class Checked:
     """What a replay found."""
 
-    start: Start | None = None
+    start: FlightStart | None = None
     steps: int = 0
     jobs: int = 0
     lasted_s: float = 0.0
@@ -143,7 +143,7 @@ class Replay:
             data = zstandard.ZstdDecompressor().decompress(packed, max_output_size=size)
         except zstandard.ZstdError as problem:
             raise RecordError(f"the record's start is damaged: {problem}") from problem
-        start: Start = self._codec.decode(data, Start)
+        start: FlightStart = self._codec.decode(data, FlightStart)
         self.found.start, self.station = start, start.station
         self._runner = JobRunner(start.site)
 

@@ -51,7 +51,7 @@ from recon.station.kernel.http_servers import (
     stopped_by_signals,
     url_of,
 )
-from recon.station.kernel.recorded_values import Start
+from recon.station.kernel.recorded_values import FlightStart
 from recon.station.kernel.recording import Recorder, record_writer
 from recon.station.kernel.users_watch import UsersWatch
 from recon.station.kernel.worker import JobRunner, ThreadWorker
@@ -195,7 +195,7 @@ def _start_guard(
     folder: Path,
     stack: AsyncExitStack,
 ) -> GuardLine | None:
-    """Start the guard, after the one of a station that has died here has given way."""
+    """FlightStart the guard, after the one of a station that has died here has given way."""
     acts = take_over_from_orphan(folder)
     if config.stop_port is None:
         return None
@@ -317,7 +317,7 @@ def _start_auditor(
     clock: Callable[[], int],
     stack: AsyncExitStack,
 ) -> Auditor:
-    """Start the audit; its last entry is written after everything else has ended."""
+    """FlightStart the audit; its last entry is written after everything else has ended."""
     printer = LogPrinter()
     auditor = Auditor(begun.log, printer, clock)
     printer.start()
@@ -376,11 +376,11 @@ async def _listen_for_links(links: LinkServer, config: RunConfig) -> list[str]:
 def _start_record(
     config: RunConfig, driver: AsyncioDriver, stack: AsyncExitStack
 ) -> tuple[RecordWriter, Recorder]:
-    """Record the run from before its first event; it is closed when nothing can happen any more."""
+    """Record the run from before its first event; it is closed after everything else has ended."""
     folder = config.record_folder or state_folder() / "records"
     if config.record_folder is not None:
         _require_writable(folder)
-    start = Start.now(config.site, driver.station, driver.started_at_ns)
+    start = FlightStart.now(config.site, driver.station, driver.started_at_ns)
     writer = record_writer(folder, start)
     recorder = Recorder(writer, driver.handle)
     driver.record = recorder.take
