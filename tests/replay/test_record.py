@@ -155,7 +155,9 @@ def test_when_the_disk_is_slow_pixels_and_bytes_go_first(
     without, tick = writer.items[1:]
     assert without.event.report.rgb is None
     assert isinstance(tick.event, Tick)
-    assert writer.dropped_bytes == 5
+    assert writer.dropped_bytes == 60 * 60 * 3 + 5
+    assert writer.problem is not None
+    assert writer.problem.endswith("the record lacks bytes of links and images")
     assert [each.number for each in writer.items] == [1, 2, 3]
 
 
@@ -200,3 +202,12 @@ def test_a_failed_record_is_an_alarm_until_it_is_written_again() -> None:
     scene.run_for(0.2)
     found = [a for a in driver.station.alarms.alarms.values() if a.condition.rule == "record"]
     assert not any(each.is_active for each in found)
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (3, 5), (90, 160)])
+def test_raw_frames_are_what_protobuf_would_write(shape: tuple[int, int]) -> None:
+    rgb = np.random.default_rng(1).integers(0, 256, (*shape, 3), np.uint8)
+    image = foxglove.RawImage.FromString(foxglove.raw_image_bytes(rgb, "SIM-1", 7_000_000_001))
+    assert (image.height, image.width, image.step) == (*shape, 3 * shape[1])
+    assert (image.data, image.encoding, image.frame_id) == (rgb.tobytes(), "rgb8", "SIM-1")
+    assert image.timestamp.ToNanoseconds() == 7_000_000_001

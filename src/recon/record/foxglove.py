@@ -25,6 +25,8 @@ from recon.model.shade import ShadeMap, SunForecast
 
 ENCODING = "protobuf"
 SITE_FRAME = "site"
+LENGTH_DELIMITED = 2
+"""Protobuf's wire type of bytes."""
 
 UINT8, FLOAT32 = PackedElementField.UINT8, PackedElementField.FLOAT32
 LEVELS = {"debug": Log.DEBUG, "info": Log.INFO, "warning": Log.WARNING, "error": Log.ERROR}
@@ -59,19 +61,27 @@ def location(place: LatLon, height_m: float | None, frame_id: str, at_ns: int) -
     return fix
 
 
-def raw_image(rgb: RgbImage, frame_id: str, at_ns: int) -> Any:
-    """Return a frame (H, W, 3) uint8 as it came."""
+def raw_image_bytes(rgb: RgbImage, frame_id: str, at_ns: int) -> bytes:
+    """Return a frame (H, W, 3) uint8 as it came, as the bytes of a RawImage.
+
+    The pixels are put behind the other fields by hand: protobuf would copy them twice more, and a
+    page of memory costs more than a page of pixels.
+    """
     rows, cols = rgb.shape[:2]
-    image = RawImage(
-        frame_id=frame_id,
-        width=cols,
-        height=rows,
-        encoding="rgb8",
-        step=3 * cols,
-        data=rgb.tobytes(),
-    )
+    image = RawImage(frame_id=frame_id, width=cols, height=rows, encoding="rgb8", step=3 * cols)
     image.timestamp.FromNanoseconds(at_ns)
-    return image
+    pixels = np.ascontiguousarray(rgb)
+    tag = RawImage.DESCRIPTOR.fields_by_name["data"].number << 3 | LENGTH_DELIMITED
+    head = image.SerializeToString() + _varint(tag) + _varint(pixels.nbytes)
+    return b"".join((head, pixels.data))
+
+
+def _varint(number: int) -> bytes:
+    parts = bytearray()
+    while number > 127:
+        parts.append(number & 127 | 128)
+        number >>= 7
+    return bytes((*parts, number))
 
 
 def jpeg_image(jpeg: bytes, frame_id: str, at_ns: int) -> Any:

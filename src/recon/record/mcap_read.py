@@ -66,7 +66,7 @@ class DamagedMcapError(RecordError):
 
 
 class McapReading:
-    """One pass over a file. Afterwards `trouble` has the reason of an early end; empty without one."""
+    """One pass over a file; then `trouble` has the reason of an early end, empty without one."""
 
     def __init__(self, file: BinaryIO, start: bytes = b"") -> None:
         """Take a file open at its start, or with its first 8 bytes read already.

@@ -8,11 +8,11 @@ that is killed, or a power cut, costs what came in the last half second and one 
     open --little space left--> without images --space again--> open
 
 While writing fails, items wait and the write is tried again every second. Memory is bounded by two
-limits. Beyond `WAITING_BYTES` the bytes of links and the pixels of frames are dropped as they come,
-and beyond `WAITING_ITEMS` whole steps: `dropped_steps` counts them, their numbers are missing in
-the file, and a replay ends there. With less than `IMAGES_STOP_BYTES` left on the disk, frames and
-the bytes of the links that bring them are left out; telemetry, orders and audit are written to the
-last byte. What is dropped, and what cannot be written, is a `problem`, which becomes an alarm.
+limits. Beyond half of `WAITING_BYTES` jobs are recorded without the digest of their input, beyond
+all of it the bytes of links and the pixels of frames are dropped as they come, and beyond
+`WAITING_ITEMS` whole steps: their numbers are missing in the file, and a replay ends there. With
+less than `IMAGES_STOP_BYTES` left on the disk, frames and the bytes of the links that bring them
+are left out; telemetry, orders and audit are written to the last byte. What is dropped, and what cannot be written, is a `problem`, which becomes an alarm.
 
 A start finishes the files of runs that were killed, on the same thread, before it begins its own.
 """
@@ -39,8 +39,8 @@ RETRY_AFTER_S = 1.0
 CLOSE_WITHIN_S = 5.0
 """A disk that hangs must not keep a stopped station from ending."""
 
-WAITING_BYTES = 128 * 1024 * 1024
-"""Twenty seconds of two raw frames a second, with their links' bytes."""
+WAITING_BYTES = 256 * 1024 * 1024
+"""Ten seconds of two raw frames a second, with their links' bytes and the inputs of their jobs."""
 WAITING_ITEMS = 20_000
 """A minute or two of the busiest traffic."""
 
@@ -145,14 +145,24 @@ class RecordWriter:
                 f"less than {IMAGES_STOP_BYTES // 1024**3} GiB are free in {self.folder}: "
                 "the record goes on without images"
             )
-        if self.dropped_steps:
-            return f"the disk of {self.folder} was too slow: a part of the record is missing"
+        if self.dropped_steps or self.dropped_bytes:
+            what = "steps" if self.dropped_steps else "bytes of links and images"
+            return f"the disk of {self.folder} was too slow: the record lacks {what}"
         return self._faults
 
     @property
     def has_room(self) -> bool:
         """Whether bytes of links and pixels are taken now."""
-        return self._put_bytes - self._taken_bytes < WAITING_BYTES
+        return self._waiting_bytes < WAITING_BYTES
+
+    @property
+    def has_time(self) -> bool:
+        """Whether what costs the thread time is taken now."""
+        return self._waiting_bytes < WAITING_BYTES // 2
+
+    @property
+    def _waiting_bytes(self) -> int:
+        return self._put_bytes - self._taken_bytes
 
     def start(self) -> None:
         """Start the thread; a folder that cannot be written is a `problem`."""

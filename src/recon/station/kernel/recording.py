@@ -39,7 +39,7 @@ from recon.station.state.steps import Job, Output, SendCommand, StepTaken
 
 STEP_BYTES = 1000
 """What a step without pixels holds, more or less."""
-JOB_BYTES = 8 * 1024 * 1024
+JOB_BYTES = 4 * 1024 * 1024
 """What the input of a job of the imaging pipeline holds, more or less."""
 
 _LOG_LEVELS = {"alarm.raised": "warning", "alarm.worse": "error", "order.failed": "error"}
@@ -93,9 +93,11 @@ class Recorder:
         if isinstance(event, PacketReceived):
             vehicle = _vehicle_name(step, event.link_id)
             if isinstance(event.report, ImageReport):
-                event = event if has_room else without_pixels(event)
                 size_bytes += _pixel_bytes(event)
-        with_inputs = has_room
+                if not has_room:
+                    self._writer.dropped_bytes += _pixel_bytes(event)
+                    event, size_bytes = without_pixels(event), STEP_BYTES
+        with_inputs = self._writer.has_time
         if with_inputs:
             size_bytes += JOB_BYTES * sum(isinstance(each, Job) for each in step.outputs)
         self._step += 1
@@ -213,13 +215,22 @@ class RecordTranslator:
             self._image_links.add(event.link_id)
             if with_images and _pixel_bytes(event):
                 self._frame = self._event_frame = self._frame + 1
-                image = (
-                    foxglove.raw_image(report.rgb, item.vehicle, at_ns)
-                    if report.rgb is not None
-                    else foxglove.jpeg_image(report.jpeg or b"", item.vehicle, at_ns)
-                )
-                kind = "image" if report.rgb is not None else "jpeg"
-                _add(topics, f"{place}/{kind}", image, at_ns, self._frame)
+                self._write_frame(report, item, topics)
+
+    def _write_frame(self, report: ImageReport, item: StepItem, topics: Topics) -> None:
+        place, at_ns = f"/vehicles/{item.vehicle}", item.now_ns
+        if report.rgb is None:
+            jpeg = foxglove.jpeg_image(report.jpeg or b"", item.vehicle, at_ns)
+            _add(topics, f"{place}/jpeg", jpeg, at_ns, self._frame)
+            return
+        topics.add(
+            f"{place}/image",
+            foxglove.ENCODING,
+            foxglove.raw_image_bytes(report.rgb, item.vehicle, at_ns),
+            at_ns,
+            number=self._frame,
+            schema=lambda: foxglove.schema_of(foxglove.RawImage),
+        )
 
     def _write_topics(self, item: StepItem, topics: Topics) -> None:
         at_ns = item.now_ns
