@@ -207,7 +207,7 @@ def test_a_failed_record_is_an_alarm_until_it_is_written_again() -> None:
 @pytest.mark.parametrize("shape", [(1, 1), (3, 5), (90, 160)])
 def test_raw_frames_are_what_protobuf_would_write(shape: tuple[int, int]) -> None:
     rgb = np.random.default_rng(1).integers(0, 256, (*shape, 3), np.uint8)
-    image = foxglove.RawImage.FromString(foxglove.raw_image_bytes(rgb, "SIM-1", 7_000_000_001))
+    image = foxglove.RAW_IMAGE.FromString(foxglove.raw_image_bytes(rgb, "SIM-1", 7_000_000_001))
     assert (image.height, image.width, image.step) == (*shape, 3 * shape[1])
     assert (image.data, image.encoding, image.frame_id) == (rgb.tobytes(), "rgb8", "SIM-1")
     assert image.timestamp.ToNanoseconds() == 7_000_000_001

@@ -25,6 +25,7 @@ from recon.model.shade import ShadeMap, SunForecast
 
 ENCODING = "protobuf"
 SITE_FRAME = "site"
+RAW_IMAGE: Any = RawImage
 LENGTH_DELIMITED = 2
 """Protobuf's wire type of bytes."""
 

@@ -12,7 +12,8 @@ limits. Beyond half of `WAITING_BYTES` jobs are recorded without the digest of t
 all of it the bytes of links and the pixels of frames are dropped as they come, and beyond
 `WAITING_ITEMS` whole steps: their numbers are missing in the file, and a replay ends there. With
 less than `IMAGES_STOP_BYTES` left on the disk, frames and the bytes of the links that bring them
-are left out; telemetry, orders and audit are written to the last byte. What is dropped, and what cannot be written, is a `problem`, which becomes an alarm.
+are left out; telemetry, orders and audit are written to the last byte. What is dropped, and what
+cannot be written, is a `problem`, which becomes an alarm.
 
 A start finishes the files of runs that were killed, on the same thread, before it begins its own.
 """

@@ -229,7 +229,7 @@ class RecordTranslator:
             foxglove.raw_image_bytes(report.rgb, item.vehicle, at_ns),
             at_ns,
             number=self._frame,
-            schema=lambda: foxglove.schema_of(foxglove.RawImage),
+            schema=lambda: foxglove.schema_of(foxglove.RAW_IMAGE),
         )
 
     def _write_topics(self, item: StepItem, topics: Topics) -> None:
