@@ -111,6 +111,7 @@ bench: setup ## Measurements, each beside a baseline of the same run
 	$(RUN) python -m benches.station.bench_stick_jitter
 	$(RUN) python -m benches.station.bench_all_stop
 	$(RUN) python -m benches.station.bench_guard
+	$(RUN) python -m benches.record.bench_record
 	$(RUN) python -m benches.cli.bench_startup
 
 fuzz: ## Fuzz the deframer and the packet decoder for a minute each (needs a nightly Rust)

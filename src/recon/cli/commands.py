@@ -110,6 +110,9 @@ COMMANDS = {
     "replay": CommandSource(
         "replay:replay_command", "Run a recorded flight again and compare every output."
     ),
+    "export": CommandSource(
+        "export:export_command", "Write the tracks of a flight record's vehicles."
+    ),
     "inspect": CommandSource("inspect:inspect_command", "Print the packets of a captured stream."),
     "openapi": CommandSource("run:openapi_command", "Print the API's OpenAPI document."),
 }

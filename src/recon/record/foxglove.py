@@ -6,6 +6,7 @@ the ground are east-north metres of the site's frame, which is called `site`.
 
 import json
 from collections.abc import Iterable
+from math import nan
 from typing import Any
 
 import numpy as np
@@ -50,12 +51,12 @@ def schema_of(message: Any) -> tuple[str, bytes]:
 
 
 def location(place: LatLon, height_m: float | None, frame_id: str, at_ns: int) -> Any:
-    """Return where a vehicle is; the height is what its app reports as altitude, 0 if unknown."""
+    """Return where a vehicle is; the height is what its app reports as altitude, NaN if none."""
     fix = LocationFix(
         frame_id=frame_id,
         latitude=place.latitude_deg,
         longitude=place.longitude_deg,
-        altitude=height_m or 0.0,
+        altitude=nan if height_m is None else height_m,
         position_covariance_type=LocationFix.UNKNOWN,
     )
     fix.timestamp.FromNanoseconds(at_ns)
