@@ -15,7 +15,7 @@ from recon.model.errors import RecordError
 from recon.model.geo import LatLon
 from recon.record import foxglove
 from recon.record.mcap_file import McapFile
-from recon.record.tracks import FORMATS, TrackPoint, read_tracks, utc_text
+from recon.record.tracks import FORMATS, RecordedPosition, read_tracks, utc_text
 
 AT_NS = 1_780_000_000_123_000_000
 PLACES = {
@@ -39,7 +39,7 @@ def record(tmp_path: Path) -> Path:
 
 def test_tracks_are_read(record: Path) -> None:
     points = read_tracks(record).points
-    assert points["B"] == [TrackPoint(AT_NS, -45.0, 179.9, 1.5)]
+    assert points["B"] == [RecordedPosition(AT_NS, -45.0, 179.9, 1.5)]
     assert math.isnan(points['A<&"1'][1].reported_altitude_m)
     assert utc_text(AT_NS) == "2026-05-28T20:26:40.123Z"
 

@@ -21,7 +21,7 @@ PREFIX, SUFFIX = "/vehicles/", "/location"
 
 
 @dataclass(frozen=True, slots=True)
-class TrackPoint:
+class RecordedPosition:
     """One reported position; the altitude is the app's own, NaN where it reported none."""
 
     at_ns: int
@@ -34,7 +34,7 @@ class TrackPoint:
 class Tracks:
     """The positions of each vehicle by serial, and why reading ended early; empty if it did not."""
 
-    points: dict[str, list[TrackPoint]] = field(default_factory=dict)
+    points: dict[str, list[RecordedPosition]] = field(default_factory=dict)
     trouble: str = ""
 
 
@@ -53,12 +53,12 @@ def read_tracks(path: Path) -> Tracks:
     return tracks
 
 
-def _point(item: RecordMessage) -> TrackPoint:
+def _point(item: RecordMessage) -> RecordedPosition:
     try:
         fix = LocationFix.FromString(item.data)
     except DecodeError as problem:
         raise RecordError(f"a position of {item.topic} is damaged: {problem}") from problem
-    return TrackPoint(item.log_ns, fix.latitude, fix.longitude, fix.altitude)
+    return RecordedPosition(item.log_ns, fix.latitude, fix.longitude, fix.altitude)
 
 
 def utc_text(at_ns: int) -> str:
@@ -67,7 +67,7 @@ def utc_text(at_ns: int) -> str:
     return f"{whole:%Y-%m-%dT%H:%M:%S}.{at_ns % NS_PER_S // 1_000_000:03d}Z"
 
 
-def gpx(points: Mapping[str, list[TrackPoint]]) -> str:
+def gpx(points: Mapping[str, list[RecordedPosition]]) -> str:
     """Return a track for each vehicle; without elevations, whose datum no app states."""
     lines = [
         '<?xml version="1.0" encoding="UTF-8"?>',
@@ -84,7 +84,7 @@ def gpx(points: Mapping[str, list[TrackPoint]]) -> str:
     return "\n".join((*lines, "</gpx>", ""))
 
 
-def geojson(points: Mapping[str, list[TrackPoint]]) -> str:
+def geojson(points: Mapping[str, list[RecordedPosition]]) -> str:
     """Return a line for each vehicle, with the time of each of its points."""
     features = [
         {
@@ -104,7 +104,7 @@ def geojson(points: Mapping[str, list[TrackPoint]]) -> str:
     return json.dumps({"type": "FeatureCollection", "features": features}) + "\n"
 
 
-def csv_text(points: Mapping[str, list[TrackPoint]]) -> str:
+def csv_text(points: Mapping[str, list[RecordedPosition]]) -> str:
     """Return a row for each position, in the order of time."""
     out = io.StringIO()
     rows = csv.writer(out, lineterminator="\n")
@@ -120,7 +120,7 @@ def csv_text(points: Mapping[str, list[TrackPoint]]) -> str:
     return out.getvalue()
 
 
-FORMATS: Mapping[str, Callable[[Mapping[str, list[TrackPoint]]], str]] = {
+FORMATS: Mapping[str, Callable[[Mapping[str, list[RecordedPosition]]], str]] = {
     ".gpx": gpx,
     ".geojson": geojson,
     ".csv": csv_text,
