@@ -113,7 +113,10 @@ COMMANDS = {
     "export": CommandSource(
         "export:export_command", "Write the tracks of a flight record's vehicles."
     ),
-    "inspect": CommandSource("inspect:inspect_command", "Print the packets of a captured stream."),
+    "inspect": CommandSource(
+        "inspect:inspect_command",
+        "Print the packets of a flight record, a network capture or bare bytes.",
+    ),
     "openapi": CommandSource("run:openapi_command", "Print the API's OpenAPI document."),
 }
 """In the order of `recon --help`."""

@@ -191,7 +191,7 @@ def _tcp(packet: _Packet) -> tuple[str, int, bool, bytes] | None:
             return None
         source, target, tcp = ip
         from_port, to_port, seq, _ack, offset, flags = struct.unpack_from(">HHIIBB", tcp)
-    except (struct.error, IndexError):
+    except (struct.error, IndexError, ValueError):
         return None
     data = tcp[(offset >> 4) * 4 :]
     return f"{source}:{from_port} > {target}:{to_port}", seq, bool(flags & _SYN), data
