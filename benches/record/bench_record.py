@@ -127,8 +127,11 @@ def main() -> int:
         rate = (last[3] - first[3]) / took_s
         print(f"record of {took_s:.0f} s, frames {options.image_format}")
         print(f"size            {rate / 1e6:8.3f} MB/s   {rate * HOURS * 3.6e-6:8.1f} GB in 8 h")
+        handing_over = (last[2] - first[2]) / took_s
+        print(f"thread          {100 * share:8.2f} % of one core")
+        print(f"event loop      {100 * handing_over:8.2f} % of one core")
+        share += handing_over
         print(f"writing         {100 * share:8.2f} % of one core (limit {100 * CPU_LIMIT:.0f} %)")
-        print(f"event loop      {100 * (last[2] - first[2]) / took_s:8.2f} % of one core")
         print_topics(costs.writer.path)
     return 0 if share < CPU_LIMIT else 1
 
