@@ -158,40 +158,6 @@ test("stops all with one key, even with the help open", async ({ page }) => {
   expect(fake.orders).toEqual([]);
 });
 
-test("stops all with any field in focus, and releases by a long press", async ({ page }) => {
-  const fake = await FakeStation.behind(page, station([vehicle(1)]));
-  await page.goto("/");
-  await expect(page.locator("button.craft")).toHaveCount(1);
-  await page.evaluate(() => {
-    for (const type of ["radio", "range", "number", "text"]) {
-      const field = document.createElement("input");
-      field.type = type;
-      field.dataset.testid = type;
-      document.body.append(field);
-    }
-  });
-  for (const [index, type] of ["radio", "range", "number"].entries()) {
-    await page.getByTestId(type).focus();
-    await page.keyboard.press("Shift+S");
-    await expect.poll(() => fake.allStops).toBe(index + 1);
-  }
-  await page.getByTestId("text").focus();
-  await page.keyboard.press("Shift+S");
-  await expect(page.getByTestId("text")).toHaveValue("S");
-  await page.keyboard.press("Alt+Shift+S");
-  await expect.poll(() => fake.allStops).toBe(4);
-  const latch = { by: "api 127.0.0.1", age_s: 2, released: [] };
-  const stopped = station([vehicle(1, { is_stopped: true })], { stop_latch: latch });
-  fake.send(stopped);
-  const timer = setInterval(() => fake.send(stopped), 200);
-  await expect(page.getByRole("alert")).toContainText("ALL STOP in force by api 127.0.0.1");
-  await page.getByRole("button", { name: /^Release the all stop for .*Alder/ }).focus();
-  await page.keyboard.down("Enter");
-  await expect.poll(() => fake.requests).toEqual([["/api/all-stop/release", { serials: null }]]);
-  await page.keyboard.up("Enter");
-  clearInterval(timer);
-});
-
 test("displays hostile text on the map as text", async ({ page }) => {
   const name = `<img src=x onerror="window.broken=1">`;
   await FakeStation.behind(page, station([vehicle(1, { name, serial: "../..\u0007" })]));

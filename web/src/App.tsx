@@ -1,7 +1,8 @@
-import { createEffect, createSignal, onCleanup, onMount } from "solid-js";
+import { createEffect, createSignal, For, onCleanup, onMount, Show } from "solid-js";
+import { Dynamic } from "solid-js/web";
 import { useConsole } from "./console";
 import { vehicleKey } from "./fleet/vehicleStatus";
-import { actOnKey } from "./keys";
+import { actOnKey, isAllStop } from "./keys";
 import { MapView } from "./map/MapView";
 import { AlarmList } from "./panels/alarms/AlarmList";
 import { ConnectionBanner } from "./panels/bar/ConnectionBanner";
@@ -12,6 +13,8 @@ import { FlyHereCard } from "./panels/fly/FlyHereCard";
 import { HelpDialog } from "./panels/help/HelpDialog";
 import { LinkList } from "./panels/links/LinkList";
 import { LoginDialog } from "./panels/login/LoginDialog";
+import type { PanelName } from "./panels/openPanels";
+import { AnswerNotice } from "./panels/orders/AnswerNotice";
 import { OrderBar } from "./panels/orders/OrderBar";
 import { FleetReturn } from "./panels/return/FleetReturn";
 import { SeparationBanner } from "./panels/separation/SeparationHold";
@@ -19,13 +22,28 @@ import { StationPanel } from "./panels/station/StationPanel";
 import { StopBanner } from "./panels/stop/StopLatch";
 import { SunPanel } from "./panels/sun/SunPanel";
 import { SurveyPanel } from "./panels/survey/SurveyPanel";
+import { SurveySummary } from "./panels/survey/SurveySummary";
+import { TimeScale } from "./panels/time/TimeScale";
 import { VehicleList } from "./panels/vehicles/VehicleList";
 import { ZonesPanel } from "./panels/zones/ZonesPanel";
 import "./layout.css";
 
-/** The whole page. */
+const PANELS: readonly (readonly [PanelName, () => ReturnType<typeof AlarmList>])[] = [
+  ["vehicle", VehicleDetail],
+  ["alarms", AlarmList],
+  ["survey", SurveyPanel],
+  ["sun", SunPanel],
+  ["zones", ZonesPanel],
+  ["return", FleetReturn],
+  ["orders", CommandList],
+  ["links", LinkList],
+  ["station", StationPanel],
+];
+
+/** The whole page: the map fills it, and everything else floats over it. */
 export function App() {
-  const { source, fleet, selection, orderApi, theme, fit, flyHere, zoneDraft } = useConsole();
+  const { source, fleet, selection, orderApi, theme, fit, flyHere, zoneDraft, panels } =
+    useConsole();
   const [isHelpOpen, setHelpOpen] = createSignal(false);
   const keys = () => fleet.vehicles.map(vehicleKey);
   const select = (key: number, action: (key: number) => void) => {
@@ -38,50 +56,67 @@ export function App() {
   };
 
   onMount(() => {
+    const onStopKey = (event: KeyboardEvent) => {
+      if (!isAllStop(event)) return;
+      event.preventDefault();
+      event.stopPropagation();
+      void orderApi.allStop();
+    };
     const onKeyDown = (event: KeyboardEvent) => {
       actOnKey(event, {
-        allStop: () => void orderApi.allStop(),
         selectOnly: (number) => select(number, selection.only),
         toggle: (number) => select(number, selection.toggle),
         selectAll: () => selection.all(keys()),
         clear,
         flyHere: flyHere.toggle,
+        details: () => panels.toggle("vehicle"),
         drawZone: zoneDraft.toggle,
         fit,
-        toggleTheme: theme.toggle,
+        toggleTheme: theme.toggleSun,
         help: () => setHelpOpen(!isHelpOpen()),
       });
     };
+    window.addEventListener("keydown", onStopKey, { capture: true });
     window.addEventListener("keydown", onKeyDown);
-    onCleanup(() => window.removeEventListener("keydown", onKeyDown));
+    onCleanup(() => {
+      window.removeEventListener("keydown", onStopKey, { capture: true });
+      window.removeEventListener("keydown", onKeyDown);
+    });
   });
   createEffect(() => selection.keep(keys()));
+  // The form of a zone being drawn is in its panel.
+  createEffect(() => {
+    if (zoneDraft.isOn()) panels.open("zones");
+  });
 
   return (
     <div class="page" classList={{ "is-lost": source.connection().kind === "lost" }}>
+      <MapView />
       <TopBar onHelp={() => setHelpOpen(!isHelpOpen())} />
-      <div class="banners">
+      <div class="notices">
         <ConnectionBanner />
         <StopBanner />
         <SeparationBanner />
+        <AnswerNotice />
       </div>
-      <aside class="side side-vehicles" aria-label="Vehicles">
+      <aside class="dock dock-left" aria-label="Vehicles">
         <VehicleList />
-        <VehicleDetail />
+        <FlyHereCard />
+        <OrderBar />
       </aside>
-      <MapView />
-      <FlyHereCard />
-      <OrderBar />
-      <aside class="side side-events" aria-label="Alarms and commands">
-        <AlarmList />
-        <ZonesPanel />
-        <SurveyPanel />
-        <SunPanel />
-        <FleetReturn />
-        <CommandList />
-        <LinkList />
-        <StationPanel />
+      <aside class="dock dock-right" aria-label="Panels">
+        <For each={PANELS}>
+          {([name, panel]) => (
+            <Show when={panels.isOpen(name)}>
+              <Dynamic component={panel} />
+            </Show>
+          )}
+        </For>
+        <Show when={panels.names().length === 0}>
+          <SurveySummary />
+        </Show>
       </aside>
+      <TimeScale />
       <LoginDialog />
       <HelpDialog isOpen={isHelpOpen()} onClose={() => setHelpOpen(false)} />
     </div>

@@ -15,6 +15,7 @@ import { createFlyHere, type FlyHere } from "./orders/flyHere";
 import { createOrderApi, type OrderApi } from "./orders/orderApi";
 import { type Targets, targetsOf } from "./orders/targets";
 import { createZoneDraft, type ZoneDraft } from "./orders/zoneDraft";
+import type { OpenPanels } from "./panels/openPanels";
 import type { SurveyView } from "./protocol";
 import type { Clock, Instant } from "./source/clock";
 import { lacking, type Role } from "./source/roles";
@@ -47,6 +48,7 @@ export interface Console {
   readonly zoneDraft: ZoneDraft;
   readonly overlay: Overlay;
   readonly theme: ThemeSwitch;
+  readonly panels: OpenPanels;
   readonly login: Login;
   /** Why this person cannot do what needs a role; null when nothing is in the way. */
   lacks(needed: Role): string | null;
@@ -71,6 +73,7 @@ export function createConsole(
   theme: ThemeSwitch,
   clock: Clock,
   now: Accessor<Instant>,
+  panels: OpenPanels,
   login: Login = NO_LOGIN,
 ): Console {
   const fleet = createFleetView(source);
@@ -108,6 +111,7 @@ export function createConsole(
     zoneDraft,
     overlay: createOverlay(() => fleet.surveys.some(({ phase }) => ACTIVE.includes(phase))),
     theme,
+    panels,
     login,
     lacks: (needed) => lacking(source.person(), needed),
     behindS,

@@ -1,15 +1,15 @@
 import { describe, expect, it, vi } from "vitest";
-import { actOnKey, type KeyActions } from "./keys";
+import { actOnKey, isAllStop, type KeyActions } from "./keys";
 
 function press(init: KeyboardEventInit, target?: HTMLElement) {
   const actions = {
-    allStop: vi.fn(),
     selectOnly: vi.fn(),
     toggle: vi.fn(),
     selectAll: vi.fn(),
     clear: vi.fn(),
     fit: vi.fn(),
     flyHere: vi.fn(),
+    details: vi.fn(),
     drawZone: vi.fn(),
     toggleTheme: vi.fn(),
     help: vi.fn(),
@@ -39,7 +39,6 @@ describe("keyboard shortcuts", () => {
     [{ key: "3", code: "Digit3" }, ["selectOnly", 3]],
     [{ key: "#", code: "Digit3", shiftKey: true }, ["toggle", 3]],
     [{ key: "7", code: "Numpad7" }, ["selectOnly", 7]],
-    [{ key: "S", code: "KeyS", shiftKey: true }, ["allStop"]],
     [{ key: "f", code: "KeyF" }, ["fit"]],
     [{ key: "T", code: "KeyT" }, ["toggleTheme"]],
   ])("%j runs %j", (init, expected) => expect(press(init).called).toEqual([expected]));
@@ -55,9 +54,8 @@ describe("keyboard shortcuts", () => {
     expect(press(init)).toEqual({ isHandled: false, called: [] });
   });
 
-  it.each(["radio", "range", "number", "checkbox"])("stop all with a %s in focus", (type) => {
+  it.each(["radio", "range", "number", "checkbox"])("clear with a %s in focus", (type) => {
     const field = input(type);
-    expect(press({ key: "S", code: "KeyS", shiftKey: true }, field).called).toEqual([["allStop"]]);
     expect(press({ key: "Escape", code: "Escape" }, field).called).toEqual([["clear"]]);
     field.remove();
   });
@@ -66,28 +64,14 @@ describe("keyboard shortcuts", () => {
     const radio = input("radio");
     expect(press({ key: "3", code: "Digit3" }, radio).called).toEqual([["selectOnly", 3]]);
     radio.remove();
-    const number = input("number");
-    expect(press({ key: "3", code: "Digit3" }, number).isHandled).toBe(false);
-    expect(press({ key: "a", code: "KeyA", ctrlKey: true }, number).isHandled).toBe(false);
-    number.remove();
-  });
-
-  it.each(["text", "search", "password"])(
-    "type an S into a %s field, and stop all with Alt",
-    (type) => {
-      const field = input(type);
-      expect(press({ key: "S", code: "KeyS", shiftKey: true }, field).isHandled).toBe(false);
-      expect(press({ key: "3", code: "Digit3" }, field).isHandled).toBe(false);
-      const chord = { key: "Í", code: "KeyS", shiftKey: true, altKey: true };
-      expect(press(chord, field)).toEqual({ isHandled: true, called: [["allStop"]] });
-      field.remove();
-    },
-  );
-
-  it("stop all by the letter on another keyboard layout, and only once while held", () => {
-    expect(press({ key: "S", code: "Semicolon", shiftKey: true }).called).toEqual([["allStop"]]);
-    const held = { key: "S", code: "KeyS", shiftKey: true, altKey: true, repeat: true };
-    expect(press(held).called).toEqual([]);
+    const decimal = input("text");
+    decimal.inputMode = "decimal";
+    for (const number of [input("number"), decimal]) {
+      expect(press({ key: "3", code: "Digit3" }, number).isHandled).toBe(false);
+      expect(press({ key: "g", code: "KeyG" }, number).isHandled).toBe(false);
+      expect(press({ key: "a", code: "KeyA", ctrlKey: true }, number).isHandled).toBe(false);
+      number.remove();
+    }
   });
 
   it("ignore keys typed into text fields", () => {
@@ -95,5 +79,71 @@ describe("keyboard shortcuts", () => {
     document.body.append(field);
     expect(press({ key: "3", code: "Digit3" }, field).called).toEqual([]);
     field.remove();
+  });
+});
+
+/** Whether a key press on an element is an all stop. */
+function stops(target: HTMLElement, init: KeyboardEventInit = {}): boolean {
+  document.body.append(target);
+  const shiftS = { key: "S", code: "KeyS", shiftKey: true, bubbles: true, ...init };
+  const event = new KeyboardEvent("keydown", shiftS);
+  target.dispatchEvent(event);
+  const result = isAllStop(event);
+  target.remove();
+  return result;
+}
+
+function element(name: string, set: (element: HTMLElement) => void = () => {}): HTMLElement {
+  const made = document.createElement(name);
+  set(made);
+  return made;
+}
+
+const NO_TEXT = ["button", "checkbox", "color", "date", "datetime-local", "file", "image", "month"];
+const NO_TEXT_EITHER = ["number", "radio", "range", "reset", "submit", "time", "week"];
+
+describe("all stop by key", () => {
+  it.each([...NO_TEXT, ...NO_TEXT_EITHER])("works with an input of type %s in focus", (type) => {
+    expect(stops(input(type))).toBe(true);
+  });
+
+  it.each(["body", "button", "select", "summary", "a", "canvas", "dialog", "details", "output"])(
+    "works with a %s in focus",
+    (name) => expect(stops(element(name))).toBe(true),
+  );
+
+  it.each(["decimal", "numeric"])("works in a text field for a %s number", (mode) => {
+    const field = input("text");
+    field.inputMode = mode;
+    expect(stops(field)).toBe(true);
+  });
+
+  it("works in a text field that cannot be typed into", () => {
+    const field = input("text");
+    field.readOnly = true;
+    expect(stops(field)).toBe(true);
+    const area = document.createElement("textarea");
+    area.disabled = true;
+    expect(stops(area)).toBe(true);
+  });
+
+  it.each(["text", "search", "password", "email", "url", "tel"])(
+    "types an S into a %s field, and works there with Alt",
+    (type) => {
+      expect(stops(input(type))).toBe(false);
+      expect(stops(input(type), { key: "Í", altKey: true })).toBe(true);
+    },
+  );
+
+  it("types an S into a text area", () => {
+    expect(stops(element("textarea"))).toBe(false);
+    expect(stops(element("textarea"), { altKey: true })).toBe(true);
+  });
+
+  it("works by the letter on another keyboard layout, and once while held", () => {
+    expect(stops(element("p"), { code: "Semicolon" })).toBe(true);
+    expect(stops(element("p"), { repeat: true })).toBe(false);
+    expect(stops(element("p"), { ctrlKey: true })).toBe(false);
+    expect(stops(element("p"), { shiftKey: false })).toBe(false);
   });
 });

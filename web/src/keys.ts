@@ -4,13 +4,14 @@ import { isEditingNumber, isTyping } from "./panels/orders/shortcuts";
 export const SHORTCUTS: readonly { readonly keys: string; readonly action: string }[] = [
   { keys: "Shift + S", action: "ALL STOP: all flying vehicles hold position" },
   { keys: "Alt + Shift + S", action: "ALL STOP from everywhere, also while typing text" },
-  { keys: "Hold Shift + H", action: "Hover the selected vehicles (0.4 s)" },
+  { keys: "Shift + H", action: "Hover the selected vehicles" },
   { keys: "Hold Shift + R", action: "Return the selected vehicles home (1.5 s)" },
   { keys: "Hold Shift + L", action: "Land the selected vehicles (1.5 s)" },
   { keys: "1 to 9", action: "Select only that vehicle" },
   { keys: "Shift + 1 to 9", action: "Add that vehicle to the selection, or remove it" },
   { keys: "Ctrl + A", action: "Select all vehicles" },
   { keys: "G", action: "Fly here: set a target on the map for the selected vehicle" },
+  { keys: "D", action: "Details of the selected vehicle" },
   { keys: "Z", action: "Draw a temporary zone on the map: a person, a tractor, a crewed aircraft" },
   {
     keys: "Esc",
@@ -24,13 +25,13 @@ export const SHORTCUTS: readonly { readonly keys: string; readonly action: strin
 
 /** Actions bound to keys. */
 export interface KeyActions {
-  allStop(): void;
   selectOnly(number: number): void;
   toggle(number: number): void;
   selectAll(): void;
   clear(): void;
   fit(): void;
   flyHere(): void;
+  details(): void;
   drawZone(): void;
   toggleTheme(): void;
   help(): void;
@@ -47,18 +48,19 @@ export function actOnKey(event: KeyboardEvent, actions: KeyActions): boolean {
 
 /**
  * All stop works whatever has the focus. Only where letters are typed Shift+S types an S, and Alt is
- * added: a chord with a modifier more is the usual way past a text field.
+ * added: a chord with a modifier more is the usual way past a text field. Listen for it in the capture
+ * phase, which no element can end.
  */
-function isAllStop(event: KeyboardEvent): boolean {
+export function isAllStop(event: KeyboardEvent): boolean {
   const isS = event.code === "KeyS" || event.key.toLowerCase() === "s";
   if (!isS || !event.shiftKey || event.ctrlKey || event.metaKey || event.repeat) return false;
   return event.altKey || !isTyping(event);
 }
 
 function actionOf(event: KeyboardEvent, actions: KeyActions): (() => void) | null {
-  if (isAllStop(event)) return actions.allStop;
   if (isTyping(event) || event.altKey) return null;
-  if (isEditingNumber(event) && !isForPage(event)) return null;
+  // A number field keeps its digits, its arrows and Ctrl+A; a letter in it is a slip of the hand.
+  if (isEditingNumber(event)) return event.key === "Escape" ? actions.clear : null;
   if (event.ctrlKey || event.metaKey) {
     return event.code === "KeyA" && !event.shiftKey ? actions.selectAll : null;
   }
@@ -73,11 +75,6 @@ function actionOf(event: KeyboardEvent, actions: KeyActions): (() => void) | nul
   return plainAction(event, actions);
 }
 
-/** Keys that mean nothing to a number field; digits and Ctrl+A are its own. */
-function isForPage(event: KeyboardEvent): boolean {
-  return !event.ctrlKey && !event.metaKey && digitOf(event.code) === null;
-}
-
 function plainAction(event: KeyboardEvent, actions: KeyActions): (() => void) | null {
   switch (event.key.toLowerCase()) {
     case "escape":
@@ -86,6 +83,8 @@ function plainAction(event: KeyboardEvent, actions: KeyActions): (() => void) | 
       return actions.fit;
     case "g":
       return actions.flyHere;
+    case "d":
+      return actions.details;
     case "z":
       return actions.drawZone;
     case "t":

@@ -4,6 +4,7 @@ import "./theme/theme.css";
 import "./theme/page.css";
 import { App } from "./App";
 import { ConsoleProvider, createConsole } from "./console";
+import { createOpenPanels, NARROW } from "./panels/openPanels";
 import { browserClock } from "./source/clock";
 import { LiveSource } from "./source/liveSource";
 import { keepToken, takeLogin } from "./source/login";
@@ -38,6 +39,7 @@ function Page() {
     createThemeSwitch(document, localStorage),
     browserClock,
     now,
+    createOpenPanels(localStorage, () => matchMedia(NARROW).matches),
     {
       hasToken: given.token !== null,
       fingerprint: given.fingerprint,

@@ -66,9 +66,9 @@ describe("a vehicle's status", () => {
     ["Flying", "error", { conflict_link_ids: [4] }],
     ["Flying", "warning", { staleness: "late" }],
     ["Unidentified", "warning", { serial: null }],
-    ["No contact", "critical", { staleness: "lost" }],
-    ["No contact", "critical", { staleness: "silent", is_flying: flag(null) }],
-    ["No contact", "warning", { staleness: "silent", is_flying: flag(false) }],
+    ["Contact lost", "critical", { staleness: "lost" }],
+    ["Contact lost", "critical", { staleness: "silent", is_flying: flag(null) }],
+    ["Contact lost", "warning", { staleness: "silent", is_flying: flag(false) }],
   ] as const)("%s (%s) for %j", (activity, severity, changes) => {
     const changed = vehicle(1, { ...changes, conflict_link_ids: [] });
     const conflicts = "conflict_link_ids" in changes ? [...changes.conflict_link_ids] : [];

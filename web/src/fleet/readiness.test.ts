@@ -10,7 +10,12 @@ const GROUNDED = { is_flying: { value: false, age_s: 0.1 } } as const;
 describe("the readiness label", () => {
   it("is Ready when all vehicles are connected, on the ground and without problems", () => {
     const state = station([vehicle(1, GROUNDED), vehicle(2, GROUNDED)]);
-    expect(readiness(state, LIVE, 0)).toEqual({ label: "Ready", severity: null, reasons: [] });
+    expect(readiness(state, LIVE, 0)).toEqual({
+      label: "Ready",
+      count: "2 of 2",
+      severity: null,
+      reasons: [],
+    });
   });
 
   it("is Warnings for a warning and Not ready for an error", () => {
@@ -34,29 +39,29 @@ describe("the readiness label", () => {
     expect(readiness(landing, LIVE, 0).label).toBe("Landing");
   });
 
-  it("is Communication lost when a flying vehicle sends no telemetry", () => {
+  it("is Contact lost when a flying vehicle sends no telemetry", () => {
     const state = station([vehicle(1), vehicle(2, { staleness: "lost", telemetry_age_s: 4 })]);
     const { label, severity, reasons } = readiness(state, LIVE, 0);
-    expect([label, severity]).toEqual(["Communication lost", "critical"]);
+    expect([label, severity]).toEqual(["Contact lost", "critical"]);
     expect(reasons[0]).toMatchObject({
       vehicleName: "Birch",
       text: "No telemetry for 4.0 s.",
     });
   });
 
-  it("is not Communication lost for a vehicle switched off on the ground", () => {
+  it("is not Contact lost for a vehicle switched off on the ground", () => {
     const off = vehicle(2, { ...GROUNDED, staleness: "silent", telemetry_age_s: 300 });
     expect(readiness(station([vehicle(1, GROUNDED), off]), LIVE, 0).label).toBe("Warnings");
   });
 
-  it("is Communication lost when the stream is lost, with the age of the last data", () => {
+  it("is Station lost when the stream is lost, with the age of the last data", () => {
     const { label, reasons } = readiness(station([vehicle(1, GROUNDED)]), LOST, 7);
-    expect(label).toBe("Communication lost");
+    expect(label).toBe("Station lost");
     expect(reasons.some(({ text }) => text.includes("7.0 s ago"))).toBe(true);
   });
 
-  it("is Communication lost when the state is old, before the stream is lost", () => {
-    expect(readiness(station([vehicle(1)]), LIVE, 3.5).label).toBe("Communication lost");
+  it("is Contact lost when the state is old, before the stream is lost", () => {
+    expect(readiness(station([vehicle(1)]), LIVE, 3.5).label).toBe("Contact lost");
   });
 
   it("lists reasons worst first, with vehicle names", () => {
@@ -88,8 +93,8 @@ describe("the readiness label", () => {
     expect(readiness(state, LIVE, 0)).toMatchObject({ label: "Warnings", severity: "warning" });
   });
 
-  it("is Not ready before the first state, Communication lost without a connection", () => {
+  it("is Not ready before the first state, Station lost without a connection", () => {
     expect(readiness(null, { kind: "connecting" }, 0).label).toBe("Not ready");
-    expect(readiness(null, LOST, 0).label).toBe("Communication lost");
+    expect(readiness(null, LOST, 0).label).toBe("Station lost");
   });
 });

@@ -3,10 +3,11 @@ import type { Connection } from "../source/stationSource";
 import { alarmText, plainWords } from "../text/names";
 import { formatAge, formatFraction } from "../text/quantities";
 import { severityRank, worstSeverity } from "./severity";
-import { simulation, vehicleStatus } from "./vehicleStatus";
+import { isFlyingNow, simulation, vehicleStatus } from "./vehicleStatus";
 
 export type ReadinessLabel =
-  | "Communication lost"
+  | "Station lost"
+  | "Contact lost"
   | "Landing"
   | "Flying"
   | "Not ready"
@@ -24,6 +25,8 @@ export interface Reason {
 /** The state of station and fleet, with all reasons, worst first. */
 export interface Readiness {
   readonly label: ReadinessLabel;
+  /** How many vehicles the label is about, such as `4 of 5`; empty without vehicles. */
+  readonly count: string;
   readonly severity: Severity | null;
   readonly reasons: readonly Reason[];
 }
@@ -43,16 +46,29 @@ export function readiness(
   ].sort((a, b) => severityRank(a.severity) - severityRank(b.severity));
   const severity = worstSeverity(reasons.map((reason) => reason.severity));
   const label = readinessLabel(state, connection, behindS, severity);
-  return { label, severity, reasons };
+  return { label, count: countOf(label, state, behindS), severity, reasons };
 }
 
 function withoutState(connection: Connection): Readiness {
   const text =
     connection.kind === "lost" ? `${connection.reason}.` : "Waiting for data from the station.";
-  const label = connection.kind === "lost" ? "Communication lost" : "Not ready";
+  const label = connection.kind === "lost" ? "Station lost" : "Not ready";
   const severity = connection.kind === "lost" ? "critical" : "info";
-  return { label, severity, reasons: [{ severity, vehicleName: null, text }] };
+  return { label, count: "", severity, reasons: [{ severity, vehicleName: null, text }] };
 }
+
+function countOf(label: ReadinessLabel, { vehicles }: StationState, behindS: number): string {
+  if (vehicles.length === 0) return "";
+  const isCounted = COUNTED[label] ?? ((one) => isFlyingNow(one, behindS));
+  return `${vehicles.filter((one) => isCounted(one, behindS)).length} of ${vehicles.length}`;
+}
+
+/** What the count beside a label counts, where it is not the flying vehicles. */
+const COUNTED: Partial<Record<ReadinessLabel, (one: VehicleView, behindS: number) => boolean>> = {
+  "Contact lost": (one, behindS) => vehicleStatus(one, behindS).activity === "Contact lost",
+  Landing: (one, behindS) => vehicleStatus(one, behindS).activity === "Landing",
+  Ready: (one, behindS) => vehicleStatus(one, behindS).severity === null,
+};
 
 function readinessLabel(
   state: StationState,
@@ -62,11 +78,12 @@ function readinessLabel(
 ): ReadinessLabel {
   const statuses = state.vehicles.map((vehicle) => vehicleStatus(vehicle, behindS));
   const isLost = statuses.some(
-    ({ activity, severity }) => activity === "No contact" && severity === "critical",
+    ({ activity, severity }) => activity === "Contact lost" && severity === "critical",
   );
-  if (connection.kind === "lost" || isLost) return "Communication lost";
+  if (connection.kind === "lost") return "Station lost";
+  if (isLost) return "Contact lost";
   if (statuses.some(({ activity }) => activity === "Landing")) return "Landing";
-  if (state.vehicles.some((vehicle) => vehicle.is_flying.value === true)) return "Flying";
+  if (state.vehicles.some((vehicle) => isFlyingNow(vehicle, behindS))) return "Flying";
   if (state.vehicles.length === 0 || severity === "critical" || severity === "error") {
     return "Not ready";
   }
@@ -120,7 +137,7 @@ function conditionsOf(vehicle: VehicleView, behindS: number): Condition[] {
   const add = (rule: string, severity: Severity, text: string) =>
     found.push({ rule, severity, text });
   const { activity, severity } = vehicleStatus(vehicle, behindS);
-  if (activity === "No contact") {
+  if (activity === "Contact lost") {
     const ageS = vehicle.telemetry_age_s;
     const since = ageS === null ? "yet" : `for ${formatAge(ageS + behindS)}`;
     add("link_lost", severity ?? "warning", `No telemetry ${since}.`);

@@ -59,7 +59,7 @@ export function reachM(ageS: number, speedMps: number, isFlying: boolean): numbe
 }
 
 export type VehicleActivity =
-  | "No contact"
+  | "Contact lost"
   | "Unidentified"
   | "Landing"
   | "Returning"
@@ -89,7 +89,7 @@ export function vehicleStatus(vehicle: VehicleView, behindS: number): VehicleSta
   const staleness = stalenessNow(vehicle, behindS);
   if (staleness === "lost" || staleness === "silent") {
     const mayBeFlying = vehicle.is_flying.value !== false;
-    return { activity: "No contact", severity: mayBeFlying ? "critical" : "warning" };
+    return { activity: "Contact lost", severity: mayBeFlying ? "critical" : "warning" };
   }
   if (vehicle.serial === null) return { activity: "Unidentified", severity: "warning" };
   const isConflicting = vehicle.conflict_link_ids.length > 0;
@@ -103,4 +103,10 @@ function activityOf(vehicle: VehicleView): VehicleActivity {
   if (isLanding(vehicle)) return "Landing";
   if (RETURN_MODES.includes(mode(vehicle))) return "Returning";
   return "Flying";
+}
+
+/** Whether a vehicle flies as far as anyone can tell now: one whose contact is lost is counted apart. */
+export function isFlyingNow(vehicle: VehicleView, behindS: number): boolean {
+  const isHeard = vehicleStatus(vehicle, behindS).activity !== "Contact lost";
+  return isHeard && vehicle.is_flying.value === true;
 }

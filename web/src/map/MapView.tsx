@@ -13,6 +13,7 @@ import { GroundImageNote } from "./GroundImageNote";
 import { GraticuleLayer } from "./graticuleLayer";
 import { createDisplayedGround, GroundImageLayer } from "./groundImageLayer";
 import { HazardLayer } from "./hazardLayer";
+import { LayersButton } from "./LayersButton";
 import type { Box } from "./localGrid";
 import { ForecastLayer, ShadeLayer, SurveyCellsLayer } from "./overlays";
 import { PadLayer } from "./padLayer";
@@ -39,10 +40,10 @@ export function MapView() {
   const ground = createDisplayedGround(source);
   const sunHere = createSunHere(source, overlay, () => source.state()?.shade?.map?.number ?? null);
   let holder!: HTMLDivElement;
-  let labels!: HTMLDivElement;
   let scaleBar!: HTMLDivElement;
   let tools!: HTMLDivElement;
   let notes!: HTMLDivElement;
+  let free!: HTMLDivElement;
   let layers: readonly Layer[] = [];
 
   onMount(() => {
@@ -52,7 +53,7 @@ export function MapView() {
       new ShadeLayer(overlay, source),
       new ForecastLayer(overlay, source),
       new SurveyCellsLayer(overlay, source),
-      new GraticuleLayer(labels, scaleBar),
+      new GraticuleLayer(scaleBar),
       new SurveyLayer(),
       new SurveyRowsLayer(source),
       new HeightZoneLayer(),
@@ -75,7 +76,11 @@ export function MapView() {
       const { lng: lon, lat } = made.getCenter();
       if (made.getCanvas().matches(":focus-visible")) sunHere.point({ lon, lat });
     });
-    setMapCentre(() => ({ lon: made.getCenter().lng, lat: made.getCenter().lat }));
+    // The middle of what nothing covers: the operator sees where an order goes.
+    setMapCentre(() => {
+      const { lng: lon, lat } = made.unproject(middleOf(made, free));
+      return { lon, lat };
+    });
     made.on("load", () => {
       for (const layer of layers) layer.add(made, readColours(document));
       setMap(made);
@@ -118,8 +123,10 @@ export function MapView() {
     return state === null ? null : wholeView(state);
   });
   const fit = (isFirst: boolean) => {
-    const box = whole();
-    if (box !== null) map()?.fitBounds([box.west, box.south, box.east, box.north], view(isFirst));
+    const [box, shown] = [whole(), map()];
+    if (box === null || shown === null) return;
+    const options = { ...view(isFirst), padding: paddingOf(shown, free) };
+    shown.fitBounds([box.west, box.south, box.east, box.north], options);
   };
   createEffect(on(fitRequests, () => fit(false), { defer: true }));
 
@@ -131,58 +138,79 @@ export function MapView() {
   });
 
   return (
-    <section
-      class="map"
-      classList={{ "is-aiming": flyHere.isOn() || zoneDraft.isOn() }}
-      aria-label="Map"
-    >
-      <div class="map-canvas" ref={holder} />
-      <div class="grid-labels" ref={labels} aria-hidden="true" />
-      <div class="map-tools" ref={tools}>
-        <button type="button" class="button" onClick={() => map()?.zoomIn()} aria-label="Zoom in">
-          +
-        </button>
-        <button type="button" class="button" onClick={() => map()?.zoomOut()} aria-label="Zoom out">
-          −
-        </button>
-        <button type="button" class="button" onClick={() => fit(false)} title="Show everything (F)">
-          Fit
-        </button>
-        <button
-          type="button"
-          class="button"
-          aria-pressed={flyHere.isOn()}
-          disabled={flyHere.vehicle() === null}
-          aria-label="Fly here"
-          title="Fly the selected vehicle to a position on the map (G)"
-          onClick={() => flyHere.toggle()}
-        >
-          <AimIcon />
-        </button>
+    <>
+      <section
+        class="map"
+        classList={{ "is-aiming": flyHere.isOn() || zoneDraft.isOn() }}
+        aria-label="Map"
+      >
+        <div class="map-canvas" ref={holder} />
+      </section>
+      <div class="map-free" ref={free}>
+        <div class="map-tools" ref={tools}>
+          <LayersButton />
+          <button
+            type="button"
+            class="button"
+            onClick={() => fit(false)}
+            title="Show everything (F)"
+            aria-label="Fit"
+          >
+            <FitIcon />
+          </button>
+          <button type="button" class="button" onClick={() => map()?.zoomIn()} aria-label="Zoom in">
+            +
+          </button>
+          <button
+            type="button"
+            class="button"
+            onClick={() => map()?.zoomOut()}
+            aria-label="Zoom out"
+          >
+            −
+          </button>
+        </div>
+        <div class="map-notes" ref={notes}>
+          <UnplacedNote />
+          <SunHereNote here={sunHere} />
+          <GroundImageNote shown={ground.shown()} />
+          <div class="map-scale">
+            <div class="map-scale-bar" ref={scaleBar} />
+            <span title="North is up">N ↑</span>
+          </div>
+        </div>
       </div>
-      <div class="map-scale">
-        <span class="map-north" title="North is up">
-          N ↑
-        </span>
-        <div class="map-scale-bar" ref={scaleBar} />
-      </div>
-      <div class="map-notes" ref={notes}>
-        <GroundImageNote shown={ground.shown()} />
-        <SunHereNote here={sunHere} />
-        <UnplacedNote />
-      </div>
-    </section>
+    </>
   );
 }
 
-/** A ring with a cross as SVG: not every font has one. */
-function AimIcon() {
+/** Four corners as SVG: not every font has the sign. */
+function FitIcon() {
   return (
-    <svg class="aim-icon" viewBox="0 0 24 24" width="24" height="24" aria-hidden="true">
-      <circle cx="12" cy="12" r="7" />
-      <path d="M12 1v8M12 15v8M1 12h8M15 12h8" />
+    <svg class="fit-icon" viewBox="0 0 24 24" width="22" height="22" aria-hidden="true">
+      <path d="M4 9V4h5M15 4h5v5M20 15v5h-5M9 20H4v-5" />
     </svg>
   );
+}
+
+/** Space around what is fitted: the covered edges of the map, and a rim. */
+function paddingOf(map: MapLibre, free: HTMLElement) {
+  const frame = map.getContainer().getBoundingClientRect();
+  const { left, top, right, bottom } = free.getBoundingClientRect();
+  const rim = 24;
+  return {
+    left: Math.max(0, left - frame.left) + rim,
+    top: Math.max(0, top - frame.top) + rim,
+    right: Math.max(0, frame.right - right) + rim,
+    bottom: Math.max(0, frame.bottom - bottom) + rim,
+  };
+}
+
+/** The middle of the uncovered part, in pixels of the map. */
+function middleOf(map: MapLibre, free: HTMLElement): [number, number] {
+  const frame = map.getContainer().getBoundingClientRect();
+  const { left, top, width, height } = free.getBoundingClientRect();
+  return [left - frame.left + width / 2, top - frame.top + height / 2];
 }
 
 function createMap(container: HTMLElement, ground: string): MapLibre {
@@ -209,7 +237,7 @@ function createMap(container: HTMLElement, ground: string): MapLibre {
 }
 
 function view(isFirst: boolean) {
-  return { padding: 90, maxZoom: 19, animate: !isFirst, duration: 400 };
+  return { maxZoom: 19, animate: !isFirst, duration: 400 };
 }
 
 /** Lists vehicles that cannot be drawn on the map. */

@@ -143,7 +143,7 @@ export class SurveyLayer extends AreaLayer {
 }
 
 /** Areas narrower than this on the screen get no label. */
-const LEAST_WIDTH_PX = 40;
+const LEAST_WIDTH_PX = 90;
 
 interface PlacedLabel {
   readonly area: AreaView;

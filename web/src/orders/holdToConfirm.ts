@@ -5,6 +5,7 @@ import type { Clock } from "../source/clock";
  * Hold to confirm, as a pure state machine.
  *
  *   idle --press--> holding --held for duration_ms--> done
+ *   idle --press of an order that needs one press only--> done
  *   holding, done --release or cancel--> idle
  *   holding --the target vehicles changed--> idle
  *
@@ -42,6 +43,7 @@ export function stepHold(hold: Hold, event: HoldEvent, now_ms: number): Hold {
   switch (event.kind) {
     case "press":
       if (hold.kind !== "idle" || event.targets === "") return hold;
+      if (event.duration_ms <= 0) return { kind: "done" };
       return {
         kind: "holding",
         held_ms: 0,

@@ -9,16 +9,15 @@ export interface OrderKind {
   readonly verb: string;
   /** Explanation shown with the button. */
   readonly note: string;
-  /** How long the button must be held, milliseconds. */
+  /** How long the button must be held, milliseconds; 0 for one press. */
   readonly hold_ms: number;
   /** Key to hold together with Shift, for as long as the button. */
   readonly key: string;
 }
 
 /**
- * All three use the same gesture, so that an operator in a hurry need not remember which is which.
- * Hover is safe and takes 0.4 s: longer than an accidental touch or a double press. A second press as
- * confirmation could be an accidental double press. Landing and return take 1.5 s.
+ * Hover brings a vehicle to rest, which is safe and can be taken back: one press, since seconds count.
+ * Landing and return move it where it cannot stop at once: 1.5 s, longer than an accidental touch.
  */
 export const ORDER_KINDS: readonly OrderKind[] = [
   {
@@ -26,12 +25,12 @@ export const ORDER_KINDS: readonly OrderKind[] = [
     label: "Hover",
     verb: "hover",
     note: "Stop and hold position.",
-    hold_ms: 400,
+    hold_ms: 0,
     key: "H",
   },
   {
     kind: "return_home",
-    label: "Return home",
+    label: "Return",
     verb: "climb to the go-home height and return home",
     note: "Climbs to the aircraft's go-home height first.",
     hold_ms: 1500,

@@ -1,19 +1,24 @@
 import { createUniqueId, type JSX, Show } from "solid-js";
 import "./panel.css";
 import { useConsole } from "../console";
+import type { PanelName } from "./openPanels";
 import { SeverityMark } from "./SeverityMark";
 
-/** A titled section beside the map. */
+/** A titled card over the map. */
 export function Panel(props: {
   title: string;
+  /** The panel that the cross closes; without it there is no cross. */
+  name?: PanelName;
   /** Number of listed items; omitted where a count is meaningless. */
   count?: number;
   actions?: JSX.Element;
+  class?: string;
   children: JSX.Element;
 }) {
+  const { panels } = useConsole();
   const title = createUniqueId();
   return (
-    <section class="panel" aria-labelledby={title}>
+    <section class={`card panel ${props.class ?? ""}`} aria-labelledby={title}>
       <header class="panel-head">
         <h2 id={title}>{props.title}</h2>
         <Show when={props.count !== undefined}>
@@ -21,6 +26,18 @@ export function Panel(props: {
         </Show>
         <div class="bar-space" />
         {props.actions}
+        <Show when={props.name}>
+          {(name) => (
+            <button
+              type="button"
+              class="button button-quiet"
+              aria-label={`Close ${props.title}`}
+              onClick={() => panels.close(name())}
+            >
+              ✕
+            </button>
+          )}
+        </Show>
       </header>
       {props.children}
     </section>

@@ -210,16 +210,18 @@ describe("a hazard area", () => {
 });
 
 describe("the all stop in force", () => {
-  const latch = { by: "api 127.0.0.1", age_s: 75, released: ["SN-002"] };
+  const latch = { by: "anna (192.168.1.4)", age_s: 75, released: ["SN-002"] };
   const stopped = station([vehicle(1, { is_stopped: true }), vehicle(2)], { stop_latch: latch });
 
   it("is a banner that names who stopped, when, and the vehicles it holds", () => {
     const root = show(StopBanner, station([vehicle(1)]));
     expect(root.textContent).toBe("");
     page.receive(stopped);
-    expect(root.textContent).toContain("ALL STOP in force by api 127.0.0.1");
-    expect(root.textContent).toContain("Alder");
-    expect(root.textContent).not.toContain("Birch");
+    expect(root.textContent).toContain("All stop in force by anna, 1 min 15 s ago. 1 drone:");
+    expect(root.textContent).toContain("An operator or an administrator can release it.");
+    const release = find(root, "button").getAttribute("aria-label");
+    expect(release).toContain("Alder");
+    expect(release).not.toContain("Birch");
   });
 
   it("is released for all by a long press only", async () => {

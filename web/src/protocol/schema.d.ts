@@ -1286,6 +1286,11 @@ export interface components {
             shadows_east_mps: number | null;
             /** Shadows North Mps */
             shadows_north_mps: number | null;
+            /**
+             * Sun Share
+             * @description expected share of all cells in sun, by lead
+             */
+            sun_share: number[];
         };
         /**
          * FrameView

@@ -399,6 +399,7 @@ export function shadeLine(changes: Partial<ShadeLineView> = {}): ShadeLineView {
       method: "advection",
       lead_s: [0, 30, 60],
       predicted_share: [0.9, 0.5, 0.2],
+      sun_share: [0.62, 0.66, 0.71],
       right: [{ lead_s: 60, right_share: 0.93 }],
       prior_sunlit: 0.6,
       shadows_east_mps: 5,

@@ -1,6 +1,7 @@
 import { createRoot, createSignal, type JSX } from "solid-js";
 import { render } from "solid-js/web";
 import { type Console, ConsoleProvider, createConsole } from "../console";
+import { createOpenPanels } from "../panels/openPanels";
 import type {
   AccessView,
   ActionResponse,
@@ -94,7 +95,14 @@ interface Recorded {
 
 const noPicture = async () => ({ kind: "failed", problem: "no picture in this test" }) as const;
 
-const PLAIN_THEME: ThemeSwitch = { theme: () => "auto", changes: () => 0, toggle: () => {} };
+const PLAIN_THEME: ThemeSwitch = {
+  theme: () => "auto",
+  changes: () => 0,
+  choose: () => {},
+  toggleSun: () => {},
+};
+
+const PANELS = createOpenPanels({ getItem: () => null, setItem: () => {} }, () => false);
 
 /** Renders a component over a source whose state is `first`. */
 export function renderPage(component: () => JSX.Element, first: StationState | null): RenderedPage {
@@ -121,7 +129,7 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
   let behindS = 0;
   const source = fakeSource(state, connection, person, () => behindS, recorded);
   const { shared, disposeShared } = createRoot((disposeShared) => ({
-    shared: createConsole(source, PLAIN_THEME, clock, now),
+    shared: createConsole(source, PLAIN_THEME, clock, now, PANELS),
     disposeShared,
   }));
   const root = document.createElement("div");
@@ -192,7 +200,7 @@ function fakeSource(
     },
     allStop: async () => {
       recorded.allStops += 1;
-      return { kind: "answered", value: [] };
+      return { kind: "answered", value: recorded.answer };
     },
     drawZone: async (drawnZone) => {
       recorded.requests.push({ drawnZone });

@@ -26,9 +26,15 @@ export function commandName(kind: string): string {
   return COMMANDS[kind] ?? plainWords(kind);
 }
 
-/** An issuer for display: the station calls clients of its API `api <address>`. */
-export function issuerName(issuer: string): string {
-  return issuer.replace(/^api /, "operator at ");
+/**
+ * A person or program for display: `anna (192.168.1.4): survey west` is `anna, survey west`. The address is in
+ * the audit; here it would only hide the name.
+ */
+export function personName(label: string): string {
+  return label
+    .replace(/ \([^)]*\)/, "")
+    .replace(/^api \S+/, "a program")
+    .replace(": ", ", ");
 }
 
 export const PHASE_NAMES: Readonly<Record<Phase, string>> = {
@@ -99,6 +105,17 @@ export function capitalised(text: string): string {
 export function listNames(names: readonly string[]): string {
   if (names.length <= 1) return names.join("");
   return `${names.slice(0, -1).join(", ")} and ${names.at(-1)}`;
+}
+
+/** At most `most` names, then how many more. */
+export function listSome(names: readonly string[], most: number): string {
+  if (names.length <= most) return listNames(names);
+  return `${names.slice(0, most).join(", ")} and ${names.length - most} more`;
+}
+
+/** A count with its noun: `1 drone`, `20 drones`. */
+export function plural(count: number, noun: string): string {
+  return `${count} ${noun}${count === 1 ? "" : "s"}`;
 }
 
 /** An alarm's text without the leading vehicle name, which is shown separately. */

@@ -12,11 +12,25 @@ const PHASE_LABELS: Readonly<Record<SurveyView["phase"], string>> = {
   done: "Complete",
 };
 
-/** A survey's status as text. */
+/** A survey's status as text; one whose drones have all stopped is not running. */
 export function surveyStatus({ phase, vehicles }: SurveyView): string {
   const isStopped = phase === "running" && !vehicles.some((vehicle) => vehicle.is_flying_rows);
   return isStopped ? "Stopped: no drone is flying rows" : PHASE_LABELS[phase];
 }
+
+/** About how long a running survey still takes, from how fast it has imaged so far; null if unknown. */
+export function timeLeft({ phase, figures, age_s, vehicles }: SurveyView): string | null {
+  const isFlown = phase === "running" && vehicles.some((vehicle) => vehicle.is_flying_rows);
+  if (!isFlown || figures === null || age_s < LEAST_AGE_S) return null;
+  const imaged_m2 = figures.region_m2 - figures.not_yet_m2;
+  if (imaged_m2 < LEAST_SHARE * figures.region_m2 || figures.not_yet_m2 <= 0) return null;
+  const left_s = (figures.not_yet_m2 / imaged_m2) * age_s;
+  return left_s < 60 ? "under 1 min left" : `≈ ${Math.round(left_s / 60)} min left`;
+}
+
+/** Before that a rate says nothing. */
+const LEAST_AGE_S = 60;
+const LEAST_SHARE = 0.1;
 
 /** The survey shown on the map: a running one, else paused, else planned, else the newest with rows. */
 export function shownSurvey(surveys: readonly SurveyView[]): SurveyView | null {
@@ -28,7 +42,7 @@ export function shownSurvey(surveys: readonly SurveyView[]): SurveyView | null {
 const HECTARE_M2 = 10_000;
 
 export function formatArea(area_m2: number): string {
-  return formatQuantity(area_m2 / HECTARE_M2, "ha", 2);
+  return formatQuantity(area_m2 / HECTARE_M2, "ha", 1);
 }
 
 /** A share of the region in whole per cent, rounded down so that coverage never reads too high. */

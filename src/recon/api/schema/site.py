@@ -136,6 +136,7 @@ class ForecastView(Message):
     predicted_share: list[float] = Field(
         description="of all cells, by lead: those predicted from observations"
     )
+    sun_share: list[float] = Field(description="expected share of all cells in sun, by lead")
     right: list[HindcastView] = Field(
         description="how often earlier forecasts of this flight were right; leads compared so far"
     )

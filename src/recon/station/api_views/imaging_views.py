@@ -1,6 +1,7 @@
 """Ground images, shade and the forecast of sun, as the API sends them."""
 
 from collections.abc import Mapping
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
@@ -106,14 +107,23 @@ def _light_shares(shade: ShadeMap, in_view: MaskMap) -> schema.LightSharesView |
     )
 
 
+@lru_cache(maxsize=2)
+def _shares(sun: SunForecast) -> tuple[list[float], list[float]]:
+    """Return the predicted and the sunlit shares by lead; one forecast is in ten states a second."""
+    predicted = [float((sun.horizon_s >= lead).mean()) for lead in sun.lead_s]
+    return predicted, (sun.sun_probability.mean(axis=(1, 2)) / 255).tolist()
+
+
 def _forecast(sun: SunForecast, line: ShadePipeline, now_ns: int) -> schema.ForecastView:
     east_mps, north_mps = sun.velocity_mps or (None, None)
+    predicted, sunlit = _shares(sun)
     return schema.ForecastView(
         number=line.number,
         issued_age_s=ns_to_seconds(now_ns - sun.issued_at_ns),
         method=sun.method,
         lead_s=sun.lead_s.tolist(),
-        predicted_share=[float((sun.horizon_s >= lead).mean()) for lead in sun.lead_s],
+        predicted_share=predicted,
+        sun_share=sunlit,
         right=[
             schema.HindcastView(lead_s=lead_s, right_share=share)
             for lead_s, share in right_shares(line.forecast).items()

@@ -1,6 +1,6 @@
 import { createMemo, createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
-import { sortAlarms } from "../../fleet/severity";
+import { type AlarmGroup, groupAlarms } from "../../fleet/alarmGroups";
 import type { AlarmView } from "../../protocol";
 import { alarmText } from "../../text/names";
 import { formatAge } from "../../text/quantities";
@@ -8,61 +8,106 @@ import { Empty, Panel } from "../Panel";
 import { SeverityMark } from "../SeverityMark";
 import "./alarms.css";
 
-/** The alarms of station and vehicles, worst first. */
+/** The alarms of station and vehicles by cause, worst first; one acknowledgement for each cause. */
 export function AlarmList() {
   const { fleet } = useConsole();
-  const sorted = createMemo(() => sortAlarms(fleet.alarms));
+  const groups = createMemo(() => groupAlarms(fleet.alarms));
+  // Rows by key: a button stays the same element while alarms come and go.
+  const keys = createMemo(() => groups().map(({ key }) => key), [], { equals: sameKeys });
   return (
-    <Panel title="Alarms" count={sorted().length}>
-      <Show when={sorted().length > 0} fallback={<Empty>No alarms.</Empty>}>
+    <Panel title="Alarms" name="alarms" count={groups().length}>
+      <Show when={keys().length > 0} fallback={<Empty>No alarms.</Empty>}>
         <ul aria-live="assertive" aria-relevant="additions">
-          <For each={sorted()}>{(alarm) => <AlarmRow alarm={alarm} />}</For>
+          <For each={keys()}>
+            {(key) => (
+              <Show when={groups().find((group) => group.key === key)}>
+                {(group) => <GroupRow group={group()} />}
+              </Show>
+            )}
+          </For>
         </ul>
       </Show>
     </Panel>
   );
 }
 
-function AlarmRow(props: { alarm: AlarmView }) {
-  const { source, behindS, lacks } = useConsole();
+function sameKeys(a: readonly string[], b: readonly string[]): boolean {
+  return a.length === b.length && a.every((key, index) => key === b[index]);
+}
+
+function GroupRow(props: { group: AlarmGroup }) {
+  const { source, lacks } = useConsole();
   const [problem, setProblem] = createSignal<string | null>(null);
   const acknowledge = async () => {
-    const outcome = await source.acknowledge(props.alarm.id);
-    setProblem(outcome.kind === "failed" ? outcome.problem : null);
+    const open = props.group.alarms.filter((alarm) => !alarm.is_acknowledged);
+    const outcomes = await Promise.all(open.map(({ id }) => source.acknowledge(id)));
+    const failed = outcomes.find((outcome) => outcome.kind === "failed");
+    setProblem(failed?.kind === "failed" ? failed.problem : null);
   };
-  const text = () => alarmText(props.alarm);
-  const subject = () => props.alarm.vehicle_name || "Station";
   return (
     <li
-      class={`row alarm alarm-${props.alarm.severity}`}
-      classList={{ "is-acknowledged": props.alarm.is_acknowledged }}
+      class={`row alarm alarm-${props.group.severity}`}
+      classList={{
+        "is-acknowledged": props.group.isAcknowledged,
+        "is-over": !props.group.isActive,
+      }}
     >
-      <span class={`tone-${props.alarm.severity}`}>
-        <SeverityMark severity={props.alarm.severity} size={26} />
+      <span class={`alarm-mark tone-${props.group.severity}`}>
+        <SeverityMark severity={props.group.severity} size={22} />
       </span>
       <div class="alarm-text wire-text">
         <p>
-          <strong>{subject()}:</strong> {text()}
+          <strong>{props.group.title}</strong>
         </p>
-        <p class="muted" aria-live="off">
-          {formatAge(props.alarm.raised_age_s + behindS())} ago
-          {props.alarm.is_active ? "" : ", ended"}
-          {props.alarm.is_acknowledged ? ", acknowledged" : ""}
-        </p>
+        <Since group={props.group} />
+        <Show when={props.group.alarms.length > 1}>
+          <Members alarms={props.group.alarms} />
+        </Show>
         <Show when={problem()}>{(text) => <p class="tone-error">{text()}</p>}</Show>
       </div>
-      <Show when={!props.alarm.is_acknowledged}>
+      <Show when={!props.group.isAcknowledged}>
         <button
           type="button"
-          class="button"
-          aria-label={`Acknowledge ${subject()}: ${text()}`}
+          class="button alarm-ack"
+          aria-label={`Acknowledge ${props.group.title}`}
           disabled={lacks("operator") !== null}
-          title={lacks("operator") ?? undefined}
+          title={
+            lacks("operator") ?? "Seen: the colour goes, the alarm stays while its cause lasts"
+          }
           onClick={() => void acknowledge()}
         >
-          Ack
+          OK
         </button>
       </Show>
     </li>
+  );
+}
+
+function Since(props: { group: AlarmGroup }) {
+  const { behindS } = useConsole();
+  const newest = () => (props.group.alarms[0]?.raised_age_s ?? 0) + behindS();
+  return (
+    <p class="muted" aria-live="off">
+      {formatAge(newest())} ago
+      {props.group.isActive ? "" : ", ended"}
+      {props.group.isAcknowledged ? ", acknowledged" : ""}
+    </p>
+  );
+}
+
+function Members(props: { alarms: readonly AlarmView[] }) {
+  return (
+    <details class="alarm-members">
+      <summary>Show each</summary>
+      <ul>
+        <For each={props.alarms}>
+          {(alarm) => (
+            <li>
+              {alarm.vehicle_name || "Station"}: {alarmText(alarm)}
+            </li>
+          )}
+        </For>
+      </ul>
+    </details>
   );
 }

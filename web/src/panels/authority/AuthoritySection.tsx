@@ -2,7 +2,7 @@ import { createSignal, Show } from "solid-js";
 import { useConsole } from "../../console";
 import { anothersLease } from "../../fleet/operatorLease";
 import type { AuthorityHolder, AuthorityView, LeaseView } from "../../protocol";
-import { issuerName, responseProblem } from "../../text/names";
+import { personName, responseProblem } from "../../text/names";
 import { formatAge } from "../../text/quantities";
 import { BRIEF_MS, GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Problem } from "../Panel";
@@ -84,7 +84,7 @@ function AuthorityText(props: { authority: AuthorityView }) {
       </strong>
       <Show when={props.authority.holder_name !== ""}>
         {" "}
-        ({issuerName(props.authority.holder_name)})
+        ({personName(props.authority.holder_name)})
       </Show>{" "}
       <span class="muted">
         {since()}

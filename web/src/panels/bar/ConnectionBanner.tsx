@@ -12,7 +12,7 @@ export function ConnectionBanner() {
   return (
     <Show when={lost()}>
       {(connection) => (
-        <div class="banner" role="alert">
+        <div class="card notice banner" role="alert">
           <strong>No connection to the station.</strong>{" "}
           <Show when={fleet.hasState} fallback="No data received yet.">
             All data below is <span aria-hidden="true">{formatAge(behindS())}</span> old.

@@ -1,51 +1,44 @@
-import { createMemo, createSignal, createUniqueId, For, Show } from "solid-js";
+import { createMemo, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import { type Readiness, readiness } from "../../fleet/readiness";
+import { simulation } from "../../fleet/vehicleStatus";
+import { Popover } from "../Popover";
 import { SeverityMark } from "../SeverityMark";
 
-/** Readiness of station and fleet as a label; a press shows all reasons. */
+/** Readiness of station and fleet in a word with its count; a press shows all reasons. */
 export function StatusButton() {
-  const { source, behindS } = useConsole();
-  const [isOpen, setOpen] = createSignal(false);
-  const panel = createUniqueId();
+  const { source, fleet, behindS } = useConsole();
   const now = createMemo(() => readiness(source.state(), source.connection(), behindS()));
-  const closeOnEscape = (event: KeyboardEvent) => {
-    if (event.key !== "Escape" || !isOpen()) return;
-    event.stopPropagation();
-    setOpen(false);
-  };
   return (
-    <div class="state">
-      <button
-        type="button"
-        class={`status-button tone-ground-${now().severity ?? "good"}`}
-        aria-expanded={isOpen()}
-        onKeyDown={closeOnEscape}
-        aria-controls={panel}
-        onClick={() => setOpen(!isOpen())}
-      >
-        <SeverityMark severity={now().severity} size={26} />
-        <span class="status-text" data-testid="status-label">
-          {now().label}
-        </span>
-        <span class="status-count">{count(now())}</span>
-      </button>
-      <Show when={isOpen()}>
-        <Reasons id={panel} readiness={now()} />
-      </Show>
-    </div>
+    <Popover
+      class="state"
+      buttonClass={`button-quiet status-button tone-${now().severity ?? "good"}`}
+      title="Why"
+      button={
+        <>
+          <SeverityMark severity={now().severity} size={20} />
+          <span class="status-words">
+            <span class="status-text" data-testid="status-label">
+              {now().label}
+            </span>{" "}
+            <span class="status-count" data-testid="status-count">
+              {now().count}
+            </span>
+            <Show when={simulation(fleet.vehicles) === "all"}>
+              <span class="status-simulation">Simulation</span>
+            </Show>
+          </span>
+        </>
+      }
+    >
+      <Reasons readiness={now()} />
+    </Popover>
   );
 }
 
-function count(readiness: Readiness): string {
-  const total = readiness.reasons.length;
-  if (total === 0) return "details";
-  return total === 1 ? "1 reason" : `${total} reasons`;
-}
-
-function Reasons(props: { id: string; readiness: Readiness }) {
+function Reasons(props: { readiness: Readiness }) {
   return (
-    <section id={props.id} class="status-reasons" aria-label="Reasons">
+    <section class="card status-reasons" aria-label="Reasons">
       <Show
         when={props.readiness.reasons.length > 0}
         fallback={<p>All vehicles connected, no problems</p>}

@@ -1,70 +1,107 @@
 import { createMemo, Show } from "solid-js";
 import { useConsole } from "../../console";
 import { simulation } from "../../fleet/vehicleStatus";
-import { PersonTag } from "../login/PersonTag";
+import { formatAge, formatHeading, formatQuantity } from "../../text/quantities";
+import { THEME_NAMES, type Theme } from "../../theme/theme";
+import { AlarmsButton } from "./AlarmsButton";
+import { PanelMenu } from "./PanelMenu";
 import { StatusButton } from "./StatusButton";
 import "./bar.css";
 
-/** The top bar: readiness, number of flying vehicles, and all stop alone in the right corner. */
+/** The top bar: readiness, site, shadows, alarms, and all stop alone in the right corner. */
 export function TopBar(props: { onHelp: () => void }) {
-  const { fleet, theme } = useConsole();
-  const flying = () => fleet.vehicles.filter((vehicle) => vehicle.is_flying.value === true).length;
+  const { fleet } = useConsole();
+  const kind = createMemo(() => simulation(fleet.vehicles));
   return (
-    <header class="bar">
-      <div class="bar-rest">
-        <h1 class="bar-title">Recon</h1>
-        <StatusButton />
-        <p class="bar-count">
-          <strong>{flying()}</strong> of {fleet.vehicles.length} flying
-        </p>
-        <SimulationTag />
-        <div class="bar-space" />
-        <PersonTag />
-        <button
-          type="button"
-          class="button"
-          aria-pressed={theme.theme() === "sun"}
-          title="High contrast for bright sun (T)"
-          onClick={() => theme.toggle()}
-        >
-          ☀ Contrast
-        </button>
-        <button type="button" class="button" onClick={() => props.onHelp()} aria-label="Help">
-          ?
-        </button>
-      </div>
+    <header class="card bar" classList={{ "is-simulation": kind() === "all" }}>
+      <h1 class="bar-title">Recon</h1>
+      <StatusButton />
+      <p class="bar-place">
+        <span class="wire-text">{fleet.site?.name ?? ""}</span>
+        <Show when={kind() === "all"}>
+          <span class="bar-simulation">Simulation</span>
+        </Show>
+        <Show when={kind() === "mixed"}>
+          <strong class="tag tag-simulated">Real and simulated mixed</strong>
+        </Show>
+      </p>
+      <div class="bar-space" />
+      <Shadows />
+      <AlarmsButton />
+      <PanelMenu onHelp={() => props.onHelp()} />
+      <ThemeButton />
+      <button
+        type="button"
+        class="button bar-wide"
+        onClick={() => props.onHelp()}
+        aria-label="Help"
+        title="Keys and orders (?)"
+      >
+        ?
+      </button>
       <AllStop />
     </header>
   );
 }
 
-/** Marks a simulation, and a dangerous mix of real and simulated vehicles. */
-function SimulationTag() {
+/** How the shadows move, by the newest forecast. */
+function Shadows() {
   const { fleet } = useConsole();
-  const kind = createMemo(() => simulation(fleet.vehicles));
+  const text = () => {
+    const { shadows_east_mps: east, shadows_north_mps: north } = fleet.shade?.forecast ?? {};
+    if (typeof east !== "number" || typeof north !== "number") return null;
+    const from = (Math.atan2(-east, -north) * 180) / Math.PI;
+    return `Shadows ${formatQuantity(Math.hypot(east, north), "m/s")} from ${formatHeading(from)}`;
+  };
+  return <Show when={text()}>{(shown) => <p class="bar-shadows">{shown()}</p>}</Show>;
+}
+
+const NEXT: Readonly<Record<Theme, Theme>> = {
+  auto: "light",
+  light: "dark",
+  dark: "sun",
+  sun: "light",
+};
+const SIGNS: Readonly<Record<Theme, string>> = { auto: "◐", light: "☼", dark: "☾", sun: "☀" };
+
+/** The next theme at each press; the menu has them by name. */
+function ThemeButton() {
+  const { theme } = useConsole();
+  const name = () => THEME_NAMES[theme.theme()].toLowerCase();
   return (
-    <Show when={kind() !== "none"}>
-      <span class="tag tag-simulated">
-        {kind() === "all" ? "SIMULATION" : "REAL AND SIMULATED MIXED"}
-      </span>
-    </Show>
+    <button
+      type="button"
+      class="button bar-wide"
+      aria-label={`Colours: ${name()}. Change`}
+      title={`Colours: ${name()} (T: bright sun)`}
+      onClick={() => theme.choose(NEXT[theme.theme()])}
+    >
+      {SIGNS[theme.theme()]}
+    </button>
   );
 }
 
-/** Makes all flying vehicles hold position: one press, no confirmation, always in reach. */
+/**
+ * Makes all flying vehicles hold position: one press, no confirmation, always in reach. It stays pressed while
+ * an all stop is in force; a further press stops again.
+ */
 export function AllStop() {
-  const { orderApi } = useConsole();
+  const { orderApi, fleet, behindS } = useConsole();
   return (
     <button
       type="button"
       class="all-stop"
+      classList={{ "is-latched": fleet.stopLatch !== null }}
       aria-label="All stop: all flying vehicles hold position"
+      aria-pressed={fleet.stopLatch !== null}
       aria-keyshortcuts="Shift+S"
       title="All flying vehicles hold position. Motors stay on. (Shift+S)"
       onClick={() => void orderApi.allStop()}
     >
       <strong>ALL STOP</strong>
-      <span>hold position</span>
+      <Show when={fleet.stopLatch}>
+        {(latch) => <span>in force {formatAge(latch().age_s + behindS())}</span>}
+      </Show>
     </button>
   );
 }

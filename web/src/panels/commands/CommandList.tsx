@@ -4,8 +4,8 @@ import type { CommandView } from "../../protocol";
 import {
   capitalised,
   commandName,
-  issuerName,
   PHASE_NAMES,
+  personName,
   phaseTone,
   ruleTitle,
 } from "../../text/names";
@@ -20,8 +20,8 @@ import "./commands.css";
 export function CommandList() {
   const { fleet } = useConsole();
   return (
-    <Panel title="Commands" count={fleet.commands.length}>
-      <Show when={fleet.commands.length > 0} fallback={<Empty>No commands yet.</Empty>}>
+    <Panel title="Orders" name="orders" count={fleet.commands.length}>
+      <Show when={fleet.commands.length > 0} fallback={<Empty>No orders yet.</Empty>}>
         <ol>
           <For each={fleet.commands}>{(command) => <CommandRow command={command} />}</For>
         </ol>
@@ -44,7 +44,7 @@ function CommandRow(props: { command: CommandView }) {
       </div>
       <PhaseHistory command={props.command} />
       <p class="muted wire-text">
-        {capitalised(issuerName(props.command.issued_by))},{" "}
+        {capitalised(personName(props.command.issued_by))},{" "}
         {formatAge(props.command.age_s + behindS())} ago
         <Show when={props.command.times_sent > 1}>, sent {props.command.times_sent} times</Show>
         <Show when={props.command.takeoff}>; takeoff allowed</Show>

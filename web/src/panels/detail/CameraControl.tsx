@@ -2,7 +2,7 @@ import { createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { OrderApi } from "../../orders/orderApi";
 import { PHASE_NAMES } from "../../text/names";
-import { AnswerResults } from "../orders/AnswerNotice";
+import { Answer } from "../orders/AnswerNotice";
 
 /** Selectable frame rates. */
 const RATES_HZ = [1, 2, 5] as const;
@@ -85,12 +85,8 @@ function CameraAnswer(props: { orderApi: OrderApi }) {
     <Show when={props.orderApi.lastAnswer()}>
       {(answer) => (
         <div class="camera-answer wire-text" role="status">
-          <strong>
-            {answer().order} {answer().labels.join()}
-          </strong>
-          <Show when={answer().outcome.kind === "waiting"}>: waiting for the station</Show>
-          <Show when={phase()}>{(current) => <>: {PHASE_NAMES[current()].toLowerCase()}</>}</Show>
-          <AnswerResults answer={answer()} />
+          <Answer answer={answer()} />
+          <Show when={phase()}>{(current) => <p class="muted">{PHASE_NAMES[current()]}</p>}</Show>
         </div>
       )}
     </Show>

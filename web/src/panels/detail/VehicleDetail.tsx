@@ -5,7 +5,7 @@ import { createOrderApi } from "../../orders/orderApi";
 import type { VehicleView } from "../../protocol";
 import { vehicleLabel } from "../../text/names";
 import { agedBy, formatAge } from "../../text/quantities";
-import { colourOf } from "../../theme/theme";
+import { colourOf, lookClasses } from "../../theme/theme";
 import { AuthoritySection } from "../authority/AuthoritySection";
 import { HazardSection } from "../hazard/HazardSection";
 import { Panel } from "../Panel";
@@ -29,7 +29,7 @@ export function VehicleDetail() {
       when={shown()}
       keyed={false}
       fallback={
-        <Panel title="Vehicle">
+        <Panel title="Vehicle details" name="vehicle">
           <p class="panel-empty">Select a vehicle to see its telemetry.</p>
           <CameraControl orderApi={cameraOrders} />
         </Panel>
@@ -38,8 +38,12 @@ export function VehicleDetail() {
       {(vehicle) => (
         <Panel
           title={vehicle().name}
+          name="vehicle"
           actions={
-            <span class="badge own-colour" style={{ "--own": colourOf(vehicleKey(vehicle())) }}>
+            <span
+              class={`badge own-colour ${lookClasses(vehicleKey(vehicle()))}`}
+              style={{ "--own": colourOf(vehicleKey(vehicle())) }}
+            >
               {badgeText(vehicle())}
             </span>
           }

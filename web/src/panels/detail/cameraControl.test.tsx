@@ -58,12 +58,12 @@ describe("camera control", () => {
     page.answerWith([orderResult()]);
     page.shared.selection.only(1);
     press("Start camera");
-    expect(control().textContent).toContain("Camera on 1 Alder: waiting for the station");
+    expect(control().textContent).toContain("Camera on: sent to 1 Alder, waiting for the station");
     await answered();
-    expect(control().textContent).toContain("Accepted: Alder");
+    expect(control().textContent).toContain("Camera on Alder: accepted");
     const commands = [command(41, { kind: "camera_start", phase: "timed_out" })];
     page.receive(station(VEHICLES, { commands }));
-    expect(control().textContent).toContain("Camera on 1 Alder: timed out");
+    expect(control().textContent).toContain("Timed out");
   });
 
   it("shows a refusal with its reason, even after the selection has changed", async () => {
@@ -78,8 +78,9 @@ describe("camera control", () => {
     press("Stop camera");
     page.shared.selection.clear();
     await answered();
-    expect(control().textContent).toContain("Camera off 1 Alder");
-    expect(control().textContent).toContain("Refused: Alder: one is unanswered");
+    expect(control().textContent).toContain(
+      "Camera off: 0 of 1 accepted. Refused: Alder: one is unanswered",
+    );
   });
 
   it("does not replace the answers to safety orders", async () => {

@@ -26,9 +26,9 @@ export function HelpDialog(props: { isOpen: boolean; onClose: () => void }) {
       </dl>
       <h2>Orders</h2>
       <p>
-        Hover, return home and land are sent to the selected vehicles only. Hold the button until
-        its bar is full. Releasing it early, sliding off it or changing the selection cancels the
-        order. None of these orders makes a vehicle take off.
+        Hover, return home and land are sent to the selected vehicles only. Hover takes one press.
+        Hold the others until the bar is full; releasing early, sliding off or changing the
+        selection cancels the order. None of these orders makes a vehicle take off.
       </p>
       <p>
         Return home climbs to the aircraft's go-home height first. Return in layers flies each

@@ -24,7 +24,7 @@ export function LinkList() {
     [...fleet.links].sort((a, b) => STATUS[a.status].rank - STATUS[b.status].rank || b.id - a.id),
   );
   return (
-    <Panel title="Links" count={sorted().length}>
+    <Panel title="Links" name="links" count={sorted().length}>
       <Show when={sorted().length > 0} fallback={<Empty>No app connected.</Empty>}>
         <ul>
           <For each={sorted()}>{(link) => <LinkRow link={link} />}</For>

@@ -1,28 +1,21 @@
-import { For, Match, Show, Switch } from "solid-js";
+import { createEffect, createMemo, createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { OrderAnswer } from "../../orders/orderApi";
-import type { OrderResult } from "../../protocol";
-import { listNames, ruleTitle } from "../../text/names";
+import { summarise } from "../../text/answers";
+import { listNames } from "../../text/names";
 import { SeverityMark } from "../SeverityMark";
 
-/** The station's answer to the last order, per vehicle, until dismissed. */
+/** The answer to the last order in one line over the map; the names on demand. */
 export function AnswerNotice() {
   const { orderApi } = useConsole();
   return (
     <Show when={orderApi.lastAnswer()}>
       {(answer) => (
-        <div class="answer" role="status">
-          <div class="answer-text wire-text">
-            <strong>{answer().order}</strong>
-            <Show when={answer().outcome.kind === "waiting"}>
-              {" "}
-              to {listNames(answer().labels)}: waiting for the station
-            </Show>
-            <AnswerResults answer={answer()} />
-          </div>
+        <div class="card toast" role="status">
+          <Answer answer={answer()} />
           <button
             type="button"
-            class="button"
+            class="button button-quiet"
             aria-label="Dismiss"
             onClick={() => orderApi.dismiss()}
           >
@@ -34,116 +27,50 @@ export function AnswerNotice() {
   );
 }
 
-/** The results of an order: accepted, refused with reasons, or failed. */
-export function AnswerResults(props: { answer: OrderAnswer }) {
-  const problem = () => {
-    const { outcome } = props.answer;
-    return outcome.kind === "failed" ? outcome.problem : null;
-  };
-  const results = () => {
-    const { outcome } = props.answer;
-    return outcome.kind === "answered" ? outcome.value : null;
-  };
+/** An answer in one line, with the names behind its counts. */
+export function Answer(props: { answer: OrderAnswer }) {
+  const { fleet } = useConsole();
+  const [isOpen, setOpen] = createSignal(false);
+  const summary = createMemo(() => summarise(props.answer, fleet.commands, fleet.vehicles));
+  const isWaiting = () => props.answer.outcome.kind === "waiting";
+  // A new order's answer begins in one line.
+  createEffect(() => {
+    if (isWaiting()) setOpen(false);
+  });
   return (
-    <Switch>
-      <Match when={problem()}>
-        {(text) => (
-          <p class="answer-line tone-critical">
-            <SeverityMark severity="critical" />
-            <span>
-              {listNames(props.answer.labels)}: not confirmed. {text()}
-            </span>
-          </p>
-        )}
-      </Match>
-      <Match when={results()}>
-        {(list) => (
-          <Show
-            when={list().length > 0}
-            fallback={<p class="answer-line">No connected vehicle reports that it is flying.</p>}
+    <div class="toast-text">
+      <p class="toast-line">
+        <Show when={!isWaiting()}>
+          <span class={`tone-${summary().severity ?? "good"}`}>
+            <SeverityMark severity={summary().severity} />
+          </span>
+        </Show>
+        <span class="wire-text">{summary().text}</span>
+        <Show when={summary().lines.length > 0}>
+          <button
+            type="button"
+            class="button button-quiet toast-names"
+            aria-expanded={isOpen()}
+            onClick={() => setOpen(!isOpen())}
           >
-            <AcceptedLine accepted={list().filter((result) => result.accepted)} />
-            <ul>
-              <For each={list().filter((result) => result.accepted && result.reason)}>
-                {(result) => <RemarkLine result={result} />}
-              </For>
-              <For each={list().filter((result) => !result.accepted)}>
-                {(result) => <RefusedLine result={result} />}
-              </For>
-            </ul>
-          </Show>
-        )}
-      </Match>
-    </Switch>
-  );
-}
-
-function nameOf(result: OrderResult): string {
-  return result.vehicle_name || `link ${result.link_id ?? "unknown"}`;
-}
-
-/** A vehicle's name, with the SIM tag outside it, where no name can imitate the tag. */
-function Name(props: { result: OrderResult }) {
-  return (
-    <>
-      <strong>{nameOf(props.result)}</strong>
-      <Show when={props.result.is_simulated}>
-        {" "}
-        <span class="tag tag-simulated">SIM</span>
-      </Show>
-    </>
-  );
-}
-
-function AcceptedLine(props: { accepted: readonly OrderResult[] }) {
-  return (
-    <Show when={props.accepted.length > 0}>
-      <p class="answer-line">
-        <span class="tone-good">
-          <SeverityMark severity={null} />
-        </span>
-        <span>
-          {"Accepted: "}
-          <For each={props.accepted}>
-            {(result, index) => (
-              <>
-                {separator(index(), props.accepted.length)}
-                <Name result={result} />
-              </>
+            Names
+          </button>
+        </Show>
+      </p>
+      <Show when={isOpen()}>
+        <ul class="toast-lines wire-text">
+          <For each={summary().lines}>
+            {(line) => (
+              <li>
+                <span class={line.severity === null ? "muted" : `tone-${line.severity}`}>
+                  {line.title}:
+                </span>{" "}
+                {listNames(line.names)}
+              </li>
             )}
           </For>
-        </span>
-      </p>
-    </Show>
-  );
-}
-
-/** Separator before the name at `index` in a list of `count` names. */
-function separator(index: number, count: number): string {
-  if (index === 0) return "";
-  return index === count - 1 ? " and " : ", ";
-}
-
-/** A remark on an accepted order, such as what it waits for. */
-function RemarkLine(props: { result: OrderResult }) {
-  return (
-    <li class="answer-line">
-      <span>
-        <Name result={props.result} />: {props.result.reason}
-      </span>
-    </li>
-  );
-}
-
-function RefusedLine(props: { result: OrderResult }) {
-  return (
-    <li class="answer-line" title={ruleTitle(props.result.rule)}>
-      <span class="tone-error">
-        <SeverityMark severity="error" />
-      </span>
-      <span>
-        Refused: <Name result={props.result} />: {props.result.reason}
-      </span>
-    </li>
+        </ul>
+      </Show>
+    </div>
   );
 }

@@ -2,8 +2,7 @@ import { For, Match, onCleanup, onMount, Show, Switch } from "solid-js";
 import { useConsole } from "../../console";
 import { createHoldTimer, type HoldTimer } from "../../orders/holdToConfirm";
 import { ORDER_KINDS, type OrderKind, targetsKey } from "../../orders/targets";
-import { listNames } from "../../text/names";
-import { AnswerNotice } from "./AnswerNotice";
+import { listSome } from "../../text/names";
 import { OrderButton } from "./OrderButton";
 import { holdByKey } from "./shortcuts";
 import "./orders.css";
@@ -15,7 +14,7 @@ interface HeldOrder {
 
 /** Hover, return and land for the selected vehicles, with their names shown before and during a hold. */
 export function OrderBar() {
-  const { targets, orderApi, clock } = useConsole();
+  const { targets, orderApi, clock, flyHere, panels } = useConsole();
   const held: HeldOrder[] = ORDER_KINDS.map((order) => ({
     order,
     timer: createHoldTimer(
@@ -36,9 +35,13 @@ export function OrderBar() {
     );
     onCleanup(stop);
   });
+  const hasTargets = () => targets().labels.length + targets().unreachable.length > 0;
   return (
-    <section class="orders" aria-label="Orders to the selected vehicles">
-      <AnswerNotice />
+    <section
+      class="card orders"
+      classList={{ "is-idle": !hasTargets() }}
+      aria-label="Orders to the selected vehicles"
+    >
       <p class="orders-to wire-text" aria-live="polite">
         <Recipients holding={holding()} />
       </p>
@@ -48,15 +51,41 @@ export function OrderBar() {
             <OrderButton order={order} timer={timer} labels={targets().labels} />
           )}
         </For>
+        <button
+          type="button"
+          class="button orders-goto"
+          aria-pressed={flyHere.isOn()}
+          disabled={flyHere.vehicle() === null}
+          aria-label="Fly here"
+          title={
+            flyHere.vehicle() === null
+              ? "Select one vehicle to send it to a place"
+              : "Fly the selected vehicle to a position on the map (G)"
+          }
+          onClick={() => flyHere.toggle()}
+        >
+          Fly here
+        </button>
+        <button
+          type="button"
+          class="button button-quiet orders-details"
+          aria-expanded={panels.isOpen("vehicle")}
+          title="Telemetry, camera, control and checklist (D)"
+          onClick={() => panels.toggle("vehicle")}
+        >
+          Details
+        </button>
       </div>
-      <p class="muted orders-note">Return home climbs to the aircraft's go-home height first.</p>
     </section>
   );
 }
 
+/** So many names are read at a glance. */
+const NAMES_SHOWN = 3;
+
 function Recipients(props: { holding: OrderKind | null }) {
   const { targets } = useConsole();
-  const names = () => listNames(targets().labels);
+  const names = () => listSome(targets().labels, NAMES_SHOWN);
   return (
     <>
       <Switch fallback={<>Select one or more vehicles to command.</>}>
@@ -64,13 +93,13 @@ function Recipients(props: { holding: OrderKind | null }) {
           Keep holding to <strong>{props.holding?.verb}</strong>: <strong>{names()}</strong>
         </Match>
         <Match when={targets().labels.length > 0}>
-          Orders go to <strong>{names()}</strong>
+          <strong>{names()}</strong> selected
         </Match>
       </Switch>
       <Show when={targets().unreachable.length > 0}>
         <span class="tone-warning">
           {" "}
-          Not sent to {listNames(targets().unreachable)}: unidentified, ALL STOP only.
+          Not sent to {listSome(targets().unreachable, NAMES_SHOWN)}: unidentified, ALL STOP only.
         </span>
       </Show>
     </>

@@ -1,4 +1,4 @@
-import { createEffect, Match, Switch } from "solid-js";
+import { createEffect, Match, Show, Switch } from "solid-js";
 import { useConsole } from "../../console";
 import type { HoldTimer } from "../../orders/holdToConfirm";
 import type { OrderKind } from "../../orders/targets";
@@ -14,13 +14,17 @@ export function OrderButton(props: {
   const { lacks } = useConsole();
   const lack = () => lacks("pilot");
   const isDisabled = () => props.labels.length === 0 || lack() !== null;
+  const hint = () => {
+    if (lack() !== null) return "needs pilot";
+    return props.order.hold_ms > 0 ? `hold ${props.order.hold_ms / 1000} s` : null;
+  };
   createEffect(() => {
     if (isDisabled()) props.timer.cancel();
   });
   return (
     <button
       type="button"
-      class={`order order-${props.order.kind}`}
+      class={`button order order-${props.order.kind}`}
       classList={{ "is-holding": props.timer.kind() === "holding" }}
       aria-disabled={isDisabled()}
       aria-label={accessibleName(props.order, props.labels)}
@@ -28,30 +32,38 @@ export function OrderButton(props: {
       aria-description={lack() ?? props.order.note}
       aria-keyshortcuts={`Shift+${props.order.key}`}
       style={{ "--held": props.timer.progress() }}
-      {...holdHandlers(props.timer, isDisabled)}
+      {...handlers(props.order, props.timer, isDisabled)}
     >
       <OrderIcon kind={props.order.kind} />
       <span class="order-text">
-        <strong>{props.order.label}</strong>
-        <small>{lack() !== null ? "needs pilot" : holdHint(props.order.hold_ms)}</small>
+        {props.order.label}
+        <Show when={hint()}>{(text) => <small>{text()}</small>}</Show>
       </span>
     </button>
   );
 }
 
-function holdHint(hold_ms: number): string {
-  return hold_ms >= 1000 ? `hold ${hold_ms / 1000} s` : "hold briefly";
+/** One press is a click, so that a finger that slides off gives no order. */
+function handlers(order: OrderKind, timer: HoldTimer, isDisabled: () => boolean) {
+  if (order.hold_ms > 0) return holdHandlers(timer, isDisabled);
+  const press = () => {
+    if (isDisabled()) return;
+    timer.press();
+    timer.release();
+  };
+  return { onClick: press };
 }
 
 function accessibleName(order: OrderKind, labels: readonly string[]): string {
   if (labels.length === 0) return `${order.label}: select vehicles first`;
-  return `${order.label} ${listNames(labels)}: hold for ${order.hold_ms / 1000} seconds`;
+  const named = `${order.label} ${listNames(labels)}`;
+  return order.hold_ms > 0 ? `${named}: hold for ${order.hold_ms / 1000} seconds` : named;
 }
 
 /** An icon for each order, so that orders differ by more than colour and position. */
 export function OrderIcon(props: { kind: OrderKind["kind"] }) {
   return (
-    <svg class="order-icon" viewBox="0 0 24 24" width="28" height="28" aria-hidden="true">
+    <svg class="order-icon" viewBox="0 0 24 24" width="20" height="20" aria-hidden="true">
       <Switch>
         <Match when={props.kind === "hover"}>
           <path d="M8 4v16M16 4v16" />

@@ -1,7 +1,8 @@
 import { afterEach, beforeEach, describe, expect, it } from "vitest";
-import { orderResult, station, vehicle } from "../../testing/fakeState";
+import { command, orderResult, station, vehicle } from "../../testing/fakeState";
 import { find, type RenderedPage, renderPage } from "../../testing/renderPage";
 import { AllStop } from "../bar/TopBar";
+import { AnswerNotice } from "./AnswerNotice";
 import { OrderBar } from "./OrderBar";
 
 const FLEET = station([vehicle(1), vehicle(2), vehicle(3, { number: 0, serial: null })]);
@@ -11,6 +12,7 @@ beforeEach(() => {
   page = renderPage(
     () => (
       <>
+        <AnswerNotice />
         <OrderBar />
         <AllStop />
       </>
@@ -41,7 +43,7 @@ describe("an order button", () => {
 
   it("names the vehicles before and while it is held", () => {
     page.shared.selection.all([1, 2]);
-    expect(find(page.root, ".orders-to").textContent).toBe("Orders go to 1 Alder and 2 Birch");
+    expect(find(page.root, ".orders-to").textContent).toBe("1 Alder and 2 Birch selected");
     expect(land().getAttribute("aria-label")).toContain("1 Alder and 2 Birch");
     pointer("pointerdown");
     const text = find(page.root, ".orders-to").textContent;
@@ -121,12 +123,16 @@ describe("an order button", () => {
     expect(page.orders.map(({ serials }) => serials)).toEqual([["SN-001"]]);
   });
 
-  it("needs a shorter hold for hover", () => {
+  it("hovers at one press, and once at one press of its key", () => {
     page.shared.selection.only(1);
-    const hover = find(page.root, ".order-hover");
-    hover.dispatchEvent(new PointerEvent("pointerdown", { bubbles: true, button: 0 }));
-    page.clock.advance(450);
-    expect(page.orders).toEqual([{ serials: ["SN-001"], order: { kind: "hover" } }]);
+    find(page.root, ".order-hover").click();
+    const hover = { serials: ["SN-001"], order: { kind: "hover" } };
+    expect(page.orders).toEqual([hover]);
+    const select = document.createElement("select");
+    page.root.append(select);
+    key("keydown", { code: "KeyH", key: "H", shiftKey: true }, select);
+    key("keydown", { code: "KeyH", key: "H", shiftKey: true, repeat: true }, select);
+    expect(page.orders).toEqual([hover, hover]);
   });
 });
 
@@ -140,38 +146,66 @@ describe("all stop", () => {
 });
 
 describe("the station's answer", () => {
-  const answer = () => find(page.root, ".answer-text");
+  const line = () => find(page.root, ".toast-line").textContent ?? "";
   const settled = async () => {
     for (let turn = 0; turn < 3; turn += 1) await Promise.resolve();
   };
+  const stopAll = async () => {
+    find(page.root, ".all-stop").click();
+    await settled();
+  };
+  const grounded = { is_flying: { value: false, age_s: 0.1 } };
+  const notFlying = { accepted: false, rule: "flying" };
 
-  it("marks simulated vehicles and shows what an accepted order waits for", async () => {
-    const reason = "waiting for telemetry";
+  it("is one line, with the one refusal in it and the names on demand", async () => {
     page.answerWith([
-      orderResult({ is_simulated: true, reason }),
+      orderResult({ reason: "waiting for telemetry" }),
       orderResult({ serial: "SN-002", vehicle_name: "Birch", command_id: 42 }),
-      orderResult({
-        vehicle_name: "Cedar",
-        is_simulated: true,
-        accepted: false,
-        rule: "busy",
-        reason: "one is unanswered",
-      }),
+      orderResult({ vehicle_name: "Cedar", accepted: false, rule: "busy", reason: "unanswered" }),
     ]);
     const order = { serials: ["SN-001"], order: { kind: "land" } } as const;
     await page.shared.orderApi.order(order, ["1 Alder"]);
-    const lines = [...answer().querySelectorAll(".answer-line > span:last-child")];
-    expect(lines.map((line) => line.textContent)).toEqual([
-      "Accepted: Alder SIM and Birch",
-      `Alder SIM: ${reason}`,
-      "Refused: Cedar SIM: one is unanswered",
+    expect(line()).toContain("Land: 0 of 3 landing. Refused: Cedar: unanswered");
+    expect(page.root.querySelector(".toast-lines")).toBeNull();
+    find(page.root, ".toast-names").click();
+    const lines = [...page.root.querySelectorAll(".toast-lines li")].map((li) => li.textContent);
+    expect(lines).toEqual([
+      "Not landing yet: Alder (waiting for telemetry) and Birch",
+      "Refused: unanswered: Cedar",
     ]);
-    expect(answer().querySelectorAll(".tag-simulated")).toHaveLength(3);
   });
 
-  it("to an all stop reports that nothing is flying", async () => {
-    find(page.root, ".all-stop").click();
-    await settled();
-    expect(answer().textContent).toContain("No connected vehicle reports that it is flying.");
+  it("counts the vehicles that telemetry shows holding", async () => {
+    page.answerWith([1, 2].map((n) => orderResult({ serial: `SN-00${n}`, command_id: 40 + n })));
+    await stopAll();
+    expect(line()).toContain("All stop: 0 of 2 holding");
+    const commands = [command(41), command(42, { phase: "acknowledged" })];
+    page.receive(station([vehicle(1), vehicle(2)], { commands }));
+    expect(line()).toContain("All stop: 1 of 2 holding");
+    page.receive(station([vehicle(1), vehicle(2)], { commands: [command(41), command(42)] }));
+    expect(line()).toContain("All stop: 2 of 2 holding");
+  });
+
+  it("does not call a drone on the ground refused, but one that may fly", async () => {
+    page.receive(station([vehicle(1), vehicle(2, grounded), vehicle(4, { staleness: "lost" })]));
+    page.answerWith([
+      orderResult(),
+      orderResult({
+        ...notFlying,
+        serial: "SN-002",
+        vehicle_name: "Birch",
+        reason: "on the ground",
+      }),
+      orderResult({ ...notFlying, serial: "SN-004", vehicle_name: "Dogwood", reason: "too old" }),
+    ]);
+    await stopAll();
+    expect(line()).toContain("All stop: 0 of 2 holding. Refused: Dogwood: too old");
+    find(page.root, ".toast-names").click();
+    expect(find(page.root, ".toast-lines").textContent).toContain("On the ground: Birch");
+  });
+
+  it("to an all stop says that none is flying", async () => {
+    await stopAll();
+    expect(line()).toContain("All stop: in force; no drone is flying");
   });
 });

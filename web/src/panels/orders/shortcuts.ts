@@ -25,38 +25,37 @@ export function holdByKey(page: Window, keys: readonly HeldKey[]): () => void {
   const onBlur = () => {
     for (const { timer } of keys) timer.cancel();
   };
-  page.addEventListener("keydown", onDown);
-  page.addEventListener("keyup", onUp);
+  // While the event goes down: no element can keep a key from the page.
+  page.addEventListener("keydown", onDown, { capture: true });
+  page.addEventListener("keyup", onUp, { capture: true });
   page.addEventListener("blur", onBlur);
   return () => {
-    page.removeEventListener("keydown", onDown);
-    page.removeEventListener("keyup", onUp);
+    page.removeEventListener("keydown", onDown, { capture: true });
+    page.removeEventListener("keyup", onUp, { capture: true });
     page.removeEventListener("blur", onBlur);
   };
 }
 
-/** Input types into which no letters are typed. */
-const NO_LETTERS = [
-  "button",
-  "checkbox",
-  "color",
-  "file",
-  "number",
-  "radio",
-  "range",
-  "reset",
-  "submit",
-];
+/** Input types into which text is typed; every other type takes no letters. */
+const TEXT_TYPES = ["email", "password", "search", "tel", "text", "url"];
 
 /** Whether the event is input to a field in which letters are typed. */
 export function isTyping(event: KeyboardEvent): boolean {
   const target = event.target;
   if (!(target instanceof HTMLElement)) return false;
-  if (target.isContentEditable || target instanceof HTMLTextAreaElement) return true;
-  return target instanceof HTMLInputElement && !NO_LETTERS.includes(target.type);
+  if (target.isContentEditable) return true;
+  if (target instanceof HTMLTextAreaElement) return !isFixed(target);
+  if (!(target instanceof HTMLInputElement) || isEditingNumber(event)) return false;
+  return TEXT_TYPES.includes(target.type) && !isFixed(target);
 }
 
-/** Whether the event is input to a number field. */
+/** Whether the event is input to a field for a number, in which a letter means nothing. */
 export function isEditingNumber(event: KeyboardEvent): boolean {
-  return event.target instanceof HTMLInputElement && event.target.type === "number";
+  const field = event.target;
+  if (!(field instanceof HTMLInputElement)) return false;
+  return field.type === "number" || ["decimal", "numeric"].includes(field.inputMode);
+}
+
+function isFixed(field: HTMLInputElement | HTMLTextAreaElement): boolean {
+  return field.readOnly || field.disabled;
 }

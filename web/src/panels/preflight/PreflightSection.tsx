@@ -10,7 +10,7 @@ import {
 } from "solid-js";
 import { useConsole } from "../../console";
 import type { CheckView, PreflightView, Severity } from "../../protocol";
-import { issuerName } from "../../text/names";
+import { personName } from "../../text/names";
 import { formatAge } from "../../text/quantities";
 import { SeverityMark } from "../SeverityMark";
 import { FailsafeTable } from "./FailsafeTable";
@@ -72,7 +72,7 @@ function OverrideState(props: { list: PreflightView; name: string; onAccepted: (
         <p class="check tone-warning">
           <SeverityMark severity="warning" />
           <span class="wire-text">
-            <strong>Overridden</strong> by {issuerName(override().by)},{" "}
+            <strong>Overridden</strong> by {personName(override().by)},{" "}
             {formatAge(override().age_s)} ago: {override().reason}. Ends at landing.
           </span>
         </p>

@@ -2,7 +2,7 @@ import { For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import { targetsKey } from "../../orders/targets";
 import type { FleetReturnView, ReturningView } from "../../protocol";
-import { issuerName, listNames } from "../../text/names";
+import { listNames, personName } from "../../text/names";
 import { formatAge, formatQuantity } from "../../text/quantities";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Panel } from "../Panel";
@@ -15,7 +15,7 @@ export function FleetReturn() {
   const hasTargets = () => targets().serials.length > 0;
   const all = () => (fleet.vehicles.some(({ serial }) => serial !== null) ? "all" : "");
   return (
-    <Panel title="Return in layers">
+    <Panel title="Return in layers" name="return">
       <div class="section">
         <p class="muted">
           Each vehicle holds first, then flies home at its own height and lands; one vehicle at a
@@ -57,7 +57,7 @@ function Progress(props: { view: FleetReturnView }) {
         </strong>{" "}
         <span class="muted wire-text">
           Started {formatAge(props.view.age_s + behindS())} ago by{" "}
-          {issuerName(props.view.called_by)}
+          {personName(props.view.called_by)}
         </span>
       </p>
       <progress

@@ -1,17 +1,16 @@
 import { createSignal, Show } from "solid-js";
 import { useConsole } from "../../console";
-import { SeverityMark } from "../SeverityMark";
-import "./separation.css";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Problem } from "../Panel";
+import { SeverityMark } from "../SeverityMark";
 
 /** Shown while the separation hold is off and close vehicles only raise an alarm. */
 export function SeparationBanner() {
   const { fleet } = useConsole();
   return (
     <Show when={fleet.station?.separation_hold_on === false}>
-      <div class="separation-off" role="alert">
-        <SeverityMark severity="warning" size={26} />
+      <div class="card notice separation-off" role="alert">
+        <SeverityMark severity="warning" size={22} />
         <p>
           <strong>Separation hold is OFF.</strong> Vehicles that come too close raise an alarm but
           are not stopped.

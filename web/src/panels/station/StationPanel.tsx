@@ -10,7 +10,7 @@ import { SeparationSwitch } from "../separation/SeparationHold";
 export function StationPanel() {
   const { fleet } = useConsole();
   return (
-    <Panel title="Station">
+    <Panel title="Station" name="station">
       <Show when={fleet.station} fallback={<p class="panel-empty">No data yet.</p>}>
         {(station) => <StationFacts station={station()} />}
       </Show>

@@ -1,7 +1,7 @@
 import { createSignal, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { StopLatchView } from "../../protocol";
-import { listNames, responseProblem, vehicleLabel } from "../../text/names";
+import { listNames, personName, responseProblem, vehicleLabel } from "../../text/names";
 import { formatAge } from "../../text/quantities";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Problem } from "../Panel";
@@ -21,12 +21,12 @@ function StopInForce(props: { latch: StopLatchView }) {
   const names = () => (held().length > 0 ? listNames(held()) : "vehicles that connect later");
   const release = async () => setProblem(responseProblem(await source.releaseStop(null)));
   return (
-    <div class="stop-latch" role="alert">
-      <SeverityMark severity="critical" size={26} />
+    <div class="card notice stop-latch" role="alert">
+      <SeverityMark severity="critical" size={22} />
       <p>
-        <strong>ALL STOP in force</strong> by {props.latch.by},{" "}
-        {formatAge(props.latch.age_s + behindS())} ago. Only hover, return and land are sent to{" "}
-        {names()}.
+        <strong>All stop in force</strong> by {personName(props.latch.by)},{" "}
+        {formatAge(props.latch.age_s + behindS())} ago. {heldText(held().length)}: only hover,
+        return and land are sent. An operator or an administrator can release it.
       </p>
       <GuardButton
         label="Release all"
@@ -39,6 +39,11 @@ function StopInForce(props: { latch: StopLatchView }) {
       <Problem text={problem()} />
     </div>
   );
+}
+
+function heldText(count: number): string {
+  if (count === 0) return "Vehicles that connect later";
+  return count === 1 ? "1 drone" : `${count} drones`;
 }
 
 /** The release of one vehicle from the all stop. */

@@ -1,7 +1,7 @@
 import { createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { LookAsideView } from "../../protocol";
-import { issuerName, responseProblem, vehicleLabel } from "../../text/names";
+import { personName, responseProblem, vehicleLabel } from "../../text/names";
 import { formatAge, formatHeading } from "../../text/quantities";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Problem } from "../Panel";
@@ -48,7 +48,7 @@ function Progress(props: { view: LookAsideView }) {
       {formatHeading(props.view.bearing_deg)}{" "}
       <span class="muted">
         since {formatAge(props.view.since_age_s + behindS())}, ordered by{" "}
-        {issuerName(props.view.begun_by)}
+        {personName(props.view.begun_by)}
       </span>
       <Show when={props.view.reason}>
         {(reason) => <span class="muted look-aside-reason">{reason()}</span>}

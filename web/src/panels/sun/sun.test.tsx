@@ -1,6 +1,6 @@
 import { afterEach, describe, expect, it } from "vitest";
 import type { LookAsideView, UpwindPlaceView } from "../../protocol";
-import { groundImage, shadeLine, station, survey, vehicle } from "../../testing/fakeState";
+import { groundImage, shadeLine, station, vehicle } from "../../testing/fakeState";
 import { find, type RenderedPage, renderPage } from "../../testing/renderPage";
 import { lightPercents } from "../../text/light";
 import { vehicleLabel } from "../../text/names";
@@ -35,54 +35,14 @@ describe("sun and shade", () => {
     expect(find<HTMLElement>(page.root, ".light-bar .is-unknown").style.width).toBe("100%");
   });
 
-  it("shows the selected overlay on the map", () => {
+  it("shows the motion of the shadows, if known", () => {
     show();
-    find<HTMLInputElement>(page.root, "input[type=radio][name=overlay]:not(:checked)").click();
-    expect(page.shared.overlay.kind()).toBe("shade");
-  });
-
-  it("shows an active survey's coverage until another overlay is selected", () => {
-    page = renderPage(
-      SunPanel,
-      station([vehicle(1)], { surveys: [survey(1, { phase: "running" })] }),
-    );
-    expect(page.shared.overlay.kind()).toBe("cells");
-    find<HTMLInputElement>(page.root, "input[type=radio][name=overlay]:not(:checked)").click();
-    expect(page.shared.overlay.kind()).toBe("none");
-  });
-
-  it("selects among the forecast's leads", () => {
-    show();
-    expect(page.root.textContent).toContain("Sun now: ");
-    const slider = find<HTMLInputElement>(page.root, "input[type=range]");
-    slider.value = "2";
-    slider.dispatchEvent(new InputEvent("input", { bubbles: true }));
-    expect(page.shared.overlay.lead_s()).toBe(60);
-    expect(page.root.textContent).toContain("Sun in 1 min 0 s: ");
-    expect(page.shared.overlay.kind()).toBe("forecast");
-    expect(page.root.textContent).toContain("20\u00a0% of the map predicted from clouds over");
-    expect(page.root.textContent).toContain("right lately: 93\u00a0% of cells");
-    expect(page.root.textContent).toContain("Shadows move towards 079° at 5.1\u00a0m/s.");
-  });
-
-  it("has a scale on the slider and a legend beside it", () => {
-    show();
-    const scale = [...page.root.querySelectorAll(".lead-scale span")].map((s) => s.textContent);
-    const leads = shadeLine().forecast?.lead_s ?? [];
-    expect(scale[0]).toBe("now");
-    expect(scale[2]).toBe(`${(leads.at(-1) ?? 0) / 60} min`);
-    expect(find(page.root, ".forecast-legend").textContent).toContain("clouds are not in view");
-    expect(find(page.root, "label.sun-lead").textContent).not.toContain("estimate");
-  });
-
-  it("claims neither a motion nor a record that it does not have", () => {
+    expect(page.root.textContent).toContain("Shadows move at 5.1\u00a0m/s, bearing 079°.");
+    page.dispose();
     const forecast = shadeLine().forecast;
     if (forecast === null) throw new Error("expected a forecast in the fake state");
-    show({
-      forecast: { ...forecast, right: [], shadows_east_mps: null, shadows_north_mps: null },
-    });
-    expect(page.root.textContent).toContain("The shadows' motion is not known.");
-    expect(page.root.textContent).not.toContain("right lately");
+    show({ forecast: { ...forecast, shadows_east_mps: null, shadows_north_mps: null } });
+    expect(page.root.textContent).toContain("Motion of the shadows unknown.");
   });
 
   it("shows whether an earlier flight's knowledge of the land is used", () => {

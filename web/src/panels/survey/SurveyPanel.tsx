@@ -4,10 +4,11 @@ import { targetsKey } from "../../orders/targets";
 import type { SurveyingView, SurveyResponse, SurveyView } from "../../protocol";
 import type { Outcome } from "../../source/stationSource";
 import { listNames } from "../../text/names";
-import { formatArea, sharePercent, surveyStatus } from "../../text/survey";
+import { surveyStatus, timeLeft } from "../../text/survey";
 import { BRIEF_MS, GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Panel, Problem } from "../Panel";
 import { NewSurvey } from "./NewSurvey";
+import { Coverage, Decisions } from "./SurveySummary";
 import "./survey.css";
 
 /** Surveys: plan, start with the selected vehicles, pause, abort; and their coverage. */
@@ -16,7 +17,7 @@ export function SurveyPanel() {
   const [problem, setProblem] = createSignal<string | null>(null);
   const showProblem = (outcome: Outcome<SurveyResponse>) => setProblem(problemOf(outcome));
   return (
-    <Panel title="Surveys" count={fleet.surveys.length}>
+    <Panel title="Survey" name="survey">
       <For each={fleet.surveys}>
         {(survey) => <SurveySection survey={survey} onResult={showProblem} />}
       </For>
@@ -44,19 +45,20 @@ function SurveySection(props: SurveyProps) {
     props.survey.vehicles.filter(
       ({ not_flying_reason }) => !is("done", "aborted") || not_flying_reason !== null,
     );
+  /** The number of a round says nothing to an operator beyond that rows are flown again. */
+  const reason = () => (/^round \d+$/.test(props.survey.reason) ? "" : props.survey.reason);
   return (
     <section class="section" data-testid={`survey-${props.survey.id}`}>
-      <p class="wire-text">
-        <strong>
-          {props.survey.id} {props.survey.name}
-        </strong>
-        : {surveyStatus(props.survey)}
-        <span class="muted survey-reason">{props.survey.reason}</span>
+      <p class="survey-head wire-text">
+        <strong>{props.survey.name}</strong>
+        <span class="muted">{timeLeft(props.survey)}</span>
       </p>
-      <Figures survey={props.survey} />
-      <For each={active()}>
-        {(vehicle) => <SurveyVehicle vehicle={vehicle} isDone={props.survey.phase === "done"} />}
-      </For>
+      <p class="wire-text">
+        {surveyStatus(props.survey)}
+        <Show when={reason()}>{(text) => <span class="muted">: {text()}</span>}</Show>
+      </p>
+      <Coverage survey={props.survey} />
+      <Decisions lines={active().map((vehicle) => lineOf(vehicle, is("done")))} />
       <Show when={is("created", "paused", "running")}>
         <Start survey={props.survey} onResult={props.onResult} />
       </Show>
@@ -75,43 +77,14 @@ function SurveySection(props: SurveyProps) {
   );
 }
 
-function Figures(props: { survey: SurveyView }) {
-  return (
-    <Show when={props.survey.figures}>
-      {(figures) => {
-        const percent = (area_m2: number) => sharePercent(area_m2, figures().region_m2);
-        const text = () =>
-          `In sun ${percent(figures().in_sun_m2)} %, in shade ${percent(figures().in_shade_m2)} %, ` +
-          `light unknown ${percent(figures().sun_unknown_m2)} %, ` +
-          `remaining ${formatArea(figures().not_yet_m2)} of ${formatArea(figures().region_m2)}`;
-        return (
-          <>
-            <div class="survey-bar" role="img" aria-label={text()}>
-              <span class="is-sun" style={{ width: `${percent(figures().in_sun_m2)}%` }} />
-              <span class="is-shade" style={{ width: `${percent(figures().in_shade_m2)}%` }} />
-              <span class="is-unknown" style={{ width: `${percent(figures().sun_unknown_m2)}%` }} />
-            </div>
-            <p>{text()}</p>
-          </>
-        );
-      }}
-    </Show>
-  );
-}
-
-function SurveyVehicle(props: { vehicle: SurveyingView; isDone: boolean }) {
-  const idleText = () => (props.isDone ? "returning home" : "not flying rows");
-  const activity = () => (props.vehicle.is_flying_rows ? "flying rows" : idleText());
-  return (
-    <p class="wire-text">
-      <strong>{props.vehicle.vehicle_name}</strong> {activity()}
-      <Show
-        when={props.vehicle.not_flying_reason ?? props.vehicle.refused ?? props.vehicle.decision}
-      >
-        {(why) => <span class="muted survey-reason">{why()}</span>}
-      </Show>
-    </p>
-  );
+/** A drone and what it does for the survey, with the reason. */
+function lineOf(vehicle: SurveyingView, isDone: boolean): readonly [string, string] {
+  const idle = isDone ? "returns home" : "does not fly rows";
+  const activity = vehicle.is_flying_rows ? "flies rows" : idle;
+  const why = vehicle.not_flying_reason ?? vehicle.refused ?? vehicle.decision;
+  if (why === null) return [vehicle.vehicle_name, activity];
+  // A decision begins with what is flown; a reason stands beside it.
+  return [vehicle.vehicle_name, why === vehicle.decision ? why : `${activity}: ${why}`];
 }
 
 const START_LABELS: Partial<Record<SurveyView["phase"], string>> = {

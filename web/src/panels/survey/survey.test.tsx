@@ -23,11 +23,12 @@ describe("a survey in the list", () => {
   it("shows the area photographed in sun, in shade and remaining", () => {
     show(survey(7));
     const text = find(page.root, "[data-testid=survey-7]").textContent;
-    expect(text).toContain("7 south field: Running");
-    expect(text).toContain(
-      "In sun 40 %, in shade 10 %, light unknown 0 %, remaining 1.00\u00a0ha of 2.00\u00a0ha",
-    );
-    expect(text).toContain("Alder flying rows");
+    expect(text).toContain("south field");
+    expect(text).not.toContain("7 south field");
+    expect(text).toContain("Running");
+    expect(text).not.toContain("round 1");
+    expect(text).toContain("40 % in sun · 10 % in shade · 50 % to fly · 2.0\u00a0ha");
+    expect(text).toContain("Alder flies rows");
     expect(text).toContain("battery too low");
   });
 
@@ -75,8 +76,8 @@ describe("a survey in the list", () => {
     const decision = "flies rows 3 to 5: probability of sun 0.9";
     const vehicles = survey(7).vehicles.map((one) => ({ ...one, decision }));
     show(survey(7, { vehicles }));
-    const reasons = [...page.root.querySelectorAll(".survey-reason")].map((e) => e.textContent);
-    expect(reasons).toEqual(["round 1", decision, "battery too low"]);
+    const lines = [...page.root.querySelectorAll(".survey-decisions li")].map((e) => e.textContent);
+    expect(lines).toEqual([`Alder ${decision}`, "Birch does not fly rows: battery too low"]);
   });
 
   it("that is over has no buttons", () => {

@@ -2,40 +2,44 @@ import { createMemo, Show } from "solid-js";
 import { useConsole } from "../../console";
 import { anothersLease } from "../../fleet/operatorLease";
 import { hasBatteryWarning } from "../../fleet/readiness";
-import { badgeText, stalenessNow, vehicleKey, vehicleStatus } from "../../fleet/vehicleStatus";
-import type { VehicleView } from "../../protocol";
-import { vehicleLabel } from "../../text/names";
 import {
-  agedBy,
-  formatAge,
-  formatFraction,
-  formatQuantity,
-  groundSpeedMps,
-} from "../../text/quantities";
-import { colourOf } from "../../theme/theme";
-import { SeverityMark } from "../SeverityMark";
+  badgeText,
+  simulation,
+  stalenessNow,
+  vehicleKey,
+  vehicleStatus,
+} from "../../fleet/vehicleStatus";
+import type { VehicleView } from "../../protocol";
+import { doing, surveyPart } from "../../text/activity";
+import { vehicleLabel } from "../../text/names";
+import { agedBy, formatAge, formatFraction } from "../../text/quantities";
+import { colourOf, lookClasses } from "../../theme/theme";
 
-/** One vehicle: a checkbox that adds it to the selection, and a body that selects only it. */
+/** One vehicle in two lines: its badge adds it to the selection, the rest selects only it. */
 export function VehicleRow(props: { vehicle: VehicleView }) {
-  const { selection, source, behindS } = useConsole();
+  const { selection, fleet, behindS } = useConsole();
   const vehicle = () => props.vehicle;
   const key = () => vehicleKey(vehicle());
   const status = createMemo(() => vehicleStatus(vehicle(), behindS()));
   const isStale = () => stalenessNow(vehicle(), behindS()) !== "live";
   const isSelected = () => selection.has(key());
+  const isMixed = () => simulation(fleet.vehicles) === "mixed";
+  const part = () => surveyPart(fleet.surveys, vehicle().serial);
   return (
     <li
-      class="row vehicle own-colour"
+      class={`vehicle own-colour ${lookClasses(key())}`}
       classList={{ "is-stale": isStale(), "is-selected": isSelected() }}
       style={{ "--own": colourOf(key()) }}
     >
-      <label class="vehicle-box">
+      <label class="vehicle-box" title="Add to the selection, or remove">
         <input
           type="checkbox"
+          class="hidden-but-read"
           checked={isSelected()}
           aria-label={`Add ${vehicleLabel(vehicle())} to the selection`}
           onChange={() => selection.toggle(key())}
         />
+        <span class="badge">{badgeText(vehicle())}</span>
       </label>
       <button
         type="button"
@@ -43,61 +47,56 @@ export function VehicleRow(props: { vehicle: VehicleView }) {
         aria-pressed={isSelected()}
         onClick={() => selection.only(key())}
       >
-        <span class="row-line">
-          <span class="badge">{badgeText(vehicle())}</span>
-          <strong class="vehicle-name">{vehicle().name}</strong>
-          <Show when={vehicle().is_simulated}>
+        <span class="vehicle-name">
+          {vehicle().name}
+          <Show when={isMixed() && vehicle().is_simulated}>
+            {" "}
             <span class="tag tag-simulated">SIM</span>
           </Show>
-          <Show when={vehicle().is_imager}>
-            <span class="tag vehicle-imager" title="Imaging drone">
-              IMAGER
-            </span>
-          </Show>
-          <Show when={vehicle().is_stopped}>
-            <span class="tag tag-stopped" title="Held by an all stop">
-              STOPPED
-            </span>
-          </Show>
-          <Show when={anothersLease(vehicle().lease, source.person())}>
-            {(lease) => (
-              <span class="tag vehicle-operator" title={`Operated by ${lease().person}`}>
-                {lease().person}
-              </span>
-            )}
-          </Show>
-          <span class={`severity push tone-${status().severity ?? "good"}`}>
-            <Show when={status().severity}>
-              {(severity) => <SeverityMark severity={severity()} />}
-            </Show>
-            {status().activity}
-          </span>
         </span>
-        <span class="row-line vehicle-figures">
-          <Figures vehicle={vehicle()} />
-          <span class="push vehicle-age" title="Telemetry age">
-            {formatAge(agedBy(vehicle().telemetry_age_s, behindS()))}
-          </span>
+        <Battery vehicle={vehicle()} />
+        <span class={`vehicle-doing tone-${status().severity ?? "none"}`}>
+          {doing(vehicle(), part(), behindS())}
+          <Show when={vehicle().conflict_link_ids.length > 0}> · serial conflict</Show>
+          <Operator vehicle={vehicle()} />
         </span>
+        <Show when={isStale()}>
+          <span class="hidden-but-read">
+            Telemetry is {formatAge(agedBy(vehicle().telemetry_age_s, behindS()))} old
+          </span>
+        </Show>
       </button>
     </li>
   );
 }
 
-function Figures(props: { vehicle: VehicleView }) {
-  const speed = () => {
-    const { north_mps, east_mps } = props.vehicle.velocity_ned;
-    return groundSpeedMps(north_mps, east_mps);
-  };
+function Battery(props: { vehicle: VehicleView }) {
+  const fraction = () => props.vehicle.battery_fraction.value;
   return (
-    <>
-      <span title="Height above takeoff">
-        ↥ {formatQuantity(props.vehicle.height_above_takeoff_m.value, "m", 0)}
+    <span
+      class="vehicle-battery"
+      classList={{ "is-low": hasBatteryWarning(props.vehicle) }}
+      title="Battery"
+    >
+      {formatFraction(fraction())}
+      <span class="vehicle-meter" aria-hidden="true">
+        <span style={{ width: `${Math.round(100 * (fraction() ?? 0))}%` }} />
       </span>
-      <span title="Speed over ground">{formatQuantity(speed(), "m/s", 1)}</span>
-      <span title="Battery" classList={{ "vehicle-battery-low": hasBatteryWarning(props.vehicle) }}>
-        ▮ {formatFraction(props.vehicle.battery_fraction.value)}
-      </span>
-    </>
+    </span>
+  );
+}
+
+/** Another person who operates it: orders to move it are refused. */
+function Operator(props: { vehicle: VehicleView }) {
+  const { source } = useConsole();
+  return (
+    <Show when={anothersLease(props.vehicle.lease, source.person())}>
+      {(lease) => (
+        <span class="vehicle-operator" title={`Operated by ${lease().person}`}>
+          {" "}
+          · {lease().person}
+        </span>
+      )}
+    </Show>
   );
 }

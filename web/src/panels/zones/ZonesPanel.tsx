@@ -15,6 +15,7 @@ export function ZonesPanel() {
   return (
     <Panel
       title="Temporary zones"
+      name="zones"
       count={fleet.temporaryZones.length}
       actions={
         <button

@@ -1,0 +1,151 @@
+import { type Accessor, createSignal } from "solid-js";
+import type { VehicleView } from "../protocol";
+import { vehicleLabel } from "../text/names";
+import { hasBatteryWarning } from "./readiness";
+import { severityRank } from "./severity";
+import { type VehicleActivity, vehicleKey, vehicleStatus } from "./vehicleStatus";
+
+/** How the list of vehicles is sorted and grouped, and which are shown. */
+export const SORTS = {
+  number: "Number",
+  name: "Name",
+  battery: "Battery",
+  trouble: "Trouble",
+} as const;
+export const GROUPS = { none: "No groups", activity: "What they do", role: "Kind" } as const;
+export const FILTERS = {
+  all: "All",
+  flying: "Flying",
+  trouble: "With a problem",
+  selected: "Selected",
+} as const;
+
+export type SortName = keyof typeof SORTS;
+export type GroupName = keyof typeof GROUPS;
+export type FilterName = keyof typeof FILTERS;
+
+/** What the operator chose for the list. */
+export interface ListChoice {
+  readonly search: string;
+  readonly sort: SortName;
+  readonly group: GroupName;
+  readonly filter: FilterName;
+}
+
+export const FIRST_CHOICE: ListChoice = {
+  search: "",
+  sort: "number",
+  group: "none",
+  filter: "all",
+};
+
+export interface VehicleGroup<T> {
+  /** Empty without groups. */
+  readonly title: string;
+  readonly vehicles: readonly T[];
+}
+
+/** The vehicles as listed; `behindS` is the age of the newest state. */
+export function listVehicles<T extends VehicleView>(
+  vehicles: readonly T[],
+  choice: ListChoice,
+  isSelected: (key: number) => boolean,
+  behindS: number,
+): VehicleGroup<T>[] {
+  const shown = vehicles
+    .filter((one) => isFound(one, choice.search) && passes(one, choice.filter, isSelected, behindS))
+    .sort((a, b) => compare(a, b, choice.sort, behindS) || rank(a) - rank(b));
+  const titles = new Map<string, T[]>();
+  for (const one of shown) {
+    const title = groupTitle(one, choice.group, behindS);
+    titles.set(title, [...(titles.get(title) ?? []), one]);
+  }
+  return [...titles].map(([title, members]) => ({ title, vehicles: members }));
+}
+
+function isFound(vehicle: VehicleView, search: string): boolean {
+  const words = search.trim().toLowerCase();
+  const text = `${vehicleLabel(vehicle)} ${vehicle.serial ?? ""} ${vehicle.model}`.toLowerCase();
+  return words === "" || String(vehicle.number) === words || text.includes(words);
+}
+
+function passes(
+  vehicle: VehicleView,
+  filter: FilterName,
+  isSelected: (key: number) => boolean,
+  behindS: number,
+): boolean {
+  switch (filter) {
+    case "all":
+      return true;
+    case "flying":
+      return vehicle.is_flying.value !== false;
+    case "trouble":
+      return trouble(vehicle, behindS) < NO_TROUBLE;
+    case "selected":
+      return isSelected(vehicleKey(vehicle));
+  }
+}
+
+const NO_TROUBLE = 10;
+
+/** 0 for the worst; `NO_TROUBLE` without any. */
+function trouble(vehicle: VehicleView, behindS: number): number {
+  const { severity } = vehicleStatus(vehicle, behindS);
+  if (severity !== null) return severityRank(severity);
+  return hasBatteryWarning(vehicle) ? severityRank("warning") : NO_TROUBLE;
+}
+
+function compare(a: VehicleView, b: VehicleView, sort: SortName, behindS: number): number {
+  switch (sort) {
+    case "number":
+      return 0;
+    case "name":
+      return a.name.localeCompare(b.name, "en", { numeric: true });
+    case "battery":
+      return (a.battery_fraction.value ?? -1) - (b.battery_fraction.value ?? -1);
+    case "trouble":
+      return trouble(a, behindS) - trouble(b, behindS);
+  }
+}
+
+/** By number; unidentified vehicles last. */
+function rank(vehicle: VehicleView): number {
+  const key = vehicleKey(vehicle);
+  return key > 0 ? key : Number.MAX_SAFE_INTEGER / 2 - key;
+}
+
+function groupTitle(vehicle: VehicleView, group: GroupName, behindS: number): string {
+  if (group === "none") return "";
+  if (group === "activity")
+    return vehicleStatus(vehicle, behindS).activity satisfies VehicleActivity;
+  return vehicle.is_imager ? "Imaging drones" : "Survey drones";
+}
+
+/** Whether two lists show the same vehicles in the same places. */
+export function isSameList<T>(
+  a: readonly VehicleGroup<T>[],
+  b: readonly VehicleGroup<T>[],
+): boolean {
+  return (
+    a.length === b.length &&
+    a.every(({ title, vehicles }, index) => {
+      const other = b[index];
+      return (
+        other !== undefined &&
+        other.title === title &&
+        other.vehicles.length === vehicles.length &&
+        vehicles.every((vehicle, at) => vehicle === other.vehicles[at])
+      );
+    })
+  );
+}
+
+/** The choice as a signal. */
+export function createListChoice(): readonly [
+  Accessor<ListChoice>,
+  (next: Partial<ListChoice>) => void,
+] {
+  const [choice, setChoice] = createSignal(FIRST_CHOICE);
+  return [choice, (next) => setChoice({ ...choice(), ...next })];
+}

@@ -1,0 +1,91 @@
+import { createSignal, For, Show } from "solid-js";
+import { useConsole } from "../../console";
+import type { SurveyView } from "../../protocol";
+import { formatArea, sharePercent, shownSurvey, surveyStatus, timeLeft } from "../../text/survey";
+import "./survey.css";
+
+/** The shown survey in three lines, for a screen without room for its panel; a press opens the panel. */
+export function SurveySummary() {
+  const { fleet, panels } = useConsole();
+  return (
+    <Show when={shownSurvey(fleet.surveys)}>
+      {(survey) => (
+        <button
+          type="button"
+          class="card survey-summary"
+          aria-label="Open the survey"
+          onClick={() => panels.open("survey")}
+        >
+          <span class="survey-head">
+            <strong>Survey</strong>
+            <span class="muted">{timeLeft(survey()) ?? surveyStatus(survey())}</span>
+          </span>
+          <Coverage survey={survey()} />
+        </button>
+      )}
+    </Show>
+  );
+}
+
+/** How much is in sun and what is left, in per cent and hectares. */
+export function Coverage(props: { survey: SurveyView }) {
+  return (
+    <Show when={props.survey.figures}>
+      {(figures) => {
+        const percent = (area_m2: number) => sharePercent(area_m2, figures().region_m2);
+        const parts = () =>
+          [
+            ["in shade", percent(figures().in_shade_m2)],
+            ["light unknown", percent(figures().sun_unknown_m2)],
+            ["to fly", percent(figures().not_yet_m2)],
+          ] as const;
+        const others = () =>
+          parts()
+            .filter(([, share]) => share > 0)
+            .map(([name, share]) => ` · ${share} % ${name}`)
+            .join("");
+        return (
+          <>
+            <span class="survey-bar" aria-hidden="true">
+              <span class="is-sun" style={{ width: `${percent(figures().in_sun_m2)}%` }} />
+              <span class="is-shade" style={{ width: `${percent(figures().in_shade_m2)}%` }} />
+              <span class="is-unknown" style={{ width: `${percent(figures().sun_unknown_m2)}%` }} />
+            </span>
+            <span class="survey-figures">
+              <strong>{percent(figures().in_sun_m2)} % in sun</strong>
+              <span class="muted">
+                {others()} · {formatArea(figures().region_m2)}
+              </span>
+            </span>
+          </>
+        );
+      }}
+    </Show>
+  );
+}
+
+/** Why each drone does what it does; the first few, the others on demand. */
+export function Decisions(props: { lines: readonly (readonly [string, string])[] }) {
+  const [isOpen, setOpen] = createSignal(false);
+  const shown = () => (isOpen() ? props.lines : props.lines.slice(0, DECISIONS_SHOWN));
+  return (
+    <Show when={props.lines.length > 0}>
+      <ul class="survey-decisions wire-text">
+        <For each={shown()}>
+          {([name, why]) => (
+            <li>
+              <strong>{name}</strong> <span class="muted">{why}</span>
+            </li>
+          )}
+        </For>
+      </ul>
+      <Show when={props.lines.length > DECISIONS_SHOWN}>
+        <button type="button" class="button button-quiet" onClick={() => setOpen(!isOpen())}>
+          {isOpen() ? "Fewer" : `All ${props.lines.length} drones`}
+        </button>
+      </Show>
+    </Show>
+  );
+}
+
+const DECISIONS_SHOWN = 4;

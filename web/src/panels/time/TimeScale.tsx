@@ -1,0 +1,120 @@
+import { createMemo, createSignal, For, Show } from "solid-js";
+import { useConsole } from "../../console";
+import { Legend } from "../../map/LayersButton";
+import type { ForecastView } from "../../protocol";
+import { formatAge, formatFraction } from "../../text/quantities";
+import "./time.css";
+
+/** The light on the field over the next minutes, as a scale: a press shows the forecast for that time. */
+export function TimeScale() {
+  const { fleet } = useConsole();
+  return <Show when={fleet.shade?.forecast}>{(forecast) => <Scale forecast={forecast()} />}</Show>;
+}
+
+function Scale(props: { forecast: ForecastView }) {
+  const { overlay } = useConsole();
+  const [isFolded, setFolded] = createSignal(false);
+  const leads = () => props.forecast.lead_s;
+  const index = () => Math.max(0, leads().indexOf(overlay.lead_s()));
+  const lead_s = () => leads()[index()] ?? 0;
+  const when = () => (lead_s() === 0 ? "Sun now" : `Sun in ${leadText(lead_s())}`);
+  const share = () => formatFraction(props.forecast.sun_share[index()] ?? null);
+  const right = () => nearestRight(props.forecast, lead_s());
+  const fill = createMemo(() => gradient(props.forecast));
+  return (
+    <section class="card time" aria-label="Sun forecast">
+      <p class="time-head">
+        <span>
+          <strong>{when()}</strong>
+          <span class="muted"> · {share()} of the field</span>
+          <Show when={right()}>
+            {(found) => (
+              <span class="muted time-right" title="How often forecasts of this flight were right">
+                {" "}
+                · {formatFraction(found())} right lately
+              </span>
+            )}
+          </Show>
+        </span>
+        <Legend kind="forecast" />
+        <button
+          type="button"
+          class="button button-quiet"
+          aria-expanded={!isFolded()}
+          aria-label={isFolded() ? "Show the forecast scale" : "Fold the forecast scale away"}
+          onClick={() => setFolded(!isFolded())}
+        >
+          {isFolded() ? "▴" : "▾"}
+        </button>
+      </p>
+      <Show when={!isFolded()}>
+        <input
+          class="time-scale"
+          type="range"
+          min={0}
+          max={leads().length - 1}
+          step={1}
+          value={index()}
+          style={{ "--fill": fill() }}
+          aria-label="Time of the forecast"
+          aria-valuetext={when()}
+          onInput={(event) => {
+            overlay.setLead(leads()[Number(event.currentTarget.value)] ?? 0);
+            overlay.show("forecast");
+          }}
+        />
+        <p class="time-ticks muted" aria-hidden="true">
+          <For each={ticksOf(leads())}>
+            {({ lead, at }) => (
+              <span style={{ left: `${100 * at}%`, transform: `translateX(${-100 * at}%)` }}>
+                {lead === 0 ? "now" : leadText(lead)}
+              </span>
+            )}
+          </For>
+        </p>
+      </Show>
+    </section>
+  );
+}
+
+/** A lead as `45 s` or `2 min`; leads are whole seconds. */
+function leadText(lead_s: number): string {
+  return lead_s >= 60 && lead_s % 60 === 0 ? `${lead_s / 60} min` : formatAge(lead_s);
+}
+
+/** The share of cells that forecasts of this flight had right, at the nearest lead compared so far. */
+export function nearestRight(forecast: ForecastView, lead_s: number): number | null {
+  const [nearest] = [...forecast.right].sort(
+    (a, b) => Math.abs(a.lead_s - lead_s) - Math.abs(b.lead_s - lead_s),
+  );
+  return lead_s === 0 || nearest === undefined ? null : nearest.right_share;
+}
+
+/** Solid where the clouds to come are seen, fading to the hatch of the unknown where they are not. */
+export function gradient({ lead_s, predicted_share }: ForecastView): string {
+  const last = Math.max(1, lead_s.length - 1);
+  const stops = predicted_share.map((share, index) => {
+    const opacity = Math.round(100 * Math.min(1, Math.max(0, share)));
+    return `color-mix(in srgb, var(--sun) ${opacity}%, transparent) ${(100 * index) / last}%`;
+  });
+  return `linear-gradient(to right, ${stops.join(", ")})`;
+}
+
+/** Between labels, as a share of the scale: a phone has room for eight. */
+const LEAST_GAP = 0.13;
+
+/** Leads with a label, as even as the scale allows, each with its place from 0 to 1. */
+export function ticksOf(
+  leads: readonly number[],
+): { readonly lead: number; readonly at: number }[] {
+  const last = Math.max(1, leads.length - 1);
+  const ticks: { lead: number; at: number }[] = [];
+  for (const [index, lead] of leads.entries()) {
+    const at = index / last;
+    const isEven = lead < 60 || lead % 60 === 0;
+    const before = ticks.at(-1)?.at ?? -1;
+    if (isEven && at - before >= LEAST_GAP && (1 - at >= LEAST_GAP || at === 1))
+      ticks.push({ lead, at });
+  }
+  return ticks;
+}

@@ -1,0 +1,59 @@
+import type { FleetView } from "../fleet/fleetView";
+import { vehicleStatus } from "../fleet/vehicleStatus";
+import type { SurveyingView, SurveyView, VehicleView } from "../protocol";
+import { agedBy, formatAge, formatQuantity, groundSpeedMps } from "./quantities";
+
+const ACTIVE: readonly SurveyView["phase"][] = ["running", "paused"];
+
+/** A vehicle's part in a survey that is running or paused; null without one. */
+export function surveyPart(
+  surveys: FleetView["surveys"],
+  serial: string | null,
+): SurveyingView | null {
+  const active = surveys.filter(({ phase }) => ACTIVE.includes(phase));
+  const parts = active.flatMap(({ vehicles }) => vehicles);
+  return parts.find((part) => part.serial === serial) ?? null;
+}
+
+/** What a vehicle is doing, in a line: `Surveying · 60 m · 8.0 m/s`, `Contact lost · 12 s`. */
+export function doing(vehicle: VehicleView, part: SurveyingView | null, behindS: number): string {
+  const { activity } = vehicleStatus(vehicle, behindS);
+  switch (activity) {
+    case "Contact lost":
+      return `Contact lost · ${formatAge(agedBy(vehicle.telemetry_age_s, behindS))}`;
+    case "Unidentified":
+      return "Waiting for serial number";
+    case "On the ground":
+      return vehicle.is_stopped ? "On the ground · all stop" : "On the ground";
+    case "Unknown":
+      return "Flight state unknown";
+    case "Landing":
+    case "Returning":
+      return [activity, ...figures(vehicle)].join(" · ");
+    case "Flying":
+      return [flight(vehicle, part), ...figures(vehicle)].join(" · ");
+  }
+}
+
+function flight(vehicle: VehicleView, part: SurveyingView | null): string {
+  if (vehicle.is_stopped) return "All stop";
+  if (part?.is_flying_rows === true) return "Surveying";
+  if (vehicle.steering !== null && !vehicle.steering.has_arrived) return "Flying to target";
+  return isStill(vehicle) ? "Holding" : "Flying";
+}
+
+/** Slower than this a vehicle holds its place in wind. */
+const STILL_MPS = 0.8;
+
+function isStill({ velocity_ned: { north_mps, east_mps, down_mps } }: VehicleView): boolean {
+  const speed = groundSpeedMps(north_mps, east_mps);
+  return speed !== null && Math.hypot(speed, down_mps ?? 0) < STILL_MPS;
+}
+
+/** Height and, while it moves, speed. */
+function figures(vehicle: VehicleView): string[] {
+  const { north_mps, east_mps } = vehicle.velocity_ned;
+  const height = formatQuantity(vehicle.height_above_takeoff_m.value, "m", 0);
+  const speed = formatQuantity(groundSpeedMps(north_mps, east_mps), "m/s", 0);
+  return isStill(vehicle) ? [height] : [height, speed];
+}
