@@ -2,18 +2,18 @@ import { expect, test } from "@playwright/test";
 import type { StationState } from "../src/protocol";
 import { alarm, link, station, vehicle } from "../src/testing/fakeState";
 import { busyState } from "./fake/busyState";
+import { fleetState } from "./fake/fleetState";
 import { fieldPicture } from "./fake/picture";
 import { FakeStation } from "./fake/station";
 import { drawnShare } from "./mapPicture";
+import { openPanel } from "./openPanel";
 import { applyTheme, THEMES } from "./themes";
 
 /** Screenshots for review: `npm run screens`, then `web/screens/`. */
 const SIZES = [
   { width: 1440, height: 900 },
   { width: 1024, height: 768 },
-  { width: 800, height: 1200 },
-  { width: 480, height: 900 },
-  { width: 360, height: 740 },
+  { width: 390, height: 844 },
 ] as const;
 
 for (const theme of THEMES) {
@@ -39,6 +39,19 @@ for (const theme of THEMES) {
       clearInterval(timer);
     });
   }
+}
+
+for (const theme of THEMES) {
+  test(`64 drones, ${theme.name}`, async ({ page }) => {
+    await page.emulateMedia({ colorScheme: theme.colorScheme });
+    const fake = await FakeStation.behind(page, fleetState(64, 0));
+    await page.goto("/");
+    await applyTheme(page, theme);
+    await expect(page.locator("button.craft")).toHaveCount(64);
+    for (let step = 1; step <= 5; step += 1) fake.send(fleetState(64, step / 10));
+    await page.waitForTimeout(1500);
+    await page.screenshot({ path: `screens/fleet-${theme.name}.png` });
+  });
 }
 
 /** A drone that another person operates, and an app that waits to be admitted. */
@@ -77,6 +90,8 @@ for (const theme of THEMES) {
     await page.goto("/");
     await applyTheme(page, theme);
     await page.getByRole("button", { name: /^vehicle 1 Alder/ }).click();
+    await page.keyboard.press("d");
+    await openPanel(page, "Links");
     await expect(page.getByText("Take over from anna")).toBeVisible();
     await page.screenshot({ path: `screens/shared-${theme.name}.png` });
     const waiting = page.getByLabel("Admit 1581F5BKD22BJ00A", { exact: true });
@@ -98,7 +113,7 @@ test("connection lost, help and a held button", async ({ page }) => {
   await page.keyboard.down("L");
   await expect(page.getByText("Keep holding to land")).toBeVisible();
   await page.screenshot({ path: "screens/holding.png" });
-  await expect(page.getByText(/^Accepted: /)).toBeVisible();
+  await expect(page.getByText(/^Land: \d of \d landing/)).toBeVisible();
   await page.keyboard.up("L");
   await page.keyboard.up("Shift");
   await page.screenshot({ path: "screens/answer.png" });

@@ -41,8 +41,6 @@ export function MapView() {
   const sunHere = createSunHere(source, overlay, () => source.state()?.shade?.map?.number ?? null);
   let holder!: HTMLDivElement;
   let scaleBar!: HTMLDivElement;
-  let tools!: HTMLDivElement;
-  let notes!: HTMLDivElement;
   let free!: HTMLDivElement;
   let layers: readonly Layer[] = [];
 
@@ -65,7 +63,7 @@ export function MapView() {
       new TrailLayer(),
       new SteeringLayer(),
       new FlyHereLayer(),
-      new VehicleLayer({ select: selection.only, toggle: selection.toggle }, [tools, notes]),
+      new VehicleLayer({ select: selection.only, toggle: selection.toggle }),
     ];
     made.on("click", ({ lngLat }) => aim({ lon: lngLat.lng, lat: lngLat.lat }));
     // A tap moves no pointer, and the keyboard moves the map under its centre.
@@ -147,7 +145,7 @@ export function MapView() {
         <div class="map-canvas" ref={holder} />
       </section>
       <div class="map-free" ref={free}>
-        <div class="map-tools" ref={tools}>
+        <div class="map-tools">
           <LayersButton />
           <button
             type="button"
@@ -170,7 +168,7 @@ export function MapView() {
             −
           </button>
         </div>
-        <div class="map-notes" ref={notes}>
+        <div class="map-notes">
           <UnplacedNote />
           <SunHereNote here={sunHere} />
           <GroundImageNote shown={ground.shown()} />

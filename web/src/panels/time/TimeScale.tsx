@@ -100,8 +100,8 @@ export function gradient({ lead_s, predicted_share }: ForecastView): string {
   return `linear-gradient(to right, ${stops.join(", ")})`;
 }
 
-/** Between labels, as a share of the scale: a phone has room for eight. */
-const LEAST_GAP = 0.13;
+/** Between labels, as a share of the scale: a phone has room for a dozen short ones. */
+const LEAST_GAP = 0.08;
 
 /** Leads with a label, as even as the scale allows, each with its place from 0 to 1. */
 export function ticksOf(
@@ -111,7 +111,7 @@ export function ticksOf(
   const ticks: { lead: number; at: number }[] = [];
   for (const [index, lead] of leads.entries()) {
     const at = index / last;
-    const isEven = lead < 60 || lead % 60 === 0;
+    const isEven = lead % 60 === 0 || lead === 30;
     const before = ticks.at(-1)?.at ?? -1;
     if (isEven && at - before >= LEAST_GAP && (1 - at >= LEAST_GAP || at === 1))
       ticks.push({ lead, at });

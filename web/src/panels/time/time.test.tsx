@@ -56,7 +56,7 @@ describe("the time scale", () => {
     expect(ticks[0]?.lead).toBe(0);
     expect(ticks.at(-1)?.lead).toBe(600);
     const gaps = ticks.slice(1).map(({ at }, index) => at - (ticks[index]?.at ?? 0));
-    expect(Math.min(...gaps)).toBeGreaterThan(0.12);
+    expect(Math.min(...gaps)).toBeGreaterThan(0.079);
   });
 });
 

@@ -105,7 +105,7 @@ function Tools(props: { choice: ListChoice; onChoose: (next: Partial<ListChoice>
         class="field vehicle-search"
         type="search"
         aria-label="Search by number, name or serial"
-        placeholder="Number, name, serial"
+        placeholder="Search"
         value={props.choice.search}
         onInput={(event) => props.onChoose({ search: event.currentTarget.value })}
       />
