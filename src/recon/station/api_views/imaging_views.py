@@ -109,7 +109,7 @@ def _light_shares(shade: ShadeMap, in_view: MaskMap) -> schema.LightSharesView |
 
 @lru_cache(maxsize=2)
 def _shares(sun: SunForecast) -> tuple[list[float], list[float]]:
-    """Return the predicted and the sunlit shares by lead; one forecast is in ten states a second."""
+    """Return the predicted and the sunlit shares by lead; ten states a second have one forecast."""
     predicted = [float((sun.horizon_s >= lead).mean()) for lead in sun.lead_s]
     return predicted, (sun.sun_probability.mean(axis=(1, 2)) / 255).tolist()
 

@@ -1,7 +1,7 @@
 """The API's port on a running station: requests become events, states become views."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from itertools import count
 
@@ -43,6 +43,7 @@ from recon.station.api_views.order_service import OrderService, order_of
 from recon.station.api_views.site_view import site_view
 from recon.station.api_views.state_view import DriverState, state_view
 from recon.station.api_views.survey_service import SurveyService
+from recon.station.api_views.vehicle_numbers import VehicleNumbers
 from recon.station.api_views.vehicle_views import preflight_view
 from recon.station.api_views.zone_views import zone_views
 from recon.station.control import handover, preflight, stop_latch, temporary_zones
@@ -64,6 +65,7 @@ class Service:
     guard_stop_url: str | None = None
     lost_bytes: Callable[[], int] = lambda: 0
     """How many bytes of links the record has lost so far."""
+    numbers: VehicleNumbers = field(default_factory=VehicleNumbers)
 
     @classmethod
     def around(
@@ -321,7 +323,8 @@ class Service:
     def _driver_state(self, now_ns: int) -> DriverState:
         links = self.driver.links
         sessions = {} if links is None else links.sessions()
-        return DriverState(sessions, self._station_view(now_ns), site_view(self.site))
+        numbers = self.numbers.of(self.driver.station.fleet)
+        return DriverState(sessions, self._station_view(now_ns), site_view(self.site), numbers)
 
     def _station_view(self, now_ns: int) -> schema.StationView:
         links = self.driver.links

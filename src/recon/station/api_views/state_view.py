@@ -1,6 +1,6 @@
 """The station's state, as the API sends it."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any
@@ -39,6 +39,8 @@ class DriverState:
     sessions: dict[int, Session]
     station: schema.StationView
     site: schema.SiteView | None
+    numbers: Mapping[str, int]
+    """The number of each serial."""
 
 
 def state_view(station: Station, around: DriverState, now_ns: int) -> schema.StationState:
@@ -47,7 +49,7 @@ def state_view(station: Station, around: DriverState, now_ns: int) -> schema.Sta
         time_ns=now_ns,
         station=around.station,
         site=around.site,
-        vehicles=_vehicles(station, now_ns),
+        vehicles=_vehicles(station, around.numbers, now_ns),
         links=[_link(station.fleet, r, around, now_ns) for r in station.fleet.links.values()],
         commands=_commands(station, now_ns),
         alarms=[_alarm(alarm, now_ns) for alarm in station.alarms.alarms.values()],
@@ -69,8 +71,9 @@ def _stop_latch(latch: StopLatch | None, now_ns: int) -> schema.StopLatchView | 
     return schema.StopLatchView(by=latch.by, age_s=age_s, released=sorted(latch.released))
 
 
-def _vehicles(station: Station, now_ns: int) -> list[schema.VehicleView]:
-    numbers = _numbers(station.fleet)
+def _vehicles(
+    station: Station, numbers: Mapping[str, int], now_ns: int
+) -> list[schema.VehicleView]:
     known = [
         _vehicle(station, vehicle, numbers[serial], now_ns)
         for serial, vehicle in sorted(
@@ -84,12 +87,6 @@ def _vehicles(station: Station, now_ns: int) -> list[schema.VehicleView]:
     ]
     lost = [_vehicle(station, state, 0, now_ns) for state in station.watchdog_state.lost.values()]
     return known + unidentified + lost
-
-
-def _numbers(fleet: Fleet) -> dict[str, int]:
-    """Return each serial's number: the site's vehicles first, then others by first contact."""
-    serials = dict.fromkeys((*fleet.profiles, *fleet.vehicles))
-    return {serial: number for number, serial in enumerate(serials, start=1)}
 
 
 def _vehicle(

@@ -23,7 +23,9 @@ from recon.record.record_writer import RecordWriter
 from recon.record.users_file import default_users_file, state_folder
 from recon.site import Site, demo_site_folder
 from recon.site.reading import site_digest
+from recon.site.vehicle_numbers import NUMBERS_FILE
 from recon.station.api_views.service import Service
+from recon.station.api_views.vehicle_numbers import VehicleNumbers
 from recon.station.audit.auditor import Auditor, LogPrinter
 from recon.station.audit.start import (
     AuditPlace,
@@ -155,6 +157,7 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
         folder = str(writer.folder)
         service = Service.around(driver, config.site, folder, begun.log, last_run.first_ids[0])
         service.lost_bytes = lambda: writer.dropped_bytes
+        service.numbers = VehicleNumbers(_numbers_file(config, place))
         line = _start_guard(config, driver, service, doors, place.folder, stack)
         links = await _start_links_and_worker(config, driver, service, line, recorder, stack)
         started = replace(
@@ -166,6 +169,14 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
             taken_up=_taken_up(station, (*begun.troubles, *last_run.troubles)),
         )
         await _serve(config, driver, service, doors, lambda: on_start(started), stack)
+
+
+def _numbers_file(config: RunConfig, place: AuditPlace) -> Path | None:
+    """Return where the vehicles' numbers are kept: with the site, else with this port's audit."""
+    folder = config.site_folder
+    if folder is not None and folder.resolve() != demo_site_folder().resolve():
+        return folder / NUMBERS_FILE
+    return None if place.is_shared else place.folder / NUMBERS_FILE
 
 
 async def _start_links_and_worker(
