@@ -3,6 +3,7 @@ import { CHECKLIST, fencedState } from "./fake/fencedState";
 import { FakeStation } from "./fake/station";
 import { cornerFaults, overlaps } from "./layoutFaults";
 import { faintTexts, smallTargets, smallTexts } from "./legibility";
+import { openPanel } from "./openPanel";
 import { applyTheme, THEMES } from "./themes";
 
 /** A phone's and a laptop's page, pixels. */
@@ -48,6 +49,7 @@ test("draws fences with heights, pads, a hazard area and the target of a steered
 test("takes over a vehicle, overrides its checklist and clears a hazard area", async ({ page }) => {
   const fake = await open(page);
   await page.keyboard.press("1");
+  await page.keyboard.press("d");
   await hold(page, page.getByRole("button", { name: "Take over 1 Alder" }), () =>
     expect.poll(() => fake.requests.length).toBe(1),
   );
@@ -73,7 +75,7 @@ test("flies a vehicle to a target on the map only if the gate allows it", async 
   fake.checkResult = { accepted: false, rule: "keep_out", reason };
   await page.keyboard.press("1");
   await page.keyboard.press("g");
-  await page.locator(".map-canvas").click({ position: { x: 420, y: 120 } });
+  await page.locator(".map-canvas").click({ position: { x: 600, y: 420 } });
   await expect(page.getByText(`Refused: ${reason}`)).toBeVisible();
   await expect(page.locator(".fly-course")).toHaveText(/m, bearing \d{3}°, about/);
   const go = page.getByRole("button", { name: "Fly 1 Alder there and hold" });
@@ -90,6 +92,7 @@ test("flies a vehicle to a target on the map only if the gate allows it", async 
 
 test("returns the fleet in layers and shows waiting and excluded vehicles", async ({ page }) => {
   const fake = await open(page);
+  await openPanel(page, "Return in layers");
   await hold(page, page.getByRole("button", { name: "Return all vehicles in layers" }), () =>
     expect.poll(() => fake.requests).toEqual([["/api/fleet-return", { serials: null }]]),
   );
@@ -107,7 +110,6 @@ for (const theme of THEMES) {
     await page.keyboard.press("g");
     await page.getByRole("button", { name: "Use map centre" }).click();
     await expect(page.getByText("Allowed by the safety gate.")).toBeVisible();
-    await expect(page.getByText("→ Write go_home_height_m")).toBeVisible();
     for (const [width, height] of SIZES) {
       await page.setViewportSize({ width, height });
       const where = `${width} px wide`;

@@ -9,8 +9,8 @@ export function cornerFaults(page: Page): Promise<Fault[]> {
     const box = button.getBoundingClientRect();
     const faults: string[] = [];
     const right = document.documentElement.clientWidth - box.right;
-    if (right < 0 || right > 16) faults.push(`${right} px from the right edge`);
-    if (box.top < 0 || box.top > 16) faults.push(`${box.top} px from the upper edge`);
+    if (right < 0 || right > 24) faults.push(`${right} px from the right edge`);
+    if (box.top < 0 || box.top > 24) faults.push(`${box.top} px from the upper edge`);
     if (box.width < 100 || box.height < 44) faults.push(`${box.width} x ${box.height} px`);
     // Sixteen points inside: each must hit the button itself.
     for (const u of [0.2, 0.4, 0.6, 0.8]) {

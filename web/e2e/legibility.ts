@@ -3,7 +3,7 @@ import type { Page } from "@playwright/test";
 /** Description of a text or control that is too small or too faint. */
 export type Fault = string;
 
-/** Visible text smaller than 16 px. */
+/** Visible text smaller than 15 px. */
 export function smallTexts(page: Page): Promise<Fault[]> {
   return page.evaluate(() => {
     const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
@@ -13,7 +13,7 @@ export function smallTexts(page: Page): Promise<Fault[]> {
       const text = walker.currentNode.textContent?.trim() ?? "";
       if (element === null || text === "" || !element.checkVisibility()) continue;
       const size = Number.parseFloat(getComputedStyle(element).fontSize);
-      if (size < 16) faults.push(`${size} px: ${text}`);
+      if (size < 15) faults.push(`${size} px: ${text}`);
     }
     return faults;
   });

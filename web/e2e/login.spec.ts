@@ -4,6 +4,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { expect, test } from "@playwright/test";
+import { openPanel } from "./openPanel";
 
 /** A station that other computers log in to, here over loopback, with its own state folder. */
 const PROJECT = fileURLToPath(new URL("../..", import.meta.url));
@@ -59,9 +60,9 @@ test("asks for a token, shows the person, and logs out", async ({ page }) => {
   await expect(dialog).toContainText("Token wrong");
   await page.getByLabel("Token, or the whole address with it").fill(`${url}/#token=${token}`);
   await page.getByRole("button", { name: "Log in" }).click();
-  await expect(page.locator(".person")).toContainText("anna pilot");
   await expect(dialog).toHaveCount(0);
   await page.reload();
+  await page.getByRole("button", { name: "Menu", exact: true }).click();
   await expect(page.locator(".person")).toContainText("anna pilot");
   await page.getByRole("button", { name: "Log out" }).click();
   await expect(dialog).toContainText("Token missing");
@@ -69,7 +70,7 @@ test("asks for a token, shows the person, and logs out", async ({ page }) => {
 
 test("takes the token out of the address", async ({ page }) => {
   await page.goto(`${url}/#token=${token}`);
-  await expect(page.locator(".person")).toContainText("anna pilot");
+  await openPanel(page, "Station and site");
   expect(page.url()).toBe(`${url}/`);
   await expect(page.getByAltText("The first address as a QR code")).toBeVisible();
 });
@@ -81,6 +82,7 @@ for (const scheme of ["light", "dark"] as const) {
     await expect(page.getByRole("dialog")).toContainText("AB:AB");
     await page.screenshot({ path: info.outputPath(`login-${scheme}.png`) });
     await page.goto(`${url}/#token=${token}`);
+    await page.getByRole("button", { name: "Menu", exact: true }).click();
     await expect(page.locator(".person")).toContainText("anna pilot");
     await page.screenshot({ path: info.outputPath(`logged-in-${scheme}.png`) });
   });

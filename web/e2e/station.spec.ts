@@ -1,5 +1,6 @@
 import { expect, type Page, test } from "@playwright/test";
 import { drawnShare } from "./mapPicture";
+import { openPanel } from "./openPanel";
 import { type RunningStation, startStation } from "./stationProcess";
 
 /** Landing from 50 m takes most of a minute. */
@@ -50,11 +51,11 @@ test("shows four vehicles over their field, and lands one on command", async ({ 
       .toBeGreaterThan(1);
   });
 
-  await test.step("each is listed, marked as simulated", async () => {
+  await openPanel(page, "Orders");
+  await test.step("each is listed, and the bar says that they are simulated", async () => {
     const list = page.getByRole("complementary", { name: "Vehicles" }).locator("li");
     await expect(list).toHaveCount(4);
-    await expect(list.getByText("SIM", { exact: true })).toHaveCount(4);
-    await expect(page.getByText("SIMULATION")).toBeVisible();
+    await expect(page.getByText("Simulation", { exact: true }).first()).toBeVisible();
   });
 
   await test.step("the ground image is below them", async () => {
@@ -64,7 +65,7 @@ test("shows four vehicles over their field, and lands one on command", async ({ 
 
   await test.step("a land order is confirmed by a hold, then by telemetry", async () => {
     const row = page.locator(".vehicle").filter({ hasText: "Drone 1" });
-    await expect(row).toContainText("Flying", { timeout: CONNECT_WITHIN_MS });
+    await expect(row).toContainText(/Surveying|Flying|Holding/, { timeout: CONNECT_WITHIN_MS });
     await page
       .getByRole("button", { name: /Drone 1/, pressed: false })
       .first()
@@ -76,7 +77,7 @@ test("shows four vehicles over their field, and lands one on command", async ({ 
     await expect(command).toHaveCount(1);
     await page.mouse.up();
     // A busy station may answer later than the page waits for; the command list shows the order.
-    await expect(page.getByText(/^Accepted: Drone 1 SIM$|did not answer within/)).toBeVisible();
+    await expect(page.getByText(/^Land Drone 1: |did not answer within/)).toBeVisible();
     const phase = command.getByTestId("phase");
     await expect(phase).toHaveText(/Confirmed|Done/, { timeout: LANDS_WITHIN_MS });
     await expect(command.getByLabel("Command history")).toHaveText(
@@ -85,9 +86,7 @@ test("shows four vehicles over their field, and lands one on command", async ({ 
   });
 
   await test.step("all stop reaches all flying vehicles", async () => {
-    const count = /^(\d) of 4 flying$/.exec(
-      (await page.getByText("of 4 flying").textContent()) ?? "",
-    );
+    const count = /^(\d) of 4$/.exec((await page.getByTestId("status-count").textContent()) ?? "");
     await page.getByRole("button", { name: /^All stop/ }).click();
     // Of a busy station that answers late the guard is asked too: then each vehicle has two.
     const stops = page.getByTestId(/^command-\d+$/).filter({ hasText: /^Hover / });

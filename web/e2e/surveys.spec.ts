@@ -33,31 +33,34 @@ test("plans a survey of a site region, flies it with two vehicles, pauses and ab
   try {
     await page.goto(station.url);
     await expect(page.locator("button.craft")).toHaveCount(4, { timeout: CONNECT_WITHIN_MS });
-    const panel = page.getByRole("region", { name: "Surveys" });
+    const panel = page.getByRole("region", { name: "Survey", exact: true });
 
     await test.step("planned, nothing moves", async () => {
       await panel.getByLabel("Region").selectOption("south-east field");
       await panel.getByLabel("Height above takeoff, m").fill("40");
       await panel.getByRole("button", { name: "Plan survey" }).click();
       await expect(panel.getByText("Planned, not started")).toBeVisible();
-      await expect(page.getByText("1 of 4 flying")).toBeVisible();
+      await expect(page.getByTestId("status-count")).toHaveText("1 of 4");
     });
 
     const ways = page.waitForResponse(/\/api\/surveys\/\d+\/ways$/);
     await test.step("two with takeoff allowed fly it", async () => {
       for (const name of ["Drone 1", "Drone 2"]) {
-        await page.getByRole("checkbox", { name: new RegExp(name) }).check();
+        await page.getByRole("checkbox", { name: new RegExp(name) }).check({ force: true });
       }
       await panel.getByLabel("Allow takeoff for this start").check();
       const start = panel.getByRole("button", { name: /^Start with selected: .*Drone 1.*Drone 2/ });
-      await hold(page, start, () => expect(panel.getByText(/: (Running|Stopped)/)).toBeVisible());
-      await expect(panel.getByText(/ flying rows$/)).toHaveCount(2, { timeout: FLIES_WITHIN_MS });
-      await expect(page.getByText("3 of 4 flying")).toBeVisible({ timeout: FLIES_WITHIN_MS });
+      await hold(page, start, () => expect(panel.getByText(/^(Running|Stopped)/)).toBeVisible());
+      await expect(page.getByText(/^Surveying · /)).toHaveCount(2, { timeout: FLIES_WITHIN_MS });
+      await expect(page.getByTestId("status-count")).toHaveText("3 of 4", {
+        timeout: FLIES_WITHIN_MS,
+      });
     });
 
     await test.step("its rows and coverage are on the map", async () => {
       expect((await (await ways).json()).rows.length).toBeGreaterThan(3);
       const cells = page.waitForResponse(/\/api\/surveys\/\d+\/cells\.png/);
+      await page.getByRole("button", { name: "Map overlay" }).click();
       await page.getByLabel("Coverage").check();
       expect((await cells).status()).toBe(200);
       await page.screenshot({ path: "screens/survey-flown.png" });
@@ -65,10 +68,10 @@ test("plans a survey of a site region, flies it with two vehicles, pauses and ab
 
     await test.step("a short press pauses it, a long one aborts it", async () => {
       await hold(page, panel.getByRole("button", { name: /^Pause survey/ }), () =>
-        expect(panel.getByText(/: Paused/)).toBeVisible(),
+        expect(panel.getByText(/^Paused/)).toBeVisible(),
       );
       await hold(page, panel.getByRole("button", { name: /^Abort survey/ }), () =>
-        expect(panel.getByText(/: Aborted/)).toBeVisible(),
+        expect(panel.getByText(/^Aborted/)).toBeVisible(),
       );
       await expect(panel.getByRole("button", { name: /survey south-east field/ })).toHaveCount(0);
     });
@@ -92,7 +95,7 @@ for (const theme of THEMES) {
     page.once("close", () => clearInterval(timer));
     await applyTheme(page, theme);
     await page.keyboard.press("3");
-    const panel = page.getByRole("region", { name: "Surveys" });
+    const panel = page.getByRole("region", { name: "Survey", exact: true });
     await expect(panel.getByText("called home")).toBeVisible();
     await panel.getByText("New survey").click();
     for (const [width, height] of SIZES) {

@@ -46,7 +46,7 @@ for (const theme of THEMES) {
     ).toBeVisible();
     await expect(page.getByText("Crewed aircraft 2, new: keep out, all heights")).toBeVisible();
     await page.keyboard.press("z");
-    await page.locator(".map-canvas").click({ position: { x: 300, y: 200 } });
+    await page.locator(".map-canvas").click({ position: { x: 600, y: 420 } });
     await expect(page.getByRole("button", { name: "Keep clear now" })).toBeEnabled();
     expect(await faintTexts(page)).toEqual([]);
     expect(await smallTargets(page)).toEqual([]);

@@ -7,12 +7,12 @@ from typing import Annotated, Any
 from fastapi import Depends, FastAPI, Query, Request, Response, WebSocket
 from fastapi.exceptions import RequestValidationError, WebSocketRequestValidationError
 from fastapi.responses import HTMLResponse, JSONResponse
-from fastapi.staticfiles import StaticFiles
 from starlette.exceptions import HTTPException as AnyHTTPException
 
 from recon.api import schema
 from recon.api.access_routes import add_access_routes
 from recon.api.addresses import SharedAddress
+from recon.api.console_files import ConsoleFiles
 from recon.api.order_routes import add_order_routes
 from recon.api.pairing_routes import add_pairing_routes
 from recon.api.permissions import require_listed_role
@@ -124,7 +124,7 @@ def _add_audit_and_streams(app: FastAPI, port: StationPort) -> None:
 
 def _add_console(app: FastAPI, console: Path | None) -> None:
     if console is not None and (console / "index.html").is_file():
-        app.mount("/", StaticFiles(directory=console, html=True), name="console")
+        app.mount("/", ConsoleFiles(directory=console, html=True), name="console")
         return
 
     @app.get("/", include_in_schema=False)

@@ -24,8 +24,8 @@ MAX_ENTRIES = 1_000
 """Apps choose their serials: without a limit they could fill the file."""
 LARGEST_NUMBER = 9_999
 HEADER = """\
-# The numbers of the vehicles, by serial. The station adds new vehicles and rewrites this file without
-# your comments. Edit it only while the station is stopped.
+# The numbers of the vehicles, by serial. The station adds new vehicles and rewrites this file
+# without your comments. Edit it only while the station is stopped.
 """
 
 

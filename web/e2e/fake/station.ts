@@ -14,6 +14,8 @@ export class FakeStation {
   readonly orders: Omit<OrderRequest, "given_at_unix_ms">[] = [];
   readonly acknowledged: number[] = [];
   allStops = 0;
+  /** Whether an all stop answers for each vehicle, as the gate does: those on the ground are refused. */
+  stopsAll = false;
   /** All other requests: path and body, likewise. */
   readonly requests: [path: string, body: unknown][] = [];
   /** The gate's result for checked orders. */
@@ -141,7 +143,20 @@ export class FakeStation {
 
   private stopAll() {
     this.allStops += 1;
-    return { json: { results: [] } };
+    if (!this.stopsAll) return { json: { results: [] } };
+    const serials = this.state.vehicles.flatMap(({ serial }) => serial ?? []);
+    const results = this.results({ serials, order: { kind: "hover" }, takeoff: false });
+    const isFlying = (serial: string | null) =>
+      this.state.vehicles.find((one) => one.serial === serial)?.is_flying.value === true;
+    return {
+      json: {
+        results: results.map((result) =>
+          isFlying(result.serial)
+            ? result
+            : { ...result, accepted: false, rule: "flying", reason: "on the ground" },
+        ),
+      },
+    };
   }
 
   private isSimulated(serial: string): boolean {

@@ -116,9 +116,16 @@ export function createFlyHere(
   };
 }
 
+/** Offered to a vehicle that is not in the air, or lower than anyone flies on purpose. */
+const USUAL_HEIGHT_M = 30;
+const LEAST_HEIGHT_M = 5;
+
+/** The present height in flight; a usual one for a vehicle on the ground. */
 function currentHeight(vehicle: VehicleView): string {
   const { value } = vehicle.height_above_takeoff_m;
-  return value === null ? "" : String(Math.round(value));
+  if (value === null) return "";
+  const isLow = vehicle.is_flying.value === false || value < LEAST_HEIGHT_M;
+  return String(isLow ? USUAL_HEIGHT_M : Math.round(value));
 }
 
 /** The order from the form; null while a part is missing or not a number. */

@@ -30,6 +30,8 @@ from recon.station.state.station import Station
 
 SHOWN_ORDERS = 50
 TRACK_POINTS_SHOWN = 120
+TRACK_DIGITS = 6
+"""A tenth of a metre, finer than GNSS: the tracks are most of a state's bytes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,7 +136,10 @@ def _vehicle(
         camera_state=aged.word(vehicle.camera_state),
         waypoint_altitude=reference.value,
         conflict_link_ids=list(vehicle.rival_link_ids),
-        track=[(p.longitude_deg, p.latitude_deg) for p in vehicle.track[-TRACK_POINTS_SHOWN:]],
+        track=[
+            (round(p.longitude_deg, TRACK_DIGITS), round(p.latitude_deg, TRACK_DIGITS))
+            for p in vehicle.track[-TRACK_POINTS_SHOWN:]
+        ],
         frame=_frame(station.frames.get(vehicle.serial or ""), now_ns),
         hazard=hazard_view(station, vehicle, now_ns),
     )

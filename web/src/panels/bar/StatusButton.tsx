@@ -24,8 +24,8 @@ export function StatusButton() {
             <span class="status-count" data-testid="status-count">
               {now().count}
             </span>
-            <Show when={simulation(fleet.vehicles) === "all"}>
-              <span class="status-simulation">Simulation</span>
+            <Show when={SIMULATION[simulation(fleet.vehicles)]}>
+              {(text) => <span class="status-simulation">{text()}</span>}
             </Show>
           </span>
         </>
@@ -35,6 +35,9 @@ export function StatusButton() {
     </Popover>
   );
 }
+
+/** Said here on screens without room for it in the bar. */
+const SIMULATION = { none: "", all: "Simulation", mixed: "Real and simulated" } as const;
 
 function Reasons(props: { readiness: Readiness }) {
   return (

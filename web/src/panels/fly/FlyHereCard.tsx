@@ -21,7 +21,7 @@ export function FlyHereCard() {
   };
   return (
     <Show when={flyHere.isOn()}>
-      <section class="fly" aria-label={`Fly ${name()} here`} onKeyDown={onKeyDown}>
+      <section class="card fly" aria-label={`Fly ${name()} here`} onKeyDown={onKeyDown}>
         <header class="fly-head">
           <h2 class="wire-text">Fly here: {name()}</h2>
           <button
@@ -42,7 +42,7 @@ export function FlyHereCard() {
         </Show>
         <div class="fly-fields">
           <label>
-            Height above takeoff, m
+            Above takeoff, m
             <input
               class="field"
               type="text"
