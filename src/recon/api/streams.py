@@ -6,6 +6,9 @@ one message; one that reads nothing loses its place (`api/connections.py`). Audi
 conflated: a slow reader holds one page and gets the rest as it reads; one that falls behind what
 the station keeps in memory sees a gap in the numbers (`first_n`).
 
+A reader that asks for it (`changes=1`) gets the first state whole, and then what has changed since
+the last one it was sent (`api/state_changes.py`).
+
 An owner is an open state stream that steered orders depend on (`/api/stream?owner=NAME`). It sends
 a keepalive, any text, at least twice a second. When its connection closes, or no message arrives
 for `SILENT_S` (a computer that sleeps, a program that hangs), its steered orders end: the vehicles
@@ -22,6 +25,7 @@ from contextlib import asynccontextmanager
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from recon.api.port import StationPort
+from recon.api.schema import StationState
 from recon.api.security import (
     POLICY_VIOLATION,
     TRY_AGAIN_LATER,
@@ -29,6 +33,7 @@ from recon.api.security import (
     person_of,
     refuse_stream,
 )
+from recon.api.state_changes import change_text
 from recon.model.person import Role
 
 INTERVAL_S = 0.1
@@ -85,7 +90,9 @@ class StateStream:
     def __init__(self, port: StationPort, clock_s: Callable[[], float] | None = None) -> None:
         self._port = port
         self._clock_s = clock_s or time.monotonic
-        self._text = ""
+        self._state: StationState | None = None
+        self._text: str | None = None
+        self._change: tuple[StationState, str] | None = None
         self._made_at_s = float("-inf")
         self._readers = 0
         self._owners = Owners(port)
@@ -104,7 +111,7 @@ class StateStream:
         self._readers += 1
         try:
             await accept_stream(socket)
-            await self._send_until_gone(socket, owner)
+            await self._send_until_gone(socket, owner, socket.query_params.get("changes") == "1")
             if owner is not None:
                 await socket.close(OWNER_SILENT, f"owner: no message for {SILENT_S:g} s")
         except (WebSocketDisconnect, RuntimeError):
@@ -112,12 +119,18 @@ class StateStream:
         finally:
             self._readers -= 1
 
-    async def _send_until_gone(self, socket: WebSocket, owner: str | None) -> None:
+    async def _send_until_gone(
+        self, socket: WebSocket, owner: str | None, takes_changes: bool
+    ) -> None:
         # Receiving is a task of its own: sending blocks while the reader takes nothing.
         gone = asyncio.ensure_future(self._listen(socket, owner))
         try:
+            base: StationState | None = None
             while not gone.done():
-                await socket.send_text(self._newest())
+                state = self._newest()
+                text = self._whole(state) if base is None else self._since(base, state)
+                await socket.send_text(text)
+                base = state if takes_changes else None
                 await asyncio.wait((gone,), timeout=INTERVAL_S)
         finally:
             gone.cancel()
@@ -136,11 +149,23 @@ class StateStream:
         finally:
             self._port.person_disconnected(person)
 
-    def _newest(self) -> str:
-        if self._clock_s() - self._made_at_s >= INTERVAL_S / 2:
-            self._text = self._port.state().model_dump_json()
+    def _newest(self) -> StationState:
+        if self._state is None or self._clock_s() - self._made_at_s >= INTERVAL_S / 2:
+            self._state, self._text, self._change = self._port.state(), None, None
             self._made_at_s = self._clock_s()
+        return self._state
+
+    def _whole(self, state: StationState) -> str:
+        """Return the newest state as text, once for all readers."""
+        if self._text is None:
+            self._text = state.model_dump_json()
         return self._text
+
+    def _since(self, base: StationState, state: StationState) -> str:
+        """Return the change since a reader's last state, once for all that keep up."""
+        if self._change is None or self._change[0] is not base:
+            self._change = base, change_text(base, state)
+        return self._change[1]
 
 
 class AuditStream:

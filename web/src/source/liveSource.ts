@@ -50,7 +50,7 @@ export class LiveSource implements StationSource {
     const open = () => {
       // A new owner: orders held by an earlier connection stay stopped.
       this.owner = newStreamOwner((bytes) => options.random(bytes));
-      return options.openSocket(`${url}?owner=${this.owner}`, streamProtocols(token));
+      return options.openSocket(`${url}?owner=${this.owner}&changes=1`, streamProtocols(token));
     };
     this.stream = new Stream(open, clock, {
       onConnection: (next) => {

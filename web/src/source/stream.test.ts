@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import type { StationState } from "../protocol";
 import { FakeClock } from "../testing/fakeClock";
 import { FakeSocket } from "../testing/fakeSocket";
-import { station } from "../testing/fakeState";
+import { station, vehicle } from "../testing/fakeState";
 import type { Connection } from "./stationSource";
 import { OPENING_MS, RECONNECT_DELAYS_MS, readState, SILENCE_MS, Stream } from "./stream";
 
@@ -40,6 +40,37 @@ describe("the stream", () => {
     newest().deliver(station([]));
     expect(states.map(({ isFirst }) => isFirst)).toEqual([true, false, true]);
     expect(connections.map(({ kind }) => kind)).toEqual(["connecting", "live", "lost", "live"]);
+  });
+
+  it("puts changes on the state before, and reconnects at one of another state", () => {
+    const { stream, newest, states, connections } = setUp();
+    const first = station([vehicle(1), vehicle(2)], { time_ns: 1 });
+    stream.open();
+    newest().accept();
+    newest().deliver(first);
+    const { site: _site, ...rest } = station([vehicle(1), vehicle(2)], { time_ns: 2 });
+    const [one, two] = rest.vehicles;
+    const vehicles = [{ ...one, track: [[9, 9]] }, two];
+    newest().deliver({ ...rest, vehicles, since: 1, kept: { "SN-001": 3 } } as never);
+    const { state } = states[1] ?? {};
+    expect(state?.site).toEqual(first.site);
+    expect(state?.vehicles[0]?.track).toEqual([...vehicle(1).track.slice(-3), [9, 9]]);
+    expect(state?.vehicles[1]?.track).toEqual(vehicle(2).track);
+    expect(state).not.toHaveProperty("since");
+    newest().deliver({ ...rest, time_ns: 9, since: 8, kept: {} } as never);
+    expect(states).toHaveLength(2);
+    expect(connections.at(-1)?.kind).toBe("lost");
+  });
+
+  it("begins each connection with a whole state", () => {
+    const { stream, newest, states, clock, connections } = setUp();
+    stream.open();
+    newest().deliver(station([], { time_ns: 1 }));
+    newest().fail();
+    clock.advance(RECONNECT_DELAYS_MS[0]);
+    newest().deliver({ ...station([], { time_ns: 2 }), since: 1, kept: {} } as never);
+    expect(states).toHaveLength(1);
+    expect(connections.at(-1)?.kind).toBe("lost");
   });
 
   it("sends keepalives while it receives states, and none without", () => {

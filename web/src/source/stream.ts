@@ -1,4 +1,4 @@
-import type { StationState } from "../protocol";
+import type { StationState, VehicleView } from "../protocol";
 import type { Clock } from "./clock";
 import type { Connection } from "./stationSource";
 
@@ -52,6 +52,8 @@ export interface StreamListener {
 export class Stream {
   private socket: Socket | null = null;
   private attempt = 0;
+  /** The last state of this connection, to which changes are applied. */
+  private base: StationState | null = null;
   private isFirst = true;
   private keepaliveAtMs = Number.NEGATIVE_INFINITY;
   private cancelTimer: () => void = () => {};
@@ -77,6 +79,7 @@ export class Stream {
     if (socket === null) return;
     this.socket = socket;
     this.isFirst = true;
+    this.base = null;
     this.keepaliveAtMs = Number.NEGATIVE_INFINITY;
     this.expectMessageWithin(OPENING_MS, "No answer from the station");
     socket.onopen = () => this.expectMessageWithin(SILENCE_MS, "No data from the station");
@@ -100,7 +103,8 @@ export class Stream {
   }
 
   private receive(data: unknown): void {
-    const state = readState(data);
+    const state = readState(data, this.base);
+    this.base = state;
     if (state === null) {
       this.loseConnection("Unreadable data from the station: reload the page");
       return;
@@ -182,8 +186,11 @@ function closingReason(code: number, reason: string): string {
 
 const LISTS = ["vehicles", "links", "commands", "alarms"] as const;
 
-/** The state in a message; null when it is not one. */
-export function readState(data: unknown): StationState | null {
+/**
+ * The state in a message, whole or as a change of the one before; null when it is neither. A part that is absent in
+ * a change is as before; of the vehicles in `kept`, a track holds the new points only.
+ */
+export function readState(data: unknown, base: StationState | null = null): StationState | null {
   if (typeof data !== "string") return null;
   let value: unknown;
   try {
@@ -192,8 +199,33 @@ export function readState(data: unknown): StationState | null {
     return null;
   }
   if (typeof value !== "object" || value === null) return null;
-  const record = value as Record<string, unknown>;
+  const record = "since" in value ? withBase(value as Change, base) : (value as Fields);
+  if (record === null) return null;
   const hasLists = LISTS.every((name) => Array.isArray(record[name]));
   const isState = hasLists && typeof record["time_ns"] === "number" && "station" in record;
-  return isState ? (value as StationState) : null;
+  return isState ? (record as unknown as StationState) : null;
+}
+
+type Fields = Record<string, unknown>;
+
+interface Change extends Fields {
+  readonly since: unknown;
+  readonly kept: unknown;
+}
+
+/** A change put on its base; null when it is a change of another state. */
+function withBase({ since, kept, ...changed }: Change, base: StationState | null): Fields | null {
+  if (base === null || since !== base.time_ns || typeof kept !== "object") return null;
+  const points = new Map(Object.entries((kept ?? {}) as Record<string, number>));
+  const before = new Map(base.vehicles.map(({ serial, track }) => [serial, track]));
+  const vehicles = Array.isArray(changed["vehicles"])
+    ? (changed["vehicles"] as VehicleView[])
+    : base.vehicles;
+  const whole = vehicles.map((vehicle) => {
+    const count = vehicle.serial === null ? 0 : (points.get(vehicle.serial) ?? 0);
+    const track = before.get(vehicle.serial);
+    if (count <= 0 || track === undefined) return vehicle;
+    return { ...vehicle, track: [...track.slice(-count), ...vehicle.track] };
+  });
+  return { ...base, ...changed, vehicles: whole };
 }
