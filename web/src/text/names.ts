@@ -37,6 +37,13 @@ export function personName(label: string): string {
     .replace(": ", ", ");
 }
 
+/** A note without the station's order numbers, which no operator knows: `by order 5` is `by a newer order`. */
+export function withoutNumbers(note: string): string {
+  return note
+    .replace(/\bby order -?\d+\b/g, "by a newer order")
+    .replace(/\border -?\d+\b/g, "an order");
+}
+
 export const PHASE_NAMES: Readonly<Record<Phase, string>> = {
   queued: "Queued",
   sent: "Sent",

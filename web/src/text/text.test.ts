@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { listNames, phaseTone, plainWords } from "./names";
+import { listNames, listSome, personName, phaseTone, plainWords, withoutNumbers } from "./names";
 import {
   agedBy,
   formatAge,
@@ -93,5 +93,25 @@ describe("names", () => {
     expect(phaseTone({ phase: "confirmed" })).toBe("good");
     expect(phaseTone({ phase: "acknowledged" })).toBe("underway");
     expect(phaseTone({ phase: "timed_out" })).toBe("bad");
+  });
+});
+
+describe("what operators read", () => {
+  it("names people, not addresses", () => {
+    expect(personName("anna (192.168.1.4): survey west")).toBe("anna, survey west");
+    expect(personName("root (this computer)")).toBe("root");
+    expect(personName("station: fleet return")).toBe("station, fleet return");
+  });
+
+  it("has no numbers of the station's orders", () => {
+    expect(withoutNumbers("Replaced by order -24")).toBe("Replaced by a newer order");
+    expect(withoutNumbers("follows the takeoff of order 7: sent")).toBe(
+      "follows the takeoff of an order: sent",
+    );
+  });
+
+  it("lists a few names, and how many more", () => {
+    expect(listSome(["a", "b"], 3)).toBe("a and b");
+    expect(listSome(["a", "b", "c", "d", "e"], 3)).toBe("a, b, c and 2 more");
   });
 });

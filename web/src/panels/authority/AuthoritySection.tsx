@@ -88,7 +88,7 @@ function AuthorityText(props: { authority: AuthorityView }) {
       </Show>{" "}
       <span class="muted">
         {since()}
-        <Show when={props.authority.reason !== ""}>: {props.authority.reason}</Show>
+        <Show when={props.authority.reason !== ""}>: {personName(props.authority.reason)}</Show>
       </span>
     </p>
   );

@@ -8,6 +8,7 @@ import {
   personName,
   phaseTone,
   ruleTitle,
+  withoutNumbers,
 } from "../../text/names";
 import { formatAge } from "../../text/quantities";
 import { Empty, Panel } from "../Panel";
@@ -62,7 +63,7 @@ function CommandRow(props: { command: CommandView }) {
       </Show>
       <Show when={!isNoteInHistory(props.command)}>
         <p class="wire-text" title={ruleTitle(props.command.rule)}>
-          {props.command.note}
+          {withoutNumbers(props.command.note)}
         </p>
       </Show>
     </li>
@@ -92,7 +93,8 @@ function isNoteInHistory(command: CommandView): boolean {
 /** A phase's note without the phase's own name before it: "by order 5" of "Replaced by order 5". */
 function noteBesideName(shown: CommandView["history"][number]): string {
   const name = `${PHASE_NAMES[shown.phase]} `;
-  return shown.note.startsWith(name) ? shown.note.slice(name.length) : shown.note;
+  const note = shown.note.startsWith(name) ? shown.note.slice(name.length) : shown.note;
+  return withoutNumbers(note);
 }
 
 /** A command's phases, each with its time since the order and its note. */

@@ -10,7 +10,7 @@ import { WaitingApp } from "./WaitingApp";
 const STATUS: Readonly<
   Record<LinkView["status"], { word: string; severity: Severity | null; rank: number }>
 > = {
-  waiting: { word: "Waits", severity: "error", rank: -1 },
+  waiting: { word: "Waiting", severity: "error", rank: -1 },
   conflict: { word: "Conflict", severity: "error", rank: 0 },
   unidentified: { word: "Unidentified", severity: "warning", rank: 1 },
   identified: { word: "Identified", severity: null, rank: 2 },

@@ -30,7 +30,7 @@ export function WaitingApp(props: { linkId: number; address: string; waiting: Wa
       <Show when={props.waiting.is_flying === true}>
         <p class="tone-error">Reports flight: others keep clear of it, and stops reach it.</p>
       </Show>
-      <p class="muted">Compare the serial with the aircraft: an app proves nothing about itself.</p>
+      <p class="muted">An app's serial is not authenticated: compare it with the aircraft.</p>
       <div class="section-buttons">
         <GuardButton
           label="Admit"

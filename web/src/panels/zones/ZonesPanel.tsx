@@ -2,7 +2,7 @@ import { createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { ZoneShape } from "../../orders/zoneDraft";
 import type { TemporaryZoneView } from "../../protocol";
-import { responseProblem } from "../../text/names";
+import { personName, responseProblem } from "../../text/names";
 import { formatAge } from "../../text/quantities";
 import { ZONE_KINDS, type ZoneKind, zoneEnd, zoneHeights, zoneName } from "../../text/zones";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
@@ -60,7 +60,7 @@ function ZoneRow(props: { zone: TemporaryZoneView }) {
       </div>
       <p class="wire-text">{props.zone.reason}</p>
       <p class="muted wire-text">
-        {formatAge(props.zone.age_s + behindS())} ago by {props.zone.by},{" "}
+        {formatAge(props.zone.age_s + behindS())} ago by {personName(props.zone.by)},{" "}
         {zoneEnd(props.zone.ends_in_s, behindS())}
       </p>
       <GuardButton
