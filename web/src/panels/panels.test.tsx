@@ -210,7 +210,7 @@ describe("commands", () => {
     const old = command(3, { phase: "superseded", age_s: 40, history: [...replaced], note });
     const root = show(CommandList, station([], { commands: [old] }));
     const phase = root.querySelector(".command-history li");
-    expect(phase?.textContent).toBe("replaced +33 s (by order 4)");
+    expect(phase?.textContent).toBe("replaced +33 s (by a newer order)");
   });
 });
 

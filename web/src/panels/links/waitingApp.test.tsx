@@ -32,7 +32,7 @@ describe("an app that waits to be admitted", () => {
     page = renderPage(LinkList, waiting());
     const text = find(page.root, "li").textContent;
     expect(text).toContain("Link 7");
-    expect(text).toContain("Waits");
+    expect(text).toContain("Waiting");
     expect(text).toContain("SN-NEW from 192.168.1.27:57312");
     expect(text).toContain("its serial is not on the list");
     expect(text).toContain("Reports flight");
