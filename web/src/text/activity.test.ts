@@ -1,0 +1,28 @@
+import { describe, expect, it } from "vitest";
+import { survey, vehicle } from "../testing/fakeState";
+import { doing, surveyPart } from "./activity";
+
+const still = { north_mps: 0.2, east_mps: 0.1, down_mps: 0, age_s: 0.1 };
+
+describe("what a vehicle is doing", () => {
+  it.each([
+    ["Flying · 45\u00a0m · 4\u00a0m/s", {}],
+    ["Holding · 45\u00a0m", { velocity_ned: still }],
+    ["All stop · 45\u00a0m", { is_stopped: true, velocity_ned: still }],
+    ["On the ground", { is_flying: { value: false, age_s: 0.1 } }],
+    ["On the ground · all stop", { is_flying: { value: false, age_s: 0.1 }, is_stopped: true }],
+    ["Landing · 45\u00a0m · 4\u00a0m/s", { flight_mode: { value: "auto_landing", age_s: 0.1 } }],
+    ["Contact lost · 6.0 s", { staleness: "lost", telemetry_age_s: 6 }],
+    ["Flight state unknown", { is_flying: { value: null, age_s: 0.1 } }],
+    ["Waiting for serial number", { serial: null }],
+  ] as const)("is %j", (text, changes) => {
+    expect(doing(vehicle(1, changes), null, 0)).toBe(text);
+  });
+
+  it("is surveying while it flies rows of a survey that runs", () => {
+    const part = surveyPart([survey(1, { phase: "running" })], "SN-001");
+    expect(doing(vehicle(1), part, 0)).toContain("Surveying · ");
+    const over = surveyPart([survey(1, { phase: "done" })], "SN-001");
+    expect(doing(vehicle(1), over, 0)).toContain("Flying · ");
+  });
+});
