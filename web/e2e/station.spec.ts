@@ -55,7 +55,7 @@ test("shows four vehicles over their field, and lands one on command", async ({ 
   await test.step("each is listed, and the bar says that they are simulated", async () => {
     const list = page.getByRole("complementary", { name: "Vehicles" }).locator("li");
     await expect(list).toHaveCount(4);
-    await expect(page.getByText("Simulation", { exact: true }).first()).toBeVisible();
+    await expect(page.locator(".bar-simulation")).toHaveText("Simulation");
   });
 
   await test.step("the ground image is below them", async () => {

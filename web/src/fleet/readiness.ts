@@ -58,7 +58,7 @@ function withoutState(connection: Connection): Readiness {
 }
 
 function countOf(label: ReadinessLabel, { vehicles }: StationState, behindS: number): string {
-  if (vehicles.length === 0) return "";
+  if (vehicles.length === 0 || label === "Station lost") return "";
   const isCounted = COUNTED[label] ?? ((one) => isFlyingNow(one, behindS));
   return `${vehicles.filter((one) => isCounted(one, behindS)).length} of ${vehicles.length}`;
 }
