@@ -46,7 +46,10 @@ function SurveySection(props: SurveyProps) {
       ({ not_flying_reason }) => !is("done", "aborted") || not_flying_reason !== null,
     );
   /** The number of a round says nothing to an operator beyond that rows are flown again. */
-  const reason = () => (/^round \d+$/.test(props.survey.reason) ? "" : props.survey.reason);
+  const reason = () => {
+    const text = props.survey.reason.replace(`${surveyStatus(props.survey)}: `, "");
+    return /^round \d+$/.test(text) ? "" : text;
+  };
   return (
     <section class="section" data-testid={`survey-${props.survey.id}`}>
       <p class="survey-head wire-text">
