@@ -65,8 +65,11 @@ function Scale(props: { forecast: ForecastView }) {
         />
         <p class="time-ticks muted" aria-hidden="true">
           <For each={ticksOf(leads())}>
-            {({ lead, at }) => (
-              <span style={{ left: `${100 * at}%`, transform: `translateX(${-100 * at}%)` }}>
+            {({ lead, at, isCoarse }) => (
+              <span
+                classList={{ fine: !isCoarse }}
+                style={{ left: `${100 * at}%`, transform: `translateX(${-100 * at}%)` }}
+              >
                 {lead === 0 ? "now" : leadText(lead)}
               </span>
             )}
@@ -100,21 +103,35 @@ export function gradient({ lead_s, predicted_share }: ForecastView): string {
   return `linear-gradient(to right, ${stops.join(", ")})`;
 }
 
-/** Between labels, as a share of the scale: a phone has room for a dozen short ones. */
+/** Between labels, as a share of the scale: what a desktop has room for, and what a phone has. */
 const LEAST_GAP = 0.08;
+const COARSE_GAP = 0.19;
 
-/** Leads with a label, as even as the scale allows, each with its place from 0 to 1. */
-export function ticksOf(
-  leads: readonly number[],
-): { readonly lead: number; readonly at: number }[] {
+interface Tick {
+  readonly lead: number;
+  /** Place from 0 to 1. */
+  readonly at: number;
+  /** Whether it has room on a phone, too. */
+  readonly isCoarse: boolean;
+}
+
+/** Leads with a label, as even as the scale allows. */
+export function ticksOf(leads: readonly number[]): readonly Tick[] {
+  const coarse = spaced(leads, COARSE_GAP);
+  return spaced(leads, LEAST_GAP).map((tick) => ({
+    ...tick,
+    isCoarse: coarse.some(({ lead }) => lead === tick.lead),
+  }));
+}
+
+function spaced(leads: readonly number[], gap: number): { lead: number; at: number }[] {
   const last = Math.max(1, leads.length - 1);
   const ticks: { lead: number; at: number }[] = [];
   for (const [index, lead] of leads.entries()) {
     const at = index / last;
     const isEven = lead % 60 === 0 || lead === 30;
     const before = ticks.at(-1)?.at ?? -1;
-    if (isEven && at - before >= LEAST_GAP && (1 - at >= LEAST_GAP || at === 1))
-      ticks.push({ lead, at });
+    if (isEven && at - before >= gap && (1 - at >= gap || at === 1)) ticks.push({ lead, at });
   }
   return ticks;
 }

@@ -57,6 +57,11 @@ describe("the time scale", () => {
     expect(ticks.at(-1)?.lead).toBe(600);
     const gaps = ticks.slice(1).map(({ at }, index) => at - (ticks[index]?.at ?? 0));
     expect(Math.min(...gaps)).toBeGreaterThan(0.079);
+    const coarse = ticks.filter(({ isCoarse }) => isCoarse);
+    expect([coarse[0]?.lead, coarse.at(-1)?.lead]).toEqual([0, 600]);
+    expect(coarse.length).toBeGreaterThan(3);
+    const between = coarse.slice(1).map(({ at }, index) => at - (coarse[index]?.at ?? 0));
+    expect(Math.min(...between)).toBeGreaterThan(0.18);
   });
 });
 
