@@ -7,7 +7,9 @@
 Frames are rendered at a small size, laid on the ground with the true pose (or telemetry's), and
 kept in a temporary folder for the next call. Unknown cells count as wrong in the IoU. A method
 named like `brightness_ratio:600` remembers so many seconds. What is lost by cause is the difference
-between two calls: true pose or telemetry's, exposure locked or automatic, all minutes or `--after`.
+between two calls: true pose or telemetry's, exposure locked or automatic, all minutes or `--after`,
+and `--ceiling`: each map read at the transmittance that divides it best, as with the true level of
+sun.
 
 With `--earlier` the first minutes are a flight of their own: what it has learned is taken up by a
 second one, which begins there, in one row, and not by the same one in the other.
@@ -49,6 +51,8 @@ IMAGE_CELL_M, FIELD_CELL_M = 2.0, 4.0
 FULL_COLS, FULL_ROWS = 1280, 720
 MIXED = (0.05, 0.95)
 """Shade share of the frames that the percentile is taken over."""
+CEILING_AT: tuple[float, ...] = tuple(np.arange(0.2, 0.82, 0.02).tolist())
+"""Transmittances at which a map may be divided to show the ceiling."""
 SERIAL = "SIM-IMAGER"
 
 
@@ -107,12 +111,15 @@ class Tally:
     mixed_iou: list[float] | None = None
     ms: list[float] | None = None
     first_right_s: float = float("inf")
+    is_ceiling: bool = False
 
     def add(self, found: ShadeMap | None, truth: FloatMap, counted: MaskMap, at_s: float) -> None:
         """Add a frame; a rejected one is unknown throughout."""
         is_shade = truth < SUNLIT_TRANSMITTANCE
         valid = np.zeros_like(counted) if found is None else found.valid
-        called = np.zeros_like(counted) if found is None else valid & ~found.is_sunlit
+        called = np.zeros_like(counted)
+        if found is not None:
+            called = valid & (found.transmittance < self._divided_at(found, is_shade & counted))
         wrong = counted & (~valid | (called != is_shade))
         both = int((called & is_shade & counted).sum())
         either = int(((called | is_shade | wrong) & counted).sum())
@@ -130,6 +137,17 @@ class Tally:
             self.mixed_iou = [*(self.mixed_iou or []), both / max(1, either)]
         if wrong.sum() <= 0.1 * counted.sum():
             self.first_right_s = min(self.first_right_s, at_s)
+
+    def _divided_at(self, found: ShadeMap, is_shade: MaskMap) -> float:
+        """Return the transmittance below which a cell counts as in shade."""
+        if not self.is_ceiling:
+            return SUNLIT_TRANSMITTANCE
+
+        def agreement(least: float) -> float:
+            called = found.valid & (found.transmittance < least)
+            return float((called & is_shade).sum() / max(1, (called | is_shade).sum()))
+
+        return max(CEILING_AT, key=agreement)
 
 
 def main() -> int:
@@ -167,7 +185,7 @@ def _rows(flight: Flight, options: argparse.Namespace) -> Iterator[tuple[str, tu
         yield "knowing", score(flight, "sunlit_reference", start_s, start_s, known)
         return
     for method in options.methods.split(","):
-        yield method, score(flight, method, 60.0 * options.after)
+        yield method, score(flight, method, 60.0 * options.after, is_ceiling=options.ceiling)
 
 
 def _learned(flight: Flight, until_s: float) -> DetectionState:
@@ -192,12 +210,13 @@ def score(
     after_s: float = 0.0,
     begins_s: float = 0.0,
     state: DetectionState | None = None,
+    is_ceiling: bool = False,
 ) -> tuple[float, ...]:
     """Return the figures of a method on a flight, over the frames after a time.
 
     The flight begins at a moment of what was rendered, in a state: by default, of knowing nothing.
     """
-    tally = Tally(ms=[])
+    tally = Tally(ms=[], is_ceiling=is_ceiling)
     name, _, window_s = method.partition(":")
     state, settings = state or DetectionState(), _settings(flight)
     if window_s:
@@ -373,6 +392,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--minutes", type=float, default=20.0)
     parser.add_argument("--after", type=float, default=0.0, help="minutes that do not count")
     parser.add_argument("--earlier", type=float, default=0.0, help="minutes of an earlier flight")
+    parser.add_argument("--ceiling", action="store_true", help="with the true level of sun")
     parser.add_argument("--every-s", type=float, default=5.0)
     parser.add_argument("--cols", type=int, default=640, help="width of the rendered frames")
     parser.add_argument("--exposure", choices=("auto", "locked"), default="auto")
