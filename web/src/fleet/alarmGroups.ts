@@ -12,7 +12,7 @@ export interface AlarmGroup {
   readonly alarms: readonly AlarmView[];
   readonly isActive: boolean;
   readonly isAcknowledged: boolean;
-  /** Whether it asks for something: more than a note that lasts, or that nobody has acknowledged. */
+  /** Whether it asks for something: more than a note that lasts, or one not acknowledged yet. */
   readonly needsLook: boolean;
 }
 

@@ -15,7 +15,7 @@ export interface Cluster {
 
 /** Symbols nearer than this hide each other. */
 const RADIUS_PX = 24;
-/** Fewer are drawn one over the other: a number of four says less than four vehicles. */
+/** Fewer are drawn one over the other: a number of four tells less than four vehicles. */
 const LEAST = 5;
 
 /** Groups of vehicles that would hide each other on the screen, each around its first vehicle. */

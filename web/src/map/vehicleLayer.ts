@@ -104,7 +104,7 @@ export class VehicleLayer implements Layer {
     map.getSource<GeoJSONSource>(SOURCE)?.setData({ type: "FeatureCollection", features });
   }
 
-  /** On the ground a height says nothing, and a cluster has its own number. */
+  /** On the ground a height means nothing, and a cluster has its own number. */
   private isLabelled({ vehicle }: Placed): boolean {
     return vehicle.is_flying.value !== false && !this.clustered.has(vehicleKey(vehicle));
   }

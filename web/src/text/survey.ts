@@ -28,7 +28,7 @@ export function timeLeft({ phase, figures, age_s, vehicles }: SurveyView): strin
   return left_s < 60 ? "under 1 min left" : `≈ ${Math.round(left_s / 60)} min left`;
 }
 
-/** Before that a rate says nothing. */
+/** Before that a rate means nothing. */
 const LEAST_AGE_S = 60;
 const LEAST_SHARE = 0.1;
 

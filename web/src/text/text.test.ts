@@ -97,7 +97,7 @@ describe("names", () => {
 });
 
 describe("what operators read", () => {
-  it("names people, not addresses", () => {
+  it("names users, not addresses", () => {
     expect(personName("anna (192.168.1.4): survey west")).toBe("anna, survey west");
     expect(personName("root (this computer)")).toBe("root");
     expect(personName("station: fleet return")).toBe("station, fleet return");

@@ -3,7 +3,7 @@ import { useConsole } from "../../console";
 import { groupAlarms } from "../../fleet/alarmGroups";
 import { worstSeverity } from "../../fleet/severity";
 
-/** The number of alarms that ask for something, coloured by the worst that nobody has acknowledged; a press opens the list. */
+/** The number of alarms that ask for something, coloured by the worst not acknowledged yet; a press opens the list. */
 export function AlarmsButton() {
   const { fleet, panels } = useConsole();
   const open = createMemo(() => groupAlarms(fleet.alarms).filter((group) => group.needsLook));

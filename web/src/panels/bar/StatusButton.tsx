@@ -36,7 +36,7 @@ export function StatusButton() {
   );
 }
 
-/** Said here on screens without room for it in the bar. */
+/** Shown here on screens without room for it in the bar. */
 const SIMULATION = { none: "", all: "Simulation", mixed: "Real and simulated" } as const;
 
 function Reasons(props: { readiness: Readiness }) {

@@ -204,7 +204,7 @@ describe("the station's answer", () => {
     expect(find(page.root, ".toast-lines").textContent).toContain("On the ground: Birch");
   });
 
-  it("to an all stop says that none is flying", async () => {
+  it("shows after an all stop that no vehicle is flying", async () => {
     await stopAll();
     expect(line()).toContain("All stop: in force; no drone is flying");
   });

@@ -45,7 +45,7 @@ function SurveySection(props: SurveyProps) {
     props.survey.vehicles.filter(
       ({ not_flying_reason }) => !is("done", "aborted") || not_flying_reason !== null,
     );
-  /** The number of a round says nothing to an operator beyond that rows are flown again. */
+  /** The number of a round means nothing to an operator beyond that rows are flown again. */
   const reason = () => {
     const text = props.survey.reason.replace(`${surveyStatus(props.survey)}: `, "");
     return /^round \d+$/.test(text) ? "" : text;

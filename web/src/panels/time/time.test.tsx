@@ -17,7 +17,7 @@ function show(changes: Parameters<typeof shadeLine>[0] = {}) {
 }
 
 describe("the time scale", () => {
-  it("says how much of the field is in sun now and later, and how right that was", () => {
+  it("shows how much of the field is in sun now and later, and how right that was", () => {
     show();
     expect(page.root.textContent).toContain("Sun now · 62\u00a0% of the field");
     expect(page.root.textContent).not.toContain("right lately");

@@ -44,7 +44,7 @@ class CompanionService : Service() {
             showInForeground()
             host.start()
         } catch (error: ReconError) {
-            // The stored address is none any more.
+            // The stored address is no longer valid.
             reconApplication.log.add("error", error.message)
             stopSelf()
             return START_NOT_STICKY

@@ -14,7 +14,7 @@ class FlightLog(private val folder: File, private val executor: Executor, privat
     @Volatile
     private var file: File? = null
 
-    /** The newest log file, or null when there is none. */
+    /** The newest log file, or null without one. */
     fun newest(): File? = files().lastOrNull()
 
     /** Begins a new file, and removes the oldest. */

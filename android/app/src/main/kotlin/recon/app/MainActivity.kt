@@ -127,7 +127,7 @@ class MainActivity : Activity() {
         val isRunning = host.station != null
         screen.show(host)
         if (isRunning) finder.stop() else finder.start()
-        // In the air nobody looks for the switch of a dark screen.
+        // In the air a pilot has no time to switch a dark screen on.
         if (isRunning) window.addFlags(WindowManager.LayoutParams.FLAG_KEEP_SCREEN_ON)
         else window.clearFlags(WindowManager.LayoutParams.FLAG_KEEP_SCREEN_ON)
     }

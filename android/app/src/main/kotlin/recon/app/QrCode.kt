@@ -14,7 +14,7 @@ private val HINTS = mapOf(
 )
 
 /**
- * The text of a QR code in a picture, or null when there is none. [luma] holds one byte a pixel, its rows
+ * The text of a QR code in a picture, or null without one. [luma] holds one byte a pixel, its rows
  * [rowStride] bytes apart.
  */
 fun qrTextOf(luma: ByteArray, rowStride: Int, width: Int, height: Int): String? {

@@ -5,7 +5,7 @@ import android.speech.tts.TextToSpeech
 import recon.session.Severity
 import java.util.Locale
 
-/** Something that says a sentence aloud; [isUrgent] interrupts the sentence before. */
+/** Speaks a sentence; [isUrgent] interrupts the sentence before. */
 fun interface Voice {
     fun say(text: String, isUrgent: Boolean)
 }

@@ -83,7 +83,7 @@ class StationFinder(private val nsd: NsdManager, private val changed: (List<Foun
     companion object {
         const val SERVICE_TYPE = "_recon._tcp"
 
-        /** Anybody in the network can announce anything. */
+        /** Any host in the network can announce anything. */
         const val MOST_STATIONS = 5
     }
 }

@@ -54,7 +54,7 @@ class AppTest {
     }
 
     @Test
-    fun `it says on its first screen that it lacks DJI's runtime`() {
+    fun `it states on its first screen that it lacks DJI's runtime`() {
         val screen = open()
         assertTrue("It lacks DJI's runtime: no real drone can be connected." in screen.text(R.id.note))
         assertEquals(View.VISIBLE, screen.view(R.id.note).visibility)
@@ -76,7 +76,7 @@ class AppTest {
     }
 
     @Test
-    fun `an address that is none is refused with a sentence`() {
+    fun `an invalid address is refused with a sentence`() {
         val screen = open()
         screen.findViewById<EditText>(R.id.address).setText("http://nowhere")
         screen.press(R.id.connect)
@@ -155,7 +155,7 @@ class AppTest {
     }
 
     @Test
-    fun `it connects again after the station closed the link, and says so meanwhile`() {
+    fun `it connects again after the station closed the link, and shows so meanwhile`() {
         val screen = connect()
         await { screen.words(R.id.link) == "Connected" }
         station.drop()

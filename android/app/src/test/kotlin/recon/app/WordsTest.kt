@@ -46,7 +46,7 @@ class StatusTest {
     private val session = CompanionSession(SessionSettings())
 
     @Test
-    fun `before anything has come, each row says so`() {
+    fun `before anything has come, each row shows so`() {
         val status = statusOf(session, 0)
         assertEquals(Row("No station", Level.PROBLEM), status.link)
         assertEquals(Row("No aircraft", Level.PROBLEM), status.aircraft)
@@ -103,27 +103,27 @@ class StatusTest {
 }
 
 class SpokenWarningsTest {
-    private val said = mutableListOf<Pair<String, Boolean>>()
-    private val spoken = SpokenWarnings { text, isUrgent -> said += text to isUrgent }
+    private val uttered = mutableListOf<Pair<String, Boolean>>()
+    private val spoken = SpokenWarnings { text, isUrgent -> uttered += text to isUrgent }
 
     @Test
     fun `warnings are spoken and errors interrupt them, information is not`() {
         spoken.notice(Severity.INFO, "Connected to the station", 0)
         spoken.notice(Severity.WARNING, "Link to the station lost", 0)
         spoken.notice(Severity.ERROR, "Mission refused", 0)
-        assertEquals(listOf("Link to the station lost" to false, "Mission refused" to true), said)
+        assertEquals(listOf("Link to the station lost" to false, "Mission refused" to true), uttered)
     }
 
     @Test
     fun `the same sentence is spoken once in ten seconds`() {
         for (second in 0L..20L) spoken.notice(Severity.WARNING, "No station", second * 1_000)
-        assertEquals(3, said.size)
+        assertEquals(3, uttered.size)
     }
 
     @Test
     fun `a flood of warnings is not spoken to its end`() {
         repeat(1_000) { spoken.notice(Severity.WARNING, "Refused: $it", 0) }
-        assertEquals(5, said.size)
+        assertEquals(5, uttered.size)
     }
 }
 

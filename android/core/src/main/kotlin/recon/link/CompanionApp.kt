@@ -71,7 +71,7 @@ class CompanionApp(
     /** A sentence about the phone, for the station and the person beside it. */
     fun report(severity: Severity, text: String) = tasks.add { session.report(severity, text, it) }
 
-    /** Ends the app, and with a hover what the aircraft flies for the station: nobody could stop it later. */
+    /** Ends the app, and with a hover what the aircraft flies for the station: no station could stop it later. */
     override fun close() {
         isClosed = true
         aircraft.onFrame(null)
