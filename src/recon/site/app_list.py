@@ -5,7 +5,6 @@ site.toml that a person wrote.
 """
 
 import json
-import tomllib
 from ipaddress import ip_network
 from pathlib import Path
 from typing import Annotated, Any
@@ -15,7 +14,7 @@ from msgspec import Meta, Struct
 from recon.fleet.admission import MAX_ENTRIES, AllowedApp, Network, network_text
 from recon.model.errors import SiteError
 from recon.site.load import PLACEHOLDER_SERIAL
-from recon.site.reading import convert, read_bounded, shown_value
+from recon.site.reading import convert, read_toml, shown_value
 from recon.site.schema import Serial
 
 APPS_FILE = "apps.toml"
@@ -51,13 +50,7 @@ class AppsTable(Struct, frozen=True, forbid_unknown_fields=True):
 
 def read_app_list(path: Path) -> tuple[AllowedApp, ...]:
     """Return the entries of a file; raises `SiteError` with file and key."""
-    data = read_bounded(path, LARGEST_FILE_BYTES, "a list of apps")
-    try:
-        values = tomllib.loads(data.decode("utf-8"))
-    except ValueError as problem:
-        raise SiteError(f"{path}: expected a TOML file, got: {problem}") from problem
-    except RecursionError as problem:
-        raise SiteError(f"{path}: expected a TOML file, got one nested too deeply") from problem
+    values = read_toml(path, LARGEST_FILE_BYTES, "a list of apps")
     tables = convert(path, values, AppsTable, "").apps
     if len(tables) > MAX_ENTRIES:
         raise SiteError(f"{path}: apps: expected at most {MAX_ENTRIES} entries, got {len(tables)}")

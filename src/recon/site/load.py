@@ -1,7 +1,6 @@
 """Reading a site's folder: site.toml and the files it names."""
 
 import math
-import tomllib
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -23,7 +22,7 @@ from recon.site.elevation import ElevationTable, read_elevation
 from recon.site.failsafe import failsafe_from_tables
 from recon.site.imager import imager_from_table
 from recon.site.layers import read_layers
-from recon.site.reading import convert, read_bounded, refuse_non_finite
+from recon.site.reading import convert, read_toml, refuse_non_finite
 from recon.site.schema import (
     GroundImageTable,
     ImagerTable,
@@ -115,7 +114,7 @@ def load_site(folder: Path) -> Site:
     `SiteError`.
     """
     path = folder / SITE_FILE
-    data = _read_toml(path)
+    data = _read_site_file(path)
     refuse_non_finite(path, data, "")
     table = convert(path, data, SiteTable, "")
     origin = convert(path, table.origin, OriginTable, "origin")
@@ -167,20 +166,13 @@ def _imagers(
     return imagers
 
 
-def _read_toml(path: Path) -> dict[str, Any]:
+def _read_site_file(path: Path) -> dict[str, Any]:
     try:
-        data = read_bounded(path, LARGEST_FILE_BYTES, "a site file")
+        return read_toml(path, LARGEST_FILE_BYTES, "a site file")
     except SiteError as problem:
         if isinstance(problem.__cause__, FileNotFoundError | NotADirectoryError):
             raise SiteError(f"{path}: Folder or {SITE_FILE} not found") from problem
         raise
-    try:
-        return tomllib.loads(data.decode("utf-8"))
-    except ValueError as problem:
-        # Not TOML, not UTF-8, or a number with more digits than Python reads.
-        raise SiteError(f"{path}: expected a TOML file, got: {problem}") from problem
-    except RecursionError as problem:
-        raise SiteError(f"{path}: expected a TOML file, got one nested too deeply") from problem
 
 
 def _ground_grid(path: Path, table: GroundImageTable, frame: LocalFrame) -> GroundGrid:

@@ -7,11 +7,12 @@ beside a pattern. Of msgspec's own text only the place of the error is read.
 import math
 import re
 import sys
+import tomllib
 from collections.abc import Mapping, Sequence
 from difflib import get_close_matches
 from hashlib import sha256
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import msgspec
 from msgspec import inspect
@@ -58,6 +59,18 @@ def read_bounded(path: Path, largest_bytes: int, expected: str) -> bytes:
     if len(data) > largest_bytes:
         raise SiteError(f"{path}: expected at most {largest_bytes} bytes, got more")
     return data
+
+
+def read_toml(path: Path, largest_bytes: int, expected: str) -> dict[str, Any]:
+    """Return the values of a TOML file; raises `SiteError` with the file, as `read_bounded`."""
+    data = read_bounded(path, largest_bytes, expected)
+    try:
+        return tomllib.loads(data.decode("utf-8"))
+    except ValueError as problem:
+        # Not TOML, not UTF-8, or a number with more digits than Python reads.
+        raise SiteError(f"{path}: expected a TOML file, got: {problem}") from problem
+    except RecursionError as problem:
+        raise SiteError(f"{path}: expected a TOML file, got one nested too deeply") from problem
 
 
 def convert(place: object, data: object, kind: type[T], key: str) -> T:

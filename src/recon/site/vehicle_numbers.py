@@ -7,7 +7,6 @@ the station is stopped.
 
 import json
 import re
-import tomllib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Annotated, Any
@@ -15,7 +14,7 @@ from typing import Annotated, Any
 from msgspec import Meta, Struct
 
 from recon.model.errors import SiteError
-from recon.site.reading import convert, read_bounded
+from recon.site.reading import convert, read_toml
 from recon.site.schema import Serial
 
 NUMBERS_FILE = "numbers.toml"
@@ -46,13 +45,7 @@ def read_numbers(path: Path) -> dict[str, int]:
     """Return the numbers by serial; none without a file. Raises `SiteError` with file and key."""
     if not path.exists():
         return {}
-    data = read_bounded(path, LARGEST_FILE_BYTES, "a list of vehicle numbers")
-    try:
-        values = tomllib.loads(data.decode("utf-8"))
-    except ValueError as problem:
-        raise SiteError(f"{path}: expected a TOML file, got: {problem}") from problem
-    except RecursionError as problem:
-        raise SiteError(f"{path}: expected a TOML file, got one nested too deeply") from problem
+    values = read_toml(path, LARGEST_FILE_BYTES, "a list of vehicle numbers")
     numbers: dict[str, int] = {}
     for entry, table in enumerate(convert(path, values, NumbersTable, "").vehicles, start=1):
         key = f"vehicles (entry {entry})"

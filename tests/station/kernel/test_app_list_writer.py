@@ -10,7 +10,7 @@ from recon.fleet.admission import AllowedApp
 from recon.model.event import AppListFailed, Event, Tick
 from recon.site import default_site
 from recon.site.app_list import app_list_text, read_app_list
-from recon.station.kernel import app_list_writer
+from recon.station.kernel import rewritten_file
 from recon.station.kernel.app_list_writer import AppListWriter
 from recon.station.kernel.build import first_state
 from recon.station.state.station import Station
@@ -57,7 +57,7 @@ def test_a_file_changed_by_hand_is_left_alone(path: Path) -> None:
 
 def test_what_cannot_be_written_is_tried_again(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     events: list[Event] = []
-    monkeypatch.setattr(app_list_writer, "RETRY_S", 0.01)
+    monkeypatch.setattr(rewritten_file, "RETRY_S", 0.01)
     folder, away = path.parent, path.parent.with_name("away")
     writer = AppListWriter(path, events.append)
     folder.rename(away)

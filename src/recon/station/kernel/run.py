@@ -3,10 +3,12 @@
 import asyncio
 import socket
 from collections.abc import Awaitable, Callable
-from contextlib import AsyncExitStack
+from contextlib import AsyncExitStack, ExitStack
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryFile
+
+import structlog
 
 from recon import version
 from recon.api.addresses import SharedAddress
@@ -23,7 +25,7 @@ from recon.record.record_writer import RecordWriter
 from recon.record.users_file import default_users_file, state_folder
 from recon.site import Site, demo_site_folder
 from recon.site.reading import site_digest
-from recon.site.vehicle_numbers import NUMBERS_FILE
+from recon.site.vehicle_numbers import NUMBERS_FILE, numbers_text, read_numbers
 from recon.station.api_views.service import Service
 from recon.station.api_views.vehicle_numbers import VehicleNumbers
 from recon.station.audit.auditor import Auditor, LogPrinter
@@ -55,6 +57,7 @@ from recon.station.kernel.http_servers import (
 )
 from recon.station.kernel.recorded_values import FlightStart
 from recon.station.kernel.recording import Recorder, record_writer
+from recon.station.kernel.rewritten_file import RewrittenFile
 from recon.station.kernel.users_watch import UsersWatch
 from recon.station.kernel.worker import JobRunner, ThreadWorker
 from recon.station.recovery.restart import LastRun, restart_entries, restored
@@ -123,6 +126,8 @@ class Started:
     """What this run continues from the last one, in words; empty if nothing."""
 
 
+_log = structlog.get_logger("recon")
+
 Observe = Callable[[Station, Station, Event], None]
 OnStart = Callable[[Started], Awaitable[None]]
 
@@ -157,7 +162,7 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
         folder = str(writer.folder)
         service = Service.around(driver, config.site, folder, begun.log, last_run.first_ids[0])
         service.lost_bytes = lambda: writer.dropped_bytes
-        service.numbers = VehicleNumbers(_numbers_file(config, place))
+        service.numbers = kept_numbers(_numbers_file(config, place), stack)
         line = _start_guard(config, driver, service, doors, place.folder, stack)
         links = await _start_links_and_worker(config, driver, service, line, recorder, stack)
         started = replace(
@@ -177,6 +182,22 @@ def _numbers_file(config: RunConfig, place: AuditPlace) -> Path | None:
     if folder is not None and folder.resolve() != demo_site_folder().resolve():
         return folder / NUMBERS_FILE
     return None if place.is_shared else place.folder / NUMBERS_FILE
+
+
+def kept_numbers(path: Path | None, stack: ExitStack | AsyncExitStack) -> VehicleNumbers:
+    """Return the vehicles' numbers, kept in a file; raises `SiteError` for one that is damaged."""
+    if path is None:
+        return VehicleNumbers()
+    given = read_numbers(path)
+    file = RewrittenFile(path, _log_numbers_problem, mode=0o644)
+    file.start()
+    stack.callback(file.close)
+    return VehicleNumbers(given, lambda numbers: file.put(numbers_text(numbers).encode()))
+
+
+def _log_numbers_problem(problem: str | None) -> None:
+    if problem is not None:
+        _log.warning(f"vehicle numbers: {problem}")
 
 
 async def _start_links_and_worker(
@@ -328,7 +349,7 @@ def _start_auditor(
     clock: Callable[[], int],
     stack: AsyncExitStack,
 ) -> Auditor:
-    """FlightStart the audit; its last entry is written after everything else has ended."""
+    """Start the audit; its last entry is written after everything else has ended."""
     printer = LogPrinter()
     auditor = Auditor(begun.log, printer, clock)
     printer.start()
