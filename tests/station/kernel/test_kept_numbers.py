@@ -16,16 +16,20 @@ def fleet(*serials: str) -> Fleet:
 def test_numbers_survive_a_restart_right_after_they_are_given(tmp_path: Path) -> None:
     path = tmp_path / "numbers.toml"
     with ExitStack() as stack:
-        assert kept_numbers(path, stack).of(fleet("A", "B")) == {"A": 1, "B": 2}
+        assert kept_numbers({}, path, stack).of(fleet("A", "B")) == {"A": 1, "B": 2}
     with ExitStack() as stack:
-        assert kept_numbers(path, stack).of(fleet("C", "B")) == {"A": 1, "B": 2, "C": 3}
+        assert kept_numbers(read_numbers(path), path, stack).of(fleet("C", "B")) == {
+            "A": 1,
+            "B": 2,
+            "C": 3,
+        }
     assert read_numbers(path) == {"A": 1, "B": 2, "C": 3}
 
 
 def test_a_file_changed_by_hand_is_left_alone(tmp_path: Path) -> None:
     path = tmp_path / "numbers.toml"
     with ExitStack() as stack:
-        numbers = kept_numbers(path, stack)
+        numbers = kept_numbers({}, path, stack)
         edited = '[[vehicles]]\nserial = "A"\nnumber = 9\n'
         path.write_text(edited)
         assert numbers.of(fleet("A")) == {"A": 1}
@@ -34,6 +38,6 @@ def test_a_file_changed_by_hand_is_left_alone(tmp_path: Path) -> None:
 
 def test_a_folder_that_cannot_be_written_costs_the_file_only(tmp_path: Path) -> None:
     with ExitStack() as stack:
-        numbers = kept_numbers(tmp_path / "absent" / "numbers.toml", stack)
+        numbers = kept_numbers({}, tmp_path / "absent" / "numbers.toml", stack)
         assert numbers.of(fleet("A")) == {"A": 1}
     assert not (tmp_path / "absent").exists()

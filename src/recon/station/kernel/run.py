@@ -2,7 +2,7 @@
 
 import asyncio
 import socket
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Mapping
 from contextlib import AsyncExitStack, ExitStack
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -137,6 +137,8 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
     require_startable(config.http_host, config.network)
     certificate = certificate_of(config.network)
     place = config.audit or default_place(config.link_port)
+    numbers_file = _numbers_file(config, place)
+    given = {} if numbers_file is None else read_numbers(numbers_file)
     begun = _begin_audit(place)
     last_run, is_snapshot_good = _last_run(place, begun)
     async with AsyncExitStack() as stack:
@@ -162,7 +164,7 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
         folder = str(writer.folder)
         service = Service.around(driver, config.site, folder, begun.log, last_run.first_ids[0])
         service.lost_bytes = lambda: writer.dropped_bytes
-        service.numbers = kept_numbers(_numbers_file(config, place), stack)
+        service.numbers = kept_numbers(given, numbers_file, stack)
         line = _start_guard(config, driver, service, doors, place.folder, stack)
         links = await _start_links_and_worker(config, driver, service, line, recorder, stack)
         started = replace(
@@ -184,11 +186,12 @@ def _numbers_file(config: RunConfig, place: AuditPlace) -> Path | None:
     return None if place.is_shared else place.folder / NUMBERS_FILE
 
 
-def kept_numbers(path: Path | None, stack: ExitStack | AsyncExitStack) -> VehicleNumbers:
-    """Return the vehicles' numbers, kept in a file; raises `SiteError` for one that is damaged."""
+def kept_numbers(
+    given: Mapping[str, int], path: Path | None, stack: ExitStack | AsyncExitStack
+) -> VehicleNumbers:
+    """Return the vehicles' numbers, kept in a file."""
     if path is None:
-        return VehicleNumbers()
-    given = read_numbers(path)
+        return VehicleNumbers(given)
     file = RewrittenFile(path, _log_numbers_problem, mode=0o644)
     file.start()
     stack.callback(file.close)
