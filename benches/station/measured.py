@@ -13,14 +13,14 @@ from benches.station.app_load import Sent
 from recon import wire
 from recon.link.server import LinkServer
 from recon.link.settings import LinkSettings
-from recon.model.event import CommandSent, Event, LinkClosed, PacketReceived
+from recon.model.event import CommandSent, LinkClosed, PacketReceived
 from recon.model.person import Person, Role
 from recon.model.report import CoreReport, ExtendedReport, ImageReport
 from recon.site import default_site
 from recon.station.api_views.service import Service
 from recon.station.kernel.build import first_state
 from recon.station.kernel.driver import AsyncioDriver, freeze_loaded_objects, station_clock
-from recon.station.state.station import Station
+from recon.station.state.steps import StepTaken
 
 CONSOLE_PERIOD_S = 0.1
 ENDING_S = 120.0
@@ -49,9 +49,9 @@ class Received:
     links_closed: int = 0
     emergency_sent_at_s: list[float] = field(default_factory=list)
 
-    def observe(self, _before: Station, _after: Station, event: Event) -> None:
+    def observe(self, step: StepTaken) -> None:
         """Count an event the station has taken into its state, and read its age."""
-        match event:
+        match step.event:
             case PacketReceived(_, CoreReport() as report):
                 self.core += 1
                 assert report.reported_altitude_m is not None

@@ -36,6 +36,7 @@ from recon.station.kernel.worker import JobRunner
 from recon.station.recovery.restart import LastRun, restored
 from recon.station.recovery.snapshot import decode_snapshot, encode_snapshot, take_snapshot
 from recon.station.state.station import Station
+from recon.station.state.steps import StepTaken
 from studies.closed_loop.links import LinkedApps
 from studies.closed_loop.marks import Mark, StationMarks, VehicleMarks
 from studies.closed_loop.parties import BATTERY_RULES, Parties
@@ -226,7 +227,8 @@ class ClosedLoopRun:
     def _damaged(self, serial: str) -> None:
         self.marks[serial].mark(Mark.DAMAGED, self.now_s, "the protocol has no checksum")
 
-    def _observe(self, _before: Station, after: Station, event: Event) -> None:
+    def _observe(self, step: StepTaken) -> None:
+        after, event = step.after, step.event
         if not isinstance(event, PacketReceived):
             return
         serial = self.links.serial_of_link.get(event.link_id)

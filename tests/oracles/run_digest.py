@@ -7,9 +7,8 @@ from hashlib import sha256
 
 import numpy as np
 
-from recon.model.event import Event
 from recon.station.kernel.virtual import VirtualDriver
-from recon.station.state.station import Station
+from recon.station.state.steps import StepTaken
 
 
 class RunDigest:
@@ -28,10 +27,10 @@ class RunDigest:
             whole.update(part)
         return whole.hexdigest()[:32]
 
-    def _take(self, _before: Station, _after: Station, event: Event) -> None:
+    def _take(self, step: StepTaken) -> None:
         self.events += 1
         self._hash.update(str(self._driver.now_ns).encode())
-        for part in parts_of(event):
+        for part in parts_of(step.event):
             self._hash.update(part)
 
 

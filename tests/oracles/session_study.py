@@ -30,7 +30,6 @@ from recon.model.control import AuthorityHolder
 from recon.model.event import (
     AuthorityTaken,
     CommandSent,
-    Event,
     OperatorOrder,
     PreflightOverridden,
 )
@@ -42,7 +41,7 @@ from recon.site import Site
 from recon.station.kernel.build import first_state
 from recon.station.kernel.virtual import FAR_NS, FakeLink, VirtualDriver
 from recon.station.state.orders import OrderRecord
-from recon.station.state.station import Station
+from recon.station.state.steps import StepTaken
 
 HOME = GeoPoint(41.9, -93.6, 275.0)
 APART_DEG = 0.004
@@ -296,7 +295,8 @@ class SessionStudy:
             if sent == number and times > MOST_SENDINGS:
                 self.tally.broken.append(f"order {number} was sent {times} times on link {link_id}")
 
-    def _count(self, _before: Station, _after: Station, event: Event) -> None:
+    def _count(self, step: StepTaken) -> None:
+        event = step.event
         if isinstance(event, CommandSent):
             self._sendings[event.command_id, event.link_id] += 1
 

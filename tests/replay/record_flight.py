@@ -1,13 +1,15 @@
 """A flight in virtual time with its record, made as the station makes one."""
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+from recon.record.audit import AuditEntry
 from recon.record.record_writer import RecordWriter
 from recon.site import Site
+from recon.station.audit.entries import Auditing, audit
 from recon.station.kernel.recorded_values import FlightStart
 from recon.station.kernel.recording import Recorder, record_writer
 from recon.station.kernel.virtual import VirtualDriver
@@ -26,11 +28,23 @@ class Recorded:
         return self.writer.path
 
 
+def entries_of() -> Callable[[StepTaken], tuple[AuditEntry, ...]]:
+    """The audit of each step, as an auditor has it."""
+    memory = Auditing()
+
+    def entries(step: StepTaken) -> tuple[AuditEntry, ...]:
+        nonlocal memory
+        memory, found = audit(memory, step.before, step.event, step.after, step.now_ns)
+        return found
+
+    return entries
+
+
 @contextmanager
 def recording(driver: VirtualDriver, site: Site, folder: Path) -> Iterator[Recorded]:
     """Record what a driver does within the block."""
     writer = record_writer(folder, FlightStart.now(site, driver.station, driver.now_ns))
-    recorder = Recorder(writer, driver.handle)
+    recorder = Recorder(writer, driver.handle, entries_of())
 
     def take(step: StepTaken) -> None:
         # Virtual time is faster than any disk: a real flight is not.

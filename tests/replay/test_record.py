@@ -12,7 +12,7 @@ import pytest
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 from tests.replay.flights import FOLDER
-from tests.replay.record_flight import recording
+from tests.replay.record_flight import entries_of, recording
 from tests.station.station_world import square_mission, world
 
 from recon import wire
@@ -145,7 +145,7 @@ def test_when_the_disk_is_slow_pixels_and_bytes_go_first(
 ) -> None:
     monkeypatch.setattr("recon.record.record_writer.WAITING_BYTES", 10_000)
     writer = SlowWriter(tmp_path)
-    recorder = Recorder(writer, lambda _event: None)
+    recorder = Recorder(writer, lambda _event: None, entries_of())
     image = PacketReceived(1, ImageReport(1.0, rgb=np.zeros((60, 60, 3), np.uint8)))
     recorder.take(taken(image))
     assert writer.items[0].event.report.rgb is not None
@@ -166,7 +166,7 @@ def test_without_images_telemetry_orders_and_audit_stay(tmp_path: Path) -> None:
     free_bytes = [10**12]
     writer = RecordWriter(tmp_path, RecordTranslator(start), "test", lambda _f: free_bytes[0])
     seen: list[Any] = []
-    recorder = Recorder(writer, seen.append)
+    recorder = Recorder(writer, seen.append, entries_of())
     free_bytes[0] = 0
     image = PacketReceived(1, ImageReport(1.0, jpeg=b"123"))
     recorder.take(taken(image))

@@ -4,10 +4,9 @@ from dataclasses import dataclass, field
 
 from tests.station.station_world import World
 
-from recon.model.event import Event
 from recon.record.audit import AuditEntry, AuditLine, NumberedEntry, decode_line, encode_line
 from recon.station.audit.entries import Auditing, audit
-from recon.station.state.station import Station
+from recon.station.state.steps import StepTaken
 
 UTC_NS = 1_748_770_200_000_000_000
 
@@ -24,9 +23,9 @@ class Audited:
         assert self.world.driver.observe is None
         self.world.driver.observe = self._observe
 
-    def _observe(self, before: Station, after: Station, event: Event) -> None:
-        now_ns = self.world.driver.now_ns
-        self.memory, entries = audit(self.memory, before, event, after, now_ns)
+    def _observe(self, step: StepTaken) -> None:
+        now_ns = step.now_ns
+        self.memory, entries = audit(self.memory, step.before, step.event, step.after, now_ns)
         self.entries += [(now_ns, entry) for entry in entries]
 
     def kinds(self, start: str = "") -> list[str]:

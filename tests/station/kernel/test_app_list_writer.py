@@ -14,12 +14,17 @@ from recon.station.kernel import rewritten_file
 from recon.station.kernel.app_list_writer import AppListWriter
 from recon.station.kernel.build import first_state
 from recon.station.state.station import Station
+from recon.station.state.steps import StepTaken
 
 A, B = AllowedApp("A"), AllowedApp("B")
 
 
 def station(*entries: AllowedApp) -> Station:
     return first_state(default_site(), apps=entries)
+
+
+def taken(before: Station, after: Station) -> StepTaken:
+    return StepTaken(Tick(), 0, before, after, ())
 
 
 @pytest.fixture
@@ -34,8 +39,8 @@ def test_a_pairing_is_written_and_nothing_else_is(path: Path) -> None:
     writer = AppListWriter(path, events.append)
     writer.start()
     before = station(A)
-    writer.observe(before, replace(before, next_frame_id=2), Tick())
-    writer.observe(before, station(A, B), Tick())
+    writer.observe(taken(before, replace(before, next_frame_id=2)))
+    writer.observe(taken(before, station(A, B)))
     writer.close()
     assert read_app_list(path) == (A, B)
     assert [p.name for p in path.parent.iterdir()] == ["apps.toml"]
@@ -47,7 +52,7 @@ def test_a_file_changed_by_hand_is_left_alone(path: Path) -> None:
     writer = AppListWriter(path, events.append)
     path.write_text('[[apps]]\nserial = "C"\n')
     writer.start()
-    writer.observe(station(A), station(A, B), Tick())
+    writer.observe(taken(station(A), station(A, B)))
     writer.close()
     assert read_app_list(path) == (AllowedApp("C"),)
     (event,) = events
@@ -63,7 +68,7 @@ def test_what_cannot_be_written_is_tried_again(path: Path, monkeypatch: pytest.M
     folder.rename(away)
     path_is_gone = AppListWriter(path, events.append)  # knows no file, and has no folder
     path_is_gone.start()
-    path_is_gone.observe(station(), station(B), Tick())
+    path_is_gone.observe(taken(station(), station(B)))
     until(lambda: bool(events))
     folder.mkdir()
     until(lambda: events[-1] == AppListFailed(None))

@@ -61,12 +61,13 @@ class TestAsyncioDriver:
             driver = AsyncioDriver(
                 with_imagers(first_state(default_site()), "IMAGER"),
                 station_clock(),
-                lambda before, after, event: seen.append(event),
+                lambda step: seen.append(step.event),
             )
             driver.handle_from_thread(JobDropped(0, LAY_FRAME))
             running = asyncio.create_task(driver.run())
-            while not any(isinstance(event, Tick) for event in seen):
-                await asyncio.sleep(0)
+            async with asyncio.timeout(PATIENCE_S):
+                while not any(isinstance(event, Tick) for event in seen):
+                    await asyncio.sleep(0)
             dropped = JobDropped(1, LAY_FRAME)
             thread = threading.Thread(target=driver.handle_from_thread, args=(dropped,))
             thread.start()
@@ -108,7 +109,7 @@ class TestAsyncioDriver:
         driver = AsyncioDriver(
             first_state(default_site()),
             lambda: now_ns[0],
-            lambda _before, _after, event: events.append(event),
+            lambda step: events.append(step.event),
         )
         driver.handle(LinkOpened(1, "127.0.0.1:1"))
         now_ns[0] += 30 * NS_PER_S  # a slow start is no gap

@@ -25,7 +25,7 @@ def test_eight_vehicles_with_commands_faults_and_pictures_in_two_processes() -> 
 def test_the_scene_has_commands_answers_closed_links_and_jobs() -> None:
     seen: list[Event] = []
     scene = eight_vehicles(3, sees=True, faults=FAULTS)
-    scene.driver.observe = lambda _before, _after, event: seen.append(event)
+    scene.driver.observe = lambda step: seen.append(step.event)
     scene.run_for(13.0)
     kinds = {type(event) for event in seen}
     assert {CommandSent, CommandAnswered, LinkClosed, JobDone} <= kinds

@@ -14,7 +14,6 @@ from recon.model.control import AuthorityHolder
 from recon.model.event import (
     AllStopped,
     AuthorityTaken,
-    Event,
     LookAsideOrdered,
     OperatorOrder,
 )
@@ -22,7 +21,7 @@ from recon.model.geo import LatLon
 from recon.station.operations.look_aside.commands import audit_entries, refusal
 from recon.station.state.imaging import Imaging
 from recon.station.state.look_aside_record import LookAsideStage
-from recon.station.state.station import Station
+from recon.station.state.steps import StepTaken
 
 
 def under_way(**options: object) -> LookingWorld:
@@ -296,9 +295,8 @@ def test_each_stage_is_audited() -> None:
     world = looking_world()
     entries: list[tuple[str, str]] = []
 
-    def observe(before: Station, after: Station, event: Event) -> None:
-        now_ns = world.surveyed.driver.now_ns
-        found = audit_entries(before, event, after, now_ns)
+    def observe(step: StepTaken) -> None:
+        found = audit_entries(step.before, step.event, step.after, step.now_ns)
         entries.extend((each.kind, each.by) for each in found)
 
     world.surveyed.driver.observe = observe

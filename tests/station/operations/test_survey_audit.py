@@ -2,11 +2,10 @@
 
 from tests.station.surveyed_world import SURVEY_ID, SurveyedWorld, asked, surveyed_world
 
-from recon.model.event import Event
 from recon.model.survey import SurveyPhase
 from recon.record.audit import AuditEntry
 from recon.station.audit.entries import Auditing, audit
-from recon.station.state.station import Station
+from recon.station.state.steps import StepTaken
 
 
 def audited(world: SurveyedWorld) -> list[AuditEntry]:
@@ -14,9 +13,9 @@ def audited(world: SurveyedWorld) -> list[AuditEntry]:
     entries: list[AuditEntry] = []
     memory = Auditing()
 
-    def observe(before: Station, after: Station, event: Event) -> None:
+    def observe(step: StepTaken) -> None:
         nonlocal memory
-        memory, new = audit(memory, before, event, after, world.driver.now_ns)
+        memory, new = audit(memory, step.before, step.event, step.after, step.now_ns)
         entries.extend(e for e in new if e.kind.startswith(("survey.", "authority.")))
 
     world.driver.observe = observe

@@ -20,6 +20,7 @@ from recon.station.recovery.restart import LastRun
 from recon.station.recovery.snapshot import RecoverySnapshot, decode_snapshot
 from recon.station.recovery.snapshot_writer import SnapshotWriter, is_urgent, load_last_run
 from recon.station.state.station import Station
+from recon.station.state.steps import StepTaken
 
 
 def written(folder: Path) -> RecoverySnapshot | None:
@@ -44,7 +45,7 @@ class Scene(CommandedStation):
         if is_urgent(before, self.station):
             self.urgent.append(type(event).__name__)
         if self.writer is not None:
-            self.writer.observe(before, self.station, event)
+            self.writer.observe(StepTaken(event, 0, before, self.station, ()))
         return self
 
 
@@ -175,7 +176,7 @@ class TestWriting:
         writer.start(broken)
         until(lambda: writer.problem is not None)
         assert "cannot be taken" in str(writer.problem)
-        writer.observe(broken, Station(), Tick())
+        writer.observe(StepTaken(Tick(), 0, broken, Station(), ()))
         until(lambda: written(tmp_path) is not None)
         writer.close()
         assert writer.problem is None

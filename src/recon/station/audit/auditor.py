@@ -15,7 +15,7 @@ from recon.record.audit import AuditEntry, shown
 from recon.record.audit_log import AuditLog
 from recon.station.audit.entries import Auditing, audit
 from recon.station.audit.flight_entries import POSITION_KIND
-from recon.station.state.station import Station
+from recon.station.state.steps import StepTaken
 
 _log = structlog.get_logger("recon")
 
@@ -70,18 +70,22 @@ class Auditor:
         self._printer = printer
         self._now_ns = now_ns
         self._memory = Auditing()
+        self.entries: tuple[AuditEntry, ...] = ()
+        """Of the newest step."""
         self._reported_problem: str | None = None
         self.snapshot_problem: Callable[[], str | None] = lambda: None
         """Why the recovery snapshot cannot be written; None while it can."""
         self.handle: Callable[[Event], None] = lambda event: None
         """The driver's queue, for `AuditFailed`."""
 
-    def observe(self, before: Station, after: Station, event: Event) -> None:
+    def observe(self, step: StepTaken) -> None:
         """Write what a step changed; once a tick, report whether writing works."""
-        now_ns = self._now_ns()
-        self._memory, entries = audit(self._memory, before, event, after, now_ns)
-        self.put(entries)
-        if isinstance(event, Tick):
+        self.entries = ()
+        self._memory, self.entries = audit(
+            self._memory, step.before, step.event, step.after, step.now_ns
+        )
+        self.put(self.entries)
+        if isinstance(step.event, Tick):
             problems = (self.log.problem, self.snapshot_problem())
             problem = "; ".join(each for each in problems if each is not None) or None
             if problem != self._reported_problem:

@@ -6,7 +6,7 @@ from pathlib import Path
 from recon.model.event import AppListFailed, Event
 from recon.site.app_list import app_list_text
 from recon.station.kernel.rewritten_file import RewrittenFile
-from recon.station.state.station import Station
+from recon.station.state.steps import StepTaken
 
 
 class AppListWriter:
@@ -16,8 +16,8 @@ class AppListWriter:
         self._file = RewrittenFile(path, lambda problem: report(AppListFailed(problem)))
         self.start, self.close = self._file.start, self._file.close
 
-    def observe(self, before: Station, after: Station, _event: Event) -> None:
+    def observe(self, step: StepTaken) -> None:
         """Take the entries when a step changed them; never waits."""
-        listed = after.fleet.admission.listed
-        if listed is not before.fleet.admission.listed and listed is not None:
+        listed = step.after.fleet.admission.listed
+        if listed is not step.before.fleet.admission.listed and listed is not None:
             self._file.put(app_list_text(listed).encode())

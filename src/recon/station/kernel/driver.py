@@ -71,10 +71,11 @@ class AsyncioDriver:
         self,
         station: Station,
         now_ns: Callable[[], int],
-        observe: Callable[[Station, Station, Event], None] | None = None,
+        observe: Callable[[StepTaken], None] | None = None,
     ) -> None:
         self.station = station
         self.observe = observe
+        """Called with every step, before its outputs are carried out."""
         self.record: Callable[[StepTaken], None] | None = None
         """Called with every step, after its outputs are carried out."""
         self.now_ns = now_ns
@@ -146,15 +147,16 @@ class AsyncioDriver:
             self.station, outputs = step(before, event, now_ns)
         except Exception as fault:
             self.station, outputs = after_fault(TICK_PARTS, before, event, fault, now_ns)
+        taken = StepTaken(event, now_ns, before, self.station, outputs)
         with self._isolated("writing the audit", event):
             if self.observe is not None:
-                self.observe(before, self.station, event)
+                self.observe(taken)
         for output in outputs:
             with self._isolated(f"carrying out {type(output).__name__}", event):
                 self._carry_out(output)
         if self.record is not None:
             with self._isolated("recording the flight", event):
-                self.record(StepTaken(event, now_ns, before, self.station, outputs))
+                self.record(taken)
 
     @contextmanager
     def _isolated(self, where: str, event: Event) -> Iterator[None]:

@@ -23,7 +23,6 @@ from recon.record.audit import AuditEntry
 from recon.record.link_bytes import LINKS_TOPIC, LinkMessage
 from recon.record.mcap_file import compressor
 from recon.record.record_writer import RecordWriter, Topics
-from recon.station.audit.entries import Auditing, audit
 from recon.station.kernel.recorded_values import (
     ABOUT_NAME,
     MSGPACK,
@@ -75,18 +74,23 @@ class LinkItem:
 class Recorder:
     """Takes a driver's steps and its links' bytes; never waits."""
 
-    def __init__(self, writer: RecordWriter, handle: Callable[[Event], None]) -> None:
-        """`handle` is the driver's queue, for `RecordFailed`."""
+    def __init__(
+        self,
+        writer: RecordWriter,
+        handle: Callable[[Event], None],
+        entries_of: Callable[[StepTaken], tuple[AuditEntry, ...]],
+    ) -> None:
+        """`handle` is the driver's queue, for `RecordFailed`; `entries_of` is asked once a step."""
         self._writer = writer
         self._handle = handle
-        self._auditing = Auditing()
+        self._entries_of = entries_of
         self._reported: str | None = None
         self._step = 0
 
     def take(self, step: StepTaken) -> None:
         """Record a step; once a tick, report what is not recorded."""
         event, now_ns = step.event, step.now_ns
-        self._auditing, entries = audit(self._auditing, step.before, event, step.after, now_ns)
+        entries = self._entries_of(step)
         shade, vehicle = step.after.shade, ""
         is_new = shade.number != step.before.shade.number
         size_bytes, has_room = STEP_BYTES, self._writer.has_room

@@ -20,7 +20,6 @@ from recon.fleet.admission import AllowedApp
 from recon.link.server import LinkServer
 from recon.link.settings import LinkSettings
 from recon.model.errors import RecordError
-from recon.model.event import Event
 from recon.record.record_writer import RecordWriter
 from recon.record.users_file import default_users_file, state_folder
 from recon.site import Site, demo_site_folder
@@ -64,6 +63,7 @@ from recon.station.recovery.restart import LastRun, restart_entries, restored
 from recon.station.recovery.snapshot_writer import SnapshotWriter, load_last_run
 from recon.station.state.settings import StationSettings
 from recon.station.state.station import Station
+from recon.station.state.steps import StepTaken
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,7 +128,7 @@ class Started:
 
 _log = structlog.get_logger("recon")
 
-Observe = Callable[[Station, Station, Event], None]
+Observe = Callable[[StepTaken], None]
 OnStart = Callable[[Started], Awaitable[None]]
 
 
@@ -160,7 +160,7 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
             snapshots.start(station)
             stack.callback(snapshots.close)
         _write_app_list(config, driver, stack)
-        writer, recorder = _start_record(config, driver, stack)
+        writer, recorder = _start_record(config, driver, auditor, stack)
         folder = str(writer.folder)
         service = Service.around(driver, config.site, folder, begun.log, last_run.first_ids[0])
         service.lost_bytes = lambda: writer.dropped_bytes
@@ -338,9 +338,9 @@ def _both(first: Observe, second: Observe) -> Observe:
     """Return an observer that calls two; the recovery snapshot comes before the audit, and both
     before the list of apps."""
 
-    def observe(before: Station, after: Station, event: Event) -> None:
-        first(before, after, event)
-        second(before, after, event)
+    def observe(step: StepTaken) -> None:
+        first(step)
+        second(step)
 
     return observe
 
@@ -409,7 +409,7 @@ async def _listen_for_links(links: LinkServer, config: RunConfig) -> list[str]:
 
 
 def _start_record(
-    config: RunConfig, driver: AsyncioDriver, stack: AsyncExitStack
+    config: RunConfig, driver: AsyncioDriver, auditor: Auditor, stack: AsyncExitStack
 ) -> tuple[RecordWriter, Recorder]:
     """Record the run from before its first event; it is closed after everything else has ended."""
     folder = config.record_folder or state_folder() / "records"
@@ -417,7 +417,7 @@ def _start_record(
         _require_writable(folder)
     start = FlightStart.now(config.site, driver.station, driver.started_at_ns)
     writer = record_writer(folder, start)
-    recorder = Recorder(writer, driver.handle)
+    recorder = Recorder(writer, driver.handle, lambda _step: auditor.entries)
     driver.record = recorder.take
     writer.start()
     stack.callback(writer.close)

@@ -110,7 +110,7 @@ class VirtualDriver:
         self.now_ns = 0
         self.log: list[Event] = []
         """Every event of the station, in order; not kept in long studies, images fill memory."""
-        self.observe: Callable[[Station, Station, Event], None] | None = None
+        self.observe: Callable[[StepTaken], None] | None = None
         """Called with every step, as the asyncio driver's observer is."""
         self.record: Callable[[StepTaken], None] | None = None
         """Called with every step, as the asyncio driver's is."""
@@ -172,12 +172,13 @@ class VirtualDriver:
             self.log.append(event)
         before = self.station
         self.station, outputs = step(before, event, self.now_ns)
+        taken = StepTaken(event, self.now_ns, before, self.station, outputs)
         if self.observe is not None:
-            self.observe(before, self.station, event)
+            self.observe(taken)
         for output in outputs:
             self._carry_out(output)
         if self.record is not None:
-            self.record(StepTaken(event, self.now_ns, before, self.station, outputs))
+            self.record(taken)
 
     def _next_step_ns(self) -> int:
         """Return the next step at which anything is due."""

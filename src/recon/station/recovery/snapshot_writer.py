@@ -13,7 +13,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 from recon.model.errors import describe_fault
-from recon.model.event import Event
 from recon.record.snapshot_file import read_snapshot, write_snapshot
 from recon.station.recovery.restart import LastRun
 from recon.station.recovery.snapshot import (
@@ -23,6 +22,7 @@ from recon.station.recovery.snapshot import (
     take_snapshot,
 )
 from recon.station.state.station import Station
+from recon.station.state.steps import StepTaken
 
 WRITE_EVERY_S = 0.5
 CLOSE_WITHIN_S = 3.0
@@ -69,10 +69,10 @@ class SnapshotWriter:
         self._wakes.set()
         self._thread.start()
 
-    def observe(self, before: Station, after: Station, _event: Event) -> None:
+    def observe(self, step: StepTaken) -> None:
         """Take the newest station; never waits."""
-        self._latest = (after, self._now_ns())
-        if is_urgent(before, after):
+        self._latest = (step.after, self._now_ns())
+        if is_urgent(step.before, step.after):
             self._wakes.set()
 
     def close(self) -> None:
