@@ -1,10 +1,10 @@
 """How long "all stop" takes, from the operator's request to the last of 64 wires.
 
-    python -m benches.station.bench_all_stop [--apps 64] [--streams 4] [--repeats 60]
+    python -m benches.station.bench_all_stop [--apps 64] [--streams 4] [--repeats 60] [--record]
 
-A station as `recon run` starts it, with its audit, its log and its record, in a process of its own;
-apps at 10 Hz core and 2 Hz extended telemetry in another, some with raw 1280x720 images at 5 fps
-that the station's worker lays on the ground; and a reader of the stream of states, as a console.
+A station as `recon run` starts it, with its audit, its log and, if asked for, its record, in a
+process of its own; apps at 10 Hz core and 2 Hz extended telemetry in another, some with raw
+1280x720 images at 5 fps that the station's worker lays on the ground; and a reader of the stream of states, as a console.
 Again and again one HTTP request orders an all stop. From just before the request is written, these
 are measured:
 
@@ -59,13 +59,13 @@ class Measured:
     repeated: int = 0
 
 
-def measure(apps: int, streams: int, repeats: int, seed: int) -> Measured:
+def measure(apps: int, streams: int, repeats: int, seed: int, *, records: bool) -> Measured:
     """Run everything once."""
     with ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         plain = PlainServer()
         stack.callback(plain.close)
-        station, link_port, http_port = start_station(folder, stack)
+        station, link_port, http_port = start_station(folder, records, stack)
         flying = start_apps(link_port, plain.port, apps, streams, stack)
         stop_reading = threading.Event()
         reader = threading.Thread(target=read_states, args=(http_port, stop_reading))
@@ -98,11 +98,13 @@ class Ordered:
     plain_at_s: float
 
 
-def start_station(folder: Path, stack: ExitStack) -> tuple[subprocess.Popen[str], int, int]:
+def start_station(
+    folder: Path, records: bool, stack: ExitStack
+) -> tuple[subprocess.Popen[str], int, int]:
     """Start `recon run`; its output goes into a file, as under a service manager."""
     log = stack.enter_context((folder / "log").open("w+", encoding="utf-8"))
     options = ["--link-port", "0", "--http-port", "0", "--site", str(demo_site_folder())]
-    options += ["--record", str(folder / "records")]
+    options += ["--record", str(folder / "records")] if records else []
     process = subprocess.Popen(
         [sys.executable, "-m", "recon", "run", *options, "--audit", str(folder / "audit")],
         stdout=log,
@@ -301,6 +303,7 @@ def main() -> int:
     parser.add_argument("--streams", type=int, default=4)
     parser.add_argument("--repeats", type=int, default=60)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--record", action="store_true", help="with a flight record")
     asked = parser.parse_args()
     measured = measure(asked.apps, asked.streams, asked.repeats, asked.seed)
     is_good = report(measured, asked.apps, asked.streams)

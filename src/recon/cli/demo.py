@@ -14,6 +14,7 @@ from recon.cli.foreground import print_now, run_in_loop
 from recon.cli.run import HAS_GUARD, announce, console_folder, guard_port
 from recon.cli.scripted_operator import fly_surveys
 from recon.model.errors import ReconError
+from recon.record.users_file import state_folder
 from recon.score import Scenario, ScenarioError, load_scenario
 from recon.score.scenario_sky import sky_of
 from recon.station.audit.start import default_place
@@ -58,6 +59,7 @@ def demo_command(
         stop_port=guard_port(None, http_port) if HAS_GUARD else None,
         # No state of an earlier run is recovered: its drones no longer exist.
         audit=default_place(link_port=0),
+        record_folder=state_folder() / "records",
         console=console_folder(),
         sun_time_ahead_s=sky_of(played, seed).settings.sun.start_utc_s - time(),
     )

@@ -70,7 +70,7 @@ def run_command(
     key: Annotated[Path | None, typer.Option(help="PEM file of the certificate's key.")] = None,
     users: UsersOption = None,
     record: Annotated[
-        Path | None, typer.Option(help="Folder of flight records; default: in your state folder.")
+        Path | None, typer.Option(help="Record the flight into this folder, as one MCAP file.")
     ] = None,
     audit: Annotated[
         Path | None,
@@ -142,7 +142,8 @@ def announce(started: Started) -> None:
     if started.apps_listed is not None:
         print_now(f"apps admitted: {started.apps_listed} entries; others wait, see recon pair")
     print_now(f"audit: {started.audit_folder}")
-    print_now(f"records: {started.record_folder}")
+    if started.record_folder:
+        print_now(f"records: {started.record_folder}")
     if started.taken_up:
         print_now(f"from the last run: {shown(started.taken_up)}; nothing is ordered")
     if started.stop_url is not None:

@@ -19,9 +19,9 @@ from recon.api.servers import HttpServer
 from recon.fleet.admission import AllowedApp
 from recon.link.server import LinkServer
 from recon.link.settings import LinkSettings
+from recon.link.tap import Tap
 from recon.model.errors import RecordError
-from recon.record.record_writer import RecordWriter
-from recon.record.users_file import default_users_file, state_folder
+from recon.record.users_file import default_users_file
 from recon.site import Site, demo_site_folder
 from recon.site.reading import site_digest
 from recon.site.vehicle_numbers import NUMBERS_FILE, numbers_text, read_numbers
@@ -80,7 +80,7 @@ class RunConfig:
     site_folder: Path | None = None
     """Where the site was read from; its digest goes into the audit."""
     record_folder: Path | None = None
-    """Of the flight records; None: the place in the user's state folder."""
+    """Of the flight records; None: nothing is recorded."""
     audit: AuditPlace | None = None
     """None: the place in the user's state folder that belongs to the link port."""
     users_file: Path | None = None
@@ -160,18 +160,17 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
             snapshots.start(station)
             stack.callback(snapshots.close)
         _write_app_list(config, driver, stack)
-        writer, recorder = _start_record(config, driver, auditor, stack)
-        folder = str(writer.folder)
+        folder = _text(config.record_folder)
         service = Service.around(driver, config.site, folder, begun.log, last_run.first_ids[0])
-        service.lost_bytes = lambda: writer.dropped_bytes
+        tap = _start_record(config, driver, auditor, service, stack)
         service.numbers = kept_numbers(given, numbers_file, stack)
         line = _start_guard(config, driver, service, doors, place.folder, stack)
-        links = await _start_links_and_worker(config, driver, service, line, recorder, stack)
+        links = await _start_links_and_worker(config, driver, service, line, tap, stack)
         started = replace(
             _started(config, service, links, doors),
             stop_url=None if line is None else line.stop_url,
             audit_folder=str(begun.log.folder),
-            record_folder=folder,
+            record_folder=folder or "",
             apps_listed=None if config.apps is None else len(config.apps),
             taken_up=_taken_up(station, (*begun.troubles, *last_run.troubles)),
         )
@@ -208,11 +207,11 @@ async def _start_links_and_worker(
     driver: AsyncioDriver,
     service: Service,
     line: GuardLine | None,
-    recorder: Recorder,
+    tap: Tap | None,
     stack: AsyncExitStack,
 ) -> LinkServer:
     driver.worker = worker = ThreadWorker(JobRunner(config.site), driver.handle_from_thread)
-    driver.links = links = LinkServer(driver.handle, driver.now_ns, config.link, recorder.tap)
+    driver.links = links = LinkServer(driver.handle, driver.now_ns, config.link, tap)
     links.objection = driver.objection
     links.watch = line
     service.link_addresses = await _listen_for_links(links, config)
@@ -409,19 +408,26 @@ async def _listen_for_links(links: LinkServer, config: RunConfig) -> list[str]:
 
 
 def _start_record(
-    config: RunConfig, driver: AsyncioDriver, auditor: Auditor, stack: AsyncExitStack
-) -> tuple[RecordWriter, Recorder]:
-    """Record the run from before its first event; it is closed after everything else has ended."""
-    folder = config.record_folder or state_folder() / "records"
-    if config.record_folder is not None:
-        _require_writable(folder)
+    config: RunConfig,
+    driver: AsyncioDriver,
+    auditor: Auditor,
+    service: Service,
+    stack: AsyncExitStack,
+) -> Tap | None:
+    """Record the run from before its first event, if that is asked for; return what takes the bytes
+    of its links. The record is closed after everything else has ended."""
+    folder = config.record_folder
+    if folder is None:
+        return None
+    _require_writable(folder)
     start = FlightStart.now(config.site, driver.station, driver.started_at_ns)
     writer = record_writer(folder, start)
     recorder = Recorder(writer, driver.handle, lambda _step: auditor.entries)
     driver.record = recorder.take
+    service.lost_bytes = lambda: writer.dropped_bytes
     writer.start()
     stack.callback(writer.close)
-    return writer, recorder
+    return recorder.tap
 
 
 def _require_writable(folder: Path) -> None:
