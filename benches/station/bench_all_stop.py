@@ -4,7 +4,8 @@
 
 A station as `recon run` starts it, with its audit, its log and, if asked for, its record, in a
 process of its own; apps at 10 Hz core and 2 Hz extended telemetry in another, some with raw
-1280x720 images at 5 fps that the station's worker lays on the ground; and a reader of the stream of states, as a console.
+1280x720 images at 5 fps that the station's worker lays on the ground; and a reader of the stream
+of states, as a console.
 Again and again one HTTP request orders an all stop. From just before the request is written, these
 are measured:
 
@@ -305,7 +306,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--record", action="store_true", help="with a flight record")
     asked = parser.parse_args()
-    measured = measure(asked.apps, asked.streams, asked.repeats, asked.seed)
+    measured = measure(asked.apps, asked.streams, asked.repeats, asked.seed, records=asked.record)
     is_good = report(measured, asked.apps, asked.streams)
     wanted = f"each app stopped once, and on every wire within {P99_LIMIT_MS:g} ms p99, expected"
     print("good" if is_good else f"FAILED: {wanted}")
