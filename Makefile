@@ -112,6 +112,7 @@ bench: setup ## Measurements, each beside a baseline of the same run
 	$(RUN) python -m benches.station.bench_all_stop
 	$(RUN) python -m benches.station.bench_guard
 	$(RUN) python -m benches.record.bench_record
+	$(RUN) python -m benches.product.bench_tag
 	$(RUN) python -m benches.cli.bench_startup
 
 fuzz: ## Fuzz the deframer and the packet decoder for a minute each (needs a nightly Rust)
@@ -126,6 +127,7 @@ study: setup ## Long runs: the sky against measurements, random fences, fleets a
 	$(RUN) python -m studies.sky_statistics
 	$(RUN) python -m studies.broken_skies
 	$(RUN) python -m studies.registration
+	$(RUN) python -m studies.tagging
 	$(RUN) python -m studies.fences --scenes 10000
 	$(RUN) python -m studies.fleets --scenes 10000
 	$(RUN) python -m studies.session --seconds 100000

@@ -105,7 +105,8 @@ def test_a_map_begins_at_its_lower_left_corner() -> None:
     valid = np.ones((4, 6), bool)
     valid[0, 0] = False
     ones = np.ones((4, 6), np.float32)
-    grid = foxglove.shade_grid(ShadeMap(GRID, 0, (), transmittance, valid, ones, ones), 5)
+    grid = foxglove.shade_grid(ShadeMap(GRID, 7, (), transmittance, valid, ones, ones))
+    assert grid.timestamp.nanos == 7
     cells = np.frombuffer(grid.data, "<f4").reshape(4, 6, 3)
     assert (grid.pose.position.x, grid.pose.position.y) == (-20.0, 10.0 - 4 * 5.0)
     assert (grid.cell_size.x, grid.column_count, grid.row_stride) == (5.0, 6, 72)
@@ -115,7 +116,7 @@ def test_a_map_begins_at_its_lower_left_corner() -> None:
     leads = np.arange(48, dtype=np.uint8).reshape(2, 4, 6)
     horizon = np.zeros((4, 6), np.float32)
     sun = SunForecast(GRID, 0, np.array([0.0, 60.0]), leads, horizon, 0.5, "test")
-    grid = foxglove.forecast_grid(sun, 5)
+    grid = foxglove.forecast_grid(sun)
     cells = np.frombuffer(grid.data, np.uint8).reshape(4, 6, 2)
     assert [field.name for field in grid.fields] == ["sun_in_0_s", "sun_in_60_s"]
     assert (cells[0, 2] == leads[:, 3, 2]).all()

@@ -113,6 +113,10 @@ COMMANDS = {
     "export": CommandSource(
         "export:export_command", "Write the tracks of a flight record's vehicles."
     ),
+    "tag": CommandSource(
+        "tag:tag_command",
+        "Tag the photos of a flight: sunlit share, masks, the photos to keep, what to fly again.",
+    ),
     "inspect": CommandSource(
         "inspect:inspect_command",
         "Print the packets of a flight record, a network capture or bare bytes.",

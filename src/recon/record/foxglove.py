@@ -100,20 +100,23 @@ def log(text: str, level: str, name: str, at_ns: int) -> Any:
     return line
 
 
-def shade_grid(shade: ShadeMap, at_ns: int) -> Any:
-    """Return a shade map: transmittance, confidence and metres per pixel, NaN where not valid."""
+def shade_grid(shade: ShadeMap) -> Any:
+    """Return a shade map: transmittance, confidence and metres per pixel, NaN where not valid.
+
+    Its timestamp is that of the capture.
+    """
     transmittance = np.where(shade.valid, shade.transmittance, np.float32(np.nan))
     layers = np.stack([transmittance, shade.confidence, shade.metres_per_pixel], axis=-1)
     names = ("transmittance", "confidence", "metres_per_pixel")
     fields = [(name, 4 * number, FLOAT32) for number, name in enumerate(names)]
-    return _grid(shade.grid, layers.astype("<f4"), fields, at_ns)
+    return _grid(shade.grid, layers.astype("<f4"), fields, shade.captured_at_ns)
 
 
-def forecast_grid(sun: SunForecast, at_ns: int) -> Any:
-    """Return a forecast: the probability of sun at each lead, in 255ths."""
+def forecast_grid(sun: SunForecast) -> Any:
+    """Return a forecast: the probability of sun at each lead, in 255ths; stamped when issued."""
     layers = np.moveaxis(sun.sun_probability, 0, -1)
     fields = [(f"sun_in_{lead_s:g}_s", n, UINT8) for n, lead_s in enumerate(sun.lead_s.tolist())]
-    return _grid(sun.grid, layers, fields, at_ns)
+    return _grid(sun.grid, layers, fields, sun.issued_at_ns)
 
 
 def _grid(

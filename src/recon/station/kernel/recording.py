@@ -169,6 +169,9 @@ class RecordTranslator:
             "numpy": np.__version__,
             "machine": start.machine,
             "site": start.site.name,
+            "origin": None if start.site.frame is None else asdict(start.site.frame.origin),
+            "imagers": list(start.site.imagers),
+            "vehicles": {s: each.display_name for s, each in start.site.profiles.items()},
             "settings": asdict(start.station.settings),
         }
         text = msgspec.json.encode(about, enc_hook=str)
@@ -248,9 +251,9 @@ class RecordTranslator:
                 path = foxglove.mission_path(command.body.mission, command.serial)
                 _add(topics, f"/vehicles/{command.serial}/mission", path, at_ns)
         if item.shade is not None:
-            _add(topics, "/shade", foxglove.shade_grid(item.shade, at_ns), at_ns)
+            _add(topics, "/shade", foxglove.shade_grid(item.shade), at_ns)
         if item.sun is not None:
-            _add(topics, "/forecast", foxglove.forecast_grid(item.sun, at_ns), at_ns)
+            _add(topics, "/forecast", foxglove.forecast_grid(item.sun), at_ns)
 
 
 def _add(topics: Topics, topic: str, message: Any, at_ns: int, number: int | None = None) -> None:

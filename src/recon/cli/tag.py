@@ -1,0 +1,271 @@
+"""`recon tag`: the photos of a flight, and which of them are in sun."""
+
+import json
+import os
+import sys
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from hashlib import sha256
+from itertools import islice
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from recon import version
+from recon.cli.output import printable
+from recon.cli.progress import progress_over
+from recon.model.errors import RecordError
+from recon.product.flight import FlightData, read_flight
+from recon.product.photo import SUFFIXES, Photo, PhotoError, read_photo_facts, unique_names
+from recon.product.sun_at import SunHistory
+from recon.product.tag import (
+    MASK_SCALE,
+    PhotoTag,
+    Selection,
+    TagOptions,
+    Timed,
+    TimedPhoto,
+    select,
+    sun_history,
+    tag_photo,
+    timed_photos,
+)
+from recon.product.write import (
+    fly_again,
+    masked_name,
+    table,
+    write_odm_project,
+    write_photo_files,
+    write_text,
+)
+
+MOST_NAMED = 5
+"""Photos named for one reason; all are in the table."""
+AHEAD = 8
+"""Photos waiting for each thread."""
+PROGRESS = "progress.jsonl"
+NO_PHOTO_TAGGED = 1
+
+
+def tag_command(
+    images: Annotated[
+        list[Path], typer.Argument(metavar="IMAGES...", help="JPEG photos, or folders with them.")
+    ],
+    flight: Annotated[Path, typer.Option("--flight", help="The flight record (MCAP).")],
+    out: Annotated[Path, typer.Option("--out", help="Folder to write.")] = Path("tagged"),
+    overlap: Annotated[
+        float,
+        typer.Option(min=0.0, max=0.95, help="Overlap wanted of the chosen photos, 0 to 0.95."),
+    ] = 0.6,
+    sunlit: Annotated[
+        float, typer.Option(min=0.5, max=1.0, help="Share in sun to call a photo sunlit.")
+    ] = 0.9,
+    field: Annotated[
+        float | None,
+        typer.Option(min=10.0, max=120.0, help="Camera's field along the longer side, degrees."),
+    ] = None,
+    clock_offset: Annotated[
+        float | None,
+        typer.Option(help="Seconds to add to the camera's clock for UTC; default: estimated."),
+    ] = None,
+) -> None:
+    """Tag the photos of a flight: sunlit share, masks, the photos to keep, what to fly again."""
+    options = TagOptions(clock_offset, field, overlap, sunlit)
+    paths = _photo_files(images)
+    try:
+        flown = read_flight(flight)
+    except OSError as problem:
+        raise RecordError(f"{flight}: {problem.strerror}") from problem
+    if flown.trouble:
+        _warn(f"the record ends early: {flown.trouble}")
+    photos, refused = _read(paths)
+    timed = timed_photos(flown, photos, options)
+    timed.refused.update(refused)
+    _print_clocks(timed)
+    if not timed.photos:
+        _print_refused(timed.refused)
+        print("no photo was tagged", file=sys.stderr)
+        raise typer.Exit(NO_PHOTO_TAGGED)
+    history = sun_history(flown)
+    try:
+        for folder in (out, out / "masks", out / "xmp"):
+            folder.mkdir(parents=True, exist_ok=True)
+        tags = _tag_all(out, flown, timed.photos, history, options)
+        count = len(timed.photos)
+        selection = select(
+            flown, timed.photos, history, options, lambda p: progress_over(p, "coverage", count)
+        )
+        write_odm_project(out, flown, timed.photos, selection)
+    except OSError as problem:
+        raise RecordError(f"{problem.filename or out}: {problem.strerror}") from problem
+    rows = table(flown, timed.photos, tags, selection.chosen, timed.refused, sunlit)
+    write_text(out / "tags.csv", rows)
+    write_text(out / "chosen.txt", "".join(f"{name}\n" for name in selection.chosen))
+    write_text(out / "fly-again.geojson", fly_again(flown, selection, options))
+    _print_refused(timed.refused)
+    _print_summary(out, tags, selection, options)
+
+
+def _photo_files(images: Sequence[Path]) -> list[Path]:
+    """Return the photos in files and folders, without masks; raises `RecordError` without any."""
+    found: list[Path] = []
+    for path in images:
+        if path.is_dir():
+            inside = (each for each in sorted(path.rglob("*")) if each.is_file())
+            found += (
+                each
+                for each in inside
+                if each.suffix.lower() in SUFFIXES and not each.stem.endswith("_mask")
+            )
+        elif path.is_file():
+            found.append(path)
+        else:
+            raise RecordError(f"{path}: expected a photo or a folder, got no such file")
+    unique = list(dict.fromkeys(found))
+    if not unique:
+        raise RecordError(f"expected photos ({', '.join(SUFFIXES)}), got none")
+    return unique
+
+
+def _read(paths: Sequence[Path]) -> tuple[list[Photo], dict[str, str]]:
+    names, photos, refused = unique_names(paths), list[Photo](), dict[str, str]()
+
+    def read(path: Path) -> Photo | str:
+        try:
+            return read_photo_facts(path, names[path])
+        except PhotoError as problem:
+            return str(problem)
+
+    with ThreadPoolExecutor(_cores()) as pool:
+        for path, found in zip(
+            paths, progress_over(pool.map(read, paths), "reading photos", len(paths)), strict=True
+        ):
+            if isinstance(found, str):
+                refused[names[path]] = found
+            else:
+                photos.append(found)
+    return photos, refused
+
+
+def _tag_all(
+    out: Path,
+    flight: FlightData,
+    photos: Sequence[TimedPhoto],
+    history: SunHistory,
+    options: TagOptions,
+) -> dict[str, PhotoTag]:
+    """Return all tags, with masks and sidecars written; those of an earlier run are kept."""
+    stat = flight.path.stat()
+    record = f"{version()} {stat.st_size} {stat.st_mtime_ns} {options} {MASK_SCALE}"
+    keys = {each.photo.name: _key(record, each) for each in photos}
+    done = _earlier(out, keys)
+
+    def tag(timed: TimedPhoto) -> PhotoTag:
+        name = timed.photo.name
+        if name in done:
+            return done[name]
+        found, mask = tag_photo(timed, history)
+        write_photo_files(out, flight, timed, found, mask, options.sunlit_share)
+        return found
+
+    tags: dict[str, PhotoTag] = {}
+    with (out / PROGRESS).open("a", encoding="utf-8") as log:
+        for found in progress_over(_in_threads(tag, photos), "tagging", len(photos)):
+            tags[found.name] = found
+            if found.name not in done:
+                numbers = [found.sunlit, found.confidence, found.known]
+                log.write(json.dumps([found.name, keys[found.name], *numbers]) + "\n")
+                log.flush()
+    if done:
+        print(f"{len(done)} photos were tagged before")
+    return tags
+
+
+def _in_threads(tag: object, photos: Sequence[TimedPhoto]) -> Iterator[PhotoTag]:
+    """Yield tags in order; no more photos are begun than are soon taken."""
+    assert callable(tag)
+    with ThreadPoolExecutor(_cores()) as pool:
+        rest = iter(photos)
+        waiting = [pool.submit(tag, each) for each in islice(rest, AHEAD * _cores())]
+        while waiting:
+            yield waiting.pop(0).result()
+            waiting += (pool.submit(tag, each) for each in islice(rest, 1))
+
+
+def _key(record: str, timed: TimedPhoto) -> str:
+    stat = timed.photo.path.stat()
+    facts = f"{record} {stat.st_size} {stat.st_mtime_ns} {timed.at_ns} {timed.aim} {timed.photo}"
+    return sha256(facts.encode()).hexdigest()[:16]
+
+
+def _earlier(out: Path, keys: dict[str, str]) -> dict[str, PhotoTag]:
+    """Return the tags of an earlier run with the same inputs, whose files are there."""
+    done: dict[str, PhotoTag] = {}
+    path = out / PROGRESS
+    if not path.is_file():
+        return done
+    for line in path.read_text(encoding="utf-8", errors="replace").splitlines():
+        try:
+            name, key, sunlit, confidence, known = json.loads(line)
+            tag = PhotoTag(str(name), float(sunlit), float(confidence), float(known))
+        except (ValueError, TypeError):
+            continue  # A killed run leaves half a line.
+        files = (out / "masks" / masked_name(tag.name), out / "xmp" / f"{Path(tag.name).stem}.xmp")
+        if keys.get(tag.name) == key and all(file.is_file() for file in files):
+            done[tag.name] = tag
+    return done
+
+
+def _cores() -> int:
+    """Return how many cores this process may use; not all systems restrict them."""
+    allowed = getattr(os, "sched_getaffinity", None)
+    return len(allowed(0)) if allowed is not None else os.cpu_count() or 1
+
+
+def _warn(text: str) -> None:
+    print(f"warning: {printable(text)}", file=sys.stderr)
+
+
+def _print_clocks(timed: Timed) -> None:
+    for clock in timed.clocks:
+        print(printable(str(clock)))
+    for warning in timed.warnings:
+        _warn(warning)
+
+
+def _print_refused(refused: dict[str, str]) -> None:
+    """Print each reason once, with some of the photos."""
+    by_reason: dict[str, list[str]] = {}
+    for name, reason in sorted(refused.items()):
+        by_reason.setdefault(reason.removeprefix(f"{name}: "), []).append(name)
+    for reason, names in by_reason.items():
+        more = len(names) - MOST_NAMED
+        listed = ", ".join(names[:MOST_NAMED]) + (f" and {more} more" if more > 0 else "")
+        _warn(f"not tagged: {listed}: {reason}")
+
+
+def _print_summary(
+    out: Path, tags: dict[str, PhotoTag], selection: Selection, options: TagOptions
+) -> None:
+    states = Counter(tag.state(options.sunlit_share) for tag in tags.values())
+    counts = ", ".join(
+        f"{states[name]} {name}"
+        for name in ("sunlit", "mixed", "shaded", "unknown")
+        if states[name]
+    )
+    print(f"{len(tags)} photos: {counts}")
+    cells = len(selection.sunlit)
+    in_sun = 100.0 * float((selection.sunlit > 0).mean()) if cells else 0.0
+    print(
+        f"{len(selection.chosen)} photos chosen, no list has fewer than {selection.bound}: "
+        f"they show {in_sun:.1f} % of the ground in sun, on {selection.views} photos where there "
+        "are as many"
+    )
+    area_ha = sum(each.area for each in selection.again) / 10_000.0
+    if selection.again:
+        print(f"to fly again: {area_ha:.2f} ha in {len(selection.again)} regions")
+    else:
+        print("nothing to fly again")
+    print(f"written to {out}")

@@ -1,0 +1,272 @@
+"""A photo's own statements: time, place, camera, attitude, from EXIF and DJI's XMP.
+
+The pixels are not decoded. A photo is hostile: sizes are bounded, XML with entities is refused, and
+what Pillow raises on damage becomes a `PhotoError`.
+"""
+
+import math
+import re
+import warnings
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from io import BytesIO
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+from PIL import Image, UnidentifiedImageError
+from PIL.ExifTags import GPS, IFD, Base
+
+from recon.model.errors import ReconError
+from recon.model.units import NS_PER_S
+
+SUFFIXES = (".jpg", ".jpeg")
+LARGEST_BYTES = 256 * 1024 * 1024
+MOST_PIXELS = 400_000_000
+MOST_XMP_BYTES = 1024 * 1024
+START_OF_SCAN, END_OF_IMAGE = b"\xff\xda", b"\xff\xd9"
+
+WIDE_OF_FULL_FRAME_MM, DIAGONAL_OF_FULL_FRAME_MM = 36.0, 43.2666
+UNIT_MM = {2: 25.4, 3: 10.0, 4: 1.0, 5: 0.001}
+"""Of FocalPlaneResolutionUnit."""
+
+
+class PhotoError(ReconError):
+    """A photo that cannot be tagged; the text names the file and the reason."""
+
+
+@dataclass(frozen=True, slots=True)
+class GimbalAttitude:
+    """Of the camera, by its gimbal: yaw clockwise from north, pitch -90 straight down, in
+    degrees."""
+
+    yaw_deg: float
+    pitch_deg: float
+
+
+@dataclass(frozen=True, slots=True)
+class Photo:
+    """What a photo's file states; None where it does not."""
+
+    path: Path
+    name: str
+    """For all that is written about it: unique, without spaces."""
+    cols: int
+    rows: int
+    orientation: int
+    """By EXIF, 1 to 8: how to turn the pixels to stand upright."""
+    camera: tuple[str, str, str]
+    """Make, model and serial number of the body; empty where not stated."""
+    clock_ns: int
+    """The camera's clock, read as UTC."""
+    clock_step_s: float
+    """Of the clock: 1 where EXIF has whole seconds."""
+    latitude_deg: float
+    longitude_deg: float
+    satellite_ns: int | None
+    """UTC by the satellites, where the camera wrote it."""
+    across_deg: float | None
+    """Field of view along the longer side."""
+    attitude: GimbalAttitude | None
+    height_above_takeoff_m: float | None
+
+    @property
+    def camera_name(self) -> str:
+        """For a person."""
+        return " ".join(part for part in self.camera if part) or "unknown camera"
+
+
+def read_photo_facts(path: Path, name: str) -> Photo:
+    """Return a photo's statements; raises `PhotoError`."""
+    try:
+        size = path.stat().st_size
+        if size > LARGEST_BYTES:
+            raise PhotoError(f"{path.name}: {size} bytes, limit {LARGEST_BYTES}")
+        data = path.read_bytes()
+    except OSError as problem:
+        raise PhotoError(f"{path.name}: cannot be read: {problem.strerror}") from problem
+    if not data.startswith(b"\xff\xd8"):
+        raise PhotoError(f"{path.name}: expected a JPEG, got another file")
+    if not _is_whole(data):
+        raise PhotoError(f"{path.name}: the file is cut off: copy it from the card again")
+    try:
+        with warnings.catch_warnings(action="ignore"), Image.open(BytesIO(data)) as image:
+            return _facts(path, name, image)
+    except PhotoError:
+        raise
+    except UnidentifiedImageError as problem:
+        raise PhotoError(f"{path.name}: expected a readable JPEG, got a damaged one") from problem
+    except Exception as problem:
+        # Pillow documents no closed set of errors for damaged metadata.
+        text = f"{type(problem).__name__}: {problem}"
+        raise PhotoError(f"{path.name}: its EXIF data is damaged ({text:.120})") from problem
+
+
+def unique_names(paths: Sequence[Path]) -> dict[Path, str]:
+    """Return a name for each file: its own, with its folder's before it where two have the same.
+
+    Spaces become underscores: OpenDroneMap ignores masks with a space in their name.
+    """
+    plain = [re.sub(r"[^\w.-]", "_", path.name) for path in paths]
+    counts = Counter(plain)
+    names: dict[Path, str] = {}
+    taken: set[str] = set()
+    for path, name in zip(paths, plain, strict=True):
+        if counts[name] > 1:
+            name = re.sub(r"[^\w.-]", "_", f"{path.parent.name}_{name}")
+        stem, number, unique = Path(name), 1, name
+        while unique.lower() in taken:
+            number += 1
+            unique = f"{stem.stem}-{number}{stem.suffix}"
+        taken.add(unique.lower())
+        names[path] = unique
+    return names
+
+
+def _is_whole(data: bytes) -> bool:
+    """Return whether the image's data has its end; previews inside EXIF do not count."""
+    at = 2
+    while at + 4 <= len(data) and data[at] == 0xFF:
+        marker = data[at : at + 2]
+        if marker == START_OF_SCAN:
+            return data.find(END_OF_IMAGE, at) >= 0
+        at += 2 + int.from_bytes(data[at + 2 : at + 4])
+    return False
+
+
+def _facts(path: Path, name: str, image: Any) -> Photo:
+    cols, rows = image.size
+    if not 0 < cols * rows <= MOST_PIXELS:
+        raise PhotoError(f"{path.name}: {cols} x {rows} pixels, limit {MOST_PIXELS}")
+    exif = image.getexif()
+    details, gps = exif.get_ifd(IFD.Exif), exif.get_ifd(IFD.GPSInfo)
+    clock_ns, step_s = _clock(path, exif, details)
+    latitude_deg, longitude_deg = _place(path, gps)
+    orientation = exif.get(Base.Orientation, 1)
+    names = (exif.get(Base.Make), exif.get(Base.Model), details.get(Base.BodySerialNumber))
+    make, model, serial = (_text(each) for each in names)
+    dji = _dji(image.info.get("xmp", b""))
+    return Photo(
+        path,
+        name,
+        cols,
+        rows,
+        orientation if orientation in range(1, 9) else 1,
+        (make, model, serial),
+        clock_ns,
+        step_s,
+        latitude_deg,
+        longitude_deg,
+        _satellite_ns(gps),
+        _field_deg(details, max(cols, rows), min(cols, rows)),
+        _attitude(dji),
+        dji.get("RelativeAltitude"),
+    )
+
+
+def _text(value: object) -> str:
+    text = value.decode("ascii", "replace") if isinstance(value, bytes) else str(value or "")
+    return "".join(each for each in text if each.isprintable()).strip()[:64]
+
+
+_DATE = re.compile(r"(\d{4})[:-](\d\d)[:-](\d\d)[ T](\d\d):(\d\d):(\d\d)")
+
+
+def _clock(path: Path, exif: Mapping[int, Any], details: Mapping[int, Any]) -> tuple[int, float]:
+    """Return the camera's clock, as if it were UTC, and its step in seconds."""
+    for source, tag in ((details, Base.DateTimeOriginal), (exif, Base.DateTime)):
+        found = _DATE.match(_text(source.get(tag)))
+        if found is None:
+            continue
+        try:
+            year, month, day, hour, minute, second = map(int, found.groups())
+            moment = datetime(year, month, day, hour, minute, second, tzinfo=UTC)
+        except ValueError:
+            continue
+        digits = _text(details.get(Base.SubsecTimeOriginal))
+        share = int(digits[:9].ljust(9, "0")) if digits.isascii() and digits.isdigit() else None
+        step_s = 1.0 if share is None else 10.0 ** -min(len(digits), 9)
+        return round(moment.timestamp()) * NS_PER_S + (share or 0), step_s
+    raise PhotoError(f"{path.name}: expected EXIF with the time of the photo, got none")
+
+
+def _place(path: Path, gps: Mapping[int, Any]) -> tuple[float, float]:
+    try:
+        values = (
+            _degrees(gps[GPS.GPSLatitude], gps.get(GPS.GPSLatitudeRef), "S"),
+            _degrees(gps[GPS.GPSLongitude], gps.get(GPS.GPSLongitudeRef), "W"),
+        )
+    except (KeyError, TypeError, ValueError, ZeroDivisionError) as problem:
+        raise PhotoError(f"{path.name}: expected EXIF with a position, got none") from problem
+    latitude_deg, longitude_deg = values
+    is_on_earth = abs(latitude_deg) <= 90.0 and abs(longitude_deg) <= 180.0
+    if not is_on_earth or values == (0.0, 0.0):
+        raise PhotoError(f"{path.name}: expected a position on earth, got {values}: no GNSS fix?")
+    return values
+
+
+def _degrees(parts: Any, side: Any, negative: str) -> float:
+    degrees, minutes, seconds = (float(part) for part in parts)
+    value = degrees + minutes / 60.0 + seconds / 3600.0
+    if not isfinite(value):
+        raise ValueError("no number")
+    return -value if _text(side).upper().startswith(negative) else value
+
+
+def _satellite_ns(gps: Mapping[int, Any]) -> int | None:
+    day = re.fullmatch(r"(\d{4})[:-](\d\d)[:-](\d\d)", _text(gps.get(GPS.GPSDateStamp)))
+    try:
+        hours, minutes, seconds = (float(part) for part in gps[GPS.GPSTimeStamp])
+        if day is None:
+            return None
+        midnight = datetime(int(day[1]), int(day[2]), int(day[3]), tzinfo=UTC)
+        return round((midnight.timestamp() + 3600 * hours + 60 * minutes + seconds) * NS_PER_S)
+    except (KeyError, TypeError, ValueError, ZeroDivisionError, OverflowError):
+        return None
+
+
+def _field_deg(details: Mapping[int, Any], longer_px: int, shorter_px: int) -> float | None:
+    """Return the field of view along the longer side: by the sensor's pixels, or as on film."""
+    focal_mm = _number(details.get(Base.FocalLength))
+    per_unit = _number(details.get(Base.FocalPlaneXResolution))
+    unit_mm = UNIT_MM.get(int(_number(details.get(Base.FocalPlaneResolutionUnit)) or 0))
+    if focal_mm and per_unit and unit_mm:
+        wide_mm = longer_px / per_unit * unit_mm
+        if 1.0 <= wide_mm <= 100.0:
+            return math.degrees(2.0 * math.atan(wide_mm / 2.0 / focal_mm))
+    film_mm = _number(details.get(Base.FocalLengthIn35mmFilm))
+    if not film_mm:
+        return None
+    # The equivalent is of the diagonal: films are 3:2, most drones' sensors 4:3.
+    wide_mm = DIAGONAL_OF_FULL_FRAME_MM * longer_px / math.hypot(longer_px, shorter_px)
+    return math.degrees(2.0 * math.atan(wide_mm / 2.0 / film_mm))
+
+
+def _number(value: Any) -> float | None:
+    try:
+        number = float(value)
+    except (TypeError, ValueError, ZeroDivisionError):
+        return None
+    return number if isfinite(number) and number > 0.0 else None
+
+
+_DJI = re.compile(
+    rb"drone-dji:(GimbalYawDegree|GimbalPitchDegree|RelativeAltitude)"
+    rb"(?:=\"|>)([+-]?\d{1,6}(?:\.\d{1,12})?)(?:\"|<)"
+)
+
+
+def _dji(xmp: object) -> dict[str, float]:
+    """Return DJI's numbers from an XMP packet; they are matched as text, no XML is interpreted."""
+    if not isinstance(xmp, bytes) or len(xmp) > MOST_XMP_BYTES:
+        return {}
+    return {name.decode(): float(number) for name, number in _DJI.findall(xmp)}
+
+
+def _attitude(dji: Mapping[str, float]) -> GimbalAttitude | None:
+    yaw, pitch = dji.get("GimbalYawDegree"), dji.get("GimbalPitchDegree")
+    if yaw is None or pitch is None or not (-90.0 <= pitch <= 45.0 and abs(yaw) <= 360.0):
+        return None
+    return GimbalAttitude(yaw, pitch)

@@ -1,0 +1,150 @@
+"""The sun on the ground at any time of a flight, from the shade maps around it.
+
+Shadows move on between two maps by tens of metres. So the maps of the minute before are moved
+forward and those of the minute after are moved back, each along the shadows' velocity, and they are
+mixed: the nearer in time and the surer, the more. A shadow is so seen over different ground, and
+what ground misleads the detection counts less. The velocity is the forecast's as it was known half
+a minute later: after the flight both sides of a moment are known.
+"""
+
+from bisect import bisect_left, bisect_right
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from math import hypot
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from recon.forecast import ForecastSettings
+from recon.forecast.pooled_motion import pooled_motion, with_agreement
+from recon.forecast.state import ForecastState
+from recon.model.geo import GroundGrid
+from recon.model.shade import ShadeMap
+from recon.model.units import NS_PER_S
+from recon.product.flight import FULL, UNKNOWN, KeptMap
+
+FloatMap = npt.NDArray[np.float32]
+
+LONGEST_S = 60.0
+"""From a map: farther off it tells nothing. Shadows change their shape within a minute or two."""
+HALVES_S = 20.0
+"""The confidence of a map that is moved on: at 10 s detection's errors are averaged less, at 40 s
+shadows' shapes are others."""
+EVERY_S = 10.0
+"""Between maps whose motion is looked at."""
+LATER_S = 30.0
+STANDS = (0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sunshine:
+    """The sun on a grid at one moment; arrays are (R, C) float32, row 0 north.
+
+    `transmittance` is 0 where nothing is known: there the confidence is 0.
+    """
+
+    transmittance: FloatMap
+    confidence: FloatMap
+
+
+@dataclass(slots=True)
+class SunHistory:
+    """The sun on a flight's grid by time."""
+
+    grid: GroundGrid
+    maps: Sequence[KeptMap]
+    is_moved: bool = True
+    """False mixes the maps as they are, for comparison."""
+    _times: list[int] = field(init=False)
+    _motions: npt.NDArray[np.float64] = field(init=False)
+
+    def __post_init__(self) -> None:
+        self._times = [each.at_ns for each in self.maps]
+        self._motions = _motions(self.grid, self.maps) if self.is_moved else np.zeros((0, 3))
+
+    def velocity_mps(self, at_ns: int) -> tuple[float, float]:
+        """Return the shadows' velocity east and north; zero where it is not clear."""
+        if not len(self._motions):
+            return STANDS
+        # What is known some time later is of the maps on both sides of the moment.
+        later = np.searchsorted(self._motions[:, 0], at_ns + LATER_S * NS_PER_S)
+        east_mps, north_mps = self._motions[min(int(later), len(self._motions) - 1), 1:].tolist()
+        return east_mps, north_mps
+
+    def at(self, at_ns: int) -> Sunshine:
+        """Return the sun at a station time."""
+        reach_ns = round(LONGEST_S * NS_PER_S)
+        first = bisect_left(self._times, at_ns - reach_ns)
+        last = bisect_right(self._times, at_ns + reach_ns)
+        velocity = self.velocity_mps(at_ns)
+        if velocity == STANDS:
+            # Without a velocity only the maps on both sides tell about the moment.
+            after = bisect_right(self._times, at_ns)
+            first, last = max(first, after - 1), min(last, after + 1)
+        shape = self.grid.rows, self.grid.cols
+        total, weights, sure = np.zeros((3, *shape), dtype=np.float32)
+        for number in range(first, last):
+            gap_s = (at_ns - self._times[number]) / NS_PER_S
+            known, sun, confidence = _moved(self.maps[number], self.grid, velocity, gap_s)
+            confidence = confidence * known * np.float32(2.0 ** (-abs(gap_s) / HALVES_S))
+            total += sun * confidence
+            weights += confidence
+            np.maximum(sure, confidence, out=sure)
+        found = total / np.where(weights > 0.0, weights, np.float32(1.0))
+        return Sunshine(found.astype(np.float32), sure)
+
+    def nearest(self, at_ns: int) -> Sunshine:
+        """Return the map nearest in time as it is, for comparison."""
+        if not self.maps:
+            nothing = np.zeros((self.grid.rows, self.grid.cols), dtype=np.float32)
+            return Sunshine(nothing, nothing)
+        chosen = min(self.maps, key=lambda each: abs(each.at_ns - at_ns))
+        known, transmittance, confidence = _moved(chosen, self.grid, STANDS, 0.0)
+        return Sunshine(transmittance * known, confidence * known)
+
+
+def _moved(
+    shade: KeptMap, grid: GroundGrid, velocity_mps: tuple[float, float], seconds: float
+) -> tuple[FloatMap, FloatMap, FloatMap]:
+    """Return where a map moved on is known (share), its transmittance and its confidence."""
+    is_known = (shade.sun != UNKNOWN).astype(np.float32)
+    sun = np.where(shade.sun != UNKNOWN, shade.sun, 0).astype(np.float32) * np.float32(1.0 / FULL)
+    sure = shade.confidence.astype(np.float32) * np.float32(1.0 / 255.0)
+    right, down = (v * seconds / grid.cell_m for v in (velocity_mps[0], -velocity_mps[1]))
+    if hypot(right, down) < 0.01:
+        return is_known, sun, sure
+    move = np.array([[1.0, 0.0, right], [0.0, 1.0, down]])
+
+    def moved(values: FloatMap) -> FloatMap:
+        found = cv2.warpAffine(values, move, (grid.cols, grid.rows), flags=cv2.INTER_LINEAR)
+        return found.astype(np.float32, copy=False)
+
+    share = moved(is_known)
+    divisor = np.where(share > 0.0, share, np.float32(1.0))
+    known = (share >= 0.5).astype(np.float32)
+    sun, sure = ((moved(each * is_known) / divisor).astype(np.float32) for each in (sun, sure))
+    return known, sun, sure
+
+
+def _motions(grid: GroundGrid, maps: Sequence[KeptMap]) -> npt.NDArray[np.float64]:
+    """Return rows of time in ns, east and north velocity in m/s: zero while none is clear."""
+    settings = replace(ForecastSettings(), keep_every_s=EVERY_S)
+    state, found = ForecastState(), []
+    for each in maps:
+        kept = state.kept
+        state = with_agreement(state, shade_map(each, grid), settings)
+        if state.kept is kept:
+            continue
+        motion = pooled_motion(state, settings)
+        velocity = STANDS if motion is None else (motion.east_mps, motion.north_mps)
+        found.append((each.at_ns, *velocity))
+    return np.array(found, dtype=np.float64).reshape(-1, 3)
+
+
+def shade_map(shade: KeptMap, grid: GroundGrid) -> ShadeMap:
+    """Return a kept map as the core's value."""
+    valid = shade.sun != UNKNOWN
+    transmittance = np.where(valid, shade.sun / np.float32(FULL), np.nan).astype(np.float32)
+    confidence = (shade.confidence / np.float32(255.0)).astype(np.float32)
+    return ShadeMap(grid, shade.at_ns, (), transmittance, valid, confidence, confidence)

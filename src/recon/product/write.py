@@ -1,0 +1,224 @@
+"""What `recon tag` leaves: a table, sidecars, masks, a project for OpenDroneMap, the ground to fly
+again."""
+
+import csv
+import io
+import json
+import os
+import shutil
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from xml.sax.saxutils import quoteattr
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from recon import version
+from recon.geo import geo_from_enu
+from recon.model.errors import RecordError
+from recon.product.coverage import lon_lat_rings
+from recon.product.flight import FlightData
+from recon.product.tag import PhotoTag, Selection, TagOptions, TimedPhoto
+from recon.record.atomic_file import replace_file
+
+ByteMap = npt.NDArray[np.uint8]
+FILE_MODE = 0o644
+MASK_QUALITY = 100
+"""Masks are read as 0 and not 0: at less the edges of black would be ragged."""
+
+COLUMNS = (
+    *("name", "file", "vehicle", "utc", "sigma_s", "latitude_deg", "longitude_deg"),
+    *("height_above_takeoff_m", "yaw_deg", "pitch_deg", "sunlit", "confidence", "known", "state"),
+    *("chosen", "footprint_wkt", "note"),
+)
+
+
+def masked_name(name: str) -> str:
+    """Return the file of a photo's mask, as OpenDroneMap looks for it."""
+    return f"{Path(name).stem}_mask.JPG"
+
+
+def mask_jpeg(mask: ByteMap, orientation: int) -> bytes:
+    """Return a mask (rows, cols) as JPEG, turned upright as EXIF's orientation has it.
+
+    Software that knows the orientation looks the mask up in the upright picture.
+    """
+    turned = np.ascontiguousarray(upright(mask, orientation))
+    done, data = cv2.imencode(".jpg", turned, [cv2.IMWRITE_JPEG_QUALITY, MASK_QUALITY])
+    assert done
+    return data.tobytes()
+
+
+def upright(pixels: ByteMap, orientation: int) -> ByteMap:
+    """Return an image turned and mirrored by EXIF's orientation, 1 to 8."""
+    if orientation in (5, 6, 7, 8):
+        pixels = pixels.swapaxes(0, 1)
+    if orientation in (2, 3, 6, 7):
+        pixels = pixels[:, ::-1]
+    if orientation in (3, 4, 7, 8):
+        pixels = pixels[::-1]
+    return pixels
+
+
+def write_photo_files(
+    out: Path, flight: FlightData, timed: TimedPhoto, tag: PhotoTag, mask: ByteMap, share: float
+) -> None:
+    """Write a photo's mask and sidecar; raises OSError."""
+    data = mask_jpeg(mask, timed.photo.orientation)
+    replace_file(out / "masks" / masked_name(tag.name), data, FILE_MODE)
+    sidecar = xmp(flight, timed, tag, share).encode()
+    replace_file(out / "xmp" / f"{Path(tag.name).stem}.xmp", sidecar, FILE_MODE)
+
+
+def xmp(flight: FlightData, timed: TimedPhoto, tag: PhotoTag, share: float) -> str:
+    """Return a photo's sidecar."""
+    latitude_deg, longitude_deg = _place(flight, timed)
+    state = tag.state(share)
+    values = {
+        "xmp:CreatorTool": f"Recon {version()}",
+        "exif:GPSLatitude": _xmp_degrees(latitude_deg, "N", "S"),
+        "exif:GPSLongitude": _xmp_degrees(longitude_deg, "E", "W"),
+        "recon:CapturedUTC": flight.utc(timed.at_ns),
+        "recon:CapturedSigma": f"{timed.sigma_s:.2f}",
+        "recon:Vehicle": timed.serial,
+        "recon:SunlitFraction": _share(tag.sunlit),
+        "recon:SunlitConfidence": _share(tag.confidence),
+        "recon:KnownFraction": _share(tag.known),
+        "recon:State": state,
+        "recon:HeightAboveTakeoff": f"{timed.aim.height_m:.1f}",
+        "recon:FlightRecord": flight.path.name,
+    }
+    lines = "\n".join(f"   {name}={quoteattr(value)}" for name, value in values.items() if value)
+    return f"""<?xpacket begin="\ufeff" id="W5M0MpCehiHzreSzNTczkc9d"?>
+<x:xmpmeta xmlns:x="adobe:ns:meta/">
+ <rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#">
+  <rdf:Description rdf:about=""
+   xmlns:xmp="http://ns.adobe.com/xap/1.0/"
+   xmlns:exif="http://ns.adobe.com/exif/1.0/"
+   xmlns:dc="http://purl.org/dc/elements/1.1/"
+   xmlns:recon="urn:recon:photo:1"
+{lines}>
+   <dc:subject><rdf:Bag><rdf:li>{state}</rdf:li></rdf:Bag></dc:subject>
+  </rdf:Description>
+ </rdf:RDF>
+</x:xmpmeta>
+<?xpacket end="w"?>
+"""
+
+
+def _xmp_degrees(value: float, positive: str, negative: str) -> str:
+    whole, minutes = divmod(abs(value) * 60.0, 60.0)
+    return f"{whole:.0f},{minutes:.6f}{positive if value >= 0.0 else negative}"
+
+
+def _share(value: float) -> str:
+    return "" if np.isnan(value) else f"{value:.3f}"
+
+
+def _place(flight: FlightData, timed: TimedPhoto) -> tuple[float, float]:
+    assert flight.frame is not None  # or it would not have been read
+    latitude, longitude, _height = geo_from_enu(
+        flight.frame, (timed.aim.east_m, timed.aim.north_m, 0.0)
+    )
+    return float(latitude[0]), float(longitude[0])
+
+
+def table(
+    flight: FlightData,
+    photos: Sequence[TimedPhoto],
+    tags: Mapping[str, PhotoTag],
+    chosen: Sequence[str],
+    refused: Mapping[str, str],
+    share: float,
+) -> str:
+    """Return the CSV: a row for each photo, those without a tag with the reason last."""
+    out = io.StringIO()
+    rows = csv.writer(out, lineterminator="\n")
+    rows.writerow(COLUMNS)
+    kept = frozenset(chosen)
+    for timed in photos:
+        tag, aim, name = tags[timed.photo.name], timed.aim, timed.photo.name
+        latitude_deg, longitude_deg = _place(flight, timed)
+        rows.writerow(
+            (
+                *(_cell(name), _cell(str(timed.photo.path)), _cell(timed.serial)),
+                *(flight.utc(timed.at_ns), f"{timed.sigma_s:.2f}"),
+                *(f"{latitude_deg:.8f}", f"{longitude_deg:.8f}", f"{aim.height_m:.1f}"),
+                *(f"{aim.yaw_deg:.1f}", f"{aim.pitch_deg:.1f}"),
+                *(_share(tag.sunlit), _share(tag.confidence), _share(tag.known)),
+                *(tag.state(share), "yes" if name in kept else "no", _wkt(flight, timed), ""),
+            )
+        )
+    for name, reason in sorted(refused.items()):
+        rows.writerow((_cell(name), *[""] * (len(COLUMNS) - 4), "no", "", _cell(reason)))
+    return out.getvalue()
+
+
+def _cell(text: str) -> str:
+    """Return a text that no spreadsheet takes for a formula."""
+    return f"'{text}" if text[:1] in ("=", "+", "-", "@", "\t", "\r") else text
+
+
+def _wkt(flight: FlightData, timed: TimedPhoto) -> str:
+    assert flight.frame is not None  # or it would not have been read
+    corners = np.column_stack([timed.corners_m, np.zeros(4)])
+    latitude, longitude, _height = geo_from_enu(flight.frame, corners)
+    points = [f"{x:.8f} {y:.8f}" for x, y in zip(longitude, latitude, strict=True)]
+    return f"POLYGON (({', '.join((*points, points[0]))}))"
+
+
+def fly_again(flight: FlightData, selection: Selection, options: TagOptions) -> str:
+    """Return the GeoJSON of what is to be flown again: regions that `recon survey create` takes."""
+    assert flight.frame is not None  # or it would not have been read
+    features = []
+    for number, polygon in enumerate(selection.again, start=1):
+        properties: dict[str, str | float] = {
+            "name": f"again {number}",
+            "area_m2": round(polygon.area),
+        }
+        if flight.surveys:
+            properties["height_above_takeoff_m"] = flight.surveys[-1].height_above_takeoff_m
+            properties["speed_mps"] = flight.surveys[-1].speed_mps
+        geometry = {"type": "Polygon", "coordinates": lon_lat_rings(polygon, flight.frame)}
+        features.append({"type": "Feature", "properties": properties, "geometry": geometry})
+    return json.dumps({"type": "FeatureCollection", "features": features}) + "\n"
+
+
+def write_odm_project(
+    out: Path, flight: FlightData, photos: Sequence[TimedPhoto], selection: Selection
+) -> None:
+    """Write the folder of a run of OpenDroneMap: chosen photos, their masks, `geo.txt`.
+
+    Photos are hard links where the disk allows it, copies elsewhere. Raises OSError.
+    """
+    folder = out / "odm" / "images"
+    if folder.exists():
+        shutil.rmtree(folder)
+    folder.mkdir(parents=True)
+    chosen = frozenset(selection.chosen)
+    lines = ["EPSG:4326"]
+    for timed in photos:
+        name = timed.photo.name
+        if name not in chosen:
+            continue
+        _link(timed.photo.path, folder / name)
+        _link(out / "masks" / masked_name(name), folder / masked_name(name))
+        latitude_deg, longitude_deg = _place(flight, timed)
+        lines.append(f"{name} {longitude_deg:.8f} {latitude_deg:.8f}")
+    replace_file(out / "odm" / "geo.txt", ("\n".join(lines) + "\n").encode(), FILE_MODE)
+
+
+def _link(source: Path, target: Path) -> None:
+    try:
+        os.link(source, target)
+    except OSError:
+        shutil.copyfile(source, target)
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a file whole or not at all; raises `RecordError`."""
+    try:
+        replace_file(path, text.encode(), FILE_MODE)
+    except OSError as problem:
+        raise RecordError(f"{path}: cannot be written: {problem.strerror}") from problem

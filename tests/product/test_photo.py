@@ -1,0 +1,118 @@
+"""What photos state, and hostile ones."""
+
+import struct
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from tests.product.made_flight import ACROSS_DEG, FRAME, write_photo
+
+from recon.model.units import NS_PER_S
+from recon.product.photo import GimbalAttitude, PhotoError, read_photo_facts, unique_names
+
+CLOCK_NS = 1_750_001_234 * NS_PER_S
+DJI = b"""<x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:Description
+ drone-dji:RelativeAltitude="+59.80" drone-dji:GimbalYawDegree="-92.10"
+ drone-dji:GimbalPitchDegree="-89.90" /></x:xmpmeta>"""
+
+
+def photo(path: Path, **changes: object) -> Path:
+    return write_photo(path, **{"place_m": (12.0, -34.0), "clock_ns": CLOCK_NS} | changes)
+
+
+def test_time_place_camera_and_lens_are_read(tmp_path: Path) -> None:
+    path = photo(tmp_path / "a.JPG", subsec="25", xmp=DJI, satellites_ns=CLOCK_NS, orientation=6)
+    found = read_photo_facts(path, "a.JPG")
+    assert (found.clock_ns, found.clock_step_s) == (CLOCK_NS + 250_000_000, 0.01)
+    assert found.satellite_ns == CLOCK_NS
+    assert found.camera == ("Made", "Camera", "CAM-1")
+    assert found.across_deg == pytest.approx(ACROSS_DEG, abs=0.01)
+    assert found.latitude_deg == pytest.approx(FRAME.origin.latitude_deg, abs=1e-3)
+    assert found.longitude_deg < FRAME.origin.longitude_deg + 1e-3
+    assert (found.attitude, found.height_above_takeoff_m) == (GimbalAttitude(-92.1, -89.9), 59.8)
+    assert (found.cols, found.rows, found.orientation) == (640, 480, 6)
+
+
+def test_whole_seconds_and_a_missing_lens_are_stated_as_such(tmp_path: Path) -> None:
+    found = read_photo_facts(photo(tmp_path / "a.JPG", with_lens=False), "a.JPG")
+    assert (found.clock_step_s, found.across_deg, found.attitude) == (1.0, None, None)
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"clock_ns": None}, "expected EXIF with the time"),
+        ({"place_m": (1e7, 0.0)}, None),
+    ],
+)
+def test_photos_without_time_are_refused(
+    tmp_path: Path, changes: dict[str, object], sentence: str | None
+) -> None:
+    path = photo(tmp_path / "a.JPG", **changes)
+    if sentence is None:
+        read_photo_facts(path, "a.JPG")
+        return
+    with pytest.raises(PhotoError, match=sentence):
+        read_photo_facts(path, "a.JPG")
+
+
+def test_a_photo_without_exif_is_refused(tmp_path: Path) -> None:
+    from PIL import Image
+
+    Image.new("RGB", (64, 48)).save(tmp_path / "plain.jpg")
+    with pytest.raises(PhotoError, match=r"plain.jpg: expected EXIF with the time"):
+        read_photo_facts(tmp_path / "plain.jpg", "plain.jpg")
+    (tmp_path / "text.jpg").write_text("no photo")
+    with pytest.raises(PhotoError, match="expected a JPEG"):
+        read_photo_facts(tmp_path / "text.jpg", "text.jpg")
+    with pytest.raises(PhotoError, match="cannot be read"):
+        read_photo_facts(tmp_path / "none.jpg", "none.jpg")
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    return photo(tmp_path_factory.mktemp("photo") / "a.JPG", xmp=DJI).read_bytes()
+
+
+CALM = settings(
+    max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+
+
+@CALM
+@given(st.floats(0.0, 0.999))
+def test_a_photo_cut_anywhere_is_refused(tmp_path: Path, whole: bytes, share: float) -> None:
+    path = tmp_path / "cut.jpg"
+    path.write_bytes(whole[: int(share * (len(whole) - 2))])
+    with pytest.raises(PhotoError, match=r"cut off|expected a JPEG"):
+        read_photo_facts(path, "cut.jpg")
+
+
+@CALM
+@given(st.data())
+def test_damage_gives_a_photo_or_a_sentence(tmp_path: Path, whole: bytes, data) -> None:
+    damaged = bytearray(whole)
+    for at in data.draw(st.lists(st.integers(0, min(1500, len(whole) - 1)), max_size=12)):
+        damaged[at] = data.draw(st.integers(0, 255))
+    path = tmp_path / "damaged.jpg"
+    path.write_bytes(bytes(damaged))
+    try:
+        found = read_photo_facts(path, "damaged.jpg")
+    except PhotoError:
+        return
+    assert abs(found.latitude_deg) <= 90.0
+    assert found.across_deg is None or 0.0 < found.across_deg < 180.0
+
+
+def test_a_preview_behind_the_image_may_be_cut(tmp_path: Path, whole: bytes) -> None:
+    path = tmp_path / "mpf.jpg"
+    path.write_bytes(whole + b"\xff\xd8" + struct.pack(">H", 7) * 20)
+    assert read_photo_facts(path, "mpf.jpg").cols == 640
+
+
+def test_names_are_unique_and_without_spaces() -> None:
+    paths = [Path(p) for p in ("a/D 1.JPG", "100/X.JPG", "101/X.JPG", "b/101/X.JPG", "c/y.jpg")]
+    names = unique_names(paths)
+    assert names[paths[0]] == "D_1.JPG"
+    assert [names[p] for p in paths[1:]] == ["100_X.JPG", "101_X.JPG", "101_X-2.JPG", "y.jpg"]
