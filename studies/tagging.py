@@ -11,6 +11,7 @@ zones and daylight saving are tried on each card.
 
 import argparse
 import csv
+from bisect import bisect_right
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from random import Random
@@ -24,12 +25,13 @@ from recon.cli.score import with_methods
 from recon.cli.tag import tag_command
 from recon.model.shade import SUNLIT_TRANSMITTANCE
 from recon.model.units import NS_PER_S
-from recon.product.coverage import PhotoView, cells_on, ground_of, region_of
-from recon.product.flight import read_flight
-from recon.product.footprint import Aim
+from recon.product.coverage import cells_on, ground_of, region_of
+from recon.product.flight import FlightData, read_flight
+from recon.product.footprint import Aim, PhotoView
 from recon.product.photo import read_photo_facts
-from recon.product.sun_at import SunHistory, Sunshine
-from recon.product.tag import TagOptions, TimedPhoto, tag_photo, timed_photos
+from recon.product.sun_at import SunHistory
+from recon.product.tag import SUNLIT_SHARE, tag_photo
+from recon.product.timing import StatedCamera, TimedPhoto, timed_photos
 from recon.product.write import masked_name
 from recon.score import Scenario, load_scenario
 from studies.survey_photos import Card, SurveyFlown, TruePhoto, fly, true_sunlit
@@ -37,7 +39,6 @@ from studies.survey_photos import Card, SurveyFlown, TruePhoto, fly, true_sunlit
 SCENARIO = Path(__file__).parents[1] / "scenarios" / "cumulus-40.toml"
 PLANNER = "lawnmower_again"
 EXACT, REAL = "ideal maps", "sunlit_reference"
-SUNLIT_SHARE = 0.9
 CLOCKS = 25
 """Wrong clocks that are tried on each card."""
 ZONES_S = (-25_200.0, -18_000.0, 3_600.0, 7_200.0, 19_800.0, 43_200.0)
@@ -149,7 +150,7 @@ def _edge_px(lit: BoolArray) -> float:
 def _add_coverage(score: TagScore, flown: SurveyFlown, tagged: Path) -> None:
     """Count the cells that were truly photographed in sun, and those of them on the list."""
     area, frame = (
-        region_of(read_flight(flown.record, with_maps=False).surveys),
+        region_of(read_flight(flown.record).surveys),
         flown.scenario.frame,
     )
     assert area is not None
@@ -185,46 +186,35 @@ def _add_clocks(score: TagScore, flown: SurveyFlown, card: Path) -> None:
     truth_ns = {p.name: flown.epoch_ns + round(p.at_s * NS_PER_S) for p in flown.photos}
     random = Random(f"{flown.seed}/clocks")
     offsets = [*ZONES_S, *(random.uniform(-43_200.0, 43_200.0) for _ in range(CLOCKS))]
-    timed = timed_photos(flight, photos, TagOptions())
+    timed = timed_photos(flight, photos, StatedCamera())
     for ahead_s in offsets:
         shown = []
         for photo in photos:
             clock_ns = truth_ns[photo.name] + round(ahead_s * NS_PER_S)
             shown.append(replace(photo, clock_ns=clock_ns // NS_PER_S * NS_PER_S))
-        found = timed_photos(flight, shown, TagOptions())
+        found = timed_photos(flight, shown, StatedCamera())
         score.clock_errors_s += [abs(each.offset_s + ahead_s) for each in found.clocks]
         score.clocks_refused += len({p.camera for p in photos}) - len(found.clocks)
-    _add_others(score, flown, timed.photos, flight_history=sun_histories(flight))
-
-
-def sun_histories(flight: object) -> dict[str, SunHistory]:
-    """Return the simpler ways to know the sun between maps, for comparison."""
-    assert hasattr(flight, "grid")
-    assert hasattr(flight, "maps")
-    plain = SunHistory(flight.grid, flight.maps, is_moved=False)
-    return {"nearest": _Nearest(flight.grid, flight.maps, is_moved=False), "mixed": plain}
-
-
-class _Nearest(SunHistory):
-    """The map nearest in time."""
-
-    def at(self, at_ns: int) -> Sunshine:
-        return self.nearest(at_ns)
+    _add_others(score, flown, timed.photos, flight)
 
 
 def _add_others(
-    score: TagScore,
-    flown: SurveyFlown,
-    photos: list[TimedPhoto],
-    flight_history: dict[str, SunHistory],
+    score: TagScore, flown: SurveyFlown, photos: list[TimedPhoto], flight: FlightData
 ) -> None:
+    """Score simpler ways to know the sun between maps."""
+    assert flight.grid is not None
     truth = {photo.name: photo for photo in flown.photos}
+    times_ns = [each.at_ns for each in flight.maps]
     for timed in photos[::5]:
         lit = true_sunlit(flown, truth[timed.photo.name], 57, 43) >= SUNLIT_TRANSMITTANCE
         if lit.all() or not lit.any():
             continue
-        for name, history in flight_history.items():
-            tag, _mask = tag_photo(timed, history)
+        after = bisect_right(times_ns, timed.at_ns)
+        around = flight.maps[max(0, after - 1) : after + 1]
+        nearest = min(around, key=lambda each: abs(each.at_ns - timed.at_ns))
+        # So few maps show no motion: they are mixed as they are.
+        for name, maps in (("nearest", [nearest]), ("mixed", around)):
+            tag, _mask = tag_photo(timed, SunHistory(flight.grid, maps))
             if tag.known >= 0.5:
                 score.others[name].append(abs(tag.sunlit - float(lit.mean())))
 

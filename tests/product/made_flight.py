@@ -21,10 +21,10 @@ from recon.model.units import NS_PER_S
 from recon.model.vehicle import Attitude
 from recon.product.flight import FULL, FlightData, FlownSurvey, KeptMap, RecordedTrack
 from recon.record import foxglove
-from recon.record.mcap_file import McapFile
+from recon.record.mcap_file import ABOUT_NAME, STEPS_TOPIC, McapFile
 from recon.record.record_writer import Topics
 from recon.record.tracks import utc_text
-from recon.station.kernel.recorded_values import ABOUT_NAME, MSGPACK, STEPS_TOPIC, values_codec
+from recon.station.kernel.recorded_values import MSGPACK, values_codec
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -103,18 +103,16 @@ def flight(*ways: Rows, maps_every_s: float = 4.0, path: Path = Path("made.mcap"
     ends_s = max(way.starts_s + way.lasts_s for way in ways)
     maps = [true_map(float(at_s)) for at_s in np.arange(0.5, ends_s, maps_every_s)]
     outline = ((-90.0, -90.0), (90.0, -90.0), (90.0, 90.0), (-90.0, 90.0))
-    survey = FlownSurvey("field", outline, (), HEIGHT_M, SPEED_MPS, 66.0, 52.0, 2.0, 0.7, 0.6)
+    survey = FlownSurvey(outline, (), HEIGHT_M, SPEED_MPS)
     return FlightData(
         path,
-        frame=FRAME,
+        FRAME,
+        tracks,
         names={way.serial: f"Drone {way.serial[-1]}" for way in ways},
-        tracks=tracks,
         grid=GRID,
         maps=maps,
         surveys=[survey],
         utc_ahead_ns=UTC_AHEAD_NS,
-        begins_ns=START_NS,
-        ends_ns=START_NS + round(ends_s * NS_PER_S),
     )
 
 
@@ -140,7 +138,7 @@ def write_record(made: FlightData, path: Path) -> Path:
 
     step(ClockRead(UTC_AHEAD_NS + START_NS), START_NS)
     for each in made.surveys:
-        survey = Survey(1, each.name, Region(np.array(each.outline_m)), HEIGHT_M, SPEED_MPS)
+        survey = Survey(1, "field", Region(np.array(each.outline_m)), HEIGHT_M, SPEED_MPS)
         step(SurveyRequested(survey, "test"), START_NS)
     for link, each in enumerate(made.tracks.values(), start=1):
         extended = ExtendedReport(each.serial, 14, 5, False, False, 0.8, None, None, None, None, 0)
@@ -162,7 +160,7 @@ def write_record(made: FlightData, path: Path) -> Path:
         shade = ShadeMap(GRID, kept.at_ns, (), value, np.ones(value.shape, bool), sure, sure)
         grid = foxglove.shade_grid(shade)
         topics.add(
-            "/shade",
+            foxglove.SHADE_TOPIC,
             foxglove.ENCODING,
             grid.SerializeToString(),
             kept.at_ns + NS_PER_S,

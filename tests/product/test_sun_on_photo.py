@@ -15,7 +15,7 @@ from tests.product.made_flight import (
 )
 
 from recon.model.units import NS_PER_S
-from recon.product.footprint import Aim, corners_m, ground_of_pixels, projected, sun_on_photo
+from recon.product.footprint import Aim, PhotoView, projected, sun_on_photo
 from recon.product.sun_at import SunHistory
 from recon.product.write import mask_jpeg, upright
 
@@ -31,18 +31,18 @@ def history() -> SunHistory:
 def test_a_camera_straight_down_shows_what_its_field_covers() -> None:
     aim = Aim(10.0, 20.0, 50.0, 0.0)
     half_m = 50.0 * np.tan(np.deg2rad(33.0))
-    corners = corners_m(aim, 66.0, 400, 300)
+    corners = PhotoView(aim, 66.0, 400, 300).corners_m
     west, north = 10.0 - half_m, 20.0 + 0.75 * half_m
     assert corners[0] == pytest.approx([west, north], abs=1e-9)
     assert corners[2] == pytest.approx([20.0 - west, 40.0 - north], abs=1e-9)
-    turned = corners_m(Aim(10.0, 20.0, 50.0, 90.0), 66.0, 400, 300)
+    turned = PhotoView(Aim(10.0, 20.0, 50.0, 90.0), 66.0, 400, 300).corners_m
     assert turned[0] == pytest.approx([10.0 + 0.75 * half_m, 20.0 + half_m], abs=1e-9)
 
 
 def test_a_tilted_camera_looks_ahead() -> None:
     aim = Aim(0.0, 0.0, 100.0, 90.0, -60.0)
     middle = np.array([[199.5, 149.5]])
-    (point,) = projected(ground_of_pixels(aim, 66.0, 400, 300), middle)
+    (point,) = projected(PhotoView(aim, 66.0, 400, 300).homography, middle)
     assert point == pytest.approx([100.0 / np.tan(np.deg2rad(60.0)), 0.0], abs=1e-9)
 
 
@@ -53,17 +53,22 @@ def test_the_shadows_velocity_is_found(history: SunHistory) -> None:
     assert across == pytest.approx(DRIFT_MPS / np.hypot(1.0, 0.4), abs=0.8)
 
 
+def only_nearest(history: SunHistory, at_ns: int) -> SunHistory:
+    nearest = min(history.maps, key=lambda each: abs(each.at_ns - at_ns))
+    return SunHistory(history.grid, [nearest])
+
+
 def errors(history: SunHistory, nearest: bool) -> tuple[float, float]:
     """Mean error of the sunlit share, and the share of wrong pixels."""
     share, wrong = [], []
     for at_s in times_s(ONE)[::4].tolist():
         east, north, yaw = (float(v) for v in ONE.place(at_s))
-        aim = Aim(east, north, HEIGHT_M, yaw)
+        view = PhotoView(Aim(east, north, HEIGHT_M, yaw), 66.0, COLS, ROWS)
         at_ns = START_NS + round(at_s * NS_PER_S)
-        shine = history.nearest(at_ns) if nearest else history.at(at_ns)
-        found = sun_on_photo(shine, GRID, aim, 66.0, COLS, ROWS)
+        used = only_nearest(history, at_ns) if nearest else history
+        found = sun_on_photo(used.at(at_ns), GRID, view)
         pixels = np.stack(np.meshgrid(np.arange(COLS), np.arange(ROWS)), axis=-1).reshape(-1, 2)
-        ground = projected(ground_of_pixels(aim, 66.0, COLS, ROWS), pixels.astype(float))
+        ground = projected(view.homography, pixels.astype(float))
         true = sun(ground[:, 0], ground[:, 1], at_s).reshape(ROWS, COLS) >= 0.5
         known = found.confidence > 0.0
         lit = found.transmittance >= 0.5

@@ -36,7 +36,7 @@ from recon.model.errors import RecordError
 from recon.model.survey import Survey
 from recon.model.units import NS_PER_S
 from recon.product.flight import read_flight
-from recon.product.footprint import Aim, ground_of_pixels, projected
+from recon.product.footprint import Aim, PhotoView, projected
 from recon.product.write import masked_name
 
 AHEAD_S = 7_261.4
@@ -71,8 +71,8 @@ def rows(out: Path) -> list[dict[str, str]]:
 def true_lit(way, at_s: float) -> np.ndarray:
     east, north, yaw = (float(each) for each in way.place(at_s))
     pixels = np.stack(np.meshgrid(np.arange(FIELD_COLS), np.arange(FIELD_ROWS)), axis=-1)
-    homography = ground_of_pixels(Aim(east, north, HEIGHT_M, yaw), 66.0, FIELD_COLS, FIELD_ROWS)
-    ground = projected(homography, pixels.reshape(-1, 2).astype(float))
+    view = PhotoView(Aim(east, north, HEIGHT_M, yaw), 66.0, FIELD_COLS, FIELD_ROWS)
+    ground = projected(view.homography, pixels.reshape(-1, 2).astype(float))
     return (sun(ground[:, 0], ground[:, 1], at_s) >= 0.5).reshape(FIELD_ROWS, FIELD_COLS)
 
 
@@ -143,7 +143,8 @@ def test_chosen_photos_show_all_ground_that_was_photographed_in_sun(tagged) -> N
     shown, listed = np.zeros((2, len(places)), bool)
     for name, (way, at_s) in truth.items():
         east, north, yaw = (float(each) for each in way.place(at_s))
-        inverse = np.linalg.inv(ground_of_pixels(Aim(east, north, HEIGHT_M, yaw), 66.0, 80, 60))
+        view = PhotoView(Aim(east, north, HEIGHT_M, yaw), 66.0, FIELD_COLS, FIELD_ROWS)
+        inverse = np.linalg.inv(view.homography)
         pixels = projected(inverse, places)
         on = ((pixels >= -0.5) & (pixels <= (79.5, 59.5))).all(axis=1)
         lit = on & (sun(places[:, 0], places[:, 1], at_s) >= 0.5)

@@ -24,10 +24,11 @@ from recon.model.report import ImageReport
 from recon.model.shade import ShadeMap, SunForecast
 from recon.record import foxglove
 from recon.record.link_bytes import LINKS_TOPIC
+from recon.record.mcap_file import STEPS_TOPIC
 from recon.record.mcap_read import McapReading, RecordMessage
 from recon.record.record_writer import RecordWriter
 from recon.site import Site
-from recon.station.kernel.recorded_values import STEPS_TOPIC, FlightStart
+from recon.station.kernel.recorded_values import FlightStart
 from recon.station.kernel.recording import Recorder, RecordTranslator
 from recon.station.kernel.step import step
 from recon.station.state.station import Station

@@ -1,6 +1,5 @@
 """`recon score`: fly scenarios in closed loop and print the figures of their methods."""
 
-import os
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -11,6 +10,7 @@ from typing import Annotated
 
 import typer
 
+from recon.cli.progress import usable_cores
 from recon.forecast import FORECASTERS
 from recon.model.errors import ReconError
 from recon.record.users_file import state_folder
@@ -143,16 +143,10 @@ def _flown(
 ) -> Iterator[RunScore]:
     if cluster is not None:
         return on_cluster(scenario, seeds, cluster)
-    at_once = min(jobs or _cores(), len(seeds))
+    at_once = min(jobs or usable_cores(), len(seeds))
     if at_once > 1:
         return on_cores(scenario, seeds, at_once, _report_minutes)
     return one_by_one(scenario, seeds, _report_minutes)
-
-
-def _cores() -> int:
-    """Return how many cores this process may use; not all systems restrict them."""
-    allowed = getattr(os, "sched_getaffinity", None)
-    return len(allowed(0)) if allowed is not None else os.cpu_count() or 1
 
 
 def _with_progress(flown: Iterator[RunScore], count: int) -> Iterator[RunScore]:

@@ -1,10 +1,9 @@
 """`recon tag`: the photos of a flight, and which of them are in sun."""
 
 import json
-import os
 import sys
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from hashlib import sha256
 from itertools import islice
@@ -15,23 +14,21 @@ import typer
 
 from recon import version
 from recon.cli.output import printable
-from recon.cli.progress import progress_over
+from recon.cli.progress import progress_over, usable_cores
 from recon.model.errors import RecordError
 from recon.product.flight import FlightData, read_flight
 from recon.product.photo import SUFFIXES, Photo, PhotoError, read_photo_facts, unique_names
 from recon.product.sun_at import SunHistory
 from recon.product.tag import (
     MASK_SCALE,
+    SUNLIT_SHARE,
     PhotoTag,
     Selection,
-    TagOptions,
-    Timed,
-    TimedPhoto,
     select,
     sun_history,
     tag_photo,
-    timed_photos,
 )
+from recon.product.timing import StatedCamera, Timed, TimedPhoto, timed_photos
 from recon.product.write import (
     fly_again,
     masked_name,
@@ -61,7 +58,7 @@ def tag_command(
     ] = 0.6,
     sunlit: Annotated[
         float, typer.Option(min=0.5, max=1.0, help="Share in sun to call a photo sunlit.")
-    ] = 0.9,
+    ] = SUNLIT_SHARE,
     field: Annotated[
         float | None,
         typer.Option(min=10.0, max=120.0, help="Camera's field along the longer side, degrees."),
@@ -72,7 +69,6 @@ def tag_command(
     ] = None,
 ) -> None:
     """Tag the photos of a flight: sunlit share, masks, the photos to keep, what to fly again."""
-    options = TagOptions(clock_offset, field, overlap, sunlit)
     paths = _photo_files(images)
     try:
         flown = read_flight(flight)
@@ -81,7 +77,7 @@ def tag_command(
     if flown.trouble:
         _warn(f"the record ends early: {flown.trouble}")
     photos, refused = _read(paths)
-    timed = timed_photos(flown, photos, options)
+    timed = timed_photos(flown, photos, StatedCamera(clock_offset, field))
     timed.refused.update(refused)
     _print_clocks(timed)
     if not timed.photos:
@@ -92,10 +88,10 @@ def tag_command(
     try:
         for folder in (out, out / "masks", out / "xmp"):
             folder.mkdir(parents=True, exist_ok=True)
-        tags = _tag_all(out, flown, timed.photos, history, options)
+        tags = _tag_all(out, flown, timed.photos, history, sunlit)
         count = len(timed.photos)
         selection = select(
-            flown, timed.photos, history, options, lambda p: progress_over(p, "coverage", count)
+            flown, timed.photos, history, overlap, lambda p: progress_over(p, "coverage", count)
         )
         write_odm_project(out, flown, timed.photos, selection)
     except OSError as problem:
@@ -103,9 +99,9 @@ def tag_command(
     rows = table(flown, timed.photos, tags, selection.chosen, timed.refused, sunlit)
     write_text(out / "tags.csv", rows)
     write_text(out / "chosen.txt", "".join(f"{name}\n" for name in selection.chosen))
-    write_text(out / "fly-again.geojson", fly_again(flown, selection, options))
+    write_text(out / "fly-again.geojson", fly_again(flown, selection))
     _print_refused(timed.refused)
-    _print_summary(out, tags, selection, options)
+    _print_summary(out, tags, selection, sunlit)
 
 
 def _photo_files(images: Sequence[Path]) -> list[Path]:
@@ -138,7 +134,7 @@ def _read(paths: Sequence[Path]) -> tuple[list[Photo], dict[str, str]]:
         except PhotoError as problem:
             return str(problem)
 
-    with ThreadPoolExecutor(_cores()) as pool:
+    with ThreadPoolExecutor(usable_cores()) as pool:
         for path, found in zip(
             paths, progress_over(pool.map(read, paths), "reading photos", len(paths)), strict=True
         ):
@@ -154,11 +150,11 @@ def _tag_all(
     flight: FlightData,
     photos: Sequence[TimedPhoto],
     history: SunHistory,
-    options: TagOptions,
+    sunlit: float,
 ) -> dict[str, PhotoTag]:
     """Return all tags, with masks and sidecars written; those of an earlier run are kept."""
     stat = flight.path.stat()
-    record = f"{version()} {stat.st_size} {stat.st_mtime_ns} {options} {MASK_SCALE}"
+    record = f"{version()} {stat.st_size} {stat.st_mtime_ns} {sunlit} {MASK_SCALE}"
     keys = {each.photo.name: _key(record, each) for each in photos}
     done = _earlier(out, keys)
 
@@ -167,7 +163,7 @@ def _tag_all(
         if name in done:
             return done[name]
         found, mask = tag_photo(timed, history)
-        write_photo_files(out, flight, timed, found, mask, options.sunlit_share)
+        write_photo_files(out, flight, timed, found, mask, sunlit)
         return found
 
     tags: dict[str, PhotoTag] = {}
@@ -183,12 +179,13 @@ def _tag_all(
     return tags
 
 
-def _in_threads(tag: object, photos: Sequence[TimedPhoto]) -> Iterator[PhotoTag]:
+def _in_threads(
+    tag: Callable[[TimedPhoto], PhotoTag], photos: Sequence[TimedPhoto]
+) -> Iterator[PhotoTag]:
     """Yield tags in order; no more photos are begun than are soon taken."""
-    assert callable(tag)
-    with ThreadPoolExecutor(_cores()) as pool:
+    with ThreadPoolExecutor(usable_cores()) as pool:
         rest = iter(photos)
-        waiting = [pool.submit(tag, each) for each in islice(rest, AHEAD * _cores())]
+        waiting = [pool.submit(tag, each) for each in islice(rest, AHEAD * usable_cores())]
         while waiting:
             yield waiting.pop(0).result()
             waiting += (pool.submit(tag, each) for each in islice(rest, 1))
@@ -196,7 +193,7 @@ def _in_threads(tag: object, photos: Sequence[TimedPhoto]) -> Iterator[PhotoTag]
 
 def _key(record: str, timed: TimedPhoto) -> str:
     stat = timed.photo.path.stat()
-    facts = f"{record} {stat.st_size} {stat.st_mtime_ns} {timed.at_ns} {timed.aim} {timed.photo}"
+    facts = f"{record} {stat.st_size} {stat.st_mtime_ns} {timed.at_ns} {timed.view} {timed.photo}"
     return sha256(facts.encode()).hexdigest()[:16]
 
 
@@ -216,12 +213,6 @@ def _earlier(out: Path, keys: dict[str, str]) -> dict[str, PhotoTag]:
         if keys.get(tag.name) == key and all(file.is_file() for file in files):
             done[tag.name] = tag
     return done
-
-
-def _cores() -> int:
-    """Return how many cores this process may use; not all systems restrict them."""
-    allowed = getattr(os, "sched_getaffinity", None)
-    return len(allowed(0)) if allowed is not None else os.cpu_count() or 1
 
 
 def _warn(text: str) -> None:
@@ -247,9 +238,9 @@ def _print_refused(refused: dict[str, str]) -> None:
 
 
 def _print_summary(
-    out: Path, tags: dict[str, PhotoTag], selection: Selection, options: TagOptions
+    out: Path, tags: dict[str, PhotoTag], selection: Selection, sunlit: float
 ) -> None:
-    states = Counter(tag.state(options.sunlit_share) for tag in tags.values())
+    states = Counter(tag.state(sunlit) for tag in tags.values())
     counts = ", ".join(
         f"{states[name]} {name}"
         for name in ("sunlit", "mixed", "shaded", "unknown")

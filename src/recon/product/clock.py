@@ -59,6 +59,8 @@ SHIFT_M = 1.5
 """Standard deviation of the shift between the positions of photos and of telemetry."""
 ALIKE = 4.0
 COARSEST_EXACT_S = 0.2
+STATED_WITHIN_M = 30.0
+"""With a stated offset a photo belongs to the nearest vehicle, if it was this near."""
 SLOWEST_MPS = 2.0
 """Slower drones are where they are for the whole step."""
 
@@ -126,6 +128,29 @@ def clocks_of(shots: Shots, tracks: Mapping[str, RecordedTrack], utc_ahead_ns: i
             else f"expected at least {FEWEST} photos of a camera, got {len(left)}"
         )
     return Clocks(tuple(fits), left, reason)
+
+
+def stated_clock(
+    shots: Shots, tracks: Mapping[str, RecordedTrack], utc_ahead_ns: int, offset_s: float
+) -> Clocks:
+    """Return the fits of a stated offset: each photo to the vehicle that was nearest then."""
+    step_ns = round((offset_s + shots.step_s / 2.0) * NS_PER_S)
+    at_ns = shots.clock_ns - utc_ahead_ns + step_ns
+    far_m = []
+    for track in tracks.values():
+        east, north = places_at(track, at_ns)
+        far_m.append(np.nan_to_num(np.hypot(shots.east_m - east, shots.north_m - north), nan=1e9))
+    distances = np.array(far_m)
+    nearest = np.argmin(distances, axis=0)
+    is_near = distances.min(axis=0) <= STATED_WITHIN_M
+    fits = []
+    for number, serial in enumerate(tracks):
+        mine = np.flatnonzero((nearest == number) & is_near)
+        if len(mine):
+            far = float(np.median(distances[number, mine]))
+            fits.append(ClockFit(serial, offset_s, shots.step_s / np.sqrt(12.0), mine, far))
+    reason = f"with the stated clock offset no vehicle was within {STATED_WITHIN_M:g} m"
+    return Clocks(tuple(fits), np.flatnonzero(~is_near), reason)
 
 
 @dataclass(frozen=True, slots=True)

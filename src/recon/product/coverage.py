@@ -10,11 +10,11 @@ import numpy.typing as npt
 import shapely  # type: ignore[import-untyped, unused-ignore]
 from scipy.sparse import csr_array
 
-from recon.geo import geo_from_enu
+from recon.geo import cell_centres_m
 from recon.model.geo import GroundGrid, LocalFrame
 from recon.model.shade import SUNLIT_TRANSMITTANCE
 from recon.product.flight import FlownSurvey
-from recon.product.footprint import Aim, ground_of_pixels, projected
+from recon.product.footprint import PhotoView
 from recon.product.sun_at import Sunshine
 
 BoolArray = npt.NDArray[np.bool_]
@@ -45,16 +45,6 @@ class Ground:
     area: shapely.Geometry
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class PhotoView:
-    """A photo's pose and lens, with its size."""
-
-    aim: Aim
-    across_deg: float
-    cols: int
-    rows: int
-
-
 def region_of(surveys: Iterable[FlownSurvey]) -> shapely.Geometry | None:
     """Return the union of surveys' regions in east-north metres; None without any."""
     areas = [shapely.Polygon(each.outline_m, each.holes_m).buffer(0.0) for each in surveys]
@@ -63,14 +53,7 @@ def region_of(surveys: Iterable[FlownSurvey]) -> shapely.Geometry | None:
 
 def region_of_views(views: Sequence[PhotoView]) -> shapely.Geometry:
     """Return the ground that photos show."""
-    footprints = []
-    for view in views:
-        edges = np.array(
-            [(0, 0), (view.cols - 1, 0), (view.cols - 1, view.rows - 1), (0, view.rows - 1)],
-            dtype=np.float64,
-        )
-        footprints.append(shapely.Polygon(projected(_homography(view), edges)).buffer(0.0))
-    return shapely.union_all(footprints)
+    return shapely.union_all([shapely.Polygon(view.corners_m).buffer(0.0) for view in views])
 
 
 def ground_of(area: shapely.Geometry, frame: LocalFrame) -> Ground:
@@ -83,22 +66,16 @@ def ground_of(area: shapely.Geometry, frame: LocalFrame) -> Ground:
     cols = max(1, ceil(east / cell_m) - first_col)
     rows = max(1, first_row - floor(south / cell_m))
     grid = GroundGrid(frame, first_col * cell_m, first_row * cell_m, cell_m, rows, cols)
-    easts = grid.west_m + cell_m * (np.arange(cols) + 0.5)
-    norths = grid.north_m - cell_m * (np.arange(rows) + 0.5)
-    east_m, north_m = np.meshgrid(easts, norths)
+    east_m, north_m = np.meshgrid(*cell_centres_m(grid))
     shapely.prepare(area)
     inside = np.asarray(shapely.contains_xy(area, east_m, north_m), dtype=np.bool_)
     return Ground(grid, inside, np.column_stack([east_m[inside], north_m[inside]]), area)
 
 
-def _homography(view: PhotoView) -> FloatArray:
-    return ground_of_pixels(view.aim, view.across_deg, view.cols, view.rows)
-
-
 def cells_on(view: PhotoView, ground: Ground) -> IntArray:
     """Return the indices of the cells whose centres a photo shows."""
     try:
-        inverse = np.linalg.inv(_homography(view))
+        inverse = np.linalg.inv(view.homography)
     except np.linalg.LinAlgError:
         return np.zeros(0, dtype=np.int64)
     found = np.column_stack([ground.centres_m, np.ones(len(ground.centres_m))]) @ inverse.T
@@ -149,20 +126,3 @@ def to_fly_again(ground: Ground, shown: IntArray, sunlit: IntArray) -> list[shap
     parts = [each for each in shapely.get_parts(inside) if each.geom_type == "Polygon"]
     large = [each for each in parts if each.area >= SMALLEST_M2]
     return sorted(large, key=lambda each: -each.area)
-
-
-def lon_lat_rings(polygon: shapely.Polygon, frame: LocalFrame) -> list[list[list[float]]]:
-    """Return a polygon's rings as GeoJSON has them: closed, counter-clockwise outside."""
-    turned = shapely.geometry.polygon.orient(polygon)
-    rings = []
-    for ring in (turned.exterior, *turned.interiors):
-        points = np.asarray(ring.coords)[:, :2]
-        level = np.column_stack([points, np.zeros(len(points))])
-        latitude, longitude, _height = geo_from_enu(frame, level)
-        rings.append(
-            [
-                [round(float(x), 8), round(float(y), 8)]
-                for x, y in zip(longitude, latitude, strict=True)
-            ]
-        )
-    return rings

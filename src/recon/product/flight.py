@@ -1,4 +1,4 @@
-"""A recorded flight as the product needs it: tracks, shade maps, surveys, where and when.
+"""A recorded flight as the product needs it: tracks, shade maps, surveys, place and time.
 
 Only what is stated in the file for readers of any version is used: Foxglove's topics, the plain
 values of events, and `recon/about.json`. The file is hostile: each value is checked as it is read.
@@ -6,7 +6,7 @@ values of events, and `recon/about.json`. The file is hostile: each value is che
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -17,19 +17,18 @@ import numpy.typing as npt
 from foxglove_schemas_protobuf.Grid_pb2 import Grid
 from google.protobuf.message import DecodeError
 
-from recon.geo import enu_from_geo
+from recon.geo import enu_from_geo, geo_from_enu
 from recon.model.errors import RecordError
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.units import NS_PER_S
+from recon.record.foxglove import SHADE_TOPIC
+from recon.record.mcap_file import ABOUT_NAME, STEPS_TOPIC
 from recon.record.mcap_read import McapReading, RecordAttachment, RecordMessage
 from recon.record.tracks import utc_text
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 ByteMap = npt.NDArray[np.uint8]
-
-ABOUT, STEPS, SHADE = "recon/about.json", "/recon/steps", "/shade"
-"""Names in the record, as `recon.station.kernel` writes them."""
 
 UNKNOWN = 255
 """In a `KeptMap`, where nothing is known; 0 to 250 are transmittances of 0 to 1."""
@@ -70,58 +69,30 @@ class KeptMap:
 
 @dataclass(frozen=True, slots=True)
 class FlownSurvey:
-    """A survey as it was requested."""
+    """A survey as it was requested; rings in east-north metres."""
 
-    name: str
     outline_m: tuple[tuple[float, float], ...]
     holes_m: tuple[tuple[tuple[float, float], ...], ...]
     height_above_takeoff_m: float
     speed_mps: float
-    across_deg: float
-    along_deg: float
-    interval_s: float
-    front_overlap: float
-    side_overlap: float
 
 
-@dataclass(frozen=True, slots=True)
-class Note:
-    """One entry of the audit."""
-
-    at_ns: int
-    kind: str
-    text: str
-    by: str
-    vehicle: str
-    details: Mapping[str, Any]
-
-
-@dataclass(frozen=True, slots=True)
-class Charge:
-    """A battery at a time, 0 to 1."""
-
-    at_ns: int
-    fraction: float
-
-
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class FlightData:
     """One recorded flight. Times are station time; `utc_ahead_ns` added to it gives UTC."""
 
     path: Path
-    about: Mapping[str, Any] = field(default_factory=dict)
-    frame: LocalFrame | None = None
-    imagers: frozenset[str] = frozenset()
+    frame: LocalFrame
+    tracks: Mapping[str, RecordedTrack]
     names: Mapping[str, str] = field(default_factory=dict)
-    tracks: dict[str, RecordedTrack] = field(default_factory=dict)
+    """Of vehicles, by serial."""
+    imagers: frozenset[str] = frozenset()
     grid: GroundGrid | None = None
-    maps: list[KeptMap] = field(default_factory=list)
-    surveys: list[FlownSurvey] = field(default_factory=list)
-    notes: list[Note] = field(default_factory=list)
-    batteries: dict[str, list[Charge]] = field(default_factory=dict)
+    """Of all maps; None without any."""
+    maps: Sequence[KeptMap] = ()
+    """In the order of time."""
+    surveys: Sequence[FlownSurvey] = ()
     utc_ahead_ns: int = 0
-    begins_ns: int = 0
-    ends_ns: int = 0
     trouble: str = ""
     """Why reading ended early; empty if it did not."""
 
@@ -129,82 +100,100 @@ class FlightData:
         """Return a station time as ISO 8601 in UTC."""
         return utc_text(at_ns + self.utc_ahead_ns)
 
+    def lon_lat(self, points_m: FloatArray) -> list[tuple[float, float]]:
+        """Return longitude and latitude of points (N, 2), east and north."""
+        level = np.column_stack([points_m, np.zeros(len(points_m))])
+        latitude_deg, longitude_deg, _height = geo_from_enu(self.frame, level)
+        return list(zip(longitude_deg.tolist(), latitude_deg.tolist(), strict=True))
+
     @property
     def survey_tracks(self) -> dict[str, RecordedTrack]:
         """The tracks of all vehicles but the imaging drones."""
         return {s: track for s, track in self.tracks.items() if s not in self.imagers}
 
 
-def read_flight(path: Path, *, with_maps: bool = True) -> FlightData:
+def read_flight(path: Path) -> FlightData:
     """Return a record's flight, as far as the file goes.
 
     Raises `RecordError` for a file that is no flight record, without positions, or without the
     place of its site; and OSError.
     """
-    reader = _Reader(FlightData(path), with_maps)
+    reader = _Reader(path)
     with path.open("rb") as file:
         reading = McapReading(file)
         for item in reading.items():
             reader.take(item)
-    flight = reader.finished()
-    flight.trouble = reading.trouble
-    if not flight.tracks:
-        raise RecordError(f"{path}: expected a record with positions of vehicles, got none")
-    return flight
+    return reader.flight(reading.trouble)
 
 
-class _Event(msgspec.Struct, frozen=True):
-    """The event of a step, of which three kinds are read."""
+class _Step(msgspec.Struct, frozen=True):
+    """The event of a step, of which some kinds are read."""
 
     event: dict[str, Any]
-    audit: list[dict[str, Any]] = []
+
+
+TrackRow = tuple[int, float, float, float, float]
+"""Time, latitude, longitude, height above takeoff, heading."""
 
 
 @dataclass(slots=True)
 class _Reader:
     """Collects the items of a file."""
 
-    flight: FlightData
-    with_maps: bool
+    path: Path
+    _frame: LocalFrame | None = None
+    _imagers: frozenset[str] = frozenset()
+    _names: dict[str, str] = field(default_factory=dict)
+    _utc_ahead_ns: int = 0
+    _grid: GroundGrid | None = None
+    _maps: list[KeptMap] = field(default_factory=list)
+    _surveys: list[FlownSurvey] = field(default_factory=list)
     _serials: dict[int, str] = field(default_factory=dict)
-    _links: dict[int, list[tuple[int, float, float, float, float]]] = field(default_factory=dict)
-    _decoder: msgspec.msgpack.Decoder[_Event] = field(
-        default_factory=lambda: msgspec.msgpack.Decoder(_Event)
+    _links: dict[int, list[TrackRow]] = field(default_factory=dict)
+    _decoder: msgspec.msgpack.Decoder[_Step] = field(
+        default_factory=lambda: msgspec.msgpack.Decoder(_Step)
     )
 
     def take(self, item: RecordMessage | RecordAttachment) -> None:
         """Take the next item; raises `RecordError` for one that is damaged."""
         if isinstance(item, RecordAttachment):
-            if item.name == ABOUT:
+            if item.name == ABOUT_NAME:
                 self._about(item.data)
-            return
-        flight = self.flight
-        flight.begins_ns = flight.begins_ns or item.log_ns
-        flight.ends_ns = max(flight.ends_ns, item.log_ns)
-        if item.topic == STEPS:
+        elif item.topic == STEPS_TOPIC:
             self._step(item)
-        elif item.topic == SHADE and self.with_maps and flight.frame is not None:
-            self._map(item, flight.frame)
+        elif item.topic == SHADE_TOPIC and self._frame is not None:
+            self._map(item, self._frame)
 
-    def finished(self) -> FlightData:
-        """Return the flight; raises `RecordError` without the site's place."""
-        flight = self.flight
-        if flight.frame is None:
+    def flight(self, trouble: str) -> FlightData:
+        """Return the flight; raises `RecordError` without the site's place, or positions."""
+        frame = self._frame
+        if frame is None:
             raise RecordError(
-                f"{flight.path}: expected a flight record with the place of its site, got none: "
+                f"{self.path}: expected a flight record with the place of its site, got none: "
                 "it was recorded without --site, by an older version, or is no record of Recon"
             )
-        by_serial: dict[str, list[tuple[int, float, float, float, float]]] = {}
+        by_serial: dict[str, list[TrackRow]] = {}
         for link, rows in self._links.items():
             if link in self._serials:
                 by_serial.setdefault(self._serials[link], []).extend(rows)
-        for serial, rows in sorted(by_serial.items()):
-            flight.tracks[serial] = _track(serial, rows, flight.frame)
-        flight.maps.sort(key=lambda each: each.at_ns)
-        return flight
+        if not by_serial:
+            raise RecordError(
+                f"{self.path}: expected a record with positions of vehicles, got none"
+            )
+        return FlightData(
+            self.path,
+            frame,
+            {serial: _track(serial, rows, frame) for serial, rows in sorted(by_serial.items())},
+            self._names,
+            self._imagers,
+            self._grid,
+            sorted(self._maps, key=lambda each: each.at_ns),
+            self._surveys,
+            self._utc_ahead_ns,
+            trouble,
+        )
 
     def _about(self, data: bytes) -> None:
-        flight = self.flight
         try:
             about = json.loads(data)
             origin = about.get("origin")
@@ -212,22 +201,18 @@ class _Reader:
                 point = GeoPoint(*(float(origin[name]) for name in _ORIGIN))
                 if not point.is_valid():
                     raise ValueError(f"no place on earth: {origin!a:.80}")
-                flight.frame = LocalFrame(point)
-            flight.imagers = frozenset(str(each) for each in about.get("imagers", ()))
-            flight.names = {str(k): str(v) for k, v in about.get("vehicles", {}).items()}
+                self._frame = LocalFrame(point)
+            self._imagers = frozenset(str(each) for each in about.get("imagers", ()))
+            self._names = {str(k): str(v) for k, v in about.get("vehicles", {}).items()}
         except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as problem:
-            raise RecordError(f"{flight.path}: {ABOUT} is damaged: {problem}") from problem
-        flight.about = about
+            raise RecordError(f"{self.path}: {ABOUT_NAME} is damaged: {problem}") from problem
 
     def _step(self, item: RecordMessage) -> None:
         try:
-            step = self._decoder.decode(item.data)
-            self._event(step.event, item.log_ns)
-            for each in step.audit:
-                self._note(each, item.log_ns)
+            self._event(self._decoder.decode(item.data).event, item.log_ns)
         except (msgspec.MsgspecError, ValueError, TypeError, KeyError) as problem:
             raise RecordError(
-                f"{self.flight.path}: step {item.sequence} is damaged: {problem}"
+                f"{self.path}: step {item.sequence} is damaged: {problem}"
             ) from problem
 
     def _event(self, event: Mapping[str, Any], at_ns: int) -> None:
@@ -235,9 +220,9 @@ class _Reader:
             case "PacketReceived":
                 self._report(event, at_ns)
             case "ClockRead":
-                self.flight.utc_ahead_ns = int(event["wall_ns"]) - at_ns
+                self._utc_ahead_ns = int(event["wall_ns"]) - at_ns
             case "SurveyRequested":
-                self.flight.surveys.append(_survey(event["survey"]))
+                self._surveys.append(_survey(event["survey"]))
 
     def _report(self, event: Mapping[str, Any], at_ns: int) -> None:
         report, link = event["report"], int(event["link_id"])
@@ -245,12 +230,7 @@ class _Reader:
         at_ns = at_ns if event.get("arrived_at_ns") is None else int(event["arrived_at_ns"])
         kind = report.get("_")
         if kind == "ExtendedReport" and report["serial"]:
-            serial = self._serials[link] = str(report["serial"])
-            if report["battery_fraction"] is not None:
-                charges = self.flight.batteries.setdefault(serial, [])
-                charge = float(report["battery_fraction"])
-                if not charges or charges[-1].fraction != charge:
-                    charges.append(Charge(at_ns, charge))
+            self._serials[link] = str(report["serial"])
         elif kind == "CoreReport" and report["position"] is not None:
             place, attitude = report["position"], report["attitude"]
             numbers = (
@@ -259,32 +239,29 @@ class _Reader:
                 report["height_above_takeoff_m"],
                 None if attitude is None else attitude["yaw_deg"],
             )
-            row = tuple(math.nan if n is None else float(n) for n in numbers)
-            self._links.setdefault(link, []).append((at_ns, *row))  # type: ignore[arg-type]
-
-    def _note(self, entry: Mapping[str, Any], at_ns: int) -> None:
-        kind, text, by, vehicle = (str(entry[name]) for name in ("kind", "text", "by", "vehicle"))
-        self.flight.notes.append(Note(at_ns, kind, text, by, vehicle, dict(entry["details"])))
+            latitude, longitude, height_m, yaw = (
+                math.nan if number is None else float(number) for number in numbers
+            )
+            self._links.setdefault(link, []).append((at_ns, latitude, longitude, height_m, yaw))
 
     def _map(self, item: RecordMessage, frame: LocalFrame) -> None:
-        flight = self.flight
         try:
             found = Grid.FromString(item.data)
         except DecodeError as problem:
-            raise RecordError(f"{flight.path}: a shade map is damaged: {problem}") from problem
+            raise RecordError(f"{self.path}: a shade map is damaged: {problem}") from problem
         grid, values = _grid_values(found, frame)
-        if flight.grid is None:
-            flight.grid = grid
-        if grid != flight.grid:
-            raise RecordError(f"{flight.path}: expected shade maps on one grid, got several")
-        if len(flight.maps) >= MOST_MAPS:
-            raise RecordError(f"{flight.path}: expected at most {MOST_MAPS} shade maps, got more")
+        if self._grid is None:
+            self._grid = grid
+        if grid != self._grid:
+            raise RecordError(f"{self.path}: expected shade maps on one grid, got several")
+        if len(self._maps) >= MOST_MAPS:
+            raise RecordError(f"{self.path}: expected at most {MOST_MAPS} shade maps, got more")
         transmittance, confidence = values[..., 0], values[..., 1]
         is_known = np.isfinite(transmittance)
         sun = np.where(is_known, np.clip(np.nan_to_num(transmittance), 0.0, 1.0) * FULL, UNKNOWN)
         sure = np.where(is_known, np.clip(np.nan_to_num(confidence), 0.0, 1.0) * 255.0, 0.0)
         at_ns = found.timestamp.seconds * NS_PER_S + found.timestamp.nanos
-        flight.maps.append(
+        self._maps.append(
             KeptMap(at_ns, np.rint(sun).astype(np.uint8), np.rint(sure).astype(np.uint8))
         )
 
@@ -308,9 +285,7 @@ def _grid_values(grid: Grid, frame: LocalFrame) -> tuple[GroundGrid, npt.NDArray
     return GroundGrid(frame, west_m, south_m + rows * cell_m, cell_m, rows, cols), values
 
 
-def _track(
-    serial: str, rows: list[tuple[int, float, float, float, float]], frame: LocalFrame
-) -> RecordedTrack:
+def _track(serial: str, rows: Sequence[TrackRow], frame: LocalFrame) -> RecordedTrack:
     """Return the track of a vehicle's reports, each time once."""
     at_ns = np.array([row[0] for row in rows], dtype=np.int64)
     values = np.array([row[1:] for row in rows], dtype=np.float64)
@@ -322,18 +297,12 @@ def _track(
 
 
 def _survey(value: Mapping[str, Any]) -> FlownSurvey:
-    region, camera = value["region"], value["camera"]
+    region = value["region"]
     return FlownSurvey(
-        str(value["name"]),
         _ring(region["outline_m"]),
         tuple(_ring(hole) for hole in region["holes_m"]),
         float(value["height_above_takeoff_m"]),
         float(value["speed_mps"]),
-        float(camera["across_deg"]),
-        float(camera["along_deg"]),
-        float(camera["interval_s"]),
-        float(value["front_overlap"]),
-        float(value["side_overlap"]),
     )
 
 

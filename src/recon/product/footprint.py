@@ -45,28 +45,38 @@ class Aim:
         return np.stack([right, down, forward], axis=1)
 
 
-def ground_of_pixels(aim: Aim, across_deg: float, cols: int, rows: int) -> FloatArray:
-    """Return H (3, 3): (east, north, 1) ~ H (col, row, 1), pixels counted from the middle of the
-    upper left one; the longer side of the picture has the field `across_deg`."""
-    focal_px = max(cols, rows) / 2.0 / tan(radians(across_deg) / 2.0)
-    rays = aim.rotation @ np.array(
-        [[1.0 / focal_px, 0.0, -(cols - 1) / 2.0 / focal_px],
-         [0.0, 1.0 / focal_px, -(rows - 1) / 2.0 / focal_px],
-         [0.0, 0.0, 1.0]]
-    )  # fmt: skip
-    place = np.array(
-        [[aim.height_m, 0.0, -aim.east_m], [0.0, aim.height_m, -aim.north_m], [0.0, 0.0, -1.0]]
-    )
-    homography: FloatArray = place @ rays
-    return homography
+@dataclass(frozen=True, slots=True)
+class PhotoView:
+    """A picture's pose, field of view along its longer side, and size in pixels."""
 
+    aim: Aim
+    across_deg: float
+    cols: int
+    rows: int
 
-def corners_m(aim: Aim, across_deg: float, cols: int, rows: int) -> FloatArray:
-    """Return the footprint's corners (4, 2), east and north, clockwise from the upper left one."""
-    edges = np.array(
-        [[-0.5, -0.5], [cols - 0.5, -0.5], [cols - 0.5, rows - 0.5], [-0.5, rows - 0.5]]
-    )
-    return projected(ground_of_pixels(aim, across_deg, cols, rows), edges)
+    @property
+    def homography(self) -> FloatArray:
+        """H (3, 3): (east, north, 1) ~ H (col, row, 1), pixels counted from the middle of the upper
+        left one."""
+        aim, cols, rows = self.aim, self.cols, self.rows
+        focal_px = max(cols, rows) / 2.0 / tan(radians(self.across_deg) / 2.0)
+        rays = aim.rotation @ np.array(
+            [[1.0 / focal_px, 0.0, -(cols - 1) / 2.0 / focal_px],
+             [0.0, 1.0 / focal_px, -(rows - 1) / 2.0 / focal_px],
+             [0.0, 0.0, 1.0]]
+        )  # fmt: skip
+        place = np.array(
+            [[aim.height_m, 0.0, -aim.east_m], [0.0, aim.height_m, -aim.north_m], [0.0, 0.0, -1.0]]
+        )
+        homography: FloatArray = place @ rays
+        return homography
+
+    @property
+    def corners_m(self) -> FloatArray:
+        """The footprint's corners (4, 2), east and north, clockwise from the upper left one."""
+        right, low = self.cols - 0.5, self.rows - 0.5
+        edges = np.array([[-0.5, -0.5], [right, -0.5], [right, low], [-0.5, low]])
+        return projected(self.homography, edges)
 
 
 def projected(homography: FloatArray, points: FloatArray) -> FloatArray:
@@ -76,10 +86,8 @@ def projected(homography: FloatArray, points: FloatArray) -> FloatArray:
     return result
 
 
-def sun_on_photo(
-    sun: Sunshine, grid: GroundGrid, aim: Aim, across_deg: float, cols: int, rows: int
-) -> Sunshine:
-    """Return the sun on the pixels of a picture of that size, (rows, cols)."""
+def sun_on_photo(sun: Sunshine, grid: GroundGrid, view: PhotoView) -> Sunshine:
+    """Return the sun on the pixels of a picture, (rows, cols)."""
     cells = np.array(
         [
             [1.0 / grid.cell_m, 0.0, -grid.west_m / grid.cell_m - 0.5],
@@ -87,11 +95,11 @@ def sun_on_photo(
             [0.0, 0.0, 1.0],
         ]
     )
-    to_cells = cells @ ground_of_pixels(aim, across_deg, cols, rows)
+    to_cells = cells @ view.homography
     how = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
 
     def on_photo(values: FloatMap) -> FloatMap:
-        found = cv2.warpPerspective(values, to_cells, (cols, rows), flags=how)
+        found = cv2.warpPerspective(values, to_cells, (view.cols, view.rows), flags=how)
         return found.astype(np.float32, copy=False)
 
     is_known = (sun.confidence > 0.0).astype(np.float32)

@@ -54,14 +54,12 @@ class SunHistory:
 
     grid: GroundGrid
     maps: Sequence[KeptMap]
-    is_moved: bool = True
-    """False mixes the maps as they are, for comparison."""
     _times: list[int] = field(init=False)
     _motions: npt.NDArray[np.float64] = field(init=False)
 
     def __post_init__(self) -> None:
         self._times = [each.at_ns for each in self.maps]
-        self._motions = _motions(self.grid, self.maps) if self.is_moved else np.zeros((0, 3))
+        self._motions = _motions(self.grid, self.maps)
 
     def velocity_mps(self, at_ns: int) -> tuple[float, float]:
         """Return the shadows' velocity east and north; zero where it is not clear."""
@@ -93,15 +91,6 @@ class SunHistory:
             np.maximum(sure, confidence, out=sure)
         found = total / np.where(weights > 0.0, weights, np.float32(1.0))
         return Sunshine(found.astype(np.float32), sure)
-
-    def nearest(self, at_ns: int) -> Sunshine:
-        """Return the map nearest in time as it is, for comparison."""
-        if not self.maps:
-            nothing = np.zeros((self.grid.rows, self.grid.cols), dtype=np.float32)
-            return Sunshine(nothing, nothing)
-        chosen = min(self.maps, key=lambda each: abs(each.at_ns - at_ns))
-        known, transmittance, confidence = _moved(chosen, self.grid, STANDS, 0.0)
-        return Sunshine(transmittance * known, confidence * known)
 
 
 def _moved(

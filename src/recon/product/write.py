@@ -13,13 +13,13 @@ from xml.sax.saxutils import quoteattr
 import cv2
 import numpy as np
 import numpy.typing as npt
+import shapely  # type: ignore[import-untyped, unused-ignore]
 
 from recon import version
-from recon.geo import geo_from_enu
 from recon.model.errors import RecordError
-from recon.product.coverage import lon_lat_rings
 from recon.product.flight import FlightData
-from recon.product.tag import PhotoTag, Selection, TagOptions, TimedPhoto
+from recon.product.tag import PhotoTag, Selection
+from recon.product.timing import TimedPhoto
 from recon.record.atomic_file import replace_file
 
 ByteMap = npt.NDArray[np.uint8]
@@ -73,7 +73,7 @@ def write_photo_files(
 
 def xmp(flight: FlightData, timed: TimedPhoto, tag: PhotoTag, share: float) -> str:
     """Return a photo's sidecar."""
-    latitude_deg, longitude_deg = _place(flight, timed)
+    longitude_deg, latitude_deg = _lon_lat(flight, timed)
     state = tag.state(share)
     values = {
         "xmp:CreatorTool": f"Recon {version()}",
@@ -86,7 +86,7 @@ def xmp(flight: FlightData, timed: TimedPhoto, tag: PhotoTag, share: float) -> s
         "recon:SunlitConfidence": _share(tag.confidence),
         "recon:KnownFraction": _share(tag.known),
         "recon:State": state,
-        "recon:HeightAboveTakeoff": f"{timed.aim.height_m:.1f}",
+        "recon:HeightAboveTakeoff": f"{timed.view.aim.height_m:.1f}",
         "recon:FlightRecord": flight.path.name,
     }
     lines = "\n".join(f"   {name}={quoteattr(value)}" for name, value in values.items() if value)
@@ -116,12 +116,10 @@ def _share(value: float) -> str:
     return "" if np.isnan(value) else f"{value:.3f}"
 
 
-def _place(flight: FlightData, timed: TimedPhoto) -> tuple[float, float]:
-    assert flight.frame is not None  # or it would not have been read
-    latitude, longitude, _height = geo_from_enu(
-        flight.frame, (timed.aim.east_m, timed.aim.north_m, 0.0)
-    )
-    return float(latitude[0]), float(longitude[0])
+def _lon_lat(flight: FlightData, timed: TimedPhoto) -> tuple[float, float]:
+    aim = timed.view.aim
+    (place,) = flight.lon_lat(np.array([[aim.east_m, aim.north_m]]))
+    return place
 
 
 def table(
@@ -138,8 +136,8 @@ def table(
     rows.writerow(COLUMNS)
     kept = frozenset(chosen)
     for timed in photos:
-        tag, aim, name = tags[timed.photo.name], timed.aim, timed.photo.name
-        latitude_deg, longitude_deg = _place(flight, timed)
+        tag, aim, name = tags[timed.photo.name], timed.view.aim, timed.photo.name
+        longitude_deg, latitude_deg = _lon_lat(flight, timed)
         rows.writerow(
             (
                 *(_cell(name), _cell(str(timed.photo.path)), _cell(timed.serial)),
@@ -161,16 +159,12 @@ def _cell(text: str) -> str:
 
 
 def _wkt(flight: FlightData, timed: TimedPhoto) -> str:
-    assert flight.frame is not None  # or it would not have been read
-    corners = np.column_stack([timed.corners_m, np.zeros(4)])
-    latitude, longitude, _height = geo_from_enu(flight.frame, corners)
-    points = [f"{x:.8f} {y:.8f}" for x, y in zip(longitude, latitude, strict=True)]
+    points = [f"{x:.8f} {y:.8f}" for x, y in flight.lon_lat(timed.view.corners_m)]
     return f"POLYGON (({', '.join((*points, points[0]))}))"
 
 
-def fly_again(flight: FlightData, selection: Selection, options: TagOptions) -> str:
+def fly_again(flight: FlightData, selection: Selection) -> str:
     """Return the GeoJSON of what is to be flown again: regions that `recon survey create` takes."""
-    assert flight.frame is not None  # or it would not have been read
     features = []
     for number, polygon in enumerate(selection.again, start=1):
         properties: dict[str, str | float] = {
@@ -180,9 +174,18 @@ def fly_again(flight: FlightData, selection: Selection, options: TagOptions) -> 
         if flight.surveys:
             properties["height_above_takeoff_m"] = flight.surveys[-1].height_above_takeoff_m
             properties["speed_mps"] = flight.surveys[-1].speed_mps
-        geometry = {"type": "Polygon", "coordinates": lon_lat_rings(polygon, flight.frame)}
+        geometry = {"type": "Polygon", "coordinates": _rings(polygon, flight)}
         features.append({"type": "Feature", "properties": properties, "geometry": geometry})
     return json.dumps({"type": "FeatureCollection", "features": features}) + "\n"
+
+
+def _rings(polygon: shapely.Polygon, flight: FlightData) -> list[list[list[float]]]:
+    """Return a polygon's rings as GeoJSON has them: closed, counter-clockwise outside."""
+    turned = shapely.geometry.polygon.orient(polygon)
+    return [
+        [[round(x, 8), round(y, 8)] for x, y in flight.lon_lat(np.asarray(ring.coords)[:, :2])]
+        for ring in (turned.exterior, *turned.interiors)
+    ]
 
 
 def write_odm_project(
@@ -204,7 +207,7 @@ def write_odm_project(
             continue
         _link(timed.photo.path, folder / name)
         _link(out / "masks" / masked_name(name), folder / masked_name(name))
-        latitude_deg, longitude_deg = _place(flight, timed)
+        longitude_deg, latitude_deg = _lon_lat(flight, timed)
         lines.append(f"{name} {longitude_deg:.8f} {latitude_deg:.8f}")
     replace_file(out / "odm" / "geo.txt", ("\n".join(lines) + "\n").encode(), FILE_MODE)
 

@@ -26,6 +26,7 @@ from recon.model.shade import ShadeMap, SunForecast
 
 ENCODING = "protobuf"
 SITE_FRAME = "site"
+SHADE_TOPIC = "/shade"
 RAW_IMAGE: Any = RawImage
 LENGTH_DELIMITED = 2
 """Protobuf's wire type of bytes."""

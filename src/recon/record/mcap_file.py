@@ -33,6 +33,9 @@ from mcap.records import (
 from mcap.writer import MCAP0_MAGIC
 
 PROFILE = "recon"
+ABOUT_NAME, STEPS_TOPIC = "recon/about.json", "/recon/steps"
+"""Written by the station; read by it for a replay, and after the flight without it."""
+
 CHUNK_BYTES = 8 * 1024 * 1024
 """Two raw frames beside their link's bytes: a repeated frame costs nothing within a chunk."""
 

@@ -45,8 +45,6 @@ from recon.station.state.vehicle_control import VehicleSnapshot
 
 START_NAME = "recon/start"
 START_TYPE = "application/vnd.recon.start+zstd"
-ABOUT_NAME = "recon/about.json"
-STEPS_TOPIC = "/recon/steps"
 MSGPACK = "msgpack"
 
 DONE, FAILED, DROPPED = "done", "failed", "dropped"

@@ -21,14 +21,12 @@ from recon.model.shade import ShadeMap, SunForecast
 from recon.record import foxglove
 from recon.record.audit import AuditEntry
 from recon.record.link_bytes import LINKS_TOPIC, LinkMessage
-from recon.record.mcap_file import compressor
+from recon.record.mcap_file import ABOUT_NAME, STEPS_TOPIC, compressor
 from recon.record.record_writer import RecordWriter, Topics
 from recon.station.kernel.recorded_values import (
-    ABOUT_NAME,
     MSGPACK,
     START_NAME,
     START_TYPE,
-    STEPS_TOPIC,
     FlightStart,
     audit_builtins,
     output_builtins,
@@ -251,7 +249,7 @@ class RecordTranslator:
                 path = foxglove.mission_path(command.body.mission, command.serial)
                 _add(topics, f"/vehicles/{command.serial}/mission", path, at_ns)
         if item.shade is not None:
-            _add(topics, "/shade", foxglove.shade_grid(item.shade), at_ns)
+            _add(topics, foxglove.SHADE_TOPIC, foxglove.shade_grid(item.shade), at_ns)
         if item.sun is not None:
             _add(topics, "/forecast", foxglove.forecast_grid(item.sun), at_ns)
 

@@ -23,6 +23,7 @@ from recon.model.errors import RecordError
 from recon.model.event import Event, PacketReceived
 from recon.model.report import ImageReport
 from recon.model.units import ns_to_seconds
+from recon.record.mcap_file import STEPS_TOPIC
 from recon.record.mcap_read import (
     MOST_RECORD_BYTES,
     McapReading,
@@ -35,7 +36,6 @@ from recon.station.kernel.recorded_values import (
     DONE,
     FAILED,
     START_NAME,
-    STEPS_TOPIC,
     EndOfJob,
     FlightStart,
     FrameReport,
