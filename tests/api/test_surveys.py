@@ -333,9 +333,12 @@ class TestLookAside:
 
     def test_a_survey_allows_it_only_when_asked(self, client: Client) -> None:
         plain = client.post("/api/surveys", json=ASKED).json()["survey"]
-        allowed = client.post("/api/surveys", json={**ASKED, "look_aside_allowed": True}).json()
+        allowing = {"look_aside_allowed": True, "upwind_allowed": True}
+        allowed = client.post("/api/surveys", json={**ASKED, **allowing}).json()
         assert plain["look_aside_allowed"] is False
+        assert plain["upwind_allowed"] is False
         assert allowed["survey"]["look_aside_allowed"] is True
+        assert allowed["survey"]["upwind_allowed"] is True
 
 
 IN_VIEW = {"sun": 0.4, "shade": 0.4, "unknown": 0.2}

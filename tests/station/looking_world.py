@@ -17,8 +17,8 @@ from recon.model.geo import GroundGrid, LatLon, LocalFrame
 from recon.model.shade import ShadeMap
 from recon.station.imaging.shade import READ_SHADE, ShadeRead
 from recon.station.kernel.virtual import EPOCH_NS
+from recon.station.state.imager_motion import LookAside
 from recon.station.state.imaging import SeenShade
-from recon.station.state.look_aside_record import LookAside
 from recon.station.state.station import Station
 from recon.station.state.steps import JobDone
 

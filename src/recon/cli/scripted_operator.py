@@ -199,6 +199,7 @@ def survey_request(scenario: Scenario) -> dict[str, Any]:
         "camera": {"interval_s": survey.camera.interval_s},
         "budget": {"rounds": survey.budget.rounds},
         "look_aside_allowed": survey.look_aside_allowed,
+        "upwind_allowed": survey.upwind_allowed,
     }
 
 

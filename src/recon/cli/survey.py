@@ -89,6 +89,13 @@ def create_command(
             help="The imaging drone may look aside by itself while light is mostly unknown.",
         ),
     ] = False,
+    upwind: Annotated[
+        bool,
+        typer.Option(
+            "--upwind",
+            help="The imaging drone may fly by itself to where it sees more of the shade to come.",
+        ),
+    ] = False,
     as_json: JsonOption = False,
     address: AddressOption = DEFAULT_ADDRESS,
     token_file: TokenOption = None,
@@ -108,6 +115,7 @@ def create_command(
         "budget": {"rounds": rounds, "time_s": None if minutes is None else 60.0 * minutes},
         "when_done": when_done.value,
         "look_aside_allowed": look_aside,
+        "upwind_allowed": upwind,
     }
 
     async def work(station: Station) -> int:

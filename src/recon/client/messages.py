@@ -16,7 +16,7 @@ M = TypeVar("M")
 SHOWN_CHARACTERS = 60
 
 ReturnStage = Literal["stopping", "waiting", "ordered", "flying", "landed", "released", "left_out"]
-LookAsideStageName = Literal["aside", "waiting", "back", "done", "stopped"]
+MotionStageName = Literal["aside", "waiting", "back", "upwind", "done", "stopped"]
 
 
 class PhaseReport(msgspec.Struct, frozen=True):
@@ -103,15 +103,14 @@ class FleetReturnMessage(msgspec.Struct, frozen=True):
     vehicles: tuple[VehicleReturn, ...]
 
 
-class LookAsideStatus(msgspec.Struct, frozen=True):
-    """The newest look aside of the imaging drone. `reason` states why it waits or has stopped."""
+class ImagerMotionStatus(msgspec.Struct, frozen=True):
+    """A motion of an imaging drone. `reason` states why it waits or has stopped."""
 
     serial: str
     vehicle_name: str
-    stage: LookAsideStageName
+    stage: MotionStageName
     begun_by: str
     begun_age_s: float
-    bearing_deg: float
     reason: str | None
     survey_id: int | None
 
@@ -119,6 +118,29 @@ class LookAsideStatus(msgspec.Struct, frozen=True):
     def is_over(self) -> bool:
         """Whether it is done or has stopped."""
         return self.stage in ("done", "stopped")
+
+
+class LookAsideStatus(ImagerMotionStatus, frozen=True):
+    """The newest look aside of the imaging drone."""
+
+    bearing_deg: float
+
+
+class UpwindPlaceStatus(msgspec.Struct, frozen=True):
+    """A place upwind; `sentence` states what is seen from it and what it costs to go there."""
+
+    latitude_deg: float
+    longitude_deg: float
+    height_above_takeoff_m: float
+    distance_m: float
+    takes_s: float
+    sentence: str
+
+
+class MoveUpwindStatus(ImagerMotionStatus, frozen=True):
+    """The newest move upwind of the imaging drone, for a survey that allows it."""
+
+    place: UpwindPlaceStatus
 
 
 class AlarmStatus(msgspec.Struct, frozen=True):
@@ -273,6 +295,7 @@ class StateMessage(msgspec.Struct, frozen=True):
     alarms: tuple[AlarmStatus, ...]
     fleet_return: FleetReturnMessage | None = None
     look_aside: LookAsideStatus | None = None
+    move_upwind: MoveUpwindStatus | None = None
     stop_latch: StopLatchStatus | None = None
     links: tuple[LinkStatus, ...] = ()
 

@@ -11,6 +11,7 @@ from recon.client.messages import (
     AuditLogPage,
     LinkStatus,
     LookAsideStatus,
+    MoveUpwindStatus,
     OrderStatus,
     StateMessage,
     StopAnswer,
@@ -153,6 +154,10 @@ class Station:
     async def looking_aside(self) -> LookAsideStatus | None:
         """Return the newest look aside; None before the first."""
         return (await self._state()).look_aside
+
+    async def moving_upwind(self) -> MoveUpwindStatus | None:
+        """Return the newest move upwind for a survey that allows it; None before the first."""
+        return (await self._state()).move_upwind
 
     async def waiting_apps(self) -> tuple[LinkStatus, ...] | None:
         """Return the links whose app waits to be admitted; None: the station has no list."""

@@ -50,6 +50,7 @@ class SurveyStatus(msgspec.Struct, frozen=True):
     planner: str
     when_done: WhenDoneName
     look_aside_allowed: bool
+    upwind_allowed: bool
     round: int
     missions: int
     flown_m: float

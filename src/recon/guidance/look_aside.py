@@ -27,9 +27,6 @@ class LookAsideSettings:
     speed_mps: float = 4.0
     """25 m in about 10 s: at one frame in 2 s enough of them on the way, without motion blur."""
 
-    resting_mps: float = 1.0
-    """A vehicle slower than this has a place to come back to: hovering in gusts it stays below."""
-
     leg_within_s: float = 60.0
     """A way takes 10 s; one that takes longer than this is not flown as it was ordered."""
 

@@ -85,6 +85,8 @@ class Survey:
     when_done: WhenDone = WhenDone.RETURN_HOME
     look_aside_allowed: bool = False
     """Whether the imaging drone may look aside by itself while light is mostly unknown."""
+    upwind_allowed: bool = False
+    """Whether the imaging drone may fly by itself to where it sees more of the shade to come."""
 
 
 class SurveyPhase(Enum):

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from recon.fleet.state import staleness
+from recon.guidance.upwind_proposal import SPEED_MPS
 from recon.model.command import Body, GoTo, ReturnHome
 from recon.model.control import AuthorityHolder
 from recon.model.event import (
@@ -29,7 +30,7 @@ from recon.score.scripted_operator import (
     SurveyStage,
     TakeAuthority,
 )
-from recon.station.imaging.upwind import SPEED_MPS, proposed
+from recon.station.imaging.upwind import proposed
 from recon.station.state.station import Station
 from recon.station.state.survey_record import SurveyRecord
 

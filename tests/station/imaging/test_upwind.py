@@ -9,6 +9,7 @@ from tests.station.looking_world import GRID, IMAGER, LookingWorld, looking_worl
 
 from recon.forecast import ForecastState
 from recon.geo import enu_from_point
+from recon.guidance.upwind_proposal import SPEED_MPS, UpwindProposal
 from recon.model.airspace import Airspace, Region, Zone, ZoneKind
 from recon.model.command import GoTo
 from recon.model.event import OperatorOrder
@@ -16,7 +17,7 @@ from recon.model.geo import GeoPoint, LatLon
 from recon.model.imagery import Outlook
 from recon.model.shade import ShadeMap, SunForecast
 from recon.safety import PreparedAirspace
-from recon.station.imaging.upwind import SPEED_MPS, UpwindProposal, proposed
+from recon.station.imaging.upwind import proposed
 
 EASTWARD = (5.0, 0.0)
 SQUARE = Region(190.0 * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]))

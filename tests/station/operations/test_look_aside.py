@@ -19,8 +19,8 @@ from recon.model.event import (
 )
 from recon.model.geo import LatLon
 from recon.station.operations.look_aside.commands import audit_entries, refusal
+from recon.station.state.imager_motion import MotionStage
 from recon.station.state.imaging import Imaging
-from recon.station.state.look_aside_record import LookAsideStage
 from recon.station.state.steps import StepTaken
 
 
@@ -29,7 +29,7 @@ def under_way(**options: object) -> LookingWorld:
     world = looking_world(**options)  # type: ignore[arg-type]
     world.ordered()
     world.surveyed.runs(4.0)
-    assert world.newest().stage is LookAsideStage.ASIDE
+    assert world.newest().stage is MotionStage.ASIDE
     return world
 
 
@@ -45,7 +45,7 @@ class TestFlown:
     def test_it_goes_25_m_aside_and_comes_back(self, flown: tuple[LookingWorld, float]) -> None:
         world, farthest_m = flown
         assert farthest_m == pytest.approx(25.0, abs=2.0)
-        assert world.newest().stage is LookAsideStage.DONE
+        assert world.newest().stage is MotionStage.DONE
         assert hypot(*world.off_m()) < 2.0
 
     def test_both_ways_passed_the_gate_as_guidance(self, flown: tuple[LookingWorld, float]) -> None:
@@ -94,7 +94,7 @@ class TestTheDirection:
         chosen = np.radians(world.newest().bearing_deg)
         assert side * 25.0 * np.sin(chosen) < 20.0
         assert world.farthest_while(40.0) == pytest.approx(25.0, abs=2.0)
-        assert world.newest().stage is LookAsideStage.DONE
+        assert world.newest().stage is MotionStage.DONE
 
     def test_with_no_direction_free_it_is_refused_with_the_gates_reason(self) -> None:
         # Walls all round it, 12 m from its place.
@@ -182,7 +182,7 @@ class TestEndedBefore:
     def stays(self, world: LookingWorld, why: str) -> None:
         world.surveyed.runs(4.0)
         newest = world.newest()
-        assert newest.stage is LookAsideStage.STOPPED
+        assert newest.stage is MotionStage.STOPPED
         assert why in newest.reason
         off_m = world.off_m()
         orders = len(world.station.orders.records)
@@ -225,7 +225,7 @@ class TestEndedBefore:
         world.surveyed.driver.disconnect(connected.link_id)
         world.surveyed.runs(6.0)
         newest = world.newest()
-        assert newest.stage is LookAsideStage.STOPPED
+        assert newest.stage is MotionStage.STOPPED
         world.surveyed.fleet.world.connect(connected.app)
         world.surveyed.runs(5.0)  # an app without its station does not move in this world
         off_m = world.off_m()
@@ -258,7 +258,7 @@ class TestTheWayBack:
         watchdogs = replace(world.station.watchdog_state, is_hold_on=False)
         world.station = replace(world.station, watchdog_state=watchdogs)
         world.surveyed.runs(8.0)
-        assert world.newest().stage is LookAsideStage.WAITING
+        assert world.newest().stage is MotionStage.WAITING
         return world
 
     def test_it_waits_beside_its_place_until_that_is_free(self, blocked: LookingWorld) -> None:
@@ -266,13 +266,13 @@ class TestTheWayBack:
         assert "must keep" in blocked.alarms()["look_aside:waits"]
         blocked.surveyed.fleet.put("SIM-2", (0.0, -40.0, 40.0))
         blocked.surveyed.runs(15.0)
-        assert blocked.newest().stage is LookAsideStage.DONE
+        assert blocked.newest().stage is MotionStage.DONE
         assert hypot(*blocked.off_m()) < 2.0
 
     def test_after_half_a_minute_it_holds_there(self, blocked: LookingWorld) -> None:
         blocked.surveyed.runs(32.0)
         newest = blocked.newest()
-        assert newest.stage is LookAsideStage.STOPPED
+        assert newest.stage is MotionStage.STOPPED
         assert "refused for 30 s" in newest.reason
         assert blocked.station.control(IMAGER).stream is None
         assert blocked.holder() is AuthorityHolder.OPERATOR
@@ -286,7 +286,7 @@ class TestTheWayBack:
         blocked.surveyed.fleet.put("SIM-2", (0.0, -40.0, 40.0))
         blocked.surveyed.fleet.world.connect(connected.app)
         blocked.surveyed.runs(20.0)
-        assert blocked.newest().stage is LookAsideStage.STOPPED
+        assert blocked.newest().stage is MotionStage.STOPPED
         assert blocked.holder() is AuthorityHolder.OPERATOR
         assert hypot(*blocked.off_m()) == pytest.approx(25.0, abs=2.0)
 

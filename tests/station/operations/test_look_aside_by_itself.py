@@ -8,7 +8,7 @@ from tests.station.surveyed_world import asked
 from recon.model.control import AuthorityHolder
 from recon.model.event import AuthorityTaken
 from recon.model.survey import SurveyPhase
-from recon.station.state.look_aside_record import LookAsideStage
+from recon.station.state.imager_motion import MotionStage
 
 
 def surveying(*, allowed: bool = True) -> LookingWorld:
@@ -46,7 +46,7 @@ def test_after_twenty_seconds_of_unknown_light() -> None:
     assert "looks aside for its survey" in world.alarms()["look_aside:motion"]
     world.surveyed.runs(26.0)
     reads(world, 0.2, 0.0)
-    assert world.newest().stage is LookAsideStage.DONE
+    assert world.newest().stage is MotionStage.DONE
     assert hypot(*world.off_m()) < 2.0
     assert world.holder() is AuthorityHolder.OPERATOR
 
@@ -91,7 +91,7 @@ def test_not_again_within_five_minutes() -> None:
     reads(world, 0.0, 90.0, 0.0)
     world.surveyed.runs(26.0)
     first = world.newest()
-    assert first.stage is LookAsideStage.DONE
+    assert first.stage is MotionStage.DONE
     reads(world, 0.0, 0.0)
     assert world.newest() is first
     due_s = (world.station.look_asides.due_ns - first.begun_at_ns) / 1e9
@@ -131,6 +131,6 @@ def test_a_pilot_ends_it_and_it_does_not_begin_again() -> None:
     world.surveyed.fleet.world.app(IMAGER).aircraft.pilot_takes()
     world.surveyed.runs(3.0)
     reads(world, 0.0, 0.0)
-    assert world.newest().stage is LookAsideStage.STOPPED
+    assert world.newest().stage is MotionStage.STOPPED
     assert world.holder() is AuthorityHolder.PILOT
     assert world.alarms() == {}

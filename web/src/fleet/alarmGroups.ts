@@ -25,6 +25,7 @@ const CAUSES: Readonly<Record<string, string>> = {
   battery: "Battery",
   geofence: "Geofence",
   look_aside: "Look aside",
+  move_upwind: "Move upwind",
 };
 
 /** Causes whose every alarm is about two vehicles. */

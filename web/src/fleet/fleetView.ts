@@ -7,6 +7,7 @@ import type {
   GroundImageView,
   LinkView,
   LookAsideView,
+  MoveUpwindView,
   ShadeLineView,
   SiteView,
   StationView,
@@ -36,6 +37,7 @@ interface FleetData {
   groundImage: GroundImageView | null;
   fleetReturn: FleetReturnView | null;
   lookAside: LookAsideView | null;
+  moveUpwind: MoveUpwindView | null;
   shade: ShadeLineView | null;
   surveys: SurveyView[];
   temporaryZones: TemporaryZoneView[];
@@ -53,6 +55,7 @@ const NO_DATA: FleetData = {
   groundImage: null,
   fleetReturn: null,
   lookAside: null,
+  moveUpwind: null,
   shade: null,
   surveys: [],
   temporaryZones: [],
@@ -83,6 +86,7 @@ export function createFleetView(source: Pick<StationSource, "state">): FleetView
     setView("site", reconcile(state.site));
     setView("fleetReturn", reconcile(state.fleet_return, { key: "serial" }));
     setView("lookAside", reconcile(state.look_aside));
+    setView("moveUpwind", reconcile(state.move_upwind));
     setView("shade", reconcile(state.shade));
     setView("surveys", reconcile([...state.surveys], { key: "id" }));
     setView("groundImage", reconcile(state.ground_image));

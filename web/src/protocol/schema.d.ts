@@ -1615,7 +1615,7 @@ export interface components {
              * Stage
              * @enum {string}
              */
-            stage: "aside" | "waiting" | "back" | "done" | "stopped";
+            stage: "aside" | "waiting" | "back" | "upwind" | "done" | "stopped";
             /**
              * Survey Id
              * @description the survey it began for by itself; null: ordered
@@ -1649,6 +1649,39 @@ export interface components {
              * @description a mission longer than the vehicle's app accepts is flown in parts
              */
             waypoints: components["schemas"]["WaypointOrder"][];
+        };
+        /**
+         * MoveUpwindView
+         * @description The newest move upwind of the imaging drone for a survey.
+         */
+        MoveUpwindView: {
+            /** Begun Age S */
+            begun_age_s: number;
+            /** Begun By */
+            begun_by: string;
+            /** @description as it was proposed when the move began */
+            place: components["schemas"]["UpwindPlaceView"];
+            /**
+             * Reason
+             * @description why it waits beside its place, or has stopped
+             */
+            reason: string | null;
+            /** Serial */
+            serial: string;
+            /** Since Age S */
+            since_age_s: number;
+            /**
+             * Stage
+             * @enum {string}
+             */
+            stage: "aside" | "waiting" | "back" | "upwind" | "done" | "stopped";
+            /**
+             * Survey Id
+             * @description the survey it began for by itself; null: ordered
+             */
+            survey_id: number | null;
+            /** Vehicle Name */
+            vehicle_name: string;
         };
         /**
          * NudgeOrder
@@ -2078,6 +2111,7 @@ export interface components {
             /** Links */
             links: components["schemas"]["LinkView"][];
             look_aside: components["schemas"]["LookAsideView"] | null;
+            move_upwind: components["schemas"]["MoveUpwindView"] | null;
             shade: components["schemas"]["ShadeLineView"] | null;
             site: components["schemas"]["SiteView"] | null;
             station: components["schemas"]["StationView"];
@@ -2440,6 +2474,12 @@ export interface components {
             /** Speed Mps */
             speed_mps: number;
             /**
+             * Upwind Allowed
+             * @description the imaging drone may fly by itself to where it sees more of the shade to come
+             * @default false
+             */
+            upwind_allowed: boolean;
+            /**
              * When Done
              * @description what vehicles do when it is complete, or no battery is sufficient for a row
              * @default return_home
@@ -2523,6 +2563,8 @@ export interface components {
             speed_mps: number;
             /** Started By */
             started_by: string | null;
+            /** Upwind Allowed */
+            upwind_allowed: boolean;
             /** Vehicles */
             vehicles: components["schemas"]["SurveyingView"][];
             /**
@@ -2683,6 +2725,11 @@ export interface components {
             latitude_deg: number;
             /** Longitude Deg */
             longitude_deg: number;
+            /**
+             * Sentence
+             * @description what it sees and costs; the drone's name goes before it
+             */
+            sentence: string;
             /** Serial */
             serial: string;
             /** Speed Mps */

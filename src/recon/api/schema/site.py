@@ -187,6 +187,7 @@ class UpwindPlaceView(Message):
     takes_s: float
     here: SeenFromView
     there: SeenFromView
+    sentence: str = Field(description="what it sees and costs; the drone's name goes before it")
 
 
 class UpwindView(Message):

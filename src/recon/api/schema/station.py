@@ -6,7 +6,7 @@ from pydantic import Field
 
 from recon.api.schema.message import Message
 from recon.api.schema.orders import AlarmView, CommandView
-from recon.api.schema.site import GroundImageView, ShadeLineView, SiteView
+from recon.api.schema.site import GroundImageView, ShadeLineView, SiteView, UpwindPlaceView
 from recon.api.schema.surveys import SurveyView
 from recon.api.schema.vehicles import VehicleView
 from recon.api.schema.zones import TemporaryZoneView
@@ -100,18 +100,29 @@ class FleetReturnView(Message):
     vehicles: list[ReturningView]
 
 
-class LookAsideView(Message):
-    """The newest look aside of the imaging drone."""
+class ImagerMotionView(Message):
+    """A motion of an imaging drone under guidance."""
 
     serial: str
     vehicle_name: str
-    stage: Literal["aside", "waiting", "back", "done", "stopped"]
+    stage: Literal["aside", "waiting", "back", "upwind", "done", "stopped"]
     since_age_s: float
     begun_by: str
     begun_age_s: float
-    bearing_deg: float
     reason: str | None = Field(description="why it waits beside its place, or has stopped")
     survey_id: int | None = Field(description="the survey it began for by itself; null: ordered")
+
+
+class LookAsideView(ImagerMotionView):
+    """The newest look aside of the imaging drone."""
+
+    bearing_deg: float
+
+
+class MoveUpwindView(ImagerMotionView):
+    """The newest move upwind of the imaging drone for a survey."""
+
+    place: UpwindPlaceView = Field(description="as it was proposed when the move began")
 
 
 class StationState(Message):
@@ -129,5 +140,6 @@ class StationState(Message):
     ground_image: GroundImageView | None
     fleet_return: FleetReturnView | None
     look_aside: LookAsideView | None
+    move_upwind: MoveUpwindView | None
     shade: ShadeLineView | None
     surveys: list[SurveyView]

@@ -59,6 +59,11 @@ class SurveyRequest(StrictMessage):
         default=False,
         description="the imaging drone may look aside by itself while light is mostly unknown",
     )
+    upwind_allowed: bool = Field(
+        default=False,
+        description="the imaging drone may fly by itself to where it sees more of the shade to "
+        "come",
+    )
     camera: SurveyCameraRequest = SurveyCameraRequest()
     budget: SurveyBudgetRequest = SurveyBudgetRequest()
 
@@ -125,6 +130,7 @@ class SurveyView(Message):
     planner: str
     when_done: WhenDoneName
     look_aside_allowed: bool
+    upwind_allowed: bool
     height_above_takeoff_m: float
     speed_mps: float
     round: int

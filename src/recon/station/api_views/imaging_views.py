@@ -10,12 +10,13 @@ from recon.api import schema
 from recon.forecast import next_change, right_shares
 from recon.geo import cell_at, enu_from_point, geo_from_enu
 from recon.guidance.upwind_place import UpwindPlace
+from recon.guidance.upwind_proposal import SPEED_MPS, UpwindProposal
 from recon.model.geo import GeoPoint, GroundGrid
 from recon.model.shade import MaskMap, ShadeMap, SunForecast
 from recon.model.units import ns_to_seconds
 from recon.site import Site
 from recon.station.imaging.mosaic import alignment_of, newest_images
-from recon.station.imaging.upwind import SPEED_MPS, UpwindProposal, proposed
+from recon.station.imaging.upwind import proposed
 from recon.station.state.imaging import ImagerFrames, ShadePipeline
 from recon.station.state.station import Station
 
@@ -199,10 +200,11 @@ def upwind_view(
     found = proposed(station, regions, serial, now_ns)
     if isinstance(found, str):
         return schema.UpwindView(place=None, reason=found)
-    return schema.UpwindView(place=_upwind_place(found), reason="")
+    return schema.UpwindView(place=upwind_place_view(found), reason="")
 
 
-def _upwind_place(found: UpwindProposal) -> schema.UpwindPlaceView:
+def upwind_place_view(found: UpwindProposal) -> schema.UpwindPlaceView:
+    """Return a proposed place."""
     return schema.UpwindPlaceView(
         serial=found.serial,
         latitude_deg=found.place.latitude_deg,
@@ -214,6 +216,7 @@ def _upwind_place(found: UpwindProposal) -> schema.UpwindPlaceView:
         takes_s=found.takes_s,
         here=_seen_from(found.here),
         there=_seen_from(found.there),
+        sentence=found.sentence,
     )
 
 

@@ -1,7 +1,8 @@
-"""Surveys, the fleet return and looks aside, as the API sends them."""
+"""Surveys, the fleet return and motions of imaging drones, as the API sends them."""
 
 from collections.abc import Iterable
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -10,11 +11,12 @@ from recon.geo import geo_from_enu
 from recon.guidance.survey import SurveyState, figures
 from recon.model.geo import LocalFrame
 from recon.model.units import ns_to_seconds
-from recon.station.api_views.imaging_views import corners_lon_lat
+from recon.station.api_views.imaging_views import corners_lon_lat, upwind_place_view
 from recon.station.operations.fleet_return.conditions import in_turn
 from recon.station.operations.survey.availability import hindrance, is_flown, is_on_ground
 from recon.station.operations.survey.return_to_home import is_under_way
 from recon.station.state.fleet_return_record import ReturningVehicle
+from recon.station.state.imager_motion import ImagerMotion
 from recon.station.state.station import Station
 from recon.station.state.survey_record import SURVEYS_KEPT, EastNorth, SurveyMember, SurveyRecord
 
@@ -43,6 +45,7 @@ def survey_view(station: Station, record: SurveyRecord, now_ns: int) -> schema.S
         planner=survey.planner,
         when_done=survey.when_done.value,
         look_aside_allowed=survey.look_aside_allowed,
+        upwind_allowed=survey.upwind_allowed,
         height_above_takeoff_m=survey.height_above_takeoff_m,
         speed_mps=survey.speed_mps,
         round=0 if state is None else state.round,
@@ -162,17 +165,30 @@ def look_aside_view(station: Station, now_ns: int) -> schema.LookAsideView | Non
     newest = station.look_asides.newest
     if newest is None:
         return None
-    return schema.LookAsideView(
-        serial=newest.serial,
-        vehicle_name=newest.name,
-        stage=newest.stage.value,
-        since_age_s=ns_to_seconds(now_ns - newest.since_ns),
-        begun_by=newest.by,
-        begun_age_s=ns_to_seconds(now_ns - newest.begun_at_ns),
-        bearing_deg=newest.bearing_deg,
-        reason=newest.reason or None,
-        survey_id=newest.survey_id,
-    )
+    return schema.LookAsideView(**_motion(newest, now_ns), bearing_deg=newest.bearing_deg)
+
+
+def move_upwind_view(station: Station, now_ns: int) -> schema.MoveUpwindView | None:
+    """Return the newest move upwind; None before the first."""
+    newest = station.upwind_moves.newest
+    if newest is None:
+        return None
+    place = upwind_place_view(newest.proposal)
+    return schema.MoveUpwindView(**_motion(newest, now_ns), place=place)
+
+
+def _motion(newest: ImagerMotion, now_ns: int) -> dict[str, Any]:
+    """The fields of every motion of an imaging drone."""
+    return {
+        "serial": newest.serial,
+        "vehicle_name": newest.name,
+        "stage": newest.stage.value,
+        "since_age_s": ns_to_seconds(now_ns - newest.since_ns),
+        "begun_by": newest.by,
+        "begun_age_s": ns_to_seconds(now_ns - newest.begun_at_ns),
+        "reason": newest.reason or None,
+        "survey_id": newest.survey_id,
+    }
 
 
 def _returning(member: ReturningVehicle, now_ns: int) -> schema.ReturningView:

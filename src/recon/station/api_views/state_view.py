@@ -14,7 +14,12 @@ from recon.model.imagery import Frame
 from recon.model.units import Stamped, ns_to_seconds
 from recon.model.vehicle import AltitudeReference, VehicleState
 from recon.station.api_views.imaging_views import ground_image_view, shade_view
-from recon.station.api_views.operation_views import fleet_return_view, look_aside_view, survey_views
+from recon.station.api_views.operation_views import (
+    fleet_return_view,
+    look_aside_view,
+    move_upwind_view,
+    survey_views,
+)
 from recon.station.api_views.vehicle_views import (
     authority_view,
     doubt_views,
@@ -60,6 +65,7 @@ def state_view(station: Station, around: DriverState, now_ns: int) -> schema.Sta
         ground_image=ground_image_view(station, now_ns),
         fleet_return=fleet_return_view(station, now_ns),
         look_aside=look_aside_view(station, now_ns),
+        move_upwind=move_upwind_view(station, now_ns),
         shade=shade_view(station, now_ns),
         surveys=survey_views(station, now_ns),
     )

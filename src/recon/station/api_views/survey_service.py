@@ -130,6 +130,7 @@ def _survey(number: int, asked: schema.SurveyRequest, region: Region) -> Survey:
         cell_m=asked.cell_m,
         when_done=WhenDone(asked.when_done),
         look_aside_allowed=asked.look_aside_allowed,
+        upwind_allowed=asked.upwind_allowed,
     )
 
 

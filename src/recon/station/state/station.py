@@ -14,8 +14,8 @@ from recon.station.state import alarm_book
 from recon.station.state.alarm_book import AlarmBook, Condition
 from recon.station.state.failsafe_state import FailsafeState
 from recon.station.state.fleet_return_record import FleetReturn
+from recon.station.state.imager_motion import LookAsides, UpwindMoves
 from recon.station.state.imaging import Imaging, ShadePipeline
-from recon.station.state.look_aside_record import LookAsides
 from recon.station.state.orders import OrderBook
 from recon.station.state.setpoint_stream import SetpointStream
 from recon.station.state.settings import StationSettings
@@ -107,7 +107,9 @@ class Station:
     fleet_return: FleetReturn | None = None
     """The newest fleet return of this run."""
     look_asides: LookAsides = field(default_factory=LookAsides)
-    """Of this run. Writer: `operations/look_aside`."""
+    """Of this run. Writer: `operations/look_aside`, and for its end `operations/imager_motion`."""
+    upwind_moves: UpwindMoves = field(default_factory=UpwindMoves)
+    """Of this run. Writer: `operations/move_upwind`, and for its end `operations/imager_motion`."""
     watchdog_state: WatchdogState = field(default_factory=WatchdogState)
     """Findings, holds and switches of the watchdogs."""
     failsafe_state: FailsafeState = field(default_factory=FailsafeState)

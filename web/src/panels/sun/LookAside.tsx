@@ -1,17 +1,19 @@
 import { createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { LookAsideView } from "../../protocol";
-import { personName, responseProblem, vehicleLabel } from "../../text/names";
-import { formatAge, formatHeading } from "../../text/quantities";
+import { responseProblem, vehicleLabel } from "../../text/names";
+import { formatHeading } from "../../text/quantities";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Problem } from "../Panel";
+import { isOver, MotionProgress } from "./MotionProgress";
 
 /** Has an imaging drone fly aside and back, to tell even sun from even shade; and its progress. */
 export function LookAside() {
   const { fleet, source } = useConsole();
   const [problem, setProblem] = createSignal<string | null>(null);
   const imagers = () => fleet.vehicles.filter(({ is_imager: isImager }) => isImager);
-  const isUnderWay = () => fleet.lookAside !== null && !isOver(fleet.lookAside);
+  const isUnderWay = () =>
+    [fleet.lookAside, fleet.moveUpwind].some((motion) => motion !== null && !isOver(motion));
   const order = async (serial: string) =>
     setProblem(responseProblem(await source.lookAside(serial)));
   const button = (label: string, name: string, serial: string) => (
@@ -35,37 +37,24 @@ export function LookAside() {
         }
       </For>
       <Problem text={problem()} />
-      <Show when={fleet.lookAside}>{(view) => <Progress view={view()} />}</Show>
+      <Show when={fleet.lookAside}>
+        {(view) => (
+          <MotionProgress
+            view={view()}
+            stage={`${STAGES[view().stage] ?? view().stage}, bearing ${formatHeading(view().bearing_deg)}`}
+            testId="look-aside"
+          />
+        )}
+      </Show>
     </section>
   );
 }
 
-function Progress(props: { view: LookAsideView }) {
-  const { behindS } = useConsole();
-  return (
-    <p class="wire-text" data-testid="look-aside">
-      <strong>{props.view.vehicle_name}</strong> {STAGES[props.view.stage]}, bearing{" "}
-      {formatHeading(props.view.bearing_deg)}{" "}
-      <span class="muted">
-        since {formatAge(props.view.since_age_s + behindS())}, ordered by{" "}
-        {personName(props.view.begun_by)}
-      </span>
-      <Show when={props.view.reason}>
-        {(reason) => <span class="muted look-aside-reason">{reason()}</span>}
-      </Show>
-    </p>
-  );
-}
-
 /** Stages as shown after the vehicle's name. */
-const STAGES: Readonly<Record<LookAsideView["stage"], string>> = {
+const STAGES: Readonly<Partial<Record<LookAsideView["stage"], string>>> = {
   aside: "flies aside",
   waiting: "waits beside its place",
   back: "flies back",
   done: "looked aside and is back",
   stopped: "stopped its look aside",
 };
-
-function isOver({ stage }: LookAsideView): boolean {
-  return stage === "done" || stage === "stopped";
-}

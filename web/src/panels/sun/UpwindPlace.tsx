@@ -1,10 +1,17 @@
 import { createSignal, For, onCleanup, Show } from "solid-js";
 import { useConsole } from "../../console";
-import type { Order, UpwindPlaceView, UpwindView, VehicleView } from "../../protocol";
+import type {
+  MoveUpwindView,
+  Order,
+  UpwindPlaceView,
+  UpwindView,
+  VehicleView,
+} from "../../protocol";
 import type { Outcome } from "../../source/stationSource";
 import { vehicleLabel } from "../../text/names";
-import { formatAge, formatFraction, formatQuantity } from "../../text/quantities";
+import { formatQuantity } from "../../text/quantities";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
+import { MotionProgress } from "./MotionProgress";
 
 /** The wind turns in minutes, and the imaging drone moves by itself only a little. */
 const ASK_EVERY_MS = 10_000;
@@ -16,6 +23,15 @@ export function UpwindPlace() {
   return (
     <section class="section" aria-label="View upwind">
       <For each={imagers()}>{(vehicle) => <Place vehicle={vehicle} />}</For>
+      <Show when={fleet.moveUpwind}>
+        {(view) => (
+          <MotionProgress
+            view={view()}
+            stage={`${STAGES[view().stage] ?? view().stage}, ${metres(view().place)}`}
+            testId="move-upwind"
+          />
+        )}
+      </Show>
     </section>
   );
 }
@@ -61,14 +77,14 @@ function Place(props: { vehicle: VehicleView }) {
     <>
       <p class="muted wire-text" data-testid="upwind-place">
         <Show when={place()} fallback={missing()}>
-          {(found) => upwindText(name(), found())}
+          {(found) => `${name()} ${found().sentence}.`}
         </Show>
       </p>
       <Show when={target()}>
         {(to) => (
           <GuardButton
             label="Fly upwind"
-            name={`Fly ${name()} ${formatQuantity(to().distance_m, "m", 0)} to its place upwind`}
+            name={`Fly ${name()} ${metres(to())} to its place upwind`}
             hold_ms={GUARD_MS}
             subject={JSON.stringify([to().latitude_deg, to().longitude_deg])}
             onConfirm={fly}
@@ -79,17 +95,15 @@ function Place(props: { vehicle: VehicleView }) {
   );
 }
 
-/** What a place upwind costs, and what is seen from it. */
-export function upwindText(name: string, place: UpwindPlaceView): string {
-  const { here, there, distance_m, takes_s } = place;
-  const sees = ({ now, in_60_s }: UpwindPlaceView["here"]) =>
-    `${formatFraction(now)} of the region now and ${formatFraction(in_60_s)} of its shade in 60 s`;
-  if (distance_m === 0)
-    return `${name} sees ${sees(here)}; no place that is allowed sees much more.`;
-  return (
-    `${name} sees ${sees(here)}; ${formatQuantity(distance_m, "m", 0)} away, in ` +
-    `${formatAge(takes_s)}, it would see ${sees(there)}.`
-  );
+/** Stages as shown after the vehicle's name. */
+const STAGES: Readonly<Partial<Record<MoveUpwindView["stage"], string>>> = {
+  upwind: "flies upwind by itself",
+  done: "flew upwind by itself",
+  stopped: "stopped its flight upwind",
+};
+
+function metres({ distance_m }: UpwindPlaceView): string {
+  return formatQuantity(distance_m, "m", 0);
 }
 
 function gotoOf(place: UpwindPlaceView): Order {

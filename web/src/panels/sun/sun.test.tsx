@@ -149,6 +149,7 @@ describe("view upwind", () => {
     takes_s: 28,
     here: { now: 0.98, in_30_s: 0.45, in_60_s: 0.02, in_90_s: 0 },
     there: { now: 0.62, in_30_s: 0.9, in_60_s: 0.55, in_90_s: 0.16 },
+    sentence: "sees 98 % of the region now; 224 m away, in 28 s, it would see 62 % of it",
   };
 
   async function showPlace(changes: Partial<UpwindPlaceView>) {
@@ -166,9 +167,7 @@ describe("view upwind", () => {
 
   it("states what the flight costs and what is seen from there", async () => {
     await showPlace({});
-    expect(text()).toContain("Alder sees 98\u00a0% of the region now and 2\u00a0% of its shade in");
-    expect(text()).toContain("224\u00a0m away, in 28 s, it would see 62\u00a0%");
-    expect(text()).toContain("55\u00a0% of its shade in 60 s");
+    expect(text()).toContain(`Alder ${place.sentence}.`);
   });
 
   it("sends the drone there by a held button, with its heading", async () => {
@@ -182,8 +181,27 @@ describe("view upwind", () => {
 
   it("offers no flight from the best place", async () => {
     await showPlace({ distance_m: 0, there: place.here });
-    expect(text()).toContain("no place that is allowed sees much more");
     expect(buttons()).toHaveLength(0);
+  });
+
+  it("shows a flight by itself, and offers no look aside meanwhile", () => {
+    const moving = {
+      serial: "SN-001",
+      vehicle_name: "Alder",
+      stage: "upwind" as const,
+      since_age_s: 3,
+      begun_by: "anna (127.0.0.1)",
+      begun_age_s: 3,
+      reason: null,
+      survey_id: 7,
+      place,
+    };
+    const vehicles = [vehicle(1, { is_imager: true })];
+    page = renderPage(SunPanel, station(vehicles, { shade: shadeLine(), move_upwind: moving }));
+    const shown = find(page.root, "[data-testid=move-upwind]").textContent;
+    expect(shown).toContain("Alder flies upwind by itself, 224\u00a0m since 3");
+    const aside = find(page.root, "section[aria-label='Look aside'] button");
+    expect(aside.getAttribute("aria-disabled")).toBe("true");
   });
 
   it("shows why no place is known", async () => {

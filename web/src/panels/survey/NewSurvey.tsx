@@ -34,6 +34,7 @@ export function NewSurvey(props: {
       speed_mps: Number(data.get("speed")),
       planner: String(data.get("planner")),
       look_aside_allowed: data.get("look_aside") !== null,
+      upwind_allowed: data.get("upwind") !== null,
       when_done: data.get("when_done") === "hover" ? "hover" : "return_home",
     });
     setPlanning(false);
@@ -83,6 +84,10 @@ export function NewSurvey(props: {
           <label class="survey-wide survey-check">
             <input name="look_aside" type="checkbox" />
             Imaging drone may look aside by itself
+          </label>
+          <label class="survey-wide survey-check">
+            <input name="upwind" type="checkbox" />
+            Imaging drone may move upwind by itself
           </label>
           <button
             type="submit"

@@ -106,21 +106,25 @@ describe("a new survey", () => {
           planner: "lawnmower_once",
           when_done: "return_home",
           look_aside_allowed: false,
+          upwind_allowed: false,
         },
       },
     ]);
   });
 
-  it("allows looks aside only when the operator ticks it", () => {
+  it("allows motions of the imaging drone only when the operator ticks them", () => {
     const regions = [area("survey", [0, 0], 50, { name: "south field" })];
     const base = station([vehicle(1)]);
     const site = base.site === null ? null : { ...base.site, areas: regions };
     page = renderPage(SurveyPanel, { ...base, site });
     find<HTMLInputElement>(page.root, "input[name=look_aside]").click();
+    find<HTMLInputElement>(page.root, "input[name=upwind]").click();
     find<HTMLFormElement>(page.root, "form").dispatchEvent(
       new SubmitEvent("submit", { bubbles: true, cancelable: true }),
     );
-    expect(page.requests).toMatchObject([{ plannedSurvey: { look_aside_allowed: true } }]);
+    expect(page.requests).toMatchObject([
+      { plannedSurvey: { look_aside_allowed: true, upwind_allowed: true } },
+    ]);
   });
 
   it("is not available without survey regions", () => {

@@ -1,7 +1,7 @@
 """The look aside: the imaging drone flies 25 m aside and back, so that a flat scene is decided.
 
 `commands` begins one, `execution` advances it with every tick, `by_itself` begins one for a survey
-that allows it. Its state lives in memory only: after a restart none continues.
+that allows it. What it shares with the move upwind is in `imager_motion`.
 """
 
 from recon.model.event import LookAsideOrdered

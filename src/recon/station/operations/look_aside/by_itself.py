@@ -10,6 +10,7 @@ from recon.guidance.look_aside import LookAsideSettings
 from recon.model.command import Refusal
 from recon.model.event import LookAsideOrdered
 from recon.model.units import seconds_to_ns
+from recon.station.operations.imager_motion.claim import motion_under_way
 from recon.station.operations.look_aside.commands import begin
 from recon.station.state.station import Station
 from recon.station.state.steps import Stepped
@@ -22,21 +23,17 @@ def begin_if_due(station: Station, now_ns: int, settings: LookAsideSettings) -> 
     record = _survey_that_allows(station)
     serial = unknown_for_long(station, now_ns, settings)
     if record is None or serial is None:
-        if asides.refused is not None:
-            station = replace(station, look_asides=replace(asides, refused=None))
-        return station, ()
-    if now_ns < asides.due_ns:
+        return replace(station, look_asides=asides.not_refused()), ()
+    if now_ns < asides.due_ns or motion_under_way(station) is not None:
         return station, ()
     by = f"{record.started_by}: survey {record.survey.name}"
     event = LookAsideOrdered(by, person=record.person, survey_id=record.survey.id, serial=serial)
     begun = begin(station, event, now_ns)
-    if isinstance(begun, Refusal):
-        due_ns = now_ns + seconds_to_ns(settings.refused_again_s)
-        refused = replace(asides, due_ns=due_ns, refused=begun.reason)
-        return replace(station, look_asides=refused), ()
-    due_ns = now_ns + seconds_to_ns(settings.by_itself_every_s)
-    waits = replace(begun.station.look_asides, due_ns=due_ns)
-    return replace(begun.station, look_asides=waits), begun.outputs
+    refusal = begun if isinstance(begun, Refusal) else None
+    station, outputs = (station, ()) if isinstance(begun, Refusal) else begun
+    every_s, again_s = settings.by_itself_every_s, settings.refused_again_s
+    asides = station.look_asides.after_try(refusal, every_s, again_s, now_ns)
+    return replace(station, look_asides=asides), outputs
 
 
 def unknown_for_long(station: Station, now_ns: int, settings: LookAsideSettings) -> str | None:

@@ -2,26 +2,30 @@
 
     aside --arrived--> back, or waiting while the gate refuses the way back
     waiting --the gate approves--> back
-    back --arrived--> done: held, and control goes back to the operator
-    any of them --pilot, another order, all stop, connection lost, refused setpoint, too long-->
-        stopped: held by whatever ended it, or by an order here; nothing resumes
+    back --arrived--> done
+    any of them --whatever ends a motion (`imager_motion/execution.py`)--> stopped
 
-Both gotos are orders of guidance through the gate, without a connection that owns them: each ends
-by itself within a minute. The end of an order is read from its record, which telemetry makes.
+Each way ends by itself within a minute.
 """
 
 from dataclasses import replace
 
 from recon.guidance.look_aside import LOOK_ASIDE_SETTINGS, LookAsideSettings
-from recon.model.command import Hover, Phase
-from recon.model.control import AuthorityHolder
-from recon.model.event import OperatorOrder
+from recon.model.command import GoTo
 from recon.model.units import seconds_to_ns
-from recon.station.control import authority, order_gateway
+from recon.station.operations.imager_motion.execution import (
+    done,
+    follow,
+    held,
+    is_refused,
+    not_of_guidance,
+    put,
+    stopped,
+    tried,
+)
 from recon.station.operations.look_aside.by_itself import begin_if_due
-from recon.station.operations.look_aside.commands import way
-from recon.station.state.look_aside_record import LookAside, LookAsideStage
-from recon.station.state.station import Station, take_id
+from recon.station.state.imager_motion import LookAside, MotionStage
+from recon.station.state.station import Station
 from recon.station.state.steps import Stepped
 
 HOLD_ENDED = "the station could no longer hold it beside its place"
@@ -34,31 +38,20 @@ def advance(
     current = station.look_asides.newest
     if current is None or current.is_over:
         return begin_if_due(station, now_ns, settings)
-    holder = station.control(current.serial).authority
-    if holder.holder is not AuthorityHolder.GUIDANCE:
-        return _stopped(station, current, holder.reason, now_ns), ()
-    if current.stage is LookAsideStage.WAITING:
+    ended = not_of_guidance(station, current, now_ns)
+    if ended is not None:
+        return ended, ()
+    if current.stage is MotionStage.WAITING:
         return _wait(station, current, settings, now_ns)
-    return _read_way(station, current, settings, now_ns)
+    return follow(station, current, settings.leg_within_s, _arrived, now_ns)
 
 
-def _read_way(
-    station: Station, current: LookAside, settings: LookAsideSettings, now_ns: int
-) -> Stepped:
-    record = station.orders.records.get(current.command_id)
-    if record is None:
-        return _hold(station, current, "the record of its order was lost", now_ns)
-    if record.phase is Phase.DONE:
-        if current.stage is LookAsideStage.ASIDE and _is_held_aside(station, current):
-            return _fly_back(station, current, now_ns)
-        if current.stage is LookAsideStage.ASIDE:
-            return _stopped(station, current, HOLD_ENDED, now_ns), ()
-        return _come_back(station, current, now_ns)
-    if record.phase.is_final:
-        return _stopped(station, current, record.note or record.phase.value, now_ns), ()
-    if now_ns - current.since_ns > seconds_to_ns(settings.leg_within_s):
-        return _hold(station, current, f"not arrived within {settings.leg_within_s:g} s", now_ns)
-    return station, ()
+def _arrived(station: Station, current: LookAside, now_ns: int) -> Stepped:
+    if current.stage is MotionStage.BACK:
+        return done(station, current, now_ns)
+    if _is_held_aside(station, current):
+        return _fly_back(station, current, now_ns)
+    return stopped(station, current, HOLD_ENDED, now_ns), ()
 
 
 def _wait(
@@ -66,10 +59,10 @@ def _wait(
 ) -> Stepped:
     """Beside its place: have the gate judge the way back again, for a while."""
     if not _is_held_aside(station, current):
-        return _stopped(station, current, HOLD_ENDED, now_ns), ()
+        return stopped(station, current, HOLD_ENDED, now_ns), ()
     if now_ns - current.since_ns > seconds_to_ns(settings.gate_waits_s):
         why = f"its way back was refused for {settings.gate_waits_s:g} s: {current.reason}"
-        return _hold(station, current, why, now_ns)
+        return held(station, current, why, now_ns)
     if now_ns - current.judged_at_ns < seconds_to_ns(settings.judged_again_s):
         return station, ()
     return _fly_back(station, current, now_ns)
@@ -88,45 +81,11 @@ def _fly_back(station: Station, current: LookAside, now_ns: int) -> Stepped:
 
     A refused try leaves no record: it is made again every second.
     """
-    order = way(station, current.by, current.serial, current.place, current.height_above_takeoff_m)
-    tried, outputs = order_gateway.submit(take_id(station)[0], order, now_ns)
-    record = tried.orders.records[order.command_id]
-    if record.phase is not Phase.REFUSED_BY_STATION:
-        flying = replace(current, command_id=order.command_id)
-        return _put(tried, flying.at(LookAsideStage.BACK, now_ns)), outputs
-    if current.stage is LookAsideStage.ASIDE:
-        current = current.at(LookAsideStage.WAITING, now_ns)
-    return _put(station, replace(current, judged_at_ns=now_ns, reason=record.note)), ()
-
-
-def _come_back(station: Station, current: LookAside, now_ns: int) -> Stepped:
-    """The aircraft's own hold replaces the sticks, and the operator gets it back."""
-    station, outputs = _ordered_hold(station, current, "look aside done", now_ns)
-    station = _put(station, current.at(LookAsideStage.DONE, now_ns))
-    return _handed_back(station, current, "look aside done", now_ns), outputs
-
-
-def _hold(station: Station, current: LookAside, why: str, now_ns: int) -> Stepped:
-    """Stop a look aside whose vehicle still flies it: hold it where it is."""
-    station, outputs = _ordered_hold(station, current, f"look aside: {why}", now_ns)
-    return _stopped(station, current, why, now_ns), outputs
-
-
-def _ordered_hold(station: Station, current: LookAside, why: str, now_ns: int) -> Stepped:
-    station, number = take_id(station)
-    by = f"station: {why}"
-    hold = OperatorOrder(number, Hover(), by, serial=current.serial, role=AuthorityHolder.GUIDANCE)
-    return order_gateway.submit(station, hold, now_ns)
-
-
-def _stopped(station: Station, current: LookAside, why: str, now_ns: int) -> Station:
-    station = _put(station, current.at(LookAsideStage.STOPPED, now_ns, why))
-    return _handed_back(station, current, f"look aside stopped: {why}", now_ns)
-
-
-def _handed_back(station: Station, current: LookAside, why: str, now_ns: int) -> Station:
-    return authority.hand_back(station, current.serial, current.by, why, now_ns)
-
-
-def _put(station: Station, current: LookAside) -> Station:
-    return replace(station, look_asides=replace(station.look_asides, newest=current))
+    body = GoTo(current.place, current.height_above_takeoff_m, LOOK_ASIDE_SETTINGS.speed_mps)
+    flying, outputs, record = tried(station, LookAside, current.by, current.serial, body, now_ns)
+    if not is_refused(record):
+        back = replace(current, command_id=record.command.id).at(MotionStage.BACK, now_ns)
+        return put(flying, back), outputs
+    if current.stage is MotionStage.ASIDE:
+        current = current.at(MotionStage.WAITING, now_ns)
+    return put(station, replace(current, judged_at_ns=now_ns, reason=record.note)), ()

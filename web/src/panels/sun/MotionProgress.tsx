@@ -1,0 +1,32 @@
+import { type JSX, Show } from "solid-js";
+import { useConsole } from "../../console";
+import type { ImagerMotionView } from "../../protocol";
+import { personName } from "../../text/names";
+import { formatAge } from "../../text/quantities";
+
+/** The newest motion of a kind: its vehicle and stage, since when and for whom, and why it ended. */
+export function MotionProgress(props: {
+  view: ImagerMotionView;
+  stage: string;
+  testId: string;
+  children?: JSX.Element;
+}) {
+  const { behindS } = useConsole();
+  return (
+    <p class="wire-text" data-testid={props.testId}>
+      <strong>{props.view.vehicle_name}</strong> {props.stage}
+      {props.children}{" "}
+      <span class="muted">
+        since {formatAge(props.view.since_age_s + behindS())}, ordered by{" "}
+        {personName(props.view.begun_by)}
+      </span>
+      <Show when={props.view.reason}>
+        {(reason) => <span class="muted motion-reason">{reason()}</span>}
+      </Show>
+    </p>
+  );
+}
+
+export function isOver({ stage }: ImagerMotionView): boolean {
+  return stage === "done" || stage === "stopped";
+}
