@@ -25,6 +25,7 @@ EXPECTED = {
     "cumulus-60",
     "two-layers",
     "wind-shift",
+    "wind-shift-upwind",
     "overcast",
     "one-big-gap",
     "fault-storm",
@@ -100,6 +101,19 @@ def test_the_task_may_forbid_a_look_aside(tmp_path: Path) -> None:
     assert small(tmp_path).survey.look_aside_allowed
     forbidden = SMALL.replace("[task]", "[task]\nlook_aside = false")
     assert not load_scenario(written(tmp_path, forbidden)).survey.look_aside_allowed
+
+
+def test_the_task_may_allow_a_move_upwind_and_the_site_has_room_for_it(tmp_path: Path) -> None:
+    plain = small(tmp_path)
+    assert not plain.survey.upwind_allowed
+    allowing = load_scenario(written(tmp_path, SMALL.replace("[task]", "[task]\nupwind = true")))
+    assert allowing.survey.upwind_allowed
+    boundaries = [each.site.layers.boundary for each in (allowing, plain)]
+    widths_m = [
+        0.0 if b is None else float(b.outline_m[:, 0].max() - b.outline_m[:, 0].min())
+        for b in boundaries
+    ]
+    assert widths_m[0] > widths_m[1] + 300.0
 
 
 def test_method_names_are_those_of_the_registries() -> None:

@@ -153,6 +153,7 @@ def _survey(name: str, task: TaskTable, planner: str) -> Survey:
         planner=planner,
         budget=SurveyBudget(rounds=task.rounds, time_s=60.0 * task.limit_min),
         look_aside_allowed=task.look_aside,
+        upwind_allowed=task.upwind,
     )
 
 

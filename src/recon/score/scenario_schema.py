@@ -78,6 +78,8 @@ class TaskTable(Table, frozen=True):
     rounds: Annotated[int, Meta(ge=1, le=100)] = 20
     look_aside: bool = True
     """The operator allows the imaging drone to look aside by itself."""
+    upwind: bool = False
+    """The operator allows the imaging drone to move upwind by itself."""
 
 
 class FleetTable(Table, frozen=True):

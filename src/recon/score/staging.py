@@ -55,9 +55,12 @@ def generated_site(
     fleet: ScenarioFleet,
     imager: ScenarioImager,
     photo_interval_s: float,
+    *,
+    moves_upwind: bool,
 ) -> Site:
     """Return a site on level ground, without obstacles, on which the task can be flown."""
     ceiling_m = max(USUAL_CEILING_M, imager.height_m + ABOVE_IMAGER_M)
+    room_m = UPWIND_ROOM_M if moves_upwind else 0.0
     return Site(
         name=name,
         frame=frame,
@@ -68,7 +71,9 @@ def generated_site(
         },
         profiles=_profiles(frame, fleet, imager, photo_interval_s, ceiling_m),
         layers=Layers(
-            boundary=_boundary([*region.outline_m.tolist(), *fleet.pads_m, *_hovered_m(imager)]),
+            boundary=_boundary(
+                [*region.outline_m.tolist(), *fleet.pads_m, *_hovered_m(imager, room_m)]
+            ),
             landing_pads=_pads(frame, fleet, imager),
             survey_regions={name: region},
         ),
@@ -90,9 +95,9 @@ def _pads(
     )
 
 
-def _hovered_m(imager: ScenarioImager) -> Iterable[EastNorth]:
-    """Yield the corners of where imaging drones may hover."""
-    (east_m, north_m), room_m = imager.over_m, UPWIND_ROOM_M if imager.is_upwind else 0.0
+def _hovered_m(imager: ScenarioImager, room_m: float) -> Iterable[EastNorth]:
+    """Yield the corners of where imaging drones may hover; the first one moves so far."""
+    east_m, north_m = imager.over_m
     yield (east_m - room_m, north_m - room_m)
     yield (east_m + room_m, north_m + room_m)
     yield from imager.also_over_m
@@ -218,7 +223,13 @@ def staged(path: Path, file: ScenarioFile, survey: Survey, errors: ScenarioError
     fleet = _fleet(file.fleet, _pads_m(file.fleet, survey.region, errors))
     imager = _imager(file.imager, _middle_m(survey.region))
     site = generated_site(
-        survey.name, frame, survey.region, fleet, imager, survey.camera.interval_s
+        survey.name,
+        frame,
+        survey.region,
+        fleet,
+        imager,
+        survey.camera.interval_s,
+        moves_upwind=imager.is_upwind or survey.upwind_allowed,
     )
     return Staged(site, frame, fleet, imager)
 
