@@ -26,6 +26,7 @@ from recon.guidance.survey import (
     figures,
     observe_shade,
     refused,
+    returning,
     start,
     step,
 )
@@ -33,7 +34,7 @@ from recon.guidance.survey.segments import NONE, expected_sun, segments_of
 from recon.guidance.survey.sunlit_first import finished_together_s
 from recon.model.geo import GroundGrid
 from recon.model.shade import ShadeMap, SunForecast
-from recon.model.survey import CellState, MissionAssignment, SurveyBudget, SurveyPhase
+from recon.model.survey import CellState, MissionAssignment, SurveyBudget, SurveyPhase, WhenDone
 from recon.model.units import seconds_to_ns
 
 FIELD = rectangle(360.0, 240.0)
@@ -228,6 +229,34 @@ class TestDecisions:
         state, missions = decided(sun, Surveyor("S-1", (0.0, -40.0), is_flying=False))
         assert missions == ()
         assert state.decisions["S-1"].text == "waits: no sun is expected on its rows for 5 min"
+
+    @pytest.mark.parametrize(
+        ("charge_share", "shaded_s", "when_done", "returns"),
+        [
+            (0.5, 290.0, WhenDone.RETURN_HOME, True),
+            (0.5, 120.0, WhenDone.RETURN_HOME, False),  # later it would cost more than 120 s less
+            (0.8, 290.0, WhenDone.RETURN_HOME, False),
+            (0.5, 290.0, WhenDone.HOVER, False),
+            (None, 290.0, WhenDone.RETURN_HOME, False),
+        ],
+    )
+    def test_a_used_battery_is_changed_while_little_sun_is_expected(
+        self, charge_share: float | None, shaded_s: float, when_done: WhenDone, returns: bool
+    ) -> None:
+        sun = forecast(lambda _east, _north, lead: lead >= shaded_s)
+        made = create(planned(replace(SURVEY, when_done=when_done)))
+        assert isinstance(made, SurveyState)
+        running = start(made, ["S-1"], 0)
+        assert isinstance(running, SurveyState)
+        here = Surveyor("S-1", (0.0, 100.0), charge_share=charge_share)
+        state, missions = decided(sun, here, state=running)
+        called = returning(state, [here])
+        assert bool(called) == returns
+        if returns:
+            assert missions == ()
+            why = "returns to change its battery: little sun is expected for 5 min"
+            assert called == {"S-1": why}
+            assert returning(state, [replace(here, is_able=False)]) == {}
 
     def test_vehicles_side_by_side_get_rows_side_by_side(self) -> None:
         sun = forecast(lambda _east, _north, _lead: True)

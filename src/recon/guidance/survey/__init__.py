@@ -5,13 +5,14 @@
 """
 
 from recon.guidance.survey.life import (
+    NO_BATTERY,
     abort,
     create,
     observe,
     observe_shade,
     pause,
     refused,
-    spent,
+    returning,
     start,
     step,
 )
@@ -28,6 +29,7 @@ from recon.guidance.survey.state import (
 )
 
 __all__ = [
+    "NO_BATTERY",
     "PLANNERS",
     "AssignedMission",
     "CoverageFigures",
@@ -47,7 +49,7 @@ __all__ = [
     "pause",
     "plan_survey",
     "refused",
-    "spent",
+    "returning",
     "start",
     "step",
 ]

@@ -22,7 +22,7 @@ while PAUSED too, since a vehicle may still be flying its row.
 Pausing and aborting do not command vehicles: the caller also sends hover to those in `flights`.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 
@@ -166,20 +166,28 @@ def _wrong_phase(state: SurveyState, asked: str) -> Refusal:
     )
 
 
-def spent(state: SurveyState, positions: Sequence[Surveyor]) -> tuple[str, ...]:
-    """Return the serials of idle, able vehicles whose battery does not last for any row left.
+NO_BATTERY = "its battery is too low for any row that is left"
 
-    Vehicles with unknown flight time are never among them: then only the gate checks the battery.
+
+def returning(state: SurveyState, positions: Sequence[Surveyor]) -> Mapping[str, str]:
+    """Return the serials of idle, able vehicles that should fly home, each with the reason.
+
+    Those that their planner decided to change the battery of, and those whose battery does not last
+    for any row left. Vehicles with unknown flight time are never among the latter: then only the
+    gate checks the battery.
     """
     if state.phase is not SurveyPhase.RUNNING:
-        return ()
-    idle = [each for each in positions if each.is_able and each.serial not in state.flights]
-    return tuple(
-        each.serial
-        for each in idle
-        if each.serial in state.serials and each.time_left_s is not None
-        if not _has_a_row(state, each)
-    )
+        return {}
+    reasons: dict[str, str] = {}
+    for each in positions:
+        if not each.is_able or each.serial in state.flights or each.serial not in state.serials:
+            continue
+        decision = state.decisions.get(each.serial)
+        if decision is not None and decision.returns:
+            reasons[each.serial] = decision.text
+        elif each.time_left_s is not None and not _has_a_row(state, each):
+            reasons[each.serial] = NO_BATTERY
+    return reasons
 
 
 def _has_a_row(state: SurveyState, surveyor: Surveyor) -> bool:
@@ -191,7 +199,7 @@ def _has_a_row(state: SurveyState, surveyor: Surveyor) -> bool:
     legs = () if state.flights else _left(state, surveyor)
     if legs:
         return _lasts_for_any(state, legs, surveyor)
-    assert surveyor.time_left_s is not None  # `spent` asks only with a known flight time
+    assert surveyor.time_left_s is not None  # asked only with a known flight time
     way_m = apart_m(surveyor.place_m, surveyor.home_m or surveyor.place_m)
     needed_s = way_m / plan.survey.speed_mps + plan.settings.way_home_waits_s
     return needed_s <= surveyor.time_left_s * plan.settings.flight_time_share

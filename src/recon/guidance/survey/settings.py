@@ -153,6 +153,12 @@ class SurveySettings:
     decided_again_s: float = 3.0
     """A waiting vehicle looks for a flight again after this."""
 
+    swap_s: float = 300.0
+    """The way home, landing, another battery, takeoff and the way back."""
+
+    swapped_from: float = 0.3
+    """Share used of a battery from which it is worth a change while little sun is expected."""
+
     forecast_age_s: float = 15.0
     """A forecast older than this is not used; one comes with each shade map."""
 

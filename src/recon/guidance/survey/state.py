@@ -32,6 +32,8 @@ class Surveyor:
     is_able: bool = True
     ended_mission: int = 0
     time_left_s: float | None = None
+    charge_share: float | None = None
+    """`time_left_s` over that of a full battery; None if unknown."""
     home_m: Place | None = None
     """Where it lands; None: at its present place."""
     is_flying: bool = True
@@ -64,6 +66,7 @@ class Decision:
 
     text: str
     again_ns: int = 0
+    returns: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,6 +13,7 @@ once. One call of `sunlit_first`:
 5. If that begins at once, the vehicle gets its rows up to `committed_s` as a mission. If it begins
    later, the vehicle goes to its first row and stands by in its layer; one on the ground stays
    there until it is time to take off. If nothing is expected in sun, it waits where it is.
+6. One that would wait returns to home instead if a change of battery costs less sun now than later.
 
 Each decision leaves a sentence. What a forecast does not know is its prior, so flights over ground
 whose light is unknown are worth something, and rows in shade are flown when nothing else is left:
@@ -60,7 +61,7 @@ from recon.guidance.survey.state import (
     spent_budget,
 )
 from recon.model.shade import SunForecast
-from recon.model.survey import CellState, MissionAssignment, SurveyPhase
+from recon.model.survey import CellState, MissionAssignment, SurveyPhase, WhenDone
 from recon.model.units import ns_to_seconds, seconds_to_ns
 
 WANTED = CellState.IN_SUN
@@ -150,6 +151,8 @@ class _Choice:
         if self._is_clear(share):
             return self._flies_all(share)
         flight = self._best(share)
+        if (flight.waits_s > 0.0 or not flight.legs) and self._is_time_to_swap(free):
+            return self._returns()
         if not flight.legs:
             minutes = self.settings.planned_s / 60.0
             return self._waits(f"waits: no sun is expected on its rows for {minutes:.0f} min")
@@ -173,6 +176,29 @@ class _Choice:
         lit_m2 = float(missing_m2 @ self.expected.probability.max(axis=1))
         is_worth = lit_m2 > self.settings.share_worth * missing_m2.sum()
         return share if is_worth else free
+
+    def _is_time_to_swap(self, free: BoolArray) -> bool:
+        """Whether a change of battery costs less sun now than later.
+
+        Now it costs the sun expected on free ground until the vehicle is back; later, in sun
+        throughout, all of that time, as probably as the battery has been used.
+        """
+        surveyor, swap_s = self.surveyor, self.settings.swap_s
+        if not surveyor.is_flying or surveyor.charge_share is None:
+            return False
+        if self.plan.survey.when_done is not WhenDone.RETURN_HOME:
+            return False
+        missing_m2 = self.expected.missing_m2[free]
+        sun = missing_m2 @ self.expected.probability[free] / missing_m2.sum()
+        used = 1.0 - surveyor.charge_share
+        is_worth = used >= self.settings.swapped_from
+        return is_worth and float(sun[self.expected.moments_s <= swap_s].mean()) < used
+
+    def _returns(self) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
+        minutes = self.settings.swap_s / 60.0
+        text = f"returns to change its battery: little sun is expected for {minutes:.0f} min"
+        state = self._decided(text, self.now_ns + seconds_to_ns(self.settings.retry_s), True)
+        return state, ()
 
     def _is_clear(self, share: BoolArray) -> bool:
         missing_m2 = np.where(share, self.expected.missing_m2, 0.0)
@@ -290,8 +316,9 @@ class _Choice:
         again_s = self.settings.decided_again_s if again_s is None else again_s
         return self._decided(text, self.now_ns + seconds_to_ns(again_s)), ()
 
-    def _decided(self, text: str, again_ns: int = 0) -> SurveyState:
-        decisions = {**self.state.decisions, self.surveyor.serial: Decision(text, again_ns)}
+    def _decided(self, text: str, again_ns: int = 0, returns: bool = False) -> SurveyState:
+        decision = Decision(text, again_ns, returns)
+        decisions = {**self.state.decisions, self.surveyor.serial: decision}
         return replace(self.state, decisions=MappingProxyType(decisions))
 
 

@@ -27,12 +27,17 @@ def available_vehicles(station: Station, record: SurveyRecord, now_ns: int) -> I
         if place_m is None:
             continue
         home_m = home_enu_m(station.airspace, vehicle)
+        energy = station.settings.safety.energy
+        left_s = time_left_s(vehicle, station.airspace, energy)
+        full = replace(vehicle, battery_fraction=replace(vehicle.battery_fraction, value=1.0))
+        full_s = time_left_s(full, station.airspace, energy)
         yield Surveyor(
             serial=member.serial,
             place_m=(float(place_m[0]), float(place_m[1])),
             is_able=hindrance(station, member, now_ns) is None,
             ended_mission=member.number - is_flown(station, member),
-            time_left_s=time_left_s(vehicle, station.airspace, station.settings.safety.energy),
+            time_left_s=left_s,
+            charge_share=left_s / full_s if left_s is not None and full_s else None,
             home_m=None if home_m is None else (float(home_m[0]), float(home_m[1])),
             is_flying=vehicle.is_flying.value is True,
         )

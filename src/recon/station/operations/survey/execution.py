@@ -13,15 +13,15 @@ an operator starts, pauses or aborts it; it becomes done, or pauses itself, by i
 3. After temporary zones have changed its rows are planned anew instead (`zone_changes`).
 4. Each mission is ordered under guidance, with an approach of its own. A refusal goes back to the
    planner, which tries other rows or another vehicle.
-5. A vehicle with a battery too low for any row, and every vehicle of a survey that is done, flies
-   home if the survey is to return. Those of a survey that is over, or has paused itself, otherwise
-   hover and go back to the operator.
+5. A vehicle with a battery too low for any row, one whose battery is better changed now, and every
+   vehicle of a survey that is done fly home if the survey is to return. Those of a survey that is
+   over, or has paused itself, otherwise hover and go back to the operator.
 """
 
 from math import hypot
 from types import MappingProxyType
 
-from recon.guidance.survey import PositionSample, refused
+from recon.guidance.survey import NO_BATTERY, PositionSample, refused
 from recon.model.command import Hover, Phase
 from recon.model.control import AuthorityHolder
 from recon.model.event import OperatorOrder
@@ -39,7 +39,6 @@ from recon.station.operations.survey.mission_dispatch import dispatch
 from recon.station.operations.survey.planning import StepSurvey, SurveyStepped, step_survey
 from recon.station.operations.survey.return_to_home import (
     IS_DONE,
-    NO_BATTERY,
     is_done_and_returns,
     is_under_way,
     returns_home,
@@ -152,8 +151,8 @@ def _stepped(station: Station, job_id: int, result: SurveyStepped, now_ns: int) 
         station, sent = _order_mission(station, survey_id, mission, now_ns)
         outputs += sent
     if returns_home(record):
-        for serial in result.out_of_battery:
-            station, sent = send_home(station, survey_id, serial, NO_BATTERY, now_ns)
+        for serial, why in result.returning.items():
+            station, sent = send_home(station, survey_id, serial, why, now_ns)
             outputs += sent
     station, sent = _release_vehicles(station, survey_id, now_ns)
     return station, (*outputs, *sent)

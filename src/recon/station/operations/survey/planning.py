@@ -4,7 +4,7 @@ Both may take longer than a step of the station may.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from recon.guidance.survey import (
     PositionSample,
@@ -16,7 +16,7 @@ from recon.guidance.survey import (
     observe,
     observe_shade,
     plan_survey,
-    spent,
+    returning,
     step,
 )
 from recon.guidance.survey.plan import RULE
@@ -63,8 +63,8 @@ class SurveyStepped:
 
     state: SurveyState
     missions: tuple[MissionAssignment, ...]
-    out_of_battery: tuple[str, ...] = ()
-    """Serials of vehicles that wait with a battery too low for any row."""
+    returning: Mapping[str, str] = field(default_factory=dict)
+    """Serials of idle vehicles that should fly home, and why."""
 
 
 def make_rows(work: SurveyPlanRequest) -> SurveyPlan | Refusal:
@@ -80,7 +80,7 @@ def step_survey(work: StepSurvey) -> SurveyStepped:
     for serial, samples in _by_vehicle(work.positions).items():
         state = observe(state, serial, samples)
     state, missions = step(state, work.vehicles, work.now_ns, work.sun)
-    return SurveyStepped(state, missions, spent(state, work.vehicles))
+    return SurveyStepped(state, missions, returning(state, work.vehicles))
 
 
 def request_survey(station: Station, event: SurveyRequested, now_ns: int) -> Stepped:

@@ -18,7 +18,6 @@ from recon.station.state.station import Station, take_id
 from recon.station.state.steps import Stepped
 from recon.station.state.survey_record import SurveyMember, SurveyRecord
 
-NO_BATTERY = "its battery is too low for any row that is left"
 IS_DONE = "the survey is done"
 
 

@@ -8,7 +8,7 @@ from tests.guidance.survey.fields import rectangle, survey_of
 from tests.guidance.survey.flyers import fleet
 from tests.guidance.survey.test_flown import begun
 
-from recon.guidance.survey import Surveyor, SurveyState, spent, step
+from recon.guidance.survey import NO_BATTERY, Surveyor, SurveyState, returning, step
 from recon.model.survey import SurveyPhase
 from recon.model.units import seconds_to_ns
 
@@ -34,7 +34,7 @@ def test_no_vehicle_gets_rows_and_is_called_home_at_once(
     positions = with_time(one_s, other_s)
     positions[0] = replace(positions[0], place_m=place_m)
     after = stepped(STATE, positions)
-    home = spent(after, positions)
+    home = returning(after, positions)
     assert not set(home) & set(after.flights)
     assert not {each.serial for each in positions if each.time_left_s is None} & set(home)
 
@@ -45,7 +45,7 @@ def test_more_battery_never_calls_one_home(
 ) -> None:
     def is_called(seconds: float) -> bool:
         one = replace(HERE[0], time_left_s=seconds, place_m=place_m, home_m=(0.0, -40.0))
-        return spent(STATE, [one]) == (one.serial,)
+        return set(returning(STATE, [one])) == {one.serial}
 
     assert is_called(left_s) >= is_called(left_s + more_s)
 
@@ -53,7 +53,7 @@ def test_more_battery_never_calls_one_home(
 def test_an_empty_battery_is_called_and_a_full_one_flies() -> None:
     positions = with_time(5.0, 2_000.0)
     after = stepped(STATE, positions)
-    assert spent(after, positions) == (HERE[0].serial,)
+    assert returning(after, positions) == {HERE[0].serial: NO_BATTERY}
     assert set(after.flights) == {HERE[1].serial}
 
 
@@ -68,11 +68,13 @@ def test_who_waits_for_what_others_leave_keeps_enough_for_the_way_home() -> None
     far = replace(positions[0], place_m=(0.0, 60.0), home_m=(0.0, -40.0))
     for spare_s, called in ((1.0, ()), (-1.0, (first,))):
         left_s = (way_s + spare_s) / settings.flight_time_share
-        assert spent(waits, [replace(far, time_left_s=left_s)]) == called
+        assert returning(waits, [replace(far, time_left_s=left_s)]) == dict.fromkeys(
+            called, NO_BATTERY
+        )
 
 
 def test_who_cannot_fly_or_is_not_asked_is_not_called() -> None:
     empty = with_time(0.0, 0.0)
-    assert spent(STATE, [replace(empty[0], is_able=False)]) == ()
-    assert spent(replace(STATE, phase=SurveyPhase.PAUSED), empty) == ()
-    assert spent(STATE, [replace(empty[0], serial="stranger")]) == ()
+    assert returning(STATE, [replace(empty[0], is_able=False)]) == {}
+    assert returning(replace(STATE, phase=SurveyPhase.PAUSED), empty) == {}
+    assert returning(STATE, [replace(empty[0], serial="stranger")]) == {}
