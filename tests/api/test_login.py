@@ -1,8 +1,11 @@
 """Login by token: who gets in, what wrong tokens cost, and streams of users that are removed."""
 
 import asyncio
+import re
 from dataclasses import dataclass, field
 
+import cv2
+import numpy as np
 import pytest
 import websockets
 from hypothesis import given, settings
@@ -23,6 +26,23 @@ from recon.api.login import FAILURES_OVERALL, FAILURES_PER_ADDRESS, WINDOW_S, Lo
 from recon.api.security import LOGIN_NEEDED, Access, AccessCheck
 from recon.model.event import LoginAccepted, LoginRefused
 from recon.model.person import Person, Role
+
+
+def read_code(svg: str) -> str:
+    """The text of a drawn QR code, as a camera reads it: rows of modules, drawn as strokes."""
+    (path,) = re.findall(r'class="qrline"[^>]* d="([^"]+)"|d="(M[^"]+)" class="qrline"', svg)
+    picture = np.full((60, 60), 255, np.uint8)
+    x = y = 0.0
+    for kind, first, second in re.findall(r"([Mmh])([\d.-]+)(?: ([\d.-]+))?", "".join(path)):
+        if kind == "h":
+            picture[int(y), int(x) : int(x + float(first))] = 0
+            x += float(first)
+        else:
+            x, y = (0.0, 0.0) if kind == "M" else (x, y)
+            x, y = x + float(first), y + float(second)
+    text, _, _ = cv2.QRCodeDetector().detectAndDecode(np.kron(picture, np.ones((8, 8), np.uint8)))
+    return str(text)
+
 
 HERE, ELSEWHERE = "192.0.2.7", "192.0.2.8"
 
@@ -151,6 +171,18 @@ class TestRequests:
         alone = Client(application(FakeStation()))
         assert alone.get("/api/access/qr.svg").status_code == 404
         assert alone.get("/api/access").json()["urls"] == []
+
+    def test_the_address_for_apps_is_a_code_that_a_phone_reads(self) -> None:
+        station = FakeStation()
+        client = Client(application(station))
+        nothing = client.get("/api/apps/qr.svg")
+        assert nothing.status_code == 404
+        assert "--link-host" in nothing.json()["error"]
+        station.service.app_url = "recon://192.0.2.5:3001"
+        assert client.get("/api/state").json()["station"]["app_url"] == "recon://192.0.2.5:3001"
+        code = client.get("/api/apps/qr.svg")
+        assert code.headers["content-type"] == "image/svg+xml"
+        assert read_code(code.text) == "recon://192.0.2.5:3001"
 
     def test_over_loopback_a_token_that_is_given_is_checked(self) -> None:
         access = Access(Login([user(role=Role.OBSERVER)]))

@@ -150,6 +150,7 @@ def test_a_port_bound_but_not_yet_listening_is_in_use() -> None:
         (("--https-host", "0.0.0.0", "--users", "/nowhere/users.toml"), "recon user add NAME"),
         (("--certificate", "/nowhere.pem"), "--certificate and --key belong together"),
         (("--link-host", "203.0.113.77"), "--link-port"),
+        (("--announce",), "add --link-host 0.0.0.0"),
         (("--link-host", "no.such.host.invalid"), "no.such.host.invalid"),
         (("--record", "/proc/none"), "--record"),
         (("--link-port", "70000"), "--link-port"),

@@ -1,4 +1,4 @@
-"""Routes about access: the person of a request, and the address for other computers as a QR."""
+"""Routes about access: the person of a request, and the addresses for other devices as QR codes."""
 
 import io
 
@@ -6,6 +6,7 @@ from fastapi import FastAPI, Request, Response
 
 from recon.api import schema
 from recon.api.addresses import SharedAddress
+from recon.api.port import StationPort
 from recon.api.responses import PROBLEMS, found
 from recon.api.security import person_of
 from recon.model.person import THIS_COMPUTER
@@ -13,7 +14,7 @@ from recon.model.person import THIS_COMPUTER
 SVG: dict[int | str, dict[str, object]] = {200: {"content": {"image/svg+xml": {}}}}
 
 
-def add_access_routes(app: FastAPI, shared: SharedAddress | None) -> None:
+def add_access_routes(app: FastAPI, port: StationPort, shared: SharedAddress | None) -> None:
     """Add all routes of this module."""
 
     @app.get("/api/access")
@@ -31,11 +32,21 @@ def add_access_routes(app: FastAPI, shared: SharedAddress | None) -> None:
     @app.get("/api/access/qr.svg", response_class=Response, responses=PROBLEMS | SVG)
     async def code() -> Response:
         """The address for other computers with the certificate's fingerprint, as a QR code."""
-        import segno
-
         text = found(shared, "Other computers reach nothing: start with --https-host").login_url
-        drawn = io.BytesIO()
-        segno.make(text, error="l", micro=False).save(
-            drawn, kind="svg", scale=4, border=4, dark="#000", light="#fff"
-        )
-        return Response(drawn.getvalue(), media_type="image/svg+xml")
+        return _qr_code(text)
+
+    @app.get("/api/apps/qr.svg", response_class=Response, responses=PROBLEMS | SVG)
+    async def app_code() -> Response:
+        """The station's first address for companion apps, as a QR code for the phone."""
+        url = port.state().station.app_url
+        return _qr_code(found(url, "Apps on other devices reach nothing: start with --link-host"))
+
+
+def _qr_code(text: str) -> Response:
+    import segno
+
+    drawn = io.BytesIO()
+    segno.make(text, error="l", micro=False).save(
+        drawn, kind="svg", scale=4, border=4, dark="#000", light="#fff"
+    )
+    return Response(drawn.getvalue(), media_type="image/svg+xml")

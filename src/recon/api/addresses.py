@@ -4,6 +4,7 @@ import contextlib
 import socket
 import struct
 import sys
+from collections.abc import Iterable
 from dataclasses import dataclass
 from ipaddress import ip_address
 
@@ -50,6 +51,25 @@ def own_addresses() -> tuple[str, ...]:
     """Return this computer's addresses besides loopback, by its interfaces and its name."""
     found = dict.fromkeys([*_of_interfaces(), *_of_name()])
     return tuple(address for address in found if not _is_local_only(address))
+
+
+def app_hosts(bound: Iterable[str]) -> tuple[str, ...]:
+    """Return where apps on other devices reach bound IP addresses; none for loopback."""
+    found: dict[str, None] = {}
+    for host in bound:
+        if host in EVERY_ADDRESS:
+            # A socket of one version does not accept the other.
+            version = ip_address(host).version
+            own = own_addresses()
+            found |= dict.fromkeys(each for each in own if ip_address(each).version == version)
+        elif not is_loopback(host):
+            found[host] = None
+    return tuple(found)
+
+
+def app_url(host: str, port: int) -> str:
+    """Return an address for companion apps as their QR codes have it."""
+    return f"recon://{in_url(host)}:{port}"
 
 
 def in_url(host: str) -> str:

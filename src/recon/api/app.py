@@ -55,7 +55,7 @@ def create_app(
         redoc_url=None,
         dependencies=[Depends(require_listed_role)],
     )
-    add_access_routes(app, shared)
+    add_access_routes(app, port, shared)
     _add_state_routes(app, port)
     _add_audit_and_streams(app, port)
     add_order_routes(app, port)

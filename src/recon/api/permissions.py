@@ -22,6 +22,7 @@ STOP_ORDERS = frozenset({"hover", "land", "return_home"})
 LEAST_ROLE: dict[tuple[str, str], Role] = {
     ("GET", "/api/access"): Role.OBSERVER,
     ("GET", "/api/access/qr.svg"): Role.OBSERVER,
+    ("GET", "/api/apps/qr.svg"): Role.OBSERVER,
     ("GET", "/api/state"): Role.OBSERVER,
     ("GET", "/api/vehicles"): Role.OBSERVER,
     ("GET", "/api/vehicle"): Role.OBSERVER,

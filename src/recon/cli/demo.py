@@ -11,7 +11,7 @@ import typer
 
 import recon
 from recon.cli.foreground import print_now, run_in_loop
-from recon.cli.run import HAS_GUARD, announce, console_folder, guard_port
+from recon.cli.run import HAS_GUARD, console_folder, guard_port, print_started
 from recon.cli.scripted_operator import fly_surveys
 from recon.model.errors import ReconError
 from recon.record.users_file import state_folder
@@ -100,7 +100,7 @@ class _Demo:
             await self._end_simulator()
 
     async def _start(self, started: Started) -> None:
-        announce(started)
+        print_started(started)
         self._simulator = await self._start_simulator(started.link_port)
         self._add_task(self._report_end(self._simulator))
         if self._flies:

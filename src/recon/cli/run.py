@@ -39,6 +39,10 @@ def run_command(
     link_port: Annotated[
         int, typer.Option(min=0, max=65535, help="Port for companion apps; 0: any free port.")
     ] = 3001,
+    announce: Annotated[
+        bool,
+        typer.Option(help="Announce the station by mDNS to apps on the network of --link-host."),
+    ] = False,
     http_host: Annotated[str, typer.Option(help="Loopback address of the console.")] = "127.0.0.1",
     http_port: Annotated[
         int, typer.Option(min=0, max=65535, help="Port of the console; 0: any free port.")
@@ -92,6 +96,7 @@ def run_command(
         site=default_site() if site is None else load_site(site),
         link_host=link_host,
         link_port=link_port,
+        is_announced=announce,
         http_host=http_host,
         http_port=http_port,
         stop_port=guard_port(stop_port, http_port) if guard else None,
@@ -109,7 +114,7 @@ def run_command(
         apps=None if apps_file is None else read_app_list(apps_file),
     )
     describe(config.site)
-    run_in_loop(run(config, _announce))
+    run_in_loop(run(config, _print_started))
 
 
 def guard_port(stop_port: int | None, http_port: int) -> int:
@@ -119,8 +124,8 @@ def guard_port(stop_port: int | None, http_port: int) -> int:
     return min(http_port + 1, 65535) if http_port else 0
 
 
-async def _announce(started: Started) -> None:
-    announce(started)
+async def _print_started(started: Started) -> None:
+    print_started(started)
 
 
 def apps_file_of(site: Path | None) -> Path | None:
@@ -135,10 +140,13 @@ def describe(site: Site) -> None:
         print_now(line)
 
 
-def announce(started: Started) -> None:
+def print_started(started: Started) -> None:
     """Print every address the station listens on, and which apps it admits."""
     for address in started.link_addresses:
         print_now(f"companion apps: {address}")
+    if started.app_url is not None:
+        for line in qr_lines(started.app_url):
+            print_now(line)
     if started.apps_listed is not None:
         print_now(f"apps admitted: {started.apps_listed} entries; others wait, see recon pair")
     print_now(f"audit: {started.audit_folder}")

@@ -72,6 +72,11 @@ class LinkServer:
         sockets = () if self._server is None else self._server.sockets
         return int(sockets[0].getsockname()[1]) if sockets else 0
 
+    @property
+    def hosts(self) -> list[str]:
+        """The IP addresses it listens on."""
+        return [] if self._server is None else [s.getsockname()[0] for s in self._server.sockets]
+
     async def stop(self) -> None:
         """Close the listening socket and every connection."""
         if self._server is not None:

@@ -7,6 +7,7 @@
     |- RecordError          recon.record: files of a flight
     |- SimulationError      recon.sim: options and inputs of the simulator
     |- ClientError          recon.client: connecting to a station
+    |- AnnouncementError    recon.link: the station cannot announce itself by mDNS
     |- StartError           recon.station: the station cannot start
 
 The command line prints the text of a `ReconError` as one sentence and exits with 1. Refused

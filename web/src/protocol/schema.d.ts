@@ -128,6 +128,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/apps/qr.svg": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * App Code
+         * @description The station's first address for companion apps, as a QR code for the phone.
+         */
+        get: operations["app_code_api_apps_qr_svg_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/apps/refuse": {
         parameters: {
             query?: never;
@@ -2131,6 +2151,11 @@ export interface components {
          */
         StationView: {
             /**
+             * App Url
+             * @description the first address for apps on other devices, as QR codes have it; null: none
+             */
+            app_url: string | null;
+            /**
              * Apps Listed
              * @description entries of the list of admitted apps; null: no list, any app is admitted
              */
@@ -3069,6 +3094,35 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    app_code_api_apps_qr_svg_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "image/svg+xml": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
         };

@@ -182,6 +182,10 @@ export class LiveSource implements StationSource {
     return this.requests.picture("/api/access/qr.svg");
   }
 
+  appAddressCode() {
+    return this.requests.picture("/api/apps/qr.svg");
+  }
+
   groundImageFile() {
     return this.requests.picture("/api/ground-image.tif");
   }

@@ -62,6 +62,8 @@ export interface StationSource {
   readonly person: Accessor<AccessView | null>;
   /** The address for other computers as a QR code. */
   sharedAddressCode(): Promise<Outcome<Picture>>;
+  /** The address for companion apps as a QR code. */
+  appAddressCode(): Promise<Outcome<Picture>>;
   /** Seconds to add at `now` to every age in `state`; null before the first state. */
   behindS(now: Instant): number | null;
   /** Sends an order, always without takeoff. */

@@ -178,6 +178,7 @@ export function station(
     station: {
       version: "0.1.0",
       link_addresses: ["127.0.0.1:3001"],
+      app_url: null,
       // The start time is the same for every `time_ns`.
       uptime_s: 840 + time_ns / 1e9,
       frames_dropped: 0,

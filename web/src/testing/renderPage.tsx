@@ -193,6 +193,7 @@ function fakeSource(
     connection,
     person,
     sharedAddressCode: noPicture,
+    appAddressCode: noPicture,
     behindS,
     order: async (order) => {
       recorded.orders.push(order);

@@ -59,6 +59,9 @@ class StationView(Message):
 
     version: str
     link_addresses: list[str]
+    app_url: str | None = Field(
+        description="the first address for apps on other devices, as QR codes have it; null: none"
+    )
     uptime_s: float
     frames_dropped: int
     capture_folder: str | None

@@ -62,6 +62,8 @@ class Service:
     capture_folder: str | None
     audit_log: AuditLog | None
     _ids: Callable[[], int]
+    app_url: str | None = None
+    """The first address for apps on other devices; None on loopback."""
     guard_stop_url: str | None = None
     lost_bytes: Callable[[], int] = lambda: 0
     """How many bytes of links the record has lost so far."""
@@ -332,6 +334,7 @@ class Service:
         return schema.StationView(
             version=version(),
             link_addresses=self.link_addresses,
+            app_url=self.app_url,
             uptime_s=ns_to_seconds(now_ns - self.driver.started_at_ns),
             frames_dropped=sum(
                 each.frames_dropped for each in self.driver.station.imaging.imagers.values()

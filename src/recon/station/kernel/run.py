@@ -11,7 +11,7 @@ from tempfile import TemporaryFile
 import structlog
 
 from recon import version
-from recon.api.addresses import SharedAddress
+from recon.api.addresses import SharedAddress, app_hosts, app_url, in_url
 from recon.api.app import create_app
 from recon.api.certificate import Certificate
 from recon.api.login import Login
@@ -37,6 +37,7 @@ from recon.station.audit.start import (
     started_entry,
 )
 from recon.station.imaging.references import with_references
+from recon.station.kernel.announcing import announce, require_announceable
 from recon.station.kernel.app_list_writer import AppListWriter
 from recon.station.kernel.build import first_state
 from recon.station.kernel.driver import AsyncioDriver, freeze_loaded_objects, station_clock
@@ -73,6 +74,8 @@ class RunConfig:
     site: Site
     link_host: str = "127.0.0.1"
     link_port: int = 3001
+    is_announced: bool = False
+    """By mDNS, to apps on the network of `link_host`."""
     http_host: str = "127.0.0.1"
     http_port: int = 8080
     stop_port: int | None = None
@@ -122,6 +125,8 @@ class Started:
     """Entries of the list of apps; None without a list."""
     network: SharedAddress | None = None
     """What other computers use; None when they reach nothing."""
+    app_url: str | None = None
+    """For apps on other devices, as QR codes have it; None when they reach nothing."""
     taken_up: str = ""
     """What this run continues from the last one, in words; empty if nothing."""
 
@@ -135,13 +140,15 @@ OnStart = Callable[[Started], Awaitable[None]]
 async def run(config: RunConfig, on_start: OnStart) -> None:
     """Run a station until SIGINT or SIGTERM. Raises `StartError` when it cannot start."""
     require_startable(config.http_host, config.network)
+    if config.is_announced:
+        require_announceable(config.link_host)
     certificate = certificate_of(config.network)
     place = config.audit or default_place(config.link_port)
     numbers_file = _numbers_file(config, place)
     given = {} if numbers_file is None else read_numbers(numbers_file)
     begun = _begin_audit(place)
     last_run, is_snapshot_good = _last_run(place, begun)
-    async with AsyncExitStack() as stack:
+    async with AsyncExitStack() as last, AsyncExitStack() as stack:
         doors = _open_doors(config, certificate, stack)
         clock = station_clock()
         begins = first_station(config)
@@ -166,6 +173,9 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
         service.numbers = kept_numbers(given, numbers_file, stack)
         line = _start_guard(config, driver, service, doors, place.folder, stack)
         links = await _start_links_and_worker(config, driver, service, line, tap, stack)
+        if config.is_announced:
+            name = "Recon" if config.site_folder is None else config.site.name
+            announce(name, links.hosts, links.port, last)
         started = replace(
             _started(config, service, links, doors),
             stop_url=None if line is None else line.stop_url,
@@ -214,7 +224,10 @@ async def _start_links_and_worker(
     driver.links = links = LinkServer(driver.handle, driver.now_ns, config.link, tap)
     links.objection = driver.objection
     links.watch = line
-    service.link_addresses = await _listen_for_links(links, config)
+    listens_on = await _listen_for_links(links, config)
+    hosts = app_hosts(links.hosts)
+    service.link_addresses = [f"{in_url(host)}:{links.port}" for host in hosts] or listens_on
+    service.app_url = app_url(hosts[0], links.port) if hosts else None
     stack.push_async_callback(links.stop)
     worker.start()
     stack.callback(worker.stop)
@@ -446,7 +459,9 @@ def _require_writable(folder: Path) -> None:
 def _started(config: RunConfig, service: Service, links: LinkServer, doors: _Doors) -> Started:
     network = shared_address(config.network, doors.certificate, doors.network)
     url = url_of(config.http_host, doors.loopback)
-    return Started(service.link_addresses, links.port, url, network=network)
+    return Started(
+        service.link_addresses, links.port, url, network=network, app_url=service.app_url
+    )
 
 
 def _text(folder: Path | None) -> str | None:

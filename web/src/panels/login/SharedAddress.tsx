@@ -1,5 +1,6 @@
-import { createResource, For, onCleanup, Show } from "solid-js";
+import { For, Show } from "solid-js";
 import { useConsole } from "../../console";
+import { QrCode } from "../QrCode";
 import "./login.css";
 
 /** How other computers open this console: addresses, the certificate's fingerprint, a QR code. */
@@ -17,28 +18,9 @@ export function SharedAddress() {
           <For each={access().urls}>{(url) => <p class="wire-text">{url}</p>}</For>
           <p class="muted">Certificate SHA-256</p>
           <code class="login-digits">{access().fingerprint}</code>
-          <Code />
+          <QrCode load={() => source.sharedAddressCode()} alt="The first address as a QR code" />
         </section>
       )}
-    </Show>
-  );
-}
-
-function Code() {
-  const { source } = useConsole();
-  let url: string | null = null;
-  const [code] = createResource(async () => {
-    const outcome = await source.sharedAddressCode();
-    if (outcome.kind === "failed") return null;
-    url = URL.createObjectURL(outcome.value.blob);
-    return url;
-  });
-  onCleanup(() => {
-    if (url !== null) URL.revokeObjectURL(url);
-  });
-  return (
-    <Show when={code()}>
-      {(address) => <img class="login-code" src={address()} alt="The first address as a QR code" />}
     </Show>
   );
 }

@@ -2,6 +2,7 @@ import { createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { SiteView, StationView } from "../../protocol";
 import { formatAge, formatBytes, formatQuantity, UNKNOWN } from "../../text/quantities";
+import { AppAddress } from "../links/AppAddress";
 import { SharedAddress } from "../login/SharedAddress";
 import { Panel } from "../Panel";
 import { SeparationSwitch } from "../separation/SeparationHold";
@@ -24,6 +25,7 @@ export function StationPanel() {
           </section>
         )}
       </Show>
+      <AppAddress />
       <SharedAddress />
       <Show when={fleet.site}>{(site) => <SiteFacts site={site()} />}</Show>
       <Show when={fleet.groundImage}>

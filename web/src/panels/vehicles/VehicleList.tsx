@@ -10,6 +10,7 @@ import {
   SORTS,
 } from "../../fleet/vehicleOrder";
 import { vehicleKey } from "../../fleet/vehicleStatus";
+import { AppAddress } from "../links/AppAddress";
 import { Empty, Panel } from "../Panel";
 import { VehicleRow } from "./VehicleRow";
 import "./vehicles.css";
@@ -154,14 +155,18 @@ function Choice<T extends string>(props: {
 
 function NoVehicles() {
   const { fleet } = useConsole();
-  const addresses = () => fleet.station?.link_addresses ?? [];
+  // Beyond loopback the section below has the address.
+  const addresses = () => (fleet.station?.app_url ? [] : (fleet.station?.link_addresses ?? []));
   return (
-    <Empty>
-      No companion app connected.
-      <Show when={addresses().length > 0}>
-        {" "}
-        App address: <span class="wire-text">{addresses().join(", ")}</span>
-      </Show>
-    </Empty>
+    <>
+      <Empty>
+        No companion app connected.
+        <Show when={addresses().length > 0}>
+          {" "}
+          App address: <span class="wire-text">{addresses().join(", ")}</span>
+        </Show>
+      </Empty>
+      <AppAddress />
+    </>
   );
 }

@@ -45,11 +45,11 @@ class StationAddressTest {
     }
 
     @Test
-    fun `waits grow to a second and begin anew after a link that lasted`() {
+    fun `waits stay below a second and begin anew after a link that lasted`() {
         val backoff = Backoff()
         val waits = List(5) { backoff.nextWaitNs(openNs = 0) / 1_000_000 }
-        assertEquals(listOf(200L, 400L, 800L, 1_000L, 1_000L), waits)
-        assertEquals(1_000_000_000L, backoff.nextWaitNs(openNs = 100_000_000))
-        assertEquals(200_000_000L, backoff.nextWaitNs(openNs = 2_000_000_000))
+        assertEquals(listOf(100L, 200L, 400L, 800L, 800L), waits)
+        assertEquals(800_000_000L, backoff.nextWaitNs(openNs = 100_000_000))
+        assertEquals(100_000_000L, backoff.nextWaitNs(openNs = 2_000_000_000))
     }
 }
