@@ -34,3 +34,9 @@ case " $* " in *" cargo "*)
         exit 1
     } ;;
 esac
+case " $* " in *" java "*)
+    java -version 2>&1 | awk -F '"' '/version/ { split($2, v, "."); exit !(v[1] >= 17) }' || {
+        echo "recon: a JDK 17 or newer is needed, this is $(java -version 2>&1 | head -1)." >&2
+        exit 1
+    } ;;
+esac

@@ -1,0 +1,69 @@
+"""CI's step for the companion app: what leaves it out, and what fails it."""
+
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+SKIPPED = "core and adapter of the companion app were NOT tested"
+UNREACHABLE = "Could not transfer artifact org.junit:junit-bom:pom:5.14.4 from/to central"
+
+
+def step(folder: Path, **tools: str) -> subprocess.CompletedProcess[str]:
+    """Run the step where `java` and `mvn` are these shell scripts, or are missing."""
+    # The rest of the system, without its own Maven and Java.
+    for name in ("sh", "make", "mktemp", "rm", "tee", "grep", "awk", "head", "cat"):
+        (folder / name).symlink_to(Path("/usr/bin") / name)
+    for name, script in tools.items():
+        (folder / name).write_text(f"#!/bin/sh\n{script}\n")
+        (folder / name).chmod(0o755)
+    return subprocess.run(
+        ["tools/ci_android_core.sh"],
+        cwd=ROOT,
+        env={**os.environ, "PATH": str(folder), "MAKEFLAGS": ""},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+JAVA = """echo 'openjdk version "17.0.15" 2025-04-15' >&2"""
+
+
+@pytest.mark.parametrize(
+    ("tools", "reason"),
+    [
+        ({}, "JDK 17 and Maven are needed"),
+        ({"java": JAVA}, "JDK 17 and Maven are needed"),
+        (
+            {"java": JAVA.replace("17.0", "11.0"), "mvn": "exit 0"},
+            "JDK 17 and Maven are needed",
+        ),
+        ({"java": JAVA, "mvn": f"echo '{UNREACHABLE}'; exit 1"}, "cannot reach Maven Central"),
+    ],
+)
+def test_it_is_left_out_with_a_sentence(tmp_path: Path, tools: dict[str, str], reason: str) -> None:
+    done = step(tmp_path, **tools)
+    assert done.returncode == 0, done.stderr
+    assert SKIPPED in done.stdout
+    assert reason in done.stdout
+
+
+def test_a_build_that_passes_or_fails_decides(tmp_path: Path) -> None:
+    passing, failing = tmp_path / "passing", tmp_path / "failing"
+    for folder in (passing, failing):
+        folder.mkdir()
+    done = step(passing, java=JAVA, mvn='echo "run: $*"')
+    assert done.returncode == 0, done.stderr
+    assert "run: --batch-mode --quiet --file android/pom.xml verify" in done.stdout
+    assert SKIPPED not in done.stdout
+    failed = step(failing, java=JAVA, mvn="echo 'There are test failures'; exit 1")
+    assert failed.returncode == 1
+    assert "There are test failures" in failed.stdout
+    assert SKIPPED not in failed.stdout
+
+
+def test_ci_takes_the_step() -> None:
+    assert "\ntools/ci_android_core.sh\n" in (ROOT / ".ci/run").read_text()
