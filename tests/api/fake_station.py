@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from recon.api.app import create_app
-from recon.api.port import SurveyCellStates
+from recon.api.port import SiteFolder, SurveyCellStates
 from recon.api.schema import (
     ActionResponse,
     AuditPage,
@@ -217,6 +217,9 @@ class FakeStation:
 
     def survey_cells(self, survey_id: int) -> SurveyCellStates | None:
         return self.service.survey_cells(survey_id)
+
+    def site_folder(self) -> SiteFolder:
+        return self.service.site_folder()
 
     def geotiff(self, image: GroundImage) -> bytes:
         return self.service.geotiff(image)

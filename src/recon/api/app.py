@@ -20,6 +20,7 @@ from recon.api.picture_routes import add_picture_routes
 from recon.api.port import StationPort
 from recon.api.responses import PROBLEMS, found
 from recon.api.security import POLICY_VIOLATION, refuse_stream
+from recon.api.site_routes import add_site_routes
 from recon.api.streams import MAX_ENTRIES, AuditStream, StateStream
 from recon.api.survey_routes import add_survey_routes
 from recon.api.zone_routes import add_zone_routes
@@ -61,6 +62,7 @@ def create_app(
     add_order_routes(app, port)
     add_pairing_routes(app, port)
     add_picture_routes(app, port)
+    add_site_routes(app, port)
     add_survey_routes(app, port)
     add_zone_routes(app, port)
     _add_console(app, console)

@@ -42,6 +42,7 @@ LEAST_ROLE: dict[tuple[str, str], Role] = {
     ("GET", "/api/surveys/{survey_id}/ways"): Role.OBSERVER,
     ("GET", "/api/surveys/{survey_id}/cells.png"): Role.OBSERVER,
     ("GET", "/api/zones"): Role.OBSERVER,
+    ("GET", "/api/site/drawing"): Role.OBSERVER,
     (STREAM, "/api/stream"): Role.OBSERVER,
     (STREAM, "/api/audit/stream"): Role.OBSERVER,
     ("POST", "/api/all-stop"): Role.OBSERVER,
@@ -63,6 +64,11 @@ LEAST_ROLE: dict[tuple[str, str], Role] = {
     ("POST", "/api/look-aside"): Role.OPERATOR,
     ("POST", "/api/surveys"): Role.OPERATOR,
     ("POST", "/api/surveys/{survey_id}/start"): Role.OPERATOR,
+    # Of regions to survey; boundary, zones and pads need an administrator: see `SiteService`.
+    ("POST", "/api/site/drawing"): Role.OPERATOR,
+    ("POST", "/api/site/drawing/check"): Role.OPERATOR,
+    ("POST", "/api/site/drawing/undo"): Role.OPERATOR,
+    ("POST", "/api/site/import"): Role.OPERATOR,
     # Finding a lost vehicle is routine; the operators talk to those who look for it.
     ("POST", "/api/vehicle/hazard/dismiss"): Role.OPERATOR,
     # On is the operators', off the administrators': see `separation_hold_role`.

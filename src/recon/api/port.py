@@ -9,8 +9,12 @@ import numpy.typing as npt
 from recon.api.schema import (
     ActionResponse,
     AuditPage,
+    ImportedView,
     OrderResponse,
     PreflightView,
+    SiteDrawingRequest,
+    SiteDrawingResponse,
+    SiteDrawingView,
     StationState,
     SunAtView,
     SurveyRequest,
@@ -37,6 +41,24 @@ class SurveyCellStates:
     inside: npt.NDArray[np.bool_]
     light_known: npt.NDArray[np.bool_]
     """Where the light was known when a photo was taken."""
+
+
+class SiteFolder(Protocol):
+    """The site's folder, read and written on threads: its calls take as long as the disk."""
+
+    async def drawing(self) -> SiteDrawingView:
+        """Return the layers in the folder, with all corners."""
+
+    async def save(
+        self, asked: SiteDrawingRequest, by: Person, *, is_check: bool
+    ) -> SiteDrawingResponse:
+        """Check a drawing, save it and bring it into force; refusals are results, not errors."""
+
+    async def undo(self, revision: str, by: Person) -> SiteDrawingResponse:
+        """Take back the newest change; refusals are results, not errors."""
+
+    async def import_features(self, name: str, data: bytes) -> ImportedView:
+        """Return the polygons and points of a file; why it is refused is a result."""
 
 
 class StationPort(Protocol):
@@ -196,3 +218,6 @@ class StationPort(Protocol):
 
     def geotiff(self, image: GroundImage) -> bytes:
         """Return a ground image as a GeoTIFF file; may take long, safe on any thread."""
+
+    def site_folder(self) -> SiteFolder:
+        """Return the site's folder."""

@@ -22,6 +22,8 @@ PROTOCOL = "recon.v1"
 TOKEN_PROTOCOL_PREFIX = "recon.token."
 MAX_BODY_BYTES = 1024 * 1024
 """The longest mission takes 20 KiB; a body is held in memory."""
+LARGER_BODIES = {"/api/site/import": 8 * 1024 * 1024}
+"""A file from a GIS has more attributes than shapes."""
 
 POLICY_VIOLATION = 1008
 TRY_AGAIN_LATER = 1013
@@ -92,7 +94,7 @@ class AccessCheck:
         send: Send,
         headers: Headers,
     ) -> None:
-        refused = _body_refusal(headers)
+        refused = _body_refusal(headers, LARGER_BODIES.get(scope["path"], MAX_BODY_BYTES))
         if refused is not None:
             await _refuse(refused, scope, receive, send)
             return
@@ -174,13 +176,13 @@ async def refuse_stream(socket: WebSocket, code: int, sentence: str) -> None:
         return
 
 
-def _body_refusal(headers: Headers) -> RefusedRequest | None:
+def _body_refusal(headers: Headers, most: int) -> RefusedRequest | None:
     """Refuse a body that is too long or of unknown length."""
     if "transfer-encoding" in headers:
         return RefusedRequest(411, "a body needs a Content-Length")
     length = headers.get("content-length", "0")
-    if not length.isdecimal() or int(length) > MAX_BODY_BYTES:
-        return RefusedRequest(413, f"body must be up to {MAX_BODY_BYTES} bytes; got {length[:20]}")
+    if not length.isdecimal() or int(length) > most:
+        return RefusedRequest(413, f"body must be up to {most} bytes; got {length[:20]}")
     return None
 
 

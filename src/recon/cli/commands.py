@@ -62,6 +62,7 @@ COMMANDS = {
     "survey": CommandSource(
         "survey:survey_app", "Survey a region: create, start, pause, abort, status."
     ),
+    "site": CommandSource("site:site_app", "Make, check and import into a site's folder."),
     "zone": CommandSource(
         "zone:zone_app",
         "Keep drones out of a place at once: add, end and list temporary zones.",

@@ -2,7 +2,7 @@
 
 import asyncio
 import sys
-from collections.abc import Coroutine
+from collections.abc import Coroutine, Sequence
 from pathlib import Path
 from time import time
 from typing import Annotated, Any
@@ -14,14 +14,18 @@ from recon.cli.foreground import print_now, run_in_loop
 from recon.cli.run import HAS_GUARD, console_folder, guard_port, print_started
 from recon.cli.scripted_operator import fly_surveys
 from recon.model.errors import ReconError
+from recon.record.file_set import finish_interrupted
 from recon.record.users_file import state_folder
 from recon.score import Scenario, ScenarioError, load_scenario
 from recon.score.scenario_sky import sky_of
+from recon.site import SiteError, load_site
 from recon.station.audit.start import default_place
 from recon.station.kernel.run import RunConfig, Started, run
 
 SIMULATOR_ENDS_WITHIN_S = 3.0
 FPS_HZ = 2
+SIMULATED = "SIM-"
+"""The serials of simulated drones begin with it."""
 DEMO_SCENARIO = "cumulus-40.toml"
 DEMO_SEED = 11
 """Its sky has sun and shadows by turns from the first minute on."""
@@ -30,6 +34,10 @@ DEMO_SEED = 11
 def demo_command(
     scenario: Annotated[
         Path | None, typer.Option(help="Scenario file; default: fair-weather cumulus.")
+    ] = None,
+    site: Annotated[
+        Path | None,
+        typer.Option(help="Your own site: its simulated drones wait there for your orders."),
     ] = None,
     survey: Annotated[
         bool, typer.Option("--survey/--no-survey", help="Fly surveys with a scripted operator.")
@@ -46,6 +54,9 @@ def demo_command(
 
     It runs until Ctrl+C.
     """
+    if site is not None:
+        _rehearse(site, scenario, http_port, link_port, seed)
+        return
     try:
         path = demo_scenario_file() if scenario is None else scenario
         played = load_scenario(path)
@@ -63,7 +74,42 @@ def demo_command(
         console=console_folder(),
         sun_time_ahead_s=sky_of(played, seed).settings.sun.start_utc_s - time(),
     )
-    run_in_loop(_Demo(config, path, played, seed, survey).run())
+    words = ("scenario", str(path), "--fps", str(FPS_HZ))
+    flies = played if survey else None
+    run_in_loop(_Demo(config, (*words, "--seed", str(seed)), flies).run())
+
+
+def _rehearse(
+    folder: Path, scenario: Path | None, http_port: int, link_port: int, seed: int
+) -> None:
+    """Run the station and simulated drones on a site of one's own."""
+    try:
+        if scenario is not None:
+            raise ScenarioError("expected --site or --scenario, got both: a scenario has a site")
+        finish_interrupted(folder)
+        own = load_site(folder)
+        simulated = [serial for serial in own.profiles if serial.startswith(SIMULATED)]
+        if not simulated:
+            raise SiteError(
+                f"{folder}: expected [[vehicles]] with a serial that begins with {SIMULATED}, got "
+                "none; recon site new makes a site with three"
+            )
+    except ReconError as problem:
+        print(f"recon demo: {problem}", file=sys.stderr)
+        raise typer.Exit(2) from None
+    config = RunConfig(
+        site=own,
+        site_folder=folder,
+        link_port=link_port,
+        http_port=http_port,
+        stop_port=guard_port(None, http_port) if HAS_GUARD else None,
+        audit=default_place(link_port=0),
+        record_folder=state_folder() / "records",
+        console=console_folder(),
+    )
+    imager = ("--imager", "--fps", str(FPS_HZ)) if own.imagers else ("--no-imager",)
+    words = ("--site", str(folder), "--vehicles", str(len(simulated)), "--seed", str(seed))
+    run_in_loop(_Demo(config, (*words, *imager), None).run())
 
 
 def demo_scenario_file() -> Path:
@@ -82,10 +128,10 @@ class _Demo:
     """A running demonstration: the simulator's process and the tasks beside the station."""
 
     def __init__(
-        self, config: RunConfig, path: Path, scenario: Scenario, seed: int, flies: bool
+        self, config: RunConfig, simulator_words: Sequence[str], flown: Scenario | None
     ) -> None:
-        self._config, self._path, self._scenario = config, path, scenario
-        self._seed, self._flies = seed, flies
+        """Take what the simulator is started with, and the scenario whose surveys are flown."""
+        self._config, self._words, self._flown = config, tuple(simulator_words), flown
         self._simulator: asyncio.subprocess.Process | None = None
         self._beside: list[asyncio.Task[None]] = []
 
@@ -103,8 +149,8 @@ class _Demo:
         print_started(started)
         self._simulator = await self._start_simulator(started.link_port)
         self._add_task(self._report_end(self._simulator))
-        if self._flies:
-            self._add_task(fly_surveys(started.console_url, self._scenario, print_now))
+        if self._flown is not None:
+            self._add_task(fly_surveys(started.console_url, self._flown, print_now))
         print("Open the console in a browser. Ctrl+C ends the demo.", flush=True)
 
     def _add_task(self, work: Coroutine[Any, Any, None]) -> None:
@@ -113,13 +159,7 @@ class _Demo:
 
     async def _start_simulator(self, port: int) -> asyncio.subprocess.Process:
         """Start the simulator as a process of its own; it connects over TCP as any app does."""
-        settings = {
-            "--station": f"127.0.0.1:{port}",
-            "--seed": self._seed,
-            "--fps": FPS_HZ,
-        }
-        options = [str(part) for setting in settings.items() for part in setting]
-        words = ("-m", "recon", "sim", "scenario", str(self._path), *options)
+        words = ("-m", "recon", "sim", *self._words, "--station", f"127.0.0.1:{port}")
         return await asyncio.create_subprocess_exec(sys.executable, *words)
 
     async def _report_end(self, simulator: asyncio.subprocess.Process) -> None:

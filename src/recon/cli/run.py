@@ -14,6 +14,7 @@ from recon.cli.qr import qr_lines
 from recon.cli.users import UsersOption
 from recon.link.settings import LinkSettings
 from recon.record.audit import shown
+from recon.record.file_set import finish_interrupted
 from recon.site import Site, default_site, load_site, site_report
 from recon.site.app_list import APPS_FILE, read_app_list
 from recon.station.api_views.service import Service
@@ -91,6 +92,8 @@ def run_command(
     ] = LinkSettings().garbage_limit_bytes,
 ) -> None:
     """Run the station until Ctrl+C."""
+    if site is not None and finish_interrupted(site):
+        print_now(f"{site}: a change of the site that was interrupted is undone")
     apps_file = apps or apps_file_of(site)
     config = RunConfig(
         site=default_site() if site is None else load_site(site),

@@ -1,9 +1,12 @@
 """The events that drive the station, in one ordered queue."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
+from recon.model.airspace import ElevationModel, LandingPad, Region, Zone
 from recon.model.command import Body, Phase, Refusal
 from recon.model.control import AuthorityHolder
+from recon.model.geo import GeoPoint
 from recon.model.report import Report
 from recon.model.survey import Survey
 from recon.model.temporary_zone import DrawnZone
@@ -248,6 +251,24 @@ class ZoneEnded:
     by: str
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class SiteRedrawn:
+    """A person has drawn the site's layers anew, and they are saved.
+
+    `pads` are those of vehicles, by serial. `layers` names what has changed. `elevation` covers the
+    new boundary; None: the model in force still does.
+    """
+
+    boundary: Region | None
+    zones: tuple[Zone, ...]
+    landing_pads: tuple[LandingPad, ...]
+    pads: Mapping[str, GeoPoint | None]
+    layers: tuple[str, ...]
+    by: str
+    is_undo: bool = False
+    elevation: ElevationModel | None = None
+
+
 @dataclass(frozen=True, slots=True)
 class FleetReturnOrdered:
     """Vehicles return home in height layers, as landing missions.
@@ -428,6 +449,7 @@ Event = (
     | LoginRefused
     | UsersChanged
     | ZoneEnded
+    | SiteRedrawn
     | FleetReturnOrdered
     | LookAsideOrdered
     | SurveyRequested

@@ -98,6 +98,8 @@ def refuse_non_finite(place: object, value: object, key: str) -> None:
 
 
 MAX_DIGESTED_FILES = 200
+HISTORY_FOLDER = "history"
+"""Earlier versions of the layers, beside the site's files."""
 MAX_DIGESTED_BYTES = 256 * 1024 * 1024
 _PIECE_BYTES = 1024 * 1024
 
@@ -107,14 +109,20 @@ def site_digest(folder: Path) -> str:
 
     The audit records it: which boundary, zones and profiles a flight used.
 
-    Files over 256 MiB or beyond the first 200, and unreadable ones, count by name and size.
+    Files over 256 MiB or beyond the first 200, and unreadable ones, count by name and size. Earlier
+    versions, in `history/`, and hidden files are left out.
     """
     total = sha256()
-    for number, path in enumerate(sorted(p for p in folder.rglob("*") if p.is_file())):
+    for number, path in enumerate(sorted(p for p in folder.rglob("*") if _is_in_use(folder, p))):
         name = path.relative_to(folder).as_posix().encode()
         content = _content_hash(path) if number < MAX_DIGESTED_FILES else b"not read"
         total.update(len(name).to_bytes(8, "big") + name + content)
     return total.hexdigest()
+
+
+def _is_in_use(folder: Path, path: Path) -> bool:
+    top = path.relative_to(folder).parts[0]
+    return path.is_file() and top != HISTORY_FOLDER and not top.startswith(".")
 
 
 def _content_hash(path: Path) -> bytes:

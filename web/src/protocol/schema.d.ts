@@ -415,6 +415,95 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/site/drawing": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Drawing
+         * @description The site's layers with all corners, to be drawn on.
+         */
+        get: operations["drawing_api_site_drawing_get"];
+        put?: never;
+        /**
+         * Save
+         * @description Save the layers in the site's folder and bring them into force.
+         *
+         *     Boundary, zones and pads change only while all vehicles are on the ground, by an
+         *     administrator.
+         */
+        post: operations["save_api_site_drawing_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/site/drawing/check": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Check
+         * @description Check a drawing as the station would at its start; nothing is saved.
+         */
+        post: operations["check_api_site_drawing_check_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/site/drawing/undo": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Undo
+         * @description Take back the newest change of the site.
+         */
+        post: operations["undo_api_site_drawing_undo_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/site/import": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Import File
+         * @description Read polygons and points of a KML, KMZ, Shapefile (zip), GeoPackage or GeoJSON file.
+         *
+         *     The body is the file. Nothing is saved.
+         */
+        post: operations["import_file_api_site_import_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/state": {
         parameters: {
             query?: never;
@@ -1184,6 +1273,38 @@ export interface components {
             text: string;
         };
         /**
+         * DrawnFeatureView
+         * @description A feature of a layer; its attributes are those of the layer's file.
+         */
+        DrawnFeatureView: {
+            geometry: components["schemas"]["DrawnGeometry"];
+            /**
+             * Layer
+             * @enum {string}
+             */
+            layer: "boundary" | "keep_out" | "height_zones" | "landing_pads" | "survey_regions";
+            /**
+             * Properties
+             * @default {}
+             */
+            properties: {
+                [key: string]: string | number | boolean | null;
+            };
+        };
+        /**
+         * DrawnGeometry
+         * @description GeoJSON: a polygon with its holes, or a point. Longitude first, degrees of WGS84.
+         */
+        DrawnGeometry: {
+            /** Coordinates */
+            coordinates: number[][][] | number[];
+            /**
+             * Type
+             * @enum {string}
+             */
+            type: "Polygon" | "Point";
+        };
+        /**
          * FailsafeCellView
          * @description One cell of the failsafe matrix; `default` is what a site that states nothing has.
          */
@@ -1474,6 +1595,30 @@ export interface components {
         HTTPValidationError: {
             /** Detail */
             detail?: components["schemas"]["ValidationError"][];
+        };
+        /**
+         * ImportedFeatureView
+         * @description A feature of an imported file, not in the site yet.
+         */
+        ImportedFeatureView: {
+            geometry: components["schemas"]["DrawnGeometry"];
+            /** Name */
+            name: string;
+        };
+        /**
+         * ImportedView
+         * @description Polygons and points of an imported file, in WGS84, or why it was refused.
+         */
+        ImportedView: {
+            /** Features */
+            features: components["schemas"]["ImportedFeatureView"][];
+            /**
+             * Left Out
+             * @description features that are neither polygons nor points
+             */
+            left_out: number;
+            /** Reason */
+            reason: string | null;
         };
         /**
          * LandOrder
@@ -1973,6 +2118,18 @@ export interface components {
             wave: number | null;
         };
         /**
+         * SavedChangeView
+         * @description A change of the site that can be undone.
+         */
+        SavedChangeView: {
+            /** By */
+            by: string;
+            /** Utc */
+            utc: string;
+            /** What */
+            what: string;
+        };
+        /**
          * SeenFromView
          * @description What an imaging drone sees of the shade over a region, from a place.
          */
@@ -2074,6 +2231,66 @@ export interface components {
              * @description of the known cells
              */
             sunlit_share: number | null;
+        };
+        /**
+         * SiteDrawingRequest
+         * @description All layers as they are to be: what is left out is removed.
+         */
+        SiteDrawingRequest: {
+            /** Features */
+            features: components["schemas"]["DrawnFeatureView"][];
+            /** Revision */
+            revision: string;
+        };
+        /**
+         * SiteDrawingResponse
+         * @description Whether a drawing was accepted, or why not; the layers after it.
+         */
+        SiteDrawingResponse: {
+            /** Accepted */
+            accepted: boolean;
+            drawing: components["schemas"]["SiteDrawingView"] | null;
+            /**
+             * Feature
+             * @description the refused one's index in the request, if it is one
+             */
+            feature: number | null;
+            /**
+             * Layers
+             * @description those that change
+             */
+            layers: ("boundary" | "keep_out" | "height_zones" | "landing_pads" | "survey_regions")[];
+            /** Reason */
+            reason: string | null;
+            /** Rule */
+            rule: string | null;
+        };
+        /**
+         * SiteDrawingView
+         * @description The layers as they are in the site's folder, unsimplified.
+         */
+        SiteDrawingView: {
+            /** Features */
+            features: components["schemas"]["DrawnFeatureView"][];
+            /**
+             * Locked Reason
+             * @description why nothing can be saved here; null: it can
+             */
+            locked_reason: string | null;
+            /**
+             * Revision
+             * @description to be sent with a change: it is refused after another one
+             */
+            revision: string;
+            undo: components["schemas"]["SavedChangeView"] | null;
+        };
+        /**
+         * SiteUndoRequest
+         * @description Takes back the newest change of the site.
+         */
+        SiteUndoRequest: {
+            /** Revision */
+            revision: string;
         };
         /**
          * SiteView
@@ -3541,6 +3758,156 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    drawing_api_site_drawing_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SiteDrawingView"];
+                };
+            };
+        };
+    };
+    save_api_site_drawing_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SiteDrawingRequest"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SiteDrawingResponse"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    check_api_site_drawing_check_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SiteDrawingRequest"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SiteDrawingResponse"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    undo_api_site_drawing_undo_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SiteUndoRequest"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SiteDrawingResponse"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    import_file_api_site_import_post: {
+        parameters: {
+            query: {
+                name: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ImportedView"];
                 };
             };
             /** @description Validation Error */

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from itertools import count
+from pathlib import Path
 
 from recon import version
 from recon.api import schema
@@ -40,6 +41,7 @@ from recon.site import Site
 from recon.station.api_views import RunningStation
 from recon.station.api_views.imaging_views import sun_at_view, upwind_view
 from recon.station.api_views.order_service import OrderService, order_of
+from recon.station.api_views.site_service import SiteService
 from recon.station.api_views.site_view import site_view
 from recon.station.api_views.state_view import DriverState, state_view
 from recon.station.api_views.survey_service import SurveyService
@@ -68,6 +70,18 @@ class Service:
     lost_bytes: Callable[[], int] = lambda: 0
     """How many bytes of links the record has lost so far."""
     numbers: VehicleNumbers = field(default_factory=VehicleNumbers)
+    _folder: SiteService = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.edit(None)
+
+    def edit(self, folder: Path | None) -> None:
+        """Let the site be drawn and saved in this folder, which it was read from."""
+        self._folder = SiteService(self.driver, self.site, folder, self._take_site)
+
+    def _take_site(self, site: Site) -> None:
+        self.site = site
+        site_view(site)
 
     @classmethod
     def around(
@@ -296,6 +310,10 @@ class Service:
     @property
     def _surveys(self) -> SurveyService:
         return SurveyService(self.driver, self.site, self._ids)
+
+    def site_folder(self) -> SiteService:
+        """Return the site's folder."""
+        return self._folder
 
     def geotiff(self, image: GroundImage) -> bytes:
         """Return a ground image as a GeoTIFF file."""

@@ -32,6 +32,7 @@ from recon.model.event import (
     PreflightOverridden,
     RecordFailed,
     SeparationHoldSwitched,
+    SiteRedrawn,
     StopReleased,
     Tick,
     UsersChanged,
@@ -43,7 +44,13 @@ from recon.station.audit.alarm_entries import AlarmsLogged, acknowledged_entry, 
 from recon.station.audit.flight_entries import FlightsLogged, flight_entries
 from recon.station.audit.link_entries import LinksLogged, link_entries, pairing_entry
 from recon.station.audit.order_entries import OrdersLogged, ended_streams, order_entries
-from recon.station.control import handover, preflight, stop_latch, temporary_zones
+from recon.station.control import (
+    handover,
+    preflight,
+    site_drawing,
+    stop_latch,
+    temporary_zones,
+)
 from recon.station.operations import OPERATIONS
 from recon.station.state.station import Station
 from recon.station.state.vehicle_control import VehicleControl
@@ -117,6 +124,8 @@ def _commands(before: Station, event: Event, after: Station, now_ns: int) -> Ite
             yield from _zone_refused(temporary_zones.draw_refusal(before, event), by)
         case ZoneEnded(by=by):
             yield from _zone_refused(temporary_zones.end_refusal(before, event), by)
+        case SiteRedrawn():
+            yield site_drawing.entry(before, event, now_ns)
         case HazardDismissed(serial, by):
             name = known_traffic.lost_key(before, serial) or serial
             yield _about(before, "hazard.dismissed", "hazard area dismissed", by, name)

@@ -22,7 +22,7 @@ from recon.model.replacing import replace
 from recon.model.temporary_zone import TemporaryZone
 from recon.model.units import seconds_to_ns
 from recon.record.audit import AuditEntry
-from recon.safety.airspace import PreparedZone
+from recon.safety.airspace import PreparedAirspace, PreparedZone
 from recon.safety.temporary_zones import MOST_ZONES, drawn_fault, prepared_temporary_zone
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.station import Station
@@ -97,6 +97,14 @@ def restore(
             station = _noted(station, zone, "temporary_zone_lost", text, now_ns)
     known = station.temporary_zones
     return replace(station, temporary_zones=replace(known, next_id=max(known.next_id, next_id)))
+
+
+def moved_to(station: Station, airspace: PreparedAirspace) -> Station:
+    """Return the station with another airspace of the site, and the same temporary zones in it.
+
+    Surveys plan their rows anew, as when a zone is drawn.
+    """
+    return _changed(replace(station, airspace=airspace), station.airspace.temporary_zones)
 
 
 def entry(verb: str, zone: TemporaryZone, by: str) -> AuditEntry:

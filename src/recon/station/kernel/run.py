@@ -169,6 +169,7 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
         _write_app_list(config, driver, stack)
         folder = _text(config.record_folder)
         service = Service.around(driver, config.site, folder, begun.log, last_run.first_ids[0])
+        service.edit(config.site_folder)
         tap = _start_record(config, driver, auditor, service, stack)
         service.numbers = kept_numbers(given, numbers_file, stack)
         line = _start_guard(config, driver, service, doors, place.folder, stack)

@@ -40,6 +40,7 @@ from recon.model.event import (
     RecordFailed,
     SeparationHoldSwitched,
     SetpointsDue,
+    SiteRedrawn,
     StationFaulted,
     StopReleased,
     Tick,
@@ -57,6 +58,7 @@ from recon.station.control import (
     operator_lease,
     order_gateway,
     preflight,
+    site_drawing,
     stop_latch,
     temporary_zones,
 )
@@ -260,6 +262,7 @@ HANDLERS: Mapping[type[Any], Handler] = dict(
         changing(StopReleased, stop_latch.release),
         changing(ZoneDrawn, temporary_zones.draw),
         changing(ZoneEnded, temporary_zones.end),
+        changing(SiteRedrawn, site_drawing.redraw),
         on(AuthorityTaken, handover.take),
         changing(PersonConnected, operator_lease.connected),
         changing(PersonDisconnected, operator_lease.disconnected),

@@ -1,0 +1,87 @@
+"""The site's layers, drawn and saved."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from recon.api.schema.message import Message, StrictMessage
+
+LayerName = Literal["boundary", "keep_out", "height_zones", "landing_pads", "survey_regions"]
+
+Position = Annotated[list[float], Field(min_length=2, max_length=3)]
+Ring = Annotated[list[Position], Field(max_length=10_000)]
+
+Attribute = Annotated[str, Field(max_length=1_000)] | int | float | bool | None
+
+
+class DrawnGeometry(StrictMessage):
+    """GeoJSON: a polygon with its holes, or a point. Longitude first, degrees of WGS84."""
+
+    type: Literal["Polygon", "Point"]
+    coordinates: list[Ring] | Position
+
+
+class DrawnFeatureView(StrictMessage):
+    """A feature of a layer; its attributes are those of the layer's file."""
+
+    layer: LayerName
+    geometry: DrawnGeometry
+    properties: dict[Annotated[str, Field(max_length=100)], Attribute] = Field(
+        default={}, max_length=40
+    )
+
+
+class SavedChangeView(Message):
+    """A change of the site that can be undone."""
+
+    what: str
+    by: str
+    utc: str
+
+
+class SiteDrawingView(Message):
+    """The layers as they are in the site's folder, unsimplified."""
+
+    revision: str = Field(description="to be sent with a change: it is refused after another one")
+    features: list[DrawnFeatureView]
+    locked_reason: str | None = Field(description="why nothing can be saved here; null: it can")
+    undo: SavedChangeView | None
+
+
+class SiteDrawingRequest(StrictMessage):
+    """All layers as they are to be: what is left out is removed."""
+
+    revision: Annotated[str, Field(max_length=64)]
+    features: list[DrawnFeatureView] = Field(max_length=2_000)
+
+
+class SiteUndoRequest(StrictMessage):
+    """Takes back the newest change of the site."""
+
+    revision: Annotated[str, Field(max_length=64)]
+
+
+class SiteDrawingResponse(Message):
+    """Whether a drawing was accepted, or why not; the layers after it."""
+
+    accepted: bool
+    rule: str | None
+    reason: str | None
+    feature: int | None = Field(description="the refused one's index in the request, if it is one")
+    layers: list[LayerName] = Field(description="those that change")
+    drawing: SiteDrawingView | None
+
+
+class ImportedFeatureView(Message):
+    """A feature of an imported file, not in the site yet."""
+
+    name: str
+    geometry: DrawnGeometry
+
+
+class ImportedView(Message):
+    """Polygons and points of an imported file, in WGS84, or why it was refused."""
+
+    features: list[ImportedFeatureView]
+    left_out: int = Field(description="features that are neither polygons nor points")
+    reason: str | None

@@ -1,0 +1,51 @@
+"""Routes for the site's layers: read, check, save, undo, import."""
+
+from typing import Annotated
+
+from fastapi import FastAPI, Query, Request
+
+from recon.api import schema
+from recon.api.port import StationPort
+from recon.api.security import person_of
+
+
+def add_site_routes(app: FastAPI, port: StationPort) -> None:
+    """Add all routes of this module."""
+
+    @app.get("/api/site/drawing")
+    async def drawing() -> schema.SiteDrawingView:
+        """The site's layers with all corners, to be drawn on."""
+        return await port.site_folder().drawing()
+
+    @app.post("/api/site/drawing/check")
+    async def check(
+        asked: schema.SiteDrawingRequest, request: Request
+    ) -> schema.SiteDrawingResponse:
+        """Check a drawing as the station would at its start; nothing is saved."""
+        return await port.site_folder().save(asked, person_of(request), is_check=True)
+
+    @app.post("/api/site/drawing")
+    async def save(
+        asked: schema.SiteDrawingRequest, request: Request
+    ) -> schema.SiteDrawingResponse:
+        """Save the layers in the site's folder and bring them into force.
+
+        Boundary, zones and pads change only while all vehicles are on the ground, by an
+        administrator.
+        """
+        return await port.site_folder().save(asked, person_of(request), is_check=False)
+
+    @app.post("/api/site/drawing/undo")
+    async def undo(asked: schema.SiteUndoRequest, request: Request) -> schema.SiteDrawingResponse:
+        """Take back the newest change of the site."""
+        return await port.site_folder().undo(asked.revision, person_of(request))
+
+    @app.post("/api/site/import")
+    async def import_file(
+        request: Request, name: Annotated[str, Query(max_length=200)]
+    ) -> schema.ImportedView:
+        """Read polygons and points of a KML, KMZ, Shapefile (zip), GeoPackage or GeoJSON file.
+
+        The body is the file. Nothing is saved.
+        """
+        return await port.site_folder().import_features(name, await request.body())

@@ -1,0 +1,113 @@
+"""`recon site`: a site's folder made, checked, and filled from files of other programs."""
+
+from datetime import UTC, datetime
+from enum import Enum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from recon.cli.commands import new_app
+from recon.cli.output import print_line
+from recon.model.errors import SiteError
+from recon.model.geo import GeoPoint
+
+site_app = new_app(help="Make, check and import into a site's folder.", no_args_is_help=True)
+
+FolderArgument = Annotated[Path, typer.Argument(help="The site's folder.")]
+
+
+class Layer(Enum):
+    """The layer that imported features become."""
+
+    BOUNDARY = "boundary"
+    KEEP_OUT = "keep_out"
+    SURVEY_REGIONS = "survey_regions"
+    LANDING_PADS = "landing_pads"
+
+
+@site_app.command("new")
+def new_command(
+    folder: Annotated[Path, typer.Argument(help="Made if missing.")],
+    at: Annotated[
+        str, typer.Option("--at", metavar="LAT,LON", help="The origin: a point in the field.")
+    ],
+    altitude: Annotated[
+        float,
+        typer.Option("--ground-altitude-m", help="Of the ground there, above the WGS84 ellipsoid."),
+    ],
+    name: Annotated[str | None, typer.Option(help="Default: the folder's name.")] = None,
+    drones: Annotated[
+        int, typer.Option(min=0, max=64, help="Simulated drones to rehearse with; 0: none.")
+    ] = 3,
+) -> None:
+    """Make a site's folder. Its layers are drawn in the console, or imported."""
+    from recon.site.new_site import make_site
+
+    origin = GeoPoint(*_place(at), altitude)
+    path = make_site(folder, name or folder.resolve().name, origin, drones)
+    print_line(f"{path} is written")
+    print_line(f"draw it and rehearse: recon demo --site {folder}")
+
+
+@site_app.command("check")
+def check_command(folder: FolderArgument) -> None:
+    """Read a site as a start does: print its report and warnings, or what is wrong."""
+    from recon.record.file_set import finish_interrupted
+    from recon.site import load_site, site_report
+
+    if finish_interrupted(folder):
+        print_line(f"{folder}: a change of the site that was interrupted is undone")
+    for line in site_report(load_site(folder)):
+        print_line(line)
+
+
+@site_app.command("import")
+def import_command(
+    folder: FolderArgument,
+    file: Annotated[Path, typer.Argument(help="KML, KMZ, Shapefile (zip), GeoPackage or GeoJSON.")],
+    layer: Annotated[Layer, typer.Option("--as", help="What its shapes become.")],
+    replaces: Annotated[
+        bool, typer.Option("--replace", help="Instead of what the layer holds, not beside it.")
+    ] = False,
+) -> None:
+    """Import shapes as a layer of a site. A running station does not see it before its restart."""
+    from recon.record.file_set import replace_files
+    from recon.site import load_site
+    from recon.site.drawing import DrawnFeature, read_drawing, stage_drawing
+    from recon.site.imports import LARGEST_IMPORT_BYTES, read_import
+    from recon.site.reading import read_bounded
+
+    found = read_import(file.name, read_bounded(file, LARGEST_IMPORT_BYTES, "a file to import"))
+    kept = [each for each in read_drawing(folder) if not (replaces and each.layer == layer.value)]
+    # A file's heights may count from anywhere: pads stand on the site's ground.
+    frame = load_site(folder).frame
+    assert frame is not None, "a folder's site has an origin"
+    is_pads = layer is Layer.LANDING_PADS
+    own = {"altitude_m": frame.origin.ellipsoid_height_m} if is_pads else {}
+    kind = "Point" if is_pads else "Polygon"
+    new = [
+        DrawnFeature(layer.value, each.geometry, {"name": each.name or None, **own})
+        for each in found.features
+        if each.geometry["type"] == kind
+    ]
+    if not new:
+        raise SiteError(f"{file}: expected {kind.lower()}s for {layer.value}, got none")
+    staged = stage_drawing(folder, [*kept, *new])
+    utc = datetime.now(UTC).isoformat(timespec="seconds")
+    try:
+        replace_files(folder, staged.files, what=f"import of {file.name}", by="recon site", utc=utc)
+    except OSError as problem:
+        raise SiteError(f"{folder} cannot be written: {problem.strerror or problem}") from problem
+    left_out = found.left_out + len(found.features) - len(new)
+    print_line(f"{len(new)} imported into {layer.value}, {left_out} left out")
+
+
+def _place(text: str) -> tuple[float, float]:
+    try:
+        latitude, longitude = (float(word) for word in text.split(","))
+    except ValueError:
+        raise SiteError(
+            f"--at: expected LAT,LON in degrees like 41.9,-93.6, got {text!a}"
+        ) from None
+    return latitude, longitude

@@ -1,0 +1,127 @@
+"""`recon site`: a folder is made, checked and imported into."""
+
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from recon.cli.demo import demo_command
+from recon.cli.site import site_app
+from recon.model.errors import SiteError
+from recon.model.event import SiteRedrawn
+from recon.record import file_set
+from recon.record.codec import Codec
+from recon.site import load_site
+from recon.site.drawing import read_drawing
+from recon.site.reading import HISTORY_FOLDER, site_digest
+
+PLACE = ("--at", "41.9012,-93.6034", "--ground-altitude-m", "275")
+
+
+def recon_site(*words: str) -> str:
+    return CliRunner().invoke(site_app, words, catch_exceptions=False, standalone_mode=False).output
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    recon_site("new", str(tmp_path / "west field"), *PLACE)
+    return tmp_path / "west field"
+
+
+def layer_file(path: Path, *names: str, kind: str = "Polygon") -> Path:
+    ring = [[-93.604, 41.901], [-93.602, 41.901], [-93.602, 41.902], [-93.604, 41.901]]
+    shape = {"type": kind, "coordinates": [ring] if kind == "Polygon" else ring[0]}
+    features = [
+        {"type": "Feature", "properties": {"name": name}, "geometry": shape} for name in names
+    ]
+    path.write_text(json.dumps({"type": "FeatureCollection", "features": features}))
+    return path
+
+
+def test_a_new_folder_is_a_site_with_drones_to_rehearse_with(folder: Path) -> None:
+    site = load_site(folder)
+    assert (site.name, list(site.profiles)) == ("west field", ["SIM-1", "SIM-2", "SIM-3"])
+    text = recon_site("check", str(folder))
+    assert "site west field: 3 vehicle profiles" in text
+    assert "warning: no boundary" in text
+    with pytest.raises(SiteError, match="exists already"):
+        recon_site("new", str(folder), *PLACE)
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        (("--at", "41.9", "--ground-altitude-m", "275"), "LAT,LON"),
+        (("--at", "91,0", "--ground-altitude-m", "275"), "latitude of -90 to 90"),
+        (("--at", "41,nan", "--ground-altitude-m", "275"), "longitude"),
+        (("--at", "41,0", "--ground-altitude-m", "nan"), "altitude"),
+        ((*PLACE, "--name", "a\nb"), "printable"),
+    ],
+)
+def test_values_that_no_site_has_make_no_folder(
+    tmp_path: Path, words: tuple[str, ...], expected: str
+) -> None:
+    with pytest.raises(SiteError, match=expected):
+        recon_site("new", str(tmp_path / "field"), *words)
+    assert not (tmp_path / "field").exists()
+
+
+def test_an_import_is_added_or_replaces(folder: Path, tmp_path: Path) -> None:
+    first = layer_file(tmp_path / "a.geojson", "north", "south")
+    second = layer_file(tmp_path / "b.geojson", "west")
+    into = ("--as", "survey_regions")
+    text = recon_site("import", str(folder), str(first), *into)
+    assert text == "2 imported into survey_regions, 0 left out\n"
+    recon_site("import", str(folder), str(second), *into)
+    assert list(load_site(folder).layers.survey_regions) == ["north", "south", "west"]
+    recon_site("import", str(folder), str(second), *into, "--replace")
+    assert [each.properties["name"] for each in read_drawing(folder)] == ["west"]
+    change = file_set.last_change(folder)
+    assert change is not None
+    assert change.what == "import of b.geojson"
+
+
+def test_pads_stand_on_the_sites_ground(folder: Path, tmp_path: Path) -> None:
+    pads = layer_file(tmp_path / "p.geojson", "home", kind="Point")
+    recon_site("import", str(folder), str(pads), "--as", "landing_pads")
+    (pad,) = load_site(folder).layers.landing_pads
+    assert (pad.name, pad.place.ellipsoid_height_m) == ("home", 275.0)
+    with pytest.raises(SiteError, match="expected polygons for boundary, got none"):
+        recon_site("import", str(folder), str(pads), "--as", "boundary")
+
+
+def test_earlier_versions_are_no_part_of_what_a_flight_used(folder: Path, tmp_path: Path) -> None:
+    assert file_set.HISTORY_FOLDER == HISTORY_FOLDER
+    first = layer_file(tmp_path / "a.geojson", "north")
+    recon_site("import", str(folder), str(first), "--as", "survey_regions")
+    digest = site_digest(folder)
+    (folder / HISTORY_FOLDER / "0001" / "manifest.json").unlink()
+    assert site_digest(folder) == digest
+
+
+def test_a_rehearsal_needs_simulated_drones(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "real"
+    recon_site("new", str(folder), *PLACE, "--drones", "0")
+    with pytest.raises(BaseException, match="2"):
+        demo_command(site=folder)
+    assert "begins with SIM-" in capsys.readouterr().err
+
+
+def test_a_record_keeps_a_drawing(folder: Path, tmp_path: Path) -> None:
+    """Replayed, the event brings the same fence into force."""
+    area = layer_file(tmp_path / "b.geojson", "field")
+    recon_site("import", str(folder), str(area), "--as", "boundary")
+    site = load_site(folder)
+    airspace = site.airspace
+    pads = {serial: profile.pad for serial, profile in site.profiles.items()}
+    drawn = (airspace.boundary, airspace.zones, airspace.landing_pads, pads)
+    event = SiteRedrawn(*drawn, ("boundary",), "anna")
+    codec = Codec()
+    again: SiteRedrawn = codec.decode(codec.encode(event, SiteRedrawn), SiteRedrawn)
+    assert again.boundary is not None
+    assert airspace.boundary is not None
+    assert again.boundary.outline_m.tolist() == airspace.boundary.outline_m.tolist()
+    assert (again.pads, again.layers, again.by) == (pads, ("boundary",), "anna")
