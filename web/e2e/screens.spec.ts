@@ -2,6 +2,7 @@ import { expect, test } from "@playwright/test";
 import type { StationState } from "../src/protocol";
 import { alarm, link, station, vehicle } from "../src/testing/fakeState";
 import { busyState } from "./fake/busyState";
+import { DRAWING, HERE, REFUSED, sendAges } from "./fake/drawnSite";
 import { fleetState } from "./fake/fleetState";
 import { fieldPicture } from "./fake/picture";
 import { FakeStation } from "./fake/station";
@@ -125,3 +126,27 @@ test("connection lost, help and a held button", async ({ page }) => {
   await page.keyboard.press("?");
   await page.screenshot({ path: "screens/help.png" });
 });
+
+for (const theme of THEMES) {
+  for (const size of SIZES) {
+    test(`site editor, ${theme.name} at ${size.width}x${size.height}`, async ({ page }) => {
+      await page.setViewportSize(size);
+      await page.emulateMedia({ colorScheme: theme.colorScheme });
+      const fake = await FakeStation.behind(page, HERE);
+      fake.drawing = DRAWING;
+      fake.drawingResult = REFUSED;
+      sendAges(page, fake);
+      await page.goto("/");
+      await applyTheme(page, theme);
+      await openPanel(page, "Edit site");
+      const panel = page.getByRole("region", { name: "Edit site", exact: true });
+      await panel.getByRole("button", { name: "Edit", exact: true }).click();
+      await panel.getByRole("button", { name: /farmyard/ }).click();
+      await panel.getByLabel("Ceiling, m").fill("25");
+      await panel.getByLabel("Ceiling, m").press("Enter");
+      await panel.getByText(/edges do not meet/).waitFor();
+      await page.waitForTimeout(1000);
+      await page.screenshot({ path: `screens/site-${theme.name}-${size.width}.png` });
+    });
+  }
+}

@@ -18,6 +18,7 @@ import { AnswerNotice } from "./panels/orders/AnswerNotice";
 import { OrderBar } from "./panels/orders/OrderBar";
 import { FleetReturn } from "./panels/return/FleetReturn";
 import { SeparationBanner } from "./panels/separation/SeparationHold";
+import { SitePanel } from "./panels/site/SitePanel";
 import { StationPanel } from "./panels/station/StationPanel";
 import { StopBanner } from "./panels/stop/StopLatch";
 import { SunPanel } from "./panels/sun/SunPanel";
@@ -34,6 +35,7 @@ const PANELS: readonly (readonly [PanelName, () => ReturnType<typeof AlarmList>]
   ["survey", SurveyPanel],
   ["sun", SunPanel],
   ["zones", ZonesPanel],
+  ["site", SitePanel],
   ["return", FleetReturn],
   ["orders", CommandList],
   ["links", LinkList],
@@ -44,6 +46,7 @@ const PANELS: readonly (readonly [PanelName, () => ReturnType<typeof AlarmList>]
 export function App() {
   const { source, fleet, selection, orderApi, theme, fit, flyHere, zoneDraft, panels } =
     useConsole();
+  const { siteDraft } = useConsole();
   const [isHelpOpen, setHelpOpen] = createSignal(false);
   const keys = () => fleet.vehicles.map(vehicleKey);
   const select = (key: number, action: (key: number) => void) => {
@@ -52,7 +55,7 @@ export function App() {
 
   const clear = () => {
     if (isHelpOpen()) setHelpOpen(false);
-    else if (!zoneDraft.clear() && !flyHere.clear()) selection.clear();
+    else if (!siteDraft.clear() && !zoneDraft.clear() && !flyHere.clear()) selection.clear();
   };
 
   onMount(() => {
@@ -71,6 +74,8 @@ export function App() {
         flyHere: flyHere.toggle,
         details: () => panels.toggle("vehicle"),
         drawZone: zoneDraft.toggle,
+        undo: () => siteDraft.isOn() && siteDraft.undo(),
+        redo: () => siteDraft.isOn() && siteDraft.redo(),
         fit,
         toggleTheme: theme.toggleSun,
         help: () => setHelpOpen(!isHelpOpen()),

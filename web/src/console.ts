@@ -4,7 +4,7 @@ import {
   createEffect,
   createMemo,
   createSignal,
-  untrack,
+  on,
   useContext,
 } from "solid-js";
 import { createFleetView, type FleetView } from "./fleet/fleetView";
@@ -17,6 +17,7 @@ import { type Targets, targetsOf } from "./orders/targets";
 import { createZoneDraft, type ZoneDraft } from "./orders/zoneDraft";
 import type { OpenPanels } from "./panels/openPanels";
 import type { SurveyView } from "./protocol";
+import { createSiteDraft, type SiteDraft } from "./site/siteDraft";
 import type { Clock, Instant } from "./source/clock";
 import { lacking, type Role } from "./source/roles";
 import type { StationSource } from "./source/stationSource";
@@ -46,6 +47,7 @@ export interface Console {
   readonly orderApi: OrderApi;
   readonly flyHere: FlyHere;
   readonly zoneDraft: ZoneDraft;
+  readonly siteDraft: SiteDraft;
   readonly overlay: Overlay;
   readonly theme: ThemeSwitch;
   readonly panels: OpenPanels;
@@ -61,8 +63,15 @@ export interface Console {
   aim(at: LonLat): void;
   /** The same at the map centre, for operators using the keyboard. */
   aimAtCentre(): void;
+  /** The middle of the map's free part, and how wide that is; null before there is a map. */
+  mapCentre(): MapCentre | null;
   /** Registers a function that returns the map centre. */
-  setMapCentre(centre: () => LonLat): void;
+  setMapCentre(centre: () => MapCentre): void;
+}
+
+/** A place on the map, with the width around it that is in view, metres. */
+export interface MapCentre extends LonLat {
+  readonly width_m: number;
 }
 
 const ACTIVE: readonly SurveyView["phase"][] = ["running", "paused"];
@@ -91,15 +100,29 @@ export function createConsole(
   });
   const flyHere = createFlyHere(single, source, orderApi, clock);
   const zoneDraft = createZoneDraft();
+  const siteDraft = createSiteDraft(source, clock, () => fleet.site?.ground_altitude_m ?? null);
   // A press on the map means one thing at a time.
-  createEffect(() => {
-    if (flyHere.isOn()) zoneDraft.leave();
-  });
-  createEffect(() => {
-    if (zoneDraft.isOn() && untrack(flyHere.isOn)) flyHere.toggle();
-  });
-  const aim = (at: LonLat) => (zoneDraft.isOn() ? zoneDraft : flyHere).aim(at);
-  let centre: (() => LonLat) | null = null;
+  const modes = [
+    { isOn: flyHere.isOn, leave: () => flyHere.isOn() && flyHere.toggle() },
+    zoneDraft,
+    siteDraft,
+  ];
+  for (const mode of modes) {
+    createEffect(
+      on(mode.isOn, (isOn) => {
+        if (isOn) for (const other of modes) if (other !== mode) other.leave();
+      }),
+    );
+  }
+  const aim = (at: LonLat) => {
+    if (!siteDraft.isOn()) (zoneDraft.isOn() ? zoneDraft : flyHere).aim(at);
+  };
+  // A draft may be saved when the last vehicle has landed, and no more when one takes off.
+  const inTheAir = createMemo(
+    () => fleet.vehicles.filter(({ is_flying }) => is_flying.value !== false).length,
+  );
+  createEffect(on(inTheAir, () => siteDraft.recheck(), { defer: true }));
+  let centre: (() => MapCentre) | null = null;
   return {
     source,
     clock,
@@ -109,6 +132,7 @@ export function createConsole(
     orderApi,
     flyHere,
     zoneDraft,
+    siteDraft,
     overlay: createOverlay(() => fleet.surveys.some(({ phase }) => ACTIVE.includes(phase))),
     theme,
     panels,
@@ -121,6 +145,7 @@ export function createConsole(
     aimAtCentre: () => {
       if (centre !== null) aim(centre());
     },
+    mapCentre: () => centre?.() ?? null,
     setMapCentre: (of) => {
       centre = of;
     },

@@ -11,6 +11,8 @@ function press(init: KeyboardEventInit, target?: HTMLElement) {
     flyHere: vi.fn(),
     details: vi.fn(),
     drawZone: vi.fn(),
+    undo: vi.fn(),
+    redo: vi.fn(),
     toggleTheme: vi.fn(),
     help: vi.fn(),
   } satisfies KeyActions;

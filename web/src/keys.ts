@@ -18,6 +18,7 @@ export const SHORTCUTS: readonly { readonly keys: string; readonly action: strin
     action:
       "Clear the target or the drawn zone, leave the mode, clear the selection; cancels a held order",
   },
+  { keys: "Ctrl + Z, Ctrl + Y", action: "Undo or redo an edit of the site" },
   { keys: "F", action: "Show everything on the map" },
   { keys: "T", action: "High contrast for bright sun, on or off" },
   { keys: "?", action: "Show this help" },
@@ -33,6 +34,8 @@ export interface KeyActions {
   flyHere(): void;
   details(): void;
   drawZone(): void;
+  undo(): void;
+  redo(): void;
   toggleTheme(): void;
   help(): void;
 }
@@ -62,7 +65,7 @@ function actionOf(event: KeyboardEvent, actions: KeyActions): (() => void) | nul
   // A number field keeps its digits, its arrows and Ctrl+A; a letter in it is a slip of the hand.
   if (isEditingNumber(event)) return event.key === "Escape" ? actions.clear : null;
   if (event.ctrlKey || event.metaKey) {
-    return event.code === "KeyA" && !event.shiftKey ? actions.selectAll : null;
+    return modifiedAction(event, actions);
   }
   // Ignore key repeat.
   if (event.repeat) return null;
@@ -73,6 +76,14 @@ function actionOf(event: KeyboardEvent, actions: KeyActions): (() => void) | nul
   }
   if (event.shiftKey) return null;
   return plainAction(event, actions);
+}
+
+function modifiedAction(event: KeyboardEvent, actions: KeyActions): (() => void) | null {
+  // The letters, not their places: Z and Y change places between keyboards.
+  const key = event.key.toLowerCase();
+  if (key === "z") return event.shiftKey ? actions.redo : actions.undo;
+  if (key === "y" && !event.shiftKey) return actions.redo;
+  return event.code === "KeyA" && !event.shiftKey ? actions.selectAll : null;
 }
 
 function plainAction(event: KeyboardEvent, actions: KeyActions): (() => void) | null {

@@ -4,6 +4,8 @@ import type {
   OrderRequest,
   OrderResult,
   PreflightView,
+  SiteDrawingResponse,
+  SiteDrawingView,
   StationState,
   SurveyWays,
 } from "../../src/protocol";
@@ -28,6 +30,16 @@ export class FakeStation {
     is_logged_in: false,
     urls: [],
     fingerprint: null,
+  };
+  /** The site's folder, and the answer to checks and saves. */
+  drawing: SiteDrawingView = { revision: "r1", features: [], locked_reason: null, undo: null };
+  drawingResult: SiteDrawingResponse = {
+    accepted: true,
+    rule: null,
+    reason: null,
+    feature: null,
+    layers: [],
+    drawing: null,
   };
   /** Answer for any survey's paths. */
   ways: SurveyWays | null = null;
@@ -92,6 +104,8 @@ export class FakeStation {
       return this.checkOrder(JSON.parse(body ?? "{}") as OrderRequest);
     if (path.endsWith("/preflight") && this.preflight !== null) return { json: this.preflight };
     if (path.endsWith("/ways") && this.ways !== null) return { json: this.ways };
+    if (path === "/api/site/drawing" && body === null) return { json: this.drawing };
+    if (path.startsWith("/api/site/drawing")) return { json: this.drawingResult };
     const isControlRequest = /\/(authority|override|release|zones|end)$/.test(path);
     if (isControlRequest || path === "/api/fleet-return") {
       const { given_at_unix_ms: _given, ...asked } = JSON.parse(body ?? "{}") as OrderRequest;

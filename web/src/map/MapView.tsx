@@ -18,7 +18,9 @@ import type { Box } from "./localGrid";
 import { ForecastLayer, ShadeLayer, SurveyCellsLayer } from "./overlays";
 import { PadLayer } from "./padLayer";
 import { createSunHere, SunHereNote } from "./SunHere";
-import { type Layer, type PlannedTarget, positionOf, wholeView } from "./scene";
+import { type DraftShapes, type Layer, type PlannedTarget, positionOf, wholeView } from "./scene";
+import { SiteDraftLayer } from "./siteDraftLayer";
+import { createSiteEditing } from "./siteEditing";
 import { SteeringLayer } from "./steeringLayer";
 import { SurveyRowsLayer } from "./surveyRowsLayer";
 import { TemporaryZoneLayer } from "./temporaryZoneLayer";
@@ -35,7 +37,7 @@ const AGE_STEP_S = 0.2;
 export function MapView() {
   const { source, selection, theme, behindS, fitRequests, flyHere, zoneDraft, overlay } =
     useConsole();
-  const { aim, setMapCentre } = useConsole();
+  const { aim, setMapCentre, siteDraft } = useConsole();
   const [map, setMap] = createSignal<MapLibre | null>(null);
   const ground = createDisplayedGround(source);
   const sunHere = createSunHere(source, overlay, () => source.state()?.shade?.map?.number ?? null);
@@ -59,6 +61,7 @@ export function MapView() {
       new BoundaryLayer(),
       new TemporaryZoneLayer(),
       new PadLayer(),
+      new SiteDraftLayer(),
       new HazardLayer(),
       new TrailLayer(),
       new SteeringLayer(),
@@ -76,9 +79,13 @@ export function MapView() {
     });
     // The middle of what nothing covers: the operator sees where an order goes.
     setMapCentre(() => {
-      const { lng: lon, lat } = made.unproject(middleOf(made, free));
-      return { lon, lat };
+      const [x, y] = middleOf(made, free);
+      const half_px = free.clientWidth / 2;
+      const { lng: lon, lat } = made.unproject([x, y]);
+      const width_m = made.unproject([x - half_px, y]).distanceTo(made.unproject([x + half_px, y]));
+      return { lon, lat, width_m };
     });
+    createSiteEditing(made, siteDraft, theme);
     made.on("load", () => {
       for (const layer of layers) layer.add(made, readColours(document));
       setMap(made);
@@ -94,6 +101,15 @@ export function MapView() {
     const text = course === null ? vehicleLabel(vehicle) : courseText(course);
     return { from: positionOf(vehicle), at, text };
   });
+  const draftShapes = createMemo<DraftShapes | null>(() => {
+    const { isOn, features, imported, selected } = siteDraft;
+    if (!isOn()) return null;
+    return {
+      features: features(),
+      imported: imported(),
+      selectedId: selected()?.id ?? null,
+    };
+  });
   createEffect(() => {
     const state = source.state();
     if (map() === null || state === null) return;
@@ -105,6 +121,7 @@ export function MapView() {
       zoneDraft: zoneDraft.isOn()
         ? { points: zoneDraft.points(), radius_m: zoneDraft.radius_m() }
         : null,
+      siteDraft: draftShapes(),
     };
     for (const layer of layers) layer.update(scene);
   });
@@ -118,7 +135,7 @@ export function MapView() {
 
   const whole = createMemo<Box | null>(() => {
     const state = source.state();
-    return state === null ? null : wholeView(state);
+    return state === null ? null : wholeView(state, draftShapes());
   });
   const fit = (isFirst: boolean) => {
     const [box, shown] = [whole(), map()];
@@ -127,6 +144,8 @@ export function MapView() {
     shown.fitBounds([box.west, box.south, box.east, box.north], options);
   };
   createEffect(on(fitRequests, () => fit(false), { defer: true }));
+  // What was imported may be anywhere.
+  createEffect(on(siteDraft.imported, (read) => read.length > 0 && fit(false), { defer: true }));
 
   let hasFitted = false;
   createEffect(() => {
@@ -139,7 +158,7 @@ export function MapView() {
     <>
       <section
         class="map"
-        classList={{ "is-aiming": flyHere.isOn() || zoneDraft.isOn() }}
+        classList={{ "is-aiming": flyHere.isOn() || zoneDraft.isOn() || siteDraft.tool() !== null }}
         aria-label="Map"
       >
         <div class="map-canvas" ref={holder} />

@@ -56,6 +56,7 @@ function setUp() {
       selected: [],
       plannedTarget: null,
       zoneDraft: null,
+      siteDraft: null,
     });
   const answer = async (index: number, frameId: number | null) => {
     requests[index]?.answer({ kind: "answered", value: { blob: new Blob(["x"]), frameId } });

@@ -42,7 +42,7 @@ function scene(second: number, number: number) {
     forecast: line.forecast === null ? null : { ...line.forecast, number },
   };
   const state = station([], { time_ns: second * 1e9, shade, surveys: [survey(7)] });
-  return { state, behindS: 0, selected: [], plannedTarget: null, zoneDraft: null };
+  return { state, behindS: 0, selected: [], plannedTarget: null, zoneDraft: null, siteDraft: null };
 }
 
 const settled = () => new Promise((done) => setTimeout(done));

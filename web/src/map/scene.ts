@@ -1,5 +1,7 @@
 import type { Map as MapLibre } from "maplibre-gl";
 import type { StationState, VehicleView } from "../protocol";
+import type { ImportChoice } from "../site/siteDraft";
+import type { DraftFeature } from "../site/siteFeatures";
 import type { Colours } from "./colours";
 import { type Box, boxAround, type LonLat } from "./localGrid";
 
@@ -21,6 +23,15 @@ export interface Scene {
   readonly plannedTarget: PlannedTarget | null;
   /** The temporary zone being drawn. */
   readonly zoneDraft: ZoneOutline | null;
+  /** The site being edited; null while it is not. */
+  readonly siteDraft: DraftShapes | null;
+}
+
+/** What is drawn of a site that is being edited. */
+export interface DraftShapes {
+  readonly features: readonly DraftFeature[];
+  readonly imported: readonly ImportChoice[];
+  readonly selectedId: number | null;
 }
 
 /** A zone being drawn: a centre with a radius, or the corners so far without one. */
@@ -45,14 +56,18 @@ export function positionOf(vehicle: Pick<VehicleView, "position">): LonLat | nul
 /** Smallest extent of a view, so that a single vehicle is shown with its surroundings. */
 const LEAST_VIEW_M = 120;
 
-/** Extent of the first view: vehicles, ground image and temporary zones, else the site's areas, else its origin; null without any position. */
-export function wholeView(state: StationState): Box | null {
+/** Extent of the first view: vehicles, ground image, temporary zones and a site being edited, else the site's areas, else its origin; null without any position. */
+export function wholeView(state: StationState, draft: DraftShapes | null = null): Box | null {
   const vehicles = state.vehicles.flatMap((vehicle) => positionOf(vehicle) ?? []);
   const corners = (state.ground_image?.corners ?? []).map(([lon, lat]) => ({ lon, lat }));
   const zones = state.temporary_zones.flatMap(({ ring }) =>
     ring.map(([lon, lat]) => ({ lon, lat })),
   );
-  return boxAround([...vehicles, ...corners, ...zones], LEAST_VIEW_M) ?? siteView(state);
+  const drawn = [...(draft?.features ?? []), ...(draft?.imported ?? [])];
+  const drafted = drawn.flatMap(({ rings }) => rings.flat());
+  return (
+    boxAround([...vehicles, ...corners, ...zones, ...drafted], LEAST_VIEW_M) ?? siteView(state)
+  );
 }
 
 function siteView(state: StationState): Box | null {

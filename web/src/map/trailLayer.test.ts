@@ -59,6 +59,7 @@ function show(east_m: number, changes: Partial<VehicleView> = {}): void {
     selected: [],
     plannedTarget: null,
     zoneDraft: null,
+    siteDraft: null,
   });
 }
 

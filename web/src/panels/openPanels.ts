@@ -7,6 +7,7 @@ export const PANEL_NAMES = {
   survey: "Survey",
   sun: "Imaging drone",
   zones: "Temporary zones",
+  site: "Edit site",
   return: "Return in layers",
   orders: "Orders",
   links: "Links",

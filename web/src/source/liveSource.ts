@@ -1,5 +1,5 @@
 import { createSignal } from "solid-js";
-import type { AccessView, AuthorityHolder, StationState } from "../protocol";
+import type { AccessView, AuthorityHolder, SiteDrawingRequest, StationState } from "../protocol";
 import type { Clock, Instant } from "./clock";
 import { Requests } from "./requests";
 import type { Connection, NamedOrder, NewSurvey, NewZone, StationSource } from "./stationSource";
@@ -116,6 +116,26 @@ export class LiveSource implements StationSource {
 
   endZone(id: number) {
     return this.requests.endZone(id);
+  }
+
+  siteDrawing() {
+    return this.requests.siteDrawing();
+  }
+
+  checkSite(drawing: SiteDrawingRequest) {
+    return this.requests.checkSite(drawing);
+  }
+
+  saveSite(drawing: SiteDrawingRequest) {
+    return this.requests.saveSite(drawing);
+  }
+
+  undoSite(revision: string) {
+    return this.requests.undoSite(revision);
+  }
+
+  importSite(file: File) {
+    return this.requests.importSite(file);
   }
 
   releaseStop(serials: readonly string[] | null) {

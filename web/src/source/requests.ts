@@ -3,8 +3,12 @@ import type {
   AccessView,
   ActionResponse,
   AuthorityHolder,
+  ImportedView,
   OrderResult,
   PreflightView,
+  SiteDrawingRequest,
+  SiteDrawingResponse,
+  SiteDrawingView,
   SunAtView,
   SurveyRequest,
   SurveyResponse,
@@ -21,6 +25,11 @@ export const REQUEST_MS = 3_000;
 
 /** Timeout for planning a survey: it waits for image processing and moves nothing. */
 const PLANNING_MS = 12_000;
+
+/** Timeout for reading and writing the site's files, and for reading an imported one, ms. */
+const SITE_MS = 25_000;
+const SITE_LATE =
+  "The station did not answer within 25 s. Load the site again to see whether it was saved.";
 
 /** HTTP requests to the station. Failures are values with a sentence for the operator. */
 export class Requests {
@@ -195,6 +204,49 @@ export class Requests {
     return answered(() => this.client.POST("/api/zones/{zone_id}/end", options), identity);
   }
 
+  siteDrawing(): Promise<Outcome<SiteDrawingView>> {
+    return answered(
+      () => this.client.GET("/api/site/drawing", { signal: siteTimeout() }),
+      identity,
+      SITE_LATE,
+    );
+  }
+
+  checkSite(body: SiteDrawingRequest): Promise<Outcome<SiteDrawingResponse>> {
+    return answered(
+      () => this.client.POST("/api/site/drawing/check", { body, signal: siteTimeout() }),
+      identity,
+      SITE_LATE,
+    );
+  }
+
+  saveSite(body: SiteDrawingRequest): Promise<Outcome<SiteDrawingResponse>> {
+    return answered(
+      () => this.client.POST("/api/site/drawing", { body, signal: siteTimeout() }),
+      identity,
+      SITE_LATE,
+    );
+  }
+
+  undoSite(revision: string): Promise<Outcome<SiteDrawingResponse>> {
+    return answered(
+      () =>
+        this.client.POST("/api/site/drawing/undo", { body: { revision }, signal: siteTimeout() }),
+      identity,
+      SITE_LATE,
+    );
+  }
+
+  importSite(file: File): Promise<Outcome<ImportedView>> {
+    return attempt(async () => {
+      const url = `${this.origin}/api/site/import?name=${encodeURIComponent(file.name.slice(-100))}`;
+      const options = { method: "POST", headers: this.headers, body: file, signal: siteTimeout() };
+      const response = await this.fetch(new Request(url, options));
+      const answer: unknown = await response.json().catch(() => null);
+      return response.ok ? done(answer as ImportedView) : failed(refusal(response, answer));
+    }, SITE_LATE);
+  }
+
   releaseStop(named: readonly string[] | null): Promise<Outcome<ActionResponse>> {
     const body = { serials: named === null ? null : [...named] };
     return answered(
@@ -288,6 +340,10 @@ function timeout(): AbortSignal {
   return AbortSignal.timeout(REQUEST_MS);
 }
 
+function siteTimeout(): AbortSignal {
+  return AbortSignal.timeout(SITE_MS);
+}
+
 /** openapi-fetch widens pairs to lists; the station sends pairs. */
 function asSurveyResponse(data: unknown): SurveyResponse {
   return data as SurveyResponse;
@@ -310,11 +366,12 @@ interface ApiResponse<D> {
 function answered<D, T>(
   ask: () => Promise<ApiResponse<D>>,
   read: (data: D) => T,
+  late = ORDER_LATE,
 ): Promise<Outcome<T>> {
   return attempt(async () => {
     const { data, error, response } = await ask();
     return data === undefined ? failed(refusal(response, error)) : done(read(data));
-  });
+  }, late);
 }
 
 /** For requests whose answer has no body. */
@@ -325,11 +382,11 @@ function withoutBody(ask: () => Promise<ApiResponse<unknown>>): Promise<Outcome<
   });
 }
 
-async function attempt<T>(ask: () => Promise<Outcome<T>>): Promise<Outcome<T>> {
+async function attempt<T>(ask: () => Promise<Outcome<T>>, late = ORDER_LATE): Promise<Outcome<T>> {
   try {
     return await ask();
   } catch (error) {
-    return failed(unreached(error));
+    return failed(unreached(error, late));
   }
 }
 
@@ -341,12 +398,11 @@ function failed<T>(problem: string): Outcome<T> {
   return { kind: "failed", problem };
 }
 
-function unreached(error: unknown): string {
+const ORDER_LATE = `The station did not answer within ${REQUEST_MS / 1000} s. The order may still have arrived: check the command list.`;
+
+function unreached(error: unknown, late: string): string {
   const isLate = error instanceof DOMException && error.name === "TimeoutError";
-  if (isLate) {
-    return `The station did not answer within ${REQUEST_MS / 1000} s. The order may still have arrived: check the command list.`;
-  }
-  return "Station unreachable. Use the remote controllers.";
+  return isLate ? late : "Station unreachable. Use the remote controllers.";
 }
 
 const UNAUTHORISED = 401;

@@ -3,9 +3,13 @@ import type {
   AccessView,
   ActionResponse,
   AuthorityHolder,
+  ImportedView,
   Order,
   OrderResult,
   PreflightView,
+  SiteDrawingRequest,
+  SiteDrawingResponse,
+  SiteDrawingView,
   StationState,
   SunAtView,
   SurveyRequest,
@@ -121,5 +125,15 @@ export interface StationSource {
   sunAt(latitudeDeg: number, longitudeDeg: number): Promise<Outcome<SunAtView>>;
   /** Where an imaging drone sees most of the shade that comes over the region. */
   upwindPlace(serial: string): Promise<Outcome<UpwindView>>;
+  /** The site's layers with all corners, as they are in its folder. */
+  siteDrawing(): Promise<Outcome<SiteDrawingView>>;
+  /** Checks a drawing as the station would at its start; nothing is saved. */
+  checkSite(drawing: SiteDrawingRequest): Promise<Outcome<SiteDrawingResponse>>;
+  /** Saves a drawing in the site's folder and brings it into force. */
+  saveSite(drawing: SiteDrawingRequest): Promise<Outcome<SiteDrawingResponse>>;
+  /** Takes back the newest save. */
+  undoSite(revision: string): Promise<Outcome<SiteDrawingResponse>>;
+  /** Reads the polygons and points of a file of another program; nothing is saved. */
+  importSite(file: File): Promise<Outcome<ImportedView>>;
   close(): void;
 }

@@ -6,8 +6,12 @@ import type {
   AccessView,
   ActionResponse,
   AuthorityHolder,
+  ImportedView,
   OrderResult,
   PreflightView,
+  SiteDrawingRequest,
+  SiteDrawingResponse,
+  SiteDrawingView,
   StationState,
   UpwindPlaceView,
   UpwindView,
@@ -35,6 +39,8 @@ export interface RenderedPage {
   /** Requests other than orders. */
   readonly requests: PageRequest[];
   readonly allStops: () => number;
+  /** The site's folder behind the page. */
+  readonly site: FakeSite;
   /** Sets the answer to every further order. */
   answerWith(results: readonly OrderResult[]): void;
   /** Sets the answer to every further request other than orders. */
@@ -79,6 +85,24 @@ export type PageRequest =
     }
   | { readonly stoppedSurvey: number; readonly word: "pause" | "abort" };
 
+/** A site's folder: what it answers, and what it was asked. */
+export interface FakeSite {
+  drawing: SiteDrawingView;
+  /** The answer to checks, saves and undos. */
+  response: SiteDrawingResponse;
+  imported: ImportedView;
+  readonly asked: (readonly [what: "check" | "save", drawing: SiteDrawingRequest])[];
+  readonly undone: string[];
+  readonly files: File[];
+}
+
+const EMPTY_SITE: SiteDrawingView = {
+  revision: "r1",
+  features: [],
+  locked_reason: null,
+  undo: null,
+};
+
 /** Recorded requests, and the answers to give. */
 interface Recorded {
   orders: NamedOrder[];
@@ -91,6 +115,7 @@ interface Recorded {
   answer: readonly OrderResult[];
   fetchFrame: StationSource["vehicleFrame"];
   upwindPlace: Outcome<UpwindView>;
+  site: FakeSite;
 }
 
 const noPicture = async () => ({ kind: "failed", problem: "no picture in this test" }) as const;
@@ -125,6 +150,21 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
       kind: "answered",
       value: { place: null, reason: "no region in this test" },
     },
+    site: {
+      drawing: EMPTY_SITE,
+      response: {
+        accepted: true,
+        rule: null,
+        reason: null,
+        feature: null,
+        layers: [],
+        drawing: null,
+      },
+      imported: { features: [], left_out: 0, reason: null },
+      asked: [],
+      undone: [],
+      files: [],
+    },
   };
   let behindS = 0;
   const source = fakeSource(state, connection, person, () => behindS, recorded);
@@ -147,6 +187,7 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
     acknowledged: recorded.acknowledged,
     requests: recorded.requests,
     allStops: () => recorded.allStops,
+    site: recorded.site,
     answerWith: (results) => {
       recorded.answer = results;
     },
@@ -277,7 +318,31 @@ function fakeSource(
     forecastPicture: noPicture,
     sunAt: noPicture,
     upwindPlace: async () => recorded.upwindPlace,
+    ...fakeSiteRequests(recorded.site),
     close: () => {},
+  };
+}
+
+function fakeSiteRequests(site: FakeSite) {
+  const answer = async () => ({ kind: "answered", value: site.response }) as const;
+  return {
+    siteDrawing: async () => ({ kind: "answered", value: site.drawing }) as const,
+    checkSite: (drawing: SiteDrawingRequest) => {
+      site.asked.push(["check", drawing]);
+      return answer();
+    },
+    saveSite: (drawing: SiteDrawingRequest) => {
+      site.asked.push(["save", drawing]);
+      return answer();
+    },
+    undoSite: (revision: string) => {
+      site.undone.push(revision);
+      return answer();
+    },
+    importSite: async (file: File) => {
+      site.files.push(file);
+      return { kind: "answered", value: site.imported } as const;
+    },
   };
 }
 

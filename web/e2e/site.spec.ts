@@ -1,0 +1,121 @@
+import { mkdtemp, rm, writeFile } from "node:fs/promises";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { expect, type Page, test } from "@playwright/test";
+import { openPanel } from "./openPanel";
+import { startStation } from "./stationProcess";
+
+const CONNECT_WITHIN_MS = 60_000;
+
+/** What `recon site new` writes, with two drones. */
+const SITE = `name = "west field"
+
+[origin]
+latitude_deg = 41.9012
+longitude_deg = -93.6034
+ground_altitude_m = 275.0
+
+[layers]
+${[1, 2].map(drone).join("")}`;
+
+function drone(number: number): string {
+  return `
+[[vehicles]]
+serial = "SIM-${number}"
+name = "Drone ${number}"
+model = "simulated"
+waypoint_altitude = "takeoff"
+endurance_min = 25
+go_home_height_m = ${22 + 8 * number}
+failsafe = "go_home"
+camera_interval_s = 2.0
+`;
+}
+
+const RING = [
+  [-93.6044, 41.9006],
+  [-93.6024, 41.9006],
+  [-93.6024, 41.9018],
+  [-93.6044, 41.9018],
+  [-93.6044, 41.9006],
+];
+const KML = `<?xml version="1.0" encoding="UTF-8"?>
+<kml xmlns="http://www.opengis.net/kml/2.2"><Placemark><name>north</name><Polygon><outerBoundaryIs>
+<LinearRing><coordinates>${RING.map((corner) => corner.join(",")).join(" ")}</coordinates></LinearRing>
+</outerBoundaryIs></Polygon></Placemark></kml>`;
+
+/** Presses at places of the map, in shares of its width and height. */
+async function pressMap(page: Page, ...places: (readonly [number, number])[]) {
+  const { width, height } = page.viewportSize() ?? { width: 0, height: 0 };
+  for (const [x, y] of places) await page.mouse.click(x * width, y * height);
+}
+
+test("a site is drawn and imported, flown, and its fences keep while it is flown", async ({
+  page,
+}) => {
+  test.setTimeout(240_000);
+  const folder = await mkdtemp(join(tmpdir(), "recon-site-"));
+  await writeFile(join(folder, "site.toml"), SITE);
+  const station = await startStation("--site", folder);
+  try {
+    await page.goto(station.url);
+    await expect(page.locator("button.craft")).toHaveCount(2, { timeout: CONNECT_WITHIN_MS });
+    await openPanel(page, "Edit site");
+    const panel = page.getByRole("region", { name: "Edit site", exact: true });
+    const save = panel.getByRole("button", { name: /^Save/ });
+    await panel.getByRole("button", { name: "Edit", exact: true }).click();
+    for (let step = 0; step < 3; step += 1)
+      await page.getByRole("button", { name: "Zoom out" }).click();
+
+    await test.step("the boundary is drawn, a corner dragged, and in force when saved", async () => {
+      await panel.getByRole("button", { name: "Draw on map" }).click();
+      await expect(panel.getByText(/Press the corners of the boundary/)).toBeVisible();
+      await pressMap(page, [0.25, 0.2], [0.7, 0.2], [0.7, 0.8], [0.25, 0.8], [0.25, 0.2]);
+      await expect(panel.getByText("Outline: 4 corners")).toBeVisible();
+      const size = panel.getByRole("button", { name: /^boundary .* ha$/ });
+      const before = await size.textContent();
+      await page.mouse.move(0.7 * 1440, 0.2 * 900);
+      await page.mouse.down();
+      await page.mouse.move(0.72 * 1440, 0.17 * 900, { steps: 4 });
+      await page.mouse.up();
+      await expect(size).not.toHaveText(before ?? "");
+      await expect(panel.getByText("Ready to save. Changes: boundary.")).toBeVisible();
+      await expect(page.locator(".area-label-boundary")).toHaveCount(0);
+      await save.click();
+      await expect(panel.getByText("Saved: boundary. In force now")).toBeVisible();
+      await expect(page.locator(".area-label-boundary")).toHaveCount(1);
+    });
+
+    await test.step("a KML's field becomes a region to survey", async () => {
+      await panel
+        .getByLabel("Import a file")
+        .setInputFiles({ name: "fields.kml", mimeType: "text/xml", buffer: Buffer.from(KML) });
+      await panel.getByRole("button", { name: "Add 1 feature" }).click();
+      await save.click();
+      await expect(panel.getByText("Saved: survey regions. In force now")).toBeVisible();
+    });
+
+    await test.step("while a drone flies, a fence stays, and the refusal names it", async () => {
+      const survey = page.getByRole("region", { name: "Survey", exact: true });
+      await survey.getByRole("button", { name: "Plan survey" }).click();
+      await expect(survey.getByText("Planned, not started")).toBeVisible();
+      await page.getByRole("checkbox", { name: /Drone 1/ }).check({ force: true });
+      await survey.getByLabel("Allow takeoff for this start").check();
+      const start = survey.getByRole("button", { name: /^Start with selected: .*Drone 1/ });
+      await start.focus();
+      await page.keyboard.down("Enter");
+      await expect(survey.getByText(/^(Running|Stopped)/)).toBeVisible();
+      await page.keyboard.up("Enter");
+      await expect(page.getByTestId("status-count")).toHaveText("1 of 2");
+      await panel.getByRole("combobox", { name: "Add" }).selectOption("Keep-out zone");
+      await panel.getByRole("button", { name: "At map centre" }).click();
+      await save.click();
+      await expect(
+        panel.getByText(/^Not saved: Boundary, zones and pads change only/),
+      ).toContainText("Drone 1");
+    });
+  } finally {
+    await station.stop();
+    await rm(folder, { recursive: true });
+  }
+});

@@ -1,0 +1,243 @@
+import { createSignal, For, Index, Show } from "solid-js";
+import { useConsole } from "../../console";
+import type { LonLat } from "../../map/localGrid";
+import { LEAST_CORNERS } from "../../site/siteDraft";
+import {
+  type Attribute,
+  cornerOf,
+  cornerText,
+  type DraftFeature,
+  featureName,
+  LAYERS,
+  type Ring,
+} from "../../site/siteFeatures";
+import { plural } from "../../text/names";
+
+/** Corners listed at once: a surveyed outline has hundreds. */
+const LISTED = 20;
+
+/** The selected feature: name, heights, and its corners as coordinates, for the keyboard or exact values. */
+export function FeatureForm(props: { feature: DraftFeature }) {
+  const { siteDraft } = useConsole();
+  const kind = () => LAYERS[props.feature.layer];
+  const set = (key: string, value: Attribute) =>
+    siteDraft.setProperty(props.feature.id, key, value);
+  return (
+    <section class="section site-form" aria-label={`Selected: ${featureName(props.feature)}`}>
+      <TextField
+        label="Name"
+        value={props.feature.properties["name"] ?? ""}
+        onChange={(text) => set("name", text.trim() || null)}
+      />
+      <Show when={kind().hasHeights}>
+        <NumberField feature={props.feature} name="floor_m" label="Floor, m" />
+        <NumberField feature={props.feature} name="ceiling_m" label="Ceiling, m" />
+        <label class="site-wide">
+          Heights count from
+          <select
+            class="field"
+            value={String(props.feature.properties["datum"] ?? "ground")}
+            onChange={(event) => set("datum", event.currentTarget.value)}
+          >
+            <option value="ground">ground</option>
+            <option value="wgs84">WGS84 ellipsoid</option>
+          </select>
+        </label>
+      </Show>
+      <Show when={kind().isPoint}>
+        <NumberField feature={props.feature} name="altitude_m" label="Altitude (WGS84), m" />
+        <TextField
+          label="Serial of its drone (empty: any)"
+          value={props.feature.properties["serial"] ?? ""}
+          onChange={(text) => set("serial", text.trim() || null)}
+        />
+      </Show>
+      <Index each={props.feature.rings}>
+        {(ring, index) => <Corners feature={props.feature} ring={ring()} index={index} />}
+      </Index>
+      <div class="section-buttons site-wide">
+        <Show when={!kind().isPoint}>
+          <button
+            type="button"
+            class="button"
+            onClick={() => siteDraft.draw({ layer: props.feature.layer, hole: true })}
+          >
+            Draw a hole
+          </button>
+        </Show>
+        <button
+          type="button"
+          class="button"
+          onClick={() => siteDraft.removeRing(props.feature.id, 0)}
+        >
+          Remove {featureName(props.feature)}
+        </button>
+      </div>
+    </section>
+  );
+}
+
+function TextField(props: { label: string; value: Attribute; onChange: (text: string) => void }) {
+  return (
+    <label class="site-wide">
+      {props.label}
+      <input
+        class="field"
+        type="text"
+        maxlength={100}
+        value={String(props.value)}
+        onChange={(event) => props.onChange(event.currentTarget.value)}
+      />
+    </label>
+  );
+}
+
+/** A number or, empty, nothing; what is no number stays in the field and is marked. */
+function NumberField(props: { feature: DraftFeature; name: string; label: string }) {
+  const { siteDraft } = useConsole();
+  const [isBad, setBad] = createSignal(false);
+  const change = (text: string) => {
+    const value = text.trim() === "" ? null : Number(text.replace(",", "."));
+    setBad(Number.isNaN(value));
+    if (!Number.isNaN(value)) siteDraft.setProperty(props.feature.id, props.name, value);
+  };
+  return (
+    <label>
+      {props.label}
+      <input
+        class="field"
+        type="text"
+        inputmode="decimal"
+        aria-invalid={isBad()}
+        value={String(props.feature.properties[props.name] ?? "")}
+        onChange={(event) => change(event.currentTarget.value)}
+      />
+    </label>
+  );
+}
+
+/** The corners of one ring, a page at a time; each is a field with latitude and longitude. */
+function Corners(props: { feature: DraftFeature; ring: Ring; index: number }) {
+  const { siteDraft } = useConsole();
+  const [first, setFirst] = createSignal(0);
+  const isPoint = () => LAYERS[props.feature.layer].isPoint;
+  const title = () => {
+    if (isPoint()) return "Place";
+    const what = props.index === 0 ? "Outline" : `Hole ${props.index}`;
+    return `${what}: ${plural(props.ring.length, "corner")}`;
+  };
+  const start = () => Math.min(first(), Math.max(0, props.ring.length - 1));
+  const shown = () => props.ring.slice(start(), start() + LISTED);
+  const put = (ring: Ring) => siteDraft.setRing(props.feature.id, props.index, ring);
+  const move = (at: number, to: LonLat) => put(props.ring.map((one, i) => (i === at ? to : one)));
+  const insert = (after: number) => {
+    const [one, next] = [props.ring[after], props.ring[(after + 1) % props.ring.length]];
+    if (one === undefined || next === undefined) return;
+    const middle = { lon: (one.lon + next.lon) / 2, lat: (one.lat + next.lat) / 2 };
+    put([...props.ring.slice(0, after + 1), middle, ...props.ring.slice(after + 1)]);
+  };
+  return (
+    <details class="site-wide site-corners" open={isPoint()}>
+      <summary>{title()}</summary>
+      <Show when={props.index > 0}>
+        <button
+          type="button"
+          class="button"
+          onClick={() => siteDraft.removeRing(props.feature.id, props.index)}
+        >
+          Remove hole {props.index}
+        </button>
+      </Show>
+      <p class="muted">Latitude, longitude, degrees</p>
+      <ol>
+        <Index each={shown()}>
+          {(corner, offset) => (
+            <Corner
+              number={start() + offset + 1}
+              corner={corner()}
+              isAlone={isPoint()}
+              canGo={props.ring.length > LEAST_CORNERS}
+              onMove={(to) => move(start() + offset, to)}
+              onInsert={() => insert(start() + offset)}
+              onRemove={() => put(props.ring.filter((_, i) => i !== start() + offset))}
+            />
+          )}
+        </Index>
+      </ol>
+      <Show when={props.ring.length > LISTED}>
+        <div class="section-buttons">
+          <For
+            each={
+              [
+                ["Earlier corners", -LISTED],
+                ["Later corners", LISTED],
+              ] as const
+            }
+          >
+            {([label, by]) => (
+              <button
+                type="button"
+                class="button"
+                disabled={start() + by < 0 || start() + by >= props.ring.length}
+                onClick={() => setFirst(start() + by)}
+              >
+                {label}
+              </button>
+            )}
+          </For>
+        </div>
+      </Show>
+    </details>
+  );
+}
+
+function Corner(props: {
+  number: number;
+  corner: LonLat;
+  isAlone: boolean;
+  canGo: boolean;
+  onMove: (to: LonLat) => void;
+  onInsert: () => void;
+  onRemove: () => void;
+}) {
+  const [isBad, setBad] = createSignal(false);
+  const change = (text: string) => {
+    const to = cornerOf(text);
+    setBad(to === null);
+    if (to !== null) props.onMove(to);
+  };
+  const name = () => (props.isAlone ? "Place" : `Corner ${props.number}`);
+  return (
+    <li class="site-corner">
+      <input
+        class="field"
+        type="text"
+        aria-label={`${name()}: latitude, longitude`}
+        aria-invalid={isBad()}
+        value={cornerText(props.corner)}
+        onChange={(event) => change(event.currentTarget.value)}
+      />
+      <Show when={!props.isAlone}>
+        <button
+          type="button"
+          class="button"
+          aria-label={`Add a corner after corner ${props.number}`}
+          title="Add a corner after this one"
+          onClick={() => props.onInsert()}
+        >
+          +
+        </button>
+        <button
+          type="button"
+          class="button"
+          aria-label={`Remove corner ${props.number}`}
+          title="Remove this corner"
+          disabled={!props.canGo}
+          onClick={() => props.onRemove()}
+        >
+          ✕
+        </button>
+      </Show>
+    </li>
+  );
+}

@@ -1,0 +1,289 @@
+import { createEffect, createSignal, For, onCleanup, Show } from "solid-js";
+import { useConsole } from "../../console";
+import type { LayerName } from "../../protocol";
+import {
+  areaHa,
+  type DraftFeature,
+  featureName,
+  LAYER_NAMES,
+  LAYERS,
+} from "../../site/siteFeatures";
+import { personName, plural } from "../../text/names";
+import { formatQuantity } from "../../text/quantities";
+import { Empty, Panel, Problem } from "../Panel";
+import { FeatureForm } from "./FeatureForm";
+import { ImportForm } from "./ImportForm";
+import "./site.css";
+
+/** What a shape without a pointer takes of the map's width. */
+const SQUARE_SHARE = 0.4;
+
+/** The site's boundary, zones, regions and pads: drawn, checked, saved, and in force without a restart. */
+export function SitePanel() {
+  const { siteDraft, fit } = useConsole();
+  const toggle = async () => {
+    await siteDraft.toggle();
+    if (siteDraft.isOn() && siteDraft.features().length > 0) fit();
+  };
+  return (
+    <Panel
+      title="Edit site"
+      name="site"
+      class="site"
+      actions={
+        <button
+          type="button"
+          class="button"
+          aria-pressed={siteDraft.isOn()}
+          onClick={() => void toggle()}
+        >
+          {siteDraft.isOn() ? "Close" : "Edit"}
+        </button>
+      }
+    >
+      <Show
+        when={siteDraft.isOn()}
+        fallback={
+          <Empty>
+            {siteDraft.isChanged()
+              ? "There are changes that are not saved."
+              : "Boundary, zones, regions and pads are drawn here, or imported."}
+          </Empty>
+        }
+      >
+        <Editor />
+      </Show>
+    </Panel>
+  );
+}
+
+function Editor() {
+  const { siteDraft } = useConsole();
+  const { saved, features, selected } = siteDraft;
+  warnBeforeUnload(siteDraft.isChanged);
+  return (
+    <>
+      <Show when={saved()?.locked_reason}>
+        {(reason) => (
+          <div class="section">
+            <Problem text={reason()} />
+          </div>
+        )}
+      </Show>
+      <Show when={saved() !== null} fallback={<Empty>Loading the site.</Empty>}>
+        <AddForm />
+        <Show when={features().length > 0} fallback={<Empty>Nothing is drawn yet.</Empty>}>
+          <ul class="list" aria-label="Features of the site">
+            <For each={LAYER_NAMES}>
+              {(layer) => (
+                <For each={features().filter((one) => one.layer === layer)}>
+                  {(feature) => <FeatureRow feature={feature} />}
+                </For>
+              )}
+            </For>
+          </ul>
+        </Show>
+        <Show when={selected()} keyed={false}>
+          {(feature) => <FeatureForm feature={feature()} />}
+        </Show>
+        <ImportForm />
+        <SaveForm />
+      </Show>
+    </>
+  );
+}
+
+/** Draws on the map, or adds a shape at its centre for those who use no pointer. */
+function AddForm() {
+  const { siteDraft, mapCentre } = useConsole();
+  const [layer, setLayer] = createSignal<LayerName>("boundary");
+  const tool = siteDraft.tool;
+  const add = () => {
+    const centre = mapCentre();
+    if (centre !== null) siteDraft.addAt(layer(), centre, centre.width_m * SQUARE_SHARE);
+  };
+  return (
+    <form
+      class="section site-form"
+      aria-label="New feature"
+      onSubmit={(event) => {
+        event.preventDefault();
+        siteDraft.draw({ layer: layer(), hole: false });
+      }}
+    >
+      <label class="site-wide">
+        Add
+        <select
+          class="field"
+          value={layer()}
+          onChange={(event) => setLayer(event.currentTarget.value as LayerName)}
+        >
+          <For each={LAYER_NAMES}>
+            {(name) => <option value={name}>{LAYERS[name].name}</option>}
+          </For>
+        </select>
+      </label>
+      <button type="submit" class="button" aria-pressed={tool() !== null}>
+        Draw on map
+      </button>
+      <button type="button" class="button" onClick={add}>
+        At map centre
+      </button>
+      <Show when={tool()}>
+        {(inHand) => (
+          <p class="site-wide" role="status">
+            {hint(inHand())}
+          </p>
+        )}
+      </Show>
+    </form>
+  );
+}
+
+function hint({ layer, hole }: { layer: LayerName; hole: boolean }): string {
+  if (LAYERS[layer].isPoint) return "Press the place on the map. Esc cancels.";
+  const what = hole ? "hole" : LAYERS[layer].name.toLowerCase();
+  return `Press the corners of the ${what} on the map; press the first one again to finish. Esc cancels.`;
+}
+
+function FeatureRow(props: { feature: DraftFeature }) {
+  const { siteDraft } = useConsole();
+  const isSelected = () => siteDraft.selected()?.id === props.feature.id;
+  const problem = () => {
+    const verdict = siteDraft.verdict();
+    const isMine = verdict.kind === "refused" && verdict.featureId === props.feature.id;
+    return isMine ? verdict.text : null;
+  };
+  return (
+    <li class="row site-row">
+      <button
+        type="button"
+        class="button button-quiet site-pick"
+        aria-pressed={isSelected()}
+        onClick={() => siteDraft.select(isSelected() ? null : props.feature.id)}
+      >
+        <span class={`site-swatch site-swatch-${props.feature.layer}`} aria-hidden="true" />
+        <span class="wire-text">
+          {featureName(props.feature)}
+          <span class="muted"> {facts(props.feature)}</span>
+        </span>
+      </button>
+      <Problem text={problem()} />
+    </li>
+  );
+}
+
+/** What it is, unless it is named so, and how large: `Survey region, 4.2 ha, 1 hole`. */
+function facts(feature: DraftFeature): string {
+  const { name, isPoint } = LAYERS[feature.layer];
+  const isNamedSo = featureName(feature).toLowerCase().startsWith(name.toLowerCase());
+  const holes = feature.rings.length - 1;
+  return [
+    ...(isNamedSo ? [] : [name]),
+    ...(isPoint ? [] : [formatQuantity(areaHa(feature), "ha", 2)]),
+    ...(holes > 0 ? [plural(holes, "hole")] : []),
+  ].join(", ");
+}
+
+function SaveForm() {
+  const { siteDraft, lacks } = useConsole();
+  const { saved, isBusy, isChanged, verdict, notice } = siteDraft;
+  const locked = () => saved()?.locked_reason ?? lacks("operator");
+  const general = () => {
+    const now = verdict();
+    return now.kind === "refused" && now.featureId === null ? now.text : null;
+  };
+  return (
+    <section class="section" aria-label="Save the site">
+      <div class="section-buttons">
+        <button
+          type="button"
+          class="button"
+          disabled={!siteDraft.canUndo()}
+          onClick={() => siteDraft.undo()}
+        >
+          Undo
+        </button>
+        <button
+          type="button"
+          class="button"
+          disabled={!siteDraft.canRedo()}
+          onClick={() => siteDraft.redo()}
+        >
+          Redo
+        </button>
+        <button
+          type="button"
+          class="button"
+          disabled={isBusy()}
+          onClick={() => void siteDraft.discard()}
+        >
+          {isChanged() ? "Discard" : "Reload"}
+        </button>
+      </div>
+      <p role="status" class="site-verdict">
+        {verdictText(verdict())}
+      </p>
+      <Problem text={general()} />
+      <button
+        type="button"
+        class="button site-save"
+        disabled={!isChanged() || isBusy() || locked() !== null}
+        title={locked() ?? undefined}
+        onClick={() => void siteDraft.save()}
+      >
+        Save, in force at once
+      </button>
+      <Show when={notice()}>
+        {(now) => (
+          <Show
+            when={now().isProblem}
+            fallback={
+              <p role="status" class="wire-text">
+                {now().text}
+              </p>
+            }
+          >
+            <Problem text={now().text} />
+          </Show>
+        )}
+      </Show>
+      <Show when={saved()?.undo}>
+        {(change) => (
+          <button
+            type="button"
+            class="button"
+            disabled={isBusy() || isChanged() || locked() !== null}
+            title={isChanged() ? "Save or discard the changes first" : undefined}
+            onClick={() => void siteDraft.undoSaved()}
+          >
+            Undo last save: {change().what}, by {personName(change().by)}
+          </button>
+        )}
+      </Show>
+    </section>
+  );
+}
+
+function verdictText(verdict: ReturnType<ReturnType<typeof useConsole>["siteDraft"]["verdict"]>) {
+  switch (verdict.kind) {
+    case "none":
+      return "No changes.";
+    case "checking":
+      return "Checking the drawing.";
+    case "accepted":
+      return verdict.text === "" ? "Nothing changes." : `Ready to save. Changes: ${verdict.text}.`;
+    case "refused":
+      return "Cannot be saved as it is:";
+  }
+}
+
+/** Asks before the page is left with changes that are not saved. */
+function warnBeforeUnload(isChanged: () => boolean): void {
+  createEffect(() => {
+    if (!isChanged()) return;
+    const ask = (event: BeforeUnloadEvent) => event.preventDefault();
+    window.addEventListener("beforeunload", ask);
+    onCleanup(() => window.removeEventListener("beforeunload", ask));
+  });
+}

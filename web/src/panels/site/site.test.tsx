@@ -1,0 +1,160 @@
+import { afterEach, describe, expect, it } from "vitest";
+import { squareAround } from "../../site/siteFeatures";
+import { station, vehicle } from "../../testing/fakeState";
+import { find, type RenderedPage, renderPage } from "../../testing/renderPage";
+import { SitePanel } from "./SitePanel";
+
+let page: RenderedPage;
+afterEach(() => page?.dispose());
+
+const HERE = { lon: -93.6, lat: 41.9 };
+
+async function settled() {
+  for (let turn = 0; turn < 5; turn += 1) await Promise.resolve();
+}
+
+async function open(locked_reason: string | null = null) {
+  page = renderPage(SitePanel, station([vehicle(1)]));
+  page.site.drawing = { ...page.site.drawing, locked_reason };
+  page.shared.setMapCentre(() => ({ ...HERE, width_m: 500 }));
+  press("Edit");
+  await settled();
+}
+
+function button(text: string): HTMLButtonElement {
+  const found = [...page.root.querySelectorAll("button")].find(
+    (one) => one.textContent === text || one.getAttribute("aria-label") === text,
+  );
+  if (found === undefined) throw new Error(`No button "${text}"`);
+  return found;
+}
+
+function press(text: string) {
+  button(text).click();
+}
+
+function type(label: string, text: string) {
+  const named = [...page.root.querySelectorAll("label")].find(({ textContent }) =>
+    textContent?.startsWith(label),
+  );
+  const field = named?.querySelector("input, select") ?? find(page.root, `[aria-label='${label}']`);
+  (field as HTMLInputElement).value = text;
+  field.dispatchEvent(new Event("change", { bubbles: true }));
+}
+
+function corners(): string[] {
+  return [...page.root.querySelectorAll<HTMLInputElement>(".site-corner input")].map(
+    ({ value }) => value,
+  );
+}
+
+describe("with the keyboard alone", () => {
+  it("a shape is added at the map centre and its corners are typed", async () => {
+    await open();
+    press("At map centre");
+    expect(page.shared.siteDraft.selected()?.rings).toEqual([squareAround(HERE, 200)]);
+    type("Corner 1: latitude, longitude", "41.95, -93.65");
+    expect(corners()[0]).toBe("41.9500000, -93.6500000");
+    press("Add a corner after corner 1");
+    expect(corners()).toHaveLength(5);
+    press("Remove corner 1");
+    expect(button("Remove corner 1").disabled).toBe(false);
+    press("Remove corner 1");
+    expect(corners()).toHaveLength(3);
+    expect(button("Remove corner 1").disabled).toBe(true);
+  });
+
+  it("a text that is no place changes nothing and is marked", async () => {
+    await open();
+    press("At map centre");
+    const before = page.shared.siteDraft.features();
+    type("Corner 2: latitude, longitude", "here");
+    expect(page.shared.siteDraft.features()).toBe(before);
+    expect(page.root.querySelectorAll("[aria-invalid='true']")).toHaveLength(1);
+  });
+
+  it("long outlines are listed a page at a time", async () => {
+    await open();
+    press("At map centre");
+    const { siteDraft } = page.shared;
+    const ring = Array.from({ length: 45 }, (_, k) => ({ lon: k / 1000, lat: (k * k) / 1e6 }));
+    siteDraft.setRing(siteDraft.selected()?.id ?? 0, 0, ring);
+    expect(corners()).toHaveLength(20);
+    press("Later corners");
+    press("Later corners");
+    expect(corners()).toHaveLength(5);
+    expect(button("Later corners").disabled).toBe(true);
+  });
+});
+
+describe("what the station answers", () => {
+  it("stands beside the feature it is about", async () => {
+    await open();
+    press("At map centre");
+    page.site.response = {
+      ...page.site.response,
+      accepted: false,
+      reason: "Expected a polygon whose edges do not meet",
+      feature: 0,
+    };
+    page.clock.advance(600);
+    await settled();
+    expect(find(page.root, ".site-row").textContent).toContain("edges do not meet");
+    expect(find(page.root, ".site-verdict").textContent).toBe("Cannot be saved as it is:");
+  });
+
+  it("locks the folder that cannot be saved, with the reason", async () => {
+    await open("The demonstration's site is part of the program");
+    expect(page.root.textContent).toContain("part of the program");
+    press("At map centre");
+    expect(button("Save, in force at once").disabled).toBe(true);
+  });
+
+  it("offers the last save's undo, once nothing else is changed", async () => {
+    page = renderPage(SitePanel, station([vehicle(1)]));
+    const undo = { what: "boundary", by: "anna (10.0.0.2)", utc: "2026-05-01T12:00:00+00:00" };
+    page.site.drawing = { ...page.site.drawing, undo };
+    press("Edit");
+    await settled();
+    page.site.response = { ...page.site.response, drawing: { ...page.site.drawing, undo: null } };
+    press("Undo last save: boundary, by anna");
+    await settled();
+    expect(page.site.undone).toEqual(["r1"]);
+    expect(page.root.textContent).not.toContain("Undo last save");
+  });
+});
+
+describe("an imported file", () => {
+  it("is chosen from feature by feature", async () => {
+    await open();
+    const polygon = {
+      type: "Polygon" as const,
+      coordinates: [
+        [
+          [0, 0],
+          [1, 0],
+          [1, 1],
+          [0, 0],
+        ],
+      ],
+    };
+    page.site.imported = {
+      features: [
+        { name: "west", geometry: polygon },
+        { name: "<b>east</b>", geometry: polygon },
+      ],
+      left_out: 0,
+      reason: null,
+    };
+    const section = find(page.root, ".site-import");
+    const drop = new Event("drop", { bubbles: true }) as Event & { dataTransfer: unknown };
+    drop.dataTransfer = { files: [new File(["x"], "fields.kml")] };
+    section.dispatchEvent(drop);
+    await settled();
+    expect(section.textContent).toContain("<b>east</b>");
+    type("west", "boundary");
+    type("<b>east</b>", "");
+    press("Add 1 feature");
+    expect(page.shared.siteDraft.features().map(({ layer }) => layer)).toEqual(["boundary"]);
+  });
+});
