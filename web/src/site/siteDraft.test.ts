@@ -162,7 +162,11 @@ describe("saving", () => {
     page.site.response = { ...ACCEPTED, layers: ["boundary"], drawing };
     await draft.save();
     expect([draft.isChanged(), draft.canUndo()]).toEqual([false, false]);
-    expect(draft.notice()).toEqual({ text: "Saved: boundary. In force now", isProblem: false });
+    expect(draft.notice()).toEqual({
+      about: "site",
+      text: "Saved: boundary. In force now",
+      isProblem: false,
+    });
     await draft.undoSaved();
     expect(page.site.undone).toEqual(["r2"]);
   });
@@ -173,7 +177,11 @@ describe("saving", () => {
     page.site.response = { ...ACCEPTED, accepted: false, reason: "In the air: Drone 1" };
     await draft.save();
     expect(draft.features()).toHaveLength(1);
-    expect(draft.notice()).toEqual({ text: "Not saved: In the air: Drone 1", isProblem: true });
+    expect(draft.notice()).toEqual({
+      about: "site",
+      text: "Not saved: In the air: Drone 1",
+      isProblem: true,
+    });
   });
 });
 
@@ -215,7 +223,11 @@ describe("an imported file", () => {
     const draft = await open(FIELD);
     page.site.imported = { features: [], left_out: 0, reason: "a.zip: expected KML" };
     await draft.readFile(new File(["x"], "a.zip"));
-    expect(draft.notice()).toEqual({ text: "a.zip: expected KML", isProblem: true });
+    expect(draft.notice()).toEqual({
+      about: "import",
+      text: "a.zip: expected KML",
+      isProblem: true,
+    });
     expect(draft.features()).toHaveLength(1);
   });
 });

@@ -39,6 +39,13 @@ export type Verdict =
   | { readonly kind: "accepted"; readonly text: string }
   | { readonly kind: "refused"; readonly text: string; readonly featureId: number | null };
 
+/** What became of the last request. */
+export interface Notice {
+  readonly about: "site" | "import";
+  readonly text: string;
+  readonly isProblem: boolean;
+}
+
 /** A feature of an imported file, and what it is to become; null: it is left out. */
 export interface ImportChoice {
   readonly name: string;
@@ -60,8 +67,7 @@ export interface SiteDraft {
   readonly canUndo: Accessor<boolean>;
   readonly canRedo: Accessor<boolean>;
   readonly verdict: Accessor<Verdict>;
-  /** What became of the last request, and whether it went wrong. */
-  readonly notice: Accessor<{ readonly text: string; readonly isProblem: boolean } | null>;
+  readonly notice: Accessor<Notice | null>;
   readonly imported: Accessor<readonly ImportChoice[]>;
   /** Opens the editor, with the site as it is unless there are edits; or closes it. */
   toggle(): Promise<void>;
@@ -111,7 +117,7 @@ export function createSiteDraft(
   const [selectedId, setSelectedId] = createSignal<number | null>(null);
   const [tool, setTool] = createSignal<Tool | null>(null);
   const [verdict, setVerdict] = createSignal<Verdict>({ kind: "none" });
-  const [notice, setNotice] = createSignal<ReturnType<SiteDraft["notice"]>>(null);
+  const [notice, setNotice] = createSignal<Notice | null>(null);
   const [imported, setImported] = createSignal<readonly ImportChoice[]>([]);
   const selected = createMemo(() => features().find(({ id }) => id === selectedId()) ?? null);
   const isChanged = createMemo(() => {
@@ -180,27 +186,32 @@ export function createSiteDraft(
     show(view.features.map((one) => featureOf(nextId++, one)));
   };
   /** One request at a time; `done` gets its answer. */
-  const ask = async <T>(send: () => Promise<Outcome<T>>, done: (answer: T) => void) => {
+  const ask = async <T>(
+    about: Notice["about"],
+    send: () => Promise<Outcome<T>>,
+    done: (answer: T) => void,
+  ) => {
     if (isBusy()) return;
     setBusy(true);
     setNotice(null);
     const outcome = await send();
     setBusy(false);
     if (outcome.kind === "answered") done(outcome.value);
-    else setNotice({ text: outcome.problem, isProblem: true });
+    else setNotice({ about, text: outcome.problem, isProblem: true });
   };
   const loaded = (verb: string) => (answer: SiteDrawingResponse) => {
     if (!answer.accepted || answer.drawing === null) {
       setVerdict(verdictOf({ kind: "answered", value: answer }, features()));
-      setNotice({ text: `Not ${verb}: ${answer.reason ?? "no reason given"}`, isProblem: true });
+      const text = `Not ${verb}: ${answer.reason ?? "no reason given"}`;
+      setNotice({ about: "site", text, isProblem: true });
       return;
     }
     load(answer.drawing);
     const what = layersText(answer.layers);
     const text = what === "" ? `${capital(verb)}: nothing changes` : `${capital(verb)}: ${what}`;
-    setNotice({ text: `${text}. In force now`, isProblem: false });
+    setNotice({ about: "site", text: `${text}. In force now`, isProblem: false });
   };
-  const reload = () => ask(() => source.siteDrawing(), load);
+  const reload = () => ask("site", () => source.siteDrawing(), load);
 
   return {
     isOn,
@@ -281,18 +292,23 @@ export function createSiteDraft(
     recheck: () => {
       if (verdict().kind !== "none") checkSoon();
     },
-    save: () => ask(() => source.saveSite(request()), loaded("saved")),
-    undoSaved: () => ask(() => source.undoSite(saved()?.revision ?? ""), loaded("undone")),
+    save: () => ask("site", () => source.saveSite(request()), loaded("saved")),
+    undoSaved: () => ask("site", () => source.undoSite(saved()?.revision ?? ""), loaded("undone")),
     readFile: (file) =>
       ask(
+        "import",
         () => source.importSite(file),
         ({ features: found, left_out, reason }) => {
           if (reason !== null) {
-            setNotice({ text: reason, isProblem: true });
+            setNotice({ about: "import", text: reason, isProblem: true });
             return;
           }
           const left = left_out === 0 ? "" : `; ${left_out} neither polygon nor point, left out`;
-          setNotice({ text: `${file.name}: ${found.length} read${left}`, isProblem: false });
+          setNotice({
+            about: "import",
+            text: `${file.name}: ${found.length} read${left}`,
+            isProblem: false,
+          });
           setImported(found.map(choiceOf));
         },
       ),

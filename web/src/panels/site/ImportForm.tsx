@@ -5,6 +5,7 @@ import type { ImportChoice } from "../../site/siteDraft";
 import { areaHa, LAYER_NAMES, LAYERS } from "../../site/siteFeatures";
 import { plural } from "../../text/names";
 import { formatQuantity } from "../../text/quantities";
+import { NoticeLine } from "./NoticeLine";
 
 const ACCEPTED = ".kml,.kmz,.zip,.gpkg,.geojson,.json";
 const LEFT_OUT = "";
@@ -50,6 +51,7 @@ export function ImportForm() {
         />
       </label>
       <p class="muted">KML, KMZ, Shapefile (zip), GeoPackage or GeoJSON; or drop it here.</p>
+      <NoticeLine about="import" />
       <Show when={imported().length > 0}>
         <ul aria-label="Imported features">
           <For each={imported()}>{(one, index) => <Choice choice={one} index={index()} />}</For>

@@ -13,6 +13,7 @@ import { formatQuantity } from "../../text/quantities";
 import { Empty, Panel, Problem } from "../Panel";
 import { FeatureForm } from "./FeatureForm";
 import { ImportForm } from "./ImportForm";
+import { NoticeLine } from "./NoticeLine";
 import "./site.css";
 
 /** What a shape without a pointer takes of the map's width. */
@@ -21,6 +22,8 @@ const SQUARE_SHARE = 0.4;
 /** The site's boundary, zones, regions and pads: drawn, checked, saved, and in force without a restart. */
 export function SitePanel() {
   const { siteDraft, fit } = useConsole();
+  // Without its panel the draft would lie over the fences in force; edits are kept.
+  onCleanup(() => siteDraft.leave());
   const toggle = async () => {
     await siteDraft.toggle();
     if (siteDraft.isOn() && siteDraft.features().length > 0) fit();
@@ -187,7 +190,7 @@ function facts(feature: DraftFeature): string {
 
 function SaveForm() {
   const { siteDraft, lacks } = useConsole();
-  const { saved, isBusy, isChanged, verdict, notice } = siteDraft;
+  const { saved, isBusy, isChanged, verdict } = siteDraft;
   const locked = () => saved()?.locked_reason ?? lacks("operator");
   const general = () => {
     const now = verdict();
@@ -234,20 +237,7 @@ function SaveForm() {
       >
         Save, in force at once
       </button>
-      <Show when={notice()}>
-        {(now) => (
-          <Show
-            when={now().isProblem}
-            fallback={
-              <p role="status" class="wire-text">
-                {now().text}
-              </p>
-            }
-          >
-            <Problem text={now().text} />
-          </Show>
-        )}
-      </Show>
+      <NoticeLine about="site" />
       <Show when={saved()?.undo}>
         {(change) => (
           <button

@@ -158,3 +158,11 @@ describe("an imported file", () => {
     expect(page.shared.siteDraft.features().map(({ layer }) => layer)).toEqual(["boundary"]);
   });
 });
+
+it("leaves the map when its panel closes, and keeps the edits", async () => {
+  await open();
+  press("At map centre");
+  const { siteDraft } = page.shared;
+  page.dispose();
+  expect([siteDraft.isOn(), siteDraft.features().length]).toEqual([false, 1]);
+});
