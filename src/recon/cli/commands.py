@@ -118,6 +118,10 @@ COMMANDS = {
         "tag:tag_command",
         "Tag the photos of a flight: sunlit share, masks, the photos to keep, what to fly again.",
     ),
+    "shadow-record": CommandSource(
+        "shadow_record:shadow_record_command",
+        "Write a flight's shade maps, and when each cell was in sun, as GeoTIFFs.",
+    ),
     "inspect": CommandSource(
         "inspect:inspect_command",
         "Print the packets of a flight record, a network capture or bare bytes.",

@@ -70,12 +70,7 @@ def tag_command(
 ) -> None:
     """Tag the photos of a flight: sunlit share, masks, the photos to keep, what to fly again."""
     paths = _photo_files(images)
-    try:
-        flown = read_flight(flight)
-    except OSError as problem:
-        raise RecordError(f"{flight}: {problem.strerror}") from problem
-    if flown.trouble:
-        _warn(f"the record ends early: {flown.trouble}")
+    flown = opened_flight(flight)
     photos, refused = _read(paths)
     timed = timed_photos(flown, photos, StatedCamera(clock_offset, field))
     timed.refused.update(refused)
@@ -102,6 +97,17 @@ def tag_command(
     write_text(out / "fly-again.geojson", fly_again(flown, selection))
     _print_refused(timed.refused)
     _print_summary(out, tags, selection, sunlit)
+
+
+def opened_flight(path: Path) -> FlightData:
+    """Return a record's flight, with a warning if it ends early; raises `RecordError`."""
+    try:
+        flight = read_flight(path)
+    except OSError as problem:
+        raise RecordError(f"{path}: {problem.strerror}") from problem
+    if flight.trouble:
+        _warn(f"the record ends early: {flight.trouble}")
+    return flight
 
 
 def _photo_files(images: Sequence[Path]) -> list[Path]:

@@ -22,14 +22,24 @@ from recon.model.imagery import GroundImage
 TILE_SIDE_PX = 256
 CAPTURED_UTC_TAG = "RECON_CAPTURED_UTC"
 """ISO 8601."""
+WGS84 = (
+    'GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],'
+    'PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433],AUTHORITY["EPSG","4326"]]'
+)
 
 
 def projected_crs(frame: LocalFrame) -> str:
-    """Return the PROJ string of the local frame's map projection."""
+    """Return the local frame's map projection as WKT, with a name that GIS programs show."""
     origin = frame.origin
     return (
-        f"+proj=tmerc +lat_0={origin.latitude_deg!r} +lon_0={origin.longitude_deg!r} "
-        f"+k_0={height_scale(frame):.12f} +x_0=0 +y_0=0 +datum=WGS84 +units=m +no_defs"
+        f'PROJCS["Recon site frame at {origin.latitude_deg:.5f}, {origin.longitude_deg:.5f}",'
+        f"{WGS84},"
+        'PROJECTION["Transverse_Mercator"],'
+        f'PARAMETER["latitude_of_origin",{origin.latitude_deg!r}],'
+        f'PARAMETER["central_meridian",{origin.longitude_deg!r}],'
+        f'PARAMETER["scale_factor",{height_scale(frame):.12f}],'
+        'PARAMETER["false_easting",0],PARAMETER["false_northing",0],'
+        'UNIT["metre",1],AXIS["Easting",EAST],AXIS["Northing",NORTH]]'
     )
 
 

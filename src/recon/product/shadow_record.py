@@ -1,0 +1,128 @@
+"""When each cell of a flight's ground was in sun, and how many photos show it so.
+
+The shade maps state the sun at their own moments; between them it is as `sun_at` mixes them, so a
+cell's first and last time are known to the seconds between two maps.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import shapely  # type: ignore[import-untyped, unused-ignore]
+
+from recon.geo import cell_centres_m
+from recon.model.geo import GroundGrid
+from recon.model.shade import SUNLIT_TRANSMITTANCE, FloatMap
+from recon.model.units import NS_PER_S
+from recon.product.coverage import LEAST_CONFIDENCE
+from recon.product.flight import FULL, UNKNOWN, FlightData
+from recon.product.sun_at import SunHistory
+from recon.product.tagged import TaggedPhoto
+from recon.record.shade_geotiff import CogBand, cog_bytes
+
+IntMap = npt.NDArray[np.int32]
+
+SUNLIT = round(SUNLIT_TRANSMITTANCE * FULL)
+"""Of a kept map's cells."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SunByCell:
+    """The sun over a flight; all arrays are (R, C), row 0 north. Times are station time in ns."""
+
+    grid: GroundGrid
+    first_ns: npt.NDArray[np.int64]
+    last_ns: npt.NDArray[np.int64]
+    """0 where no map shows the cell in sun."""
+    maps: IntMap
+    """That show the cell."""
+    sunlit_maps: IntMap
+
+    @property
+    def share(self) -> FloatMap:
+        """The share of its maps in which a cell is in sun; NaN where no map shows it."""
+        counted = np.where(self.maps > 0, self.maps, 1)
+        share = np.where(self.maps > 0, self.sunlit_maps / counted, np.nan)
+        return share.astype(np.float32)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PhotosByCell:
+    """How many photos show each cell, and how many of them in sun; (R, C)."""
+
+    photos: IntMap
+    sunlit: IntMap
+
+
+def sun_by_cell(history: SunHistory) -> SunByCell:
+    """Return when each cell was in sun, by the shade maps."""
+    grid = history.grid
+    shape = grid.rows, grid.cols
+    first_ns, last_ns = np.zeros((2, *shape), dtype=np.int64)
+    maps, sunlit = np.zeros((2, *shape), dtype=np.int32)
+    for each in history.maps:
+        is_known = each.sun != UNKNOWN
+        is_lit = is_known & (each.sun >= SUNLIT)
+        maps += is_known
+        sunlit += is_lit
+        first_ns[is_lit & (sunlit == 1)] = each.at_ns
+        last_ns[is_lit] = each.at_ns
+    return SunByCell(grid, first_ns, last_ns, maps, sunlit)
+
+
+def photos_by_cell(history: SunHistory, photos: Iterable[TaggedPhoto]) -> PhotosByCell:
+    """Return how many photos show each cell, and how many of them in sun."""
+    grid = history.grid
+    photos_of, sunlit = np.zeros((2, grid.rows, grid.cols), dtype=np.int32)
+    for photo in photos:
+        window, is_on = _cells_in(photo.footprint, grid)
+        sun = history.at(photo.at_ns)
+        is_sure = sun.confidence[window] >= LEAST_CONFIDENCE
+        is_lit = is_sure & (sun.transmittance[window] >= SUNLIT_TRANSMITTANCE)
+        photos_of[window] += is_on
+        sunlit[window] += is_on & is_lit
+    return PhotosByCell(photos_of, sunlit)
+
+
+def _cells_in(
+    area: shapely.Polygon, grid: GroundGrid
+) -> tuple[tuple[slice, slice], npt.NDArray[np.bool_]]:
+    """Return the part of a grid around an area, and which of its cells have their centre in it."""
+    west, south, east, north = area.bounds
+    cols = np.array([west - grid.west_m, east - grid.west_m + grid.cell_m]) / grid.cell_m
+    rows = np.array([grid.north_m - north, grid.north_m - south + grid.cell_m]) / grid.cell_m
+    window = (
+        slice(*np.clip(rows, 0, grid.rows).astype(int).tolist()),
+        slice(*np.clip(cols, 0, grid.cols).astype(int).tolist()),
+    )
+    east_m, north_m = cell_centres_m(grid)
+    places = np.meshgrid(east_m[window[1]], north_m[window[0]])
+    return window, np.asarray(shapely.contains_xy(area, *places), dtype=np.bool_)
+
+
+def sun_cog(flight: FlightData, sun: SunByCell, photos: PhotosByCell | None) -> bytes:
+    """Return the cells' sun as a cloud-optimised GeoTIFF; each band has its description.
+
+    Times are seconds after the flight's first shade map, whose UTC is in the descriptions.
+    """
+    start_ns = flight.maps[0].at_ns
+    start_utc = flight.utc(start_ns)
+    is_seen = sun.sunlit_maps > 0
+
+    def seconds(at_ns: npt.NDArray[np.int64]) -> FloatMap:
+        return np.where(is_seen, (at_ns - start_ns) / NS_PER_S, np.nan).astype(np.float32)
+
+    bands = [
+        CogBand(seconds(sun.first_ns), f"first time in sun, seconds after {start_utc}", "s"),
+        CogBand(seconds(sun.last_ns), f"last time in sun, seconds after {start_utc}", "s"),
+        CogBand(sun.share, "share of shade maps with the cell in sun"),
+        CogBand(sun.maps.astype(np.float32), "shade maps that show the cell"),
+    ]
+    if photos is not None:
+        bands += [
+            CogBand(photos.sunlit.astype(np.float32), "photos that show the cell in sun"),
+            CogBand(photos.photos.astype(np.float32), "photos that show the cell"),
+        ]
+    tags = {"RECON_FLIGHT_RECORD": flight.path.name, "RECON_START_UTC": start_utc}
+    return cog_bytes(sun.grid, bands, tags)
