@@ -1,8 +1,9 @@
 """A flight made by construction: rows flown at a steady speed, bands of shade that move, photos."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -15,7 +16,7 @@ from recon.model.airspace import Region
 from recon.model.event import ClockRead, Event, PacketReceived, SurveyRequested
 from recon.model.geo import GeoPoint, GroundGrid, LatLon, LocalFrame
 from recon.model.report import CoreReport, ExtendedReport
-from recon.model.shade import ShadeMap
+from recon.model.shade import ShadeMap, SunForecast
 from recon.model.survey import Survey
 from recon.model.units import NS_PER_S
 from recon.model.vehicle import Attitude
@@ -39,6 +40,7 @@ START_NS = 1_000 * NS_PER_S
 UTC_AHEAD_NS = 1_750_000_000 * NS_PER_S
 ACROSS_DEG = 66.0
 COLS, ROWS_PX = 640, 480
+FORECAST_LEADS_S = (0.0, 16.0, 60.0, 120.0)
 DRIFT_MPS = 9.0
 """Of the shade, to the east."""
 
@@ -116,8 +118,23 @@ def flight(*ways: Rows, maps_every_s: float = 4.0, path: Path = Path("made.mcap"
     )
 
 
-def write_record(made: FlightData, path: Path) -> Path:
-    """Write a made flight as the station records one, by the station's own codec."""
+Entry = Mapping[str, Any]
+Probability = Callable[[float, float], FloatArray]
+"""Seconds since the flight's start, and lead in seconds -> (R, C)."""
+
+
+def write_record(
+    made: FlightData,
+    path: Path,
+    *,
+    site: str = "made field",
+    entries: Sequence[tuple[float, Entry]] = (),
+    forecast: Probability | None = None,
+) -> Path:
+    """Write a made flight as the station records one, by the station's own codec.
+
+    `entries` are of the audit, each with its time since the flight's start.
+    """
     file = McapFile(path, "test")
     about = {
         "origin": {
@@ -127,19 +144,26 @@ def write_record(made: FlightData, path: Path) -> Path:
         },
         "imagers": ["SIM-IMAGER"],
         "vehicles": dict(made.names),
+        "site": site,
+        "version": "0.0.1",
+        "settings": {"detection": {"method": "made", "lead_s": [1.0, 2.5]}, "is_on": True},
     }
     file.add_attachment(ABOUT_NAME, "application/json", msgspec.json.encode(about), START_NS)
     topics, codec = Topics(file), values_codec(lambda _report: 0)
 
-    def step(event: Event, at_ns: int) -> None:
-        entry = {"kind": "test", "text": "a", "by": "b", "vehicle": "", "details": {}}
-        value = {"event": codec.to_builtins(event, Event), "outputs": [], "audit": [entry]}
+    def step(event: Event, at_ns: int, *audit: Entry) -> None:
+        value = {"event": codec.to_builtins(event, Event), "outputs": [], "audit": audit}
         topics.add(STEPS_TOPIC, MSGPACK, msgspec.msgpack.encode(value), at_ns)
 
     step(ClockRead(UTC_AHEAD_NS + START_NS), START_NS)
     for each in made.surveys:
-        survey = Survey(1, "field", Region(np.array(each.outline_m)), HEIGHT_M, SPEED_MPS)
+        survey = Survey(
+            1, each.name or "field", Region(np.array(each.outline_m)), HEIGHT_M, SPEED_MPS
+        )
         step(SurveyRequested(survey, "test"), START_NS)
+    for at_s, entry in entries:
+        at_ns = START_NS + round(at_s * NS_PER_S)
+        step(ClockRead(UTC_AHEAD_NS + at_ns), at_ns, entry)
     for link, each in enumerate(made.tracks.values(), start=1):
         extended = ExtendedReport(each.serial, 14, 5, False, False, 0.8, None, None, None, None, 0)
         step(PacketReceived(link, extended), START_NS)
@@ -166,6 +190,25 @@ def write_record(made: FlightData, path: Path) -> Path:
             kept.at_ns + NS_PER_S,
             schema=lambda: foxglove.schema_of(foxglove.Grid()),
         )
+        if forecast is not None:
+            at_s = (kept.at_ns - START_NS) / NS_PER_S
+            chances = np.stack([forecast(at_s, lead_s) for lead_s in FORECAST_LEADS_S])
+            issued = SunForecast(
+                GRID,
+                kept.at_ns,
+                np.array(FORECAST_LEADS_S),
+                np.rint(255.0 * chances).astype(np.uint8),
+                np.zeros((GRID.rows, GRID.cols), np.float32),
+                0.5,
+                "made",
+            )
+            topics.add(
+                "/forecast",
+                foxglove.ENCODING,
+                foxglove.forecast_grid(issued).SerializeToString(),
+                kept.at_ns + NS_PER_S,
+                schema=lambda: foxglove.schema_of(foxglove.Grid()),
+            )
     file.finish()
     return path
 

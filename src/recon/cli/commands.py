@@ -122,6 +122,10 @@ COMMANDS = {
         "shadow_record:shadow_record_command",
         "Write a flight's shade maps, and when each cell was in sun, as GeoTIFFs.",
     ),
+    "report": CommandSource(
+        "report:report_command",
+        "Write a flight's report: coverage in sun, sky, tracks, decisions, alarms, forecasts.",
+    ),
     "inspect": CommandSource(
         "inspect:inspect_command",
         "Print the packets of a flight record, a network capture or bare bytes.",

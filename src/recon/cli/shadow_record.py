@@ -35,7 +35,7 @@ def shadow_record_command(
     history = sun_history(flight)
     sun, photos = sun_by_cell(history), None
     if tagged is not None:
-        shown = tagged_photos(tagged, flight)
+        shown = [(each.at_ns, each.footprint) for each in tagged_photos(tagged, flight)]
         photos = photos_by_cell(history, progress_over(shown, "photos", len(shown)))
     try:
         (out / MAPS).mkdir(parents=True, exist_ok=True)

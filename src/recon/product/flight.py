@@ -20,6 +20,7 @@ from google.protobuf.message import DecodeError
 from recon.geo import enu_from_geo, geo_from_enu
 from recon.model.errors import RecordError
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
+from recon.model.survey import SurveyCamera
 from recon.model.units import NS_PER_S
 from recon.record.foxglove import SHADE_TOPIC
 from recon.record.mcap_file import ABOUT_NAME, STEPS_TOPIC
@@ -75,6 +76,8 @@ class FlownSurvey:
     holes_m: tuple[tuple[tuple[float, float], ...], ...]
     height_above_takeoff_m: float
     speed_mps: float
+    name: str = ""
+    camera: SurveyCamera = field(default_factory=SurveyCamera)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -303,7 +306,20 @@ def _survey(value: Mapping[str, Any]) -> FlownSurvey:
         tuple(_ring(hole) for hole in region["holes_m"]),
         float(value["height_above_takeoff_m"]),
         float(value["speed_mps"]),
+        str(value.get("name", "")),
+        _camera(value.get("camera")),
     )
+
+
+def _camera(value: Mapping[str, Any] | None) -> SurveyCamera:
+    if value is None:
+        return SurveyCamera()
+    across_deg, along_deg, interval_s = (
+        float(value[name]) for name in ("across_deg", "along_deg", "interval_s")
+    )
+    if not (1.0 <= across_deg <= 170.0 and 1.0 <= along_deg <= 170.0 and interval_s >= 0.1):
+        raise ValueError(f"expected a survey camera, got {value!a:.100}")
+    return SurveyCamera(across_deg, along_deg, interval_s)
 
 
 def _ring(value: Mapping[str, Any]) -> tuple[tuple[float, float], ...]:

@@ -18,7 +18,6 @@ from recon.model.units import NS_PER_S
 from recon.product.coverage import LEAST_CONFIDENCE
 from recon.product.flight import FULL, UNKNOWN, FlightData
 from recon.product.sun_at import SunHistory
-from recon.product.tagged import TaggedPhoto
 from recon.record.shade_geotiff import CogBand, cog_bytes
 
 IntMap = npt.NDArray[np.int32]
@@ -71,13 +70,20 @@ def sun_by_cell(history: SunHistory) -> SunByCell:
     return SunByCell(grid, first_ns, last_ns, maps, sunlit)
 
 
-def photos_by_cell(history: SunHistory, photos: Iterable[TaggedPhoto]) -> PhotosByCell:
-    """Return how many photos show each cell, and how many of them in sun."""
+def photos_by_cell(
+    history: SunHistory, photos: Iterable[tuple[int, shapely.Polygon]]
+) -> PhotosByCell:
+    """Return how many photos show each cell, and how many of them in sun.
+
+    `photos` are station times in ns and footprints in east-north metres.
+    """
     grid = history.grid
     photos_of, sunlit = np.zeros((2, grid.rows, grid.cols), dtype=np.int32)
-    for photo in photos:
-        window, is_on = _cells_in(photo.footprint, grid)
-        sun = history.at(photo.at_ns)
+    sun, sun_ns = history.at(0), 0
+    for at_ns, footprint in photos:
+        window, is_on = _cells_in(footprint, grid)
+        if at_ns != sun_ns:
+            sun, sun_ns = history.at(at_ns), at_ns
         is_sure = sun.confidence[window] >= LEAST_CONFIDENCE
         is_lit = is_sure & (sun.transmittance[window] >= SUNLIT_TRANSMITTANCE)
         photos_of[window] += is_on

@@ -1,0 +1,232 @@
+"""The figures of a flight's report: coverage in sun, times in the air, alarms, decisions.
+
+What is shown is what the record states; without tagged photos the covered ground is estimated from
+the tracks and the survey's camera, and called so.
+"""
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from math import cos, radians, sin
+
+import numpy as np
+import numpy.typing as npt
+import shapely  # type: ignore[import-untyped, unused-ignore]
+from shapely import affinity
+
+from recon.geo import cell_centres_m
+from recon.model.severity import Severity
+from recon.model.units import NS_PER_S
+from recon.product.coverage import ENOUGH_VIEWS, region_of
+from recon.product.flight import UNKNOWN, FlightData, FlownSurvey
+from recon.product.flight_log import FlightLog, LogLine
+from recon.product.shadow_record import (
+    SUNLIT,
+    PhotosByCell,
+    SunByCell,
+    photos_by_cell,
+    sun_by_cell,
+)
+from recon.product.sun_at import SunHistory
+from recon.product.tagged import TaggedPhoto
+
+BoolMap = npt.NDArray[np.bool_]
+
+AT_HEIGHT_SHARE = 0.9
+"""Of the survey's height: lower photos are of takeoffs and landings."""
+SEVERITY_RANK = {each.value: rank for rank, each in enumerate(Severity)}
+NO_DECISION = ("alarm.", "link.", "app.", "vehicle.home_set")
+STEPS_OF_AN_ORDER = frozenset(
+    f"order.{phase}" for phase in ("queued", "sent", "acknowledged", "confirmed", "started")
+)
+"""Every order goes through them; its start is in the tracks, its end is listed."""
+
+
+@dataclass(frozen=True, slots=True)
+class AlarmSpan:
+    """An alarm from its beginning to its end; None: it lasted to the record's end."""
+
+    began_ns: int
+    ended_ns: int | None
+    severity: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Covered:
+    """What was photographed of the region, by cell of the shade maps; arrays are (R, C)."""
+
+    region: BoolMap
+    """Cells of the region; all that photos show if no survey was flown."""
+    photos: PhotosByCell
+    sun: SunByCell
+    is_estimated: bool
+    """From tracks: no photos were tagged."""
+
+    @property
+    def area_m2(self) -> float:
+        """Of the region."""
+        return float(self.region.sum()) * self.sun.grid.cell_m**2
+
+    def share(self, least_sunlit: int) -> float:
+        """Return the region's share that so many photos show in sun; 0 asks for photos at all."""
+        is_shown = (
+            self.photos.photos > 0 if least_sunlit == 0 else (self.photos.sunlit >= least_sunlit)
+        )
+        return float(is_shown[self.region].mean()) if self.region.any() else 0.0
+
+    @property
+    def enough(self) -> float:
+        """The region's share with enough sunlit photos for a mosaic."""
+        return self.share(ENOUGH_VIEWS)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FlightReport:
+    """All figures of a report. Times are station time in ns."""
+
+    flight: FlightData
+    log: FlightLog
+    begin_ns: int
+    end_ns: int
+    covered: Covered | None
+    """None without shade maps."""
+    area: shapely.Geometry | None
+    """Of the surveys, in east-north metres."""
+    cover: tuple[tuple[int, float], ...] = ()
+    """Time, and the share of the region in sun, for each shade map."""
+    photo_states: Mapping[str, int] = field(default_factory=dict)
+    airborne: Mapping[str, Sequence[tuple[int, int]]] = field(default_factory=dict)
+    """By vehicle's name."""
+    alarms: Sequence[AlarmSpan] = ()
+    decisions: Sequence[LogLine] = ()
+
+    @property
+    def airborne_s(self) -> float:
+        """Of all vehicles together."""
+        spans = [span for each in self.airborne.values() for span in each]
+        return sum(end - begin for begin, end in spans) / NS_PER_S
+
+    def name_of(self, serial: str) -> str:
+        """Return a vehicle's name."""
+        return self.flight.names.get(serial, serial)
+
+
+def flight_report(
+    flight: FlightData, log: FlightLog, photos: Sequence[TaggedPhoto] | None
+) -> FlightReport:
+    """Return the report of a flight; `photos` as tagged, None where no photos were tagged."""
+    begin_ns = min(int(track.at_ns[0]) for track in flight.tracks.values())
+    end_ns = max(int(track.at_ns[-1]) for track in flight.tracks.values())
+    area, covered = region_of(flight.surveys), None
+    if flight.grid is not None and flight.maps:
+        covered = _covered(flight, SunHistory(flight.grid, flight.maps), area, photos)
+    return FlightReport(
+        flight,
+        log,
+        begin_ns,
+        end_ns,
+        covered,
+        area,
+        () if covered is None else tuple(_cover(flight, covered.region)),
+        Counter(each.state for each in photos or ()),
+        _airborne(log.lines, end_ns),
+        _alarms(log.lines),
+        [each for each in log.lines if _is_decision(each.kind)],
+    )
+
+
+def _covered(
+    flight: FlightData,
+    history: SunHistory,
+    area: shapely.Geometry | None,
+    photos: Sequence[TaggedPhoto] | None,
+) -> Covered:
+    shown = (
+        list(_estimated(flight))
+        if photos is None
+        else [(each.at_ns, each.footprint) for each in photos]
+    )
+    by_cell = photos_by_cell(history, shown)
+    if area is None:
+        region = by_cell.photos > 0
+    else:
+        places = np.meshgrid(*cell_centres_m(history.grid))
+        region = np.asarray(shapely.contains_xy(area, *places), dtype=np.bool_)
+    return Covered(region, by_cell, sun_by_cell(history), photos is None)
+
+
+def _estimated(flight: FlightData) -> Iterator[tuple[int, shapely.Polygon]]:
+    """Yield times and footprints of photos, as the survey's camera takes them along the tracks."""
+    if not (flight.surveys and flight.survey_tracks):
+        return
+    survey = flight.surveys[-1]
+    tracks = flight.survey_tracks.values()
+    begins, ends = (f(int(t.at_ns[n]) for t in tracks) for f, n in ((min, 0), (max, -1)))
+    lowest_m = AT_HEIGHT_SHARE * survey.height_above_takeoff_m
+    for at_ns in range(begins, ends, round(survey.camera.interval_s * NS_PER_S)):
+        for track in tracks:
+            if not track.at_ns[0] <= at_ns <= track.at_ns[-1]:
+                continue
+            east_m, north_m, height_m = (
+                float(np.interp(at_ns, track.at_ns, each))
+                for each in (track.east_m, track.north_m, track.height_m)
+            )
+            yaw_deg = float(track.yaw_deg[np.searchsorted(track.at_ns, at_ns)])
+            if height_m >= lowest_m and np.isfinite(yaw_deg):
+                yield at_ns, _footprint(survey, east_m, north_m, height_m, yaw_deg)
+
+
+def _footprint(
+    survey: FlownSurvey, east_m: float, north_m: float, height_m: float, yaw_deg: float
+) -> shapely.Polygon:
+    half_across = survey.camera.across_m(height_m) / 2.0
+    half_along = survey.camera.along_m(height_m) / 2.0
+    box = shapely.box(-half_across, -half_along, half_across, half_along)
+    c, s = cos(radians(yaw_deg)), sin(radians(yaw_deg))
+    return affinity.affine_transform(box, (c, s, -s, c, east_m, north_m))
+
+
+def _cover(flight: FlightData, region: BoolMap) -> Iterator[tuple[int, float]]:
+    for each in flight.maps:
+        is_known = (each.sun != UNKNOWN) & region
+        if is_known.any():
+            yield each.at_ns, float((each.sun[is_known] >= SUNLIT).mean())
+
+
+def _airborne(lines: Sequence[LogLine], end_ns: int) -> dict[str, list[tuple[int, int]]]:
+    """Return when each vehicle was in the air, by takeoffs and landings of the log."""
+    spans: dict[str, list[tuple[int, int]]] = {}
+    began: dict[str, int] = {}
+    for line in lines:
+        if line.kind in ("vehicle.took_off", "vehicle.flying"):
+            began.setdefault(line.vehicle, line.at_ns)
+        elif line.kind == "vehicle.landed" and line.vehicle in began:
+            spans.setdefault(line.vehicle, []).append((began.pop(line.vehicle), line.at_ns))
+    for vehicle, at_ns in began.items():
+        spans.setdefault(vehicle, []).append((at_ns, end_ns))
+    return dict(sorted(spans.items()))
+
+
+def _alarms(lines: Sequence[LogLine]) -> list[AlarmSpan]:
+    """Return the alarms from beginning to end, the gravest first."""
+    found, open_at = list[AlarmSpan](), dict[int, int]()
+    for line in lines:
+        if line.alarm_id is None or line.kind == "alarm.acknowledged":
+            continue
+        text = line.text.partition(": ")[2] or line.text
+        index = open_at.get(line.alarm_id)
+        if line.kind == "alarm.ended":
+            if index is not None:
+                began = found[open_at.pop(line.alarm_id)]
+                found[index] = AlarmSpan(began.began_ns, line.at_ns, began.severity, began.text)
+        elif index is None:
+            open_at[line.alarm_id] = len(found)
+            found.append(AlarmSpan(line.at_ns, None, line.severity, text))
+        else:
+            found[index] = AlarmSpan(found[index].began_ns, None, line.severity, text)
+    return sorted(found, key=lambda a: (SEVERITY_RANK.get(a.severity, 9), a.began_ns))
+
+
+def _is_decision(kind: str) -> bool:
+    return not kind.startswith(NO_DECISION) and kind not in STEPS_OF_AN_ORDER

@@ -1,0 +1,159 @@
+"""A flight's report as one HTML file that needs nothing else: no script, no font, no address.
+
+All text from the record passes the template's escaping; the page forbids scripts and addresses too.
+"""
+
+from collections.abc import Sequence
+from importlib.resources import files
+from typing import Any
+
+from jinja2 import Environment, StrictUndefined
+
+from recon import version
+from recon.model.severity import Severity
+from recon.model.units import NS_PER_S
+from recon.product import charts
+from recon.product.coverage import ENOUGH_VIEWS
+from recon.product.flight_log import LEADS_S
+from recon.product.report import FlightReport
+
+MOST_DECISIONS, MOST_ALARMS = 300, 100
+LEVELS = frozenset(each.value for each in Severity)
+STATES = ("sunlit", "mixed", "shaded", "unknown")
+
+
+def report_html(report: FlightReport) -> str:
+    """Return the page."""
+    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
+    template = environment.from_string(
+        files("recon.product").joinpath("report.html").read_text(encoding="utf-8")
+    )
+    return template.render(**_context(report))
+
+
+def _context(report: FlightReport) -> dict[str, Any]:
+    flight, covered = report.flight, report.covered
+    classes = charts.vehicle_classes(report)
+    settings = report.log.settings()
+    return {
+        "site": str(report.log.about.get("site") or "Flight"),
+        "day": flight.utc(report.begin_ns)[:10],
+        "begin": flight.utc(report.begin_ns)[11:19],
+        "end": flight.utc(report.end_ns)[11:19],
+        "trouble": flight.trouble,
+        "figures": list(_figures(report)),
+        "covered": covered,
+        "enough": ENOUGH_VIEWS,
+        "coverage_map": "" if covered is None else charts.coverage_map(report, covered),
+        "sun_map": "" if covered is None else charts.sun_map(report, covered),
+        "track_map": charts.track_map(report),
+        "timeline": charts.timeline(report),
+        "has_region": report.area is not None,
+        "vehicles": list(classes.items()),
+        "batteries": [_battery(report, serial) for serial in sorted(report.log.batteries)],
+        "battery_chart": charts.batteries(report),
+        "leads": [_lead(report, lead_s) for lead_s in sorted(report.log.leads)],
+        "shortest_lead": f"{LEADS_S[0]:g} s",
+        "alarms": [_alarm(report, number) for number in range(len(report.alarms))][:MOST_ALARMS],
+        "more_alarms": max(0, len(report.alarms) - MOST_ALARMS),
+        "decisions": [
+            {"at": flight.utc(each.at_ns)[11:19], "text": each.text, "by": each.by}
+            for each in report.decisions[:MOST_DECISIONS]
+        ],
+        "more_decisions": max(0, len(report.decisions) - MOST_DECISIONS),
+        "facts": list(_facts(report, settings)),
+        "settings": sorted(settings.items()),
+        "record": flight.path.name,
+        "version": version(),
+    }
+
+
+def _figures(report: FlightReport) -> Sequence[tuple[str, str, str]]:
+    """Return the figures at the top: label, value, unit."""
+    covered, rows = report.covered, list[tuple[str, str, str]]()
+    if covered is not None and covered.region.any():
+        unit = "%, estimated" if covered.is_estimated else "%"
+        rows += [
+            ("Region", f"{covered.area_m2 / 10_000.0:.1f}", "ha"),
+            ("Photographed", f"{100.0 * covered.share(0):.0f}", unit),
+            ("In sun on a photo", f"{100.0 * covered.share(1):.0f}", unit),
+            (f"In sun on {ENOUGH_VIEWS} photos", f"{100.0 * covered.enough:.0f}", unit),
+        ]
+    if report.photo_states:
+        rows.append(("Photos", f"{sum(report.photo_states.values())}", ""))
+        rows.append(("Sunlit photos", f"{report.photo_states.get('sunlit', 0)}", ""))
+    if report.cover:
+        mean = sum(share for _at, share in report.cover) / len(report.cover)
+        rows.append(("Mean sun on the region", f"{100.0 * mean:.0f}", "%"))
+    rows.append(("Duration", _minutes((report.end_ns - report.begin_ns) / NS_PER_S), "min"))
+    rows.append(("In the air, together", _minutes(report.airborne_s), "min"))
+    return rows
+
+
+def _minutes(seconds: float) -> str:
+    return f"{seconds / 60.0:.0f}"
+
+
+def _battery(report: FlightReport, serial: str) -> dict[str, str]:
+    levels = [level for _at_ns, level in report.log.batteries[serial]]
+    name = report.name_of(serial)
+    airborne_s = sum(end - begin for begin, end in report.airborne.get(name, ())) / NS_PER_S
+    return {
+        "name": name,
+        "colour": charts.vehicle_classes(report).get(name, ""),
+        "first": f"{100.0 * levels[0]:.0f} %",
+        "lowest": f"{100.0 * min(levels):.0f} %",
+        "last": f"{100.0 * levels[-1]:.0f} %",
+        "airborne": f"{_minutes(airborne_s)} min" if airborne_s else "-",
+    }
+
+
+def _lead(report: FlightReport, lead_s: float) -> dict[str, str]:
+    figures = report.log.leads[lead_s]
+    return {
+        "ahead": f"{lead_s:g} s" if lead_s < 60.0 else f"{lead_s / 60.0:g} min",
+        "brier": f"{figures.brier:.3f}",
+        "persistence": f"{figures.persistence_brier:.3f}",
+        "skill": "-" if figures.skill is None else f"{figures.skill:+.2f}",
+    }
+
+
+def _alarm(report: FlightReport, number: int) -> dict[str, str]:
+    each, flight = report.alarms[number], report.flight
+    return {
+        "began": flight.utc(each.began_ns)[11:19],
+        "ended": "at the end" if each.ended_ns is None else flight.utc(each.ended_ns)[11:19],
+        "severity": each.severity,
+        "level": each.severity if each.severity in LEVELS else "",
+        "text": each.text,
+    }
+
+
+def _facts(report: FlightReport, settings: dict[str, str]) -> Sequence[tuple[str, str]]:
+    about, flight, rows = report.log.about, report.flight, list[tuple[str, str]]()
+    for each in flight.surveys:
+        text = f"{each.height_above_takeoff_m:g} m above takeoff, {each.speed_mps:g} m/s"
+        rows.append((f"Survey {each.name}".rstrip(), text))
+    if report.photo_states:
+        counts = (f"{report.photo_states.get(s, 0)} {s}" for s in STATES)
+        rows.append(("Photos", ", ".join(counts)))
+    origin = flight.frame.origin
+    rows.append(
+        ("Site's origin", f"{origin.latitude_deg:.6f}, {origin.longitude_deg:.6f} (WGS84), "
+         f"ground {origin.ellipsoid_height_m:g} m above the ellipsoid")
+    )  # fmt: skip
+    for label, name in (
+        ("Shade detection", "detection.method"),
+        ("Sun forecast", "forecast.method"),
+    ):
+        if name in settings:
+            rows.append((label, settings[name]))
+    rows.append(("Shade maps", f"{len(flight.maps)}"))
+    software = [f"Recon {about.get('version', 'unknown')}"]
+    software += (
+        f"{n} {about[k]}" for n, k in (("Python", "python"), ("numpy", "numpy")) if k in about
+    )
+    rows.append(("Recorded by", ", ".join(software)))
+    if "machine" in about:
+        rows.append(("Computer", str(about["machine"])))
+    return rows

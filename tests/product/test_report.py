@@ -1,0 +1,230 @@
+"""`recon report` on flights made by construction: its figures, and pages that hold hostile text."""
+
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.product.made_flight import (
+    GRID,
+    ONE,
+    OTHER,
+    START_NS,
+    flight,
+    sun,
+    write_card,
+    write_record,
+)
+from typer.testing import CliRunner
+
+from recon.cli.commands import app
+from recon.cli.report import BROWSERS, print_pdf
+from recon.geo import cell_centres_m
+from recon.model.errors import RecordError
+from recon.model.units import NS_PER_S
+from recon.product.flight import read_flight
+from recon.product.flight_log import read_log
+from recon.product.report import FlightReport, flight_report
+from recon.product.report_page import report_html
+from recon.product.tagged import tagged_photos
+
+HOSTILE = "\"><script>alert(1)</script><img src=//x.example onerror=alert(2)>{{ 7*7 }}' &<b>"
+PLACES = np.meshgrid(*cell_centres_m(GRID))
+SIM_1 = "Drone 1"
+
+
+def entry(kind: str, text: str = "text", vehicle: str = SIM_1, **details: object) -> dict:
+    return {"kind": kind, "text": text, "by": "Ann", "vehicle": vehicle, "details": details}
+
+
+ENTRIES = [
+    (0.0, entry("vehicle.position")),
+    (5.0, entry("vehicle.took_off", "Drone 1: took off")),
+    (6.0, entry("order.queued")),
+    (20.0, entry("alarm.raised", "alarm: battery low", id=3, severity="warning")),
+    (22.0, entry("alarm.worse", "alarm is worse: battery empty", id=3, severity="critical")),
+    (30.0, entry("alarm.ended", "alarm ended: battery empty", id=3, severity="critical")),
+    (31.0, entry("alarm.raised", "alarm: looks aside", id=4, severity="info")),
+    (65.0, entry("vehicle.landed", "Drone 1: landed")),
+    (70.0, entry("vehicle.took_off", "Drone 2: took off", "Drone 2")),
+]
+
+
+def persistence(at_s: float, _lead_s: float) -> np.ndarray:
+    return (sun(*PLACES, at_s) >= 0.5).astype(float)
+
+
+def perfect(at_s: float, lead_s: float) -> np.ndarray:
+    return (sun(*PLACES, at_s + lead_s) >= 0.5).astype(float)
+
+
+@pytest.fixture(scope="module")
+def record(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("report") / "flight.mcap"
+    return write_record(flight(ONE, OTHER), path, entries=ENTRIES, forecast=perfect)
+
+
+def report_of(path: Path) -> FlightReport:
+    read = read_flight(path)
+    return flight_report(read, read_log(path, read), None)
+
+
+@pytest.fixture(scope="module")
+def report(record: Path) -> FlightReport:
+    return report_of(record)
+
+
+class Page(HTMLParser):
+    """Tags, attributes and text of a page."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.tags: list[str] = []
+        self.attributes: list[tuple[str, str]] = []
+        self.text = ""
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs) -> None:
+        self.tags.append(tag)
+        self.attributes += [(name, value or "") for name, value in attrs]
+
+    def handle_data(self, data) -> None:
+        self.text += data
+
+
+def test_a_perfect_forecast_has_skill_one_and_persistence_none(
+    report: FlightReport, tmp_path: Path
+) -> None:
+    leads = report.log.leads
+    # Leads between two of the forecast's are mixed of them, and may not be perfect.
+    assert set(leads) == {15.0, 30.0, 60.0, 120.0}
+    for lead_s in (60.0, 120.0):
+        assert leads[lead_s].brier == 0.0
+        assert leads[lead_s].skill == 1.0
+        assert leads[lead_s].persistence_brier > 0.1
+    path = write_record(flight(), tmp_path / "other.mcap", forecast=persistence)
+    for figures in report_of(path).log.leads.values():
+        assert figures.skill == pytest.approx(0.0, abs=1e-6)
+
+
+def test_cover_and_coverage_are_those_of_the_construction(report: FlightReport) -> None:
+    assert report.covered is not None
+    region = report.covered.region
+    east_m, north_m = PLACES
+    assert np.array_equal(region, (np.abs(east_m) < 90.0) & (np.abs(north_m) < 90.0))
+    for at_ns, share in report.cover[::9]:
+        lit = sun(*PLACES, (at_ns - START_NS) / NS_PER_S) >= 0.5
+        assert share == pytest.approx(lit[region].mean(), abs=1e-6)
+    # Rows 25 m apart under a camera that shows 78 m: each cell is on several photos.
+    assert report.covered.is_estimated
+    assert report.covered.share(0) == 1.0
+    assert report.covered.share(1) >= report.covered.enough > 0.5
+
+
+def test_alarms_flights_and_decisions_of_the_log(report: FlightReport) -> None:
+    seconds = [(each.text, each.severity, each.ended_ns) for each in report.alarms]
+    ended_ns = START_NS + 30 * NS_PER_S
+    assert seconds == [("battery empty", "critical", ended_ns), ("looks aside", "info", None)]
+    spans = {
+        name: [tuple(round((at - START_NS) / NS_PER_S) for at in span) for span in each]
+        for name, each in report.airborne.items()
+    }
+    assert spans[SIM_1] == [(5, 65)]
+    assert spans["Drone 2"] == [(70, round((report.end_ns - START_NS) / NS_PER_S))]
+    assert [each.kind for each in report.decisions] == [
+        "vehicle.took_off",
+        "vehicle.landed",
+        "vehicle.took_off",
+    ]
+    assert report.log.batteries["SIM-1"][0][1] == pytest.approx(0.8)
+    assert report.log.settings() == {
+        "detection.method": "made",
+        "detection.lead_s": "[1.0, 2.5]",
+        "is_on": "true",
+    }
+
+
+def test_the_page_states_what_the_report_holds(report: FlightReport) -> None:
+    page = Page(report_html(report))
+    text = " ".join(page.text.split())
+    for part in ("made field", "battery empty", "Drone 1: took off", "+1.00", "detection.method"):
+        assert part in text
+    assert report.covered is not None
+    assert f"In sun on 3 photos{100.0 * report.covered.enough:.0f} %, estimated" in text
+    assert page.tags.count("svg") == 5
+
+
+def test_hostile_text_stays_text(tmp_path: Path) -> None:
+    made = flight()
+    made = replace(
+        made,
+        names={"SIM-1": HOSTILE},
+        surveys=[replace(each, name=HOSTILE) for each in made.surveys],
+        path=Path(f"{HOSTILE.replace('/', '')}.mcap"),
+    )
+    entries = [
+        (20.0, entry("alarm.raised", f"alarm: {HOSTILE}", HOSTILE, id=3, severity=HOSTILE)),
+        (21.0, entry("survey.started", HOSTILE, HOSTILE) | {"by": HOSTILE}),
+        (22.0, entry("vehicle.took_off", HOSTILE, HOSTILE)),
+    ]
+    path = write_record(made, tmp_path / "a.mcap", site=HOSTILE, entries=entries)
+    read = replace(read_flight(path), trouble=HOSTILE, path=made.path)
+    page = Page(report_html(flight_report(read, read_log(path, read), None)))
+    assert "script" not in page.tags
+    assert "img" not in page.tags
+    assert "b" not in page.tags
+    for name, value in page.attributes:
+        assert not name.startswith("on")
+        assert name not in ("href", "src") or value.startswith("data:image/png;base64,")
+    assert page.text.count(HOSTILE) >= 6
+
+
+def test_a_flight_without_maps_or_surveys_has_a_report(tmp_path: Path) -> None:
+    path = write_record(replace(flight(), maps=[], surveys=[]), tmp_path / "bare.mcap")
+    report = report_of(path)
+    assert report.covered is None
+    page = Page(report_html(report))
+    assert "No shade map was recorded" in page.text
+    assert "No forecast could be compared" in page.text
+    assert "Region" not in page.text
+
+
+def test_the_command_takes_tagged_photos_for_coverage(record: Path, tmp_path: Path) -> None:
+    write_card(tmp_path / "card", every=6)
+    tag = ["tag", tmp_path / "card", "--flight", record, "--out", tmp_path / "tagged"]
+    assert CliRunner().invoke(app, [str(word) for word in tag]).exit_code == 0
+    words = ["report", record, "--tagged", tmp_path / "tagged", "--out", tmp_path / "r.html"]
+    result = CliRunner().invoke(app, [str(word) for word in words])
+    assert result.exit_code == 0, result.output
+    text = Page((tmp_path / "r.html").read_text()).text
+    count = len(tagged_photos(tmp_path / "tagged", read_flight(record)))
+    assert f"Photos{count}" in "".join(text.split())
+    assert "estimated" not in text
+
+
+@pytest.mark.parametrize(
+    ("fields", "row"),
+    [
+        ({"kind": 5, "text": "a"}, "kind"),
+        ({"text": "a"}, "kind"),
+        ({"kind": "a", "text": "a", "details": []}, "details"),
+    ],
+)
+def test_a_damaged_log_is_refused_with_what_is_wrong(
+    tmp_path: Path, fields: dict, row: str
+) -> None:
+    path = write_record(flight(), tmp_path / "a.mcap", entries=[(1.0, fields)])
+    with pytest.raises(RecordError, match=f"the log is damaged: .*{row}"):
+        read_log(path, read_flight(path))
+
+
+def test_no_browser_is_a_clear_refusal(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(RecordError, match="needs Chromium, Chrome or Edge"):
+        print_pdf(tmp_path / "r.html", tmp_path / "r.pdf")
+    for name, script in ((BROWSERS[0], "#!/bin/sh\necho no display >&2\nexit 1\n"),):
+        (tmp_path / name).write_text(script)
+        (tmp_path / name).chmod(0o755)
+        with pytest.raises(RecordError, match="did not print the page: 'no display'"):
+            print_pdf(tmp_path / "r.html", tmp_path / "r.pdf")
