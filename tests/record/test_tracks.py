@@ -53,6 +53,11 @@ def test_gpx(record: Path) -> None:
     assert root.find(".//g:ele", space) is None
 
 
+def test_characters_that_xml_cannot_hold_are_replaced() -> None:
+    root = ET.fromstring(FORMATS[".gpx"]({"A\x00\x1b": [RecordedPosition(AT_NS, 1.0, 2.0, 3.0)]}))
+    assert root.findtext(".//{*}name") == "A\ufffd\ufffd"
+
+
 def test_geojson(record: Path) -> None:
     first, second = json.loads(FORMATS[".geojson"](read_tracks(record).points))["features"]
     assert first["properties"]["serial"] == 'A<&"1'
@@ -80,7 +85,7 @@ def test_the_command_writes_and_replaces_nothing(record: Path, tmp_path: Path) -
     assert isinstance(ended.exception, RecordError)
     assert "exists" in str(ended.exception)
     assert out.read_bytes() == before
-    assert CliRunner().invoke(app, ["export", str(record), "x.kml"]).exit_code == 2
+    assert CliRunner().invoke(app, ["export", str(record), "x.shp"]).exit_code == 2
 
 
 def test_a_record_without_positions_is_refused(tmp_path: Path) -> None:

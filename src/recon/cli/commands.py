@@ -112,7 +112,8 @@ COMMANDS = {
         "replay:replay_command", "Run a recorded flight again and compare every output."
     ),
     "export": CommandSource(
-        "export:export_command", "Write the tracks of a flight record's vehicles."
+        "export:export_command",
+        "Write a flight's tracks, surveys, sun or figures for other programs.",
     ),
     "tag": CommandSource(
         "tag:tag_command",

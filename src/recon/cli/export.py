@@ -1,38 +1,54 @@
-"""`recon export`: the tracks of a flight record as GPX, GeoJSON or CSV."""
+"""`recon export`: a flight record in the formats of other programs."""
 
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from recon.cli.output import print_line, printable
+from recon.cli.tag import opened_flight
 from recon.model.errors import RecordError
+from recon.product.exports import FLIGHT_FORMATS
 from recon.record.atomic_file import replace_file
-from recon.record.audit import shown
 from recon.record.tracks import FORMATS, read_tracks
 
 
 def export_command(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="A flight record (MCAP).")],
     out: Annotated[
-        Path, typer.Argument(metavar="OUT", help="File to write: .gpx, .geojson or .csv.")
+        Path,
+        typer.Argument(
+            metavar="OUT",
+            help="File to write: tracks as .gpx, .geojson or .csv; surveys and tracks as .kml; "
+            "the sun by cell as .tif (GeoTIFF); the report's figures as .json.",
+        ),
     ],
 ) -> None:
-    """Write the tracks of a flight record's vehicles.
+    """Write a flight's tracks, surveys, sun or figures for other programs.
 
-    WGS84; an existing file is not replaced.
+    Places are WGS84, GeoTIFFs name their projection; an existing file is not replaced.
     """
-    make = FORMATS.get(out.suffix.lower())
-    if make is None:
-        raise typer.BadParameter(f"OUT: expected {', '.join(FORMATS)}, got {out.suffix!r}")
+    ending = out.suffix.lower()
+    if ending not in (*FORMATS, *FLIGHT_FORMATS):
+        endings = ", ".join((*FORMATS, *FLIGHT_FORMATS))
+        raise typer.BadParameter(f"OUT: expected {endings}, got {out.suffix!r}")
     if out.exists():
         raise RecordError(f"{out} exists: choose another name, or remove it")
     try:
-        tracks = read_tracks(file)
-        replace_file(out, make(tracks.points).encode(), 0o644)
+        if ending in FORMATS:
+            _write_tracks(file, out)
+        else:
+            replace_file(out, FLIGHT_FORMATS[ending](opened_flight(file)), 0o644)
     except OSError as problem:
         name = problem.filename or file
         raise RecordError(f"{name}: {problem.strerror}") from problem
+    print_line(f"written: {out}")
+
+
+def _write_tracks(file: Path, out: Path) -> None:
+    tracks = read_tracks(file)
+    replace_file(out, FORMATS[out.suffix.lower()](tracks.points).encode(), 0o644)
     for name, track in tracks.points.items():
-        typer.echo(f"{shown(name)}: {len(track)} positions")
+        print_line(printable(f"{name}: {len(track)} positions"))
     if tracks.trouble:
-        typer.echo(f"the record ends early: {shown(tracks.trouble)}", err=True)
+        typer.echo(f"the record ends early: {printable(tracks.trouble)}", err=True)

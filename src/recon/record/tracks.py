@@ -4,11 +4,12 @@ import csv
 import io
 import json
 import math
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
-from xml.sax.saxutils import quoteattr
+from xml.sax.saxutils import escape
 
 from foxglove_schemas_protobuf.LocationFix_pb2 import LocationFix
 from google.protobuf.message import DecodeError
@@ -67,6 +68,15 @@ def utc_text(at_ns: int) -> str:
     return f"{whole:%Y-%m-%dT%H:%M:%S}.{at_ns % NS_PER_S // 1_000_000:03d}Z"
 
 
+NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+"""Characters that XML cannot hold, not even escaped."""
+
+
+def xml_text(text: str) -> str:
+    """Return a text for the inside of an XML element."""
+    return escape(NO_XML.sub("\ufffd", text))
+
+
 def gpx(points: Mapping[str, list[RecordedPosition]]) -> str:
     """Return a track for each vehicle; without elevations, whose datum no app states."""
     lines = [
@@ -74,7 +84,7 @@ def gpx(points: Mapping[str, list[RecordedPosition]]) -> str:
         '<gpx version="1.1" creator="Recon" xmlns="http://www.topografix.com/GPX/1/1">',
     ]
     for name, track in points.items():
-        lines.append(f"<trk><name>{quoteattr(name)[1:-1]}</name><trkseg>")
+        lines.append(f"<trk><name>{xml_text(name)}</name><trkseg>")
         lines += (
             f'<trkpt lat="{p.latitude_deg:.8f}" lon="{p.longitude_deg:.8f}">'
             f"<time>{utc_text(p.at_ns)}</time></trkpt>"

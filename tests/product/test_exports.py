@@ -1,0 +1,93 @@
+"""`recon export` beyond tracks: read back by the rules of the formats."""
+
+import json
+import xml.etree.ElementTree as ET
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pyogrio
+import pytest
+import rasterio
+from tests.product.made_flight import FRAME, ONE, OTHER, flight, write_record
+from typer.testing import CliRunner
+
+from recon.cli.commands import app
+from recon.geo import enu_from_geo
+from recon.model.errors import RecordError
+from recon.product.exports import FLIGHT_FORMATS, kml
+from recon.product.flight import FlownSurvey, read_flight
+
+HOSTILE = '<b>&"]]>\x00\x1b\ud800'
+
+
+@pytest.fixture(scope="module")
+def record(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("exports") / "flight.mcap"
+    return write_record(flight(ONE, OTHER), path)
+
+
+def export(record: Path, out: Path):
+    return CliRunner().invoke(app, ["export", str(record), str(out)])
+
+
+def names(path: Path, layer: str) -> list[str]:
+    about, _fids, _shapes, columns = pyogrio.raw.read(path, layer=layer)
+    return columns[list(about["fields"]).index("Name")].tolist()
+
+
+def test_kml_is_read_by_gdal_at_its_place(record: Path, tmp_path: Path) -> None:
+    out = tmp_path / "a.kml"
+    assert export(record, out).exit_code == 0
+    assert [name for name, _kind in pyogrio.list_layers(out)] == ["Surveys", "Tracks"]
+    assert pyogrio.read_info(out, layer="Surveys")["crs"] == "EPSG:4326"
+    assert names(out, "Surveys") == ["field"]
+    assert names(out, "Tracks") == ["Drone 1", "Drone 2"]
+    root = ET.parse(out).getroot()
+    text = next(root.iter("{http://www.opengis.net/kml/2.2}coordinates")).text
+    assert text is not None
+    corners = np.array([[float(n) for n in each.split(",")] for each in text.split()])
+    ground_m = np.full(len(corners), FRAME.origin.ellipsoid_height_m)
+    enu_m = enu_from_geo(FRAME, corners[:, 1], corners[:, 0], ground_m)
+    outline = np.array(flight().surveys[0].outline_m)
+    np.testing.assert_allclose(enu_m[:, :2], [*outline, outline[0]], atol=0.01)
+
+
+def test_hostile_names_are_text_in_kml() -> None:
+    made = flight()
+    hole = ((0.0, 0.0), (5.0, 0.0), (5.0, 5.0))
+    survey = FlownSurvey(made.surveys[0].outline_m, (hole,), 60.0, 8.0, HOSTILE)
+    made = replace(made, surveys=[survey], names={"SIM-1": HOSTILE})
+    root = ET.fromstring(kml(made).decode())
+    space = "{http://www.opengis.net/kml/2.2}"
+    names = [each.text for each in root.iter(f"{space}name")]
+    assert names.count('<b>&"]]>\ufffd\ufffd\ufffd') == 2
+    assert len(list(root.iter(f"{space}innerBoundaryIs"))) == 1
+
+
+def test_the_sun_by_cell_and_the_figures(record: Path, tmp_path: Path) -> None:
+    assert export(record, tmp_path / "sun.tif").exit_code == 0
+    with rasterio.open(tmp_path / "sun.tif") as dataset:
+        assert dataset.count == 4
+        assert "Recon site frame" in dataset.crs.to_wkt()
+    result = export(record, tmp_path / "figures.json")
+    assert result.exit_code == 0, result.output
+    found = json.loads((tmp_path / "figures.json").read_text())
+    assert found["site"] == "made field"
+    assert found["vehicles"] == ["Drone 1", "Drone 2"]
+    assert found["region_m2"] == pytest.approx(180.0**2)
+    assert 0.5 < found["well_sunlit_share"] <= found["sunlit_share"] <= 1.0
+
+
+def test_what_cannot_be_exported_is_refused(record: Path, tmp_path: Path) -> None:
+    bare = write_record(replace(flight(), maps=[], surveys=[]), tmp_path / "bare.mcap")
+    result = export(bare, tmp_path / "sun.tif")
+    assert isinstance(result.exception, RecordError)
+    assert "expected a flight with shade maps" in str(result.exception)
+    assert not (tmp_path / "sun.tif").exists()
+    found = json.loads(FLIGHT_FORMATS[".json"](read_flight(bare)))
+    assert found["region_m2"] is None
+    assert export(record, tmp_path / "a.shp").exit_code == 2
+    (tmp_path / "a.kml").write_text("mine")
+    assert isinstance(export(record, tmp_path / "a.kml").exception, RecordError)
+    assert (tmp_path / "a.kml").read_text() == "mine"
