@@ -13,6 +13,7 @@ from recon.api import schema
 from recon.api.access_routes import add_access_routes
 from recon.api.addresses import SharedAddress
 from recon.api.console_files import ConsoleFiles
+from recon.api.flight_routes import FlightArchive, NoFlights, add_flight_routes
 from recon.api.order_routes import add_order_routes
 from recon.api.pairing_routes import add_pairing_routes
 from recon.api.permissions import require_listed_role
@@ -42,12 +43,16 @@ SECURITY_HEADERS = {
 
 
 def create_app(
-    port: StationPort, console: Path | None, version: str, shared: SharedAddress | None = None
+    port: StationPort,
+    console: Path | None,
+    version: str,
+    shared: SharedAddress | None = None,
+    flights: FlightArchive | None = None,
 ) -> FastAPI:
     """Return the application around a station, to be put behind an `AccessCheck`.
 
     `console` is the folder with the built console; without one a page describes how to build it.
-    `shared` is the address for other computers.
+    `shared` is the address for other computers; `flights` are the station's records.
     """
     app = FastAPI(
         title="Recon",
@@ -64,6 +69,7 @@ def create_app(
     add_picture_routes(app, port)
     add_site_routes(app, port)
     add_survey_routes(app, port)
+    add_flight_routes(app, flights or NoFlights())
     add_zone_routes(app, port)
     _add_console(app, console)
     _add_errors_and_headers(app)

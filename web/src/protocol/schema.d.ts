@@ -252,6 +252,86 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/flights": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Flights
+         * @description The flight records of the station's folder, the newest first.
+         */
+        get: operations["flights_api_flights_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/flights/{name}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Figures
+         * @description A flight's figures, of its record alone. Takes seconds for a long flight.
+         */
+        get: operations["figures_api_flights__name__get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/flights/{name}/files/{file}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * File
+         * @description A file made of a flight record: tracks, surveys, the sun by cell, the report.
+         */
+        get: operations["file_api_flights__name__files__file__get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/flights/{name}/record.mcap": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Record
+         * @description A flight record as it is; this run's when the run has ended.
+         */
+        get: operations["record_api_flights__name__record_mcap_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/forecast.png": {
         parameters: {
             query?: never;
@@ -1377,6 +1457,76 @@ export interface components {
             is_over: boolean;
             /** Vehicles */
             vehicles: components["schemas"]["ReturningView"][];
+        };
+        /**
+         * FlightFiguresView
+         * @description What a report states of a flight; shares are 0 to 1, null where nothing is known.
+         *
+         *     Photos are estimated from the tracks and the survey's camera timer.
+         */
+        FlightFiguresView: {
+            /** Airborne S */
+            airborne_s: number;
+            /** Alarms */
+            alarms: number;
+            /** Begin Utc */
+            begin_utc: string;
+            /** End Utc */
+            end_utc: string;
+            /**
+             * Mean Sun Share
+             * @description of the region in sun, over the flight
+             */
+            mean_sun_share: number | null;
+            /** Photographed Share */
+            photographed_share: number | null;
+            /** Record */
+            record: string;
+            /** Region M2 */
+            region_m2: number | null;
+            /** Shade Maps */
+            shade_maps: number;
+            /** Site */
+            site: string;
+            /**
+             * Sunlit Share
+             * @description of the region, in sun on a photo
+             */
+            sunlit_share: number | null;
+            /** Surveys */
+            surveys: string[];
+            /**
+             * Trouble
+             * @description why the record ends early; empty if it does not
+             */
+            trouble: string;
+            /** Vehicles */
+            vehicles: string[];
+            /**
+             * Well Sunlit Share
+             * @description in sun on photos enough for a mosaic
+             */
+            well_sunlit_share: number | null;
+        };
+        /**
+         * FlightView
+         * @description A flight record in the station's folder.
+         */
+        FlightView: {
+            /**
+             * Changed At Unix Ms
+             * @description when it was last written to
+             */
+            changed_at_unix_ms: number;
+            /**
+             * Is Recording
+             * @description it is this run's, and grows
+             */
+            is_recording: boolean;
+            /** Name */
+            name: string;
+            /** Size Bytes */
+            size_bytes: number;
         };
         /**
          * ForecastView
@@ -3489,6 +3639,152 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["OrderResponse"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    flights_api_flights_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FlightView"][];
+                };
+            };
+        };
+    };
+    figures_api_flights__name__get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FlightFiguresView"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    file_api_flights__name__files__file__get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                file: "tracks.gpx" | "tracks.geojson" | "tracks.csv" | "surveys.kml" | "sun.tif" | "report.html";
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/geo+json": unknown;
+                    "application/gpx+xml": unknown;
+                    "application/vnd.google-earth.kml+xml": unknown;
+                    "image/tiff": unknown;
+                    "text/csv": unknown;
+                    "text/html": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    record_api_flights__name__record_mcap_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/octet-stream": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
             /** @description Validation Error */

@@ -6,6 +6,7 @@ otherwise.
 """
 
 from recon.api.schema.access import AccessView
+from recon.api.schema.flights import FlightFiguresView, FlightFileName, FlightView
 from recon.api.schema.message import (
     ActionResponse,
     Message,
@@ -140,6 +141,9 @@ __all__ = [
     "FailsafeRowView",
     "FleetReturnRequest",
     "FleetReturnView",
+    "FlightFiguresView",
+    "FlightFileName",
+    "FlightView",
     "ForecastView",
     "FrameView",
     "GroundImageView",

@@ -69,6 +69,8 @@ class Service:
     guard_stop_url: str | None = None
     lost_bytes: Callable[[], int] = lambda: 0
     """How many bytes of links the record has lost so far."""
+    recording: Callable[[], Path | None] = lambda: None
+    """This run's record, once there is one."""
     numbers: VehicleNumbers = field(default_factory=VehicleNumbers)
     _folder: SiteService = field(init=False)
 

@@ -41,6 +41,7 @@ from recon.station.kernel.announcing import announce, require_announceable
 from recon.station.kernel.app_list_writer import AppListWriter
 from recon.station.kernel.build import first_state
 from recon.station.kernel.driver import AsyncioDriver, freeze_loaded_objects, station_clock
+from recon.station.kernel.flight_archive import RecordedFlights
 from recon.station.kernel.guard_line import GuardLine, take_over_from_orphan
 from recon.station.kernel.http_servers import (
     NetworkConfig,
@@ -308,7 +309,11 @@ def _servers(
     watching = asyncio.create_task(users.run())
     stack.callback(watching.cancel)
     shared = shared_address(config.network, doors.certificate, doors.network)
-    app = create_app(service, config.console, version(), shared)
+    flights = None
+    if config.record_folder is not None:
+        flights = RecordedFlights(config.record_folder, service.recording)
+        stack.callback(flights.close)
+    app = create_app(service, config.console, version(), shared, flights)
     servers = [(loopback_server(app, login, config.http_host), doors.loopback)]
     if doors.network is not None and doors.certificate is not None:
         servers.append((network_server(app, login, doors.certificate), doors.network))
@@ -439,6 +444,7 @@ def _start_record(
     recorder = Recorder(writer, driver.handle, lambda _step: auditor.entries)
     driver.record = recorder.take
     service.lost_bytes = lambda: writer.dropped_bytes
+    service.recording = lambda: writer.path
     writer.start()
     stack.callback(writer.close)
     return recorder.tap
