@@ -252,3 +252,14 @@ def test_the_pages_example_is_what_the_model_computes() -> None:
     assert 1_500.0 * need.flown == pytest.approx(77.5)
     assert 1_500.0 * need.back == pytest.approx(16.0 + 50.9 + 55.0, abs=0.05)
     assert need.whole == pytest.approx(0.133, abs=0.0005)
+
+
+def test_level_flight_leaves_climb_landing_and_reserve() -> None:
+    uses = Consumption(1500.0, 1.0, 60.0, SETTINGS)
+    # 20 m up to the go-home height: 16 loaded seconds; the landing from there: 55.
+    left_s = (1.0 - 0.25) * 1500.0 - 16.0 - 55.0
+    assert uses.level_flight_s(1.0, 40.0, 0.25) == pytest.approx(left_s / 1.25)
+    # Above the go-home height the landing begins where the vehicle is.
+    left_s = (1.0 - 0.25) * 1500.0 - 90.0 / 1.5 - 15.0
+    assert uses.level_flight_s(1.0, 90.0, 0.25) == pytest.approx(left_s / 1.25)
+    assert uses.level_flight_s(0.2, 40.0, 0.25) == 0.0

@@ -59,6 +59,10 @@ COMMANDS = {
     "nudge": CommandSource("steering:nudge_command", "Move a vehicle by a few metres."),
     "fly": CommandSource("missions:fly_command", "Fly a mission from a file."),
     "camera": CommandSource("missions:camera_command", "Start or stop a vehicle's image stream."),
+    "plan": CommandSource(
+        "plan:plan_command",
+        "Plan a survey without a station: rows, speed, time, photos, batteries.",
+    ),
     "survey": CommandSource(
         "survey:survey_app", "Survey a region: create, start, pause, abort, status."
     ),

@@ -4,9 +4,10 @@ from pathlib import Path
 from typing import Any
 
 from recon.client import ClientError
+from recon.model.airspace import Region
 from recon.model.errors import SiteError
 from recon.model.geo import GeoPoint, LocalFrame
-from recon.site.geojson import Feature, read_features, regions_of
+from recon.site.geojson import Feature, first_corner_of, read_features, regions_of
 
 Rings = list[list[list[float]]]
 
@@ -26,12 +27,43 @@ def read_region(path: Path, feature: str | None, origin: GeoPoint) -> tuple[str,
         regions = regions_of(chosen, LocalFrame(origin))
     except SiteError as problem:
         raise RegionFileError(str(problem)) from problem
-    if len(regions) != 1:
+    _refuse_several(chosen, len(regions))
+    return _name(chosen) or path.stem, _rings(chosen)
+
+
+def region_in(path: Path, feature: str | None, frame: LocalFrame) -> tuple[str, Region]:
+    """Return the name of the one region in a file, and the region in metres of a frame.
+
+    Raises `RegionFileError`.
+    """
+    try:
+        chosen = _chosen(path, read_features(path), feature)
+        regions = regions_of(chosen, frame)
+    except SiteError as problem:
+        raise RegionFileError(str(problem)) from problem
+    _refuse_several(chosen, len(regions))
+    return _name(chosen) or path.stem, regions[0]
+
+
+def file_origin(path: Path, feature: str | None) -> GeoPoint:
+    """Return the first corner of the region in a file: an origin where there is no site.
+
+    Raises `RegionFileError`.
+    """
+    try:
+        chosen = _chosen(path, read_features(path), feature)
+        place = first_corner_of(chosen)
+    except SiteError as problem:
+        raise RegionFileError(str(problem)) from problem
+    return GeoPoint(place.latitude_deg, place.longitude_deg, 0.0)
+
+
+def _refuse_several(chosen: Feature, polygons: int) -> None:
+    if polygons != 1:
         raise RegionFileError(
-            f"{chosen.place}: expected one polygon, got {len(regions)}: make each a feature of its "
+            f"{chosen.place}: expected one polygon, got {polygons}: make each a feature of its "
             "own and name one with --feature"
         )
-    return _name(chosen) or path.stem, _rings(chosen)
 
 
 def _chosen(path: Path, features: tuple[Feature, ...], name: str | None) -> Feature:

@@ -24,6 +24,8 @@ class SurveyCamera:
     along_deg: float = 52.0
     interval_s: float = 2.0
     """The shortest that common apps keep up with raw images."""
+    across_px: int | None = None
+    """Pixels across the flight direction; None: the size of a pixel on the ground is unknown."""
 
     def across_m(self, height_m: float) -> float:
         """Return how wide the footprint is from a height above the ground, across the flight."""
@@ -32,6 +34,10 @@ class SurveyCamera:
     def along_m(self, height_m: float) -> float:
         """Return how long the footprint is from a height above the ground, along the flight."""
         return 2.0 * height_m * tan(radians(self.along_deg) / 2.0)
+
+    def gsd_m(self, height_m: float) -> float | None:
+        """Return the size of a pixel on the ground from a height, straight below; None: unknown."""
+        return None if self.across_px is None else self.across_m(height_m) / self.across_px
 
 
 @dataclass(frozen=True, slots=True)

@@ -78,6 +78,18 @@ class Consumption:
         seconds = max(0.0, height_m) / s.landing_mps + s.touchdown_s
         return self.fraction(seconds * s.sink_load)
 
+    def level_flight_s(self, has: float, height_m: float, reserve: float) -> float:
+        """Return how long a charge lasts for level flight from a height, above its pad.
+
+        It leaves the climb to the go-home height, the landing and the reserve; all are fractions.
+        """
+        s = self.settings
+        climb_m = max(0.0, self.go_home_height_m - height_m)
+        ends = self.fraction(_vertical(climb_m, s)) + self.landing(
+            max(height_m, self.go_home_height_m)
+        )
+        return max(0.0, has - reserve - ends) / self.fraction(s.level_load)
+
 
 @dataclass(frozen=True, slots=True)
 class Need:

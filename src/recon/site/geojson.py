@@ -98,6 +98,20 @@ def point_of(feature: Feature, frame: LocalFrame) -> LatLon:
     return LatLon(latitude_deg=position[1], longitude_deg=position[0])
 
 
+def first_corner_of(feature: Feature) -> LatLon:
+    """Return the first position of a feature: an origin where no site gives one. `SiteError`."""
+    corner = feature.geometry.get("coordinates")
+    while isinstance(corner, list) and corner and isinstance(corner[0], list):
+        corner = corner[0]
+    longitude_deg, latitude_deg = convert(feature.place, corner, Position, "coordinates")[:2]
+    if abs(latitude_deg) > 90.0 or abs(longitude_deg) > 180.0:
+        raise SiteError(
+            f"{feature.place}: expected longitude and latitude in degrees, got "
+            f"{longitude_deg:.6g}, {latitude_deg:.6g}; export the layer as EPSG:4326"
+        )
+    return LatLon(latitude_deg, longitude_deg)
+
+
 def _read_json(path: Path) -> object:
     data = read_bounded(path, LARGEST_LAYER_BYTES, "a GeoJSON file")
     try:

@@ -33,6 +33,7 @@ from recon.site.schema import (
     VehicleTable,
 )
 from recon.site.site import Imager, Layers, Site
+from recon.site.survey_cameras import read_survey_cameras
 
 PLACEHOLDER_SERIAL = "00000"
 """Sent by apps before they know their aircraft's serial."""
@@ -133,7 +134,10 @@ def load_site(folder: Path) -> Site:
         convert(path, table.limits, LimitsTable, "limits"), f"{path}: limits"
     )
     failsafe = failsafe_from_tables(path, table.failsafe)
-    site = Site(table.name, frame, grid, imagers, profiles, layers, limits, failsafe)
+    cameras = read_survey_cameras(folder)
+    site = Site(
+        table.name, frame, grid, imagers, profiles, layers, limits, failsafe, cameras=cameras
+    )
     refuse_high_go_home_heights(str(path), profiles, limits)
     refuse_misplaced_pads(path, site)
     if table.elevation is not None:

@@ -16,6 +16,7 @@ from recon.model.airspace import Airspace, ElevationModel, FlightLimits, Landing
 from recon.model.failsafe_matrix import FailsafeMatrix
 from recon.model.geo import GroundGrid, LocalFrame
 from recon.model.imagery import CameraPose, Outlook
+from recon.model.survey_camera import CameraModel
 from recon.model.units import wrap_degrees
 from recon.model.vehicle import VehicleProfile
 from recon.safety.failsafe import DEFAULT_MATRIX
@@ -106,6 +107,8 @@ class Site:
     failsafe: FailsafeMatrix = DEFAULT_MATRIX
     elevation: ElevationModel | None = None
     elevation_file: str | None = None
+    cameras: Mapping[str, CameraModel] = field(default_factory=dict)
+    """The site's own survey cameras, beside those of the table."""
 
     @property
     def imager(self) -> Imager | None:

@@ -9,6 +9,7 @@ import shapely  # type: ignore[import-untyped, unused-ignore]
 
 from recon.geo import region_fault
 from recon.guidance.survey.cells import BoolArray, CoverageCells, cells_over
+from recon.guidance.survey.imaging import longest_photo_m
 from recon.guidance.survey.lattice import RowLattice, Swath, swath_of
 from recon.guidance.survey.missions import RegionPaths
 from recon.guidance.survey.route import Place, RowLeg
@@ -73,7 +74,7 @@ def _overlap_faults(survey: Survey, settings: SurveySettings) -> Iterator[str]:
         )
         return
     photo_m = survey.speed_mps * camera.interval_s
-    longest_m = min(along_m * (1.0 - survey.front_overlap), along_m - slack_m)
+    longest_m = longest_photo_m(camera, height_m, survey.front_overlap, settings)
     if photo_m > longest_m * (1.0 + 1e-9):
         yield (
             f"at {survey.speed_mps:g} m/s a photo every {camera.interval_s:g} s comes every "
@@ -89,6 +90,12 @@ def _size_faults(survey: Survey, settings: SurveySettings) -> Iterator[str]:
         yield (
             f"the region is {wide_m / 1000:.1f} x {high_m / 1000:.1f} km: too large for cells of "
             f"{survey.cell_m:g} m"
+        )
+    area_m2 = _area(survey.region).area
+    if area_m2 < survey.cell_m**2:
+        yield (
+            f"the region {survey.name} is {area_m2:.2g} m², less than a cell of {survey.cell_m:g} "
+            "m: draw its outline again"
         )
     spacing_m = swath_of(survey, settings).widest_spacing_m
     if max(wide_m, high_m) / spacing_m > MOST_ROWS:
@@ -226,6 +233,12 @@ def _area(region: Region) -> shapely.Polygon:
 def _no_rows(survey: Survey, surroundings: SurveySurroundings | None) -> str:
     if surroundings is None:
         return f"the region {survey.name} is too small for a row"
+    boundary = surroundings.boundary
+    if boundary is not None and not shapely.intersects(_area(boundary), _area(survey.region)):
+        return (
+            f"the region {survey.name} lies outside the site's boundary: move the region, or the "
+            "boundary in the site's folder"
+        )
     return (
         f"no row of the region {survey.name} stays {surroundings.margin_m:g} m inside the site's "
         "boundary and off its keep-out zones: move the region or the zones"

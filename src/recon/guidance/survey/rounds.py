@@ -133,15 +133,15 @@ def _handed_out(
     state: SurveyState, pieces: Sequence[Piece], free: Mapping[str, Surveyor], now_ns: int
 ) -> Step:
     """Share pieces and give the first missions; without any, change the reason only."""
-    shares = MappingProxyType(_shares(state.plan, pieces, list(free.values())))
-    given, missions = _given(replace(state, waiting=shares), free, now_ns)
+    shared_out = MappingProxyType(shares(state.plan, pieces, list(free.values())))
+    given, missions = _given(replace(state, waiting=shared_out), free, now_ns)
     if missions:
         return replace(given, reason=f"round {state.round}"), missions
     reason = "waiting: no battery lasts for the next row, the way there and the return"
     return replace(state, reason=reason), ()
 
 
-def _shares(
+def shares(
     plan: SurveyPlan, pieces: Sequence[Piece], surveyors: Sequence[Surveyor]
 ) -> dict[str, Route]:
     """Return each vehicle's share of the pieces: runs of one route, by the nearest starts."""

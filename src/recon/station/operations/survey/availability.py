@@ -105,10 +105,8 @@ def time_left_s(
     has, height_m = vehicle.battery_fraction.value, vehicle.height_above_takeoff_m.value
     if uses is None or has is None or height_m is None:
         return None
-    climb_s = max(0.0, uses.go_home_height_m - height_m) / energy.climb_mps * energy.climb_load
-    ends = uses.fraction(climb_s) + uses.landing(max(height_m, uses.go_home_height_m))
-    left = has - airspace.airspace.limits.battery_reserve_fraction - ends
-    return max(0.0, left) / uses.fraction(energy.level_load)
+    reserve = airspace.airspace.limits.battery_reserve_fraction
+    return uses.level_flight_s(has, height_m, reserve)
 
 
 def _order(station: Station, member: SurveyMember) -> OrderRecord | None:

@@ -1,0 +1,326 @@
+"""`recon plan`: what a survey will take, before any station, drone or battery is needed."""
+
+import re
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from recon.cli.connection import REFUSED, WRONG_USE, JsonOption
+from recon.cli.output import print_json, print_table, printable
+from recon.cli.plan_output import ImagingFigures, figures_of, geojson_of, rows_of
+from recon.cli.plan_picture import Theme, picture_png
+from recon.cli.region_file import file_origin, region_in
+from recon.geo import enu_from_points
+from recon.guidance.survey import Surveyor, SurveyPlan, plan_survey
+from recon.guidance.survey.estimate import Batteries, SurveyEstimate, estimate
+from recon.guidance.survey.imaging import (
+    SpeedLimit,
+    best_interval_s,
+    height_for_gsd_m,
+    speed_limits,
+)
+from recon.guidance.survey.plan import SurveySurroundings
+from recon.model.airspace import Region, ZoneKind
+from recon.model.command import Refusal
+from recon.model.errors import ReconError
+from recon.model.geo import LocalFrame
+from recon.model.survey import Survey
+from recon.model.survey_camera import CAMERAS, CameraModel, camera_named, of_diagonal
+from recon.safety.energy import Consumption
+from recon.safety.settings import EnergySettings
+from recon.site import Site, load_site
+from recon.site.site import default_site
+
+MOST_DRONES = 16
+ENDURANCE_MIN = 25.0
+SPEED_STEP_MPS = 0.1
+
+
+class PlanError(ReconError):
+    """Options that make no plan; one sentence."""
+
+
+def plan_command(
+    region: Annotated[
+        str,
+        typer.Argument(
+            metavar="REGION", help="GeoJSON file, or the name of a survey region of --site."
+        ),
+    ],
+    camera: Annotated[
+        str, typer.Option("--camera", help="Name of a camera; `list` prints them.")
+    ] = "mavic3m",
+    gsd: Annotated[
+        str | None, typer.Option("--gsd", help="Size of a pixel on the ground, such as 2cm.")
+    ] = None,
+    height: Annotated[
+        float | None, typer.Option("--height", help="Metres above takeoff, instead of --gsd.")
+    ] = None,
+    feature: Annotated[
+        str | None, typer.Option("--feature", help="Name of the feature in the file.")
+    ] = None,
+    drones: Annotated[
+        int, typer.Option("--drones", min=1, max=MOST_DRONES, help="How many fly.")
+    ] = 1,
+    speed: Annotated[
+        float | None, typer.Option("--speed", help="Metres per second; default: the most allowed.")
+    ] = None,
+    front: Annotated[
+        float, typer.Option("--front-overlap", help="Overlap of photos along a row, 0 to 0.95.")
+    ] = 0.7,
+    side: Annotated[
+        float, typer.Option("--side-overlap", help="Overlap of rows, 0 to 0.95.")
+    ] = 0.6,
+    bearing: Annotated[
+        float | None,
+        typer.Option("--bearing", help="Of the rows, degrees; default: fewest turns."),
+    ] = None,
+    interval: Annotated[
+        float | None,
+        typer.Option("--interval", help="Seconds between photos; default: the timer's best."),
+    ] = None,
+    exposure: Annotated[
+        str, typer.Option("--exposure", help="Of a photo, such as 1/1000, for the blur.")
+    ] = "1/1000",
+    site: Annotated[
+        Path | None,
+        typer.Option("--site", help="A site's folder: boundary, zones, pads, limits, cameras."),
+    ] = None,
+    endurance: Annotated[
+        float | None,
+        typer.Option(
+            "--endurance-min",
+            min=1.0,
+            max=240.0,
+            help=f"Hover time of a full battery; default: the site's, else {ENDURANCE_MIN:g}.",
+        ),
+    ] = None,
+    batteries: Annotated[
+        int | None, typer.Option("--batteries", min=1, help="How many full ones there are.")
+    ] = None,
+    image_px: Annotated[
+        str | None,
+        typer.Option("--image-px", help="Own camera: pixels across x along, as 6000x4000."),
+    ] = None,
+    diagonal: Annotated[
+        float | None,
+        typer.Option("--diagonal-deg", help="Own camera: diagonal field of view, degrees."),
+    ] = None,
+    hourly: Annotated[
+        float | None,
+        typer.Option("--cost-per-hour", min=0.0, help="Of one drone in the air, any currency."),
+    ] = None,
+    png: Annotated[Path | None, typer.Option("--png", help="Picture to write.")] = None,
+    theme: Annotated[Theme, typer.Option("--theme", help="Of the picture.")] = Theme.LIGHT,
+    geojson: Annotated[Path | None, typer.Option("--geojson", help="Rows and flights.")] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Plan a survey without a station: rows, speed, time, photos, batteries.
+
+    Nothing flies and nothing is sent.
+    """
+    try:
+        if camera == "list":
+            _print_cameras(site)
+            return
+        home = default_site() if site is None else load_site(site)
+        name, area, frame = _region(region, feature, home)
+        model = _camera(camera, image_px, diagonal, home)
+        chosen_height_m = _height_m(model, gsd, height)
+        exposure_s = _exposure_s(exposure)
+        fastest_mps = home.limits.max_speed_mps
+        if interval is None:
+            interval = best_interval_s(model, chosen_height_m, front, exposure_s, fastest_mps)
+        lens = model.at_interval(interval)
+        limits = speed_limits(lens, chosen_height_m, front, exposure_s, fastest_mps)
+        speed_mps = _speed_mps(speed, limits)
+        survey = Survey(
+            1,
+            name,
+            area,
+            chosen_height_m,
+            speed_mps,
+            lens,
+            front,
+            side,
+            bearing,
+        )
+        plan = plan_survey(survey, frame, _surroundings(home))
+        if isinstance(plan, Refusal):
+            raise RefusedPlanError(f"refused: {plan.reason}")
+        needs, uses = _needs(plan, home, drones, endurance)
+        imaging = ImagingFigures(model, limits, exposure_s)
+        figures = figures_of(plan, needs, imaging, uses.endurance_s, batteries, hourly)
+        if as_json:
+            print_json(figures)
+        else:
+            print_table(f"plan of {name}", ("what", "value"), rows_of(figures))
+        if png is not None:
+            _write(png, picture_png(plan, needs, figures["title"], theme))
+        if geojson is not None:
+            _write(geojson, geojson_of(plan, needs))
+    except ReconError as problem:
+        print(f"recon plan: {printable(str(problem))}", file=sys.stderr)
+        raise typer.Exit(REFUSED if isinstance(problem, RefusedPlanError) else WRONG_USE) from None
+    if figures["warnings"]:
+        raise typer.Exit(REFUSED)
+
+
+class RefusedPlanError(PlanError):
+    """A survey that cannot be flown: the region, or the numbers."""
+
+
+def _region(name: str, feature: str | None, site: Site) -> tuple[str, Region, LocalFrame]:
+    """Return a file's region, or the site's of that name, in the site's frame or its own."""
+    path = Path(name)
+    if site.frame is not None and name in site.layers.survey_regions:
+        return name, site.layers.survey_regions[name], site.frame
+    if not path.is_file() and path.suffix.lower() not in (".geojson", ".json"):
+        known = ", ".join(site.layers.survey_regions) or "none; name a site with --site"
+        raise PlanError(f"Survey region {name!a} not found, nor a file; available: {known}")
+    frame = site.frame or LocalFrame(file_origin(path, feature))
+    own_name, region = region_in(path, feature, frame)
+    return own_name, region, frame
+
+
+def _camera(name: str, image_px: str | None, diagonal: float | None, site: Site) -> CameraModel:
+    if image_px is None and diagonal is None:
+        return camera_named(name, site.cameras.values())
+    found = re.fullmatch(r"(\d{2,5})x(\d{2,5})", image_px or "")
+    if found is None or diagonal is None or not 5.0 <= diagonal <= 150.0:
+        raise PlanError(
+            "an own camera needs --image-px ACROSSxALONG, such as 6000x4000, and --diagonal-deg "
+            "of 5 to 150"
+        )
+    across, along = (int(side) for side in found.groups())
+    if min(across, along) == 0:
+        raise PlanError("--image-px: expected pixels above 0")
+    timer_s = (1.0, 2.0, 3.0, 5.0, 10.0)
+    optics = of_diagonal(across, along, diagonal)
+    return CameraModel("own", "own camera", *optics, timer_s, "rolling", "options")
+
+
+def _height_m(model: CameraModel, gsd: str | None, height_m: float | None) -> float:
+    if (gsd is None) == (height_m is None):
+        raise PlanError("give either --gsd, such as 2cm, or --height in metres")
+    if height_m is not None:
+        return height_m
+    found = height_for_gsd_m(model.at_interval(1.0), _gsd_m(gsd or ""))
+    assert found is not None  # every model has pixels
+    return round(found, 1)
+
+
+UNITS_M = {"mm": 0.001, "cm": 0.01, "": 0.01, "m": 1.0}
+
+
+def _gsd_m(text: str) -> float:
+    found = re.fullmatch(r"(\d{1,6}(?:\.\d{1,6})?) ?(mm|cm|m|)", text.strip())
+    gsd_m = float(found[1]) * UNITS_M[found[2]] if found else 0.0
+    if not 0.0005 <= gsd_m <= 5.0:
+        raise PlanError(f"--gsd: expected 0.5 mm to 5 m, such as 2cm, got {text!a}")
+    return gsd_m
+
+
+def _exposure_s(text: str) -> float:
+    found = re.fullmatch(r"(?:1/)?(\d{1,6}(?:\.\d{1,6})?)", text.strip())
+    value = float(found[1]) if found else 0.0
+    if value > 0.0 and text.strip().startswith("1/"):
+        value = 1.0 / value
+    if not 1e-5 <= value <= 1.0:
+        raise PlanError(f"--exposure: expected 1/100000 to 1 s, such as 1/1000, got {text!a}")
+    return value
+
+
+def _speed_mps(asked_mps: float | None, limits: tuple[SpeedLimit, ...]) -> float:
+    """Return the speed asked for, or the most allowed, rounded down to a tenth."""
+    if asked_mps is not None:
+        return asked_mps
+    most_mps = limits[0].speed_mps
+    return int(most_mps / SPEED_STEP_MPS + 1e-9) * SPEED_STEP_MPS
+
+
+def _surroundings(site: Site) -> SurveySurroundings | None:
+    if site.frame is None:
+        return None
+    air = site.airspace
+    keep_out = tuple(zone.region for zone in air.zones if zone.kind is ZoneKind.KEEP_OUT)
+    return SurveySurroundings(air.boundary, keep_out, air.limits.boundary_margin_m)
+
+
+def _needs(
+    plan: SurveyPlan, site: Site, drones: int, endurance_min: float | None
+) -> tuple[SurveyEstimate, Consumption]:
+    """Return the estimate of drones that begin with full batteries on their pads.
+
+    Without pads all take off at the region's south-west corner.
+    """
+    pads_m = takeoff_places_m(site)[:drones]
+    west_m, south_m = plan.survey.region.outline_m.min(axis=0).tolist()
+    places_m = (*pads_m, *([(west_m, south_m)] * (drones - len(pads_m))))
+    uses = _consumption(site, endurance_min)
+    height_m = plan.survey.height_above_takeoff_m
+    level_s = uses.level_flight_s(1.0, height_m, site.limits.battery_reserve_fraction)
+    fleet = [
+        Surveyor(f"drone {number}", place_m, time_left_s=level_s, home_m=place_m)
+        for number, place_m in enumerate(places_m, start=1)
+    ]
+    landing_s = height_m / uses.settings.landing_mps + uses.settings.touchdown_s
+    made = estimate(plan, fleet, Batteries(level_s, landing_s=landing_s))
+    if isinstance(made, Refusal):
+        raise RefusedPlanError(f"refused: {made.reason}")
+    return made, uses
+
+
+def takeoff_places_m(site: Site) -> tuple[tuple[float, float], ...]:
+    """Return the pads of a site's drones but the imaging ones, east-north metres."""
+    if site.frame is None:
+        return ()
+    pads = [
+        profile.pad
+        for serial, profile in site.profiles.items()
+        if profile.pad is not None and serial not in site.imagers
+    ]
+    return tuple((float(e), float(n)) for e, n, _ in enu_from_points(site.frame, pads))
+
+
+def _consumption(site: Site, endurance_min: float | None) -> Consumption:
+    """Return what the least enduring drone uses, in some wind."""
+    flying = [p for serial, p in site.profiles.items() if serial not in site.imagers]
+    known_s = [profile.endurance_s for profile in flying if profile.endurance_s is not None]
+    if endurance_min is not None:
+        known_s = [60.0 * endurance_min]
+    heights_m = [p.go_home_height_m for p in flying if p.go_home_height_m is not None]
+    settings = EnergySettings()
+    return Consumption(
+        min(known_s, default=60.0 * ENDURANCE_MIN),
+        settings.unknown_wind_load,
+        max(heights_m, default=0.0),
+        settings,
+    )
+
+
+def _print_cameras(site: Path | None) -> None:
+    own = {} if site is None else load_site(site).cameras
+    rows = [
+        (
+            model.key,
+            model.title,
+            f"{model.across_px} x {model.along_px}",
+            f"{model.across_deg:.1f} x {model.along_deg:.1f} deg",
+            f"{model.timer_s[0]:g} s",
+            model.shutter,
+            model.source,
+        )
+        for model in {**CAMERAS, **own}.values()
+    ]
+    columns = ("name", "camera", "pixels", "field of view", "shortest timer", "shutter", "source")
+    print_table("cameras", columns, rows)
+
+
+def _write(path: Path, data: bytes) -> None:
+    try:
+        path.write_bytes(data)
+    except OSError as problem:
+        raise PlanError(f"{path}: cannot be written: {problem.strerror or problem}") from problem

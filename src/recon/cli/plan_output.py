@@ -1,0 +1,224 @@
+"""A survey plan's figures as a table and JSON, and its rows and flights as GeoJSON."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import shapely  # type: ignore[import-untyped, unused-ignore]
+
+from recon.geo import geo_from_enu
+from recon.guidance.survey import SurveyPlan
+from recon.guidance.survey.estimate import PlannedFlight, SurveyEstimate
+from recon.guidance.survey.imaging import SpeedLimit, blur_px, exposure_text
+from recon.guidance.survey.missions import NADIR_DEG
+from recon.guidance.survey.route import Place
+from recon.model.survey_camera import CameraModel
+
+HECTARE_M2 = 10_000.0
+DECIMALS = 7
+"""Of a degree: a centimetre."""
+
+MOST_SKIPPED = 0.005
+"""Of the region's area that rows may not reach without a warning: cells at an edge."""
+
+
+@dataclass(frozen=True, slots=True)
+class ImagingFigures:
+    """The camera, what limits its speed (the lowest first), and the exposure that was assumed."""
+
+    model: CameraModel
+    limits: tuple[SpeedLimit, ...]
+    exposure_s: float
+
+
+def figures_of(
+    plan: SurveyPlan,
+    needs: SurveyEstimate,
+    imaging: ImagingFigures,
+    endurance_s: float,
+    batteries: int | None,
+    cost_per_hour: float | None,
+) -> dict[str, Any]:
+    """Return everything that a plan states, in SI units; `warnings` are sentences."""
+    survey, lens = plan.survey, plan.survey.camera
+    height_m, cells = survey.height_above_takeoff_m, plan.cells
+    reached_m2 = float(cells.is_reached.sum()) * cells.cell_m2
+    region_m2 = shapely.Polygon(survey.region.outline_m, list(survey.region.holes_m)).area
+    limit = imaging.limits[0]
+    return {
+        "title": survey.name,
+        "camera": imaging.model.title,
+        "camera_source": imaging.model.source,
+        "shutter": imaging.model.shutter,
+        "region_m2": float(region_m2),
+        "reached_m2": min(reached_m2, float(region_m2)),
+        "height_above_takeoff_m": height_m,
+        "gsd_m": lens.gsd_m(height_m),
+        "footprint_m": [lens.across_m(height_m), lens.along_m(height_m)],
+        "front_overlap": 1.0 - plan.swath.photo_m / lens.along_m(height_m),
+        "side_overlap": 1.0 - plan.lattice.spacing_m / lens.across_m(height_m),
+        "gimbal_pitch_deg": NADIR_DEG,
+        "speed_mps": survey.speed_mps,
+        "speed_limit_mps": limit.speed_mps,
+        "speed_limited_by": limit.reason,
+        "speed_limits": [[each.speed_mps, each.reason] for each in imaging.limits],
+        "interval_s": lens.interval_s,
+        "exposure_s": imaging.exposure_s,
+        "blur_px": blur_px(lens, height_m, survey.speed_mps, imaging.exposure_s),
+        "rows": len({piece.row for piece in plan.pieces}),
+        "row_parts": len(plan.pieces),
+        "row_spacing_m": plan.lattice.spacing_m,
+        "row_bearing_deg": plan.lattice.bearing_deg,
+        "lead_in_m": plan.swath.lead_m,
+        "rows_m": sum(flight.rows_m for d in needs.drones for flight in d.flights),
+        "photos": needs.photos,
+        "photos_in_all": needs.photos_in_all,
+        "time_s": needs.time_s,
+        "flown_s": needs.flown_s,
+        "endurance_s": endurance_s,
+        "batteries": needs.batteries,
+        "cost": None if cost_per_hour is None else cost_per_hour * needs.flown_s / 3600.0,
+        "drones": [
+            {"name": d.serial, "time_s": d.time_s, "flights_s": [f.time_s for f in d.flights]}
+            for d in needs.drones
+        ],
+        "warnings": _warnings(plan, needs, imaging, float(region_m2), reached_m2, batteries),
+    }
+
+
+def _warnings(
+    plan: SurveyPlan,
+    needs: SurveyEstimate,
+    imaging: ImagingFigures,
+    region_m2: float,
+    reached_m2: float,
+    batteries: int | None,
+) -> list[str]:
+    found: list[str] = []
+    survey, limit = plan.survey, imaging.limits[0]
+    if survey.speed_mps > limit.speed_mps * (1.0 + 1e-9):
+        found.append(
+            f"{survey.speed_mps:g} m/s is more than {limit.speed_mps:.1f} m/s: {limit.reason}"
+        )
+    if reached_m2 < region_m2 * (1.0 - MOST_SKIPPED) - plan.cells.cell_m2:
+        skipped = (region_m2 - reached_m2) / HECTARE_M2
+        found.append(
+            f"{skipped:.2f} ha of {region_m2 / HECTARE_M2:.2f} ha cannot be reached inside the "
+            "site's boundary and off its keep-out zones: move the region or the zones"
+        )
+    if batteries is not None and needs.batteries is not None and needs.batteries > batteries:
+        found.append(
+            f"{needs.batteries} full batteries are needed, {batteries} are there: fly higher, "
+            "overlap less, divide the region, or charge between flights"
+        )
+    return found
+
+
+def rows_of(figures: dict[str, Any]) -> list[tuple[str, str]]:
+    """Return the figures as rows of a table, in words and units."""
+    across_m, along_m = figures["footprint_m"]
+    gsd = "unknown" if figures["gsd_m"] is None else f"{100.0 * figures['gsd_m']:.2f} cm"
+    flights = [len(drone["flights_s"]) for drone in figures["drones"]]
+    rows = [
+        ("area", f"{figures['region_m2'] / HECTARE_M2:.2f} ha"),
+        ("camera", f"{figures['camera']}, {figures['shutter']} shutter"),
+        ("height", f"{figures['height_above_takeoff_m']:g} m above takeoff"),
+        ("pixel on the ground", gsd),
+        ("photo", f"{across_m:.1f} x {along_m:.1f} m, straight down"),
+        ("overlap", f"front {figures['front_overlap']:.0%}, side {figures['side_overlap']:.0%}"),
+        (
+            "speed",
+            f"{figures['speed_mps']:.1f} m/s; limit {figures['speed_limit_mps']:.1f} m/s: "
+            f"{figures['speed_limited_by']}",
+        ),
+        ("photo every", f"{figures['interval_s']:g} s (set the camera's timer)"),
+        ("blur", f"{figures['blur_px']:.2f} pixel at {exposure_text(figures['exposure_s'])}"),
+        (
+            "rows",
+            f"{figures['rows']}, {figures['row_spacing_m']:.1f} m apart, bearing "
+            f"{figures['row_bearing_deg']:.0f} deg, lead-in {figures['lead_in_m']:.0f} m",
+        ),
+        ("length of rows", f"{figures['rows_m'] / 1000.0:.2f} km"),
+        ("photos", f"{figures['photos']} on rows, {figures['photos_in_all']} by the timer in all"),
+        ("time", minutes(figures["time_s"])),
+        ("in the air", f"{minutes(figures['flown_s'])}, all drones together"),
+        (
+            "batteries",
+            f"{figures['batteries']}, full, of {figures['endurance_s'] / 60.0:g} min hovering each",
+        ),
+    ]
+    if figures["cost"] is not None:
+        rows.append(("cost", f"{figures['cost']:.2f}"))
+    rows += [
+        (drone["name"], f"{minutes(drone['time_s'])} in {count} flight{'s'[: count != 1]}")
+        for drone, count in zip(figures["drones"], flights, strict=True)
+    ]
+    return rows + [("warning", text) for text in figures["warnings"]]
+
+
+def minutes(seconds: float) -> str:
+    """Return a duration in whole minutes, rounded up."""
+    return f"{-int(-seconds // 60)} min"
+
+
+def geojson_of(plan: SurveyPlan, needs: SurveyEstimate) -> bytes:
+    """Return a FeatureCollection: the region, what the photos cover, each row in its order."""
+    survey = plan.survey
+    region = shapely.Polygon(survey.region.outline_m, list(survey.region.holes_m))
+    features = [
+        _feature(plan, region, {"kind": "region", "name": survey.name}),
+        _feature(plan, footprints_m(plan), {"kind": "photos"}),
+    ]
+    for drone in needs.drones:
+        for number, flight in enumerate(drone.flights, start=1):
+            known = {"drone": drone.serial, "flight": number}
+            for track in flight.tracks_m:
+                track_line = shapely.LineString(track)
+                features.append(_feature(plan, track_line, {"kind": "flight", **known}))
+            for order, ends in enumerate(row_ends_m(plan, flight), start=1):
+                line = shapely.LineString(ends)
+                features.append(_feature(plan, line, {"kind": "row", **known, "order": order}))
+    collection = {"type": "FeatureCollection", "features": features}
+    return json.dumps(collection, indent=1).encode()
+
+
+def row_ends_m(plan: SurveyPlan, flight: PlannedFlight) -> list[tuple[Place, ...]]:
+    """Return where each row of a flight begins and ends, lead-in and all, east-north metres."""
+    legs = [leg.ends_m(plan.lattice, plan.swath.lead_m) for leg in flight.route]
+    return [tuple(map(tuple, plan.lattice.east_north_m(ends).tolist())) for ends in legs]
+
+
+def footprints_m(plan: SurveyPlan) -> shapely.Geometry:
+    """Return the ground that is on photos of the rows, at the least."""
+    lattice, lens = plan.lattice, plan.survey.camera
+    height_m = plan.survey.height_above_takeoff_m
+    half_across_m, half_along_m = lens.across_m(height_m) / 2.0, lens.along_m(height_m) / 2.0
+    # The first and the last photo may lie a whole photo distance inside a row's ends.
+    beyond_m = plan.swath.lead_m - plan.swath.photo_m + half_along_m
+    boxes = [
+        shapely.box(
+            piece.start_m - beyond_m,
+            lattice.row_across_m(piece.row) - half_across_m,
+            piece.end_m + beyond_m,
+            lattice.row_across_m(piece.row) + half_across_m,
+        )
+        for piece in plan.pieces
+    ]
+    return shapely.transform(shapely.union_all(boxes), lattice.east_north_m)
+
+
+def _feature(plan: SurveyPlan, shape_m: shapely.Geometry, known: dict[str, Any]) -> dict[str, Any]:
+    def lon_lat(places_m: np.typing.NDArray[np.float64]) -> np.typing.NDArray[np.float64]:
+        flat_m = np.column_stack([places_m, np.zeros(len(places_m))])
+        latitude_deg, longitude_deg, _ = geo_from_enu(plan.frame, flat_m)
+        return np.column_stack([longitude_deg, latitude_deg]).round(DECIMALS)
+
+    geometry: dict[str, Any] = shapely.geometry.mapping(shapely.transform(shape_m, lon_lat))
+    return {"type": "Feature", "properties": known, "geometry": geometry}
+
+
+def flights_in_order(needs: SurveyEstimate) -> Sequence[tuple[int, PlannedFlight]]:
+    """Return all flights, each with the number of its drone from 0."""
+    return [(i, flight) for i, drone in enumerate(needs.drones) for flight in drone.flights]

@@ -1,0 +1,204 @@
+"""What a survey will take before it is started: flights, time, photos and batteries of each drone.
+
+It shares rows and fills batteries by the functions with which the planners do (`rounds.py`): each
+row once, as under a clear sky. Ground flown again for sun comes on top.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from math import ceil, floor, hypot
+
+from recon.guidance.survey.missions import Track, flight_time_s
+from recon.guidance.survey.plan import RULE, SurveyPlan
+from recon.guidance.survey.rounds import shares, sortie
+from recon.guidance.survey.route import Place, Route
+from recon.guidance.survey.state import Surveyor
+from recon.model.command import Refusal
+
+SWAP_S = 180.0
+"""From touchdown to takeoff with a fresh battery, by a person at the pad."""
+
+MOST_FLIGHTS = 500
+"""Of all drones; more come from a wrong endurance."""
+
+
+@dataclass(frozen=True, slots=True)
+class Batteries:
+    """What a fresh battery gives. `level_s`: level flight that leaves reserve and landing; None:
+    unknown, then one is taken to last for a drone's share."""
+
+    level_s: float | None = None
+    swap_s: float = SWAP_S
+    landing_s: float = 0.0
+    """From above the pad to the ground."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlannedFlight:
+    """One flight on one battery, from takeoff to landing; usually one mission."""
+
+    route: Route
+    tracks_m: tuple[tuple[Place, ...], ...]
+    """The corners of each mission, east-north metres of the site."""
+    rows_m: float
+    """Length of its rows, lead-in included."""
+    missions_s: float
+    """From the takeoff point to the end of the last row."""
+    time_s: float
+    photos: int
+    """On its rows."""
+
+
+@dataclass(frozen=True, slots=True)
+class DroneEstimate:
+    """One drone's flights in their order; `time_s` from the start to its last landing."""
+
+    serial: str
+    flights: tuple[PlannedFlight, ...]
+    time_s: float
+
+    @property
+    def flown_s(self) -> float:
+        """In the air."""
+        return sum(flight.time_s for flight in self.flights)
+
+
+@dataclass(frozen=True, slots=True)
+class SurveyEstimate:
+    """The figures of all drones together; a drone without a share is not among them."""
+
+    drones: tuple[DroneEstimate, ...]
+    timer_s: float
+    knows_batteries: bool
+
+    @property
+    def time_s(self) -> float:
+        """From the start to the last landing."""
+        return max(drone.time_s for drone in self.drones)
+
+    @property
+    def flown_s(self) -> float:
+        """In the air, all drones added."""
+        return sum(drone.flown_s for drone in self.drones)
+
+    @property
+    def photos(self) -> int:
+        """On the rows."""
+        return sum(flight.photos for drone in self.drones for flight in drone.flights)
+
+    @property
+    def photos_in_all(self) -> int:
+        """That a timer takes which runs from takeoff to landing: what a card must hold."""
+        return sum(
+            ceil(flight.time_s / self.timer_s) for drone in self.drones for flight in drone.flights
+        )
+
+    @property
+    def batteries(self) -> int | None:
+        """Full ones, one a flight; None: it is not known how long one lasts."""
+        flights = sum(len(drone.flights) for drone in self.drones)
+        return flights if self.knows_batteries else None
+
+
+def estimate(
+    plan: SurveyPlan, surveyors: Sequence[Surveyor], batteries: Batteries
+) -> SurveyEstimate | Refusal:
+    """Return what a survey takes with these vehicles, at least one; takes tens of milliseconds.
+
+    Each begins with the battery that is in it, a full one where that is unknown. A refusal names
+    the row that no battery lasts for.
+    """
+    given = shares(plan, plan.pieces, surveyors)
+    drones: list[DroneEstimate] = []
+    for surveyor in surveyors:
+        if surveyor.serial not in given:
+            continue
+        flights = _flights(plan, given[surveyor.serial], surveyor, batteries)
+        if isinstance(flights, Refusal):
+            return flights
+        swaps_s = batteries.swap_s * (len(flights) - 1)
+        time_s = sum(flight.time_s for flight in flights) + swaps_s
+        drones.append(DroneEstimate(surveyor.serial, flights, time_s))
+    interval_s = plan.survey.camera.interval_s
+    return SurveyEstimate(tuple(drones), interval_s, batteries.level_s is not None)
+
+
+def _flights(
+    plan: SurveyPlan, route: Route, surveyor: Surveyor, batteries: Batteries
+) -> tuple[PlannedFlight, ...] | Refusal:
+    """Fly a share battery by battery; the first may be too empty for any row."""
+    home_m = surveyor.home_m or surveyor.place_m
+    fresh = replace(surveyor, place_m=home_m, time_left_s=batteries.level_s)
+    flights: list[PlannedFlight] = []
+    vehicle = surveyor
+    if surveyor.time_left_s is None:
+        vehicle = replace(surveyor, time_left_s=batteries.level_s)
+    while route:
+        flight, rest = _flight(plan, route, vehicle, batteries)
+        if flight is None and vehicle == fresh:
+            return Refusal(RULE, _too_far(plan, route[:1], fresh))
+        if flight is not None:
+            flights.append(flight)
+        if len(flights) > MOST_FLIGHTS:
+            return Refusal(RULE, f"the survey takes more than {MOST_FLIGHTS} flights of a drone")
+        vehicle, route = fresh, rest
+    return tuple(flights)
+
+
+def _flight(
+    plan: SurveyPlan, route: Route, vehicle: Surveyor, batteries: Batteries
+) -> tuple[PlannedFlight | None, Route]:
+    """Fly missions until the battery lasts for no further row; also return the rest.
+
+    A mission ends before its battery where no way leads on to the next row.
+    """
+    settings, speed_mps = plan.settings, plan.survey.speed_mps
+    home_m, flown, missions_s = vehicle.home_m or vehicle.place_m, 0, 0.0
+    tracks: list[Track] = []
+    while flown < len(route):
+        track, count = sortie(plan, route[flown:], vehicle)
+        if track is None:
+            break
+        end_m = track.corners_m[-1]
+        used_s = flight_time_s(track, speed_mps, vehicle.place_m, end_m, settings)
+        left_s = vehicle.time_left_s
+        if left_s is not None:
+            left_s = max(0.0, left_s - used_s / settings.flight_time_share)
+        vehicle = replace(vehicle, place_m=end_m, home_m=home_m, time_left_s=left_s)
+        missions_s += used_s + settings.corner_s * len(track.corners_m)
+        tracks.append(track)
+        flown += count
+    if not tracks:
+        return None, route
+    legs = route[:flown]
+    end_m = tracks[-1].corners_m[-1]
+    return_m = hypot(end_m[0] - home_m[0], end_m[1] - home_m[1])
+    up_s = settings.takeoff_s + plan.survey.height_above_takeoff_m / settings.climb_mps
+    flight = PlannedFlight(
+        legs,
+        tuple(track.corners_m for track in tracks),
+        sum(leg.piece.length_m + 2.0 * plan.swath.lead_m for leg in legs),
+        missions_s,
+        up_s + missions_s + return_m / speed_mps + batteries.landing_s,
+        sum(_photos(plan, leg.piece.length_m) for leg in legs),
+    )
+    return flight, route[flown:]
+
+
+def _photos(plan: SurveyPlan, row_m: float) -> int:
+    """The most that the timer takes along a row with its lead, whatever its phase."""
+    return floor((row_m + 2.0 * plan.swath.lead_m) / plan.swath.photo_m) + 1
+
+
+def _too_far(plan: SurveyPlan, first: Route, vehicle: Surveyor) -> str:
+    track, _ = sortie(plan, first, replace(vehicle, time_left_s=None))
+    home_m = vehicle.home_m or vehicle.place_m
+    assert track is not None  # one row has no way between rows
+    speed_mps, settings = plan.survey.speed_mps, plan.settings
+    needs_s = flight_time_s(track, speed_mps, vehicle.place_m, home_m, settings)
+    has_s = (vehicle.time_left_s or 0.0) * settings.flight_time_share
+    return (
+        f"a full battery gives {floor(has_s)} s for rows, and the row {first[0].piece.row + 1} "
+        f"with the way there and back takes {ceil(needs_s)} s: "
+        "take off nearer to it, divide the region, or turn the rows"
+    )

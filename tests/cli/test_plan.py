@@ -1,0 +1,188 @@
+"""`recon plan`: no station is needed; figures, picture and GeoJSON of a region."""
+
+import contextlib
+import json
+from math import cos, radians
+from pathlib import Path
+from typing import Any
+
+import cv2
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from typer.testing import CliRunner
+
+from recon.cli.commands import app
+from recon.cli.plan import PlanError, _exposure_s, _gsd_m
+from recon.site import demo_site_folder
+
+LATITUDE, LONGITUDE = 41.9, -93.6
+M_PER_LATITUDE = 111_070.0
+M_PER_LONGITUDE = 111_320.0 * cos(radians(LATITUDE))
+
+
+def recon(*words: object) -> tuple[int, str]:
+    result = CliRunner().invoke(app, ["plan", *(str(word) for word in words)])
+    assert result.exception is None or isinstance(result.exception, SystemExit), result.exception
+    return result.exit_code, result.output
+
+
+def written(folder: Path, *corners_m: tuple[float, float]) -> Path:
+    ring = [
+        [LONGITUDE + east / M_PER_LONGITUDE, LATITUDE + north / M_PER_LATITUDE]
+        for east, north in (*corners_m, corners_m[0])
+    ]
+    geometry = {"type": "Polygon", "coordinates": [ring]}
+    feature = {"type": "Feature", "properties": {"name": "north 40"}, "geometry": geometry}
+    path = folder / "region.geojson"
+    path.write_text(json.dumps({"type": "FeatureCollection", "features": [feature]}))
+    return path
+
+
+@pytest.fixture
+def field(tmp_path: Path) -> Path:
+    return written(tmp_path, (0, 0), (400, 0), (400, 300), (0, 300))
+
+
+def figures(*words: object) -> dict[str, Any]:
+    code, out = recon(*words, "--json")
+    assert code in (0, 1), out
+    read: dict[str, Any] = json.loads(out)
+    return read
+
+
+def test_a_field_is_planned_by_pixel_size(field: Path) -> None:
+    code, out = recon(field, "--camera", "mavic3m", "--gsd", "2cm")
+    assert code == 0
+    assert "area  12.0" in out
+    assert "height  75 m above takeoff" in out
+    assert "limit 10.0 m/s: blur of 0.5 pixel at an exposure of 1/1000 s" in out
+    assert "batteries  1, full, of 25 min hovering each" in out
+    found = figures(field, "--camera", "mavic3m", "--gsd", "2cm")
+    assert found["gsd_m"] == pytest.approx(0.02, rel=0.001)
+    assert found["region_m2"] == pytest.approx(120_000.0, rel=0.005)
+    assert found["front_overlap"] >= 0.7
+    assert found["side_overlap"] >= 0.6
+    assert found["warnings"] == []
+
+
+def test_more_drones_take_less_time_and_as_many_photos_but_for_cut_rows(field: Path) -> None:
+    one, three = (figures(field, "--height", 60, "--drones", count) for count in (1, 3))
+    assert len(three["drones"]) == three["batteries"] == 3
+    assert three["time_s"] < 0.5 * one["time_s"]
+    assert one["photos"] <= three["photos"] <= one["photos"] + 4
+
+
+def test_geojson_has_the_rows_of_each_drone_in_their_order(field: Path, tmp_path: Path) -> None:
+    out, png = tmp_path / "out.geojson", tmp_path / "out.png"
+    found = figures(field, "--height", 60, "--drones", 2, "--geojson", out, "--png", png)
+    features = json.loads(out.read_text())["features"]
+    kinds = [feature["properties"]["kind"] for feature in features]
+    assert kinds.count("region") == kinds.count("photos") == 1
+    rows = [f for f in features if f["properties"]["kind"] == "row"]
+    assert len(rows) >= found["rows"]
+    for name in ("drone 1", "drone 2"):
+        orders = [r["properties"]["order"] for r in rows if r["properties"]["drone"] == name]
+        assert orders == list(range(1, len(orders) + 1))
+        assert orders
+    long_m = 0.0
+    for row in rows:
+        (west, south), (east, north) = row["geometry"]["coordinates"]
+        east_m, north_m = (east - west) * M_PER_LONGITUDE, (north - south) * M_PER_LATITUDE
+        long_m += (east_m**2 + north_m**2) ** 0.5
+    assert long_m == pytest.approx(found["rows_m"], rel=0.005)
+    # From the photos' hull no corner of the region is missing.
+    hull = next(f for f in features if f["properties"]["kind"] == "photos")["geometry"]
+    assert hull["type"] == "Polygon"
+    assert cv2.imread(str(png)).shape[2] == 3
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_the_picture_stands_out_on_its_ground(field: Path, tmp_path: Path, theme: str) -> None:
+    png = tmp_path / "out.png"
+    assert recon(field, "--height", 60, "--png", png, "--theme", theme)[0] == 0
+    shown = cv2.imread(str(png)).astype(int).sum(axis=2)
+    assert (shown[0, 0] > 380) == (theme == "light")
+    assert (abs(shown - shown[0, 0]) > 150).sum() > 2_000
+
+
+@pytest.mark.parametrize(
+    ("corners_m", "words"),
+    [
+        ([(0, 0), (100, 100), (100, 0), (0, 100)], "edges"),
+        ([(0, 0), (100, 0), (50, 0)], "less than a cell"),
+    ],
+)
+def test_an_invalid_region_is_a_sentence(
+    tmp_path: Path, corners_m: list[tuple[float, float]], words: str
+) -> None:
+    code, out = recon(written(tmp_path, *corners_m), "--height", 60)
+    assert code in (1, 2)
+    assert words in out
+    assert len(out.splitlines()) == 1
+
+
+def test_a_region_outside_the_sites_boundary_is_a_sentence(tmp_path: Path) -> None:
+    far = written(tmp_path, (3000, 0), (3200, 0), (3200, 200))
+    code, out = recon(far, "--height", 40, "--site", demo_site_folder())
+    assert code == 1
+    assert "refused: the region north 40 lies outside the site's boundary" in out
+
+
+def test_a_region_that_batteries_do_not_last_for_is_a_sentence(field: Path) -> None:
+    code, out = recon(field, "--height", 60, "--endurance-min", 11, "--batteries", 1)
+    assert code == 1
+    assert "full batteries are needed, 1 are there" in out
+    code, out = recon(field, "--height", 60, "--endurance-min", 2)
+    assert code == 1
+    assert "refused: a full battery gives " in out
+
+
+def test_a_sites_region_pads_and_own_camera_are_used(tmp_path: Path) -> None:
+    site = tmp_path / "site"
+    site.mkdir()
+    for each in demo_site_folder().iterdir():
+        (site / each.name).write_bytes(each.read_bytes())
+    (site / "cameras.toml").write_text(
+        '[[cameras]]\nname = "mine"\nimage_px = [6000, 4000]\nsensor_mm = [23.5, 15.6]\n'
+        "focal_mm = 16.0\ntimer_s = [1.0, 2.0]\n"
+    )
+    found = figures("south-east field", "--site", site, "--camera", "mine", "--height", 45)
+    assert found["gsd_m"] == pytest.approx(23.5 / 16.0 * 45.0 / 6000.0)
+    assert found["endurance_s"] == 25.0 * 60.0
+    code, out = recon("no such field", "--site", site, "--height", 45)
+    assert code == 2
+    assert "available: " in out
+    assert "south-east field" in out
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ((), "give either --gsd"),
+        (("--gsd", "2cm", "--height", "60"), "give either --gsd"),
+        (("--gsd", "two"), "--gsd: expected 0.5 mm to 5 m"),
+        (("--height", "60", "--camera", "mavic9"), "Camera 'mavic9' not found"),
+        (("--height", "60", "--exposure", "1/0"), "--exposure: expected"),
+        (("--height", "60", "--image-px", "6000"), "an own camera needs --image-px"),
+        (("--height", "900"), "the height is 900 m"),
+    ],
+)
+def test_wrong_options_are_a_sentence(field: Path, options: tuple[str, ...], words: str) -> None:
+    code, out = recon(field, *options)
+    assert code in (1, 2)
+    assert words in out
+    assert "Traceback" not in out
+
+
+def test_a_speed_above_the_limit_is_warned_of(field: Path) -> None:
+    code, out = recon(field, "--height", 60, "--speed", 9)
+    assert code == 1
+    assert "warning  9 m/s is more than 8.0 m/s: blur of 0.5 pixel" in out
+
+
+@given(st.text(max_size=12))
+def test_any_text_is_a_size_within_bounds_or_an_error(text: str) -> None:
+    for read, least, most in ((_gsd_m, 0.0005, 5.0), (_exposure_s, 1e-5, 1.0)):
+        with contextlib.suppress(PlanError):
+            assert least <= read(text) <= most
