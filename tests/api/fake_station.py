@@ -1,5 +1,6 @@
 """A station that the API can be put around, and its application under test."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -10,10 +11,12 @@ from recon.api.port import SiteFolder, SurveyCellStates
 from recon.api.schema import (
     ActionResponse,
     AuditPage,
+    CameraView,
     OrderResponse,
     PreflightView,
     StationState,
     SunAtView,
+    SurveyEstimateView,
     SurveyRequest,
     SurveyResponse,
     SurveyView,
@@ -214,6 +217,14 @@ class FakeStation:
 
     def survey_ways(self, survey_id: int) -> SurveyWays | None:
         return self.service.survey_ways(survey_id)
+
+    def survey_estimate(
+        self, survey_id: int, serials: Sequence[str]
+    ) -> Callable[[], SurveyEstimateView] | None:
+        return self.service.survey_estimate(survey_id, serials)
+
+    def cameras(self) -> list[CameraView]:
+        return self.service.cameras()
 
     def survey_cells(self, survey_id: int) -> SurveyCellStates | None:
         return self.service.survey_cells(survey_id)

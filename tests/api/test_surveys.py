@@ -61,6 +61,46 @@ class TestAsked:
         assert client.get("/api/surveys").json() == [survey]
         assert client.get(f"/api/surveys/{survey['id']}").json() == survey
 
+    def test_what_it_will_take_is_known_before_the_start(
+        self, client: Client, station: FakeStation
+    ) -> None:
+        camera = {"model": "mini3pro", "interval_s": 2.0}
+        survey = client.post("/api/surveys", json={**ASKED, "camera": camera}).json()["survey"]
+        before = station.state().model_copy(update={"time_ns": 0})
+        view = client.get(f"/api/surveys/{survey['id']}/estimate").json()
+        assert view["refusal"] is None
+        assert view["gsd_m"] == pytest.approx(0.0138, rel=0.01)
+        assert view["rows"] == survey["rows"]
+        assert view["region_m2"] == survey["figures"]["region_m2"]
+        assert view["photos"] > 40
+        assert view["photos_in_all"] > view["photos"]
+        assert 120.0 < view["time_s"] == view["flown_s"] < 600.0
+        assert view["batteries"] is None  # no vehicle, so no endurance
+        assert [drone["serial"] for drone in view["drones"]] == [None]
+        assert view["warnings"] == []
+        assert station.state().model_copy(update={"time_ns": 0}).surveys == before.surveys
+
+    def test_an_estimate_of_an_unknown_vehicle_or_survey_is_refused(self, client: Client) -> None:
+        survey = client.post("/api/surveys", json=ASKED).json()["survey"]
+        view = client.get(f"/api/surveys/{survey['id']}/estimate?serial=Z").json()
+        assert view["refusal"] == "Vehicle 'Z' not found"
+        assert view["time_s"] is None
+        assert client.get("/api/surveys/999/estimate").status_code == 404
+
+    def test_a_blurred_survey_is_warned_of(self, client: Client) -> None:
+        asked = {**ASKED, "speed_mps": 8.0, "front_overlap": 0.2}
+        camera = {"model": "mini3pro", "interval_s": 2.0}
+        survey = client.post("/api/surveys", json={**asked, "camera": camera}).json()["survey"]
+        (warning,) = client.get(f"/api/surveys/{survey['id']}/estimate").json()["warnings"]
+        assert warning.startswith("8 m/s is more than 6.9 m/s: blur of 0.5 pixel")
+
+    def test_cameras_are_listed_and_an_unknown_one_is_refused(self, client: Client) -> None:
+        cameras = {each["name"]: each for each in client.get("/api/cameras").json()}
+        assert cameras["p1-35mm"]["across_px"] == 8192
+        answer = client.post("/api/surveys", json={**ASKED, "camera": {"model": "x9"}}).json()
+        assert not answer["accepted"]
+        assert "Camera 'x9' not found; available: mavic3m" in answer["reason"]
+
     @pytest.mark.parametrize(
         ("changes", "words"),
         [

@@ -156,6 +156,16 @@ def test_a_sites_region_pads_and_own_camera_are_used(tmp_path: Path) -> None:
     assert "south-east field" in out
 
 
+def test_the_cameras_are_listed_with_their_sources() -> None:
+    code, out = recon("--camera", "list")
+    assert code == 0
+    assert "p1-35mm  Zenmuse P1, 35 mm  8192 x 5460" in out
+    assert recon("--height", 60) == (
+        2,
+        "recon plan: name a region: a GeoJSON file, or a survey region of --site\n",
+    )
+
+
 @pytest.mark.parametrize(
     ("options", "words"),
     [

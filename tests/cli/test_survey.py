@@ -55,6 +55,19 @@ class TestCreate:
         assert f"recon survey start {number} VEHICLE" in result.out
         assert not any(v["is_flying"]["value"] for v in station.get("/api/vehicles"))
 
+    def test_what_it_takes_is_printed_before_a_start(self, station: StationProcess) -> None:
+        created = station.recon("survey", "create", "west field", *FLOWN, "--camera", "mini3pro")
+        number = created.out.split(":")[0].split()[1]
+        result = station.recon("survey", "estimate", number, "SIM-1", "SIM-2")
+        assert result.code == 0
+        assert "pixel on the ground  1.38 cm" in result.out
+        assert "batteries  2" in result.out
+        alone = station.recon("survey", "estimate", number, "SIM-1", "--json").json
+        both = station.recon("survey", "estimate", number, "SIM-1", "SIM-2", "--json").json
+        assert both["time_s"] < alone["time_s"]
+        assert [drone["serial"] for drone in both["drones"]] == ["SIM-1", "SIM-2"]
+        assert not any(v["is_flying"]["value"] for v in station.get("/api/vehicles"))
+
     def test_a_file_is_planned_under_its_features_name(
         self, station: StationProcess, tmp_path: Path
     ) -> None:

@@ -1,5 +1,6 @@
 """The station as the API sees it: `station/api_views/service.py` implements it, and tests do."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -10,6 +11,7 @@ from recon.api.schema import (
     ActionResponse,
     AuditPage,
     ImportedView,
+    CameraView,
     OrderResponse,
     PreflightView,
     SiteDrawingRequest,
@@ -17,6 +19,7 @@ from recon.api.schema import (
     SiteDrawingView,
     StationState,
     SunAtView,
+    SurveyEstimateView,
     SurveyRequest,
     SurveyResponse,
     SurveyView,
@@ -215,6 +218,17 @@ class StationPort(Protocol):
 
     def survey_cells(self, survey_id: int) -> SurveyCellStates | None:
         """Return the states of a survey's cells; None without rows."""
+
+    def survey_estimate(
+        self, survey_id: int, serials: Sequence[str]
+    ) -> Callable[[], SurveyEstimateView] | None:
+        """Return what estimates a survey with these vehicles; safe on any thread, may take long.
+
+        None without rows.
+        """
+
+    def cameras(self) -> list[CameraView]:
+        """Return the survey cameras that requests may name."""
 
     def geotiff(self, image: GroundImage) -> bytes:
         """Return a ground image as a GeoTIFF file; may take long, safe on any thread."""

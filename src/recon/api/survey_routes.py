@@ -1,9 +1,9 @@
 """Routes for surveys: request, start, pause, abort, read."""
 
 import asyncio
-from typing import Literal
+from typing import Annotated, Literal
 
-from fastapi import FastAPI, Request, Response
+from fastapi import FastAPI, Query, Request, Response
 
 from recon.api import pictures, schema
 from recon.api.picture_routes import Form
@@ -74,6 +74,25 @@ def _add_views(app: FastAPI, port: StationPort) -> None:
         """A survey's planned rows, the missions in flight, and the paths flown so far."""
         rows = port.survey_ways(survey_id)
         return found(rows, "" if rows is not None else _no_rows(port, survey_id))
+
+    @app.get("/api/surveys/{survey_id}/estimate", responses=PROBLEMS)
+    async def estimate(
+        survey_id: int,
+        serial: Annotated[
+            list[Annotated[str, Query(max_length=2048)]],
+            Query(max_length=64, description="vehicles; none: one drone"),
+        ] = [],  # noqa: B006
+    ) -> schema.SurveyEstimateView:
+        """What a survey will take with these vehicles: time, photos, batteries. Nothing flies."""
+        work = port.survey_estimate(survey_id, serial)
+        return await asyncio.to_thread(
+            found(work, "" if work is not None else _no_rows(port, survey_id))
+        )
+
+    @app.get("/api/cameras")
+    async def cameras() -> list[schema.CameraView]:
+        """The survey cameras that a request may name: the table's and the site's own."""
+        return port.cameras()
 
     @app.get(
         "/api/surveys/{survey_id}/cells.png", response_class=Response, responses=PROBLEMS | PNG

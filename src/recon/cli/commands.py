@@ -64,7 +64,8 @@ COMMANDS = {
         "Plan a survey without a station: rows, speed, time, photos, batteries.",
     ),
     "survey": CommandSource(
-        "survey:survey_app", "Survey a region: create, start, pause, abort, status."
+        "survey:survey_app",
+        "Survey a region: create, estimate, start, pause, abort, status.",
     ),
     "site": CommandSource("site:site_app", "Make, check and import into a site's folder."),
     "zone": CommandSource(

@@ -44,11 +44,11 @@ class PlanError(ReconError):
 
 def plan_command(
     region: Annotated[
-        str,
+        str | None,
         typer.Argument(
             metavar="REGION", help="GeoJSON file, or the name of a survey region of --site."
         ),
-    ],
+    ] = None,
     camera: Annotated[
         str, typer.Option("--camera", help="Name of a camera; `list` prints them.")
     ] = "mavic3m",
@@ -125,6 +125,8 @@ def plan_command(
         if camera == "list":
             _print_cameras(site)
             return
+        if region is None:
+            raise PlanError("name a region: a GeoJSON file, or a survey region of --site")
         home = default_site() if site is None else load_site(site)
         name, area, frame = _region(region, feature, home)
         model = _camera(camera, image_px, diagonal, home)

@@ -10,7 +10,7 @@ import shapely  # type: ignore[import-untyped, unused-ignore]
 
 from recon.geo import geo_from_enu
 from recon.guidance.survey import SurveyPlan
-from recon.guidance.survey.estimate import PlannedFlight, SurveyEstimate
+from recon.guidance.survey.estimate import PlannedFlight, SurveyEstimate, plan_warnings
 from recon.guidance.survey.imaging import SpeedLimit, blur_px, exposure_text
 from recon.guidance.survey.missions import NADIR_DEG
 from recon.guidance.survey.route import Place
@@ -19,9 +19,6 @@ from recon.model.survey_camera import CameraModel
 HECTARE_M2 = 10_000.0
 DECIMALS = 7
 """Of a degree: a centimetre."""
-
-MOST_SKIPPED = 0.005
-"""Of the region's area that rows may not reach without a warning: cells at an edge."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,30 +81,14 @@ def figures_of(
             {"name": d.serial, "time_s": d.time_s, "flights_s": [f.time_s for f in d.flights]}
             for d in needs.drones
         ],
-        "warnings": _warnings(plan, needs, imaging, float(region_m2), reached_m2, batteries),
+        "warnings": _warnings(plan, needs, limit, batteries),
     }
 
 
 def _warnings(
-    plan: SurveyPlan,
-    needs: SurveyEstimate,
-    imaging: ImagingFigures,
-    region_m2: float,
-    reached_m2: float,
-    batteries: int | None,
+    plan: SurveyPlan, needs: SurveyEstimate, limit: SpeedLimit, batteries: int | None
 ) -> list[str]:
-    found: list[str] = []
-    survey, limit = plan.survey, imaging.limits[0]
-    if survey.speed_mps > limit.speed_mps * (1.0 + 1e-9):
-        found.append(
-            f"{survey.speed_mps:g} m/s is more than {limit.speed_mps:.1f} m/s: {limit.reason}"
-        )
-    if reached_m2 < region_m2 * (1.0 - MOST_SKIPPED) - plan.cells.cell_m2:
-        skipped = (region_m2 - reached_m2) / HECTARE_M2
-        found.append(
-            f"{skipped:.2f} ha of {region_m2 / HECTARE_M2:.2f} ha cannot be reached inside the "
-            "site's boundary and off its keep-out zones: move the region or the zones"
-        )
+    found = plan_warnings(plan, limit)
     if batteries is not None and needs.batteries is not None and needs.batteries > batteries:
         found.append(
             f"{needs.batteries} full batteries are needed, {batteries} are there: fly higher, "

@@ -21,7 +21,7 @@ from recon.cli.connection import (
     run_at_station,
 )
 from recon.cli.output import print_json, print_line, print_table
-from recon.client import ClientError, Refusal, Station, SurveyCommands, SurveyStatus
+from recon.client import ClientError, Refusal, Station, SurveyCommands, SurveyPreview, SurveyStatus
 from recon.model.geo import GeoPoint
 from recon.model.survey import PLANNER_GOALS, WhenDone, unknown_survey
 
@@ -31,7 +31,7 @@ PHASES = {"created": "planned"}
 NO_ORIGIN = "the station's site has no origin: start the station with --site FOLDER"
 
 survey_app = new_app(
-    help="Survey a region: create, start, pause, abort, status.", no_args_is_help=True
+    help="Survey a region: create, estimate, start, pause, abort, status.", no_args_is_help=True
 )
 
 NumberArgument = Annotated[int, typer.Argument(metavar="ID", help="The survey's number.")]
@@ -67,6 +67,10 @@ def create_command(
     bearing: Annotated[
         float | None,
         typer.Option("--bearing", help="Of the rows, degrees; default: shortest flight."),
+    ] = None,
+    camera: Annotated[
+        str | None,
+        typer.Option("--camera", help="Name of a camera; `recon plan --camera list`."),
     ] = None,
     interval: Annotated[
         float,
@@ -111,7 +115,7 @@ def create_command(
         "front_overlap": front,
         "side_overlap": side,
         "row_bearing_deg": bearing,
-        "camera": {"interval_s": interval},
+        "camera": {"model": camera, "interval_s": interval},
         "budget": {"rounds": rounds, "time_s": None if minutes is None else 60.0 * minutes},
         "when_done": when_done.value,
         "look_aside_allowed": look_aside,
@@ -146,6 +150,57 @@ def start_command(
         return _print_answer(await station.surveys.start(number, serials, takeoff=takeoff), as_json)
 
     run_at_station(address, token_file, work)
+
+
+@survey_app.command("estimate")
+def estimate_command(
+    number: NumberArgument,
+    vehicles: NamesArgument = None,
+    as_json: JsonOption = False,
+    address: AddressOption = DEFAULT_ADDRESS,
+    token_file: TokenOption = None,
+) -> None:
+    """Show what a survey will take with these vehicles: time, photos, batteries.
+
+    Nothing flies. Without vehicles it is for one drone.
+    """
+
+    async def work(station: Station) -> int:
+        serials = named_serials(station, vehicles) if vehicles else []
+        preview = await station.surveys.estimate(number, serials)
+        if as_json:
+            print_json(msgspec.to_builtins(preview))
+        elif preview.refusal is not None:
+            print_line(f"refused: {preview.refusal}")
+        else:
+            print_table("estimate", ("what", "value"), _preview_rows(preview))
+        return REFUSED if preview.refusal or preview.warnings else DONE
+
+    run_at_station(address, token_file, work)
+
+
+def _preview_rows(preview: SurveyPreview) -> list[tuple[str, str]]:
+    gsd = "unknown" if preview.gsd_m is None else f"{100.0 * preview.gsd_m:.2f} cm"
+    batteries = "unknown: no endurance" if preview.batteries is None else f"{preview.batteries}"
+    return [
+        ("area", f"{preview.region_m2 / HECTARE_M2:.2f} ha"),
+        ("rows", f"{preview.rows}"),
+        ("pixel on the ground", gsd),
+        ("speed limit", f"{preview.speed_limit_mps:.1f} m/s: {preview.speed_limited_by}"),
+        ("time", _minutes(preview.time_s)),
+        ("in the air", f"{_minutes(preview.flown_s)}, all drones together"),
+        ("photos", f"{preview.photos} on rows, {preview.photos_in_all} by the timer in all"),
+        ("batteries", batteries),
+        *(
+            (drone.vehicle_name, f"{_minutes(drone.time_s)} in {drone.flights} flights")
+            for drone in preview.drones
+        ),
+        *(("warning", text) for text in preview.warnings),
+    ]
+
+
+def _minutes(seconds: float | None) -> str:
+    return "unknown" if seconds is None else f"{-int(-seconds // 60)} min"
 
 
 @survey_app.command("pause")

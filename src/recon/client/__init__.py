@@ -35,7 +35,14 @@ from recon.client.messages import (
 )
 from recon.client.order import Order, VehicleAnswer
 from recon.client.station import FleetCommands, Station
-from recon.client.surveys import SurveyCommands, SurveyProgress, SurveyStatus, SurveyVehicle
+from recon.client.surveys import (
+    DronePreview,
+    SurveyCommands,
+    SurveyPreview,
+    SurveyProgress,
+    SurveyStatus,
+    SurveyVehicle,
+)
 from recon.client.telemetry import (
     Aged,
     AuthorityStatus,
@@ -62,6 +69,7 @@ __all__ = [
     "CertificateError",
     "ClientError",
     "ConnectionLostError",
+    "DronePreview",
     "EulerAngles",
     "FleetCommands",
     "LeaseStatus",
@@ -87,6 +95,7 @@ __all__ = [
     "StopAnswer",
     "StopLatchStatus",
     "SurveyCommands",
+    "SurveyPreview",
     "SurveyProgress",
     "SurveyStatus",
     "SurveyVehicle",

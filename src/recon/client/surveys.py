@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal
+from urllib.parse import quote
 
 import msgspec
 
@@ -57,6 +58,40 @@ class SurveyStatus(msgspec.Struct, frozen=True):
     rows: int
     vehicles: tuple[SurveyVehicle, ...]
     figures: SurveyProgress | None
+
+
+class DronePreview(msgspec.Struct, frozen=True):
+    """What a survey takes of one drone; `serial` is None for an assumed one."""
+
+    serial: str | None
+    vehicle_name: str
+    time_s: float
+    flights: int
+
+
+class SurveyPreview(msgspec.Struct, frozen=True):
+    """What a survey will take, each row flown once, as under a clear sky.
+
+    With a `refusal` times, photos and batteries are None; batteries also while an endurance is not
+    known.
+    """
+
+    survey_id: int
+    refusal: str | None
+    region_m2: float
+    reached_m2: float
+    rows: int
+    gsd_m: float | None
+    blur_px: float
+    speed_limit_mps: float
+    speed_limited_by: str
+    time_s: float | None
+    flown_s: float | None
+    photos: int | None
+    photos_in_all: int | None
+    batteries: int | None
+    drones: tuple[DronePreview, ...]
+    warnings: tuple[str, ...]
 
 
 class SurveyMessage(AnswerMessage, frozen=True, kw_only=True):
@@ -127,6 +162,14 @@ class SurveyCommands:
     async def abort(self, survey_id: int) -> SurveyStatus | Refusal:
         """Abort a survey permanently; its vehicles hold."""
         return await self._post(f"/api/surveys/{survey_id}/abort", None)
+
+    async def estimate(self, survey_id: int, serials: Sequence[str] = ()) -> SurveyPreview:
+        """Return what a survey will take with these vehicles, or with one drone. Nothing moves."""
+        named = "&".join(f"serial={quote(serial, safe='')}" for serial in serials)
+        path = f"/api/surveys/{survey_id}/estimate"
+        return await self._http.get(
+            f"{path}?{named}" if named else path, SurveyPreview, "an estimate"
+        )
 
     async def list(self) -> tuple[SurveyStatus, ...]:
         """Return the surveys of this run of the station, newest first."""

@@ -13,8 +13,15 @@ WhenDoneName = Literal["return_home", "hover"]
 
 
 class SurveyCameraRequest(StrictMessage):
-    """The survey drones' camera: fields of view, and the interval its timer is set to."""
+    """The survey drones' camera: fields of view, and the interval its timer is set to.
 
+    `model` is the name of a camera of `/api/cameras`, instead of fields of view and pixels.
+    """
+
+    model: Annotated[str, Field(max_length=40)] | None = None
+    across_px: Annotated[int, Field(ge=2, le=100_000)] | None = Field(
+        default=None, description="null: the size of a pixel on the ground is not known"
+    )
     across_deg: float = 66.0
     along_deg: float = 52.0
     interval_s: float = 2.0
@@ -141,6 +148,54 @@ class SurveyView(Message):
     cells: SurveyCellsView | None
     rows: int = Field(description="number of planned rows or parts of rows")
     ways: int = Field(description="rises as flown paths grow")
+
+
+class CameraView(Message):
+    """A survey camera; the longer side of its photos lies across the flight."""
+
+    name: str
+    title: str
+    across_px: int
+    along_px: int
+    across_deg: float
+    along_deg: float
+    timer_s: list[float] = Field(description="intervals that its timer can be set to")
+    shutter: Literal["global", "mechanical", "rolling"]
+    source: str
+
+
+class DroneEstimateView(Message):
+    """What a survey takes of one drone; `serial` is null for an assumed one."""
+
+    serial: str | None
+    vehicle_name: str
+    time_s: float = Field(description="from the start to its last landing, battery swaps included")
+    flights: int
+
+
+class SurveyEstimateView(Message):
+    """What a survey will take, each row flown once, as under a clear sky.
+
+    Times, photos and batteries are null with a `refusal`, batteries also while an endurance is
+    not known.
+    """
+
+    survey_id: int
+    refusal: str | None
+    region_m2: float
+    reached_m2: float
+    rows: int
+    gsd_m: float | None = Field(description="pixel on the ground; null: pixels are not known")
+    blur_px: float = Field(description="of motion during an exposure of 1/1000 s")
+    speed_limit_mps: float
+    speed_limited_by: str
+    time_s: float | None
+    flown_s: float | None = Field(description="in the air, all drones added")
+    photos: int | None = Field(description="on rows")
+    photos_in_all: int | None = Field(description="by a timer that runs from takeoff to landing")
+    batteries: int | None
+    drones: list[DroneEstimateView]
+    warnings: list[str]
 
 
 class SurveyWay(Message):

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import ceil, floor, hypot
 
+from recon.guidance.survey.imaging import SpeedLimit
 from recon.guidance.survey.missions import Track, flight_time_s
 from recon.guidance.survey.plan import RULE, SurveyPlan
 from recon.guidance.survey.rounds import shares, sortie
@@ -121,6 +122,27 @@ def estimate(
         drones.append(DroneEstimate(surveyor.serial, flights, time_s))
     interval_s = plan.survey.camera.interval_s
     return SurveyEstimate(tuple(drones), interval_s, batteries.level_s is not None)
+
+
+MOST_SKIPPED = 0.005
+"""Of the region that rows may not reach without a warning: cells at an edge."""
+
+
+def plan_warnings(plan: SurveyPlan, limit: SpeedLimit) -> list[str]:
+    """Return a sentence for a speed above its lowest limit, and for ground that is not reached."""
+    found: list[str] = []
+    speed_mps, cells = plan.survey.speed_mps, plan.cells
+    if speed_mps > limit.speed_mps * (1.0 + 1e-9):
+        found.append(f"{speed_mps:g} m/s is more than {limit.speed_mps:.1f} m/s: {limit.reason}")
+    inside = int(cells.is_inside.sum())
+    skipped = inside - int(cells.is_reached.sum())
+    if skipped > MOST_SKIPPED * inside:
+        ha = cells.cell_m2 / 10_000.0
+        found.append(
+            f"{skipped * ha:.2f} ha of {inside * ha:.2f} ha cannot be reached inside the site's "
+            "boundary and off its keep-out zones: move the region or the zones"
+        )
+    return found
 
 
 def _flights(

@@ -51,7 +51,7 @@ def speed_limits(
 ) -> tuple[SpeedLimit, ...]:
     """Return every limit of the speed along rows, the lowest first.
 
-    `fastest_mps` is the site's limit, or the aircraft's. Without pixels there is none for blur.
+    `fastest_mps` is the site's limit, or the aircraft's. The blur counts where pixels are known.
     """
     photo_m = longest_photo_m(camera, height_m, front_overlap)
     limits = [

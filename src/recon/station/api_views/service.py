@@ -1,6 +1,6 @@
 """The API's port on a running station: requests become events, states become views."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from itertools import count
@@ -304,6 +304,16 @@ class Service:
     def survey_ways(self, survey_id: int) -> schema.SurveyWays | None:
         """Return a survey's planned rows and flown paths."""
         return self._surveys.ways(survey_id)
+
+    def survey_estimate(
+        self, survey_id: int, serials: Sequence[str]
+    ) -> Callable[[], schema.SurveyEstimateView] | None:
+        """Return what estimates a survey with these vehicles; None without rows."""
+        return self._surveys.preview(survey_id, serials)
+
+    def cameras(self) -> list[schema.CameraView]:
+        """Return the survey cameras that requests may name."""
+        return self._surveys.cameras()
 
     def survey_cells(self, survey_id: int) -> SurveyCellStates | None:
         """Return the states of a survey's cells."""

@@ -1,6 +1,6 @@
 """The survey part of the API's port: requests become events, states become views."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from recon.api import schema
@@ -12,10 +12,12 @@ from recon.model.errors import SiteError
 from recon.model.event import SurveyRequested, SurveyStarted, SurveyStopped
 from recon.model.person import Person
 from recon.model.survey import Survey, SurveyBudget, SurveyCamera, WhenDone
+from recon.model.survey_camera import CAMERAS, CameraModel, SurveyCameraError, camera_named
 from recon.site import Site
 from recon.site.geojson import Feature, regions_of
 from recon.station.api_views import RunningStation
 from recon.station.api_views.operation_views import cells_number, survey_view, survey_ways
+from recon.station.api_views.survey_preview import Preview, survey_preview
 from recon.station.operations.survey.commands import start_refusal, stop_refusal
 from recon.station.operations.survey.planning import NO_SITE
 
@@ -33,8 +35,12 @@ class SurveyService:
         region = self._region(asked)
         if isinstance(region, Refusal):
             return _refused(region)
+        try:
+            camera = _camera(asked.camera, self.site)
+        except SurveyCameraError as problem:
+            return _refused(Refusal(RULE, str(problem)))
         number = self.ids()
-        self.driver.handle(SurveyRequested(_survey(number, asked, region), by))
+        self.driver.handle(SurveyRequested(_survey(number, asked, region, camera), by))
         return self._taken(number)
 
     def start(
@@ -70,6 +76,17 @@ class SurveyService:
         """Return a survey's planned rows and flown paths; None without rows."""
         record = self.driver.station.surveys.records.get(survey_id)
         return None if record is None else survey_ways(record)
+
+    def preview(self, survey_id: int, serials: Sequence[str]) -> Preview | None:
+        """Return what estimates a survey with these vehicles; None without rows."""
+        station = self.driver.station
+        record = station.surveys.records.get(survey_id)
+        return None if record is None else survey_preview(station, record, serials)
+
+    def cameras(self) -> list[schema.CameraView]:
+        """Return the survey cameras that requests may name; the site's own come first."""
+        known = {**self.site.cameras, **CAMERAS}
+        return [_camera_view(self.site.cameras.get(name, model)) for name, model in known.items()]
 
     def cells(self, survey_id: int) -> SurveyCellStates | None:
         """Return a survey's cells, None without rows."""
@@ -112,15 +129,37 @@ class SurveyService:
         return Refusal(RULE, f"Survey region {name!a} not found; available: {known}")
 
 
-def _survey(number: int, asked: schema.SurveyRequest, region: Region) -> Survey:
-    camera, budget = asked.camera, asked.budget
+def _camera(asked: schema.SurveyCameraRequest, site: Site) -> SurveyCamera:
+    if asked.model is None:
+        return SurveyCamera(asked.across_deg, asked.along_deg, asked.interval_s, asked.across_px)
+    return camera_named(asked.model, site.cameras.values()).at_interval(asked.interval_s)
+
+
+def _camera_view(model: CameraModel) -> schema.CameraView:
+    return schema.CameraView(
+        name=model.key,
+        title=model.title,
+        across_px=model.across_px,
+        along_px=model.along_px,
+        across_deg=model.across_deg,
+        along_deg=model.along_deg,
+        timer_s=list(model.timer_s),
+        shutter=model.shutter,
+        source=model.source,
+    )
+
+
+def _survey(
+    number: int, asked: schema.SurveyRequest, region: Region, camera: SurveyCamera
+) -> Survey:
+    budget = asked.budget
     return Survey(
         id=number,
         name=asked.name or asked.region or f"survey {number}",
         region=region,
         height_above_takeoff_m=asked.height_above_takeoff_m,
         speed_mps=asked.speed_mps,
-        camera=SurveyCamera(camera.across_deg, camera.along_deg, camera.interval_s),
+        camera=camera,
         front_overlap=asked.front_overlap,
         side_overlap=asked.side_overlap,
         row_bearing_deg=asked.row_bearing_deg,

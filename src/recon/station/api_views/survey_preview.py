@@ -1,0 +1,134 @@
+"""What a planned survey will take with named vehicles, as they stand now; nothing changes."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+from recon.api import schema
+from recon.guidance.survey import Surveyor, SurveyPlan
+from recon.guidance.survey.estimate import Batteries, SurveyEstimate, estimate, plan_warnings
+from recon.guidance.survey.imaging import EXPOSURE_S, blur_px, speed_limits
+from recon.model.command import Refusal
+from recon.model.units import Stamped
+from recon.model.vehicle import VehicleState
+from recon.safety.datum import home_enu_m, vehicle_enu_m
+from recon.station.operations.survey.availability import time_left_s
+from recon.station.state.station import Station
+from recon.station.state.survey_record import SurveyRecord
+
+Preview = Callable[[], schema.SurveyEstimateView]
+
+
+def survey_preview(
+    station: Station, record: SurveyRecord, serials: Sequence[str]
+) -> Preview | None:
+    """Return what computes the preview, safe on any thread; None without rows.
+
+    Without serials it is for one drone that takes off at the region's south-west corner.
+    """
+    state = record.state
+    if state is None:
+        return None
+    plan, found = state.plan, [station.fleet.vehicles.get(serial) for serial in serials]
+    vehicles = [vehicle for vehicle in found if vehicle is not None]
+    problem = _problem(station, serials, vehicles)
+    fleet = [_surveyor(station, vehicle) for vehicle in vehicles] or [_one_drone(plan)]
+    energy = station.settings.safety.energy
+    landing_s = plan.survey.height_above_takeoff_m / energy.landing_mps + energy.touchdown_s
+    full_s = _full_s(station, plan, vehicles)
+    batteries = Batteries(full_s, landing_s=landing_s)
+    fastest_mps = station.airspace.airspace.limits.max_speed_mps
+    names = {vehicle.serial or "": vehicle.display_name for vehicle in vehicles}
+
+    def preview() -> schema.SurveyEstimateView:
+        if problem is not None:
+            return _view(plan, Refusal("survey", problem), names, fastest_mps)
+        return _view(plan, estimate(plan, fleet, batteries), names, fastest_mps)
+
+    return preview
+
+
+def _problem(
+    station: Station, serials: Sequence[str], vehicles: Sequence[VehicleState]
+) -> str | None:
+    known = {vehicle.serial for vehicle in vehicles}
+    for serial in serials:
+        if serial not in known:
+            return f"Vehicle {serial!a} not found"
+    for vehicle in vehicles:
+        if vehicle_enu_m(station.airspace, vehicle) is None:
+            return f"{vehicle.display_name} has no known position"
+        if vehicle.serial in station.imaging.imagers:
+            return f"{vehicle.display_name} is an imaging drone and cannot join a survey"
+    return None
+
+
+def _surveyor(station: Station, vehicle: VehicleState) -> Surveyor:
+    place_m, home_m = (at(station.airspace, vehicle) for at in (vehicle_enu_m, home_enu_m))
+    here = (0.0, 0.0) if place_m is None else (float(place_m[0]), float(place_m[1]))
+    return Surveyor(
+        vehicle.serial or "",
+        here,
+        time_left_s=time_left_s(vehicle, station.airspace, station.settings.safety.energy),
+        home_m=None if home_m is None else (float(home_m[0]), float(home_m[1])),
+    )
+
+
+def _one_drone(plan: SurveyPlan) -> Surveyor:
+    west_m, south_m = plan.survey.region.outline_m.min(axis=0).tolist()
+    return Surveyor("", (west_m, south_m))
+
+
+def _full_s(station: Station, plan: SurveyPlan, vehicles: Sequence[VehicleState]) -> float | None:
+    """Return how long the least enduring vehicle's full battery lasts; None if one is unknown."""
+    lasting_s: list[float] = []
+    for vehicle in vehicles:
+        full = replace(
+            vehicle,
+            battery_fraction=Stamped(1.0, 0),
+            height_above_takeoff_m=Stamped(plan.survey.height_above_takeoff_m, 0),
+        )
+        full_s = time_left_s(full, station.airspace, station.settings.safety.energy)
+        if full_s is None:
+            return None
+        lasting_s.append(full_s)
+    return min(lasting_s, default=None)
+
+
+def _view(
+    plan: SurveyPlan,
+    made: SurveyEstimate | Refusal,
+    names: dict[str, str],
+    fastest_mps: float,
+) -> schema.SurveyEstimateView:
+    survey, camera, cells = plan.survey, plan.survey.camera, plan.cells
+    height_m = survey.height_above_takeoff_m
+    limit, *_others = speed_limits(camera, height_m, survey.front_overlap, EXPOSURE_S, fastest_mps)
+    region_m2 = float(cells.is_inside.sum()) * cells.cell_m2
+    reached_m2 = float(cells.is_reached.sum()) * cells.cell_m2
+    needs = made if isinstance(made, SurveyEstimate) else None
+    return schema.SurveyEstimateView(
+        survey_id=survey.id,
+        refusal=made.reason if isinstance(made, Refusal) else None,
+        region_m2=region_m2,
+        reached_m2=reached_m2,
+        rows=len(plan.pieces),
+        gsd_m=camera.gsd_m(height_m),
+        blur_px=blur_px(camera, height_m, survey.speed_mps, EXPOSURE_S),
+        speed_limit_mps=limit.speed_mps,
+        speed_limited_by=limit.reason,
+        time_s=None if needs is None else needs.time_s,
+        flown_s=None if needs is None else needs.flown_s,
+        photos=None if needs is None else needs.photos,
+        photos_in_all=None if needs is None else needs.photos_in_all,
+        batteries=None if needs is None else needs.batteries,
+        drones=[
+            schema.DroneEstimateView(
+                serial=drone.serial or None,
+                vehicle_name=names.get(drone.serial, "one drone"),
+                time_s=drone.time_s,
+                flights=len(drone.flights),
+            )
+            for drone in (() if needs is None else needs.drones)
+        ],
+        warnings=plan_warnings(plan, limit),
+    )
