@@ -190,6 +190,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/cameras": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Cameras
+         * @description The survey cameras that a request may name: the table's and the site's own.
+         */
+        get: operations["cameras_api_cameras_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/commands": {
         parameters: {
             query?: never;
@@ -700,6 +720,26 @@ export interface paths {
          * @description A survey's cells: not imaged, light unknown, in shade, in sun; corners in the survey.
          */
         get: operations["cells_api_surveys__survey_id__cells_png_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/surveys/{survey_id}/estimate": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Estimate
+         * @description What a survey will take with these vehicles: time, photos, batteries. Nothing flies.
+         */
+        get: operations["estimate_api_surveys__survey_id__estimate_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1229,6 +1269,36 @@ export interface components {
             kind: "camera_stop";
         };
         /**
+         * CameraView
+         * @description A survey camera; the longer side of its photos lies across the flight.
+         */
+        CameraView: {
+            /** Across Deg */
+            across_deg: number;
+            /** Across Px */
+            across_px: number;
+            /** Along Deg */
+            along_deg: number;
+            /** Along Px */
+            along_px: number;
+            /** Name */
+            name: string;
+            /**
+             * Shutter
+             * @enum {string}
+             */
+            shutter: "global" | "mechanical" | "rolling";
+            /** Source */
+            source: string;
+            /**
+             * Timer S
+             * @description intervals that its timer can be set to
+             */
+            timer_s: number[];
+            /** Title */
+            title: string;
+        };
+        /**
          * CheckView
          * @description One point of a preflight checklist; `to_do` is empty when it is ok.
          */
@@ -1383,6 +1453,23 @@ export interface components {
              * @enum {string}
              */
             type: "Polygon" | "Point";
+        };
+        /**
+         * DroneEstimateView
+         * @description What a survey takes of one drone; `serial` is null for an assumed one.
+         */
+        DroneEstimateView: {
+            /** Flights */
+            flights: number;
+            /** Serial */
+            serial: string | null;
+            /**
+             * Time S
+             * @description from the start to its last landing, battery swaps included
+             */
+            time_s: number;
+            /** Vehicle Name */
+            vehicle_name: string;
         };
         /**
          * FailsafeCellView
@@ -2690,6 +2777,8 @@ export interface components {
         /**
          * SurveyCameraRequest
          * @description The survey drones' camera: fields of view, and the interval its timer is set to.
+         *
+         *     `model` is the name of a camera of `/api/cameras`, instead of fields of view and pixels.
          */
         SurveyCameraRequest: {
             /**
@@ -2697,6 +2786,11 @@ export interface components {
              * @default 66
              */
             across_deg: number;
+            /**
+             * Across Px
+             * @description null: the size of a pixel on the ground is not known
+             */
+            across_px?: number | null;
             /**
              * Along Deg
              * @default 52
@@ -2707,6 +2801,8 @@ export interface components {
              * @default 2
              */
             interval_s: number;
+            /** Model */
+            model?: string | null;
         };
         /**
          * SurveyCellsView
@@ -2726,6 +2822,62 @@ export interface components {
             number: number;
             /** Rows */
             rows: number;
+        };
+        /**
+         * SurveyEstimateView
+         * @description What a survey will take, each row flown once, as under a clear sky.
+         *
+         *     Times, photos and batteries are null with a `refusal`, batteries also while an endurance is
+         *     not known.
+         */
+        SurveyEstimateView: {
+            /** Batteries */
+            batteries: number | null;
+            /**
+             * Blur Px
+             * @description of motion during an exposure of 1/1000 s
+             */
+            blur_px: number;
+            /** Drones */
+            drones: components["schemas"]["DroneEstimateView"][];
+            /**
+             * Flown S
+             * @description in the air, all drones added
+             */
+            flown_s: number | null;
+            /**
+             * Gsd M
+             * @description pixel on the ground; null: pixels are not known
+             */
+            gsd_m: number | null;
+            /**
+             * Photos
+             * @description on rows
+             */
+            photos: number | null;
+            /**
+             * Photos In All
+             * @description by a timer that runs from takeoff to landing
+             */
+            photos_in_all: number | null;
+            /** Reached M2 */
+            reached_m2: number;
+            /** Refusal */
+            refusal: string | null;
+            /** Region M2 */
+            region_m2: number;
+            /** Rows */
+            rows: number;
+            /** Speed Limit Mps */
+            speed_limit_mps: number;
+            /** Speed Limited By */
+            speed_limited_by: string;
+            /** Survey Id */
+            survey_id: number;
+            /** Time S */
+            time_s: number | null;
+            /** Warnings */
+            warnings: string[];
         };
         /**
          * SurveyFiguresView
@@ -3555,6 +3707,26 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    cameras_api_cameras_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CameraView"][];
                 };
             };
         };
@@ -4424,6 +4596,49 @@ export interface operations {
                 };
                 content: {
                     "image/png": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    estimate_api_surveys__survey_id__estimate_get: {
+        parameters: {
+            query?: {
+                /** @description vehicles; none: one drone */
+                serial?: string[];
+            };
+            header?: never;
+            path: {
+                survey_id: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SurveyEstimateView"];
                 };
             };
             /** @description Not Found */

@@ -222,6 +222,14 @@ export class LiveSource implements StationSource {
     return this.requests.stopSurvey(id, word);
   }
 
+  surveyEstimate(id: number, serials: readonly string[]) {
+    return this.requests.surveyEstimate(id, serials);
+  }
+
+  cameras() {
+    return this.requests.cameras();
+  }
+
   surveyWays(id: number) {
     return this.requests.surveyWays(id);
   }

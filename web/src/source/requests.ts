@@ -3,6 +3,7 @@ import type {
   AccessView,
   ActionResponse,
   AuthorityHolder,
+  CameraView,
   ImportedView,
   OrderResult,
   PreflightView,
@@ -10,6 +11,7 @@ import type {
   SiteDrawingResponse,
   SiteDrawingView,
   SunAtView,
+  SurveyEstimateView,
   SurveyRequest,
   SurveyResponse,
   SurveyWays,
@@ -139,6 +141,19 @@ export class Requests {
       () => this.client.POST("/api/surveys/{survey_id}/{command}", options),
       asSurveyResponse,
     );
+  }
+
+  surveyEstimate(
+    survey_id: number,
+    serials: readonly string[],
+  ): Promise<Outcome<SurveyEstimateView>> {
+    const params = { path: { survey_id }, query: { serial: [...serials] } };
+    const options = { params, signal: timeout() };
+    return answered(() => this.client.GET("/api/surveys/{survey_id}/estimate", options), identity);
+  }
+
+  cameras(): Promise<Outcome<readonly CameraView[]>> {
+    return answered(() => this.client.GET("/api/cameras", { signal: timeout() }), identity);
   }
 
   surveyWays(survey_id: number): Promise<Outcome<SurveyWays>> {

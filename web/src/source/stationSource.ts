@@ -3,6 +3,7 @@ import type {
   AccessView,
   ActionResponse,
   AuthorityHolder,
+  CameraView,
   ImportedView,
   Order,
   OrderResult,
@@ -12,6 +13,7 @@ import type {
   SiteDrawingView,
   StationState,
   SunAtView,
+  SurveyEstimateView,
   SurveyRequest,
   SurveyResponse,
   SurveyWays,
@@ -52,7 +54,7 @@ export interface NamedOrder {
 
 /** A survey to plan; omitted fields use the station's defaults. */
 export type NewSurvey = Pick<SurveyRequest, "height_above_takeoff_m" | "speed_mps"> &
-  Partial<SurveyRequest>;
+  Partial<Omit<SurveyRequest, "camera">> & { camera?: Partial<SurveyRequest["camera"]> };
 
 /** A temporary zone to draw; omitted fields use the station's defaults. */
 export type NewZone = Pick<TemporaryZoneRequest, "kind" | "reason"> & Partial<TemporaryZoneRequest>;
@@ -117,6 +119,10 @@ export interface StationSource {
     allowTakeoff: boolean,
   ): Promise<Outcome<SurveyResponse>>;
   stopSurvey(id: number, word: "pause" | "abort"): Promise<Outcome<SurveyResponse>>;
+  /** What a planned survey will take with these vehicles; without any, with one drone. */
+  surveyEstimate(id: number, serials: readonly string[]): Promise<Outcome<SurveyEstimateView>>;
+  /** The survey cameras that a plan may name. */
+  cameras(): Promise<Outcome<readonly CameraView[]>>;
   surveyWays(id: number): Promise<Outcome<SurveyWays>>;
   surveyCells(id: number, number: number): Promise<Outcome<Picture>>;
   shadePicture(number: number): Promise<Outcome<Picture>>;

@@ -9,6 +9,7 @@ import type {
   OrderResult,
   ShadeLineView,
   StationState,
+  SurveyEstimateView,
   SurveyView,
   TemporaryZoneView,
   VehicleView,
@@ -295,6 +296,29 @@ export function hazard(
     largest_radius_m: 150,
     corridor: [],
     corridor_half_width_m: 12,
+    ...changes,
+  };
+}
+
+/** What a survey of two hectares takes, with `changes` applied. */
+export function surveyEstimate(changes: Partial<SurveyEstimateView> = {}): SurveyEstimateView {
+  return {
+    survey_id: 7,
+    refusal: null,
+    region_m2: 20_000,
+    reached_m2: 20_000,
+    rows: 6,
+    gsd_m: 0.0156,
+    blur_px: 0.4,
+    speed_limit_mps: 7.1,
+    speed_limited_by: "70% front overlap with a photo every 2 s",
+    time_s: 301,
+    flown_s: 590,
+    photos: 62,
+    photos_in_all: 214,
+    batteries: 2,
+    drones: [],
+    warnings: [],
     ...changes,
   };
 }

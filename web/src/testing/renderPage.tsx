@@ -6,6 +6,7 @@ import type {
   AccessView,
   ActionResponse,
   AuthorityHolder,
+  CameraView,
   ImportedView,
   OrderResult,
   PreflightView,
@@ -13,6 +14,7 @@ import type {
   SiteDrawingResponse,
   SiteDrawingView,
   StationState,
+  SurveyEstimateView,
   UpwindPlaceView,
   UpwindView,
 } from "../protocol";
@@ -26,6 +28,7 @@ import type {
 } from "../source/stationSource";
 import type { ThemeSwitch } from "../theme/theme";
 import { FakeClock } from "./fakeClock";
+import { surveyEstimate } from "./fakeState";
 
 /** A rendered component with a fake source and clock that the test controls. */
 export interface RenderedPage {
@@ -45,6 +48,8 @@ export interface RenderedPage {
   answerWith(results: readonly OrderResult[]): void;
   /** Sets the answer to every further request other than orders. */
   answerRequestsWith(response: ActionResponse): void;
+  /** Sets what every further estimate of a survey finds. */
+  estimateWith(changes: Partial<SurveyEstimateView>): void;
   /** Sets the place upwind of further answers. */
   findUpwind(place: UpwindPlaceView): void;
   showPreflight(preflight: PreflightView): void;
@@ -116,6 +121,8 @@ interface Recorded {
   fetchFrame: StationSource["vehicleFrame"];
   upwindPlace: Outcome<UpwindView>;
   site: FakeSite;
+  estimate: SurveyEstimateView;
+  cameras: readonly CameraView[];
 }
 
 const noPicture = async () => ({ kind: "failed", problem: "no picture in this test" }) as const;
@@ -165,6 +172,20 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
       undone: [],
       files: [],
     },
+    estimate: surveyEstimate(),
+    cameras: [
+      {
+        name: "mini3pro",
+        title: "Mini 3 Pro (12 MP)",
+        across_px: 4032,
+        along_px: 3024,
+        across_deg: 69.7,
+        along_deg: 55.2,
+        timer_s: [2, 3, 5],
+        shutter: "rolling",
+        source: "specifications",
+      },
+    ],
   };
   let behindS = 0;
   const source = fakeSource(state, connection, person, () => behindS, recorded);
@@ -193,6 +214,9 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
     },
     answerRequestsWith: (response) => {
       recorded.response = response;
+    },
+    estimateWith: (changes) => {
+      recorded.estimate = surveyEstimate(changes);
     },
     findUpwind: (place) => {
       recorded.upwindPlace = { kind: "answered", value: { place, reason: "" } };
@@ -312,6 +336,19 @@ function fakeSource(
       recorded.requests.push({ stoppedSurvey, word });
       return { kind: "answered", value: { ...recorded.response, survey: null } };
     },
+    surveyEstimate: async (_id, serials) => ({
+      kind: "answered",
+      value: {
+        ...recorded.estimate,
+        drones: serials.map((serial) => ({
+          serial,
+          vehicle_name: serial,
+          time_s: 300,
+          flights: 1,
+        })),
+      },
+    }),
+    cameras: async () => ({ kind: "answered", value: recorded.cameras }),
     surveyWays: noPicture,
     surveyCells: noPicture,
     shadePicture: noPicture,

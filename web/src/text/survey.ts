@@ -1,5 +1,5 @@
-import type { SurveyView } from "../protocol";
-import { formatQuantity } from "./quantities";
+import type { SurveyEstimateView, SurveyView } from "../protocol";
+import { formatQuantity, UNKNOWN } from "./quantities";
 
 /** Survey phases for display. */
 const PHASE_LABELS: Readonly<Record<SurveyView["phase"], string>> = {
@@ -48,4 +48,28 @@ export function formatArea(area_m2: number): string {
 /** A share of the region in whole per cent, rounded down so that coverage never reads too high. */
 export function sharePercent(area_m2: number, region_m2: number): number {
   return region_m2 > 0 ? Math.floor((100 * area_m2) / region_m2 + 1e-6) : 0;
+}
+
+/** What a survey will take, as name and value. */
+export function estimateFacts(found: SurveyEstimateView): (readonly [string, string])[] {
+  const cm = found.gsd_m === null ? null : 100 * found.gsd_m;
+  const speed = `${formatQuantity(found.speed_limit_mps, "m/s")}: ${found.speed_limited_by}`;
+  return [
+    ["Time", minutes(found.time_s)],
+    ["In the air", minutes(found.flown_s)],
+    ["Photos on rows", count(found.photos)],
+    ["Photos in all", count(found.photos_in_all)],
+    ["Batteries", count(found.batteries)],
+    ["Pixel on the ground", formatQuantity(cm, "cm")],
+    ["Fastest", speed],
+  ];
+}
+
+/** Whole minutes, rounded up: a battery never lasts longer than it reads. */
+function minutes(seconds: number | null): string {
+  return seconds === null ? UNKNOWN : `${Math.ceil(seconds / 60)}\u00a0min`;
+}
+
+function count(value: number | null): string {
+  return value === null ? UNKNOWN : `${value}`;
 }

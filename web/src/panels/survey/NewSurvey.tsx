@@ -1,4 +1,4 @@
-import { createSignal, For, Show } from "solid-js";
+import { createResource, createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { SurveyResponse } from "../../protocol";
 import type { Outcome } from "../../source/stationSource";
@@ -24,15 +24,21 @@ export function NewSurvey(props: {
 }) {
   const { source, fleet, lacks } = useConsole();
   const [isPlanning, setPlanning] = createSignal(false);
+  const [cameras] = createResource(async () => {
+    const outcome = await source.cameras();
+    return outcome.kind === "answered" ? outcome.value : [];
+  });
   const regions = () => (fleet.site?.areas ?? []).filter(({ kind }) => kind === "survey");
   const plan = async (form: HTMLFormElement) => {
     const data = new FormData(form);
     setPlanning(true);
+    const model = String(data.get("camera") ?? "");
     const outcome = await source.planSurvey({
       region: String(data.get("region")),
       height_above_takeoff_m: Number(data.get("height")),
       speed_mps: Number(data.get("speed")),
       planner: String(data.get("planner")),
+      camera: { model: model === "" ? null : model, interval_s: Number(data.get("interval")) },
       look_aside_allowed: data.get("look_aside") !== null,
       upwind_allowed: data.get("upwind") !== null,
       when_done: data.get("when_done") === "hover" ? "hover" : "return_home",
@@ -68,6 +74,19 @@ export function NewSurvey(props: {
           <label>
             Speed, m/s
             <input name="speed" type="number" min={1} max={15} step={0.5} value={5} required />
+          </label>
+          <label>
+            Camera
+            <select name="camera">
+              <option value="">Other, 66° × 52°</option>
+              <For each={cameras()}>
+                {({ name, title }) => <option value={name}>{title}</option>}
+              </For>
+            </select>
+          </label>
+          <label>
+            Photo every, s
+            <input name="interval" type="number" min={0.5} max={60} step={0.1} value={2} required />
           </label>
           <label class="survey-wide">
             Rows

@@ -8,6 +8,7 @@ import { surveyStatus, timeLeft } from "../../text/survey";
 import { BRIEF_MS, GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Panel, Problem } from "../Panel";
 import { NewSurvey } from "./NewSurvey";
+import { SurveyPreview } from "./SurveyPreview";
 import { Coverage, Decisions } from "./SurveySummary";
 import "./survey.css";
 
@@ -62,6 +63,9 @@ function SurveySection(props: SurveyProps) {
       </p>
       <Coverage survey={props.survey} />
       <Decisions lines={active().map((vehicle) => lineOf(vehicle, is("done")))} />
+      <Show when={is("created")}>
+        <SurveyPreview survey={props.survey} />
+      </Show>
       <Show when={is("created", "paused", "running")}>
         <Start survey={props.survey} onResult={props.onResult} />
       </Show>

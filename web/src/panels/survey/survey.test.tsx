@@ -19,6 +19,10 @@ function hold(name: string, ms: number) {
   button.dispatchEvent(new PointerEvent("pointerup", { bubbles: true, button: 0 }));
 }
 
+async function settled() {
+  for (let turn = 0; turn < 5; turn++) await Promise.resolve();
+}
+
 describe("a survey in the list", () => {
   it("shows the area photographed in sun, in shade and remaining", () => {
     show(survey(7));
@@ -46,6 +50,31 @@ describe("a survey in the list", () => {
       { startedSurvey: 7, serials: ["SN-002"], takeoff: false },
       { startedSurvey: 7, serials: ["SN-002"], takeoff: true },
     ]);
+  });
+
+  it("shows what it will take before its start, for the selected drones", async () => {
+    show(survey(7, { phase: "created", vehicles: [] }));
+    await settled();
+    const text = () => find(page.root, "[data-testid=estimate-7]").textContent;
+    expect(text()).toContain("With one drone");
+    expect(text()).toContain("Time6\u00a0min");
+    expect(text()).toContain("Photos on rows62");
+    expect(text()).toContain("Batteries2");
+    expect(text()).toContain("Pixel on the ground1.6\u00a0cm");
+    expect(text()).toContain("7.1\u00a0m/s: 70% front overlap");
+    const refusal = "a full battery gives 240 s for rows";
+    page.estimateWith({ refusal, time_s: null, batteries: null, warnings: ["9 m/s is too fast"] });
+    page.shared.selection.only(2);
+    await settled();
+    expect(text()).toContain("With the selected drones");
+    expect(text()).toContain("Time\u2014");
+    expect(text()).toContain(refusal);
+    expect(text()).toContain("9 m/s is too fast");
+  });
+
+  it("that flies shows no estimate", () => {
+    show(survey(7));
+    expect(page.root.querySelector("[data-testid=estimate-7]")).toBeNull();
   });
 
   it("is paused by a short press and aborted by a long one", () => {
@@ -104,12 +133,28 @@ describe("a new survey", () => {
           height_above_takeoff_m: 50,
           speed_mps: 5,
           planner: "lawnmower_once",
+          camera: { model: null, interval_s: 2 },
           when_done: "return_home",
           look_aside_allowed: false,
           upwind_allowed: false,
         },
       },
     ]);
+  });
+
+  it("is planned with a camera of the station's table and its timer", async () => {
+    const regions = [area("survey", [0, 0], 50, { name: "south field" })];
+    const base = station([vehicle(1)]);
+    const site = base.site === null ? null : { ...base.site, areas: regions };
+    page = renderPage(SurveyPanel, { ...base, site });
+    await settled();
+    find<HTMLSelectElement>(page.root, "select[name=camera]").value = "mini3pro";
+    find<HTMLInputElement>(page.root, "input[name=interval]").value = "3";
+    find<HTMLFormElement>(page.root, "form").dispatchEvent(
+      new SubmitEvent("submit", { bubbles: true, cancelable: true }),
+    );
+    const camera = { model: "mini3pro", interval_s: 3 };
+    expect(page.requests).toMatchObject([{ plannedSurvey: { camera } }]);
   });
 
   it("allows motions of the imaging drone only when the operator ticks them", () => {

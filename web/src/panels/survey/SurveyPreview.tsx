@@ -1,0 +1,51 @@
+import { createResource, For, Show } from "solid-js";
+import { useConsole } from "../../console";
+import { targetsKey } from "../../orders/targets";
+import type { SurveyEstimateView, SurveyView } from "../../protocol";
+import { UNKNOWN } from "../../text/quantities";
+import { estimateFacts } from "../../text/survey";
+
+/** What a planned survey will take with the selected drones, before its start. */
+export function SurveyPreview(props: { survey: SurveyView }) {
+  const { source, targets } = useConsole();
+  const asked = () => ({
+    id: props.survey.id,
+    serials: targets().serials,
+    key: `${props.survey.id} ${targetsKey(targets())}`,
+  });
+  // By key: the selection is a new object with every state, ten times a second.
+  const [outcome] = createResource(
+    () => asked().key,
+    () => source.surveyEstimate(asked().id, asked().serials),
+  );
+  const estimate = (): SurveyEstimateView | null => {
+    const latest = outcome.latest;
+    return latest?.kind === "answered" ? latest.value : null;
+  };
+  const failed = () => (outcome.latest?.kind === "failed" ? outcome.latest.problem : null);
+  const assumed = () => (targets().serials.length === 0 ? "one drone" : "the selected drones");
+  return (
+    <div class="survey-preview" data-testid={`estimate-${props.survey.id}`}>
+      <Show when={estimate()} fallback={<p class="muted">{failed() ?? `Estimate: ${UNKNOWN}`}</p>}>
+        {(found) => (
+          <>
+            <p class="muted">With {assumed()}, each row once:</p>
+            <dl class="survey-facts">
+              <For each={estimateFacts(found())}>
+                {([name, value]) => (
+                  <>
+                    <dt>{name}</dt>
+                    <dd>{value}</dd>
+                  </>
+                )}
+              </For>
+            </dl>
+            <For each={[found().refusal, ...found().warnings].filter((text) => text !== null)}>
+              {(text) => <p class="survey-warning wire-text">{text}</p>}
+            </For>
+          </>
+        )}
+      </Show>
+    </div>
+  );
+}
