@@ -10,8 +10,8 @@ import numpy.typing as npt
 from recon.api.schema import (
     ActionResponse,
     AuditPage,
-    ImportedView,
     CameraView,
+    ImportedView,
     OrderResponse,
     PreflightView,
     SiteDrawingRequest,

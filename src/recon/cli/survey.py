@@ -192,7 +192,10 @@ def _preview_rows(preview: SurveyPreview) -> list[tuple[str, str]]:
         ("photos", f"{preview.photos} on rows, {preview.photos_in_all} by the timer in all"),
         ("batteries", batteries),
         *(
-            (drone.vehicle_name, f"{_minutes(drone.time_s)} in {drone.flights} flights")
+            (
+                drone.vehicle_name,
+                f"{_minutes(drone.time_s)} in {drone.flights} flight{'s'[: drone.flights != 1]}",
+            )
             for drone in preview.drones
         ),
         *(("warning", text) for text in preview.warnings),

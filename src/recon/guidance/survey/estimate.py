@@ -172,7 +172,8 @@ def _flight(
 ) -> tuple[PlannedFlight | None, Route]:
     """Fly missions until the battery lasts for no further row; also return the rest.
 
-    A mission ends before its battery where no way leads on to the next row.
+    As in flight: a mission is planned with a share of what is left, and what it did not use gives
+    another one. It also ends where no way leads on to the next row.
     """
     settings, speed_mps = plan.settings, plan.survey.speed_mps
     home_m, flown, missions_s = vehicle.home_m or vehicle.place_m, 0, 0.0
@@ -183,11 +184,12 @@ def _flight(
             break
         end_m = track.corners_m[-1]
         used_s = flight_time_s(track, speed_mps, vehicle.place_m, end_m, settings)
+        used_s += settings.corner_s * len(track.corners_m)
+        missions_s += used_s
         left_s = vehicle.time_left_s
         if left_s is not None:
-            left_s = max(0.0, left_s - used_s / settings.flight_time_share)
+            left_s = max(0.0, left_s - used_s)
         vehicle = replace(vehicle, place_m=end_m, home_m=home_m, time_left_s=left_s)
-        missions_s += used_s + settings.corner_s * len(track.corners_m)
         tracks.append(track)
         flown += count
     if not tracks:
