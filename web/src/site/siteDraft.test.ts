@@ -66,6 +66,10 @@ describe("editing", () => {
     draft.undo();
     expect([draft.features(), draft.isChanged(), draft.canUndo()]).toEqual([[], false, false]);
     for (let step = 0; step < 3; step += 1) draft.redo();
+    draft.draw({ layer: "keep_out", hole: false });
+    draft.undo();
+    expect(draft.canUndo()).toBe(false);
+    draft.draw(null);
     expect(draft.features()[0]).toMatchObject({ properties: { name: "north" } });
     draft.removeRing(id, 1);
     expect(draft.features()[0]?.rings).toHaveLength(1);

@@ -125,6 +125,9 @@ export function createSiteDraft(
     const now = features();
     return now.length !== before.length || now.some(({ unedited }, i) => unedited !== before[i]);
   });
+  // A ring that is half drawn is no edit yet: an undo would take back the one before.
+  const canUndo = () => tool() === null && past().length > 0;
+  const canRedo = () => tool() === null && future().length > 0;
   let nextId = 1;
   let checks = 0;
   let cancelCheck = () => {};
@@ -221,8 +224,8 @@ export function createSiteDraft(
     selected,
     tool,
     isChanged,
-    canUndo: () => past().length > 0,
-    canRedo: () => future().length > 0,
+    canUndo,
+    canRedo,
     verdict,
     notice,
     imported,
@@ -276,14 +279,14 @@ export function createSiteDraft(
       })),
     undo: () => {
       const last = past().at(-1);
-      if (last === undefined) return;
+      if (!canUndo() || last === undefined) return;
       setPast(past().slice(0, -1));
       setFuture([features(), ...future()]);
       show(last);
     },
     redo: () => {
       const [next, ...rest] = future();
-      if (next === undefined) return;
+      if (!canRedo() || next === undefined) return;
       setFuture(rest);
       setPast([...past(), features()]);
       show(next);
