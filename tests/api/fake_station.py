@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from recon.api.app import create_app
-from recon.api.port import SiteFolder, SurveyCellStates
+from recon.api.port import SiteFolder, SurveyCellStates, TimelineSubject
 from recon.api.schema import (
     ActionResponse,
     AuditPage,
@@ -22,6 +22,7 @@ from recon.api.schema import (
     SurveyView,
     SurveyWays,
     TemporaryZoneResponse,
+    TimelineView,
     UpwindView,
 )
 from recon.api.security import Access, AccessCheck
@@ -107,6 +108,11 @@ class FakeStation:
             owner=owner,
             given_at_ns=given_at_ns,
         )
+
+    def timeline(
+        self, serial: str | None, about: TimelineSubject | None, before_n: int | None, at_most: int
+    ) -> TimelineView:
+        return self.service.timeline(serial, about, before_n, at_most)
 
     def audit(self, after: int, at_most: int) -> AuditPage:
         return self.service.audit(after, at_most)

@@ -13,11 +13,12 @@ from tests.persons import user
 
 from recon import wire
 from recon.api.login import Login
-from recon.api.schema import AuditPage
+from recon.api.schema import AuditPage, TimelineView
 from recon.api.security import Access
 from recon.model.event import LinkOpened, PacketReceived
 from recon.record.audit import AuditEntry
 from recon.record.audit_log import KEPT_ENTRIES, AuditLog
+from recon.station.audit.flight_entries import POSITION_KIND
 from recon.vehicles.reports import to_report
 
 HOVER = {"serials": ["A", "Z"], "order": {"kind": "hover"}}
@@ -110,3 +111,33 @@ class TestCheck:
             assert asked["command_id"] == 0
             assert was["command_id"] > 0
             assert {**asked, "command_id": 0} == {**was, "command_id": 0}
+
+
+def timeline(client: Client, query: str = "") -> TimelineView:
+    return TimelineView.model_validate_json(client.get(f"/api/timeline{query}").text)
+
+
+def test_the_timeline_keeps_orders_while_positions_come_and_go(tmp_path: Path) -> None:
+    station = FakeStation()
+    station.service.audit_log = log = AuditLog(tmp_path, quiet_kinds=frozenset({POSITION_KIND}))
+    for number in range(3):
+        log.put(AuditEntry("order.sent", f"hover {number}", "anna", f"SIM-{number}", "Drone"), 0)
+        log.put(AuditEntry("alarm.raised", f"low battery {number}", serial=f"SIM-{number}"), 0)
+    for _ in range(KEPT_ENTRIES):
+        log.put(AuditEntry(POSITION_KIND, "position", serial="SIM-1"), 0)
+    client = Client(application(station))
+    found = timeline(client)
+    assert [entry.text for entry in found.entries[:2]] == ["low battery 2", "hover 2"]
+    assert (len(found.entries), found.has_more) == (6, False)
+    assert found.entries[1].by == "anna"
+    first = timeline(client, "?at_most=4")
+    assert first.has_more
+    rest = timeline(client, f"?before={first.entries[-1].n}")
+    assert [entry.text for entry in rest.entries] == ["low battery 0", "hover 0"]
+    of_one = timeline(client, "?serial=SIM-1&about=orders")
+    assert [entry.text for entry in of_one.entries] == ["hover 1"]
+    assert client.get("/api/timeline?about=weather").status_code == 422
+
+
+def test_without_an_audit_the_timeline_is_empty() -> None:
+    assert timeline(Client(application(FakeStation()))).entries == []

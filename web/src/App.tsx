@@ -25,6 +25,7 @@ import { SunPanel } from "./panels/sun/SunPanel";
 import { SurveyPanel } from "./panels/survey/SurveyPanel";
 import { SurveySummary } from "./panels/survey/SurveySummary";
 import { TimeScale } from "./panels/time/TimeScale";
+import { TimelinePanel } from "./panels/timeline/TimelinePanel";
 import { VehicleList } from "./panels/vehicles/VehicleList";
 import { ZonesPanel } from "./panels/zones/ZonesPanel";
 import "./layout.css";
@@ -38,6 +39,7 @@ const PANELS: readonly (readonly [PanelName, () => ReturnType<typeof AlarmList>]
   ["site", SitePanel],
   ["return", FleetReturn],
   ["orders", CommandList],
+  ["timeline", TimelinePanel],
   ["links", LinkList],
   ["station", StationPanel],
 ];

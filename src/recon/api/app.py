@@ -18,7 +18,7 @@ from recon.api.order_routes import add_order_routes
 from recon.api.pairing_routes import add_pairing_routes
 from recon.api.permissions import require_listed_role
 from recon.api.picture_routes import add_picture_routes
-from recon.api.port import StationPort
+from recon.api.port import StationPort, TimelineSubject
 from recon.api.responses import PROBLEMS, found
 from recon.api.security import POLICY_VIOLATION, refuse_stream
 from recon.api.site_routes import add_site_routes
@@ -115,6 +115,19 @@ def _add_audit_and_streams(app: FastAPI, port: StationPort) -> None:
     ) -> schema.AuditPage:
         """Audit entries of this run after a number, the oldest first."""
         return port.audit(after, at_most)
+
+    @app.get("/api/timeline")
+    async def timeline(
+        serial: Annotated[str | None, Query(max_length=64)] = None,
+        about: TimelineSubject | None = None,
+        before: Annotated[int | None, Query(ge=1)] = None,
+        at_most: Annotated[int, Query(ge=1, le=MAX_ENTRIES)] = MAX_ENTRIES,
+    ) -> schema.TimelineView:
+        """What happened in this run, the newest first: of all vehicles or one, before a number.
+
+        Positions and details are left out; the audit has them.
+        """
+        return port.timeline(serial, about, before, at_most)
 
     @app.websocket("/api/audit/stream")
     async def audit_stream(socket: WebSocket, after: Annotated[int, Query(ge=0)] = 0) -> None:

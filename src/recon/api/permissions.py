@@ -31,6 +31,7 @@ LEAST_ROLE: dict[tuple[str, str], Role] = {
     ("GET", "/api/commands"): Role.OBSERVER,
     ("GET", "/api/commands/{command_id}"): Role.OBSERVER,
     ("GET", "/api/audit"): Role.OBSERVER,
+    ("GET", "/api/timeline"): Role.OBSERVER,
     ("GET", "/api/ground-image.png"): Role.OBSERVER,
     ("GET", "/api/ground-image.tif"): Role.OBSERVER,
     ("GET", "/api/shade.png"): Role.OBSERVER,

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Literal, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -25,6 +25,7 @@ from recon.api.schema import (
     SurveyView,
     SurveyWays,
     TemporaryZoneResponse,
+    TimelineView,
     UpwindView,
 )
 from recon.model.command import Body
@@ -44,6 +45,10 @@ class SurveyCellStates:
     inside: npt.NDArray[np.bool_]
     light_known: npt.NDArray[np.bool_]
     """Where the light was known when a photo was taken."""
+
+
+TimelineSubject = Literal["orders", "alarms", "flights", "operations", "station"]
+"""What a line of the timeline is about."""
 
 
 class SiteFolder(Protocol):
@@ -168,6 +173,11 @@ class StationPort(Protocol):
 
     def acknowledge(self, alarm_id: int, by: Person) -> bool:
         """Acknowledge an alarm; False when it does not exist."""
+
+    def timeline(
+        self, serial: str | None, about: TimelineSubject | None, before_n: int | None, at_most: int
+    ) -> TimelineView:
+        """Return what happened, the newest first, of one vehicle and subject or of all."""
 
     def audit(self, after: int, at_most: int) -> AuditPage:
         """Return the audit's entries after a number, the oldest first."""

@@ -1,8 +1,11 @@
 """`recon audit show` and `recon audit verify`: the entries of an audit, and its integrity."""
 
+import re
 import sys
+from collections import deque
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from datetime import UTC, datetime, time, timedelta
 from pathlib import Path
 from typing import Annotated
 
@@ -18,6 +21,10 @@ from recon.record.audit_check import AuditCheck, check_audit
 from recon.record.audit_files import audit_files, raw_lines
 
 audit_app = new_app(help="Read a station's audit and verify its integrity.", no_args_is_help=True)
+
+_UNITS_S = {"s": 1, "min": 60, "m": 60, "h": 3_600, "d": 86_400}
+_AGO = re.compile(r"(?P<count>\d{1,9}(?:\.\d+)?) ?(?P<unit>s|min|m|h|d)")
+_CLOCK = re.compile(r"\d\d:\d\d(?::\d\d)?")
 
 PathsArgument = Annotated[
     list[Path], typer.Argument(metavar="FILE|FOLDER...", help="Audit files, or their folder.")
@@ -40,20 +47,33 @@ def show_command(
     positions: Annotated[
         bool, typer.Option("--positions", help="Include vehicle positions.")
     ] = False,
+    since: Annotated[
+        str | None,
+        typer.Option(help="Only the last `90min`, `2h` or `1d`, or from a UTC time like `09:30`."),
+    ] = None,
+    tail: Annotated[
+        int | None, typer.Option(min=1, help="Only the last so many of the chosen entries.")
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print entries as JSON lines.")] = False,
 ) -> None:
     """Show audit entries, the oldest first."""
+    first_utc = "" if since is None else _start_of(since, datetime.now(UTC))
+
+    def is_chosen(line: AuditLine) -> bool:
+        return (
+            (positions or kind is not None or line.kind != "vehicle.position")
+            and (kind is None or line.kind.startswith(kind))
+            and (vehicle is None or vehicle in (line.serial, line.vehicle))
+            and (person is None or is_by(line.by, person))
+            and line.utc >= first_utc
+        )
+
     with _exits_when_unreadable():
-        for line in _lines(paths):
-            is_chosen = (
-                (positions or kind is not None or line.kind != "vehicle.position")
-                and (kind is None or line.kind.startswith(kind))
-                and (vehicle is None or vehicle in (line.serial, line.vehicle))
-                and (person is None or is_by(line.by, person))
-            )
-            if is_chosen and as_json:
+        chosen = filter(is_chosen, _lines(paths))
+        for line in chosen if tail is None else deque(chosen, tail):
+            if as_json:
                 print_json(msgspec.to_builtins(line))
-            elif is_chosen:
+            else:
                 print_line(f"{line.utc}  {line.n:>6}  {line.kind:<24}  {line.by:<24}  {line.text}")
 
 
@@ -75,6 +95,27 @@ def verify_command(
             for sentence in _sentences(verdict):
                 print_line(sentence)
     raise typer.Exit(0 if all(verdict.is_whole for verdict in verdicts) else 1)
+
+
+def _start_of(since: str, now: datetime) -> str:
+    """Return the UTC time, as the audit writes it, from which on entries are wanted."""
+    found = _AGO.fullmatch(since.strip())
+    if found is not None:
+        try:
+            start = now - timedelta(seconds=float(found["count"]) * _UNITS_S[found["unit"]])
+        except OverflowError:
+            start = datetime.min.replace(tzinfo=UTC)
+        return start.isoformat()
+    try:
+        if _CLOCK.fullmatch(since):
+            return datetime.combine(now.date(), time.fromisoformat(since), UTC).isoformat()
+        given = datetime.fromisoformat(since)
+    except ValueError:
+        raise typer.BadParameter(
+            f"expected 90min, 2h, 1d, 09:30 or 2026-05-01T09:30, got {since!a}",
+            param_hint="--since",
+        ) from None
+    return (given if given.tzinfo else given.replace(tzinfo=UTC)).astimezone(UTC).isoformat()
 
 
 def is_by(by: str, person: str) -> bool:

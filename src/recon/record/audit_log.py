@@ -20,6 +20,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -42,6 +43,9 @@ WAITING_ENTRIES = 4096
 KEPT_ENTRIES = 2000
 """The latest ones stay in memory for the API."""
 
+KEPT_NOTABLE = 5000
+"""Entries that are not quiet: positions of a large fleet would push them out within minutes."""
+
 BATCH_ENTRIES = 256
 """Written at a time."""
 
@@ -58,8 +62,12 @@ class AuditLog:
         self,
         folder: Path,
         utc_ns: Callable[[], int] = time.time_ns,
+        quiet_kinds: frozenset[str] = frozenset(),
     ) -> None:
-        """Take the folder; nothing is opened before `start`."""
+        """Take the folder, and the kinds that the timeline leaves out.
+
+        Nothing is opened before `start`.
+        """
         self.folder = folder
         self.path: Path | None = None
         """This run's file, once there is one."""
@@ -68,6 +76,8 @@ class AuditLog:
         self._utc_ns = utc_ns
         self._waiting: queue.SimpleQueue[NumberedEntry | None] = queue.SimpleQueue()
         self._kept: deque[NumberedEntry] = deque(maxlen=KEPT_ENTRIES)
+        self._notable: deque[NumberedEntry] = deque(maxlen=KEPT_NOTABLE)
+        self._quiet_kinds = quiet_kinds
         self._next_n = 1
         self._run_before: dict[str, Any] | None = None
         self._file: int | None = None
@@ -101,6 +111,8 @@ class AuditLog:
         stamped = NumberedEntry(self._next_n, self._utc_ns(), t_ns, entry)
         self._next_n += 1
         self._kept.append(stamped)
+        if entry.kind not in self._quiet_kinds:
+            self._notable.append(stamped)
         if self._waiting.qsize() >= WAITING_ENTRIES:
             with contextlib.suppress(queue.Empty):
                 self._waiting.get_nowait()
@@ -113,6 +125,22 @@ class AuditLog:
             return []
         first = max(0, n + 1 - self._kept[0].n)
         return [self._kept[i] for i in range(first, min(first + at_most, len(self._kept)))]
+
+    def timeline(
+        self, serial: str | None, kinds: tuple[str, ...], before_n: int | None, at_most: int
+    ) -> list[NumberedEntry]:
+        """Return notable entries, the newest first: of one vehicle, and of kinds that begin so.
+
+        None stands for all vehicles, and for the newest entry; no kinds for all.
+        """
+        found = (
+            stamped
+            for stamped in reversed(self._notable)
+            if (before_n is None or stamped.n < before_n)
+            and (serial is None or stamped.entry.serial == serial)
+            and (not kinds or stamped.entry.kind.startswith(kinds))
+        )
+        return list(islice(found, at_most))
 
     @property
     def first_n(self) -> int:

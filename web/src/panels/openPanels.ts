@@ -10,6 +10,7 @@ export const PANEL_NAMES = {
   site: "Edit site",
   return: "Return in layers",
   orders: "Orders",
+  timeline: "Timeline",
   links: "Links",
   station: "Station and site",
 } as const;

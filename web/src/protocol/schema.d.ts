@@ -790,6 +790,28 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/timeline": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Timeline
+         * @description What happened in this run, the newest first: of all vehicles or one, before a number.
+         *
+         *     Positions and details are left out; the audit has them.
+         */
+        get: operations["timeline_api_timeline_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/upwind-place": {
         parameters: {
             query?: never;
@@ -3253,6 +3275,39 @@ export interface components {
             ][];
         };
         /**
+         * TimelineEntryView
+         * @description One line of the timeline.
+         */
+        TimelineEntryView: {
+            /** By */
+            by: string;
+            /** Kind */
+            kind: string;
+            /** N */
+            n: number;
+            /** Serial */
+            serial: string | null;
+            /** Text */
+            text: string;
+            /** Utc */
+            utc: string;
+            /** Vehicle */
+            vehicle: string;
+        };
+        /**
+         * TimelineView
+         * @description What happened in this run, the newest first, as far as it is in memory.
+         */
+        TimelineView: {
+            /** Entries */
+            entries: components["schemas"]["TimelineEntryView"][];
+            /**
+             * Has More
+             * @description whether older ones are in memory
+             */
+            has_more: boolean;
+        };
+        /**
          * UpwindPlaceView
          * @description Where an imaging drone sees most of the shade that comes over a region.
          */
@@ -4723,6 +4778,40 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    timeline_api_timeline_get: {
+        parameters: {
+            query?: {
+                about?: ("orders" | "alarms" | "flights" | "operations" | "station") | null;
+                at_most?: number;
+                before?: number | null;
+                serial?: string | null;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TimelineView"];
                 };
             };
             /** @description Validation Error */

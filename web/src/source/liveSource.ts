@@ -2,7 +2,14 @@ import { createSignal } from "solid-js";
 import type { AccessView, AuthorityHolder, SiteDrawingRequest, StationState } from "../protocol";
 import type { Clock, Instant } from "./clock";
 import { Requests } from "./requests";
-import type { Connection, NamedOrder, NewSurvey, NewZone, StationSource } from "./stationSource";
+import type {
+  Connection,
+  NamedOrder,
+  NewSurvey,
+  NewZone,
+  StationSource,
+  TimelineFilter,
+} from "./stationSource";
 import { newStreamOwner, type Socket, Stream } from "./stream";
 import { StreamLag } from "./streamLag";
 
@@ -116,6 +123,10 @@ export class LiveSource implements StationSource {
 
   endZone(id: number) {
     return this.requests.endZone(id);
+  }
+
+  timeline(filter: TimelineFilter, atMost: number) {
+    return this.requests.timeline(filter, atMost);
   }
 
   siteDrawing() {

@@ -17,10 +17,18 @@ import type {
   SurveyWays,
   TemporaryZoneRequest,
   TemporaryZoneResponse,
+  TimelineView,
   UpwindView,
 } from "../protocol";
 import type { paths } from "../protocol/schema";
-import type { NamedOrder, NewSurvey, NewZone, Outcome, Picture } from "./stationSource";
+import type {
+  NamedOrder,
+  NewSurvey,
+  NewZone,
+  Outcome,
+  Picture,
+  TimelineFilter,
+} from "./stationSource";
 
 /** Request timeout: an order must not arrive long after the operator sent it. */
 export const REQUEST_MS = 3_000;
@@ -219,6 +227,13 @@ export class Requests {
     return answered(() => this.client.POST("/api/zones/{zone_id}/end", options), identity);
   }
 
+  timeline(filter: TimelineFilter, at_most: number): Promise<Outcome<TimelineView>> {
+    const given = Object.entries(filter).filter(([, value]) => value !== null);
+    const query = { ...(Object.fromEntries(given) as Partial<TimelineQuery>), at_most };
+    const options = { params: { query }, signal: timeout() };
+    return answered(() => this.client.GET("/api/timeline", options), identity);
+  }
+
   siteDrawing(): Promise<Outcome<SiteDrawingView>> {
     return answered(
       () => this.client.GET("/api/site/drawing", { signal: siteTimeout() }),
@@ -350,6 +365,8 @@ function guardResult(vehicle_name: string, reason: string | null): OrderResult {
     vehicle_name,
   };
 }
+
+type TimelineQuery = { [Key in keyof TimelineFilter]: NonNullable<TimelineFilter[Key]> };
 
 function timeout(): AbortSignal {
   return AbortSignal.timeout(REQUEST_MS);

@@ -19,6 +19,7 @@ import type {
   SurveyWays,
   TemporaryZoneRequest,
   TemporaryZoneResponse,
+  TimelineView,
   UpwindView,
 } from "../protocol";
 import type { Instant } from "./clock";
@@ -58,6 +59,16 @@ export type NewSurvey = Pick<SurveyRequest, "height_above_takeoff_m" | "speed_mp
 
 /** A temporary zone to draw; omitted fields use the station's defaults. */
 export type NewZone = Pick<TemporaryZoneRequest, "kind" | "reason"> & Partial<TemporaryZoneRequest>;
+
+export type TimelineSubject = "orders" | "alarms" | "flights" | "operations" | "station";
+
+/** Which lines of the timeline; null means all vehicles, all subjects, the newest. */
+export interface TimelineFilter {
+  readonly serial: string | null;
+  readonly about: TimelineSubject | null;
+  /** The number of the entry before which the lines are wanted. */
+  readonly before: number | null;
+}
 
 /** Where the page gets states from and sends orders to: a running station or a recording. */
 export interface StationSource {
@@ -131,6 +142,8 @@ export interface StationSource {
   sunAt(latitudeDeg: number, longitudeDeg: number): Promise<Outcome<SunAtView>>;
   /** Where an imaging drone sees most of the shade that comes over the region. */
   upwindPlace(serial: string): Promise<Outcome<UpwindView>>;
+  /** What happened in this run, the newest first. */
+  timeline(filter: TimelineFilter, atMost: number): Promise<Outcome<TimelineView>>;
   /** The site's layers with all corners, as they are in its folder. */
   siteDrawing(): Promise<Outcome<SiteDrawingView>>;
   /** Checks a drawing as the station would at its start; nothing is saved. */

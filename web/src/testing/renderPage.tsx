@@ -15,6 +15,7 @@ import type {
   SiteDrawingView,
   StationState,
   SurveyEstimateView,
+  TimelineEntryView,
   UpwindPlaceView,
   UpwindView,
 } from "../protocol";
@@ -25,6 +26,7 @@ import type {
   NewZone,
   Outcome,
   StationSource,
+  TimelineFilter,
 } from "../source/stationSource";
 import type { ThemeSwitch } from "../theme/theme";
 import { FakeClock } from "./fakeClock";
@@ -44,6 +46,8 @@ export interface RenderedPage {
   readonly allStops: () => number;
   /** The site's folder behind the page. */
   readonly site: FakeSite;
+  /** All entries of the timeline, the newest first, and what was asked for. */
+  readonly timeline: { entries: TimelineEntryView[]; readonly asked: TimelineFilter[] };
   /** Sets the answer to every further order. */
   answerWith(results: readonly OrderResult[]): void;
   /** Sets the answer to every further request other than orders. */
@@ -123,6 +127,7 @@ interface Recorded {
   site: FakeSite;
   estimate: SurveyEstimateView;
   cameras: readonly CameraView[];
+  timeline: RenderedPage["timeline"];
 }
 
 const noPicture = async () => ({ kind: "failed", problem: "no picture in this test" }) as const;
@@ -186,6 +191,7 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
         source: "specifications",
       },
     ],
+    timeline: { entries: [], asked: [] },
   };
   let behindS = 0;
   const source = fakeSource(state, connection, person, () => behindS, recorded);
@@ -209,6 +215,7 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
     requests: recorded.requests,
     allStops: () => recorded.allStops,
     site: recorded.site,
+    timeline: recorded.timeline,
     answerWith: (results) => {
       recorded.answer = results;
     },
@@ -356,6 +363,16 @@ function fakeSource(
     sunAt: noPicture,
     upwindPlace: async () => recorded.upwindPlace,
     ...fakeSiteRequests(recorded.site),
+    timeline: async (filter, atMost) => {
+      recorded.timeline.asked.push(filter);
+      const found = recorded.timeline.entries.filter(
+        ({ n, serial }) =>
+          (filter.before === null || n < filter.before) &&
+          (filter.serial === null || serial === filter.serial),
+      );
+      const value = { entries: found.slice(0, atMost), has_more: found.length > atMost };
+      return { kind: "answered", value };
+    },
     close: () => {},
   };
 }

@@ -27,6 +27,8 @@ from recon.api.schema.orders import (
     PhaseView,
     PreflightView,
     Severity,
+    TimelineEntryView,
+    TimelineView,
 )
 from recon.api.schema.requests import (
     AdmitAppRequest,
@@ -213,6 +215,8 @@ __all__ = [
     "TemporaryZoneRequest",
     "TemporaryZoneResponse",
     "TemporaryZoneView",
+    "TimelineEntryView",
+    "TimelineView",
     "UpwindPlaceView",
     "UpwindView",
     "VehicleView",

@@ -131,6 +131,25 @@ class AuditEntryView(Message):
     details: dict[str, Any]
 
 
+class TimelineEntryView(Message):
+    """One line of the timeline."""
+
+    n: int
+    utc: str
+    kind: str
+    by: str
+    serial: str | None
+    vehicle: str
+    text: str
+
+
+class TimelineView(Message):
+    """What happened in this run, the newest first, as far as it is in memory."""
+
+    entries: list[TimelineEntryView]
+    has_more: bool = Field(description="whether older ones are in memory")
+
+
 class AuditPage(Message):
     """Entries of this run after a number, the oldest first.
 

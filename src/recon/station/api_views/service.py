@@ -8,7 +8,7 @@ from pathlib import Path
 
 from recon import version
 from recon.api import schema
-from recon.api.port import SurveyCellStates
+from recon.api.port import SurveyCellStates, TimelineSubject
 from recon.fleet import pairing
 from recon.model.command import Body, Refusal
 from recon.model.control import AuthorityHolder
@@ -241,6 +241,17 @@ class Service:
         self.driver.handle(AlarmAcknowledged(alarm_id, by.label))
         return True
 
+    def timeline(
+        self, serial: str | None, about: TimelineSubject | None, before_n: int | None, at_most: int
+    ) -> schema.TimelineView:
+        """Return what happened in this run, the newest first."""
+        if self.audit_log is None:
+            return schema.TimelineView(entries=[], has_more=False)
+        kinds = () if about is None else _KINDS_OF[about]
+        found = self.audit_log.timeline(serial, kinds, before_n, at_most + 1)
+        entries = [_timeline_entry(stamped) for stamped in found[:at_most]]
+        return schema.TimelineView(entries=entries, has_more=len(found) > at_most)
+
     def audit(self, after: int, at_most: int) -> schema.AuditPage:
         """Return the audit's entries after a number, as far as they are in memory."""
         return _audit_page(self.audit_log, after, at_most)
@@ -382,6 +393,36 @@ def _action(refusal: Refusal | None) -> schema.ActionResponse:
     if refusal is not None:
         return schema.ActionResponse(accepted=False, rule=refusal.rule, reason=refusal.reason)
     return schema.ActionResponse(accepted=True, rule=None, reason=None)
+
+
+_KINDS_OF: dict[TimelineSubject, tuple[str, ...]] = {
+    "orders": ("order.", "all_stop.", "authority.", "sticks."),
+    "alarms": ("alarm.", "separation_hold.", "hazard."),
+    "flights": ("vehicle.", "link.", "app."),
+    "operations": (
+        "survey.",
+        "fleet_return.",
+        "look_aside.",
+        "imager_motion.",
+        "temporary_zone.",
+        "site.",
+    ),
+    "station": ("station.", "record.", "audit.", "login.", "users.", "operator", "preflight."),
+}
+"""How the kinds of a subject's entries begin."""
+
+
+def _timeline_entry(stamped: NumberedEntry) -> schema.TimelineEntryView:
+    entry = stamped.entry
+    return schema.TimelineEntryView(
+        n=stamped.n,
+        utc=stamped.utc,
+        kind=entry.kind,
+        by=entry.by,
+        serial=entry.serial,
+        vehicle=entry.vehicle,
+        text=harmless(entry.text),
+    )
 
 
 def _audit_page(log: AuditLog | None, after: int, at_most: int) -> schema.AuditPage:

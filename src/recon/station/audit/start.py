@@ -13,6 +13,7 @@ from recon.record.audit import FAILED_KIND, STARTED_KIND, STOPPED_KIND, AuditEnt
 from recon.record.audit_files import RunEnd, audit_files, read_run_end, run_number
 from recon.record.audit_log import AuditLog, refuse_other_writer
 from recon.record.users_file import state_folder
+from recon.station.audit.flight_entries import POSITION_KIND
 from recon.station.state.settings import StationSettings
 
 MAX_FILES_READ = 5
@@ -58,7 +59,7 @@ def begin_audit(place: AuditPlace) -> Begun:
     Raises `RecordError` only when another running station writes there: anything else that is wrong
     with the folder must not keep the station from starting.
     """
-    log = AuditLog(place.folder)
+    log = AuditLog(place.folder, quiet_kinds=frozenset({POSITION_KIND}))
     if place.is_shared:
         return Begun(log)
     refuse_other_writer(place.folder)

@@ -1,0 +1,147 @@
+import { createEffect, createSignal, For, on, onCleanup, Show } from "solid-js";
+import { useConsole } from "../../console";
+import type { TimelineEntryView } from "../../protocol";
+import type { TimelineSubject } from "../../source/stationSource";
+import { capitalised, personName, vehicleLabel, withoutNumbers } from "../../text/names";
+import { Empty, Panel, Problem } from "../Panel";
+import "./timeline.css";
+
+const EVERY_MS = 2_000;
+const PAGE = 50;
+const ALL = "";
+
+const SUBJECTS: readonly (readonly [TimelineSubject, string])[] = [
+  ["orders", "Orders"],
+  ["alarms", "Alarms"],
+  ["flights", "Flights and links"],
+  ["operations", "Surveys, zones, site"],
+  ["station", "Station and users"],
+];
+
+/** What happened in this run, the newest first: of all drones or one, by subject. */
+export function TimelinePanel() {
+  const { source, clock, fleet } = useConsole();
+  const [serial, setSerial] = createSignal<string | null>(null);
+  const [about, setAbout] = createSignal<TimelineSubject | null>(null);
+  const [entries, setEntries] = createSignal<readonly TimelineEntryView[]>([]);
+  const [hasMore, setMore] = createSignal(false);
+  const [problem, setProblem] = createSignal<string | null>(null);
+  let question = 0;
+  let cancel = () => {};
+
+  /** `isNew` starts over with the newest; otherwise older ones are added. */
+  const load = async (before: number | null) => {
+    const asked = question;
+    const outcome = await source.timeline(
+      { serial: serial(), about: about(), before },
+      before === null ? PAGE : 2 * PAGE,
+    );
+    if (asked !== question) return;
+    setProblem(outcome.kind === "failed" ? outcome.problem : null);
+    if (outcome.kind === "failed") return;
+    const found = outcome.value.entries;
+    if (before !== null) {
+      setEntries([...entries(), ...found]);
+      setMore(outcome.value.has_more);
+      return;
+    }
+    const last = found.at(-1)?.n ?? 0;
+    const older = entries().filter(({ n }) => n < last);
+    // A gap means that more came than one page holds: what is older is asked for again.
+    const isJoined = entries().some(({ n }) => n >= last);
+    setEntries(isJoined ? [...found, ...older] : found);
+    if (!isJoined || older.length === 0) setMore(outcome.value.has_more);
+  };
+  const follow = async () => {
+    await load(null);
+    cancel = clock.after(EVERY_MS, () => void follow());
+  };
+  createEffect(
+    on([serial, about], () => {
+      question += 1;
+      cancel();
+      setEntries([]);
+      void follow();
+    }),
+  );
+  onCleanup(() => {
+    question += 1;
+    cancel();
+  });
+
+  return (
+    <Panel title="Timeline" name="timeline">
+      <div class="section timeline-filters">
+        <label>
+          Drone
+          <select
+            class="field"
+            value={serial() ?? ALL}
+            onChange={(event) => setSerial(event.currentTarget.value || null)}
+          >
+            <option value={ALL}>All</option>
+            <For each={fleet.vehicles.filter((one) => one.serial !== null)}>
+              {(vehicle) => <option value={vehicle.serial ?? ALL}>{vehicleLabel(vehicle)}</option>}
+            </For>
+          </select>
+        </label>
+        <label>
+          About
+          <select
+            class="field"
+            value={about() ?? ALL}
+            onChange={(event) =>
+              setAbout((event.currentTarget.value || null) as TimelineSubject | null)
+            }
+          >
+            <option value={ALL}>Everything</option>
+            <For each={SUBJECTS}>{([value, text]) => <option value={value}>{text}</option>}</For>
+          </select>
+        </label>
+      </div>
+      <Problem text={problem()} />
+      <Show when={entries().length > 0} fallback={<Empty>Nothing has happened.</Empty>}>
+        {/* Scrollable lists are reached by keyboard too. */}
+        {/* biome-ignore lint/a11y/noNoninteractiveTabindex: it scrolls */}
+        <ol class="timeline" tabIndex={0} aria-label="What happened, the newest first">
+          <For each={entries()}>{(entry) => <Line entry={entry} />}</For>
+        </ol>
+        <Show when={hasMore()}>
+          <div class="section">
+            <button
+              type="button"
+              class="button"
+              onClick={() => void load(entries().at(-1)?.n ?? null)}
+            >
+              Earlier
+            </button>
+          </div>
+        </Show>
+      </Show>
+    </Panel>
+  );
+}
+
+function Line(props: { entry: TimelineEntryView }) {
+  return (
+    <li class={`timeline-line timeline-${props.entry.kind.split(".")[0]}`}>
+      <time dateTime={props.entry.utc} title={props.entry.utc}>
+        {clockTime(props.entry.utc)}
+      </time>
+      <span class="wire-text">
+        {capitalised(withoutNumbers(props.entry.text))}
+        <Show when={props.entry.by !== "station"}>
+          <span class="muted"> {capitalised(personName(props.entry.by))}</span>
+        </Show>
+      </span>
+    </li>
+  );
+}
+
+/** The time of day here, to the second. */
+export function clockTime(utc: string): string {
+  const date = new Date(utc);
+  if (Number.isNaN(date.getTime())) return utc;
+  const part = (value: number) => String(value).padStart(2, "0");
+  return [date.getHours(), date.getMinutes(), date.getSeconds()].map(part).join(":");
+}
