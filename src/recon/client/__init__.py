@@ -34,6 +34,7 @@ from recon.client.messages import (
     WaitingAppStatus,
 )
 from recon.client.order import Order, VehicleAnswer
+from recon.client.site import SiteCommands, SiteDrawing, SiteFeature
 from recon.client.station import FleetCommands, Station
 from recon.client.surveys import (
     DronePreview,
@@ -88,6 +89,9 @@ __all__ = [
     "PreflightPoint",
     "Refusal",
     "RequestRefusedError",
+    "SiteCommands",
+    "SiteDrawing",
+    "SiteFeature",
     "Staleness",
     "Station",
     "StationUnreachableError",

@@ -1,0 +1,49 @@
+"""The site's layers from Python: read, checked, saved and undone."""
+
+from pathlib import Path
+
+from tests.api.fake_station import FakeStation, application
+from tests.client.running_station import serving
+from tests.patient_loop import run_patiently
+
+from recon.client import Refusal, SiteDrawing, SiteFeature, Station
+from recon.model.geo import GeoPoint
+from recon.site import load_site
+from recon.site.new_site import make_site
+
+RING = [[-93.604, 41.901], [-93.602, 41.901], [-93.602, 41.903], [-93.604, 41.901]]
+
+
+def region(*ring: list[float]) -> SiteFeature:
+    geometry = {"type": "Polygon", "coordinates": [list(ring)]}
+    return SiteFeature("survey_regions", geometry, {"name": "north"})
+
+
+def test_layers_are_read_checked_saved_and_undone(tmp_path: Path) -> None:
+    make_site(tmp_path, "field", GeoPoint(41.9012, -93.6034, 275.0), 1)
+    fake = FakeStation(load_site(tmp_path))
+    fake.service.edit(tmp_path)
+
+    async def main() -> None:
+        async with serving(application(fake)) as url, Station(url) as station:
+            site = station.site
+            empty = await site.drawing()
+            assert (empty.features, empty.locked_reason) == ((), None)
+            assert await site.check([region(*RING)], empty.revision) is None
+            saved = await site.save([region(*RING)], empty.revision)
+            assert isinstance(saved, SiteDrawing)
+            assert saved.features == (region(*RING),)
+            assert list(load_site(tmp_path).layers.survey_regions) == ["north"]
+            late = await site.save([], empty.revision)
+            assert isinstance(late, Refusal)
+            assert "changed meanwhile" in late.reason
+            crossed = await site.check([region(RING[0], RING[1])], saved.revision)
+            assert crossed is not None
+            endless = await site.save([region([float("nan"), 0.0])], saved.revision)
+            assert isinstance(endless, Refusal)
+            assert endless.rule == "site_form"
+            undone = await site.undo(saved.revision)
+            assert isinstance(undone, SiteDrawing)
+            assert undone.features == ()
+
+    run_patiently(main())
