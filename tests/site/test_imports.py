@@ -160,10 +160,11 @@ def test_hostile_files_are_refused_with_a_sentence(kind: str) -> None:
 
 def test_nothing_but_the_five_formats_is_tried(tmp_path: Path) -> None:
     """GDAL has drivers that read other files, or the network, when a file asks for it."""
-    for name, text in (("a.vrt", VRT), ("a.csv", "x,y\n1,2\n"), ("b.json", "{}")):
-        (tmp_path / name).write_text(text)
-        with pytest.raises(SiteError, match="expected a file that GDAL reads, got a damaged one"):
-            imports._read_in_process(name, tmp_path / name)
+    (tmp_path / "a.csv").write_text("x,y\n1,2\n")
+    path = tmp_path / "a.vrt"
+    path.write_text(VRT.replace("/home/a.csv", str(tmp_path / "a.csv")))
+    with pytest.raises(SiteError, match="expected a file that GDAL reads, got a damaged one"):
+        imports._read_in_process(path.name, path)
 
 
 def test_more_features_than_a_layer_may_hold_are_refused() -> None:

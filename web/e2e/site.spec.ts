@@ -1,36 +1,11 @@
-import { mkdtemp, rm, writeFile } from "node:fs/promises";
+import { mkdtemp, rm } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { expect, type Page, test } from "@playwright/test";
 import { openPanel } from "./openPanel";
-import { startStation } from "./stationProcess";
+import { runRecon, startStation } from "./stationProcess";
 
 const CONNECT_WITHIN_MS = 60_000;
-
-/** What `recon site new` writes, with two drones. */
-const SITE = `name = "west field"
-
-[origin]
-latitude_deg = 41.9012
-longitude_deg = -93.6034
-ground_altitude_m = 275.0
-
-[layers]
-${[1, 2].map(drone).join("")}`;
-
-function drone(number: number): string {
-  return `
-[[vehicles]]
-serial = "SIM-${number}"
-name = "Drone ${number}"
-model = "simulated"
-waypoint_altitude = "takeoff"
-endurance_min = 25
-go_home_height_m = ${22 + 8 * number}
-failsafe = "go_home"
-camera_interval_s = 2.0
-`;
-}
 
 const RING = [
   [-93.6044, 41.9006],
@@ -55,7 +30,9 @@ test("a site is drawn and imported, flown, and its fences keep while it is flown
 }) => {
   test.setTimeout(240_000);
   const folder = await mkdtemp(join(tmpdir(), "recon-site-"));
-  await writeFile(join(folder, "site.toml"), SITE);
+  // As docs/how-to/draw-a-site.md begins.
+  const place = ["--at", "41.9012,-93.6034", "--ground-altitude-m", "275"];
+  await runRecon("site", "new", folder, ...place, "--drones", "2");
   const station = await startStation("--site", folder);
   try {
     await page.goto(station.url);

@@ -34,6 +34,17 @@ export async function startStation(...args: string[]): Promise<RunningStation> {
   }
 }
 
+/** Runs another command of the same program to its end. */
+export async function runRecon(...args: string[]): Promise<void> {
+  const [program = ""] = COMMAND.split(" demo ");
+  const ended = spawn([program, ...args].join(" "), { cwd: PROJECT, shell: true });
+  let output = "";
+  ended.stdout.on("data", (chunk: Buffer) => (output += chunk.toString()));
+  ended.stderr.on("data", (chunk: Buffer) => (output += chunk.toString()));
+  const code = await new Promise((resolve) => ended.once("exit", resolve));
+  if (code !== 0) throw new Error(`recon ${args.join(" ")} ended with ${code}. Output:\n${output}`);
+}
+
 function consoleAddress(station: ChildProcess): Promise<string> {
   return new Promise((resolve, reject) => {
     let output = "";
