@@ -1,28 +1,51 @@
-"""Recon as a process of its own: started, read, stopped by a signal."""
+"""Recon as a process of its own: started, read, stopped by a signal.
+
+They are forked from one that has imported what a station, a simulator and a demo need: importing
+that costs two seconds of a core each time. `test_startup.py`, the tests of the docs and those of
+the console start `recon` from its first instruction.
+"""
 
 import os
 import signal
-import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
 from queue import Empty, Queue
 from threading import Thread
 
 PATIENCE_S = 120.0
+
+_FORKING = get_context("forkserver")
+_FORKING.set_forkserver_preload(["recon.cli.commands", "recon.cli.demo"])
+
+
+def _run(options: tuple[str, ...], environment: dict[str, str], output: Connection) -> None:
+    """In the new process: be `python -m recon`, with this output."""
+    os.setsid()
+    for descriptor in (1, 2):
+        os.dup2(output.fileno(), descriptor)
+    output.close()
+    os.environ.clear()
+    os.environ.update(environment)
+    sys.argv = ["recon", *options]
+    from recon.cli import main
+
+    main()
 
 
 class Started:
     """A running process whose lines are read as they come."""
 
     def __init__(self, *options: str) -> None:
-        self.process = subprocess.Popen(
-            [sys.executable, "-m", "recon", *options],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            start_new_session=True,
-        )
+        self._output, written = os.pipe()
+        with Connection(written, readable=False) as output:
+            given = (options, dict(os.environ), output)
+            self._process = _FORKING.Process(target=_run, args=given)
+            self._process.start()
+        assert self._process.pid is not None
+        self.pid = self._process.pid
         self.lines: list[str] = []
         self._arriving: Queue[str | None] = Queue()
         self._thread = Thread(target=self._read, daemon=True)
@@ -40,12 +63,23 @@ class Started:
 
     def end(self, signal_number: int) -> int:
         """Send a signal and wait; return the exit code."""
-        self.process.send_signal(signal_number)
+        self.send(signal_number)
         return self.wait()
+
+    def send(self, signal_number: int) -> None:
+        """Send a signal."""
+        os.kill(self.pid, signal_number)
+
+    @property
+    def is_running(self) -> bool:
+        """Whether it has not ended."""
+        return self._process.is_alive()
 
     def wait(self) -> int:
         """Wait for its end; return the exit code."""
-        code = self.process.wait(PATIENCE_S)
+        self._process.join(PATIENCE_S)
+        code = self._process.exitcode
+        assert code is not None, self.text
         while self._next() is not None:
             pass
         return code
@@ -57,11 +91,11 @@ class Started:
     def close(self) -> None:
         # With all that it started: what lives on would hold its output open.
         with suppress(ProcessLookupError):
-            os.killpg(self.process.pid, signal.SIGKILL)
-        self.process.wait()
+            os.killpg(self.pid, signal.SIGKILL)
+        self._process.kill()
+        self._process.join()
+        self._process.close()
         self._thread.join()
-        assert self.process.stdout is not None
-        self.process.stdout.close()
 
     def _next(self) -> str | None:
         try:
@@ -73,9 +107,9 @@ class Started:
         return line
 
     def _read(self) -> None:
-        assert self.process.stdout is not None
-        for line in self.process.stdout:
-            self._arriving.put(line.rstrip("\n"))
+        with open(self._output, encoding="utf-8") as lines:
+            for line in lines:
+                self._arriving.put(line.rstrip("\n"))
         self._arriving.put(None)
 
 

@@ -45,7 +45,7 @@ def test_vehicles_fly_and_all_that_it_started_ends_with_the_demo(tmp_path: Path)
         assert all(v["is_simulated"] for v in vehicles)
         demo.line_with("survey 1: flown by SIM-1, SIM-2")
         demo.line_with("mission: started")
-        children = children_of(demo.process.pid)
+        children = children_of(demo.pid)
         assert len(children) == 2  # the simulator and the guard
         assert demo.end(signal.SIGINT) == 0
         assert "Traceback" not in demo.text
@@ -59,7 +59,7 @@ def test_it_ends_as_cleanly_before_anything_flies(tmp_path: Path) -> None:
     ports = ("--http-port", "0", "--link-port", "0")
     with started("demo", *ports, "--scenario", str(scenario)) as demo:
         demo.line_with("Ctrl+C ends the demo")
-        children = children_of(demo.process.pid)
+        children = children_of(demo.pid)
         assert demo.end(signal.SIGTERM) == 0
         assert "Traceback" not in demo.text
         assert not any(Path(f"/proc/{pid}").exists() for pid in children)

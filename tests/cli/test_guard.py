@@ -50,7 +50,7 @@ def halted(pid: int) -> Iterator[None]:
 def test_with_the_station_halted_a_person_stops_all_at_its_guard(tmp_path: Path) -> None:
     with station_process(tmp_path, 2, *FLYING, guard=True) as station:
         url = stop_url_of_ready_guard(station)
-        with halted(station.station.process.pid):
+        with halted(station.station.pid):
             answer = stop_all(url, "ann")
         assert sorted(answer["held"]) == ["Drone 1", "Drone 2"]
         assert answer["missed"] == []
@@ -63,8 +63,8 @@ def test_with_the_station_halted_a_person_stops_all_at_its_guard(tmp_path: Path)
 def test_after_the_stations_death_all_can_be_stopped_and_the_next_one_knows(tmp_path: Path) -> None:
     with station_process(tmp_path, 2, *FLYING, guard=True) as station:
         url = stop_url_of_ready_guard(station)
-        station.station.process.kill()
-        station.station.process.wait(PATIENCE_S)
+        station.station.send(signal.SIGKILL)
+        station.station.wait()
         answer = stop_all(url, "bea")
         assert sorted(answer["held"] + answer["missed"]) == ["Drone 1", "Drone 2"]
         with started(*run_options(tmp_path, station.link_port, guard=True)) as successor:
@@ -78,29 +78,29 @@ def test_after_the_stations_death_all_can_be_stopped_and_the_next_one_knows(tmp_
 def test_a_guard_that_ends_is_an_alarm_and_is_followed_by_another(tmp_path: Path) -> None:
     with station_process(tmp_path, 2, *FLYING, guard=True) as station:
         first = stop_url_of_ready_guard(station)
-        for pid in guards_of(station.station.process.pid):
+        for pid in guards_of(station.station.pid):
             os.kill(pid, signal.SIGKILL)
         station.station.line_with("at its guard: it has ended")
         assert stop_url_of_ready_guard(station) == first
         assert station.station.end(signal.SIGTERM) == 0
-    assert guards_of(station.station.process.pid) == []
+    assert guards_of(station.station.pid) == []
 
 
 def test_a_guard_that_hangs_is_replaced(tmp_path: Path) -> None:
     with station_process(tmp_path, 2, *FLYING, guard=True) as station:
         stop_url_of_ready_guard(station)
-        (hanging,) = guards_of(station.station.process.pid)
+        (hanging,) = guards_of(station.station.pid)
         os.kill(hanging, signal.SIGSTOP)
         station.station.line_with("at its guard: it has ended")
         stop_url_of_ready_guard(station)
-        assert guards_of(station.station.process.pid) != [hanging]
+        assert guards_of(station.station.pid) != [hanging]
         assert station.station.end(signal.SIGTERM) == 0
 
 
 def test_the_shells_all_stop_goes_to_the_guard_of_a_halted_station(tmp_path: Path) -> None:
     with station_process(tmp_path, 2, *FLYING, guard=True) as station:
         port = stop_url_of_ready_guard(station).rpartition(":")[2].removesuffix("/all-stop")
-        with halted(station.station.process.pid):
+        with halted(station.station.pid):
             done = station.recon("all-stop", "--stop-port", port)
         assert done.code == 1, done.err  # sent, and not confirmed by telemetry
         assert sorted(done.out.splitlines()) == [
@@ -113,7 +113,7 @@ def test_the_shells_all_stop_goes_to_the_guard_of_a_halted_station(tmp_path: Pat
 def test_without_a_guard_there_is_no_stop_port(tmp_path: Path) -> None:
     with started(*run_options(tmp_path)) as station:
         addresses(station)
-        assert guards_of(station.process.pid) == []
+        assert guards_of(station.pid) == []
         assert not any(STOP_LINE in line for line in station.lines)
         assert station.end(signal.SIGTERM) == 0
 

@@ -53,7 +53,7 @@ def waits(station: StationProcess, count: int) -> list[dict[str, object]]:
         return [one for one in links if one["waiting"] is not None and one["waiting"]["serial"]]
 
     while len(found()) != count:
-        assert station.station.process.poll() is None, station.station.text
+        assert station.station.is_running, station.station.text
     return found()
 
 

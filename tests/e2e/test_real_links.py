@@ -1,12 +1,13 @@
 """Simulated apps in a process of their own, on real sockets, with what goes wrong in the field."""
 
 import asyncio
-import sys
+import signal
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from functools import partial
 
 import uvloop
+from tests.cli.processes import started
 from tests.persons import ANN
 from tests.ready import ready_site
 
@@ -64,16 +65,13 @@ async def field(*sim_options: str, damage: Damage | None = None) -> AsyncIterato
     proxy, port = await _proxied(links.port, damage)
     station = f"127.0.0.1:{port}"
     options = ["--station", station, "--vehicles", "2", "--no-imager", "--airborne", *sim_options]
-    simulator = await asyncio.create_subprocess_exec(
-        sys.executable, "-m", "recon", "sim", *options, stdout=asyncio.subprocess.DEVNULL
-    )
     here = Field(driver, Service.around(driver, site, None))
     try:
-        await here.until(lambda: all(here.vehicle(serial) for serial in SERIALS))
-        yield here
+        with started("sim", *options) as simulator:
+            await here.until(lambda: all(here.vehicle(serial) for serial in SERIALS))
+            yield here
+            await asyncio.to_thread(simulator.end, signal.SIGTERM)
     finally:
-        simulator.terminate()
-        await simulator.wait()
         proxy.cancel()
         ticking.cancel()
         await links.stop()

@@ -101,7 +101,7 @@ def test_a_station_killed_in_flight_is_restored_and_commands_nothing(field: Fiel
     # An open order: this drone has no camera, and its app answers nothing.
     (filming,) = here.recon("camera", "SIM-3", "--on", "--wait", "0", "--json").json
     until(lambda: is_stored(field.audit, filming["command_id"], "sent"))
-    here.station.process.send_signal(signal.SIGKILL)
+    here.station.send(signal.SIGKILL)
     here.station.wait()
     field.tap.take()
 
