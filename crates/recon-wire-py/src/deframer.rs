@@ -2,7 +2,7 @@
 use crate::limits::{Counters, Limits};
 use crate::union::to_python;
 use pyo3::prelude::*;
-use recon_wire::Packet;
+use recon_wire::{Arrival, Packet};
 use std::borrow::Cow;
 
 /// Turns the bytes of one direction of one connection into packets.
@@ -13,6 +13,7 @@ use std::borrow::Cow;
 pub struct Deframer {
     inner: recon_wire::Deframer,
     arrivals_ns: Vec<i64>,
+    ends: Vec<u64>,
 }
 
 impl Deframer {
@@ -20,17 +21,19 @@ impl Deframer {
     fn collect(
         &mut self,
         py: Python<'_>,
-        step: impl FnOnce(&mut recon_wire::Deframer, &mut dyn FnMut(Packet, i64)),
+        step: impl FnOnce(&mut recon_wire::Deframer, &mut dyn FnMut(Packet, Arrival)),
     ) -> PyResult<Vec<Py<PyAny>>> {
         let mut delivered = Ok(Vec::new());
-        let arrivals_ns = &mut self.arrivals_ns;
+        let (arrivals_ns, ends) = (&mut self.arrivals_ns, &mut self.ends);
         arrivals_ns.clear();
-        step(&mut self.inner, &mut |packet, arrived_ns| {
+        ends.clear();
+        step(&mut self.inner, &mut |packet, arrival| {
             if let Ok(list) = &mut delivered {
                 match to_python(py, packet) {
                     Ok(object) => {
                         list.push(object);
-                        arrivals_ns.push(arrived_ns);
+                        arrivals_ns.push(arrival.at_ns);
+                        ends.push(arrival.end);
                     }
                     Err(error) => delivered = Err(error),
                 }
@@ -49,6 +52,7 @@ impl Deframer {
         Self {
             inner: recon_wire::Deframer::new(limits),
             arrivals_ns: Vec::new(),
+            ends: Vec::new(),
         }
     }
 
@@ -92,6 +96,12 @@ impl Deframer {
     #[getter]
     fn arrivals_ns(&self) -> Vec<i64> {
         self.arrivals_ns.clone()
+    }
+
+    /// Bytes of the stream up to the end of each packet of the latest call, in order.
+    #[getter]
+    fn ends(&self) -> Vec<u64> {
+        self.ends.clone()
     }
 
     /// What it has seen so far: a snapshot.

@@ -54,6 +54,15 @@ impl Default for Counters {
     }
 }
 
+/// When and where in the stream a packet came.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Arrival {
+    /// When its last byte arrived.
+    pub at_ns: i64,
+    /// Bytes of the stream up to its end.
+    pub end: u64,
+}
+
 /// Turns the bytes of one direction of one connection into packets.
 ///
 /// A frame that fails (size, hash, patience) is searched again from the byte after its sync, so no
@@ -122,8 +131,8 @@ impl Deframer {
     }
 
     /// Takes in `data`, received at `now_ns`, and hands every packet it completes to `sink`, in order,
-    /// with the time its last byte arrived.
-    pub fn push(&mut self, data: &[u8], now_ns: i64, sink: &mut impl FnMut(Packet, i64)) {
+    /// with the time its last byte arrived and its end in the stream.
+    pub fn push(&mut self, data: &[u8], now_ns: i64, sink: &mut impl FnMut(Packet, Arrival)) {
         self.tick(now_ns, sink);
         if data.is_empty() {
             return;
@@ -140,7 +149,7 @@ impl Deframer {
     }
 
     /// Gives up half a packet that waited too long, and hands over what was hidden behind it.
-    pub fn tick(&mut self, now_ns: i64, sink: &mut impl FnMut(Packet, i64)) {
+    pub fn tick(&mut self, now_ns: i64, sink: &mut impl FnMut(Packet, Arrival)) {
         if !self.is_busy && !self.held.is_empty() {
             self.give_up_before = self.give_up_before.max(self.overdue_before(now_ns));
         }
@@ -148,13 +157,13 @@ impl Deframer {
     }
 
     /// Ends the stream: what is still held fails and is searched for whole packets.
-    pub fn finish(&mut self, sink: &mut impl FnMut(Packet, i64)) {
+    pub fn finish(&mut self, sink: &mut impl FnMut(Packet, Arrival)) {
         self.give_up_before = self.end();
         self.resume(sink);
     }
 
     /// Goes on with the work that the latest call left.
-    pub fn resume(&mut self, sink: &mut impl FnMut(Packet, i64)) {
+    pub fn resume(&mut self, sink: &mut impl FnMut(Packet, Arrival)) {
         self.is_busy = false;
         self.work_allowed = self.work.saturating_add(self.limits.work_per_call);
         if !self.held.is_empty() {
@@ -224,7 +233,11 @@ impl Deframer {
 
     /// With nothing held: takes whole packets straight out of `data`. Half a packet at the end, or a
     /// large damaged frame, becomes held. Returns what is left of `data` after that.
-    fn search<'a>(&mut self, mut data: &'a [u8], sink: &mut impl FnMut(Packet, i64)) -> &'a [u8] {
+    fn search<'a>(
+        &mut self,
+        mut data: &'a [u8],
+        sink: &mut impl FnMut(Packet, Arrival),
+    ) -> &'a [u8] {
         loop {
             let skipped = find_sync(data);
             self.work += skipped as u64;
@@ -271,7 +284,7 @@ impl Deframer {
 
     /// While something is held: appends no more of `data` than the next decision needs, and decides.
     /// Returns what is left of `data` once nothing is held, or nothing.
-    fn fill<'a>(&mut self, mut data: &'a [u8], sink: &mut impl FnMut(Packet, i64)) -> &'a [u8] {
+    fn fill<'a>(&mut self, mut data: &'a [u8], sink: &mut impl FnMut(Packet, Arrival)) -> &'a [u8] {
         loop {
             let is_at_sync = self.skip_to_sync();
             if self.held.is_empty() {
@@ -330,7 +343,7 @@ impl Deframer {
     }
 
     /// Judges the whole frame at the start of what is held.
-    fn settle(&mut self, pid: u8, size: usize, sink: &mut impl FnMut(Packet, i64)) {
+    fn settle(&mut self, pid: u8, size: usize, sink: &mut impl FnMut(Packet, Arrival)) {
         self.work += self.held.bytes_hashed_for(size) as u64;
         let expected = self.held.frame_hash(size).to_bytes();
         if self.held.live()[size - TRAILER_BYTES..size] != expected {
@@ -356,7 +369,7 @@ impl Deframer {
         pid: u8,
         size: usize,
         packet: Result<Packet, crate::Error>,
-        sink: &mut impl FnMut(Packet, i64),
+        sink: &mut impl FnMut(Packet, Arrival),
     ) {
         self.work += PACKET_WORK;
         self.position += size as u64;
@@ -364,7 +377,11 @@ impl Deframer {
             Ok(packet) => {
                 self.counters.packets[usize::from(pid)] += 1;
                 self.counters.unknown_pid += u64::from(!is_known(pid));
-                sink(packet, self.arrived_ns(self.position - 1));
+                let arrival = Arrival {
+                    at_ns: self.arrived_ns(self.position - 1),
+                    end: self.position,
+                };
+                sink(packet, arrival);
             }
             Err(_) => {
                 self.counters.bad_payload += 1;

@@ -16,7 +16,7 @@ mod limits;
 pub mod packet;
 
 pub use body::Body;
-pub use deframer::{Counters, Deframer};
+pub use deframer::{Arrival, Counters, Deframer};
 pub use error::{Error, SizeRule};
 pub use frame::{decode, encode, encode_into};
 pub use limits::Limits;

@@ -142,8 +142,8 @@ fn a_withheld_packet_has_the_time_its_last_byte_came() {
     let mut deframer = Deframer::default();
     let mut found = Vec::new();
     let mut push = |data: &[u8], at_ms: i64| {
-        deframer.push(data, at_ms * MS, &mut |_, arrived_ns| {
-            found.push(arrived_ns / MS)
+        deframer.push(data, at_ms * MS, &mut |_, arrival| {
+            found.push(arrival.at_ns / MS)
         });
     };
     push(&[header(ROWS, COLS), ack()[..4].to_vec()].concat(), 0);
@@ -160,8 +160,8 @@ fn arrivals_never_run_backwards() {
     let mut deframer = Deframer::default();
     let mut found = Vec::new();
     let mut push = |data: &[u8], at_ms: i64| {
-        deframer.push(data, at_ms * MS, &mut |_, arrived_ns| {
-            found.push(arrived_ns / MS)
+        deframer.push(data, at_ms * MS, &mut |_, arrival| {
+            found.push(arrival.at_ns / MS)
         });
     };
     push(&ack()[..5], 0);

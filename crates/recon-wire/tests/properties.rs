@@ -3,7 +3,7 @@ mod common;
 
 use common::{SMALL, deframe, frame, nasty_bytes, packet, parts};
 use proptest::prelude::*;
-use recon_wire::{Deframer, Error, Limits, decode};
+use recon_wire::{Arrival, Deframer, Error, Limits, decode};
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 128, failure_persistence: None, ..Default::default() })]
@@ -150,7 +150,7 @@ proptest! {
 
     /// Behind a false header, in reads of any size, one read every 100 ms.
     #[test]
-    fn each_packet_has_the_time_of_its_last_byte(
+    fn each_packet_has_the_time_and_place_of_its_last_byte(
         packets in prop::collection::vec(packet(), 1..6),
         cuts in prop::collection::vec(any::<usize>(), 0..30), work_per_call in 64u64..2_000_000,
     ) {
@@ -160,7 +160,7 @@ proptest! {
         let (mut starts, mut at) = (Vec::new(), 0);
         let mut deframer = Deframer::new(Limits { work_per_call, ..SMALL });
         let mut found = Vec::new();
-        let mut sink = |packet, arrived_ns: i64| found.push((packet, arrived_ns));
+        let mut sink = |packet, arrival: Arrival| found.push((packet, arrival));
         for (read, part) in parts(&stream, &cuts).into_iter().enumerate() {
             starts.push(at);
             at += part.len();
@@ -171,10 +171,11 @@ proptest! {
             deframer.resume(&mut sink);
         }
         let mut end = header.len();
-        for ((packet, bytes), (came, arrived_ns)) in packets.iter().zip(&frames).zip(&found) {
+        for ((packet, bytes), (came, arrival)) in packets.iter().zip(&frames).zip(&found) {
             end += bytes.len();
             let read = starts.iter().rposition(|&start| start < end).expect("the first starts at 0");
-            prop_assert_eq!((came, *arrived_ns), (packet, read as i64 * 100_000_000));
+            let at_ns = read as i64 * 100_000_000;
+            prop_assert_eq!((came, *arrival), (packet, Arrival { at_ns, end: end as u64 }));
         }
         prop_assert_eq!(found.len(), packets.len());
     }
