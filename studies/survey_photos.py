@@ -7,7 +7,6 @@ drone's frames. What a card holds is as bad as a real one: whole seconds by a cl
 positions with errors of their own, and no attitude.
 """
 
-import time
 from dataclasses import dataclass
 from math import radians, tan
 from pathlib import Path
@@ -17,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 from PIL import ExifTags, Image
 from PIL.TiffImagePlugin import IFDRational
-from tests.replay.record_flight import entries_of
+from tests.replay.record_flight import recording
 
 from recon.camera import OmnidirectionalCamera, TelemetryReference, mounted_pose
 from recon.geo import point_from_enu
@@ -41,9 +40,6 @@ from recon.sim.camera.frames import CameraView
 from recon.sim.camera.settings import CameraSettings
 from recon.sim.world import Sky
 from recon.station.imaging.shade import READ_SHADE
-from recon.station.kernel.recorded_values import FlightStart
-from recon.station.kernel.recording import Recorder, record_writer
-from recon.station.state.steps import StepTaken
 
 SIZE_PX = (456, 342)
 """Of the rendered photos, columns and rows: a twelfth of a survey camera's."""
@@ -104,36 +100,23 @@ def fly(
     run = StationRun(scenario, seed)
     sky = sky_of(scenario, seed)
     if is_exact:
-        jobs = run.driver._jobs
+        jobs = run.driver.jobs
         assert jobs is not None
         jobs.replace(READ_SHADE, ExactDetection(scenario, sky, FleetFrames({})).read)
     epoch_ns = round(sky.settings.sun.start_utc_s * NS_PER_S)
     driver = run.driver
-    writer = record_writer(folder, FlightStart.now(scenario.site, driver.station, driver.now_ns))
-    recorder = Recorder(writer, driver.handle, entries_of())
-
-    def take(step: StepTaken) -> None:
-        # Virtual time is faster than any disk: a real flight is not.
-        while not writer.has_room:
-            time.sleep(0.001)
-        recorder.take(step)
-
-    driver.record = take
-    driver.handle(ClockRead(epoch_ns + driver.now_ns))
-    writer.start()
     yaws: dict[str, list[float]] = {path.app.settings.serial: [] for path in run.drones}
     times_s: list[float] = []
-    while run.now_s < limit_s and not _is_over(run):
-        run.advance_a_second()
-        times_s.append(run.now_s)
-        for path in run.drones:
-            yaws[path.app.settings.serial].append(path.app.aircraft.motion.yaw_deg)
-    driver.record = None
-    writer.close(within_s=120.0)
-    assert writer.path is not None
-    assert writer.problem is None, writer.problem
+    with recording(driver, scenario.site, folder) as record:
+        driver.tap = None  # What links carry would only cost time here.
+        driver.handle(ClockRead(epoch_ns + driver.now_ns))
+        while run.now_s < limit_s and not _is_over(run):
+            run.advance_a_second()
+            times_s.append(run.now_s)
+            for path in run.drones:
+                yaws[path.app.settings.serial].append(path.app.aircraft.motion.yaw_deg)
     photos = tuple(_photos(run, times_s, yaws))
-    return SurveyFlown(scenario, seed, sky, writer.path, photos, scenario.survey.camera, epoch_ns)
+    return SurveyFlown(scenario, seed, sky, record.path, photos, scenario.survey.camera, epoch_ns)
 
 
 def _is_over(run: StationRun) -> bool:

@@ -4,8 +4,9 @@
 
 The station of `recon demo` with its simulated drones over TCP, a survey under broken cloud and raw
 1280x720 frames at up to 2 fps, recorded into a temporary folder. The first seconds, in which
-drones take off, are left out. Told are the size by topic, the thread's processor time as a share of
-one core, and that of the event loop for handing steps and bytes over.
+drones take off, are left out. Told are the size by topic, the processor time of the
+process that writes as a share of one core, and that of the event loop for handing steps and bytes
+over.
 """
 
 import argparse
@@ -24,7 +25,7 @@ from recon.cli.demo import DEMO_SEED, demo_scenario_file
 from recon.cli.scripted_operator import fly_surveys
 from recon.record.mcap_file import compressor
 from recon.record.mcap_read import McapReading, RecordMessage
-from recon.record.record_writer import RecordWriter
+from recon.record.record_process import RecordProcess
 from recon.score import load_scenario
 from recon.score.scenario_sky import sky_of
 from recon.sim.app.camera_feed import ImageFormat
@@ -39,11 +40,11 @@ CPU_LIMIT = 0.05
 
 
 class Costs:
-    """Processor time of both threads, and the file's size, at two moments."""
+    """Processor time of both processes, and the file's size, at two moments."""
 
     def __init__(self) -> None:
         self.loop_s = 0.0
-        self.writer: RecordWriter | None = None
+        self.writer: RecordProcess | None = None
 
     def timed(self, act: Callable[..., Any]) -> Callable[..., Any]:
         """Return the function with its processor time added up."""
@@ -62,7 +63,7 @@ class Costs:
         writer = self.writer
         assert writer is not None
         assert writer.path is not None
-        return time.monotonic(), writer.cpu_s, self.loop_s, writer.path.stat().st_size
+        return time.monotonic(), writer.status.cpu_s, self.loop_s, writer.path.stat().st_size
 
 
 async def fly(config: RunConfig, costs: Costs, seconds: float, image_format: str) -> list[Any]:
@@ -128,7 +129,7 @@ def main() -> int:
         print(f"record of {took_s:.0f} s, frames {options.image_format}")
         print(f"size            {rate / 1e6:8.3f} MB/s   {rate * HOURS * 3.6e-6:8.1f} GB in 8 h")
         handing_over = (last[2] - first[2]) / took_s
-        print(f"thread          {100 * share:8.2f} % of one core")
+        print(f"its process     {100 * share:8.2f} % of one core")
         print(f"event loop      {100 * handing_over:8.2f} % of one core")
         share += handing_over
         print(f"writing         {100 * share:8.2f} % of one core (limit {100 * CPU_LIMIT:.0f} %)")
@@ -138,13 +139,13 @@ def main() -> int:
 
 def watch(costs: Costs) -> None:
     """Have the station's record measured."""
-    made = station_run.record_writer
+    made = station_run.record_process
 
-    def kept(*arguments: Any) -> RecordWriter:
+    def kept(*arguments: Any) -> RecordProcess:
         costs.writer = made(*arguments)
         return costs.writer
 
-    station_run.record_writer = kept
+    station_run.record_process = kept
     for name in ("take", "tap"):
         setattr(Recorder, name, costs.timed(getattr(Recorder, name)))
 

@@ -105,7 +105,7 @@ def start_station(
     """Start `recon run`; its output goes into a file, as under a service manager."""
     log = stack.enter_context((folder / "log").open("w+", encoding="utf-8"))
     options = ["--link-port", "0", "--http-port", "0", "--site", str(demo_site_folder())]
-    options += ["--record", str(folder / "records")] if records else []
+    options += ["--record", str(folder / "records")] if records else ["--no-record"]
     process = subprocess.Popen(
         [sys.executable, "-m", "recon", "run", *options, "--audit", str(folder / "audit")],
         stdout=log,

@@ -89,10 +89,10 @@ class StationProcess:
 
 
 def run_options(audit: Path, link_port: int = 0, *, guard: bool = False) -> tuple[str, ...]:
-    """Options of a station; starting a guard too takes half a second of a core."""
+    """Options of a station; a guard and a record each take half a second of a core to start."""
     ports = ("--link-port", str(link_port), "--http-port", "0")
     more = ("--audit", str(audit), "--guard" if guard else "--no-guard")
-    return ("run", *ports, "--site", str(demo_site_folder()), *more)
+    return ("run", *ports, "--no-record", "--site", str(demo_site_folder()), *more)
 
 
 def sim_options(link_port: int, vehicles: int, *more: str) -> tuple[str, ...]:

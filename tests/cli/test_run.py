@@ -58,27 +58,21 @@ def received(record: Path) -> bytes:
     return b"".join(parts)
 
 
-def test_a_killed_stations_record_is_finished_by_the_next_start(tmp_path: Path) -> None:
-    options = ("run", *FREE, "--record", str(tmp_path))
-    with started(*options) as recon:
+def test_a_killed_stations_record_is_finished_by_its_process(tmp_path: Path) -> None:
+    with started("run", *FREE, "--record", str(tmp_path)) as recon:
         port = link_port(recon.line_with("companion apps: 127.0.0.1:"))
         recon.line_with("console")
         with socket.create_connection(("127.0.0.1", port)) as app:
             app.sendall(HELLO)
             end_s = monotonic() + PATIENCE_S
-            (record,) = tmp_path.iterdir()
-            while HELLO not in received(record):
+            while not any(HELLO in received(each) for each in tmp_path.iterdir()):
                 assert monotonic() < end_s
                 sleep(0.02)
             recon.end(signal.SIGKILL)
-    assert not is_finished(record)
-    with started(*options) as recon:
-        recon.line_with("console")
-        end_s = monotonic() + PATIENCE_S
-        while not is_finished(record):
-            assert monotonic() < end_s
-            sleep(0.02)
-        assert recon.end(signal.SIGTERM) == 0
+    (record,) = tmp_path.iterdir()
+    while not is_finished(record):
+        assert monotonic() < end_s
+        sleep(0.02)
     with record.open("rb") as file:
         summary = make_reader(file).get_summary()
     assert summary is not None
@@ -101,6 +95,18 @@ def test_an_app_still_connected_at_the_end_is_recorded(tmp_path: Path) -> None:
                 assert app.recv(1) == b""
     assert len(list(tmp_path.iterdir())) == 1
     assert "Traceback" not in recon.text
+
+
+def test_a_flight_is_recorded_unless_that_is_not_wanted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
+    for option, is_recorded in (("--no-record", False), ("--guard", True)):
+        with started("run", "--link-port", "0", "--http-port", "0", option) as recon:
+            recon.line_with("console: ")
+            assert recon.end(signal.SIGTERM) == 0
+        assert ("records: " in recon.text) == is_recorded
+    assert len(list((tmp_path / "recon" / "records").glob("ground-*.mcap"))) == 1
 
 
 def refused(*options: str) -> str:

@@ -22,10 +22,11 @@ from recon.model.units import NS_PER_S
 from recon.model.vehicle import Attitude
 from recon.product.flight import FULL, FlightData, FlownSurvey, KeptMap, RecordedTrack
 from recon.record import foxglove
+from recon.record.flight_messages import MSGPACK
 from recon.record.mcap_file import ABOUT_NAME, STEPS_TOPIC, McapFile
 from recon.record.record_writer import Topics
 from recon.record.tracks import utc_text
-from recon.station.kernel.recorded_values import MSGPACK, values_codec
+from recon.station.kernel.recorded_values import values_codec
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -149,7 +150,7 @@ def write_record(
         "settings": {"detection": {"method": "made", "lead_s": [1.0, 2.5]}, "is_on": True},
     }
     file.add_attachment(ABOUT_NAME, "application/json", msgspec.json.encode(about), START_NS)
-    topics, codec = Topics(file), values_codec(lambda _report: 0)
+    topics, codec = Topics(file), values_codec()
 
     def step(event: Event, at_ns: int, *audit: Entry) -> None:
         value = {"event": codec.to_builtins(event, Event), "outputs": [], "audit": audit}

@@ -1,9 +1,11 @@
 """The record's writer: killed at any moment, a full disk, a slow disk; never in anyone's way."""
 
 import os
+import queue
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -12,24 +14,79 @@ from typing import Any
 import pytest
 from mcap.reader import make_reader
 
-from recon.record import record_writer
+from recon.record import record_writer, topics
 from recon.record.mcap_read import McapReading, RecordMessage
 from recon.record.mcap_repair import is_finished
-from recon.record.record_writer import FLUSH_EVERY_S, RecordWriter, Topics, repair_all
+from recon.record.record_writer import (
+    FLUSH_EVERY_S,
+    GROUND_FILES_KEPT,
+    RecordWriter,
+    repair_all,
+)
+from recon.record.topics import Topics
 
 PATIENCE_S = 120.0
+
+
+BEGIN, FLOWN = "begin", "flown"
 
 
 class Plain:
     """Items are (topic, bytes), written as they are; images are left out when asked to."""
 
-    def begin(self, topics: Topics) -> None:
+    def begin(self, item: Any, topics: Topics) -> None:
         topics.file.add_attachment("start", "text/plain", b"begun", 0)
 
     def write(self, item: Any, topics: Topics, *, with_images: bool) -> None:
         topic, data = item
         if topic != "/image" or with_images:
             topics.add(topic, "raw", data, 1)
+
+    def flush(self, topics: Topics, *, with_images: bool) -> None:
+        pass
+
+    def finish(self, topics: Topics) -> None:
+        pass
+
+
+class Writing:
+    """A writer on a thread, with a file begun."""
+
+    def __init__(self, folder: Path, **more: Any) -> None:
+        self.inbox: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        self.writer = RecordWriter(
+            folder,
+            Plain(),
+            self.inbox,
+            "test",
+            begins=lambda item: item == BEGIN,
+            has_flown=lambda item: item == FLOWN,
+            **more,
+        )
+        self.thread = threading.Thread(target=self.writer.run, daemon=True)
+        self.thread.start()
+        self.put(BEGIN)
+
+    def put(self, item: Any) -> None:
+        self.inbox.put(item)
+
+    def is_file(self) -> bool:
+        return self.writer.path is not None
+
+    @property
+    def path(self) -> Path:
+        assert self.writer.path is not None
+        return self.writer.path
+
+    @property
+    def problem(self) -> str | None:
+        return self.writer.problem
+
+    def close(self) -> None:
+        self.writer.is_ending = True
+        self.put(None)
+        self.thread.join(PATIENCE_S)
+        assert not self.thread.is_alive()
 
 
 def until(is_so: Callable[[], bool]) -> None:
@@ -47,18 +104,16 @@ def messages(path: Path) -> list[RecordMessage]:
 
 
 def test_what_was_put_is_in_the_file_without_an_end(tmp_path: Path) -> None:
-    """The thread writes by itself, twice a second; it does not wait for more, nor for the end."""
+    """It writes by itself, twice a second; it does not wait for more, nor for the end."""
     assert FLUSH_EVERY_S <= 0.5
-    writer = RecordWriter(tmp_path / "new" / "folder", Plain(), "test")
-    writer.start()
-    writer.put(("/step", b"one"), 3)
-    until(lambda: writer.path is not None and len(messages(writer.path)) == 1)
-    writer.put(("/step", b"two"), 3)
-    assert writer.path is not None
-    path = writer.path
+    writing = Writing(tmp_path / "new" / "folder")
+    writing.put(("/step", b"one"))
+    until(lambda: writing.is_file() and len(messages(writing.path)) == 1)
+    writing.put(("/step", b"two"))
+    path = writing.path
     until(lambda: len(messages(path)) == 2)
     assert not is_finished(path)
-    writer.close()
+    writing.close()
     assert is_finished(path)
     assert path.stat().st_mode & 0o777 == 0o600
     with path.open("rb") as file:
@@ -69,15 +124,17 @@ def test_what_was_put_is_in_the_file_without_an_end(tmp_path: Path) -> None:
 KILLED = """
 import sys
 from pathlib import Path
-from tests.record.test_record_writer import Plain
+from tests.record.test_record_writer import BEGIN, Plain
 from recon.record.record_writer import RecordWriter
-writer = RecordWriter(Path(sys.argv[1]), Plain(), "test")
-writer.start()
-number = 0
-while True:
-    if writer.has_room:
-        writer.put(("/step", number.to_bytes(8, "big") * 30_000), 240_000)
-        number += 1
+
+class Endless:
+    number = -1
+    def get(self, block=True, timeout=None):
+        self.number += 1
+        return ("/step", (self.number - 1).to_bytes(8, "big") * 30_000) if self.number else BEGIN
+
+begins = lambda item: item == BEGIN
+RecordWriter(Path(sys.argv[1]), Plain(), Endless(), "test", begins=begins).run()
 """
 
 
@@ -99,19 +156,16 @@ def test_a_killed_writer_leaves_all_but_the_last_chunk(tmp_path: Path, kill_at_b
 
 
 def test_the_next_start_repairs_and_leaves_what_is_being_written(tmp_path: Path) -> None:
-    first = RecordWriter(tmp_path, Plain(), "test")
-    first.start()
-    first.put(("/step", b"one"), 3)
-    until(lambda: first.path is not None and first.path.stat().st_size > 0)
+    first = Writing(tmp_path)
+    first.put(("/step", b"one"))
+    until(lambda: first.is_file() and first.path.stat().st_size > 0)
     (tmp_path / "cut.mcap").write_bytes(b"\x89MCAP0\r\n" + bytes(3))
     (tmp_path / "other.mcap").write_bytes(b"something else")
-    second = RecordWriter(tmp_path, Plain(), "test")
-    second.start()
-    until(lambda: second.path is not None)
-    assert second.repaired == [tmp_path / "cut.mcap"]
+    second = Writing(tmp_path)
+    until(second.is_file)
+    assert second.writer.repaired == (tmp_path / "cut.mcap",)
     assert is_finished(tmp_path / "cut.mcap")
     assert (tmp_path / "other.mcap").read_bytes() == b"something else"
-    assert first.path is not None
     assert not is_finished(first.path)
     first.close()
     second.close()
@@ -119,28 +173,42 @@ def test_the_next_start_repairs_and_leaves_what_is_being_written(tmp_path: Path)
     assert second.problem is None
 
 
+def test_a_file_is_a_flights_once_a_vehicle_has_flown(tmp_path: Path) -> None:
+    """Of the time on the ground the last files stay, a flight is never removed."""
+    writing = Writing(tmp_path)
+    for is_flight in (True, False, False, False, True, False):
+        writing.put(("/step", b"%d" % is_flight))
+        if is_flight:
+            writing.put(FLOWN)
+        writing.put(BEGIN)
+    writing.close()
+    files = sorted(tmp_path.iterdir())
+    flights = [path for path in files if path.name.startswith("flight-")]
+    assert len(flights) == 2
+    assert all(messages(path)[0].data == b"1" for path in flights)
+    assert len(files) == 2 + GROUND_FILES_KEPT + 1
+    assert all(is_finished(path) for path in files)
+
+
 def test_images_stop_first_and_come_back(tmp_path: Path) -> None:
     free_bytes = [record_writer.IMAGES_STOP_BYTES]
-    writer = RecordWriter(tmp_path, Plain(), "test", lambda _folder: free_bytes[0])
-    writer.start()
-    writer.put(("/image", b"first"), 5)
-    until(lambda: writer.path is not None and len(messages(writer.path)) == 1)
-    assert writer.problem is None
+    writing = Writing(tmp_path, free_bytes=lambda _folder: free_bytes[0])
+    writing.put(("/image", b"first"))
+    until(lambda: writing.is_file() and len(messages(writing.path)) == 1)
+    assert writing.problem is None
     free_bytes[0] = record_writer.IMAGES_STOP_BYTES - 1
-    until(lambda: writer.problem is not None)
-    assert writer.problem is not None
-    assert "less than 2 GiB are free" in writer.problem
-    assert "without images" in writer.problem
-    writer.put(("/image", b"second"), 5)
-    writer.put(("/step", b"order"), 5)
+    until(lambda: writing.problem is not None)
+    assert writing.problem is not None
+    assert "less than 2 GiB are free" in writing.problem
+    assert "without images" in writing.problem
+    writing.put(("/image", b"second"))
+    writing.put(("/step", b"order"))
     free_bytes[0] = record_writer.IMAGES_AGAIN_BYTES
-    assert writer.path is not None
-    path = writer.path
-    until(lambda: writer.problem is None)
-    writer.put(("/image", b"third"), 5)
-    writer.close()
-    assert b"order" in [m.data for m in messages(path)]
-    assert [m.data for m in messages(path) if m.topic == "/image"][-1] == b"third"
+    until(lambda: writing.problem is None)
+    writing.put(("/image", b"third"))
+    writing.close()
+    assert b"order" in [m.data for m in messages(writing.path)]
+    assert [m.data for m in messages(writing.path) if m.topic == "/image"][-1] == b"third"
 
 
 def test_a_full_disk_is_a_problem_and_nothing_is_lost_when_it_is_over(
@@ -156,60 +224,42 @@ def test_a_full_disk_is_a_problem_and_nothing_is_lost_when_it_is_over(
         return real(descriptor, data, at)
 
     monkeypatch.setattr(os, "pwrite", write)
-    writer = RecordWriter(tmp_path, Plain(), "test")
-    writer.start()
-    until(lambda: writer.path is not None)
+    writing = Writing(tmp_path)
+    until(writing.is_file)
     is_full[0] = True
     for number in range(20):
-        writer.put(("/step", bytes([number])), 1)
-    until(lambda: writer.problem is not None)
-    assert writer.problem == f"the record cannot be written to {tmp_path}: No space left on device"
+        writing.put(("/step", bytes([number])))
+    until(lambda: writing.problem is not None)
+    assert writing.problem == f"the record cannot be written to {tmp_path}: No space left on device"
     is_full[0] = False
-    until(lambda: writer.problem is None)
-    writer.close()
-    assert writer.path is not None
-    assert [m.data for m in messages(writer.path)] == [bytes([n]) for n in range(20)]
+    until(lambda: writing.problem is None)
+    writing.close()
+    assert [m.data for m in messages(writing.path)] == [bytes([n]) for n in range(20)]
 
 
 def test_a_folder_that_cannot_be_written_is_a_problem(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("no folder")
-    writer = RecordWriter(tmp_path / "file", Plain(), "test")
-    writer.start()
-    until(lambda: writer.problem is not None)
-    writer.close()
-    assert writer.problem is not None
-    assert writer.problem.startswith("the record cannot be written to")
-
-
-def test_what_waits_is_bounded(tmp_path: Path) -> None:
-    """The thread has not begun: a disk that takes nothing."""
-    writer = RecordWriter(tmp_path, Plain(), "test")
-    assert writer.has_room
-    writer.put(("/image", b""), record_writer.WAITING_BYTES)
-    assert not writer.has_room
-    for _ in range(record_writer.WAITING_ITEMS - 1):
-        assert writer.put(("/step", b""), 0)
-    assert not writer.put(("/step", b""), 0)
+    writing = Writing(tmp_path / "file")
+    until(lambda: writing.problem is not None)
+    writing.close()
+    assert writing.problem is not None
+    assert writing.problem.startswith("the record cannot be written to")
 
 
 def test_an_item_that_cannot_be_written_is_a_problem_and_no_end(tmp_path: Path) -> None:
-    writer = RecordWriter(tmp_path, Plain(), "test")
-    writer.start()
-    writer.put("neither topic nor bytes", 1)
-    writer.put(("/step", b"one"), 3)
-    until(lambda: writer.path is not None and len(messages(writer.path)) == 1)
-    assert writer.problem is not None
-    assert "a part of the record is missing" in writer.problem
-    writer.close()
+    writing = Writing(tmp_path)
+    writing.put("neither topic nor bytes")
+    writing.put(("/step", b"one"))
+    until(lambda: writing.is_file() and len(messages(writing.path)) == 1)
+    assert writing.problem is not None
+    assert "a part of the record is missing" in writing.problem
+    writing.close()
 
 
 def test_topics_are_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(record_writer, "MOST_TOPICS", 3)
-    writer = RecordWriter(tmp_path, Plain(), "test")
-    writer.start()
+    monkeypatch.setattr(topics, "MOST_TOPICS", 3)
+    writing = Writing(tmp_path)
     for number in range(10):
-        writer.put((f"/{number}", b"x"), 1)
-    writer.close()
-    assert writer.path is not None
-    topics = {m.topic for m in messages(writer.path)}
-    assert topics == {"/0", "/1", "/2", "/other/raw"}
+        writing.put((f"/{number}", b"x"))
+    writing.close()
+    assert {m.topic for m in messages(writing.path)} == {"/0", "/1", "/2", "/other/raw"}

@@ -14,10 +14,11 @@ from tempfile import TemporaryDirectory
 
 from tests.oracles.eight_vehicles import eight_vehicles
 from tests.oracles.same_again import FAULTS, bad_link
-from tests.replay.record_flight import recording
+from tests.replay.record_flight import Recorded, recording
 from tests.station.surveyed_world import surveyed_world
 
 from recon.site import Site
+from recon.station.kernel.virtual import VirtualDriver
 
 FOLDER = Path(__file__).parent / "flights"
 
@@ -52,6 +53,37 @@ def pictures(folder: Path) -> Path:
     with recording(scene.driver, scene.site, folder) as record:
         scene.run_for(4.5)
     return record.path
+
+
+def new_file(record: Recorded, driver: VirtualDriver) -> None:
+    """Begin a new file at the next moment without a job, as a landing does."""
+    while record.recorder._jobs:
+        driver.run_for(0.05)
+    record.recorder._hand_over()
+    record.recorder._begin_file(driver.station, driver.now_ns)
+
+
+def pictures_in_two(folder: Path) -> None:
+    """Frames, with a new file in flight."""
+    scene = eight_vehicles(3, sees=True, jpeg_quality=30)
+    with recording(scene.driver, scene.site, folder) as record:
+        scene.run_for(2.5)
+        new_file(record, scene.driver)
+        scene.run_for(2.0)
+
+
+def survey_in_two(folder: Path) -> None:
+    """A survey, with a new file in flight."""
+    world = surveyed_world(2)
+    with recording(world.driver, Site("reference"), folder) as record:
+        world.asks()
+        world.starts("SIM-1", "SIM-2")
+        world.runs(10.0)
+        new_file(record, world.driver)
+        world.pauses()
+        world.runs(2.0)
+        world.starts("SIM-1", "SIM-2")
+        world.runs(4.0)
 
 
 FLIGHTS: Mapping[str, Callable[[Path], Path]] = {

@@ -1,6 +1,9 @@
 """What stands in a record: read by the libraries' own readers, compared with the flight."""
 
 import json
+import os
+import queue
+import signal
 from collections import defaultdict
 from pathlib import Path
 from typing import Any
@@ -11,25 +14,34 @@ import numpy as np
 import pytest
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
-from tests.replay.flights import FOLDER
-from tests.replay.record_flight import entries_of, recording
+from tests.record.test_record_writer import until
+from tests.replay.flights import FOLDER, pictures_in_two, survey_in_two
+from tests.replay.record_flight import Audits, recording
 from tests.station.station_world import square_mission, world
 
 from recon import wire
 from recon.link.tap import Direction
-from recon.model.command import FlyMission
+from recon.model.command import FlyMission, Hover, LandNow
 from recon.model.event import PacketReceived, RecordFailed, Tick
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.report import ImageReport
 from recon.model.shade import ShadeMap, SunForecast
 from recon.record import foxglove
+from recon.record.flight_messages import HEAD, FlightMessages, Item, ItemKind
 from recon.record.link_bytes import LINKS_TOPIC
 from recon.record.mcap_file import STEPS_TOPIC
 from recon.record.mcap_read import McapReading, RecordMessage
+from recon.record.record_process import RecordProcess
 from recon.record.record_writer import RecordWriter
 from recon.site import Site
-from recon.station.kernel.recorded_values import FlightStart
-from recon.station.kernel.recording import Recorder, RecordTranslator
+from recon.station.kernel import recording as recording_of_kernel
+from recon.station.kernel.recording import (
+    BULK_BYTES,
+    RESTART_AFTER_S,
+    Recorder,
+    is_flying,
+)
+from recon.station.kernel.replay import check
 from recon.station.kernel.step import step
 from recon.station.state.station import Station
 from recon.station.state.steps import StepTaken
@@ -123,17 +135,32 @@ def test_a_map_begins_at_its_lower_left_corner() -> None:
     assert (cells[0, 2] == leads[:, 3, 2]).all()
 
 
-class SlowWriter(RecordWriter):
-    """A writer whose disk takes nothing: what is put waits."""
+class FullProcess(RecordProcess):
+    """A process whose disk takes nothing: what is put waits."""
 
-    def __init__(self, folder: Path) -> None:
-        start = FlightStart.now(Site("test"), Station(), 0)
-        super().__init__(folder, RecordTranslator(start), "test")
-        self.items: list[Any] = []
+    def __init__(self, folder: Path, room_bytes: int) -> None:
+        super().__init__(folder, "test")
+        self.left_bytes = room_bytes
+        self.items: list[Item] = []
 
-    def put(self, item: Any, size_bytes: int) -> bool:
-        self.items.append(item)
-        return super().put(item, size_bytes)
+    def start(self) -> None:
+        pass
+
+    @property
+    def room_bytes(self) -> int:
+        return self.left_bytes
+
+    @property
+    def bulk_room_bytes(self) -> int:
+        return self.left_bytes - 20_000
+
+    def put(self, parts: Any) -> None:
+        data = b"".join(parts)
+        self.left_bytes -= len(data)
+        while data:
+            kind, size = HEAD.unpack_from(data)
+            self.items.append(Item(ItemKind(kind), data[HEAD.size : HEAD.size + size]))
+            data = data[HEAD.size + size :]
 
 
 def taken(event: Any) -> StepTaken:
@@ -142,54 +169,139 @@ def taken(event: Any) -> StepTaken:
     return StepTaken(event, 5, before, after, outputs)
 
 
-def test_when_the_disk_is_slow_pixels_and_bytes_go_first(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("recon.record.record_writer.WAITING_BYTES", 10_000)
-    writer = SlowWriter(tmp_path)
-    recorder = Recorder(writer, lambda _event: None, entries_of())
-    image = PacketReceived(1, ImageReport(1.0, rgb=np.zeros((60, 60, 3), np.uint8)))
-    recorder.take(taken(image))
-    assert writer.items[0].event.report.rgb is not None
-    recorder.take(taken(image))
-    recorder.tap(1, Direction.FROM_APP, b"12345", 5)
+def test_when_the_disk_is_slow_images_go_first(tmp_path: Path) -> None:
+    process = FullProcess(tmp_path, 100_000)
+    recorder = Recorder(lambda: process, lambda _event: None, Audits(), Site("test"))
+    recorder.start(Station(), 0)
+    assert recorder._encoding is not None
+    recorder._encoding.join()
+    read = bytes(BULK_BYTES)
+    while process.dropped_bytes < len(read):
+        recorder.tap(1, Direction.FROM_APP, read, 5)
+        recorder.take(taken(Tick()))
+    assert process.bulk_room_bytes < len(read) + 100
+    recorder.tap(1, Direction.FROM_APP, b"telemetry", 5)
+    recorder.tap(1, Direction.TO_APP, b"order", 5)
     recorder.take(taken(Tick()))
-    without, tick = writer.items[1:]
-    assert without.event.report.rgb is None
-    assert isinstance(tick.event, Tick)
-    assert writer.dropped_bytes == 60 * 60 * 3 + 5
-    assert writer.problem is not None
-    assert writer.problem.endswith("the record lacks bytes of links and images")
-    assert [each.number for each in writer.items] == [1, 2, 3]
+    assert [each.kind for each in process.items[-3:]] == [
+        ItemKind.LINK,
+        ItemKind.LINK,
+        ItemKind.STEP,
+    ]
+    assert process.dropped_steps == 0
+    assert process.problem is not None
+    assert process.problem.endswith("the record lacks images")
+    process.left_bytes = 0
+    recorder.take(taken(Tick()))
+    assert process.dropped_steps == 1
+    assert process.problem.endswith("the record lacks steps")
 
 
 def test_without_images_telemetry_orders_and_audit_stay(tmp_path: Path) -> None:
-    start = FlightStart.now(Site("test"), Station(), 0)
-    free_bytes = [10**12]
-    writer = RecordWriter(tmp_path, RecordTranslator(start), "test", lambda _f: free_bytes[0])
+    inbox: queue.SimpleQueue[Item | None] = queue.SimpleQueue()
+    process = FullProcess(tmp_path, 10**9)
     seen: list[Any] = []
-    recorder = Recorder(writer, seen.append, entries_of())
-    free_bytes[0] = 0
-    image = PacketReceived(1, ImageReport(1.0, jpeg=b"123"))
-    recorder.take(taken(image))
-    writer._look_at_disk()
-    recorder.tap(1, Direction.FROM_APP, wire.encode(wire.EmergencyCommand(action=0)), 5)
+    recorder = Recorder(lambda: process, seen.append, Audits(), Site("test"))
+    recorder.start(Station(), 0)
+    jpeg = wire.encode(wire.CompressedImage(target_fps_hz=1.0, jpeg=bytes(1000)))
+    core = wire.encode(wire.MessageString(type=1, text=b"hello"))
+    recorder.tap(1, Direction.FROM_APP, core + jpeg + core, 5)
     recorder.tap(1, Direction.TO_APP, b"order", 5)
+    end = len(core) + len(jpeg)
+    recorder.take(taken(PacketReceived(1, ImageReport(1.0, jpeg=bytes(1000)), 5, end)))
     recorder.take(taken(Tick()))
-    writer.start()
-    writer.close()
+    recorder.close()
+    for item in (*process.items, None):
+        inbox.put(item)
+    writer = RecordWriter(
+        tmp_path,
+        FlightMessages(),
+        inbox,
+        "test",
+        begins=lambda item: item.kind is ItemKind.BEGIN,
+        free_bytes=lambda _folder: 0,
+    )
+    writer._look_at_disk()
+    writer.run()
     assert writer.path is not None
     with writer.path.open("rb") as file:
         messages = [i for i in McapReading(file).items() if isinstance(i, RecordMessage)]
     by_topic = defaultdict(list)
     for message in messages:
-        by_topic[message.topic].append(message)
+        by_topic[message.topic].append(msgspec.msgpack.decode(message.data))
     assert not any(topic.endswith("/jpeg") for topic in by_topic)
-    assert len(by_topic[STEPS_TOPIC]) == 2
-    (kept,) = by_topic[LINKS_TOPIC]
-    assert msgspec.msgpack.decode(kept.data)["data"] == b"order"
-    (reported,) = seen
-    assert "without images" in reported.problem
+    assert [m["event"]["_"] for m in by_topic[STEPS_TOPIC]] == ["PacketReceived", "Tick"]
+    links = by_topic[LINKS_TOPIC]
+    assert [m["data"] for m in links] == [core, b"", core, b"order"]
+    assert links[1]["lost"] == len(jpeg)
+    assert writer.problem is not None
+    assert "without images" in writer.problem
+
+
+def test_a_dead_process_is_an_alarm_and_another_one_goes_on(tmp_path: Path) -> None:
+    scene = world(2, keeps_log=False)
+    with recording(scene.driver, Site("test"), tmp_path) as record:
+        first = record.process
+
+        def is_written() -> bool:
+            scene.run_for(0.05)
+            return first.path is not None and first.path.stat().st_size > 20_000
+
+        until(is_written)
+        assert first.pid is not None
+        os.kill(first.pid, signal.SIGKILL)
+        until(lambda: first.is_dead)
+        scene.run_for(0.2)
+        alarms = scene.driver.station.alarms.alarms.values()
+        (alarm,) = (each for each in alarms if each.condition.rule == "record")
+        assert "the process that writes the record" in alarm.condition.text
+        scene.run_for(RESTART_AFTER_S + 1.0)
+        alarms = scene.driver.station.alarms.alarms.values()
+        assert not any(each.is_active for each in alarms if each.condition.rule == "record")
+        assert record.process is not first
+        scene.order("SIM-1", Hover())
+        scene.run_for(1.0)
+    for path in tmp_path.iterdir():
+        found = check(path)
+        assert (found.differences, found.trouble) == ([], "")
+        assert found.steps > 0
+    assert len(list(tmp_path.iterdir())) == 2
+
+
+def test_a_flights_file_ends_after_the_landing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(recording_of_kernel, "AFTER_LANDING_S", 3.0)
+    monkeypatch.setattr(recording_of_kernel, "GROUND_FILE_S", 5.0)
+    scene = world(1, keeps_log=False)
+    with recording(scene.driver, Site("test"), tmp_path) as record:
+        scene.run_for(2.0)
+        assert is_flying(scene.driver.station)
+        scene.order("SIM-1", LandNow())
+        assert scene.driver.run_until(lambda station: not is_flying(station), 120.0)
+        assert record.recorder._number > 20
+        scene.run_for(2.0)
+        assert record.recorder._has_flown
+        scene.run_for(2.0)
+        assert not record.recorder._has_flown
+        scene.run_for(6.0)
+    names = sorted(path.name.partition("-")[0] for path in tmp_path.iterdir())
+    assert names == ["flight", "ground", "ground"]
+    for path in tmp_path.iterdir():
+        found = check(path)
+        assert (found.differences, found.trouble) == ([], "")
+
+
+@pytest.mark.parametrize("flight", [pictures_in_two, survey_in_two])
+def test_a_file_that_begins_in_flight_gives_the_same(flight: Any, tmp_path: Path) -> None:
+    """Everything that the station remembers stands at its beginning."""
+    flight(tmp_path)
+    files = sorted(tmp_path.iterdir())
+    assert len(files) == 2
+    for path in files:
+        found = check(path)
+        assert (found.differences, found.trouble) == ([], "")
+        assert found.jobs >= 2
 
 
 def test_a_failed_record_is_an_alarm_until_it_is_written_again() -> None:

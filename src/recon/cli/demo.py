@@ -49,6 +49,10 @@ def demo_command(
         int, typer.Option(min=0, max=65535, help="Port for companion apps; 0 picks one.")
     ] = 3001,
     seed: Annotated[int, typer.Option(min=0, help="Seed of sky, wind and faults.")] = DEMO_SEED,
+    record: Annotated[
+        Path | None, typer.Option("--record", help="Folder of the flight records.")
+    ] = None,
+    no_record: Annotated[bool, typer.Option("--no-record", help="Record no flights.")] = False,
 ) -> None:
     """Run the station with simulated drones that survey a field.
 
@@ -70,7 +74,9 @@ def demo_command(
         stop_port=guard_port(None, http_port) if HAS_GUARD else None,
         # No state of an earlier run is recovered: its drones no longer exist.
         audit=default_place(link_port=0),
-        record_folder=state_folder() / "records",
+        record_folder=None if no_record else record or state_folder() / "records",
+        is_record_required=record is not None,
+        scenario=f"{path.name} {seed}",
         console=console_folder(),
         sun_time_ahead_s=sky_of(played, seed).settings.sun.start_utc_s - time(),
     )

@@ -15,7 +15,8 @@ from recon.cli.users import UsersOption
 from recon.link.settings import LinkSettings
 from recon.record.audit import shown
 from recon.record.file_set import finish_interrupted
-from recon.site import Site, default_site, load_site, site_report
+from recon.record.users_file import state_folder
+from recon.site import Site, default_site, demo_site_folder, load_site, site_report
 from recon.site.app_list import APPS_FILE, read_app_list
 from recon.station.api_views.service import Service
 from recon.station.audit.start import AuditPlace
@@ -75,8 +76,13 @@ def run_command(
     key: Annotated[Path | None, typer.Option(help="PEM file of the certificate's key.")] = None,
     users: UsersOption = None,
     record: Annotated[
-        Path | None, typer.Option(help="Record the flight into this folder, as one MCAP file.")
+        Path | None,
+        typer.Option(
+            "--record",
+            help="Folder of the flight records; default: records in the site's folder.",
+        ),
     ] = None,
+    no_record: Annotated[bool, typer.Option("--no-record", help="Record no flights.")] = False,
     audit: Annotated[
         Path | None,
         typer.Option(help="Folder of the audit; default: one per link port."),
@@ -104,7 +110,8 @@ def run_command(
         http_port=http_port,
         stop_port=guard_port(stop_port, http_port) if guard else None,
         site_folder=site,
-        record_folder=record,
+        record_folder=None if no_record else record or records_of(site),
+        is_record_required=record is not None,
         audit=None if audit is None else AuditPlace(audit),
         users_file=users,
         https_host=https_host,
@@ -135,6 +142,13 @@ def apps_file_of(site: Path | None) -> Path | None:
     """Return the list of apps in a site's folder; None without one."""
     path = None if site is None else site / APPS_FILE
     return path if path is not None and path.exists() else None
+
+
+def records_of(site: Path | None) -> Path:
+    """Return the folder of the flight records of a site: its own, or one of this user."""
+    if site is None or site.resolve() == demo_site_folder().resolve():
+        return state_folder() / "records"
+    return site / "records"
 
 
 def describe(site: Site) -> None:

@@ -1,7 +1,7 @@
 """The events that drive the station, in one ordered queue."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from recon.model.airspace import ElevationModel, LandingPad, Region, Zone
 from recon.model.command import Body, Phase, Refusal
@@ -33,12 +33,14 @@ class PacketReceived:
     """A packet arrived from a companion app.
 
     `arrived_at_ns` is when its last byte was read from the socket, which can be seconds before this
-    event: damaged or false bytes in front withhold a packet. None means now.
+    event: damaged or false bytes in front withhold a packet. None means now. `stream_end` counts
+    the bytes of the link up to the packet's end: the record finds a frame's bytes by it.
     """
 
     link_id: int
     report: Report
     arrived_at_ns: int | None = None
+    stream_end: int = 0
 
     def received_at_ns(self, now_ns: int) -> int:
         """Return the time that the ages of its values count from."""
@@ -417,6 +419,8 @@ class JobEnded:
     """A job of the worker ended; the station's `state/steps.py` has a subclass for each way."""
 
     job_id: int
+    input_digest: str = field(default="", kw_only=True, compare=False)
+    """Of all that the job depended on, for the record; empty where it was not run or recorded."""
 
 
 Event = (

@@ -26,7 +26,10 @@ def digest(value: Any) -> bytes:
 
 def _feed(value: Any, update: Callable[[Any], None]) -> None:
     kind = type(value)
-    if value is None or kind in (bool, int, float, str) or isinstance(value, np.generic):
+    if isinstance(value, np.generic):
+        # The codec reads a number back as Python's own.
+        update(f"{value.item()!r};".encode())
+    elif value is None or kind in (bool, int, float, str):
         update(f"{value!r};".encode())
     elif isinstance(value, np.ndarray):
         update(f"{value.dtype.str}{value.shape};".encode())

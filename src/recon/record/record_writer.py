@@ -1,140 +1,117 @@
-"""Writing the record of a run: items are queued at once, and encoded and written by a thread.
+"""Writing the records of a run: items in, MCAP files out. Runs in a process of its own.
 
-Theory of operation. `put` only appends to a queue, so nothing on the event loop, an order least of
-all, waits for a disk. The thread encodes each item and writes a chunk twice a second: a process
-that is killed, or a power cut, costs what came in the last half second and one write.
+Theory of operation. A file begins with a `Begin` item and ends with the next one, or with the last
+item. A chunk is written and synced twice a second: a process that is killed, or a power cut, costs
+what came in the last half second and one write.
 
     open --folder or disk fails--> failing --written again--> open
     open --little space left--> without images --space again--> open
 
-While writing fails, items wait and the write is tried again every second. Memory is bounded by two
-limits. Beyond half of `WAITING_BYTES` jobs are recorded without the digest of their input, beyond
-all of it the bytes of links and the pixels of frames are dropped as they come, and beyond
-`WAITING_ITEMS` whole steps: their numbers are missing in the file, and a replay ends there. With
-less than `IMAGES_STOP_BYTES` left on the disk, frames and the bytes of the links that bring them
-are left out; telemetry, orders and audit are written to the last byte. What is dropped, and what
-cannot be written, is a `problem`, which becomes an alarm.
+While writing fails it is tried again every second and nothing is taken: what waits, and what is
+dropped, is the sender's affair (`record_process.py`). With less than `IMAGES_STOP_BYTES` left on
+the disk, frames are left out, and their bytes on the links; telemetry, orders and audit are written
+to the last byte.
 
-A start finishes the files of runs that were killed, on the same thread, before it begins its own.
+A file is called `ground-UTC.mcap` until a vehicle takes off, and `flight-UTC.mcap` from then on. Of
+the former the newest `GROUND_FILES_KEPT` stay; a flight is never removed. A start finishes the
+files of runs that were killed before it begins its own.
 """
 
 import contextlib
 import os
 import queue
 import shutil
-import threading
+import sys
 import time
 from collections.abc import Callable
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Protocol
 
+import msgspec
+
 from recon.model.errors import RecordError, describe_fault
 from recon.model.units import NS_PER_S
 from recon.record.file_lock import lock_file
 from recon.record.mcap_file import McapFile
 from recon.record.mcap_repair import repair
+from recon.record.topics import Topics
 
 FLUSH_EVERY_S = 0.5
 RETRY_AFTER_S = 1.0
-CLOSE_WITHIN_S = 5.0
-"""A disk that hangs must not keep a stopped station from ending."""
-
-WAITING_BYTES = 256 * 1024 * 1024
-"""Ten seconds of two raw frames a second, with their links' bytes and the inputs of their jobs."""
-WAITING_ITEMS = 20_000
-"""A minute or two of the busiest traffic."""
 
 IMAGES_STOP_BYTES = 2 * 1024**3
 """Telemetry, orders and audit of a day need a tenth of it; the computer needs some as well."""
 IMAGES_AGAIN_BYTES = 3 * 1024**3
 
-MOST_TOPICS = 4096
-"""An app that reports a new serial again and again must not fill memory with channels."""
-OTHER_TOPIC = "/other"
+GROUND, FLIGHT = "ground", "flight"
+GROUND_FILES_KEPT = 2
+CAN_RENAME_OPEN_FILES = sys.platform != "win32"
+"""Elsewhere each file is named as a flight from its beginning, and none is removed."""
 
 
-class Topics:
-    """Messages by topic into one file; a topic's channel is made with its first message."""
+class Inbox(Protocol):
+    """Where items come from: a queue."""
 
-    def __init__(self, file: McapFile) -> None:
-        """Take a file just created."""
-        self.file = file
-        self._channels: dict[str, int] = {}
-        self._schemas: dict[str, int] = {}
-        self._counts: dict[int, int] = {}
-
-    def add(
-        self,
-        topic: str,
-        encoding: str,
-        data: bytes,
-        at_ns: int,
-        *,
-        number: int | None = None,
-        schema: Callable[[], tuple[str, bytes]] | None = None,
-    ) -> None:
-        """Add a message; without a `number` of its own it gets the next one of its topic."""
-        channel = self._channels.get(topic)
-        if channel is None:
-            if len(self._channels) >= MOST_TOPICS:
-                topic = f"{OTHER_TOPIC}/{encoding}"
-            channel = self._channels[topic] = self._channel(topic, encoding, schema)
-        if number is None:
-            number = self._counts[channel] = self._counts.get(channel, 0) + 1
-        self.file.add_message(channel, number, at_ns, data)
-
-    def _channel(
-        self, topic: str, encoding: str, schema: Callable[[], tuple[str, bytes]] | None
-    ) -> int:
-        if schema is None:
-            return self.file.add_channel(topic, encoding)
-        name, data = schema()
-        if name not in self._schemas:
-            self._schemas[name] = self.file.add_schema(name, encoding, data)
-        return self.file.add_channel(topic, encoding, self._schemas[name])
+    def get(self, block: bool = True, timeout: float | None = None) -> Any:
+        """Return the next item, None after the last; raises `queue.Empty` after the timeout."""
 
 
-class Translator(Protocol):
-    """Makes messages of items; called by the writer's thread alone."""
+class Messages(Protocol):
+    """Makes messages of items."""
 
-    def begin(self, topics: Topics) -> None:
+    def begin(self, item: Any, topics: Topics) -> None:
         """Write what stands at the beginning of a file."""
 
     def write(self, item: Any, topics: Topics, *, with_images: bool) -> None:
         """Write one item."""
 
+    def flush(self, topics: Topics, *, with_images: bool) -> None:
+        """Write what must not wait any longer; a chunk is about to be written."""
+
+    def finish(self, topics: Topics) -> None:
+        """Write what still waits; the file is about to end."""
+
+
+class Status(msgspec.Struct, frozen=True):
+    """What the sender of items learns."""
+
+    path: str | None = None
+    """The file that is being written."""
+    problem: str | None = None
+    """What is not recorded, and why; None while everything is."""
+    cpu_s: float = 0.0
+    repaired: tuple[str, ...] = ()
+    """Files of earlier runs that were finished at the start."""
+
 
 class RecordWriter:
-    """Writes one run's record into a folder. `put` belongs to one thread and never waits."""
+    """Writes records into a folder."""
 
     def __init__(
         self,
         folder: Path,
-        translator: Translator,
+        messages: Messages,
+        inbox: Inbox,
         library: str,
+        begins: Callable[[Any], bool],
+        has_flown: Callable[[Any], bool] = lambda item: False,
+        report: Callable[[Status], None] = lambda status: None,
         free_bytes: Callable[[Path], int] = lambda folder: shutil.disk_usage(folder).free,
     ) -> None:
-        """Take the folder; nothing is opened before `start`."""
+        """`begins` and `has_flown` recognise the items that begin a file and make it a flight's."""
         self.folder = folder
         self.path: Path | None = None
-        """This run's file, once there is one."""
-        self.dropped_bytes = self.dropped_steps = 0
-        self.cpu_s = 0.0
-        """Processor time of the thread, as of its last chunk."""
-        self.repaired: list[Path] = []
-        """Files of earlier runs that were finished at the start."""
-        self._library = library
-        self._translator = translator
+        self.repaired: tuple[Path, ...] | None = None
+        self.is_ending = False
+        """Set when no item follows: a disk that fails is then not waited for."""
+        self._messages, self._inbox, self._library = messages, inbox, library
+        self._begins, self._has_flown, self._report = begins, has_flown, report
         self._free_bytes = free_bytes
-        self._waiting: queue.SimpleQueue[tuple[Any, int] | None] = queue.SimpleQueue()
-        self._put_bytes = self._taken_bytes = 0
         self._topics: Topics | None = None
         self._failure: str | None = None
         self._faults: str | None = None
         self._has_images = True
-        self._is_ending = False
-        self._thread = threading.Thread(target=self._run, name="record", daemon=True)
 
     @property
     def problem(self) -> str | None:
@@ -146,83 +123,48 @@ class RecordWriter:
                 f"less than {IMAGES_STOP_BYTES // 1024**3} GiB are free in {self.folder}: "
                 "the record goes on without images"
             )
-        if self.dropped_steps or self.dropped_bytes:
-            what = "steps" if self.dropped_steps else "bytes of links and images"
-            return f"the disk of {self.folder} was too slow: the record lacks {what}"
         return self._faults
 
-    @property
-    def has_room(self) -> bool:
-        """Whether bytes of links and pixels are taken now."""
-        return self._waiting_bytes < WAITING_BYTES
-
-    @property
-    def has_time(self) -> bool:
-        """Whether what costs the thread time is taken now."""
-        return self._waiting_bytes < WAITING_BYTES // 2
-
-    @property
-    def _waiting_bytes(self) -> int:
-        return self._put_bytes - self._taken_bytes
-
-    def start(self) -> None:
-        """Start the thread; a folder that cannot be written is a `problem`."""
-        self._thread.start()
-
-    def put(self, item: Any, size_bytes: int) -> bool:
-        """Queue an item of about this size; return whether there was room for it."""
-        if self._waiting.qsize() >= WAITING_ITEMS:
-            return False
-        self._put_bytes += size_bytes
-        self._waiting.put((item, size_bytes))
-        return True
-
-    def close(self, within_s: float = CLOSE_WITHIN_S) -> None:
-        """Write what is queued and finish the file, as far as the disk takes it in time."""
-        if self._thread.is_alive():
-            self._is_ending = True
-            self._waiting.put(None)
-            self._thread.join(within_s)
-
-    def _run(self) -> None:
-        while not self._try(self._open):
-            # Items wait in the queue, which is bounded, until there is a file.
-            if self._is_ending:
-                return
-            time.sleep(RETRY_AFTER_S)
-        assert self._topics is not None
-        file, is_over = self._topics.file, False
-        self._guarded(lambda topics: self._translator.begin(topics))
+    def run(self) -> None:
+        """Write until the last item is written."""
+        is_over = False
         while not is_over:
             is_over = self._take_until(time.monotonic() + FLUSH_EVERY_S)
             self._look_at_disk()
-            self.cpu_s = time.thread_time()
-            while not self._try(file.flush) and not self._is_ending:
-                time.sleep(RETRY_AFTER_S)
-        self._try(file.finish)
+            if self._topics is not None:
+                self._retry(self._flush)
+            self._report_status()
+        self._end_file()
+        self._report_status()
 
     def _take_until(self, at_s: float) -> bool:
         """Take items until a time, or until the chunk is full; return whether that was all."""
-        assert self._topics is not None
-        while not self._topics.file.is_chunk_full:
+        while self._topics is None or not self._topics.file.is_chunk_full:
             try:
-                waiting = self._waiting.get(timeout=max(0.0, at_s - time.monotonic()))
+                item = self._inbox.get(timeout=max(0.0, at_s - time.monotonic()))
             except queue.Empty:
                 return False
-            if waiting is None:
+            if item is None:
                 return True
-            self._take(*waiting)
+            self._take(item)
         return False
 
-    def _take(self, item: Any, size_bytes: int) -> None:
-        self._taken_bytes += size_bytes
-        self._guarded(
-            lambda topics: self._translator.write(item, topics, with_images=self._has_images)
-        )
+    def _take(self, item: Any) -> None:
+        if self._begins(item):
+            self._end_file()
+            self._retry(self._open)
+            self._guarded(lambda topics: self._messages.begin(item, topics))
+        elif self._has_flown(item):
+            self._name_flight()
+        else:
+            self._guarded(
+                lambda topics: self._messages.write(item, topics, with_images=self._has_images)
+            )
 
     def _guarded(self, write: Callable[[Topics], None]) -> None:
         """One item that cannot be encoded must not end the record of all others."""
-        assert self._topics is not None
+        if self._topics is None:
+            return
         try:
             write(self._topics)
         except Exception as fault:
@@ -236,6 +178,13 @@ class RecordWriter:
         least_bytes = IMAGES_STOP_BYTES if self._has_images else IMAGES_AGAIN_BYTES
         self._has_images = free_bytes >= least_bytes
 
+    def _retry(self, act: Callable[[], None]) -> None:
+        while not self._try(act):
+            self._report_status()
+            if self.is_ending:
+                return
+            time.sleep(RETRY_AFTER_S)
+
     def _try(self, act: Callable[[], None]) -> bool:
         try:
             act()
@@ -246,30 +195,79 @@ class RecordWriter:
         self._failure = None
         return True
 
+    def _flush(self) -> None:
+        assert self._topics is not None
+        self._guarded(lambda t: self._messages.flush(t, with_images=self._has_images))
+        self._topics.file.flush()
+
     def _open(self) -> None:
         self.folder.mkdir(parents=True, exist_ok=True, mode=0o700)
-        self.repaired += repair_all(self.folder)
-        file = McapFile(_free_name(self.folder), self._library)
+        if self.repaired is None:
+            self.repaired = tuple(repair_all(self.folder))
+        kind = GROUND if CAN_RENAME_OPEN_FILES else FLIGHT
+        file = McapFile(_free_name(self.folder, kind), self._library)
         lock_file(file.descriptor)
         self.path, self._topics = file.path, Topics(file)
+        _remove_old_ground_files(self.folder, self.path)
+
+    def _end_file(self) -> None:
+        if self._topics is not None:
+            self._guarded(self._messages.finish)
+            self._retry(self._topics.file.finish)
+            self._topics = None
+
+    def _name_flight(self) -> None:
+        path = self.path
+        if path is None or not path.name.startswith(GROUND) or self._topics is None:
+            return
+        flight = path.with_name(path.name.replace(GROUND, FLIGHT, 1))
+        with contextlib.suppress(OSError):
+            # A link fails where there is such a file; a rename would replace it.
+            os.link(path, flight)
+            path.unlink()
+            self.path = self._topics.file.path = flight
+
+    def _report_status(self) -> None:
+        path = None if self.path is None else str(self.path)
+        repaired = tuple(map(str, self.repaired or ()))
+        self._report(Status(path, self.problem, time.process_time(), repaired))
 
 
 def repair_all(folder: Path) -> list[Path]:
     """Finish the files that killed runs have left in a folder; one being written is locked."""
-    repaired = []
+    repaired: list[Path] = []
+
+    def finish(path: Path) -> None:
+        if repair(path) is not None:
+            repaired.append(path)
+
     for path in sorted(folder.glob("*.mcap")):
-        with contextlib.suppress(OSError, RecordError):
-            descriptor = os.open(path, os.O_RDWR)
-            try:
-                lock_file(descriptor)
-                if repair(path) is not None:
-                    repaired.append(path)
-            finally:
-                os.close(descriptor)
+        _if_unlocked(path, finish)
     return repaired
 
 
-def _free_name(folder: Path) -> Path:
+def _remove_old_ground_files(folder: Path, current: Path) -> None:
+    others = sorted(path for path in folder.glob(f"{GROUND}-*.mcap") if path != current)
+    for path in others[: max(0, len(others) - GROUND_FILES_KEPT)]:
+        _if_unlocked(path, Path.unlink)
+
+
+def _if_unlocked(path: Path, act: Callable[[Path], None]) -> None:
+    """Do something to a file that no other process writes; what fails leaves it as it is."""
+    with contextlib.suppress(OSError, RecordError):
+        descriptor = os.open(path, os.O_RDWR)
+        try:
+            lock_file(descriptor)
+            act(path)
+        finally:
+            os.close(descriptor)
+
+
+def _free_name(folder: Path, kind: str) -> Path:
     stamp = datetime.fromtimestamp(time.time_ns() // NS_PER_S, UTC).strftime("%Y%m%dT%H%M%SZ")
-    names = (f"recon-{stamp}{tail}.mcap" for tail in ("", *(f"-{n}" for n in range(2, 1000))))
-    return next(folder / name for name in names if not (folder / name).exists())
+    tails = ("", *(f"-{n}" for n in range(2, 1000)))
+    return next(
+        folder / f"{kind}-{stamp}{tail}.mcap"
+        for tail in tails
+        if not any((folder / f"{any_}-{stamp}{tail}.mcap").exists() for any_ in (GROUND, FLIGHT))
+    )

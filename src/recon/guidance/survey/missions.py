@@ -40,7 +40,7 @@ class RegionPaths:
     """Shortest ways in one area; what it has worked out it keeps."""
 
     def __init__(self, area: shapely.Geometry) -> None:
-        self._area = area
+        self.area = area
         self._corners = _corners(area)
         self._seen: dict[int, list[tuple[int, float]]] = {}
         shapely.prepare(area)
@@ -56,7 +56,7 @@ class RegionPaths:
 
         Rows end on the edge, and a vehicle stops some way beyond it.
         """
-        inner = shapely.buffer(self._area, -CLEARANCE_M)
+        inner = shapely.buffer(self.area, -CLEARANCE_M)
         place = shapely.Point(place_m)
         if inner.is_empty or shapely.covers(inner, place):
             return place_m
@@ -107,7 +107,7 @@ class RegionPaths:
         """Which of N places see one straight, (N,)."""
         ends = np.broadcast_to(np.array(end_m), places_m.shape)
         legs = shapely.linestrings(np.stack([places_m, ends], axis=1))
-        is_inside: npt.NDArray[np.bool_] = shapely.covers(self._area, legs)
+        is_inside: npt.NDArray[np.bool_] = shapely.covers(self.area, legs)
         is_there: npt.NDArray[np.bool_] = (places_m == ends).all(axis=1)
         return is_inside | is_there
 

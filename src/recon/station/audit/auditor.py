@@ -69,7 +69,7 @@ class Auditor:
         self.log = log
         self._printer = printer
         self._now_ns = now_ns
-        self._memory = Auditing()
+        self.memory = Auditing()
         self.entries: tuple[AuditEntry, ...] = ()
         """Of the newest step."""
         self._reported_problem: str | None = None
@@ -81,8 +81,8 @@ class Auditor:
     def observe(self, step: StepTaken) -> None:
         """Write what a step changed; once a tick, report whether writing works."""
         self.entries = ()
-        self._memory, self.entries = audit(
-            self._memory, step.before, step.event, step.after, step.now_ns
+        self.memory, self.entries = audit(
+            self.memory, step.before, step.event, step.after, step.now_ns
         )
         self.put(self.entries)
         if isinstance(step.event, Tick):

@@ -1,15 +1,15 @@
 """How the station's values stand in a record: the codec's special cases, and a file's start.
 
 Pixels stand in the topics of images; an event names its frame by number. The result of a job does
-not stand in the file: jobs are pure, so a replay runs them again. Orders and the inputs of jobs are
-outputs: they are compared and never read back.
+not stand in the file: jobs are pure, so a replay runs them again; a digest of its input stands at
+its end. Orders are outputs: they are compared and never read back.
 """
 
 import platform
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cache
 from ipaddress import IPv4Network, IPv6Network, ip_network
 from pathlib import Path
@@ -17,9 +17,13 @@ from typing import Any
 
 import msgspec
 import numpy as np
+import shapely  # type: ignore[import-untyped, unused-ignore]
 
 from recon import version
+from recon.detection.cells import CellLight, CellSamples
+from recon.detection.sunlit.colour import CellColour
 from recon.fleet.step import CloseLink
+from recon.guidance.survey.missions import RegionPaths
 from recon.model.airspace import Airspace, Zone
 from recon.model.command import Command
 from recon.model.event import JobEnded
@@ -27,10 +31,10 @@ from recon.model.report import ImageReport
 from recon.model.vehicle import VehicleProfile
 from recon.record.audit import AuditEntry
 from recon.record.codec import Codec, CodecError, Custom
-from recon.record.digest import digest
 from recon.safety import ApprovedCommand, PreparedAirspace
 from recon.safety.airspace import prepared_zone
 from recon.site import Site
+from recon.station.audit.entries import Auditing
 from recon.station.state.station import Station
 from recon.station.state.steps import (
     Job,
@@ -43,16 +47,12 @@ from recon.station.state.steps import (
 )
 from recon.station.state.vehicle_control import VehicleSnapshot
 
-START_NAME = "recon/start"
-START_TYPE = "application/vnd.recon.start+zstd"
-MSGPACK = "msgpack"
-
 DONE, FAILED, DROPPED = "done", "failed", "dropped"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FlightStart:
-    """What a run begins with: the site and the station before its first event."""
+    """What a record begins with: the site, the station, and what its audit remembers."""
 
     version: str
     python: str
@@ -62,12 +62,31 @@ class FlightStart:
     started_at_ns: int
     site: Site
     station: Station
+    auditing: Auditing = field(default_factory=Auditing)
+    scenario: str = ""
+    """The simulated world, as `recon demo` states it: file and seed; empty for real aircraft."""
 
     @classmethod
-    def now(cls, site: Site, station: Station, started_at_ns: int) -> "FlightStart":
-        """Return the start of a run by this version on this computer."""
-        python = sys.version.split()[0]
-        return cls(version(), python, np.__version__, this_machine(), started_at_ns, site, station)
+    def now(
+        cls,
+        site: Site,
+        station: Station,
+        started_at_ns: int,
+        auditing: Auditing | None = None,
+        scenario: str = "",
+    ) -> "FlightStart":
+        """Return the start of a record by this version on this computer."""
+        return cls(
+            version(),
+            sys.version.split()[0],
+            np.__version__,
+            this_machine(),
+            started_at_ns,
+            site,
+            station,
+            Auditing() if auditing is None else auditing,
+            scenario,
+        )
 
 
 @cache
@@ -89,6 +108,8 @@ class EndOfJob:
     job_id: int
     how: str
     error: str = ""
+    input: str = ""
+    """The digest of what it depended on; empty for one that was dropped."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -100,11 +121,12 @@ class FrameReport:
     frame: int
 
 
-def values_codec(frame_of: Callable[[ImageReport], int]) -> Codec:
-    """Return the codec of a record; `frame_of` numbers the frame of an image report."""
+def values_codec() -> Codec:
+    """Return the codec of a record."""
 
     def image(report: ImageReport) -> dict[str, Any]:
-        return {"target_fps_hz": report.target_fps_hz, "frame": frame_of(report)}
+        # The writer puts the frame's number in: it finds the frame in the bytes of the link.
+        return {"target_fps_hz": report.target_fps_hz, "frame": 0}
 
     customs: dict[type[Any], Custom] = {
         ImageReport: Custom(image, _frame_report),
@@ -115,6 +137,11 @@ def values_codec(frame_of: Callable[[ImageReport], int]) -> Codec:
         ),
         VehicleSnapshot: Custom(
             msgspec.to_builtins, lambda value: msgspec.convert(value, VehicleSnapshot)
+        ),
+        RegionPaths: Custom(lambda ways: shapely.to_wkb(ways.area), _region_paths),
+        CellSamples: Custom(
+            lambda cells: codec.to_builtins(cells, CellLight | CellColour),
+            lambda value: codec.from_builtins(value, CellLight | CellColour),
         ),
         **{kind: Custom(str, ip_network) for kind in (IPv4Network, IPv6Network)},
     }
@@ -142,6 +169,18 @@ def _airspace(parts: _AirspaceParts) -> PreparedAirspace:
     return air.with_temporary_zones(prepared_zone(zone) for zone in parts.temporary)
 
 
+def _region_paths(value: Any) -> RegionPaths:
+    if not isinstance(value, bytes):
+        raise CodecError(f"expected an area as WKB, got {type(value).__name__}")
+    try:
+        area = shapely.from_wkb(value)
+    except shapely.errors.ShapelyError as problem:
+        raise CodecError(f"expected an area as WKB, got: {problem}") from problem
+    if not isinstance(area, shapely.Polygon | shapely.MultiPolygon) or not area.is_valid:
+        raise CodecError(f"expected a valid area, got a {area.geom_type}")
+    return RegionPaths(area)
+
+
 def _frame_report(value: Any) -> FrameReport:
     frame, fps_hz = value.get("frame"), value.get("target_fps_hz")
     if type(frame) is not int or type(fps_hz) not in (float, int, type(None)):
@@ -157,6 +196,7 @@ def _end_of_job(event: Any) -> dict[str, Any]:
         "job_id": event.job_id,
         "how": ways[type(event)],
         "error": error,
+        "input": event.input_digest,
     }
 
 
@@ -179,14 +219,13 @@ class _Sent:
     approved_at_ns: int
 
 
-def output_builtins(codec: Codec, output: Output, *, with_input: bool = True) -> dict[str, Any]:
+def output_builtins(codec: Codec, output: Output) -> dict[str, Any]:
     """Return an output of a step as maps and lists, with the name of its kind."""
     match output:
         case SendCommand(approved):
             return {"send": codec.to_builtins(_sent(approved), _Sent)}
         case Job():
-            found = digest(output.input).hex() if with_input else None
-            return {"job": {"kind": output.kind.name, "id": output.id, "input": found}}
+            return {"job": {"kind": output.kind.name, "id": output.id}}
         case CloseLink():
             return {"close_link": codec.to_builtins(output, CloseLink)}
         case WithdrawMotion():

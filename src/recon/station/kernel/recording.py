@@ -1,49 +1,84 @@
-"""What a run leaves: every step with its outputs and audit, all link bytes, and topics to look at.
+"""What a run leaves: every step with its outputs and audit, all link bytes, topics to look at.
 
-`Recorder` takes steps and bytes from a driver, on its thread, and hands them to the writer's queue;
-`RecordTranslator` makes messages of them on the writer's thread.
+`Recorder` takes steps and bytes from a driver, on its thread. It only keeps them until the next
+tick, so that no order waits; then they are encoded and handed to the process that writes.
+
+Theory of operation. One file is one flight, with the time on the ground before it:
+
+    on the ground --the first vehicle takes off--> in flight
+    in flight --nothing has flown for AFTER_LANDING_S--> on the ground, in a new file
+    on the ground --GROUND_FILE_S--> on the ground, in a new file
+
+A file begins with the state of the station, for replays, which a thread encodes while steps wait.
+Results of jobs are not recorded, so a file begins at a moment at which no job runs. When the
+process that writes has died, another one begins a new file, also in flight.
 """
 
+import threading
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import msgspec
 import numpy as np
 
 from recon import version
 from recon.link.tap import Direction
-from recon.model.command import FlyMission
+from recon.model.errors import describe_fault
 from recon.model.event import Event, PacketReceived, RecordFailed, Tick
-from recon.model.report import CoreReport, ImageReport
 from recon.model.shade import ShadeMap, SunForecast
-from recon.record import foxglove
+from recon.model.units import seconds_to_ns
 from recon.record.audit import AuditEntry
-from recon.record.link_bytes import LINKS_TOPIC, LinkMessage
-from recon.record.mcap_file import ABOUT_NAME, STEPS_TOPIC, compressor
-from recon.record.record_writer import RecordWriter, Topics
+from recon.record.flight_messages import (
+    LINK_HEAD,
+    STEP_HEAD,
+    Beginning,
+    ItemKind,
+    TimedValue,
+    packed,
+)
+from recon.record.mcap_file import compressor
+from recon.record.record_process import CLOSE_WITHIN_S, RecordProcess
+from recon.site import Site
+from recon.station.audit.entries import Auditing
 from recon.station.kernel.recorded_values import (
-    MSGPACK,
-    START_NAME,
-    START_TYPE,
     FlightStart,
     audit_builtins,
     output_builtins,
     values_codec,
 )
-from recon.station.state.steps import Job, Output, SendCommand, StepTaken
+from recon.station.state.station import Station
+from recon.station.state.steps import Job, JobDone, JobDropped, JobFailed, Output, StepTaken
+
+AFTER_LANDING_S = 30.0
+"""Vehicles that change batteries and go on belong to one flight for so long."""
+GROUND_FILE_S = 300.0
+"""A flight's file has at most so much of the time before it."""
+RESTART_AFTER_S = 5.0
 
 STEP_BYTES = 1000
-"""What a step without pixels holds, more or less."""
-JOB_BYTES = 4 * 1024 * 1024
-"""What the input of a job of the imaging pipeline holds, more or less."""
+"""What a step holds, more or less, before it is encoded."""
+BULK_BYTES = 16 * 1024
+"""A read of so many bytes is part of an image."""
+KEPT_STEPS = 20_000
+"""While the first state of a file is encoded: a minute of the busiest traffic."""
 
-_LOG_LEVELS = {"alarm.raised": "warning", "alarm.worse": "error", "order.failed": "error"}
+
+class Audited(Protocol):
+    """The audit of the newest step, and what it remembers."""
+
+    @property
+    def entries(self) -> tuple[AuditEntry, ...]:
+        """The entries of the newest step."""
+
+    @property
+    def memory(self) -> Auditing:
+        """What the entries of the next step depend on."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class StepItem:
+class _TakenStep:
     """One step, as far as it is recorded: not the states, which would keep old images in memory."""
 
     number: int
@@ -56,17 +91,18 @@ class StepItem:
     shade: ShadeMap | None
     """A new one."""
     sun: SunForecast | None
-    with_inputs: bool
 
 
 @dataclass(frozen=True, slots=True)
-class LinkItem:
+class _TakenBytes:
     """Bytes of one read or one write of a link."""
 
     link_id: int
     direction: Direction
     data: bytes
     at_ns: int
+    start: int
+    """Bytes of the link in this direction before these."""
 
 
 class Recorder:
@@ -74,93 +110,177 @@ class Recorder:
 
     def __init__(
         self,
-        writer: RecordWriter,
+        new_process: Callable[[], RecordProcess],
         handle: Callable[[Event], None],
-        entries_of: Callable[[StepTaken], tuple[AuditEntry, ...]],
+        audited: Audited,
+        site: Site,
+        scenario: str = "",
     ) -> None:
-        """`handle` is the driver's queue, for `RecordFailed`; `entries_of` is asked once a step."""
-        self._writer = writer
+        """`handle` is the driver's queue, for `RecordFailed`."""
+        self.process = new_process()
+        self._new_process = new_process
         self._handle = handle
-        self._entries_of = entries_of
+        self._audited = audited
+        self._site, self._scenario = site, scenario
+        self._codec = values_codec()
+        self._kept: list[_TakenStep | _TakenBytes] = []
+        self._encoding: threading.Thread | None = None
+        self._beginning: bytes | None = None
+        self._ends: dict[tuple[int, Direction], int] = {}
+        self._jobs: set[tuple[str, int]] = set()
+        self._number = self._dropped_bytes = 0
+        self._has_flown = self._reports_flown = False
+        self._quiet_since_ns = 0
+        """When the file began, or, with a flight in it, when the last vehicle was on the ground."""
+        self._restart_at_ns: int | None = None
         self._reported: str | None = None
-        self._step = 0
+        self._fault: str | None = None
+
+    def start(self, station: Station, now_ns: int) -> None:
+        """Begin the first file, with the station before its first event."""
+        self.process.start()
+        self._begin_file(station, now_ns)
 
     def take(self, step: StepTaken) -> None:
-        """Record a step; once a tick, report what is not recorded."""
-        event, now_ns = step.event, step.now_ns
-        entries = self._entries_of(step)
-        shade, vehicle = step.after.shade, ""
-        is_new = shade.number != step.before.shade.number
-        size_bytes, has_room = STEP_BYTES, self._writer.has_room
-        if isinstance(event, PacketReceived):
-            vehicle = _vehicle_name(step, event.link_id)
-            if isinstance(event.report, ImageReport):
-                size_bytes += _pixel_bytes(event)
-                if not has_room:
-                    self._writer.dropped_bytes += _pixel_bytes(event)
-                    event, size_bytes = without_pixels(event), STEP_BYTES
-        with_inputs = self._writer.has_time
-        if with_inputs:
-            size_bytes += JOB_BYTES * sum(isinstance(each, Job) for each in step.outputs)
-        self._step += 1
-        item = StepItem(
-            self._step,
-            event,
-            now_ns,
-            step.outputs,
-            entries,
-            vehicle,
-            shade.shade if is_new else None,
-            shade.sun if is_new else None,
-            with_inputs,
-        )
-        if not self._writer.put(item, size_bytes):
-            self._writer.dropped_steps += 1
-        if isinstance(event, Tick) and self._writer.problem != self._reported:
-            self._reported = self._writer.problem
-            self._handle(RecordFailed(self._reported))
+        """Record a step; once a tick, hand over what was taken since the last one."""
+        self._number += 1
+        self._keep(_recorded(step, self._number, self._audited.entries))
+        self._follow_jobs(step)
+        if isinstance(step.event, Tick):
+            self._hand_over()
+            self._follow_flight(step.after, step.now_ns)
+            self._report_problem()
 
     def tap(self, link_id: int, direction: Direction, data: bytes, at_ns: int) -> None:
-        """Record a link's bytes, unless too many wait for the disk."""
-        item = LinkItem(link_id, direction, data, at_ns)
-        if not self._writer.has_room or not self._writer.put(item, len(data)):
-            self._writer.dropped_bytes += len(data)
+        """Record a link's bytes."""
+        start = self._ends.get((link_id, direction), 0)
+        self._ends[link_id, direction] = start + len(data)
+        self._keep(_TakenBytes(link_id, direction, data, at_ns, start))
 
+    def close(self, within_s: float = CLOSE_WITHIN_S) -> None:
+        """Hand over the rest, and have the file finished, as far as the disk takes it in time."""
+        if self._encoding is not None:
+            self._encoding.join()
+        self._hand_over()
+        self.process.close(within_s)
 
-def without_pixels(event: PacketReceived) -> PacketReceived:
-    """Return an image's event without the image."""
-    assert isinstance(event.report, ImageReport)
-    return replace(event, report=ImageReport(event.report.target_fps_hz))
+    @property
+    def dropped_bytes(self) -> int:
+        """Bytes of links that are in no record of this run."""
+        return self._dropped_bytes + self.process.dropped_bytes
 
+    def _keep(self, item: _TakenStep | _TakenBytes) -> None:
+        if len(self._kept) < KEPT_STEPS:
+            self._kept.append(item)
+        else:
+            self._drop(item)
 
-def _pixel_bytes(event: Event) -> int:
-    if not isinstance(event, PacketReceived) or not isinstance(event.report, ImageReport):
-        return 0
-    rgb, jpeg = event.report.rgb, event.report.jpeg
-    return (0 if rgb is None else rgb.nbytes) + (0 if jpeg is None else len(jpeg))
+    def _hand_over(self) -> None:
+        if self._encoding is not None:
+            if self._encoding.is_alive():
+                return
+            self._encoding = None
+        process = self.process
+        room_bytes, bulk_bytes = process.room_bytes, process.bulk_room_bytes
+        if self._beginning is not None and len(self._beginning) > room_bytes // 2:
+            return
+        parts: list[bytes] = []
+        if self._beginning is not None:
+            parts += packed(ItemKind.BEGIN, self._beginning)
+            self._beginning = None
+        if self._reports_flown:
+            self._reports_flown = False
+            parts += packed(ItemKind.FLOWN)
+        used_bytes = sum(map(len, parts))
+        kept, self._kept = self._kept, []
+        for item in kept:
+            if isinstance(item, _TakenBytes):
+                limit_bytes = bulk_bytes if len(item.data) >= BULK_BYTES else room_bytes
+                new = _bytes_parts(item)
+            else:
+                limit_bytes, new = room_bytes, self._step_parts(item)
+            size_bytes = sum(map(len, new))
+            if used_bytes + size_bytes > limit_bytes:
+                self._drop(item)
+                continue
+            parts += new
+            used_bytes += size_bytes
+        process.put(parts)
 
+    def _drop(self, item: _TakenStep | _TakenBytes) -> None:
+        if isinstance(item, _TakenStep):
+            self.process.dropped_steps += 1
+        else:
+            self.process.dropped_bytes += len(item.data)
 
-def _vehicle_name(step: StepTaken, link_id: int) -> str:
-    vehicle = step.after.fleet.vehicle_of_link(link_id)
-    return vehicle.serial if vehicle is not None and vehicle.serial else f"link-{link_id}"
+    def _step_parts(self, item: _TakenStep) -> tuple[bytes, ...]:
+        message = {
+            "event": self._codec.to_builtins(item.event, Event),
+            "outputs": [output_builtins(self._codec, each) for each in item.outputs],
+            "audit": audit_builtins(item.entries),
+        }
+        vehicle = item.vehicle.encode()
+        head = STEP_HEAD.pack(item.number, item.now_ns, len(vehicle))
+        parts = packed(ItemKind.STEP, head, vehicle, msgspec.msgpack.encode(message))
+        if item.shade is not None:
+            parts += self._value_parts(ItemKind.SHADE, item.now_ns, item.shade, ShadeMap)
+        if item.sun is not None:
+            parts += self._value_parts(ItemKind.SUN, item.now_ns, item.sun, SunForecast)
+        return parts
 
+    def _value_parts(self, kind: ItemKind, at_ns: int, value: Any, hint: Any) -> tuple[bytes, ...]:
+        timed = TimedValue(at_ns, self._codec.to_builtins(value, hint))
+        return packed(kind, msgspec.msgpack.encode(timed))
 
-class RecordTranslator:
-    """Makes messages of steps and bytes."""
+    def _follow_jobs(self, step: StepTaken) -> None:
+        event = step.event
+        if isinstance(event, JobDone | JobFailed | JobDropped):
+            self._jobs.discard((event.kind.name, event.job_id))
+        for output in step.outputs:
+            if isinstance(output, Job):
+                self._jobs.add((output.kind.name, output.id))
 
-    def __init__(self, start: FlightStart) -> None:
-        self._start: FlightStart | None = start
-        self._frame = self._event_frame = 0
-        self._image_links: set[int] = set()
-        self._codec = values_codec(lambda _report: self._event_frame)
+    def _follow_flight(self, station: Station, now_ns: int) -> None:
+        if self.process.is_dead:
+            self._restart(station, now_ns)
+            return
+        if is_flying(station):
+            self._quiet_since_ns = now_ns
+            if not self._has_flown:
+                self._has_flown = self._reports_flown = True
+            return
+        lasts_s = AFTER_LANDING_S if self._has_flown else GROUND_FILE_S
+        if now_ns - self._quiet_since_ns >= seconds_to_ns(lasts_s) and not self._jobs:
+            self._begin_file(station, now_ns)
 
-    def begin(self, topics: Topics) -> None:
-        """Write what a replay starts from, and the same for a person to read."""
-        start = self._start
-        assert start is not None
-        at_ns = start.started_at_ns
-        packed = compressor().compress(self._codec.encode(start, FlightStart))
-        topics.file.add_attachment(START_NAME, START_TYPE, packed, at_ns)
+    def _restart(self, station: Station, now_ns: int) -> None:
+        """Have another process begin a new file."""
+        if self._restart_at_ns is None:
+            self._restart_at_ns = now_ns + seconds_to_ns(RESTART_AFTER_S)
+        if now_ns < self._restart_at_ns or self._jobs or self._encoding is not None:
+            return
+        self._restart_at_ns = None
+        self._forget_drops()
+        self.process.close(0.0)
+        self.process = self._new_process()
+        self.process.start()
+        self._begin_file(station, now_ns)
+
+    def _begin_file(self, station: Station, now_ns: int) -> None:
+        """Begin a file with this state; what is taken from now on waits for it."""
+        self._forget_drops()
+        self._number, self._quiet_since_ns = 0, now_ns
+        self._has_flown = self._reports_flown = False
+        start = FlightStart.now(self._site, station, now_ns, self._audited.memory, self._scenario)
+        self._encoding = threading.Thread(target=self._encode, args=(start,), name="record-start")
+        self._encoding.start()
+
+    def _forget_drops(self) -> None:
+        """What one file lacks is no problem of the next one."""
+        self._dropped_bytes += self.process.dropped_bytes
+        self.process.dropped_bytes = self.process.dropped_steps = 0
+
+    def _encode(self, start: FlightStart) -> None:
         about = {
             "version": version(),
             "python": start.python,
@@ -170,101 +290,57 @@ class RecordTranslator:
             "origin": None if start.site.frame is None else asdict(start.site.frame.origin),
             "imagers": list(start.site.imagers),
             "vehicles": {s: each.display_name for s, each in start.site.profiles.items()},
+            "scenario": start.scenario,
             "settings": asdict(start.station.settings),
         }
         text = msgspec.json.encode(about, enc_hook=str)
-        topics.file.add_attachment(ABOUT_NAME, "application/json", text, at_ns)
-        self._start = None
+        try:
+            # A codec of its own: it compiles types as it meets them.
+            state = compressor().compress(values_codec().encode(start, FlightStart))
+        except Exception as fault:
+            self._fault = f"the record begins without the station's state: {describe_fault(fault)}"
+            state = b""
+        self._beginning = msgspec.msgpack.encode(Beginning(start.started_at_ns, state, text))
 
-    def write(self, item: Any, topics: Topics, *, with_images: bool) -> None:
-        """Write one step or the bytes of one read."""
-        if isinstance(item, LinkItem):
-            self._write_bytes(item, topics, with_images)
-        else:
-            self._write_step(item, topics, with_images)
-
-    def _write_bytes(self, item: LinkItem, topics: Topics, with_images: bool) -> None:
-        is_from_app = item.direction is Direction.FROM_APP
-        if not with_images and is_from_app and item.link_id in self._image_links:
-            return
-        message = LinkMessage(item.link_id, is_from_app, item.data)
-        topics.add(LINKS_TOPIC, MSGPACK, msgspec.msgpack.encode(message), item.at_ns)
-
-    def _write_step(self, item: StepItem, topics: Topics, with_images: bool) -> None:
-        event = item.event
-        self._event_frame = 0
-        if isinstance(event, PacketReceived):
-            self._write_report(event, item, topics, with_images)
-        message = {
-            "event": self._codec.to_builtins(event, Event),
-            "outputs": [
-                output_builtins(self._codec, each, with_input=item.with_inputs)
-                for each in item.outputs
-            ],
-            "audit": audit_builtins(item.entries),
-        }
-        data = msgspec.msgpack.encode(message)
-        topics.add(STEPS_TOPIC, MSGPACK, data, item.now_ns, number=item.number)
-        self._write_topics(item, topics)
-
-    def _write_report(
-        self, event: PacketReceived, item: StepItem, topics: Topics, with_images: bool
-    ) -> None:
-        report, place, at_ns = event.report, f"/vehicles/{item.vehicle}", item.now_ns
-        if isinstance(report, CoreReport) and report.position is not None:
-            fix = foxglove.location(
-                report.position, report.reported_altitude_m, item.vehicle, at_ns
-            )
-            _add(topics, f"{place}/location", fix, at_ns)
-        if isinstance(report, ImageReport):
-            self._image_links.add(event.link_id)
-            if with_images and _pixel_bytes(event):
-                self._frame = self._event_frame = self._frame + 1
-                self._write_frame(report, item, topics)
-
-    def _write_frame(self, report: ImageReport, item: StepItem, topics: Topics) -> None:
-        place, at_ns = f"/vehicles/{item.vehicle}", item.now_ns
-        if report.rgb is None:
-            jpeg = foxglove.jpeg_image(report.jpeg or b"", item.vehicle, at_ns)
-            _add(topics, f"{place}/jpeg", jpeg, at_ns, self._frame)
-            return
-        topics.add(
-            f"{place}/image",
-            foxglove.ENCODING,
-            foxglove.raw_image_bytes(report.rgb, item.vehicle, at_ns),
-            at_ns,
-            number=self._frame,
-            schema=lambda: foxglove.schema_of(foxglove.RAW_IMAGE),
-        )
-
-    def _write_topics(self, item: StepItem, topics: Topics) -> None:
-        at_ns = item.now_ns
-        for entry in item.entries:
-            level = _LOG_LEVELS.get(entry.kind, "info")
-            name = entry.vehicle or "station"
-            _add(topics, "/log", foxglove.log(entry.text, level, name, at_ns), at_ns)
-        for output in item.outputs:
-            command = output.approved.command if isinstance(output, SendCommand) else None
-            if command is not None and isinstance(command.body, FlyMission):
-                path = foxglove.mission_path(command.body.mission, command.serial)
-                _add(topics, f"/vehicles/{command.serial}/mission", path, at_ns)
-        if item.shade is not None:
-            _add(topics, foxglove.SHADE_TOPIC, foxglove.shade_grid(item.shade), at_ns)
-        if item.sun is not None:
-            _add(topics, "/forecast", foxglove.forecast_grid(item.sun), at_ns)
+    def _report_problem(self) -> None:
+        problem = self.process.problem or self._fault
+        if problem != self._reported:
+            self._reported = problem
+            self._handle(RecordFailed(problem))
 
 
-def _add(topics: Topics, topic: str, message: Any, at_ns: int, number: int | None = None) -> None:
-    topics.add(
-        topic,
-        foxglove.ENCODING,
-        message.SerializeToString(),
-        at_ns,
-        number=number,
-        schema=lambda: foxglove.schema_of(message),
+def is_flying(station: Station) -> bool:
+    """Return whether any vehicle, identified or not, is or may be in flight."""
+    fleet = station.fleet
+    states = [*fleet.vehicles.values(), *(link.own_state for link in fleet.unbound_links())]
+    return bool(station.watchdog_state.lost) or any(s.is_flying.value is True for s in states)
+
+
+def _bytes_parts(item: _TakenBytes) -> tuple[bytes, ...]:
+    is_from_app = item.direction is Direction.FROM_APP
+    head = LINK_HEAD.pack(item.link_id, is_from_app, item.at_ns, item.start)
+    return packed(ItemKind.LINK, head, item.data)
+
+
+def _recorded(step: StepTaken, number: int, entries: tuple[AuditEntry, ...]) -> _TakenStep:
+    event, shade, vehicle = step.event, step.after.shade, ""
+    if isinstance(event, PacketReceived):
+        known = step.after.fleet.vehicle_of_link(event.link_id)
+        serial = None if known is None else known.serial
+        vehicle = serial or f"link-{event.link_id}"
+    is_new = shade.number != step.before.shade.number
+    return _TakenStep(
+        number,
+        event,
+        step.now_ns,
+        step.outputs,
+        entries,
+        vehicle,
+        shade.shade if is_new else None,
+        shade.sun if is_new else None,
     )
 
 
-def record_writer(folder: Path, start: FlightStart) -> RecordWriter:
-    """Return the writer of a run's record into a folder."""
-    return RecordWriter(folder, RecordTranslator(start), f"recon {version()}")
+def record_process(folder: Path) -> RecordProcess:
+    """Return the process that writes a run's records into a folder; it is not started."""
+    return RecordProcess(folder, f"recon {version()}")

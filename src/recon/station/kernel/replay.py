@@ -16,13 +16,14 @@ import msgspec
 import numpy as np
 import zstandard
 from foxglove_schemas_protobuf.CompressedImage_pb2 import CompressedImage
-from foxglove_schemas_protobuf.RawImage_pb2 import RawImage
-from google.protobuf.message import DecodeError
 
 from recon.model.errors import RecordError
 from recon.model.event import Event, PacketReceived
 from recon.model.report import ImageReport
 from recon.model.units import ns_to_seconds
+from recon.record.digest import digest
+from recon.record.flight_messages import START_NAME
+from recon.record.link_bytes import Picture, Pictures
 from recon.record.mcap_file import STEPS_TOPIC
 from recon.record.mcap_read import (
     MOST_RECORD_BYTES,
@@ -35,7 +36,6 @@ from recon.station.kernel.fault_isolation import after_fault
 from recon.station.kernel.recorded_values import (
     DONE,
     FAILED,
-    START_NAME,
     EndOfJob,
     FlightStart,
     FrameReport,
@@ -48,18 +48,10 @@ from recon.station.kernel.worker import AnyJob, JobRunner
 from recon.station.state.station import Station
 from recon.station.state.steps import Job, JobDone, JobDropped, JobFailed, Stepped
 
-FRAMES_KEPT = 16
-"""Frames read that no event has named yet; each stands right before its own."""
-
 REPORT_EVERY_STEPS = 2000
 
 MOST_DIFFERENCES = 20
 """After the first one the replayed station is another one: more of them tell no more."""
-
-_IMAGES: dict[str, Any] = {
-    RawImage.DESCRIPTOR.full_name: RawImage,
-    CompressedImage.DESCRIPTOR.full_name: CompressedImage,
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,20 +111,22 @@ class Replay:
         """Wait for the record's start."""
         self.found = Checked()
         self.station = Station()
-        self._codec = values_codec(lambda _report: 0)
+        self._codec = values_codec()
         self._auditing = Auditing()
         self._runner: JobRunner | None = None
         self._jobs: dict[tuple[str, int], AnyJob] = {}
-        self._frames: dict[int, ImageReport] = {}
+        self._pictures = Pictures()
 
     def take(self, item: RecordMessage | RecordAttachment) -> None:
         """Take the next item of the file; raises `RecordError` for one that is damaged."""
         if isinstance(item, RecordAttachment):
             if item.name == START_NAME and self.found.start is None:
                 self._begin(item.data)
-        elif item.schema in _IMAGES:
-            self._keep_frame(item)
-        elif item.topic == STEPS_TOPIC and self.found.start is not None:
+        elif (
+            not self._pictures.take(item)
+            and item.topic == STEPS_TOPIC
+            and self.found.start is not None
+        ):
             self._take_step(item)
 
     def _begin(self, packed: bytes) -> None:
@@ -144,17 +138,8 @@ class Replay:
         except zstandard.ZstdError as problem:
             raise RecordError(f"the record's start is damaged: {problem}") from problem
         start: FlightStart = self._codec.decode(data, FlightStart)
-        self.found.start, self.station = start, start.station
+        self.found.start, self.station, self._auditing = start, start.station, start.auditing
         self._runner = JobRunner(start.site)
-
-    def _keep_frame(self, item: RecordMessage) -> None:
-        try:
-            image = _IMAGES[item.schema].FromString(item.data)
-        except DecodeError as problem:
-            raise RecordError(f"frame {item.sequence} is damaged: {problem}") from problem
-        self._frames[item.sequence] = _report_of(image, item.sequence)
-        while len(self._frames) > FRAMES_KEPT:
-            del self._frames[next(iter(self._frames))]
 
     def _take_step(self, item: RecordMessage) -> None:
         found = self.found
@@ -164,20 +149,23 @@ class Replay:
                 "cannot be compared"
             )
             return
+        assert found.start is not None
+        found.lasted_s = ns_to_seconds(item.log_ns - found.start.started_at_ns)
         recorded = _step_message(item)
         event = self._event(self._codec.from_builtins(recorded["event"], Event))
         if event is None:
             return
         found.steps = item.sequence
-        assert found.start is not None
-        found.lasted_s = ns_to_seconds(item.log_ns - found.start.started_at_ns)
         outputs, entries = self._stepped(event, item.log_ns)
         now = _normal({"outputs": outputs, "audit": entries})
         for path, was, is_now in differences("", {k: recorded[k] for k in now}, now):
-            name = type(event).__name__
-            found.differences.append(
-                Difference(found.steps, found.lasted_s, name, path, was, is_now)
-            )
+            self._note(path, was, is_now, type(event).__name__)
+
+    def _note(self, path: str, recorded: Any, now: Any, event: str) -> None:
+        found = self.found
+        found.differences.append(
+            Difference(found.steps, found.lasted_s, event, path, recorded, now)
+        )
 
     def _stepped(self, event: Event, now_ns: int) -> tuple[list[Any], list[Any]]:
         before = self.station
@@ -193,15 +181,14 @@ class Replay:
         if isinstance(value, EndOfJob):
             return self._end_of_job(value)
         if isinstance(value, PacketReceived) and isinstance(value.report, FrameReport):
-            report = self._frames.pop(value.report.frame, None)
-            if report is None:
+            picture = self._pictures.get(value.report.frame)
+            if picture is None:
                 self.found.trouble = (
                     f"step {self.found.steps + 1}: an image was not recorded, for want of space or "
                     "time: what follows cannot be compared"
                 )
                 return None
-            report = replace(report, target_fps_hz=value.report.target_fps_hz)
-            return replace(value, report=report)
+            return replace(value, report=_report_of(picture, value.report))
         event: Event = value
         return event
 
@@ -213,10 +200,12 @@ class Replay:
                 "this version has not started it"
             )
             return None
+        if end.how not in (DONE, FAILED):
+            return JobDropped(job.id, job.kind)
+        if end.input and end.input != (now := digest(job.input).hex()):
+            self._note("event.input", end.input, now, type(job).__name__)
         if end.how == FAILED:
             return JobFailed(job.id, job.kind, end.error)
-        if end.how != DONE:
-            return JobDropped(job.id, job.kind)
         if job.kind.acts:
             return JobDone(job.id, job.kind, None)
         assert self._runner is not None
@@ -232,13 +221,13 @@ def _step(station: Station, event: Event, now_ns: int) -> Stepped:
         return after_fault(TICK_PARTS, station, event, fault, now_ns)
 
 
-def _report_of(image: Any, number: int) -> ImageReport:
+def _report_of(image: Picture, report: FrameReport) -> ImageReport:
     if isinstance(image, CompressedImage):
-        return ImageReport(None, jpeg=image.data)
+        return ImageReport(report.target_fps_hz, jpeg=image.data)
     if len(image.data) != 3 * image.width * image.height:
-        raise RecordError(f"frame {number} is damaged: its pixels do not fit its size")
-    shape = (image.height, image.width, 3)
-    return ImageReport(None, rgb=np.frombuffer(image.data, np.uint8).reshape(shape))
+        raise RecordError(f"frame {report.frame} is damaged: its pixels do not fit its size")
+    pixels = np.frombuffer(image.data, np.uint8).reshape(image.height, image.width, 3)
+    return ImageReport(report.target_fps_hz, rgb=pixels)
 
 
 def _step_message(item: RecordMessage) -> dict[str, Any]:
@@ -260,10 +249,8 @@ def differences(path: str, recorded: Any, now: Any) -> Iterator[tuple[str, Any, 
     """Yield the path of each value that differs, with both values."""
     if isinstance(recorded, dict) and isinstance(now, dict):
         for key in [*recorded, *(key for key in now if key not in recorded)]:
-            is_uncompared = path.endswith(".job") and key == "input" and recorded.get(key) is None
-            if not is_uncompared:
-                below = f"{path}.{key}" if path else str(key)
-                yield from differences(below, recorded.get(key), now.get(key))
+            below = f"{path}.{key}" if path else str(key)
+            yield from differences(below, recorded.get(key), now.get(key))
     elif isinstance(recorded, list) and isinstance(now, list):
         for index in range(max(len(recorded), len(now))):
             was = recorded[index] if index < len(recorded) else None

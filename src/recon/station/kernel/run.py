@@ -19,7 +19,6 @@ from recon.api.servers import HttpServer
 from recon.fleet.admission import AllowedApp
 from recon.link.server import LinkServer
 from recon.link.settings import LinkSettings
-from recon.link.tap import Tap
 from recon.model.errors import RecordError
 from recon.record.users_file import default_users_file
 from recon.site import Site, demo_site_folder
@@ -56,8 +55,7 @@ from recon.station.kernel.http_servers import (
     stopped_by_signals,
     url_of,
 )
-from recon.station.kernel.recorded_values import FlightStart
-from recon.station.kernel.recording import Recorder, record_writer
+from recon.station.kernel.recording import Recorder, record_process
 from recon.station.kernel.rewritten_file import RewrittenFile
 from recon.station.kernel.users_watch import UsersWatch
 from recon.station.kernel.worker import JobRunner, ThreadWorker
@@ -85,6 +83,8 @@ class RunConfig:
     """Where the site was read from; its digest goes into the audit."""
     record_folder: Path | None = None
     """Of the flight records; None: nothing is recorded."""
+    is_record_required: bool = False
+    """Whether a folder that cannot be written is an error at the start, not only an alarm."""
     audit: AuditPlace | None = None
     """None: the place in the user's state folder that belongs to the link port."""
     users_file: Path | None = None
@@ -103,6 +103,8 @@ class RunConfig:
     """The entries of that file."""
     sun_time_ahead_s: float = 0.0
     """How far the time of day of simulated drones is ahead of the computer's clock."""
+    scenario: str = ""
+    """The simulated world, for the record: file and seed; empty for real aircraft."""
 
     @property
     def network(self) -> NetworkConfig:
@@ -171,10 +173,10 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
         folder = _text(config.record_folder)
         service = Service.around(driver, config.site, folder, begun.log, last_run.first_ids[0])
         service.edit(config.site_folder)
-        tap = _start_record(config, driver, auditor, service, stack)
+        recorder = _start_record(config, driver, auditor, service, stack)
         service.numbers = kept_numbers(given, numbers_file, stack)
         line = _start_guard(config, driver, service, doors, place.folder, stack)
-        links = await _start_links_and_worker(config, driver, service, line, tap, stack)
+        links = await _start_links_and_worker(config, driver, service, line, recorder, stack)
         if config.is_announced:
             name = "Recon" if config.site_folder is None else config.site.name
             announce(name, links.hosts, links.port, last)
@@ -219,10 +221,13 @@ async def _start_links_and_worker(
     driver: AsyncioDriver,
     service: Service,
     line: GuardLine | None,
-    tap: Tap | None,
+    recorder: Recorder | None,
     stack: AsyncExitStack,
 ) -> LinkServer:
-    driver.worker = worker = ThreadWorker(JobRunner(config.site), driver.handle_from_thread)
+    runner = JobRunner(config.site)
+    runner.digests_inputs = recorder is not None
+    driver.worker = worker = ThreadWorker(runner, driver.handle_from_thread)
+    tap = None if recorder is None else recorder.tap
     driver.links = links = LinkServer(driver.handle, driver.now_ns, config.link, tap)
     links.objection = driver.objection
     links.watch = line
@@ -432,22 +437,23 @@ def _start_record(
     auditor: Auditor,
     service: Service,
     stack: AsyncExitStack,
-) -> Tap | None:
-    """Record the run from before its first event, if that is asked for; return what takes the bytes
-    of its links. The record is closed after everything else has ended."""
+) -> Recorder | None:
+    """Record the run from before its first event, unless that is not wanted. The record is closed
+    after everything else has ended."""
     folder = config.record_folder
     if folder is None:
         return None
-    _require_writable(folder)
-    start = FlightStart.now(config.site, driver.station, driver.started_at_ns)
-    writer = record_writer(folder, start)
-    recorder = Recorder(writer, driver.handle, lambda _step: auditor.entries)
+    if config.is_record_required:
+        _require_writable(folder)
+    recorder = Recorder(
+        lambda: record_process(folder), driver.handle, auditor, config.site, config.scenario
+    )
     driver.record = recorder.take
-    service.lost_bytes = lambda: writer.dropped_bytes
-    service.recording = lambda: writer.path
-    writer.start()
-    stack.callback(writer.close)
-    return recorder.tap
+    service.lost_bytes = lambda: recorder.dropped_bytes
+    service.recording = lambda: recorder.process.path
+    recorder.start(driver.station, driver.started_at_ns)
+    stack.callback(recorder.close)
+    return recorder
 
 
 def _require_writable(folder: Path) -> None:

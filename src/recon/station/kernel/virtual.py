@@ -117,7 +117,7 @@ class VirtualDriver:
         self.tap: Tap | None = None
         """Called with all bytes of all links, as the link server's is."""
         self._keeps_log = keeps_log
-        self._jobs = jobs
+        self.jobs = jobs
         self._settings = link_settings or LinkSettings()
         self._work_takes_ns = seconds_to_ns(work_takes_s)
         self._wires: dict[int, _Wire] = {}
@@ -283,9 +283,9 @@ class VirtualDriver:
                 self._at(self.now_ns + self._work_takes_ns, lambda: self.handle(ended))
 
     def _run(self, job: AnyJob) -> Event:
-        if self._jobs is None:
+        if self.jobs is None:
             return JobFailed(job.id, job.kind, "this driver runs no jobs")
-        return self._jobs.run(job)
+        return self.jobs.run(job)
 
     def _delay_ns(self, link: FakeLink) -> int:
         return seconds_to_ns(link.delay_s + link.jitter_s * link.rng.random())

@@ -12,6 +12,7 @@ import cv2
 
 from recon.model.errors import ReconError
 from recon.model.event import Event
+from recon.record.digest import digest
 from recon.site import Site
 from recon.station.state.steps import (
     InputT,
@@ -38,6 +39,8 @@ class JobRunner:
 
     def __init__(self, site: Site) -> None:
         cv2.setNumThreads(1)
+        self.digests_inputs = False
+        """Whether the end of a job has a digest of its input: a record asks for it."""
         self._site = site
         self._prepared: dict[JobKind[Any, Any], Callable[[Any], Any]] = {}
 
@@ -47,16 +50,18 @@ class JobRunner:
 
     def run(self, job: Job[InputT, ResultT]) -> Event:
         """Run one job now; what it raises is the error of its event."""
+        found = digest(job.input).hex() if self.digests_inputs else ""
         try:
             prepared = self._prepared.get(job.kind)
             if prepared is None:
                 prepared = self._prepared[job.kind] = job.kind.prepare(self._site)
-            return JobDone(job.id, job.kind, prepared(job.input))
+            return JobDone(job.id, job.kind, prepared(job.input), input_digest=found)
         except (ReconError, ValueError) as problem:
-            return JobFailed(job.id, job.kind, str(problem))
+            return JobFailed(job.id, job.kind, str(problem), input_digest=found)
         except Exception as problem:
             # A fault in one frame's job must not end the thread that runs all the others.
-            return JobFailed(job.id, job.kind, f"{type(problem).__name__}: {problem}")
+            error = f"{type(problem).__name__}: {problem}"
+            return JobFailed(job.id, job.kind, error, input_digest=found)
 
 
 class ThreadWorker:
