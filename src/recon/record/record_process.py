@@ -182,7 +182,7 @@ def main(folder: str, library: str, descriptor: str, ring_bytes: str) -> None:
     for ignored in (signal.SIGINT, signal.SIGTERM):
         # It ends after the station, which may have more to say.
         signal.signal(ignored, signal.SIG_IGN)
-    inbox = RingInbox(SharedRing(int(descriptor), int(ring_bytes)))
+    inbox = RingInbox(SharedRing(int(descriptor), int(ring_bytes), allocates=True))
     writer = RecordWriter(
         Path(folder),
         FlightMessages(),
