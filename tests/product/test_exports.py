@@ -5,6 +5,7 @@ import xml.etree.ElementTree as ET
 from dataclasses import replace
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pyogrio
 import pytest
@@ -70,6 +71,12 @@ def test_the_sun_by_cell_and_the_figures(record: Path, tmp_path: Path) -> None:
     with rasterio.open(tmp_path / "sun.tif") as dataset:
         assert dataset.count == 4
         assert "Recon site frame" in dataset.crs.to_wkt()
+    assert export(record, tmp_path / "coverage.png").exit_code == 0
+    picture = cv2.imread(str(tmp_path / "coverage.png"), cv2.IMREAD_UNCHANGED)
+    assert picture is not None
+    # 180 m in cells of 2 m, all photographed.
+    assert picture.shape == (90, 90, 4)
+    assert (picture[..., 3] == 255).all()
     result = export(record, tmp_path / "figures.json")
     assert result.exit_code == 0, result.output
     found = json.loads((tmp_path / "figures.json").read_text())

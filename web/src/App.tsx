@@ -9,6 +9,7 @@ import { ConnectionBanner } from "./panels/bar/ConnectionBanner";
 import { TopBar } from "./panels/bar/TopBar";
 import { CommandList } from "./panels/commands/CommandList";
 import { VehicleDetail } from "./panels/detail/VehicleDetail";
+import { FlightsPanel } from "./panels/flights/FlightsPanel";
 import { FlyHereCard } from "./panels/fly/FlyHereCard";
 import { HelpDialog } from "./panels/help/HelpDialog";
 import { LinkList } from "./panels/links/LinkList";
@@ -41,6 +42,7 @@ const PANELS: readonly (readonly [PanelName, () => ReturnType<typeof AlarmList>]
   ["orders", CommandList],
   ["timeline", TimelinePanel],
   ["links", LinkList],
+  ["flights", FlightsPanel],
   ["station", StationPanel],
 ];
 

@@ -24,6 +24,7 @@ MEDIA_TYPES = {
     "tracks.csv": "text/csv; charset=utf-8",
     "surveys.kml": "application/vnd.google-earth.kml+xml",
     "sun.tif": "image/tiff",
+    "coverage.png": "image/png",
     "report.html": "text/html; charset=utf-8",
 }
 PAGE_POLICY = "sandbox; default-src 'none'; img-src data:; style-src 'unsafe-inline'"

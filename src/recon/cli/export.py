@@ -20,7 +20,7 @@ def export_command(
         typer.Argument(
             metavar="OUT",
             help="File to write: tracks as .gpx, .geojson or .csv; surveys and tracks as .kml; "
-            "the sun by cell as .tif (GeoTIFF); the report's figures as .json.",
+            "the sun by cell as .tif (GeoTIFF); the report's coverage as .png, figures as .json.",
         ),
     ],
 ) -> None:

@@ -178,13 +178,26 @@ def map_frame(report: FlightReport) -> MapFrame:
 
 def coverage_map(report: FlightReport, covered: Covered) -> Markup:
     """Return where photos show the region in sun."""
+    image = _image(_coverage_pixels(covered), covered.sun.grid, map_frame(report))
+    return _map(report, "Coverage in sun", image)
+
+
+def _coverage_pixels(covered: Covered) -> ByteMap:
     shown, sunlit = covered.photos.photos, covered.photos.sunlit
     pixels = np.zeros((*shown.shape, 4), dtype=np.uint8)
     pixels[shown > 0] = SHADE_ONLY
     pixels[sunlit > 0] = SUNLIT
     pixels[sunlit >= ENOUGH_VIEWS] = WELL_SUNLIT
     pixels[~covered.region] = 0
-    return _map(report, "Coverage in sun", _image(pixels, covered.sun.grid, map_frame(report)))
+    return pixels
+
+
+def coverage_png(covered: Covered) -> bytes:
+    """Return the coverage map's cells as a picture, cut to the region; one pixel if it is empty."""
+    rows, cols = np.nonzero(covered.region)
+    part = np.s_[min(rows, default=0) : max(rows, default=0) + 1,
+                 min(cols, default=0) : max(cols, default=0) + 1]  # fmt: skip
+    return _png(_coverage_pixels(covered)[part])
 
 
 def sun_map(report: FlightReport, covered: Covered) -> Markup:
@@ -239,16 +252,21 @@ def _scale_bar(frame: MapFrame) -> str:
 
 def _image(pixels: ByteMap, grid: GroundGrid, frame: MapFrame) -> str:
     """Return RGBA cells (R, C, 4) as a picture at their place."""
-    done, data = cv2.imencode(".png", cv2.cvtColor(pixels, cv2.COLOR_RGBA2BGRA))
-    assert done
     x = (grid.west_m - frame.west_m) * frame.px_per_m
     y = (frame.north_m - grid.north_m) * frame.px_per_m
     wide, tall = (n * grid.cell_m * frame.px_per_m for n in (grid.cols, grid.rows))
-    address = "data:image/png;base64," + base64.b64encode(data.tobytes()).decode()
+    address = "data:image/png;base64," + base64.b64encode(_png(pixels)).decode()
     return (
         f'<image class="cells" x="{x:.1f}" y="{y:.1f}" width="{wide:.1f}" height="{tall:.1f}" '
         f'preserveAspectRatio="none" href="{address}"/>'
     )
+
+
+def _png(pixels: ByteMap) -> bytes:
+    """Return RGBA pixels (R, C, 4) as PNG."""
+    done, data = cv2.imencode(".png", cv2.cvtColor(pixels, cv2.COLOR_RGBA2BGRA))
+    assert done
+    return data.tobytes()
 
 
 def vehicle_classes(report: FlightReport) -> Mapping[str, str]:

@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from recon.model.units import NS_PER_S
+from recon.product.charts import coverage_png
 from recon.product.flight import FlightData, FlownSurvey, RecordedTrack
-from recon.product.flight_log import read_log
+from recon.product.flight_log import FlightLog, read_log
 from recon.product.report import FlightReport, flight_report
 from recon.product.shadow_record import sun_by_cell, sun_cog
 from recon.product.tag import sun_history
@@ -75,6 +76,14 @@ def sun_tiff(flight: FlightData) -> bytes:
     return sun_cog(flight, sun_by_cell(sun_history(flight)), None)
 
 
+def coverage_picture(flight: FlightData) -> bytes:
+    """Return the report's map of coverage as PNG; raises `RecordError` without shade maps."""
+    sun_history(flight)
+    covered = flight_report(flight, FlightLog(), None).covered
+    assert covered is not None
+    return coverage_png(covered)
+
+
 def figures_json(flight: FlightData) -> bytes:
     """Return the report's figures; raises `RecordError` and OSError."""
     report = flight_report(flight, read_log(flight.path, flight), None)
@@ -108,6 +117,7 @@ def figures(report: FlightReport) -> dict[str, Any]:
 FLIGHT_FORMATS: Mapping[str, Callable[[FlightData], bytes]] = {
     ".kml": kml,
     ".tif": sun_tiff,
+    ".png": coverage_picture,
     ".json": figures_json,
 }
 """By the ending of the file to write."""

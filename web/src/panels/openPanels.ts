@@ -12,6 +12,7 @@ export const PANEL_NAMES = {
   orders: "Orders",
   timeline: "Timeline",
   links: "Links",
+  flights: "After the flight",
   station: "Station and site",
 } as const;
 

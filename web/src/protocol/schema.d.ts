@@ -3944,7 +3944,7 @@ export interface operations {
             query?: never;
             header?: never;
             path: {
-                file: "tracks.gpx" | "tracks.geojson" | "tracks.csv" | "surveys.kml" | "sun.tif" | "report.html";
+                file: "tracks.gpx" | "tracks.geojson" | "tracks.csv" | "surveys.kml" | "sun.tif" | "coverage.png" | "report.html";
                 name: string;
             };
             cookie?: never;
@@ -3960,6 +3960,7 @@ export interface operations {
                     "application/geo+json": unknown;
                     "application/gpx+xml": unknown;
                     "application/vnd.google-earth.kml+xml": unknown;
+                    "image/png": unknown;
                     "image/tiff": unknown;
                     "text/csv": unknown;
                     "text/html": unknown;

@@ -4,6 +4,7 @@ import type { Clock, Instant } from "./clock";
 import { Requests } from "./requests";
 import type {
   Connection,
+  FlightFile,
   NamedOrder,
   NewSurvey,
   NewZone,
@@ -215,6 +216,22 @@ export class LiveSource implements StationSource {
 
   appAddressCode() {
     return this.requests.picture("/api/apps/qr.svg");
+  }
+
+  flights() {
+    return this.requests.flights();
+  }
+
+  flightFigures(name: string) {
+    return this.requests.flightFigures(name);
+  }
+
+  flightFile(name: string, file: FlightFile) {
+    return this.requests.flightFile(name, `files/${file}`);
+  }
+
+  flightRecord(name: string) {
+    return this.requests.flightFile(name, "record.mcap");
   }
 
   groundImageFile() {

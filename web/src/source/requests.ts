@@ -4,6 +4,8 @@ import type {
   ActionResponse,
   AuthorityHolder,
   CameraView,
+  FlightFiguresView,
+  FlightView,
   ImportedView,
   OrderResult,
   PreflightView,
@@ -40,6 +42,8 @@ const PLANNING_MS = 12_000;
 const SITE_MS = 25_000;
 const SITE_LATE =
   "The station did not answer within 25 s. Load the site again to see whether it was saved.";
+/** Timeout for a file made of a flight record: a long one takes minutes, and nothing waits for it. */
+const RECORD_MS = 600_000;
 
 /** HTTP requests to the station. Failures are values with a sentence for the operator. */
 export class Requests {
@@ -314,6 +318,19 @@ export class Requests {
     return answered(() => this.client.GET("/api/access", { signal: timeout() }), identity);
   }
 
+  flights(): Promise<Outcome<readonly FlightView[]>> {
+    return answered(() => this.client.GET("/api/flights", { signal: timeout() }), identity);
+  }
+
+  flightFigures(name: string): Promise<Outcome<FlightFiguresView>> {
+    const options = { params: { path: { name } }, signal: AbortSignal.timeout(RECORD_MS) };
+    return answered(() => this.client.GET("/api/flights/{name}", options), identity);
+  }
+
+  flightFile(name: string, file: string): Promise<Outcome<Picture>> {
+    return this.picture(`/api/flights/${encodeURIComponent(name)}/${file}`, RECORD_MS);
+  }
+
   /** Why the station rejects this page, or null: a browser reports no reason for a WebSocket. */
   async refusalReason(): Promise<string | null> {
     const outcome = await attempt(async () => {
@@ -324,16 +341,25 @@ export class Requests {
   }
 
   /** Fetches a picture or file; always with the token's header, which an `<img>` could not send. */
-  async picture(path: string): Promise<Outcome<Picture>> {
+  async picture(path: string, within_ms = 4 * REQUEST_MS): Promise<Outcome<Picture>> {
     return attempt(async () => {
       const request = new Request(this.origin + path, {
         headers: this.headers,
-        signal: AbortSignal.timeout(4 * REQUEST_MS),
+        signal: AbortSignal.timeout(within_ms),
       });
       const response = await this.fetch(request);
-      if (!response.ok) return failed(refusal(response, null));
+      if (!response.ok) return failed(refusal(response, await sentenceOf(response)));
       return done({ blob: await response.blob(), frameId: frameIdOf(response) });
     });
+  }
+}
+
+/** The body of a refusal; null if it is no JSON. */
+async function sentenceOf(response: Response): Promise<unknown> {
+  try {
+    return await response.json();
+  } catch {
+    return null;
   }
 }
 

@@ -4,6 +4,8 @@ import type {
   ActionResponse,
   AuthorityHolder,
   CameraView,
+  FlightFiguresView,
+  FlightView,
   ImportedView,
   Order,
   OrderResult,
@@ -69,6 +71,15 @@ export interface TimelineFilter {
   /** The number of the entry before which the lines are wanted. */
   readonly before: number | null;
 }
+/** A file that the station makes of a flight record. */
+export type FlightFile =
+  | "tracks.gpx"
+  | "tracks.geojson"
+  | "tracks.csv"
+  | "surveys.kml"
+  | "sun.tif"
+  | "coverage.png"
+  | "report.html";
 
 /** Where the page gets states from and sends orders to: a running station or a recording. */
 export interface StationSource {
@@ -154,5 +165,11 @@ export interface StationSource {
   undoSite(revision: string): Promise<Outcome<SiteDrawingResponse>>;
   /** Reads the polygons and points of a file of another program; nothing is saved. */
   importSite(file: File): Promise<Outcome<ImportedView>>;
+  /** The flight records in the station's folder, the newest first. */
+  flights(): Promise<Outcome<readonly FlightView[]>>;
+  /** Takes seconds: the station reads the record. */
+  flightFigures(name: string): Promise<Outcome<FlightFiguresView>>;
+  flightFile(name: string, file: FlightFile): Promise<Outcome<Picture>>;
+  flightRecord(name: string): Promise<Outcome<Picture>>;
   close(): void;
 }

@@ -7,6 +7,8 @@ import type {
   ActionResponse,
   AuthorityHolder,
   CameraView,
+  FlightFiguresView,
+  FlightView,
   ImportedView,
   OrderResult,
   PreflightView,
@@ -21,6 +23,7 @@ import type {
 } from "../protocol";
 import type {
   Connection,
+  FlightFile,
   NamedOrder,
   NewSurvey,
   NewZone,
@@ -57,6 +60,8 @@ export interface RenderedPage {
   /** Sets the place upwind of further answers. */
   findUpwind(place: UpwindPlaceView): void;
   showPreflight(preflight: PreflightView): void;
+  /** Sets the flight records and the figures of each. */
+  showFlights(flights: readonly FlightView[], figures: Outcome<FlightFiguresView>): void;
   failPreflight(problem: string): void;
   /** Sets how vehicle pictures are fetched. */
   fetchFramesWith(fetch: StationSource["vehicleFrame"]): void;
@@ -92,7 +97,8 @@ export type PageRequest =
       readonly serials: readonly string[];
       readonly takeoff: boolean;
     }
-  | { readonly stoppedSurvey: number; readonly word: "pause" | "abort" };
+  | { readonly stoppedSurvey: number; readonly word: "pause" | "abort" }
+  | { readonly flight: string; readonly file?: FlightFile | "record.mcap" };
 
 /** A site's folder: what it answers, and what it was asked. */
 export interface FakeSite {
@@ -128,6 +134,8 @@ interface Recorded {
   estimate: SurveyEstimateView;
   cameras: readonly CameraView[];
   timeline: RenderedPage["timeline"];
+  flights: Outcome<readonly FlightView[]>;
+  figures: Outcome<FlightFiguresView>;
 }
 
 const noPicture = async () => ({ kind: "failed", problem: "no picture in this test" }) as const;
@@ -192,6 +200,8 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
       },
     ],
     timeline: { entries: [], asked: [] },
+    flights: { kind: "answered", value: [] },
+    figures: { kind: "failed", problem: "no figures in this test" },
   };
   let behindS = 0;
   const source = fakeSource(state, connection, person, () => behindS, recorded);
@@ -227,6 +237,10 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
     },
     findUpwind: (place) => {
       recorded.upwindPlace = { kind: "answered", value: { place, reason: "" } };
+    },
+    showFlights: (value, figures) => {
+      recorded.flights = { kind: "answered", value };
+      recorded.figures = figures;
     },
     showPreflight: (value) => {
       recorded.preflight = { kind: "answered", value };
@@ -372,6 +386,19 @@ function fakeSource(
       );
       const value = { entries: found.slice(0, atMost), has_more: found.length > atMost };
       return { kind: "answered", value };
+    },
+    flights: async () => recorded.flights,
+    flightFigures: async (flight) => {
+      recorded.requests.push({ flight });
+      return recorded.figures;
+    },
+    flightFile: async (flight, file) => {
+      recorded.requests.push({ flight, file });
+      return { kind: "answered", value: { blob: new Blob(["x"]), frameId: null } };
+    },
+    flightRecord: async (flight) => {
+      recorded.requests.push({ flight, file: "record.mcap" });
+      return { kind: "failed", problem: "no record in this test" };
     },
     close: () => {},
   };

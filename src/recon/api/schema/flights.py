@@ -7,7 +7,13 @@ from pydantic import Field
 from recon.api.schema.message import Message
 
 FlightFileName = Literal[
-    "tracks.gpx", "tracks.geojson", "tracks.csv", "surveys.kml", "sun.tif", "report.html"
+    "tracks.gpx",
+    "tracks.geojson",
+    "tracks.csv",
+    "surveys.kml",
+    "sun.tif",
+    "coverage.png",
+    "report.html",
 ]
 
 

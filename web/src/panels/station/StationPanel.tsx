@@ -1,6 +1,7 @@
 import { createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { SiteView, StationView } from "../../protocol";
+import { saveAs } from "../../source/saveAs";
 import { formatAge, formatBytes, formatQuantity, UNKNOWN } from "../../text/quantities";
 import { AppAddress } from "../links/AppAddress";
 import { SharedAddress } from "../login/SharedAddress";
@@ -118,13 +119,4 @@ function Download() {
       <Show when={problem()}>{(text) => <p class="tone-error">{text()}</p>}</Show>
     </div>
   );
-}
-
-function saveAs(blob: Blob, name: string): void {
-  const url = URL.createObjectURL(blob);
-  const link = document.createElement("a");
-  link.href = url;
-  link.download = name;
-  link.click();
-  URL.revokeObjectURL(url);
 }

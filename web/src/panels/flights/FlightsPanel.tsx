@@ -1,0 +1,225 @@
+import { createEffect, createSignal, For, on, onCleanup, onMount, Show } from "solid-js";
+import { useConsole } from "../../console";
+import type { FlightFiguresView, FlightView } from "../../protocol";
+import { saveAs } from "../../source/saveAs";
+import type { FlightFile, Outcome, Picture } from "../../source/stationSource";
+import { flightTime } from "../../text/flights";
+import { formatAge, formatBytes, formatFraction } from "../../text/quantities";
+import { formatArea } from "../../text/survey";
+import { Empty, Panel, Problem } from "../Panel";
+import "./flights.css";
+
+const FILES: readonly (readonly [FlightFile, string])[] = [
+  ["report.html", "Report"],
+  ["sun.tif", "Sun GeoTIFF"],
+  ["surveys.kml", "Surveys KML"],
+  ["tracks.gpx", "Tracks GPX"],
+  ["tracks.geojson", "Tracks GeoJSON"],
+  ["tracks.csv", "Tracks CSV"],
+];
+
+/** A browser holds a file in memory before it saves it. */
+const LARGEST_RECORD_BYTES = 500e6;
+
+/** The flight records in the station's folder: coverage of each, and its files. */
+export function FlightsPanel() {
+  const { source } = useConsole();
+  const [flights, setFlights] = createSignal<readonly FlightView[]>([]);
+  const [problem, setProblem] = createSignal<string | null>(null);
+  const [chosen, setChosen] = createSignal<string | null>(null);
+  const list = async () => {
+    const outcome = await source.flights();
+    setProblem(outcome.kind === "failed" ? outcome.problem : null);
+    if (outcome.kind === "answered") setFlights(outcome.value);
+  };
+  onMount(() => void list());
+  const flight = () => flights().find(({ name }) => name === chosen());
+  return (
+    <Panel
+      title="After the flight"
+      name="flights"
+      actions={
+        <button
+          type="button"
+          class="button button-quiet"
+          aria-label="Refresh"
+          title="Read the folder again"
+          onClick={() => void list()}
+        >
+          ↻
+        </button>
+      }
+    >
+      <Problem text={problem()} />
+      <Show
+        when={flights().length > 0}
+        fallback={<Empty>No flight records: start the station with --record.</Empty>}
+      >
+        <ul class="list flights-list">
+          <For each={flights()}>
+            {(each) => (
+              <li>
+                <button
+                  type="button"
+                  class="button button-quiet flights-pick"
+                  aria-pressed={each.name === chosen()}
+                  title={each.name}
+                  onClick={() => setChosen(each.name === chosen() ? null : each.name)}
+                >
+                  <span>{flightTime(each.name)}</span>
+                  <span class="muted push">
+                    {each.is_recording ? "recording" : formatBytes(each.size_bytes)}
+                  </span>
+                </button>
+              </li>
+            )}
+          </For>
+        </ul>
+        <Show when={flight()}>{(one) => <Flight flight={one()} />}</Show>
+      </Show>
+    </Panel>
+  );
+}
+
+/** Figures and coverage of the chosen flight, and what can be downloaded. */
+function Flight(props: { flight: FlightView }) {
+  const { source } = useConsole();
+  const [figures, setFigures] = createSignal<FlightFiguresView | null>(null);
+  const [coverage, setCoverage] = createSignal<string | null>(null);
+  const [problem, setProblem] = createSignal<string | null>(null);
+  const [isReading, setReading] = createSignal(false);
+  const showPicture = (blob: Blob | null) => {
+    const shown = coverage();
+    if (shown !== null) URL.revokeObjectURL(shown);
+    setCoverage(blob === null ? null : URL.createObjectURL(blob));
+  };
+  onCleanup(() => showPicture(null));
+
+  createEffect(
+    on(
+      () => props.flight.name,
+      async (name) => {
+        setFigures(null);
+        showPicture(null);
+        setProblem(null);
+        setReading(true);
+        const found = await source.flightFigures(name);
+        if (name !== props.flight.name) return;
+        setReading(false);
+        if (found.kind === "failed") {
+          setProblem(found.problem);
+          return;
+        }
+        setFigures(found.value);
+        if (found.value.region_m2 === null) return;
+        const picture = await source.flightFile(name, "coverage.png");
+        if (name === props.flight.name && picture.kind === "answered") {
+          showPicture(picture.value.blob);
+        }
+      },
+    ),
+  );
+
+  const save = async (asked: Promise<Outcome<Picture>>, as: string) => {
+    setReading(true);
+    const outcome = await asked;
+    setReading(false);
+    setProblem(outcome.kind === "failed" ? outcome.problem : null);
+    if (outcome.kind === "answered") saveAs(outcome.value.blob, as);
+  };
+  const isLarge = () => props.flight.size_bytes > LARGEST_RECORD_BYTES;
+  return (
+    <div class="section" data-testid="flight">
+      <Show when={isReading()}>
+        <p class="muted" role="status">
+          Reading the record…
+        </p>
+      </Show>
+      <Problem text={problem()} />
+      <Show when={coverage()}>
+        {(url) => (
+          <figure class="flights-coverage">
+            <img src={url()} alt="Ground photographed in sun" />
+            <figcaption>
+              <span class="flights-well">in sun on enough photos</span>
+              <span class="flights-sunlit">on fewer</span>
+              <span class="flights-shade">not surely in sun</span>
+            </figcaption>
+          </figure>
+        )}
+      </Show>
+      <Show when={figures()}>{(found) => <Figures figures={found()} />}</Show>
+      <div class="section-buttons flights-files">
+        <For each={FILES}>
+          {([file, title]) => (
+            <button
+              type="button"
+              class="button"
+              disabled={isReading()}
+              onClick={() =>
+                void save(
+                  source.flightFile(props.flight.name, file),
+                  `${props.flight.name}-${file}`,
+                )
+              }
+            >
+              {title}
+            </button>
+          )}
+        </For>
+        <button
+          type="button"
+          class="button"
+          disabled={isReading() || props.flight.is_recording || isLarge()}
+          title={
+            isLarge()
+              ? "Too large for a browser: copy it from the station's folder"
+              : "The whole record, for replays and bug reports"
+          }
+          onClick={() =>
+            void save(source.flightRecord(props.flight.name), `${props.flight.name}.mcap`)
+          }
+        >
+          Record MCAP
+        </button>
+      </div>
+    </div>
+  );
+}
+
+function Figures(props: { figures: FlightFiguresView }) {
+  const rows = () => {
+    const { figures } = props;
+    const region = figures.region_m2;
+    return [
+      ["Site", figures.site || "unnamed"],
+      ["Time", `${figures.begin_utc.slice(11, 16)} to ${figures.end_utc.slice(11, 16)} UTC`],
+      ["Vehicles", figures.vehicles.join(", ")],
+      ["In the air, together", formatAge(figures.airborne_s)],
+      ["Region", region === null ? "no survey" : formatArea(region)],
+      ["Photographed", formatFraction(figures.photographed_share)],
+      ["In sun on a photo", formatFraction(figures.sunlit_share)],
+      ["In sun on enough photos", formatFraction(figures.well_sunlit_share)],
+      ["Mean sun on the region", formatFraction(figures.mean_sun_share)],
+      ["Alarms", String(figures.alarms)],
+    ] as const;
+  };
+  return (
+    <>
+      <Show when={props.figures.trouble}>
+        {(trouble) => <p class="tone-warning wire-text">The record ends early: {trouble()}</p>}
+      </Show>
+      <dl class="flights-figures">
+        <For each={rows()}>
+          {([label, value]) => (
+            <div>
+              <dt class="muted">{label}</dt>
+              <dd class="wire-text">{value}</dd>
+            </div>
+          )}
+        </For>
+      </dl>
+      <p class="muted">Estimated from tracks and camera timer; recon tag reads the photos.</p>
+    </>
+  );
+}
