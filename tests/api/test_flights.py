@@ -49,7 +49,7 @@ def recorded() -> Iterator[Callable[..., RecordedFlights]]:
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("records")
-    write_record(flight(maps_every_s=12.0), folder / f"{NAME}.mcap")
+    write_record(flight(maps_every_s=40.0), folder / f"{NAME}.mcap")
     (folder / "notes.txt").write_text("secret")
     (folder / "linked.mcap").symlink_to(folder / "notes.txt")
     (folder / "folder.mcap").mkdir()

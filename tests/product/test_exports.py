@@ -25,7 +25,7 @@ HOSTILE = '<b>&"]]>\x00\x1b\ud800'
 @pytest.fixture(scope="module")
 def record(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("exports") / "flight.mcap"
-    return write_record(flight(ONE, OTHER), path)
+    return write_record(flight(ONE, OTHER, maps_every_s=12.0), path)
 
 
 def export(record: Path, out: Path):

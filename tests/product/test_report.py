@@ -62,7 +62,9 @@ def perfect(at_s: float, lead_s: float) -> np.ndarray:
 @pytest.fixture(scope="module")
 def record(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("report") / "flight.mcap"
-    return write_record(flight(ONE, OTHER), path, entries=ENTRIES, forecast=perfect)
+    return write_record(
+        flight(ONE, OTHER, maps_every_s=6.0), path, entries=ENTRIES, forecast=perfect
+    )
 
 
 def report_of(path: Path) -> FlightReport:
@@ -103,7 +105,7 @@ def test_a_perfect_forecast_has_skill_one_and_persistence_none(
         assert leads[lead_s].brier == 0.0
         assert leads[lead_s].skill == 1.0
         assert leads[lead_s].persistence_brier > 0.1
-    path = write_record(flight(), tmp_path / "other.mcap", forecast=persistence)
+    path = write_record(flight(maps_every_s=12.0), tmp_path / "other.mcap", forecast=persistence)
     for figures in report_of(path).log.leads.values():
         assert figures.skill == pytest.approx(0.0, abs=1e-6)
 
@@ -113,7 +115,7 @@ def test_cover_and_coverage_are_those_of_the_construction(report: FlightReport) 
     region = report.covered.region
     east_m, north_m = PLACES
     assert np.array_equal(region, (np.abs(east_m) < 90.0) & (np.abs(north_m) < 90.0))
-    for at_ns, share in report.cover[::9]:
+    for at_ns, share in report.cover[::6]:
         lit = sun(*PLACES, (at_ns - START_NS) / NS_PER_S) >= 0.5
         assert share == pytest.approx(lit[region].mean(), abs=1e-6)
     # Rows 25 m apart under a camera that shows 78 m: each cell is on several photos.
@@ -156,7 +158,7 @@ def test_the_page_states_what_the_report_holds(report: FlightReport) -> None:
 
 
 def test_hostile_text_stays_text(tmp_path: Path) -> None:
-    made = flight()
+    made = flight(maps_every_s=20.0)
     made = replace(
         made,
         names={"SIM-1": HOSTILE},
@@ -191,7 +193,7 @@ def test_a_flight_without_maps_or_surveys_has_a_report(tmp_path: Path) -> None:
 
 
 def test_the_command_takes_tagged_photos_for_coverage(record: Path, tmp_path: Path) -> None:
-    write_card(tmp_path / "card", every=6)
+    write_card(tmp_path / "card", every=12)
     tag = ["tag", tmp_path / "card", "--flight", record, "--out", tmp_path / "tagged"]
     assert CliRunner().invoke(app, [str(word) for word in tag]).exit_code == 0
     words = ["report", record, "--tagged", tmp_path / "tagged", "--out", tmp_path / "r.html"]
@@ -214,7 +216,7 @@ def test_the_command_takes_tagged_photos_for_coverage(record: Path, tmp_path: Pa
 def test_a_damaged_log_is_refused_with_what_is_wrong(
     tmp_path: Path, fields: dict, row: str
 ) -> None:
-    path = write_record(flight(), tmp_path / "a.mcap", entries=[(1.0, fields)])
+    path = write_record(flight(maps_every_s=60.0), tmp_path / "a.mcap", entries=[(1.0, fields)])
     with pytest.raises(RecordError, match=f"the log is damaged: .*{row}"):
         read_log(path, read_flight(path))
 

@@ -39,7 +39,7 @@ def run(*words: object):
 def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("shadow")
     record = write_record(flight(), folder / "flight.mcap")
-    write_card(folder / "card", every=4)
+    write_card(folder / "card", every=10)
     tagged = run("tag", folder / "card", "--flight", record, "--out", folder / "tagged")
     assert tagged.exit_code == 0, tagged.output
     result = run("shadow-record", record, "--out", folder / "out", "--tagged", folder / "tagged")
