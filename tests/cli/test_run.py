@@ -61,15 +61,18 @@ def received(record: Path) -> bytes:
 def test_a_killed_stations_record_is_finished_by_its_process(tmp_path: Path) -> None:
     with started("run", *FREE, "--record", str(tmp_path)) as recon:
         port = link_port(recon.line_with("companion apps: 127.0.0.1:"))
-        recon.line_with("console")
+        console = recon.line_with("console: http://127.0.0.1:").partition(": ")[2]
         with socket.create_connection(("127.0.0.1", port)) as app:
             app.sendall(HELLO)
             end_s = monotonic() + PATIENCE_S
             while not any(HELLO in received(each) for each in tmp_path.iterdir()):
                 assert monotonic() < end_s
                 sleep(0.02)
+            with urllib.request.urlopen(f"{console}/api/flights", timeout=120) as response:
+                (listed,) = json.load(response)
             recon.end(signal.SIGKILL)
     (record,) = tmp_path.iterdir()
+    assert (listed["name"], listed["is_recording"]) == (record.stem, True)
     while not is_finished(record):
         assert monotonic() < end_s
         sleep(0.02)

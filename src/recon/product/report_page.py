@@ -80,8 +80,8 @@ def _figures(report: FlightReport) -> Sequence[tuple[str, str, str]]:
             (f"In sun on {ENOUGH_VIEWS} photos", f"{100.0 * covered.enough:.0f}", unit),
         ]
     if report.photo_states:
-        rows.append(("Photos", f"{sum(report.photo_states.values())}", ""))
-        rows.append(("Sunlit photos", f"{report.photo_states.get('sunlit', 0)}", ""))
+        sunlit = f"{report.photo_states.get('sunlit', 0)} sunlit"
+        rows.append(("Photos", f"{sum(report.photo_states.values())}", sunlit))
     if report.cover:
         mean = sum(share for _at, share in report.cover) / len(report.cover)
         rows.append(("Mean sun on the region", f"{100.0 * mean:.0f}", "%"))
