@@ -1,11 +1,16 @@
 """`recon report` on flights made by construction: its figures, and pages that hold hostile text."""
 
+import contextlib
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
 import numpy as np
 import pytest
+from foxglove_schemas_protobuf.Grid_pb2 import Grid
+from foxglove_schemas_protobuf.PackedElementField_pb2 import PackedElementField
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from tests.product.made_flight import (
     GRID,
     ONE,
@@ -24,14 +29,16 @@ from recon.geo import cell_centres_m
 from recon.model.errors import RecordError
 from recon.model.units import NS_PER_S
 from recon.product.flight import read_flight
-from recon.product.flight_log import read_log
+from recon.product.flight_log import FORECAST_TOPIC, LogReader, read_log
 from recon.product.report import FlightReport, flight_report
 from recon.product.report_page import report_html
 from recon.product.tagged import tagged_photos
+from recon.record.mcap_read import RecordMessage
 
 HOSTILE = "\"><script>alert(1)</script><img src=//x.example onerror=alert(2)>{{ 7*7 }}' &<b>"
 PLACES = np.meshgrid(*cell_centres_m(GRID))
 SIM_1 = "Drone 1"
+MADE = flight(maps_every_s=60.0)
 
 
 def entry(kind: str, text: str = "text", vehicle: str = SIM_1, **details: object) -> dict:
@@ -230,3 +237,33 @@ def test_no_browser_is_a_clear_refusal(monkeypatch: pytest.MonkeyPatch, tmp_path
         (tmp_path / name).chmod(0o755)
         with pytest.raises(RecordError, match="did not print the page: 'no display'"):
             print_pdf(tmp_path / "r.html", tmp_path / "r.pdf")
+
+
+NUMBERS = st.one_of(st.integers(-(2**31), 2**31 - 1), st.sampled_from([0, 1, 150]))
+
+
+@given(st.binary(max_size=200), st.lists(st.text(max_size=12), max_size=4), NUMBERS, st.floats())
+@settings(max_examples=80, deadline=None)
+def test_no_forecast_breaks_the_reader(
+    data: bytes, names: list[str], size: int, place: float
+) -> None:
+    grid = Grid(data=data, column_count=abs(size), cell_stride=len(names))
+    grid.fields.extend(PackedElementField(name=name) for name in names)
+    grid.cell_size.x = grid.pose.position.x = place
+    for message in (data, grid.SerializeToString(), on_the_grid(names)):
+        item = RecordMessage(FORECAST_TOPIC, "protobuf", "foxglove.Grid", 1, 0, message)
+        reader = LogReader(Path("a.mcap"), MADE)
+        with contextlib.suppress(RecordError):
+            reader.take(item)
+
+
+def on_the_grid(names: list[str]) -> bytes:
+    """A forecast on the cells of the maps, with leads of any name."""
+    grid = Grid(column_count=GRID.cols, cell_stride=len(names))
+    grid.data = bytes(GRID.rows * GRID.cols * len(names))
+    grid.fields.extend(PackedElementField(name=name) for name in names)
+    grid.cell_size.x = grid.cell_size.y = GRID.cell_m
+    grid.pose.position.x = GRID.west_m
+    grid.pose.position.y = GRID.north_m - GRID.rows * GRID.cell_m
+    grid.timestamp.FromNanoseconds(MADE.maps[0].at_ns)
+    return grid.SerializeToString()

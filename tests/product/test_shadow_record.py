@@ -1,5 +1,7 @@
 """`recon shadow-record` on a flight made by construction; its files are read back by GDAL."""
 
+import contextlib
+import csv
 from datetime import datetime
 from pathlib import Path
 
@@ -7,6 +9,8 @@ import numpy as np
 import pytest
 import rasterio
 import shapely
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 from rasterio.warp import transform
 from tests.product.made_flight import (
     FRAME,
@@ -26,7 +30,9 @@ from recon.model.errors import RecordError
 from recon.model.units import NS_PER_S
 from recon.product.flight import read_flight
 from recon.product.tagged import tagged_photos
+from recon.product.write import COLUMNS
 
+MADE = flight(maps_every_s=60.0)
 BEGINS_S = 0.5
 """Of the first shade map, after the flight's start."""
 
@@ -153,3 +159,19 @@ def test_a_damaged_table_is_refused_with_its_line(
     (tmp_path / "tags.csv").write_text(f"{head}\n{quoted}\n")
     with pytest.raises(RecordError, match="line 2 is damaged"):
         tagged_photos(tmp_path, read_flight(written / "flight.mcap"))
+
+
+CELLS = st.one_of(
+    st.text(max_size=20),
+    st.sampled_from(["2025-06-20T16:00:00Z", "+999999-01-01", "POLYGON ((1 2, 3 4, 5 6, 1 2))"]),
+    st.builds(lambda n: f"POLYGON (({n} {n}, 3 4, 5 1e308, {n} {n}))", st.floats()),
+)
+
+
+@given(st.lists(CELLS, min_size=len(COLUMNS), max_size=len(COLUMNS)), st.booleans())
+@settings(max_examples=80, deadline=None, suppress_health_check=list(HealthCheck))
+def test_no_table_breaks_the_reader(tmp_path: Path, cells: list[str], has_head: bool) -> None:
+    with (tmp_path / "tags.csv").open("w", encoding="utf-8", errors="surrogatepass") as file:
+        csv.writer(file).writerows(([COLUMNS] if has_head else []) + [cells])
+    with contextlib.suppress(RecordError):
+        tagged_photos(tmp_path, MADE)

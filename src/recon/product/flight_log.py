@@ -96,7 +96,7 @@ class FlightLog:
 
 def read_log(path: Path, flight: FlightData) -> FlightLog:
     """Return the log of a flight's record; raises `RecordError` for a damaged one, and OSError."""
-    reader = _LogReader(path, flight)
+    reader = LogReader(path, flight)
     with path.open("rb") as file:
         for item in McapReading(file).items():
             reader.take(item)
@@ -118,7 +118,9 @@ class _LoggedStep(msgspec.Struct, frozen=True):
 
 
 @dataclass(slots=True)
-class _LogReader:
+class LogReader:
+    """Collects the log of a file's items."""
+
     path: Path
     flight: FlightData
     log: FlightLog = field(default_factory=FlightLog)
@@ -132,6 +134,7 @@ class _LogReader:
         self._times = [each.at_ns for each in self.flight.maps]
 
     def take(self, item: RecordMessage | RecordAttachment) -> None:
+        """Take the next item; raises `RecordError` for one that is damaged."""
         try:
             if isinstance(item, RecordAttachment):
                 if item.name == ABOUT_NAME:
