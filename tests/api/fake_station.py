@@ -11,11 +11,11 @@ from recon.api.port import SiteFolder, SurveyCellStates, TimelineSubject
 from recon.api.schema import (
     ActionResponse,
     AuditPage,
-    CameraView,
     OrderResponse,
     PreflightView,
     StationState,
     SunAtView,
+    SurveyCameraView,
     SurveyEstimateView,
     SurveyRequest,
     SurveyResponse,
@@ -229,7 +229,7 @@ class FakeStation:
     ) -> Callable[[], SurveyEstimateView] | None:
         return self.service.survey_estimate(survey_id, serials)
 
-    def cameras(self) -> list[CameraView]:
+    def cameras(self) -> list[SurveyCameraView]:
         return self.service.cameras()
 
     def survey_cells(self, survey_id: int) -> SurveyCellStates | None:

@@ -10,7 +10,6 @@ import numpy.typing as npt
 from recon.api.schema import (
     ActionResponse,
     AuditPage,
-    CameraView,
     ImportedView,
     OrderResponse,
     PreflightView,
@@ -19,6 +18,7 @@ from recon.api.schema import (
     SiteDrawingView,
     StationState,
     SunAtView,
+    SurveyCameraView,
     SurveyEstimateView,
     SurveyRequest,
     SurveyResponse,
@@ -237,7 +237,7 @@ class StationPort(Protocol):
         None without rows.
         """
 
-    def cameras(self) -> list[CameraView]:
+    def cameras(self) -> list[SurveyCameraView]:
         """Return the survey cameras that requests may name."""
 
     def geotiff(self, image: GroundImage) -> bytes:

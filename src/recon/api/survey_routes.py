@@ -90,7 +90,7 @@ def _add_views(app: FastAPI, port: StationPort) -> None:
         )
 
     @app.get("/api/cameras")
-    async def cameras() -> list[schema.CameraView]:
+    async def cameras() -> list[schema.SurveyCameraView]:
         """The survey cameras that a request may name: the table's and the site's own."""
         return port.cameras()
 

@@ -104,7 +104,7 @@ def read_log(path: Path, flight: FlightData) -> FlightLog:
     return reader.log
 
 
-class _Entry(msgspec.Struct, frozen=True):
+class _LoggedEntry(msgspec.Struct, frozen=True):
     kind: str
     text: str
     by: str = ""
@@ -114,7 +114,7 @@ class _Entry(msgspec.Struct, frozen=True):
 
 class _LoggedStep(msgspec.Struct, frozen=True):
     event: dict[str, Any]
-    audit: list[_Entry] = []
+    audit: list[_LoggedEntry] = []
 
 
 @dataclass(slots=True)

@@ -1291,36 +1291,6 @@ export interface components {
             kind: "camera_stop";
         };
         /**
-         * CameraView
-         * @description A survey camera; the longer side of its photos lies across the flight.
-         */
-        CameraView: {
-            /** Across Deg */
-            across_deg: number;
-            /** Across Px */
-            across_px: number;
-            /** Along Deg */
-            along_deg: number;
-            /** Along Px */
-            along_px: number;
-            /** Name */
-            name: string;
-            /**
-             * Shutter
-             * @enum {string}
-             */
-            shutter: "global" | "mechanical" | "rolling";
-            /** Source */
-            source: string;
-            /**
-             * Timer S
-             * @description intervals that its timer can be set to
-             */
-            timer_s: number[];
-            /** Title */
-            title: string;
-        };
-        /**
          * CheckView
          * @description One point of a preflight checklist; `to_do` is empty when it is ok.
          */
@@ -2827,6 +2797,36 @@ export interface components {
             model?: string | null;
         };
         /**
+         * SurveyCameraView
+         * @description A survey camera; the longer side of its photos lies across the flight.
+         */
+        SurveyCameraView: {
+            /** Across Deg */
+            across_deg: number;
+            /** Across Px */
+            across_px: number;
+            /** Along Deg */
+            along_deg: number;
+            /** Along Px */
+            along_px: number;
+            /** Name */
+            name: string;
+            /**
+             * Shutter
+             * @enum {string}
+             */
+            shutter: "global" | "mechanical" | "rolling";
+            /** Source */
+            source: string;
+            /**
+             * Timer S
+             * @description intervals that its timer can be set to
+             */
+            timer_s: number[];
+            /** Title */
+            title: string;
+        };
+        /**
          * SurveyCellsView
          * @description Position of the picture of the cells; `number` rises with every change.
          */
@@ -3781,7 +3781,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["CameraView"][];
+                    "application/json": components["schemas"]["SurveyCameraView"][];
                 };
             };
         };

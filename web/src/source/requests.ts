@@ -3,7 +3,6 @@ import type {
   AccessView,
   ActionResponse,
   AuthorityHolder,
-  CameraView,
   FlightFiguresView,
   FlightView,
   ImportedView,
@@ -13,6 +12,7 @@ import type {
   SiteDrawingResponse,
   SiteDrawingView,
   SunAtView,
+  SurveyCameraView,
   SurveyEstimateView,
   SurveyRequest,
   SurveyResponse,
@@ -164,7 +164,7 @@ export class Requests {
     return answered(() => this.client.GET("/api/surveys/{survey_id}/estimate", options), identity);
   }
 
-  cameras(): Promise<Outcome<readonly CameraView[]>> {
+  cameras(): Promise<Outcome<readonly SurveyCameraView[]>> {
     return answered(() => this.client.GET("/api/cameras", { signal: timeout() }), identity);
   }
 

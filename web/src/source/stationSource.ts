@@ -3,7 +3,6 @@ import type {
   AccessView,
   ActionResponse,
   AuthorityHolder,
-  CameraView,
   FlightFiguresView,
   FlightView,
   ImportedView,
@@ -15,6 +14,7 @@ import type {
   SiteDrawingView,
   StationState,
   SunAtView,
+  SurveyCameraView,
   SurveyEstimateView,
   SurveyRequest,
   SurveyResponse,
@@ -144,7 +144,7 @@ export interface StationSource {
   /** What a planned survey will take with these vehicles; without any, with one drone. */
   surveyEstimate(id: number, serials: readonly string[]): Promise<Outcome<SurveyEstimateView>>;
   /** The survey cameras that a plan may name. */
-  cameras(): Promise<Outcome<readonly CameraView[]>>;
+  cameras(): Promise<Outcome<readonly SurveyCameraView[]>>;
   surveyWays(id: number): Promise<Outcome<SurveyWays>>;
   surveyCells(id: number, number: number): Promise<Outcome<Picture>>;
   shadePicture(number: number): Promise<Outcome<Picture>>;

@@ -6,7 +6,6 @@ import type {
   AccessView,
   ActionResponse,
   AuthorityHolder,
-  CameraView,
   FlightFiguresView,
   FlightView,
   ImportedView,
@@ -16,6 +15,7 @@ import type {
   SiteDrawingResponse,
   SiteDrawingView,
   StationState,
+  SurveyCameraView,
   SurveyEstimateView,
   TimelineEntryView,
   UpwindPlaceView,
@@ -132,7 +132,7 @@ interface Recorded {
   upwindPlace: Outcome<UpwindView>;
   site: FakeSite;
   estimate: SurveyEstimateView;
-  cameras: readonly CameraView[];
+  cameras: readonly SurveyCameraView[];
   timeline: RenderedPage["timeline"];
   flights: Outcome<readonly FlightView[]>;
   figures: Outcome<FlightFiguresView>;

@@ -82,10 +82,10 @@ from recon.api.schema.station import (
     WaitingAppView,
 )
 from recon.api.schema.surveys import (
-    CameraView,
     DroneEstimateView,
     SurveyBudgetRequest,
     SurveyCameraRequest,
+    SurveyCameraView,
     SurveyCellsView,
     SurveyEstimateView,
     SurveyFiguresView,
@@ -137,7 +137,6 @@ __all__ = [
     "AuditPage",
     "AuthorityRequest",
     "AuthorityView",
-    "CameraView",
     "CheckView",
     "CommandView",
     "DoubtView",
@@ -201,6 +200,7 @@ __all__ = [
     "SunAtView",
     "SurveyBudgetRequest",
     "SurveyCameraRequest",
+    "SurveyCameraView",
     "SurveyCellsView",
     "SurveyEstimateView",
     "SurveyFiguresView",

@@ -150,7 +150,7 @@ class SurveyView(Message):
     ways: int = Field(description="rises as flown paths grow")
 
 
-class CameraView(Message):
+class SurveyCameraView(Message):
     """A survey camera; the longer side of its photos lies across the flight."""
 
     name: str

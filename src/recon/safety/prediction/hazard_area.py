@@ -55,7 +55,7 @@ def hazard_area_of(
     largest_m = max(settings.hazard_radius_m, stopping_distance_m(growth_mps, settings))
     rise_m = max(0.0, motion.velocity_mps[2]) * min(motion.age_s, LONGEST_RISE_S)
     top_m = motion.high_m + rise_m
-    if motion.returns:
+    if motion.goes_home:
         top_m = max(top_m, go_home_top_m(motion, settings))
     return HazardArea(
         name=motion.name,
@@ -67,7 +67,7 @@ def hazard_area_of(
         largest_m=largest_m,
         low_m=-ALL_HEIGHTS_M,
         high_m=top_m + motion.drift_m,
-        home_m=motion.home_m if motion.returns else None,
+        home_m=motion.home_m if motion.goes_home else None,
         corridor_low_m=motion.low_m - motion.drift_m,
         corridor_half_m=settings.corridor_m,
     )

@@ -62,7 +62,7 @@ class VehicleMotion(NamedTuple):
     takeoff_up_m: float | None
     home_m: tuple[float, float] | None
     go_home_up_m: float | None
-    returns: bool
+    goes_home: bool
     """Whether it may go home by itself when it loses its controller."""
     is_ground_known: bool = True
     """Whether the height of its takeoff point is that of a pad or of an elevation model."""
@@ -125,7 +125,7 @@ def vehicle_motion(
         takeoff_up_m=base_m,
         home_m=None if home_place is None else plane.east_north_m(home_place),
         go_home_up_m=None if go_home_m is None or base_m is None else base_m + go_home_m,
-        returns=profile is None or profile.failsafe in (None, Failsafe.GO_HOME),
+        goes_home=profile is None or profile.failsafe in (None, Failsafe.GO_HOME),
         is_ground_known=is_takeoff_height_known(airspace, state, home_place),
         drift_m=height_drift_m(state, now_ns, settings),
     )

@@ -322,7 +322,7 @@ class Service:
         """Return what estimates a survey with these vehicles; None without rows."""
         return self._surveys.preview(survey_id, serials)
 
-    def cameras(self) -> list[schema.CameraView]:
+    def cameras(self) -> list[schema.SurveyCameraView]:
         """Return the survey cameras that requests may name."""
         return self._surveys.cameras()
 

@@ -83,7 +83,7 @@ class SurveyService:
         record = station.surveys.records.get(survey_id)
         return None if record is None else survey_preview(station, record, serials)
 
-    def cameras(self) -> list[schema.CameraView]:
+    def cameras(self) -> list[schema.SurveyCameraView]:
         """Return the survey cameras that requests may name; the site's own come first."""
         known = {**self.site.cameras, **CAMERAS}
         return [_camera_view(self.site.cameras.get(name, model)) for name, model in known.items()]
@@ -135,8 +135,8 @@ def _camera(asked: schema.SurveyCameraRequest, site: Site) -> SurveyCamera:
     return camera_named(asked.model, site.cameras.values()).at_interval(asked.interval_s)
 
 
-def _camera_view(model: CameraModel) -> schema.CameraView:
-    return schema.CameraView(
+def _camera_view(model: CameraModel) -> schema.SurveyCameraView:
+    return schema.SurveyCameraView(
         name=model.key,
         title=model.title,
         across_px=model.across_px,

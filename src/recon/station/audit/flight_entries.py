@@ -22,7 +22,7 @@ TOOK_OFF_KIND = "vehicle.took_off"
 LANDED_KIND = "vehicle.landed"
 FLYING_KIND = "vehicle.flying"
 HOME_KIND = "vehicle.home_set"
-GO_HOME_KIND = "vehicle.returns"
+GO_HOME_KIND = "vehicle.goes_home"
 DOUBT_KIND = "vehicle.doubted"
 DOUBT_ENDED_KIND = "vehicle.believed"
 
