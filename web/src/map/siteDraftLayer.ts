@@ -14,10 +14,17 @@ const IMPORT_EDGE = "site-draft-import";
 export const DRAFT_FILL = "site-draft-fill";
 export const DRAFT_POINT = "site-draft-point";
 
-const IS_IMPORT: ExpressionSpecification = ["get", "isImport"];
-const WIDTH: ExpressionSpecification = ["case", ["get", "isSelected"], 5, 3];
+/** In place of a layer: a feature of an imported file that is not taken. */
+const LEFT_OUT = "left_out";
 
-/** The site being edited: dashed over the fences in force; features of an imported file are dotted. */
+const IS_IMPORT: ExpressionSpecification = ["get", "isImport"];
+const IS_SELECTED: ExpressionSpecification = ["get", "isSelected"];
+const WIDTH: ExpressionSpecification = ["case", IS_SELECTED, 5, 3];
+/** What is taken of a file differs from what is left out by its fill and line too. */
+const IMPORT_WIDTH: ExpressionSpecification = ["case", IS_SELECTED, 4, 2];
+const OPACITY: ExpressionSpecification = ["case", ["all", IS_IMPORT, IS_SELECTED], 0.35, 0.1];
+
+/** The site being edited: dashed over the fences in force; features of an imported file are dotted, grey while they are left out. */
 export class SiteDraftLayer implements Layer {
   private map: MapLibre | null = null;
   private shown: DraftShapes | null = null;
@@ -31,7 +38,7 @@ export class SiteDraftLayer implements Layer {
       type: "fill",
       source: SOURCE,
       filter: ["==", ["geometry-type"], "Polygon"],
-      paint: { "fill-color": colour, "fill-opacity": 0.1 },
+      paint: { "fill-color": colour, "fill-opacity": OPACITY },
     });
     map.addLayer({
       id: CASING,
@@ -51,7 +58,7 @@ export class SiteDraftLayer implements Layer {
       type: "line",
       source: SOURCE,
       filter: IS_IMPORT,
-      paint: { "line-color": colour, "line-width": 3, "line-dasharray": [1, 1] },
+      paint: { "line-color": colour, "line-width": IMPORT_WIDTH, "line-dasharray": [1, 1] },
     });
     map.addLayer({
       id: DRAFT_POINT,
@@ -91,15 +98,20 @@ export function draftFeatures({ features, imported, selectedId }: DraftShapes): 
   const drafted = features.map(({ id, layer, rings }) =>
     shape(rings, LAYERS[layer].isPoint, {
       id,
+      importIndex: null,
       layer,
       isSelected: id === selectedId,
       isImport: false,
     }),
   );
-  const read = imported.flatMap(({ rings, isPoint, layer }) =>
-    layer === null
-      ? []
-      : [shape(rings, isPoint, { id: null, layer, isSelected: false, isImport: true })],
+  const read = imported.map(({ rings, isPoint, layer }, importIndex) =>
+    shape(rings, isPoint, {
+      id: null,
+      importIndex,
+      layer: layer ?? LEFT_OUT,
+      isSelected: layer !== null,
+      isImport: true,
+    }),
   );
   return [...drafted, ...read];
 }
@@ -149,6 +161,8 @@ function colourOf(colours: Colours): ExpressionSpecification {
     of("height_zones"),
     "survey_regions",
     of("survey_regions"),
+    "landing_pads",
     of("landing_pads"),
+    colours.stale,
   ];
 }

@@ -1,7 +1,7 @@
 import type { Map as MapLibre, MapMouseEvent } from "maplibre-gl";
 import { createEffect, createMemo, createSignal, on, onCleanup } from "solid-js";
 import type { SiteDraft } from "../site/siteDraft";
-import { areaHa, type DraftFeature } from "../site/siteFeatures";
+import { areaHa, type DraftFeature, isDraggable } from "../site/siteFeatures";
 import type { ThemeSwitch } from "../theme/theme";
 import { readColours } from "./colours";
 import type { RingEditor } from "./ringEditor";
@@ -35,7 +35,10 @@ export function createSiteEditing(map: MapLibre, draft: SiteDraft, theme: ThemeS
     editor()?.stop();
   });
 
-  const edited = createMemo(() => (draft.isOn() ? draft.selected() : null));
+  const edited = createMemo(() => {
+    const one = draft.isOn() ? draft.selected() : null;
+    return one !== null && isDraggable(one) ? one : null;
+  });
   createEffect(() => {
     const [hands, tool, one] = [editor(), draft.isOn() ? draft.tool() : null, edited()];
     theme.changes();
@@ -51,19 +54,27 @@ export function createSiteEditing(map: MapLibre, draft: SiteDraft, theme: ThemeS
   const select = (event: MapMouseEvent) => {
     if (!draft.isOn() || draft.tool() !== null) return;
     const one = draft.selected();
-    if (one !== null && isNearCorner(map, one, event)) return;
+    if (one !== null && isDraggable(one) && isNearCorner(map, one, event)) return;
     const hits = map.queryRenderedFeatures(event.point, { layers: [DRAFT_FILL, DRAFT_POINT] });
-    const ids = new Set(hits.map(({ properties }) => properties["id"]));
-    const found = draft.features().filter(({ id }) => ids.has(id));
-    // The boundary is under everything: the smallest is meant.
-    found.sort((a, b) => areaHa(a) - areaHa(b));
-    const [smallest] = found;
-    if (smallest !== undefined) draft.select(smallest.id);
+    const hit = (key: string) => new Set(hits.map(({ properties }) => properties[key]));
+    const [ids, indexes] = [hit("id"), hit("importIndex")];
+    const read = smallest(draft.imported().filter((_, index) => indexes.has(index)));
+    if (read !== undefined) {
+      draft.takeOrLeave(draft.imported().indexOf(read));
+      return;
+    }
+    const found = smallest(draft.features().filter(({ id }) => ids.has(id)));
+    if (found !== undefined) draft.select(found.id);
   };
   map.on("click", select);
   onCleanup(() => map.off("click", select));
   // While a ring is drawn, Enter on the map would also be a press of a focused button.
   createEffect(on(draft.tool, (tool) => tool !== null && map.getCanvas().focus(), { defer: true }));
+}
+
+/** The boundary is under everything: the smallest is meant. */
+function smallest<T extends Pick<DraftFeature, "rings">>(hit: readonly T[]): T | undefined {
+  return [...hit].sort((a, b) => areaHa(a) - areaHa(b))[0];
 }
 
 function isNearCorner(map: MapLibre, { rings }: DraftFeature, { point }: MapMouseEvent): boolean {

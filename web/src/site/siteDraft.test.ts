@@ -223,6 +223,19 @@ describe("an imported file", () => {
     expect(draft.features()).toEqual([]);
   });
 
+  it("with many features takes those that are pressed", async () => {
+    const draft = await open();
+    const one = { name: "", geometry: polygon };
+    page.site.imported = { features: Array(21).fill(one), left_out: 0, reason: null };
+    await draft.readFile(new File(["x"], "county.gpkg"));
+    expect(draft.imported().every(({ layer }) => layer === null)).toBe(true);
+    draft.takeOrLeave(20);
+    draft.takeOrLeave(3);
+    draft.takeOrLeave(3);
+    draft.addImported();
+    expect(draft.features().map(({ layer }) => layer)).toEqual(["survey_regions"]);
+  });
+
   it("that is refused leaves everything as it is", async () => {
     const draft = await open(FIELD);
     page.site.imported = { features: [], left_out: 0, reason: "a.zip: expected KML" };

@@ -94,12 +94,16 @@ export interface SiteDraft {
   undoSaved(): Promise<void>;
   readFile(file: File): Promise<void>;
   choose(index: number, layer: LayerName | null): void;
+  /** A press on an imported feature: it is taken, or left out. */
+  takeOrLeave(index: number): void;
   addImported(): void;
   dropImported(): void;
 }
 
 const CHECK_AFTER_MS = 500;
 const MOST_UNDONE = 100;
+/** Features of a file that are all taken at first: of more, a few are wanted. */
+const MOST_TAKEN = 20;
 export const LEAST_CORNERS = 3;
 
 /** `groundAltitude_m` is where a pad is put: a drawing has no heights. */
@@ -312,11 +316,17 @@ export function createSiteDraft(
             text: `${file.name}: ${found.length} read${left}`,
             isProblem: false,
           });
-          setImported(found.map(choiceOf));
+          setImported(choicesOf(found));
         },
       ),
     choose: (index, layer) =>
       setImported(imported().map((one, i) => (i === index ? { ...one, layer } : one))),
+    takeOrLeave: (index) =>
+      setImported(
+        imported().map((one, i) =>
+          i === index ? { ...one, layer: one.layer === null ? usualLayer(one) : null } : one,
+        ),
+      ),
     addImported: () => {
       let next = features();
       for (const { name, rings, layer } of imported()) {
@@ -375,8 +385,14 @@ function withProperty(
   return Object.fromEntries(Object.entries(next).filter(([, one]) => one !== null));
 }
 
-function choiceOf({ name, geometry }: ImportedFeatureView): ImportChoice {
-  const isPoint = geometry.type === "Point";
-  const layer = isPoint ? "landing_pads" : "survey_regions";
-  return { name, rings: ringsOf(geometry), isPoint, layer };
+/** What the features of a file become; of a file with many, none is taken until it is chosen. */
+function choicesOf(found: readonly ImportedFeatureView[]): ImportChoice[] {
+  return found.map(({ name, geometry }) => {
+    const one = { name, rings: ringsOf(geometry), isPoint: geometry.type === "Point" };
+    return { ...one, layer: found.length > MOST_TAKEN ? null : usualLayer(one) };
+  });
+}
+
+function usualLayer({ isPoint }: Pick<ImportChoice, "isPoint">): LayerName {
+  return isPoint ? "landing_pads" : "survey_regions";
 }

@@ -8,7 +8,9 @@ import {
   cornerText,
   type DraftFeature,
   featureName,
+  isDraggable,
   LAYERS,
+  MOST_DRAGGED,
   type Ring,
 } from "../../site/siteFeatures";
 import { plural } from "../../text/names";
@@ -51,6 +53,12 @@ export function FeatureForm(props: { feature: DraftFeature }) {
           value={props.feature.properties["serial"] ?? ""}
           onChange={(text) => set("serial", text.trim() || null)}
         />
+      </Show>
+      <Show when={!isDraggable(props.feature)}>
+        <p class="site-wide">
+          More than {MOST_DRAGGED} corners: they are changed in the list, not on the map. Simplify
+          the shape in the program it comes from to drag them.
+        </p>
       </Show>
       <Index each={props.feature.rings}>
         {(ring, index) => <Corners feature={props.feature} ring={ring()} index={index} />}

@@ -53,6 +53,9 @@ export function ImportForm() {
       <p class="muted">KML, KMZ, Shapefile (zip), GeoPackage or GeoJSON; or drop it here.</p>
       <NoticeLine about="import" />
       <Show when={imported().length > 0}>
+        <p class="muted">
+          Choose what each becomes. A press on its shape takes it or leaves it out.
+        </p>
         <ul aria-label="Imported features">
           <For each={imported()}>{(one, index) => <Choice choice={one} index={index()} />}</For>
         </ul>

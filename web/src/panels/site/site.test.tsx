@@ -84,6 +84,10 @@ describe("with the keyboard alone", () => {
     press("Later corners");
     expect(corners()).toHaveLength(5);
     expect(button("Later corners").disabled).toBe(true);
+    expect(page.root.textContent).not.toContain("More than 500 corners");
+    const long = Array.from({ length: 501 }, (_, k) => ({ lon: k / 1000, lat: (k * k) / 1e6 }));
+    siteDraft.setRing(siteDraft.selected()?.id ?? 0, 0, long);
+    expect(page.root.textContent).toContain("More than 500 corners");
   });
 });
 
