@@ -22,37 +22,32 @@ def _kept_here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
 
 
-def test_tables_go_to_stdout_and_progress_to_stderr(tmp_path: Path) -> None:
-    command = ["score", str(written(tmp_path, SHORT)), *FEW, "--fresh"]
-    first = CliRunner().invoke(app, [*command, "--jobs", "1"])
-    # In two processes: the same to the byte.
-    second = CliRunner().invoke(app, [*command, "--jobs", "2"])
-    assert first.exit_code == 0, first.stderr
-    assert first.stdout_bytes == second.stdout_bytes
-    assert "ideal, forecast advection, planner lawnmower_again; 2 seeds" in first.stdout
-    assert "| time to 95 % in sun, min |" in first.stdout
-    assert "| shade IoU | 0.9" in first.stdout  # ideal pixels, laid by telemetry
-    assert "| unknown, % | 0.0 |" in first.stdout
-    assert "| Brier, not seen |" in first.stdout
-    assert "| time to shade, within the horizon |" in first.stdout
-    assert "| violations: outside the fence | 0.0 |" in first.stdout
-    assert [line.split(":")[0] for line in first.stderr.splitlines()] == ["seed 7", "seed 8"]
-    assert "2 of 2 runs, about 0 min left" in second.stderr
-
-
-def test_a_stopped_command_goes_on_where_it_was(tmp_path: Path) -> None:
+def test_tables_go_to_stdout_and_a_stopped_command_goes_on_where_it_was(tmp_path: Path) -> None:
     path = str(written(tmp_path, SHORT))
     one = CliRunner().invoke(app, ["score", path, "--seeds", "1", "--first-seed", "7"])
-    assert one.exit_code == 0
-    both = CliRunner().invoke(app, ["score", path, *FEW])
+    assert one.exit_code == 0, one.stderr
+    assert [line.split(":")[0] for line in one.stderr.splitlines()] == ["seed 7"]
+    both = CliRunner().invoke(app, ["score", path, *FEW, "--jobs", "1"])
     assert "1 of 2 runs were flown before" in both.stderr
     assert "seed 7" not in both.stderr
     assert "seed 8" in both.stderr
-    fresh = ["score", path, "--seeds", "1", "--first-seed", "7", "--fresh"]
-    assert CliRunner().invoke(app, fresh).stdout_bytes == one.stdout_bytes
+    assert "ideal, forecast advection, planner lawnmower_again; 2 seeds" in both.stdout
+    assert "| time to 95 % in sun, min |" in both.stdout
+    assert "| shade IoU | 0.9" in both.stdout  # ideal pixels, laid by telemetry
+    assert "| unknown, % | 0.0 |" in both.stdout
+    assert "| Brier, not seen |" in both.stdout
+    assert "| time to shade, within the horizon |" in both.stdout
+    assert "| violations: outside the fence | 0.0 |" in both.stdout
+    # Flown anew, in two processes: the same to the byte.
+    fresh = CliRunner().invoke(app, ["score", path, *FEW, "--fresh", "--jobs", "2"])
+    assert fresh.stdout_bytes == both.stdout_bytes
+    assert "before" not in fresh.stderr
+    assert "2 of 2 runs, about 0 min left" in fresh.stderr
+    again = CliRunner().invoke(app, ["score", path, "--seeds", "1", "--first-seed", "7"])
+    assert again.stdout_bytes == one.stdout_bytes
     # Of another method nothing was flown before.
-    other = CliRunner().invoke(app, [*fresh[:-1], "--forecast", "none"])
-    assert "before" not in other.stderr
+    options = ["--seeds", "1", "--first-seed", "7", "--forecast", "none"]
+    assert "before" not in CliRunner().invoke(app, ["score", path, *options]).stderr
 
 
 def test_all_forecasts_are_compared_with_one(tmp_path: Path) -> None:

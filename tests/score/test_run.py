@@ -140,10 +140,10 @@ def test_cells_seen_and_not_seen_add_up(cumulus: RunScore) -> None:
     assert 1.0 > shares[0] > shares[1] > shares[2] == 0.0
 
 
-def test_methods_are_compared_on_the_same_maps_and_cells(folder: Path) -> None:
-    scenario = small(folder, CALM.replace("limit_min = 10.0", SHORT))
+def test_methods_are_compared_on_the_same_maps_and_cells(short: tuple[Scenario, RunScore]) -> None:
+    scenario, single = short
     compared = ("persistence", "advection", TRUE_MOTION)
-    found = run(replace(scenario, methods=Methods(compared=compared)), 3).forecasts
+    found = run(replace(scenario, methods=Methods(compared=compared)), 5).forecasts
     for lead_s in (15.0, 30.0):
         scores = [found[name, lead_s, SeenCells.SEEN] for name in compared]
         assert len({score.cells for score in scores}) == 1
@@ -154,7 +154,7 @@ def test_methods_are_compared_on_the_same_maps_and_cells(folder: Path) -> None:
         assert true < persistence
         assert true < shift
     # The station's own is what it is without the others.
-    alone = run(scenario, 3).forecasts
+    alone = single.forecasts
     assert {key: alone[key] for key in alone} == {key: found[key] for key in alone}
     assert {name for name, _lead_s, _cells in alone} == {"advection"}
 
