@@ -2,7 +2,9 @@
 
 import asyncio
 import re
+from itertools import pairwise
 from pathlib import Path
+from statistics import median
 
 from tests.android.flying import finish, vehicle
 from tests.android.processes import (
@@ -37,16 +39,23 @@ async def test_ten_hertz_and_video_lose_nothing(site: Path, tmp_path: Path) -> N
             after_kb = await _heap_kb(app.process.pid)
             await finish(await drone.stop_camera())
         assert not [line for line in app.lines if "lost" in line]
+    (ended,) = [line for line in app.lines if "packets sent" in line]
     lines = await _output(RECON, "inspect", *map(str, records.glob("*.mcap")))
     core_s = [float(line.split()[0]) for line in lines if " CoreTelemetry " in line]
     image_s = [float(line.split()[0]) for line in lines if " CompressedImage " in line]
-    print(f"{len(core_s)} core, {len(image_s)} images, heap {before_kb} to {after_kb} kB")
-    assert abs(len(core_s) - 1 - 10.0 * (core_s[-1] - core_s[0])) <= 2.0
+    totals = re.findall(r"from app: packets (\d+),(.*)$", "\n".join(lines), re.M)
+    for _, rest in totals:
+        assert re.search(r" bad_hash 0, bad_size 0, .* bytes_skipped 0$", rest), rest
+    sent, came = int(ended.split()[-3]), sum(int(packets) for packets, _ in totals)
+    print(f"{sent} packets sent, {came} received, {len(core_s)} core, {len(image_s)} images")
+    print(f"heap {before_kb} to {after_kb} kB")
+    # Perhaps one was being sent when the app was ended.
+    assert 0 <= sent - came <= 1
+    # On a busy machine the app leaves a time out; it sends nothing later instead.
+    assert 0.09 < median(after - before for before, after in pairwise(core_s)) < 0.11
+    assert len(core_s) - 1 <= 10.0 * (core_s[-1] - core_s[0]) + 2.0
     assert abs(len(image_s) - 1 - FPS_HZ * (image_s[-1] - image_s[0])) <= 2.0
     assert image_s[-1] - image_s[0] > 0.9 * SECONDS
-    assert re.search(
-        r"from app: .*bad_hash 0, bad_size 0, .* bytes_skipped 0$", "\n".join(lines), re.M
-    )
     assert after_kb - before_kb < HEAP_GROWTH_KB
 
 

@@ -51,6 +51,7 @@ class CompanionApp(
     private val isFrameWaiting = AtomicBoolean()
     private var openLink = 0
     private var lastProblem = ""
+    private var sentPackets = 0L
 
     @Volatile
     private var isClosed = false
@@ -86,6 +87,7 @@ class CompanionApp(
             session.releaseControl(System.nanoTime())
             session.takeOutputs().filterIsInstance<Output.Execute>().forEach(::carryOut)
         }
+        listener.notice(Output.Notice(Severity.INFO, "Ended: $sentPackets packets sent"))
     }
 
     /** An error in the app's own code costs one step; the aircraft must not lose its app. */
@@ -104,8 +106,13 @@ class CompanionApp(
         session.aircraftState(aircraft.state(), System.nanoTime())
         task?.invoke(System.nanoTime())
         session.takeOutputs().forEach(::carryOut)
-        session.nextToSend(System.nanoTime())?.let(connection::write)
+        session.nextToSend(System.nanoTime())?.let(::send)
         listener.changed(session)
+    }
+
+    private fun send(packet: ByteArray) {
+        sentPackets++
+        connection.write(packet)
     }
 
     /** One frame waits at most: a busy companion must not collect the feed. */
