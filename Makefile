@@ -13,7 +13,7 @@ RUN := $(UV) run --locked --quiet
 FUZZ_SECONDS ?= 60
 WEB_SOURCES := $(shell find web/src web/public -type f 2>/dev/null) web/index.html web/package.json web/vite.config.ts
 
-.PHONY: help setup demo run test test-rust test-safety test-python test-web test-e2e android-core android test-android study-android fuzz-android coverage check format bench fuzz study mutants docs web clean
+.PHONY: help setup demo run test test-rust test-safety test-python test-web test-e2e android-core android test-android study-android fuzz-android coverage check check-rust check-python check-web format bench fuzz study mutants docs web clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -23,15 +23,23 @@ demo: setup web ## Run a survey under broken cloud: station, simulated drones, c
 
 test: test-rust test-safety test-python test-web test-e2e ## Set everything up and pass all tests
 
-check: setup web/node_modules/.stamp ## Formats, lint, types, import rules, stub and generated files
+# In parts, so that `make -j2 check` of CI fills two cores: each part is mostly one process.
+check: check-rust check-python check-web ## Formats, lint, types, import rules, stub and generated files
+
+check-rust:
+	@tools/require.sh cargo
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets --quiet -- -D warnings
+
+check-python: setup
 	$(RUN) ruff format --check .
 	$(RUN) ruff check .
 	$(RUN) mypy
 	$(RUN) lint-imports
 	$(RUN) python -m mypy.stubtest recon.wire._native --mypy-config-file pyproject.toml
 	$(RUN) recon openapi | cmp - web/openapi.json || { echo "web/openapi.json is old: make docs"; exit 1; }
+
+check-web: web/node_modules/.stamp
 	npm --prefix web run check
 
 setup: .venv/.stamp ## Install uv, build the Python package with its Rust part
