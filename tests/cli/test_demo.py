@@ -7,6 +7,9 @@ import urllib.request
 from pathlib import Path
 
 from tests.cli.processes import PATIENCE_S, started
+from typer.testing import CliRunner
+
+from recon.cli.commands import app
 
 
 def children_of(pid: int) -> list[int]:
@@ -38,7 +41,8 @@ def test_vehicles_fly_and_all_that_it_started_ends_with_the_demo(tmp_path: Path)
     scenario = tmp_path / "few.toml"
     scenario.write_text(FEW, encoding="utf-8")
     ports = ("--http-port", "0", "--link-port", "0")
-    with started("demo", *ports, "--scenario", str(scenario)) as demo:
+    options = ("--scenario", str(scenario), "--record", str(tmp_path / "records"))
+    with started("demo", *ports, *options) as demo:
         console = demo.line_with("console: ").partition(": ")[2]
         demo.line_with("Ctrl+C ends the demo")
         vehicles = await_vehicles(console, 3)
@@ -46,11 +50,19 @@ def test_vehicles_fly_and_all_that_it_started_ends_with_the_demo(tmp_path: Path)
         demo.line_with("survey 1: flown by SIM-1, SIM-2")
         demo.line_with("mission: started")
         children = children_of(demo.pid)
-        assert len(children) == 2  # the simulator and the guard
+        assert len(children) == 3  # the simulator, the guard and the process that records
         assert demo.end(signal.SIGINT) == 0
         assert "Traceback" not in demo.text
         assert "scripted operator" not in demo.text
         assert not any(Path(f"/proc/{pid}").exists() for pid in children)
+    (record,) = (tmp_path / "records").iterdir()
+    assert record.name.startswith("flight-")
+    words = ("replay", "--what-if", "detection=otsu", "forecast=persistence", str(record))
+    again = CliRunner().invoke(app, [*words, "--scenario", str(scenario)])
+    assert again.exit_code == 0, again.output
+    assert "equal to the bit: " in again.output
+    assert "what if: detection otsu, forecast persistence" in again.output
+    assert again.output.count("| false shade, % of cells in sun |") == 2
 
 
 def test_it_ends_as_cleanly_before_anything_flies(tmp_path: Path) -> None:

@@ -114,7 +114,8 @@ COMMANDS = {
         "Run all forecast methods over recorded maps and compare them with what came.",
     ),
     "replay": CommandSource(
-        "replay:replay_command", "Run a recorded flight again and compare every output."
+        "replay:replay_command",
+        "Run a recorded flight again: compare every output, or score other methods on it.",
     ),
     "export": CommandSource(
         "export:export_command",

@@ -4,7 +4,7 @@ import asyncio
 import sys
 from collections.abc import Coroutine, Sequence
 from pathlib import Path
-from time import time
+from time import monotonic_ns, time, time_ns
 from typing import Annotated, Any
 
 import typer
@@ -18,6 +18,7 @@ from recon.record.file_set import finish_interrupted
 from recon.record.users_file import state_folder
 from recon.score import Scenario, ScenarioError, load_scenario
 from recon.score.scenario_sky import sky_of
+from recon.score.truth import world_text
 from recon.site import SiteError, load_site
 from recon.station.audit.start import default_place
 from recon.station.kernel.run import RunConfig, Started, run
@@ -58,12 +59,16 @@ def demo_command(
 
     It runs until Ctrl+C.
     """
+    folder = None if no_record else record or state_folder() / "records"
     if site is not None:
-        _rehearse(site, scenario, http_port, link_port, seed)
+        _rehearse(site, scenario, http_port, link_port, seed, folder)
         return
     try:
         path = demo_scenario_file() if scenario is None else scenario
         played = load_scenario(path)
+        # The record states when the sky's time began, so that its truth is known.
+        began_ns, start_ns = time_ns(), monotonic_ns()
+        world = world_text(path, seed, began_ns)
     except ReconError as problem:
         print(f"recon demo: {problem}", file=sys.stderr)
         raise typer.Exit(2) from None
@@ -74,19 +79,24 @@ def demo_command(
         stop_port=guard_port(None, http_port) if HAS_GUARD else None,
         # No state of an earlier run is recovered: its drones no longer exist.
         audit=default_place(link_port=0),
-        record_folder=None if no_record else record or state_folder() / "records",
+        record_folder=folder,
         is_record_required=record is not None,
-        scenario=f"{path.name} {seed}",
+        scenario=world,
         console=console_folder(),
         sun_time_ahead_s=sky_of(played, seed).settings.sun.start_utc_s - time(),
     )
-    words = ("scenario", str(path), "--fps", str(FPS_HZ))
+    words = ("scenario", str(path), "--fps", str(FPS_HZ), "--seed", str(seed))
     flies = played if survey else None
-    run_in_loop(_Demo(config, (*words, "--seed", str(seed)), flies).run())
+    run_in_loop(_Demo(config, (*words, "--start-ns", str(start_ns)), flies).run())
 
 
 def _rehearse(
-    folder: Path, scenario: Path | None, http_port: int, link_port: int, seed: int
+    folder: Path,
+    scenario: Path | None,
+    http_port: int,
+    link_port: int,
+    seed: int,
+    record_folder: Path | None,
 ) -> None:
     """Run the station and simulated drones on a site of one's own."""
     try:
@@ -110,7 +120,7 @@ def _rehearse(
         http_port=http_port,
         stop_port=guard_port(None, http_port) if HAS_GUARD else None,
         audit=default_place(link_port=0),
-        record_folder=state_folder() / "records",
+        record_folder=record_folder,
         console=console_folder(),
     )
     imager = ("--imager", "--fps", str(FPS_HZ)) if own.imagers else ("--no-imager",)

@@ -1,4 +1,8 @@
-"""`recon replay --check`: run the step again on a recorded flight and compare every output."""
+"""`recon replay`: run the step again on a recorded flight, and compare outputs or methods.
+
+`--check` compares every output with the recorded one; `--what-if` also reads each image by other
+methods and prints their scores.
+"""
 
 import platform
 from pathlib import Path
@@ -13,23 +17,37 @@ from recon.station.kernel.recorded_values import FlightStart, this_machine
 from recon.station.kernel.replay import Checked, check
 
 DIFFERS, CUT_SHORT = 1, 3
+METHODS = ("detection", "forecast")
 
 
 def replay_command(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="A flight record (MCAP).")],
+    words: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="[detection=NAME] [forecast=NAME] FILE", help="A flight record (MCAP)."
+        ),
+    ],
     checks: Annotated[
         bool, typer.Option("--check", help="Compare every output with the recorded one.")
     ] = False,
+    asks: Annotated[
+        bool, typer.Option("--what-if", help="Score other methods on the flight's images.")
+    ] = False,
+    scenario: Annotated[
+        Path | None,
+        typer.Option(help="Scenario of a simulated flight, where --what-if does not find it."),
+    ] = None,
 ) -> None:
     """Run a recorded flight again and compare every output.
 
     Exit code 0: equal to the bit; 1: a difference, or no record; 3: equal as far as the record
     could be compared.
     """
-    if not checks:
-        raise typer.BadParameter("give --check: a replay in the console is not there yet")
+    if not (checks or asks):
+        raise typer.BadParameter("give --check or --what-if: there is no replay in the console yet")
+    file, methods = _file_and_methods(words, asks)
     try:
-        found = check(file, _report)
+        found = _asked(file, methods, scenario) if asks else check(file, _report)
     except OSError as problem:
         typer.echo(f"recon replay: cannot read {file}: {problem.strerror}", err=True)
         raise typer.Exit(2) from None
@@ -39,6 +57,39 @@ def replay_command(
         raise typer.Exit(DIFFERS)
     if found.trouble:
         raise typer.Exit(CUT_SHORT)
+
+
+def _file_and_methods(words: list[str], asks: bool) -> tuple[Path, dict[str, str]]:
+    """Return the file, and the method of each kind that was asked for."""
+    files, methods = [], {}
+    for word in words:
+        kind, equals, name = word.partition("=")
+        if asks and equals and kind in METHODS:
+            methods[kind] = name
+        else:
+            files.append(word)
+    if len(files) != 1:
+        raise typer.BadParameter(f"expected one FILE, got {len(files)}: {shown(' '.join(files))}")
+    if asks and not methods:
+        raise typer.BadParameter("--what-if: expected detection=NAME, forecast=NAME or both")
+    return Path(files[0]), methods
+
+
+def _asked(file: Path, methods: dict[str, str], scenario: Path | None) -> Checked:
+    """Run a flight again, and print what other methods find in its images."""
+    from recon.cli.demo import demo_scenario_file
+    from recon.score.truth import truth_of
+    from recon.score.what_if import WhatIf
+
+    other = WhatIf(methods.get("detection"), methods.get("forecast"))
+
+    def begin(start: FlightStart) -> None:
+        other.truth = truth_of(start.scenario, scenario, demo_scenario_file().parent)
+
+    found = check(file, _report, begin, other.take)
+    for line in other.report().splitlines():
+        typer.echo(shown(line))
+    return found
 
 
 def _report(found: Checked) -> None:

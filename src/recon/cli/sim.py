@@ -161,6 +161,9 @@ def scenario_command(
     fps: FpsOption = 1.0,
     image_format: ImageFormatOption = ImageFormat.RAW,
     seed: SeedOption = 0,
+    start_ns: Annotated[
+        int | None, typer.Option(hidden=True, help="Zero of the world's time (monotonic clock).")
+    ] = None,
 ) -> None:
     """Run a scenario's drones, sky, wind and faults.
 
@@ -173,7 +176,7 @@ def scenario_command(
         feed = FeedSettings(fps, image_format)
         config = simulation_of(load_scenario(scenario), abs(seed), feed)
         config = replace(config, station_host=host, station_port=port)
-        asyncio.run(until_stopped(run_fleet(config, print_now), "simulation ended"))
+        asyncio.run(until_stopped(run_fleet(config, print_now, start_ns), "simulation ended"))
     except ReconError as problem:
         print(f"recon sim scenario: {problem}", file=sys.stderr)
         raise typer.Exit(2) from None

@@ -21,8 +21,8 @@ from recon.forecast import FORECASTERS
 from recon.model.errors import ReconError, RecordError
 from recon.score.forecast_figures import Calibration, LeadScore, SeenCells
 from recon.score.forecast_scoring import ForecastKey
+from recon.score.forecast_tables import leads_table
 from recon.score.settings import SCORE
-from recon.score.table_rows import NOTHING, fine, finest, table
 from recon.score.verification import verified
 
 
@@ -48,40 +48,20 @@ def verify_command(
 
 
 def _tables(sums: Mapping[ForecastKey, LeadScore], count: int, step_s: float, scale: float) -> str:
-    leads = [lead_s for lead_s in SCORE.lead_s if _of(sums, "persistence", lead_s).cells]
-    if not leads:
+    found = leads_table(sums, tuple(FORECASTERS), scale)
+    if found is None:
         longest_s = (count - 1) * step_s
         raise RecordError(
             f"expected maps over more than {SCORE.lead_s[0] * scale:g} s, got {longest_s:g} s"
         )
-    head = f"{count} maps, {step_s:g} s apart; truth is the map of the lead's time"
-    names = [f"{lead_s * scale:g} s" for lead_s in leads]
-    parts = [head]
-    for title, figure in (("Brier", _brier), ("shade IoU", _iou)):
-        rows = [
-            (method, *(figure(_of(sums, method, lead_s)) for lead_s in leads))
-            for method in FORECASTERS
-        ]
-        parts.append(table((title, *names), rows))
-    return "\n\n".join(parts)
-
-
-def _of(sums: Mapping[ForecastKey, LeadScore], method: str, lead_s: float) -> LeadScore:
-    return sums.get((method, lead_s, SeenCells.ALL), LeadScore())
-
-
-def _brier(score: LeadScore) -> str:
-    return NOTHING if score.brier is None else finest(score.brier)
-
-
-def _iou(score: LeadScore) -> str:
-    return NOTHING if score.shade.iou is None else fine(score.shade.iou)
+    return f"{count} maps, {step_s:g} s apart; truth is the map of the lead's time\n\n{found}"
 
 
 def _draw(path: Path, sums: Mapping[ForecastKey, LeadScore], scale: float) -> None:
     lead_s = SCORE.lead_s[1]
+    of = ((method, (method, lead_s, SeenCells.ALL)) for method in FORECASTERS)
     curves: dict[str, Calibration] = {
-        method: _of(sums, method, lead_s).calibration for method in FORECASTERS
+        method: sums.get(key, LeadScore()).calibration for method, key in of
     }
     try:
         path.write_bytes(reliability_png(f"{lead_s * scale:g} s ahead", curves))

@@ -40,6 +40,8 @@ class ForecastScoring:
     compared: tuple[str, ...]
     """Names of `FORECASTERS`, and `TRUE_MOTION`: the map of the present, moved without error."""
     settings: ForecastSettings
+    zero_ns: int = 0
+    """The maps' time at which the sky's is zero."""
     sums: dict[ForecastKey, LeadScore] = field(default_factory=dict)
     changes: ChangeScore = field(default_factory=ChangeScore)
     """Of the station's own."""
@@ -68,7 +70,7 @@ class ForecastScoring:
             for name, state in self._states.items()
         }
         issued[self.own] = own
-        at_s = shade.captured_at_ns / NS_PER_S
+        at_s = (shade.captured_at_ns - self.zero_ns) / NS_PER_S
         view = shade.valid if seen is None else seen
         for lead_s in SCORE.lead_s:
             later_s = at_s + lead_s
@@ -104,10 +106,11 @@ class ForecastScoring:
         counted = self.counted & is_on
         cells = np.stack([rows[counted], cols[counted]], axis=1)
         found = next_change(shade, own, cells, self.settings)
+        at_s = (shade.captured_at_ns - self.zero_ns) / NS_PER_S
         until_s = float(found.horizon_s.max(initial=0.0)) + GRACE_S
         true_s = np.full(len(found.horizon_s), np.inf)
         for lead_s in np.arange(STEP_S, until_s + STEP_S, STEP_S).tolist():
-            later_s = shade.captured_at_ns / NS_PER_S + lead_s
+            later_s = at_s + lead_s
             is_shade = self.sky.on_grid(self.grid, later_s)[counted] < SUNLIT_TRANSMITTANCE
             true_s = np.where(is_shade & np.isinf(true_s), lead_s, true_s)
         return score_change(found, true_s)

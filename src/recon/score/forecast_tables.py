@@ -1,12 +1,13 @@
 """Forecast figures as tables: the station's method by lead, and all methods side by side."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from math import isinf
 
 from recon.score.change_figures import ChangeScore
 from recon.score.forecast_figures import LeadScore, SeenCells
+from recon.score.forecast_scoring import ForecastKey
 from recon.score.interval import Interval, log_ratio, ratio
-from recon.score.run_score import RunScore
+from recon.score.run_score import ScoredMaps
 from recon.score.settings import SCORE
 from recon.score.table_rows import (
     NOTHING,
@@ -22,7 +23,7 @@ Parts = Callable[[LeadScore], tuple[float, float]]
 Text = Callable[[float], str]
 
 
-def forecast_tables(runs: Sequence[RunScore], own: str, against: str | None) -> list[str]:
+def forecast_tables(runs: Sequence[ScoredMaps], own: str, against: str | None) -> list[str]:
     """Return the tables of the station's method, and of all methods if one is named to compare
     them with."""
     found = [_of_method(runs, own), _changes(runs)]
@@ -49,7 +50,7 @@ def _head(first: str) -> Row:
     return (first, *(f"{lead_s:g} s" for lead_s in SCORE.lead_s))
 
 
-def _of_method(runs: Sequence[RunScore], method: str) -> str:
+def _of_method(runs: Sequence[ScoredMaps], method: str) -> str:
     figures: dict[str, tuple[Parts, Text]] = {"Brier": (_brier, finest), "shade IoU": (_iou, fine)}
     rows = [
         (
@@ -68,7 +69,7 @@ def _of_method(runs: Sequence[RunScore], method: str) -> str:
     return table(_head(f"forecast by {method}"), rows)
 
 
-def _changes(runs: Sequence[RunScore]) -> str:
+def _changes(runs: Sequence[ScoredMaps]) -> str:
     found = [run.changes for run in runs]
 
     error_s = sum(found, ChangeScore()).median_error_s
@@ -81,20 +82,20 @@ def _changes(runs: Sequence[RunScore]) -> str:
     return table(("time to shade, within the horizon", "figure", "95 %", "runs"), rows)
 
 
-def _seen_percent(runs: Sequence[RunScore], method: str, lead_s: float) -> str:
+def _seen_percent(runs: Sequence[ScoredMaps], method: str, lead_s: float) -> str:
     seen = _pooled(runs, method, lead_s).cells
     whole = _pooled(runs, method, lead_s, SeenCells.ALL).cells
     return f"{100.0 * seen / whole:.0f}" if whole else NOTHING
 
 
 def _pooled(
-    runs: Sequence[RunScore], method: str, lead_s: float, cells: SeenCells = SeenCells.SEEN
+    runs: Sequence[ScoredMaps], method: str, lead_s: float, cells: SeenCells = SeenCells.SEEN
 ) -> LeadScore:
     """Return the score over all runs: reliability needs their cells together."""
     return sum((_score(run, method, lead_s, cells) for run in runs), LeadScore())
 
 
-def _score(run: RunScore, method: str, lead_s: float, cells: SeenCells) -> LeadScore:
+def _score(run: ScoredMaps, method: str, lead_s: float, cells: SeenCells) -> LeadScore:
     return run.forecasts.get((method, lead_s, cells), LeadScore())
 
 
@@ -103,7 +104,7 @@ def _share(parts: tuple[float, float]) -> float:
 
 
 def _by_lead(
-    runs: Sequence[RunScore], method: str, cells: SeenCells, parts: Parts, text: Text
+    runs: Sequence[ScoredMaps], method: str, cells: SeenCells, parts: Parts, text: Text
 ) -> list[str]:
     return [
         _text(text, ratio([parts(_score(run, method, lead_s, cells)) for run in runs]))
@@ -118,13 +119,13 @@ def _text(text: Text, found: Interval | None) -> str:
     return mean if isinf(found.high) else f"{mean} ({text(found.low)} to {text(found.high)})"
 
 
-def _side_by_side(runs: Sequence[RunScore], methods: Sequence[str], cells: SeenCells) -> str:
+def _side_by_side(runs: Sequence[ScoredMaps], methods: Sequence[str], cells: SeenCells) -> str:
     rows = [(method, *_by_lead(runs, method, cells, _brier, finest)) for method in methods]
     return table(_head(f"Brier, {cells.value}"), rows)
 
 
 def _against(
-    runs: Sequence[RunScore], methods: Sequence[str], against: str, cells: SeenCells
+    runs: Sequence[ScoredMaps], methods: Sequence[str], against: str, cells: SeenCells
 ) -> str:
     rows = []
     for method in methods:
@@ -138,3 +139,33 @@ def _against(
             ]
             rows.append((method, *(_text(fine, log_ratio(each)) for each in pairs)))
     return table(_head(f"Brier over that of {against}, {cells.value}"), rows)
+
+
+def leads_table(
+    sums: Mapping[ForecastKey, LeadScore], methods: Sequence[str], scale: float = 1.0
+) -> str | None:
+    """Return figures of methods over recorded maps by lead; None where no lead was reached.
+
+    `scale` is how many seconds of the maps a second of the methods stands for.
+    """
+    reached = {lead_s for method, lead_s, _cells in sums if method in methods}
+    leads = [lead_s for lead_s in SCORE.lead_s if lead_s in reached]
+    if not leads:
+        return None
+    head = tuple(f"{lead_s * scale:g} s" for lead_s in leads)
+    figures: dict[str, tuple[Parts, Text]] = {"Brier": (_brier, finest), "shade IoU": (_iou, fine)}
+    parts = []
+    for title, (figure, text) in figures.items():
+        rows = [
+            (method, *(_of_sums(sums, method, lead_s, figure, text) for lead_s in leads))
+            for method in methods
+        ]
+        parts.append(table((title, *head), rows))
+    return "\n\n".join(parts)
+
+
+def _of_sums(
+    sums: Mapping[ForecastKey, LeadScore], method: str, lead_s: float, figure: Parts, text: Text
+) -> str:
+    part, of = figure(sums.get((method, lead_s, SeenCells.ALL), LeadScore()))
+    return text(part / of) if of else NOTHING

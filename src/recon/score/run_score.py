@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +14,38 @@ from recon.score.shade_figures import ShadeFigures
 
 FloatArray = npt.NDArray[np.float64]
 ENOUGH = 0.95
+
+
+class ScoredMaps(Protocol):
+    """Figures of a run's maps and forecasts, whether or not a survey was flown with it."""
+
+    @property
+    def seed(self) -> int:
+        """Of the sky."""
+
+    @property
+    def shade(self) -> ShadeFigures:
+        """Of the maps."""
+
+    @property
+    def to_right_s(self) -> float | None:
+        """Until most of the scored cells were first known and right."""
+
+    @property
+    def registration_m(self) -> tuple[float, float] | None:
+        """Median and 95th percentile of the ground images' errors."""
+
+    @property
+    def forecasts(self) -> Mapping[ForecastKey, LeadScore]:
+        """Sums by method, lead and cells."""
+
+    @property
+    def changes(self) -> ChangeScore:
+        """Of the times to shade."""
+
+    @property
+    def simulated_s(self) -> float:
+        """How long the run took."""
 
 
 @dataclass(frozen=True, slots=True)

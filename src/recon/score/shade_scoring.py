@@ -90,7 +90,7 @@ class ShadeScoring:
                 methods.forecast,
                 tuple(name for name in methods.compared if name != methods.forecast),
                 ForecastSettings(),
-                self.score.forecasts,
+                sums=self.score.forecasts,
             )
 
     def update(self, station: Station, now_ns: int) -> None:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from recon.score.forecast_tables import forecast_tables
 from recon.score.interval import pooled_quantile, ratio
-from recon.score.run_score import RunScore
+from recon.score.run_score import RunScore, ScoredMaps
 from recon.score.scenario import Scenario
 from recon.score.settings import SCORE
 from recon.score.shade_figures import Overlap
@@ -28,7 +28,7 @@ def tables(scenario: Scenario, runs: Sequence[RunScore], against: str | None = N
     `against` names the forecast that the others are compared with.
     """
     runs = sorted(runs, key=lambda each: each.seed)
-    parts = [_head(scenario, runs), _survey(scenario, runs), _shade(runs)]
+    parts = [_head(scenario, runs), _survey(scenario, runs), shade_table(runs)]
     if any(each.forecasts for each in runs):
         parts += forecast_tables(runs, scenario.methods.forecast, against)
     return "\n\n".join(parts)
@@ -71,7 +71,8 @@ def _survey(scenario: Scenario, runs: Sequence[RunScore]) -> str:
     return table(("survey", "mean", "95 %", "runs"), rows)
 
 
-def _shade(runs: Sequence[RunScore]) -> str:
+def shade_table(runs: Sequence[ScoredMaps]) -> str:
+    """Return the figures of shade maps and poses."""
     figures = [run.shade for run in runs]
     edges = [figure.edges for figure in figures if figure.edges.true_area]
     cells = [figure.cells for figure in figures]

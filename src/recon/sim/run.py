@@ -32,13 +32,18 @@ WRITE_BUFFER_BYTES = 8 * 1024 * 1024
 Say = Callable[[str], None]
 
 
-async def run_fleet(config: SimulationConfig, say: Say = print) -> None:
+async def run_fleet(
+    config: SimulationConfig, say: Say = print, start_ns: int | None = None
+) -> None:
     """Fly the fleet until the task is cancelled; `say` gets one line per event.
+
+    The world's time is zero at `start_ns` of the computer's monotonic clock; None: now.
 
     Raises `SimulationError` for an invalid configuration. A station that is not running, or goes
     away, is no error: each app reconnects.
     """
-    apps = build_fleet(config, time.monotonic_ns(), renders_inline=False)
+    start_ns = time.monotonic_ns() if start_ns is None else start_ns
+    apps = build_fleet(config, start_ns, renders_inline=False)
     serials = ", ".join(app.settings.serial for app in apps)
     say(f"simulating {serials} for the station at {config.station_host}:{config.station_port}")
     async with asyncio.TaskGroup() as group:

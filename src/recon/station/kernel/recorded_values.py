@@ -64,7 +64,7 @@ class FlightStart:
     station: Station
     auditing: Auditing = field(default_factory=Auditing)
     scenario: str = ""
-    """The simulated world, as `recon demo` states it: file and seed; empty for real aircraft."""
+    """The simulated world, as `score/truth.py` states it; empty for real aircraft."""
 
     @classmethod
     def now(

@@ -50,6 +50,8 @@ from recon.station.state.steps import Job, JobDone, JobDropped, JobFailed, Stepp
 
 REPORT_EVERY_STEPS = 2000
 
+OnJob = Callable[[AnyJob, Event], None]
+
 MOST_DIFFERENCES = 20
 """After the first one the replayed station is another one: more of them tell no more."""
 
@@ -84,11 +86,20 @@ class Checked:
     """Why the check ended before the record's end; empty if it did not."""
 
 
-def check(path: Path, report: Callable[[Checked], None] | None = None) -> Checked:
-    """Run a record's steps again; raises `RecordError` for a file that is no record."""
+def check(
+    path: Path,
+    report: Callable[[Checked], None] | None = None,
+    on_start: Callable[[FlightStart], None] | None = None,
+    on_job: OnJob | None = None,
+) -> Checked:
+    """Run a record's steps again; raises `RecordError` for a file that is no record.
+
+    `on_start` is called with what the record begins with, `on_job` with each job that was run and
+    its end.
+    """
     with path.open("rb") as file:
         reading = McapReading(file)
-        replay = Replay()
+        replay = Replay(on_start, on_job)
         reported = 0
         for item in reading.items():
             replay.take(item)
@@ -107,8 +118,13 @@ def check(path: Path, report: Callable[[Checked], None] | None = None) -> Checke
 class Replay:
     """A station that takes recorded events; its state is that of the recorded one."""
 
-    def __init__(self) -> None:
+    def __init__(
+        self,
+        on_start: Callable[[FlightStart], None] | None = None,
+        on_job: OnJob | None = None,
+    ) -> None:
         """Wait for the record's start."""
+        self._on_start, self._on_job = on_start, on_job
         self.found = Checked()
         self.station = Station()
         self._codec = values_codec()
@@ -140,6 +156,8 @@ class Replay:
         start: FlightStart = self._codec.decode(data, FlightStart)
         self.found.start, self.station, self._auditing = start, start.station, start.auditing
         self._runner = JobRunner(start.site)
+        if self._on_start is not None:
+            self._on_start(start)
 
     def _take_step(self, item: RecordMessage) -> None:
         found = self.found
@@ -210,7 +228,10 @@ class Replay:
             return JobDone(job.id, job.kind, None)
         assert self._runner is not None
         self.found.jobs += 1
-        return self._runner.run(job)
+        ended = self._runner.run(job)
+        if self._on_job is not None:
+            self._on_job(job, ended)
+        return ended
 
 
 def _step(station: Station, event: Event, now_ns: int) -> Stepped:

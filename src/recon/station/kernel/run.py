@@ -104,7 +104,7 @@ class RunConfig:
     sun_time_ahead_s: float = 0.0
     """How far the time of day of simulated drones is ahead of the computer's clock."""
     scenario: str = ""
-    """The simulated world, for the record: file and seed; empty for real aircraft."""
+    """The simulated world, for the record (`score/truth.py`); empty for real aircraft."""
 
     @property
     def network(self) -> NetworkConfig:
