@@ -1,5 +1,7 @@
 """Replays of records: equal, changed, incomplete and hostile ones."""
 
+import re
+import textwrap
 from pathlib import Path
 from typing import Any
 
@@ -96,6 +98,16 @@ def test_a_step_that_raises_now_is_a_difference(
 
     monkeypatch.setattr(replay, "step", broken)
     assert check(flight).differences
+
+
+def test_the_guide_stops_at_the_step_of_the_flight() -> None:
+    guide = Path(__file__).parents[2] / "docs/how-to/report-a-bug.md"
+    (block,) = re.findall(r"```python\n(.*?) *```", guide.read_text(encoding="utf-8"), re.DOTALL)
+    names: dict[str, Any] = {}
+    code = textwrap.dedent(block).replace("FILE.mcap", str(FOLDER / "faults.mcap"))
+    exec(compile(code, str(guide), "exec"), names)
+    assert names["replay"].found.steps == 133
+    assert names["replay"].station.fleet.vehicles
 
 
 def test_differences_are_paths_to_values() -> None:
