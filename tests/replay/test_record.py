@@ -31,7 +31,7 @@ from recon.record.flight_messages import HEAD, FlightMessages, Item, ItemKind
 from recon.record.link_bytes import LINKS_TOPIC
 from recon.record.mcap_file import STEPS_TOPIC
 from recon.record.mcap_read import McapReading, RecordMessage
-from recon.record.record_process import RecordProcess
+from recon.record.record_process import NICENESS, RecordProcess
 from recon.record.record_writer import RecordWriter
 from recon.site import Site
 from recon.station.kernel import recording as recording_of_kernel
@@ -249,6 +249,9 @@ def test_a_dead_process_is_an_alarm_and_another_one_goes_on(tmp_path: Path) -> N
 
         until(is_written)
         assert first.pid is not None
+        assert os.getpriority(os.PRIO_PROCESS, first.pid) == os.nice(0) + NICENESS
+        group = Path(f"/proc/{first.pid}/autogroup")
+        assert not group.exists() or not group.read_text() or group.read_text().endswith(" 10\n")
         os.kill(first.pid, signal.SIGKILL)
         until(lambda: first.is_dead)
         scene.run_for(0.2)

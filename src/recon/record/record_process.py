@@ -178,7 +178,7 @@ def _await_end(station: BinaryIO, inbox: RingInbox, writer: RecordWriter) -> Non
 
 def main(folder: str, library: str, descriptor: str, ring_bytes: str) -> None:
     """Write what comes until standard input ends; report on standard output."""
-    os.nice(NICENESS)
+    _be_nice()
     for ignored in (signal.SIGINT, signal.SIGTERM):
         # It ends after the station, which may have more to say.
         signal.signal(ignored, signal.SIG_IGN)
@@ -196,6 +196,16 @@ def main(folder: str, library: str, descriptor: str, ring_bytes: str) -> None:
     ending.daemon = True
     ending.start()
     writer.run()
+
+
+def _be_nice() -> None:
+    """Leave the processor to the station.
+
+    Linux may share it among sessions first, and this process has a session of its own.
+    """
+    os.nice(NICENESS)
+    with suppress(OSError):
+        Path("/proc/self/autogroup").write_text(f"{NICENESS}")
 
 
 def _print_status(status: Status) -> None:
