@@ -39,11 +39,14 @@ from studies.survey_photos import Card, SurveyFlown, TruePhoto, fly, true_sunlit
 SCENARIO = Path(__file__).parents[1] / "scenarios" / "cumulus-40.toml"
 PLANNER = "lawnmower_again"
 EXACT, REAL = "ideal maps", "sunlit_reference"
+CLEARLY = 0.25
+"""Transmittances farther than this from the threshold are clearly sun or shade."""
 CLOCKS = 25
 """Wrong clocks that are tried on each card."""
 ZONES_S = (-25_200.0, -18_000.0, 3_600.0, 7_200.0, 19_800.0, 43_200.0)
 
 BoolArray = npt.NDArray[np.bool_]
+FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(slots=True)
@@ -60,6 +63,11 @@ class TagScore:
     """Of photos that truly show both."""
     wrong_m2: float = 0.0
     edge_m: float = 0.0
+    edge_widths_m: list[float] = field(default_factory=list)
+    """Over which the true transmittance goes from a quarter to three quarters; a median a photo."""
+    clear_px: int = 0
+    clear_wrong_px: int = 0
+    """Of the pixels of photos with sun and shade: clearly one of them, and masked as the other."""
     cells: int = 0
     covered: int = 0
     chosen: int = 0
@@ -124,7 +132,8 @@ def _add_photos(score: TagScore, flown: SurveyFlown, tagged: Path) -> None:
         mask = cv2.imread(str(tagged / "masks" / masked_name(row["name"])), cv2.IMREAD_GRAYSCALE)
         assert mask is not None
         photo = truth[row["name"]]
-        lit = true_sunlit(flown, photo, mask.shape[1], mask.shape[0]) >= SUNLIT_TRANSMITTANCE
+        sun = true_sunlit(flown, photo, mask.shape[1], mask.shape[0])
+        lit = sun >= SUNLIT_TRANSMITTANCE
         share, found = float(lit.mean()), float(row["sunlit"])
         score.errors.append(abs(found - share))
         score.right.append((found >= SUNLIT_SHARE) == (share >= SUNLIT_SHARE))
@@ -133,8 +142,13 @@ def _add_photos(score: TagScore, flown: SurveyFlown, tagged: Path) -> None:
         score.mixed_errors.append(abs(found - share))
         if float(row["known"]) > 0.98:
             pixel_m = _pixel_m(flown, photo, mask.shape[1])
-            score.wrong_m2 += float(((mask > 127) != lit).sum()) * pixel_m**2
+            is_wrong = (mask > 127) != lit
+            score.wrong_m2 += float(is_wrong.sum()) * pixel_m**2
             score.edge_m += _edge_px(lit) * pixel_m
+            score.edge_widths_m.append(_edge_width_m(sun, lit, pixel_m))
+            is_clear = np.abs(sun - SUNLIT_TRANSMITTANCE) > CLEARLY
+            score.clear_px += int(is_clear.sum())
+            score.clear_wrong_px += int((is_clear & is_wrong).sum())
 
 
 def _pixel_m(flown: SurveyFlown, photo: TruePhoto, cols: int) -> float:
@@ -145,6 +159,15 @@ def _edge_px(lit: BoolArray) -> float:
     """Return the length of the edges, from the sides between unequal pixels (Crofton)."""
     sides = (lit[1:] != lit[:-1]).sum() + (lit[:, 1:] != lit[:, :-1]).sum()
     return float(sides) * np.pi / 4.0
+
+
+def _edge_width_m(sun: FloatArray, lit: BoolArray, pixel_m: float) -> float:
+    """Return the median width of the edges, by the slope of the transmittance at them."""
+    down, right = np.gradient(sun, pixel_m)
+    is_edge = np.zeros_like(lit)
+    is_edge[1:] |= lit[1:] != lit[:-1]
+    is_edge[:, 1:] |= lit[:, 1:] != lit[:, :-1]
+    return float(2.0 * CLEARLY / max(np.median(np.hypot(down, right)[is_edge]), 1e-6))
 
 
 def _add_coverage(score: TagScore, flown: SurveyFlown, tagged: Path) -> None:
@@ -238,6 +261,10 @@ def table(name: str, score: TagScore) -> str:
         ("- by two maps, not moved", f"{np.mean(score.others['mixed'] or [0]):.3f}"),
         ("classed right at 0.9, %", f"{100.0 * np.mean(score.right):.1f}"),
         ("masks, boundary error, m", f"{score.wrong_m2 / max(score.edge_m, 1e-9):.2f}"),
+        ("edges' true width, a quarter to three quarters of the sun, m: median",
+         f"{np.median(score.edge_widths_m or [np.nan]):.0f}"),
+        ("ground clearly in sun or shade, masked wrongly, %",
+         f"{100.0 * score.clear_wrong_px / max(1, score.clear_px):.2f}"),
         ("cells photographed in sun, on the list, %", f"{listed:.2f}"),
         ("photos on the lists", f"{score.chosen}"),
         ("wrong clocks tried, refused", f"{tried}, {score.clocks_refused}"),
