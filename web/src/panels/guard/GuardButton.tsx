@@ -49,7 +49,7 @@ export function GuardButton(props: {
       {...holdHandlers(timer, isDisabled)}
     >
       {props.label}
-      <small class="guard-hint">
+      <small class="guard-hint" aria-hidden="true">
         {lack() !== null
           ? `needs ${props.needs ?? "operator"}`
           : seconds() < 1
