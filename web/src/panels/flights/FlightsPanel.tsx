@@ -53,7 +53,7 @@ export function FlightsPanel() {
       <Problem text={problem()} />
       <Show
         when={flights().length > 0}
-        fallback={<Empty>No flight records: start the station with --record.</Empty>}
+        fallback={<Empty>No flight records in the station's folder.</Empty>}
       >
         <ul class="list flights-list">
           <For each={flights()}>

@@ -8,7 +8,7 @@ import { FlightsPanel } from "./FlightsPanel";
 let page: RenderedPage;
 afterEach(() => page?.dispose());
 
-const NAME = "recon-20250620T160412Z";
+const NAME = "flight-20250620T160412Z";
 
 function flight(changes: Partial<FlightView> = {}): FlightView {
   return {
@@ -72,12 +72,13 @@ describe("the list", () => {
     await show([flight({ name: "mine", is_recording: true }), flight()]);
     expect(button("2025-06-20 16:04").textContent).toContain("55.2 MB");
     expect(button("mine").textContent).toContain("recording");
-    expect(flightTime("recon-20250620T160412Z-2")).toBe("2025-06-20 16:04 (2)");
+    expect(flightTime("flight-20250620T160412Z-2")).toBe("2025-06-20 16:04 (2)");
+    expect(flightTime("ground-20250620T160412Z")).toBe("2025-06-20 16:04, on the ground");
   });
 
-  it("states what to do without records", async () => {
+  it("states that there are no records", async () => {
     await show([]);
-    expect(page.root.textContent).toContain("start the station with --record");
+    expect(page.root.textContent).toContain("No flight records in the station's folder.");
   });
 });
 
