@@ -1,8 +1,8 @@
 """Writing the records of a run: items in, MCAP files out. Runs in a process of its own.
 
 Theory of operation. A file begins with a `Begin` item and ends with the next one, or with the last
-item. A chunk is written and synced twice a second: a process that is killed, or a power cut, costs
-what came in the last half second and one write.
+item. A chunk is written and synced three times a second: a process that is killed, or a power cut,
+costs what came in the last third of a second and one write.
 
     open --folder or disk fails--> failing --written again--> open
     open --little space left--> without images --space again--> open
@@ -37,7 +37,8 @@ from recon.record.mcap_file import McapFile
 from recon.record.mcap_repair import repair
 from recon.record.topics import Topics
 
-FLUSH_EVERY_S = 0.5
+FLUSH_EVERY_S = 0.33
+"""A busy computer with five programs for each core adds half a second; a power cut may cost one."""
 RETRY_AFTER_S = 1.0
 
 IMAGES_STOP_BYTES = 2 * 1024**3
