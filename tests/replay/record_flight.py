@@ -55,7 +55,9 @@ def recording(driver: VirtualDriver, site: Site, folder: Path) -> Iterator[Recor
     recorder = Recorder(lambda: record_process(folder), driver.handle, audits, site)
 
     def take(step: StepTaken) -> None:
-        # Virtual time is faster than any disk: a real flight is not.
+        # Virtual time is faster than any disk and any thread: a real flight is not.
+        if recorder._encoding is not None:
+            recorder._encoding.join()
         while recorder.process.bulk_room_bytes < MOST_TAKEN_BYTES and not recorder.process.is_dead:
             time.sleep(0.001)
         audits.observe(step)

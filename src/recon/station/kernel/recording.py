@@ -250,8 +250,14 @@ class Recorder:
                 self._has_flown = self._reports_flown = True
             return
         lasts_s = AFTER_LANDING_S if self._has_flown else GROUND_FILE_S
-        if now_ns - self._quiet_since_ns >= seconds_to_ns(lasts_s) and not self._jobs:
+        is_due = now_ns - self._quiet_since_ns >= seconds_to_ns(lasts_s)
+        if is_due and not self._jobs and not self._is_beginning:
             self._begin_file(station, now_ns)
+
+    @property
+    def _is_beginning(self) -> bool:
+        """Whether the newest file's beginning has not been handed over."""
+        return self._encoding is not None or self._beginning is not None
 
     def _restart(self, station: Station, now_ns: int) -> None:
         """Have another process begin a new file."""
