@@ -82,7 +82,9 @@ class FakeStation:
 
 
 def _status(number: int) -> SurveyStatus:
-    return SurveyStatus(number, "small", "created", "", "", "hover", False, 0, 0, 0.0, 1, (), None)
+    return SurveyStatus(
+        number, "small", "created", "", "", "hover", False, False, 0, 0, 0.0, 1, (), None
+    )
 
 
 @pytest.fixture

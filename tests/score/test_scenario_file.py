@@ -38,6 +38,7 @@ EXPECTED = {
     "low-sun",
     "auto-exposure-hard",
     "cumulus-40-wide",
+    "cumulus-60-wide",
     "cumulus-40-upwind",
     "cumulus-40-tilted",
     "two-layers-wide",

@@ -38,7 +38,7 @@ def replay_command(
         typer.Option(help="Scenario of a simulated flight, where --what-if does not find it."),
     ] = None,
 ) -> None:
-    """Run a recorded flight again and compare every output.
+    """Run a recorded flight again: compare every output, or score other methods on it.
 
     Exit code 0: equal to the bit; 1: a difference, or no record; 3: equal as far as the record
     could be compared.

@@ -264,7 +264,7 @@ class TestSurroundings:
         far = Region(np.array([(900.0, 900.0), (990.0, 900.0), (990.0, 990.0)]))
         refusal = plan_survey(survey_of(rectangle()), FRAME, SurveySurroundings(far))
         assert isinstance(refusal, Refusal)
-        assert "no row of the region north field" in refusal.reason
+        assert "the region north field lies outside the site's boundary" in refusal.reason
 
     @settings(max_examples=examples(25), deadline=None)
     @given(st.integers(0, 10**9))

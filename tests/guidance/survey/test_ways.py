@@ -79,7 +79,7 @@ def test_ways_between_all_rows_of_a_drawn_field_stay_inside(seed: int) -> None:
             ]
         )
     ]
-    area = plan.ways._area
+    area = plan.ways.area
     for _ in range(10):
         start, end = (ends[int(i)] for i in rng.integers(0, len(ends), 2))
         if shapely.distance(*(_part(area, place) for place in (start, end))) > 0.0:
