@@ -9,6 +9,7 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
+import uvloop
 from tests.api.client import Client
 from tests.api.fake_station import FakeStation
 from tests.product.made_flight import flight, write_record
@@ -212,3 +213,14 @@ def test_a_station_without_records_has_none() -> None:
     assert client.get("/api/flights").json() == []
     assert client.get(f"/api/flights/{NAME}").status_code == 404
     assert json.loads(client.get(f"/api/flights/{NAME}/record.mcap").text)["error"]
+
+
+def test_the_station_is_not_copied_to_make_a_file(recorded: Made, folder: Path) -> None:
+    """A fork copies the page tables of all its memory, and an order waits meanwhile."""
+    forks: list[str] = []
+    os.register_at_fork(before=lambda: forks.append("fork"))
+    flights = recorded(folder, command=python(PRINTS))
+    path = uvloop.run(flights.file(NAME, "tracks.csv"))
+    assert path is not None
+    assert path.is_file()
+    assert forks == []

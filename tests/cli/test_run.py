@@ -46,6 +46,25 @@ def test_it_prints_its_addresses_and_ends_cleanly(number: int, tmp_path: Path) -
     assert HELLO in received(record)
 
 
+def test_stopped_again_and_again_it_still_ends_as_a_stop(tmp_path: Path) -> None:
+    """Ctrl+C comes more than once: a launcher passes it on, and people repeat it."""
+    with started("run", *FREE, "--record", str(tmp_path / "raw")) as recon:
+        port = link_port(recon.line_with("companion apps: 127.0.0.1:"))
+        recon.line_with("console")
+        with socket.create_connection(("127.0.0.1", port)) as app:
+            recon.line_with("app connected")
+            app.sendall(HELLO)
+            end_s = monotonic() + PATIENCE_S
+            while recon.is_running:
+                assert monotonic() < end_s
+                recon.send(signal.SIGINT)
+                sleep(0.005)
+        assert recon.wait() == 0
+        assert "station stopped" in recon.text
+    (record,) = (tmp_path / "raw").iterdir()
+    assert is_finished(record)
+
+
 def received(record: Path) -> bytes:
     """What apps have sent, by a record that may be in the making."""
     with record.open("rb") as file:

@@ -6,6 +6,6 @@ export async function openPanel(page: Page, name: string): Promise<void> {
   const item = page
     .getByRole("region", { name: "Menu" })
     .getByRole("button", { name, exact: true });
-  if ((await item.getAttribute("aria-pressed")) === "false") await item.click();
-  await page.keyboard.press("Escape");
+  const isOpen = (await item.getAttribute("aria-pressed")) === "true";
+  await (isOpen ? page.keyboard.press("Escape") : item.click());
 }

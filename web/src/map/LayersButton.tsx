@@ -35,23 +35,25 @@ export function LayersButton() {
   const { overlay } = useConsole();
   return (
     <Popover class="layers" label="Map overlay" title="Map overlay" button={<LayersIcon />}>
-      <fieldset class="card layers-list">
-        <legend class="hidden-but-read">Map overlay</legend>
-        <For each={OVERLAYS}>
-          {([kind, label]) => (
-            <label>
-              <input
-                type="radio"
-                name="overlay"
-                checked={overlay.kind() === kind}
-                onChange={() => overlay.show(kind)}
-              />
-              {label}
-            </label>
-          )}
-        </For>
-        <Legend kind={overlay.kind()} />
-      </fieldset>
+      {() => (
+        <fieldset class="card layers-list">
+          <legend class="hidden-but-read">Map overlay</legend>
+          <For each={OVERLAYS}>
+            {([kind, label]) => (
+              <label>
+                <input
+                  type="radio"
+                  name="overlay"
+                  checked={overlay.kind() === kind}
+                  onChange={() => overlay.show(kind)}
+                />
+                {label}
+              </label>
+            )}
+          </For>
+          <Legend kind={overlay.kind()} />
+        </fieldset>
+      )}
     </Popover>
   );
 }

@@ -1,6 +1,9 @@
 import { createEffect, createSignal, createUniqueId, type JSX, onCleanup, Show } from "solid-js";
 
-/** A button that opens what it is about beside it; Esc, a press elsewhere or a further press closes it. */
+/**
+ * A button that opens what it is about beside it; Esc, a press elsewhere or a further press closes
+ * it, and so does its content.
+ */
 export function Popover(props: {
   class: string;
   buttonClass?: string;
@@ -8,11 +11,16 @@ export function Popover(props: {
   label?: string;
   title?: string;
   button: JSX.Element;
-  children: JSX.Element;
+  children: (close: () => void) => JSX.Element;
 }) {
   const [isOpen, setOpen] = createSignal(false);
   const id = createUniqueId();
   let whole!: HTMLDivElement;
+  let button!: HTMLButtonElement;
+  const close = () => {
+    setOpen(false);
+    button.focus();
+  };
   createEffect(() => {
     if (!isOpen()) return;
     const onPress = (event: PointerEvent) => {
@@ -21,7 +29,7 @@ export function Popover(props: {
     const onKey = (event: KeyboardEvent) => {
       if (event.key !== "Escape") return;
       event.stopPropagation();
-      setOpen(false);
+      close();
     };
     window.addEventListener("pointerdown", onPress);
     window.addEventListener("keydown", onKey, { capture: true });
@@ -33,6 +41,7 @@ export function Popover(props: {
   return (
     <div class={props.class} ref={whole}>
       <button
+        ref={button}
         type="button"
         class={`button ${props.buttonClass ?? ""}`}
         aria-expanded={isOpen()}
@@ -45,7 +54,7 @@ export function Popover(props: {
       </button>
       <Show when={isOpen()}>
         <div id={id} class="popover">
-          {props.children}
+          {props.children(close)}
         </div>
       </Show>
     </div>

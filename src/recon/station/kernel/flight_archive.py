@@ -8,6 +8,7 @@ all stop meanwhile. A few files are kept until their record changes.
 import asyncio
 import contextlib
 import os
+import subprocess
 import sys
 from collections import OrderedDict
 from collections.abc import Callable, Sequence
@@ -47,9 +48,12 @@ class RecordedFlights:
         self._made: OrderedDict[tuple[str, str, int, int], Path] = OrderedDict()
         self._count = self._waiting = 0
         self._one = asyncio.Lock()
+        self._process: subprocess.Popen[bytes] | None = None
 
     def close(self) -> None:
-        """Remove what was made."""
+        """End what is being made, and remove what was."""
+        if self._process is not None:
+            self._process.kill()
         self._made_folder.cleanup()
 
     def flights(self) -> list[schema.FlightView]:
@@ -133,30 +137,35 @@ class RecordedFlights:
         out = Path(self._made_folder.name) / f"{self._count}-{file}"
         is_page = file.endswith(".html")
         words = ("report", str(record), "--out") if is_page else ("export", str(record))
-        process = await asyncio.create_subprocess_exec(
-            *self._command,
-            *words,
-            str(out),
-            stdin=asyncio.subprocess.DEVNULL,
-            stdout=asyncio.subprocess.DEVNULL,
-            stderr=asyncio.subprocess.PIPE,
-        )
-        if hasattr(os, "setpriority"):
-            with contextlib.suppress(OSError):
-                os.setpriority(os.PRIO_PROCESS, process.pid, NICENESS)
         try:
-            _out, errors = await asyncio.wait_for(process.communicate(), WITHIN_S)
-        except TimeoutError as problem:
+            is_done, errors = await asyncio.to_thread(self._run, (*self._command, *words, str(out)))
+        except subprocess.TimeoutExpired as problem:
             raise FlightFileError(
                 f"{file} took longer than {WITHIN_S:g} s: run recon export on the record"
             ) from problem
-        finally:
-            if process.returncode is None:
-                process.kill()
-                await process.wait()
-        if process.returncode != 0 or not out.is_file():
+        if not is_done or not out.is_file():
             raise FlightFileError(_sentence(errors, record))
         return out
+
+    def _run(self, command: Sequence[str]) -> tuple[bool, bytes]:
+        """Run a command at low priority; return whether it succeeded, and its errors.
+
+        On a thread: the loop's own way copies the page tables of all of the station's memory.
+        """
+        nothing = subprocess.DEVNULL
+        with subprocess.Popen(
+            command, stdin=nothing, stdout=nothing, stderr=subprocess.PIPE
+        ) as process:
+            self._process = process
+            try:
+                if hasattr(os, "setpriority"):
+                    with contextlib.suppress(OSError):
+                        os.setpriority(os.PRIO_PROCESS, process.pid, NICENESS)
+                _out, errors = process.communicate(timeout=WITHIN_S)
+            finally:
+                self._process = None
+                process.kill()
+        return process.returncode == 0, errors
 
 
 def _sentence(errors: bytes, record: Path) -> str:

@@ -10,8 +10,7 @@ import errno
 import getpass
 import signal
 import socket
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -145,24 +144,21 @@ def cannot_listen(host: str, port: int, option: str, problem: Exception) -> Star
     return StartError(f"cannot listen on {host} port {port}: {reason}; see {option}")
 
 
-@contextmanager
-def stopped_by_signals(servers: Sequence[uvicorn.Server]) -> Iterator[None]:
-    """End the servers on SIGINT and SIGTERM; the second one does not wait for open requests."""
+def stop_on_signals(servers: Sequence[uvicorn.Server]) -> None:
+    """End the servers on SIGINT and SIGTERM; the second one does not wait for open requests.
+
+    It holds until the process ends: a signal repeated meanwhile would interrupt the end of links
+    and record.
+    """
     loop = asyncio.get_running_loop()
-    numbers = (signal.SIGINT, signal.SIGTERM)
 
     def stop() -> None:
         for server in servers:
             server.force_exit = server.should_exit
             server.should_exit = True
 
-    for number in numbers:
+    for number in (signal.SIGINT, signal.SIGTERM):
         loop.add_signal_handler(number, stop)
-    try:
-        yield
-    finally:
-        for number in numbers:
-            loop.remove_signal_handler(number)
 
 
 def _users(path: Path) -> bool:

@@ -52,7 +52,7 @@ from recon.station.kernel.http_servers import (
     network_server,
     require_startable,
     shared_address,
-    stopped_by_signals,
+    stop_on_signals,
     url_of,
 )
 from recon.station.kernel.recording import Recorder, record_process
@@ -278,7 +278,7 @@ async def _serve(
     stack.callback(ticking.cancel)
     servers = _servers(config, driver, service, doors, stack)
     freeze_loaded_objects()
-    stack.enter_context(stopped_by_signals([server for server, _ in servers]))
+    stop_on_signals([server for server, _ in servers])
     serving = [asyncio.create_task(server.serve(sockets=[sock])) for server, sock in servers]
     await on_start()
     done, _ = await asyncio.wait((*serving, ticking), return_when=asyncio.FIRST_COMPLETED)

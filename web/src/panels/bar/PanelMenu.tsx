@@ -12,25 +12,37 @@ export function PanelMenu(props: { onHelp: () => void }) {
   const { panels } = useConsole();
   return (
     <Popover class="menu" label="Menu" title="Panels, colours, help" button="☰">
-      <section class="card menu-list" aria-label="Menu">
-        <For each={LISTED}>
-          {(name) => (
-            <button
-              type="button"
-              class="button button-quiet menu-item"
-              aria-pressed={panels.isOpen(name)}
-              onClick={() => panels.toggle(name)}
-            >
-              {PANEL_NAMES[name]}
-            </button>
-          )}
-        </For>
-        <Colours />
-        <button type="button" class="button button-quiet menu-item" onClick={() => props.onHelp()}>
-          Keys and orders
-        </button>
-        <PersonTag />
-      </section>
+      {(close) => (
+        <section class="card menu-list" aria-label="Menu">
+          <For each={LISTED}>
+            {(name) => (
+              <button
+                type="button"
+                class="button button-quiet menu-item"
+                aria-pressed={panels.isOpen(name)}
+                onClick={() => {
+                  panels.toggle(name);
+                  close();
+                }}
+              >
+                {PANEL_NAMES[name]}
+              </button>
+            )}
+          </For>
+          <Colours />
+          <button
+            type="button"
+            class="button button-quiet menu-item"
+            onClick={() => {
+              close();
+              props.onHelp();
+            }}
+          >
+            Keys and orders
+          </button>
+          <PersonTag />
+        </section>
+      )}
     </Popover>
   );
 }

@@ -31,7 +31,7 @@ export function StatusButton() {
         </>
       }
     >
-      <Reasons readiness={now()} />
+      {() => <Reasons readiness={now()} />}
     </Popover>
   );
 }

@@ -73,7 +73,11 @@ function Editor() {
           </div>
         )}
       </Show>
-      <Show when={saved() !== null} fallback={<Empty>Loading the site.</Empty>}>
+      <Show when={saved() === null}>
+        <Empty>Loading the site.</Empty>
+      </Show>
+      {/* What cannot be saved is not begun; what was begun before stays to be read. */}
+      <Show when={saved()?.locked_reason === null || siteDraft.isChanged()}>
         <AddForm />
         <Show when={features().length > 0} fallback={<Empty>Nothing is drawn yet.</Empty>}>
           <ul class="list" aria-label="Features of the site">

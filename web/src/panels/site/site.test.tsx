@@ -107,10 +107,11 @@ describe("what the station answers", () => {
     expect(find(page.root, ".site-verdict").textContent).toBe("Cannot be saved as it is:");
   });
 
-  it("locks the folder that cannot be saved, with the reason", async () => {
+  it("offers no drawing where it cannot be saved, with the reason", async () => {
     await open("The demonstration's site is part of the program");
     expect(page.root.textContent).toContain("part of the program");
-    press("At map centre");
+    expect(() => button("At map centre")).toThrow();
+    page.shared.siteDraft.addAt("boundary", HERE, 200);
     expect(button("Save, in force at once").disabled).toBe(true);
   });
 

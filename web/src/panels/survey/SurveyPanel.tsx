@@ -3,7 +3,6 @@ import { useConsole } from "../../console";
 import { targetsKey } from "../../orders/targets";
 import type { SurveyingView, SurveyResponse, SurveyView } from "../../protocol";
 import type { Outcome } from "../../source/stationSource";
-import { listNames } from "../../text/names";
 import { surveyStatus, timeLeft } from "../../text/survey";
 import { BRIEF_MS, GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Panel, Problem } from "../Panel";
@@ -123,7 +122,7 @@ function Start(props: SurveyProps) {
       </label>
       <GuardButton
         label={label()}
-        name={`${label()}: ${listNames(targets().labels)}, survey ${props.survey.name}`}
+        name={`${label()}: ${[...targets().labels, `survey ${props.survey.name}`].join(", ")}`}
         hold_ms={GUARD_MS}
         subject={subject()}
         onConfirm={() => void start()}
