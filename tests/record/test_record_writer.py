@@ -129,7 +129,7 @@ from recon.record.record_writer import RecordWriter
 
 class Endless:
     number = -1
-    def get(self, block=True, timeout=None):
+    def get(self, *, timeout):
         self.number += 1
         return ("/step", (self.number - 1).to_bytes(8, "big") * 30_000) if self.number else BEGIN
 

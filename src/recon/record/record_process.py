@@ -30,6 +30,7 @@ from typing import BinaryIO
 
 import msgspec
 
+from recon.model.errors import RecordError
 from recon.record.flight_messages import HEAD, FlightMessages, Item, ItemKind
 from recon.record.record_writer import RecordWriter, Status
 from recon.record.shared_ring import SharedRing, shared_file
@@ -154,20 +155,28 @@ class RingInbox:
         """Set when nothing more is put into the ring."""
         self._ring = ring
 
-    def get(self, block: bool = True, timeout: float | None = None) -> Item | None:
-        """Return the next item, None after the last; raises `queue.Empty` after the timeout."""
-        end_s = time.monotonic() + (timeout or 0.0)
-        while not (waiting_bytes := self._ring.waiting_bytes):
-            if self.is_over:
+    def get(self, timeout: float) -> Item | None:
+        """Return the next item, None after the last.
+
+        Raises `queue.Empty` after the timeout, `RecordError` for an item that is not whole.
+        """
+        end_s = time.monotonic() + timeout
+        while True:
+            is_over = self.is_over  # read before the ring: what is put before the end is read
+            waiting_bytes = self._ring.waiting_bytes
+            if waiting_bytes:
+                break
+            if is_over:
                 return None
-            if not block or time.monotonic() >= end_s:
+            if time.monotonic() >= end_s:
                 raise queue.Empty
             time.sleep(POLL_S)
         kind, size = HEAD.unpack(self._ring.peek(HEAD.size))
         if HEAD.size + size > waiting_bytes:
-            return None
-        content = self._ring.peek(HEAD.size + size)[HEAD.size :]
-        self._ring.take(HEAD.size + size)
+            raise RecordError(f"expected an item of {HEAD.size + size} bytes, got {waiting_bytes}")
+        self._ring.take(HEAD.size)
+        content = self._ring.peek(size)
+        self._ring.take(size)
         return Item(ItemKind(kind), content)
 
 

@@ -54,7 +54,7 @@ CAN_RENAME_OPEN_FILES = sys.platform != "win32"
 class Inbox(Protocol):
     """Where items come from: a queue."""
 
-    def get(self, block: bool = True, timeout: float | None = None) -> Any:
+    def get(self, *, timeout: float) -> Any:
         """Return the next item, None after the last; raises `queue.Empty` after the timeout."""
 
 

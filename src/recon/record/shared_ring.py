@@ -1,20 +1,19 @@
 """A ring of bytes in memory that two processes share: one writes, the other reads.
 
 Writing is a copy: no system call, no lock that the reader could hold, and the interpreter is not
-given away, so the writer goes on at once. `HEAD` counts the bytes that were written so far,
-`TAIL` those that were read; each is set by one side only, after its copy.
+given away, so the writer goes on at once. Counter `HEAD` has the bytes that were written so far,
+`TAIL` those that were read; each is set by one side only, after its copy, and by one store:
+`struct.pack_into` would set it to 0 first, and the other process would read that.
 """
 
 import mmap
 import os
-import struct
 import tempfile
 import threading
 from collections.abc import Iterable
 
 COUNTERS_BYTES = 64
-_COUNTER = struct.Struct("<Q")
-HEAD_AT, TAIL_AT = 0, 8
+HEAD, TAIL = 0, 1
 
 
 class SharedRing:
@@ -29,17 +28,18 @@ class SharedRing:
         self.size_bytes = size_bytes
         flags = mmap.MAP_SHARED | (getattr(mmap, "MAP_POPULATE", 0) if allocates else 0)
         self._map = mmap.mmap(descriptor, COUNTERS_BYTES + size_bytes, flags=flags)
+        self._counters = memoryview(self._map)[:COUNTERS_BYTES].cast("Q")
         self._data = memoryview(self._map)[COUNTERS_BYTES:]
         self._fence = threading.Lock()
 
     @property
     def waiting_bytes(self) -> int:
         """What was written and not read."""
-        return self._count(HEAD_AT) - self._count(TAIL_AT)
+        return self._counters[HEAD] - self._counters[TAIL]
 
     def put(self, parts: Iterable[bytes]) -> None:
         """Write parts behind each other, at once for the reader; the caller knows their room."""
-        head = self._count(HEAD_AT)
+        head = self._counters[HEAD]
         for part in parts:
             at = head % self.size_bytes
             first = min(len(part), self.size_bytes - at)
@@ -47,34 +47,31 @@ class SharedRing:
             if first < len(part):
                 self._data[: len(part) - first] = part[first:]
             head += len(part)
-        self._set_count(HEAD_AT, head)
+        self._set_count(HEAD, head)
 
     def peek(self, size_bytes: int) -> bytes:
         """Return the next bytes without taking them."""
-        at = self._count(TAIL_AT) % self.size_bytes
+        at = self._counters[TAIL] % self.size_bytes
         first = min(size_bytes, self.size_bytes - at)
         found = bytes(self._data[at : at + first])
         return found + bytes(self._data[: size_bytes - first]) if first < size_bytes else found
 
     def take(self, size_bytes: int) -> None:
         """Free the next bytes for the writer."""
-        self._set_count(TAIL_AT, self._count(TAIL_AT) + size_bytes)
+        self._set_count(TAIL, self._counters[TAIL] + size_bytes)
 
     def close(self) -> None:
         """Unmap it."""
+        self._counters.release()
         self._data.release()
         self._map.close()
 
-    def _count(self, at: int) -> int:
-        found: int = _COUNTER.unpack_from(self._map, at)[0]
-        return found
-
-    def _set_count(self, at: int, count: int) -> None:
+    def _set_count(self, counter: int, count: int) -> None:
         # A lock taken twice orders the copy before the counter on processors that reorder stores.
         for _ in range(2):
             with self._fence:
                 pass
-        _COUNTER.pack_into(self._map, at, count)
+        self._counters[counter] = count
 
 
 def shared_file(size_bytes: int) -> int:
