@@ -190,6 +190,31 @@ def test_a_file_is_a_flights_once_a_vehicle_has_flown(tmp_path: Path) -> None:
     assert all(is_finished(path) for path in files)
 
 
+def test_a_flight_that_cannot_be_renamed_is_a_problem_and_stays(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def rename(*_paths: Any) -> None:
+        raise PermissionError(1, "Operation not permitted")
+
+    writing = Writing(tmp_path)
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "rename", rename)
+        patch.setattr(os, "link", rename)
+        writing.put(("/step", b"flown"))
+        writing.put(FLOWN)
+        until(lambda: writing.problem is not None)
+    assert writing.problem is not None
+    assert "cannot be renamed to flight-" in writing.problem
+    assert writing.problem.endswith("Operation not permitted")
+    for _ in range(GROUND_FILES_KEPT + 2):
+        writing.put(BEGIN)
+    writing.close()
+    assert writing.problem is None
+    files = sorted(tmp_path.iterdir())
+    assert [m.data for path in files for m in messages(path)] == [b"flown"]
+    assert len(files) == 1 + GROUND_FILES_KEPT + 1
+
+
 def test_images_stop_first_and_come_back(tmp_path: Path) -> None:
     free_bytes = [record_writer.IMAGES_STOP_BYTES]
     writing = Writing(tmp_path, free_bytes=lambda _folder: free_bytes[0])
@@ -253,6 +278,8 @@ def test_an_item_that_cannot_be_written_is_a_problem_and_no_end(tmp_path: Path) 
     until(lambda: writing.is_file() and len(messages(writing.path)) == 1)
     assert writing.problem is not None
     assert "a part of the record is missing" in writing.problem
+    writing.put(BEGIN)
+    until(lambda: writing.problem is None)
     writing.close()
 
 

@@ -113,10 +113,11 @@ class RecordWriter:
         self._failure: str | None = None
         self._faults: str | None = None
         self._has_images = True
+        self._unnamed_flights: set[Path] = set()
 
     @property
     def problem(self) -> str | None:
-        """What is not recorded, and why; None while everything is."""
+        """What the file that is written lacks, and why; None while everything is recorded."""
         if self._failure is not None:
             return self._failure
         if not self._has_images:
@@ -153,6 +154,7 @@ class RecordWriter:
     def _take(self, item: Any) -> None:
         if self._begins(item):
             self._end_file()
+            self._faults = None
             self._retry(self._open)
             self._guarded(lambda topics: self._messages.begin(item, topics))
         elif self._has_flown(item):
@@ -209,7 +211,7 @@ class RecordWriter:
         file = McapFile(_free_name(self.folder, kind), self._library)
         lock_file(file.descriptor)
         self.path, self._topics = file.path, Topics(file)
-        _remove_old_ground_files(self.folder, self.path)
+        _remove_old_ground_files(self.folder, {self.path, *self._unnamed_flights})
 
     def _end_file(self) -> None:
         if self._topics is not None:
@@ -222,11 +224,16 @@ class RecordWriter:
         if path is None or not path.name.startswith(GROUND) or self._topics is None:
             return
         flight = path.with_name(path.name.replace(GROUND, FLIGHT, 1))
-        with contextlib.suppress(OSError):
-            # A link fails where there is such a file; a rename would replace it.
-            os.link(path, flight)
-            path.unlink()
-            self.path = self._topics.file.path = flight
+        try:
+            path.rename(flight)
+        except OSError as problem:
+            self._unnamed_flights.add(path)
+            self._faults = (
+                f"the flight's record {path} cannot be renamed to {flight.name}; copy it before "
+                f"the next start, which may remove it: {problem.strerror}"
+            )
+            return
+        self.path = self._topics.file.path = flight
 
     def _report_status(self) -> None:
         path = None if self.path is None else str(self.path)
@@ -247,8 +254,8 @@ def repair_all(folder: Path) -> list[Path]:
     return repaired
 
 
-def _remove_old_ground_files(folder: Path, current: Path) -> None:
-    others = sorted(path for path in folder.glob(f"{GROUND}-*.mcap") if path != current)
+def _remove_old_ground_files(folder: Path, kept: set[Path]) -> None:
+    others = sorted(path for path in folder.glob(f"{GROUND}-*.mcap") if path not in kept)
     for path in others[: max(0, len(others) - GROUND_FILES_KEPT)]:
         _if_unlocked(path, Path.unlink)
 
