@@ -22,12 +22,20 @@ from tests.station.station_world import square_mission, world
 from recon import wire
 from recon.link.tap import Direction
 from recon.model.command import FlyMission, Hover, LandNow
-from recon.model.event import PacketReceived, RecordFailed, Tick
+from recon.model.event import LinkClosed, PacketReceived, RecordFailed, Tick
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.report import ImageReport
 from recon.model.shade import ShadeMap, SunForecast
+from recon.model.units import seconds_to_ns
 from recon.record import foxglove
-from recon.record.flight_messages import HEAD, FlightMessages, Item, ItemKind
+from recon.record.flight_messages import (
+    HEAD,
+    STEP_HEAD,
+    Beginning,
+    FlightMessages,
+    Item,
+    ItemKind,
+)
 from recon.record.link_bytes import LINKS_TOPIC
 from recon.record.mcap_file import STEPS_TOPIC
 from recon.record.mcap_read import McapReading, RecordMessage
@@ -38,6 +46,7 @@ from recon.station.kernel import recording as recording_of_kernel
 from recon.station.kernel.recording import (
     BULK_BYTES,
     RESTART_AFTER_S,
+    RESTART_WITHIN_S,
     Recorder,
     is_flying,
 )
@@ -163,10 +172,150 @@ class FullProcess(RecordProcess):
             data = data[HEAD.size + size :]
 
 
-def taken(event: Any) -> StepTaken:
+def taken(event: Any, now_ns: int = 5) -> StepTaken:
     before = Station()
-    after, outputs = step(before, event, 5)
-    return StepTaken(event, 5, before, after, outputs)
+    after, outputs = step(before, event, now_ns)
+    return StepTaken(event, now_ns, before, after, outputs)
+
+
+class Restarts:
+    """A recorder whose processes are given; each tick's file has begun, or cannot."""
+
+    def __init__(self, *processes: FullProcess) -> None:
+        self.alarms: list[str | None] = []
+        left = list(processes)
+
+        def handle(event: Any) -> None:
+            self.alarms.append(event.problem)
+
+        self.recorder = Recorder(lambda: left.pop(0), handle, Audits(), Site("test"))
+        self.recorder.start(Station(), 0)
+
+    def tick(self, now_s: float) -> None:
+        if self.recorder._encoding is not None:
+            self.recorder._encoding.join()
+        self.recorder.take(taken(Tick(), seconds_to_ns(now_s)))
+
+
+def steps_of(process: FullProcess) -> list[int]:
+    steps = [item.content for item in process.items if item.kind is ItemKind.STEP]
+    return [STEP_HEAD.unpack_from(content)[0] for content in steps]
+
+
+def test_a_file_has_nothing_from_before_its_state(tmp_path: Path) -> None:
+    """The process dies before the first file's beginning could be handed over."""
+    first, second = FullProcess(tmp_path, 0), FullProcess(tmp_path, 10**8)
+    run = Restarts(first, second)
+    run.recorder.tap(1, Direction.FROM_APP, b"before", 5)
+    for _ in range(7):
+        run.tick(1.0)
+    first.is_dead = True
+    for now_s in (1.0, RESTART_AFTER_S + 1.0):
+        run.recorder.tap(1, Direction.FROM_APP, b"before", 5)
+        run.tick(now_s)
+    run.tick(RESTART_AFTER_S + 1.1)
+    assert [item.kind for item in second.items] == [ItemKind.BEGIN, ItemKind.STEP]
+    assert steps_of(second) == [1]
+    assert run.recorder.dropped_bytes == 3 * len(b"before")
+
+
+def test_a_process_that_cannot_be_started_is_tried_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def start() -> None:
+        raise OSError(11, "Resource temporarily unavailable")
+
+    first, second, third = (FullProcess(tmp_path, 10**8) for _ in range(3))
+    monkeypatch.setattr(second, "start", start)
+    run = Restarts(first, second, third)
+    run.tick(1.0)
+    first.is_dead = True
+    for now_s in (1.0, 6.0, 10.0):
+        run.tick(now_s)
+    assert run.recorder.process is first
+    assert run.alarms == [f"the process that writes the record to {tmp_path} has ended"]
+    run.tick(11.0)
+    run.tick(11.1)
+    assert run.alarms[1:] == [None]
+    assert steps_of(third) == [1]
+
+
+def test_a_restart_does_not_wait_for_jobs_that_never_pause(tmp_path: Path) -> None:
+    first, second = FullProcess(tmp_path, 10**8), FullProcess(tmp_path, 10**8)
+    run = Restarts(first, second)
+    run.recorder._jobs.add(("images", 1))
+    run.tick(1.0)
+    first.is_dead = True
+    run.tick(1.0)
+    run.tick(RESTART_WITHIN_S)
+    assert run.recorder.process is first
+    run.tick(RESTART_WITHIN_S + 1.0)
+    run.tick(RESTART_WITHIN_S + 1.1)
+    begins = msgspec.msgpack.decode(second.items[0].content, type=Beginning)
+    assert json.loads(begins.about)["running_jobs"] == 1
+
+
+def test_what_waits_for_a_beginning_is_bounded_by_bytes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(recording_of_kernel, "WAITING_BYTES", 200_000)
+    monkeypatch.setattr(recording_of_kernel, "WAITING_BULK_BYTES", 100_000)
+    process = FullProcess(tmp_path, 0)
+    run = Restarts(process)
+    for _ in range(20):
+        run.recorder.tap(1, Direction.FROM_APP, bytes(BULK_BYTES), 5)
+        run.recorder.tap(1, Direction.TO_APP, b"order", 5)
+        run.tick(1.0)
+    kept_bytes = 100_000 // BULK_BYTES * BULK_BYTES
+    assert process.dropped_bytes == 20 * BULK_BYTES - kept_bytes
+    assert process.dropped_steps == 0
+    process.left_bytes = 10**8
+    run.tick(1.0)
+    assert len(steps_of(process)) == 21
+    assert [i.kind for i in process.items].count(ItemKind.LINK) == 20 + kept_bytes // BULK_BYTES
+
+
+def test_a_full_ring_gets_no_more_than_its_room(tmp_path: Path) -> None:
+    process = FullProcess(tmp_path, 10**8)
+    run = Restarts(process)
+    run.tick(1.0)
+    process.left_bytes = 4
+    run.recorder._reports_flown = True
+    run.tick(1.1)
+    assert process.left_bytes == 4
+    process.left_bytes = 10**8
+    run.tick(1.2)
+    assert [item.kind for item in process.items[-3:]] == [
+        ItemKind.FLOWN,
+        ItemKind.STEP,
+        ItemKind.STEP,
+    ]
+
+
+def test_links_that_closed_take_no_memory(tmp_path: Path) -> None:
+    run = Restarts(FullProcess(tmp_path, 10**8))
+    for link_id in range(5):
+        run.recorder.tap(link_id, Direction.FROM_APP, b"telemetry", 5)
+        run.recorder.tap(link_id, Direction.TO_APP, b"order", 5)
+        run.recorder.take(taken(LinkClosed(link_id, "closed")))
+    assert run.recorder._ends == {}
+
+
+def test_a_file_without_its_start_is_a_problem_until_it_ends(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fails(_start: Any) -> Any:
+        raise ValueError("no text")
+
+    monkeypatch.setattr(recording_of_kernel, "GROUND_FILE_S", 5.0)
+    with monkeypatch.context() as patch:
+        patch.setattr(recording_of_kernel, "_about", fails)
+        run = Restarts(FullProcess(tmp_path, 10**8))
+        run.tick(1.0)
+    assert run.alarms[-1] is not None
+    assert "without the station's state" in run.alarms[-1]
+    run.tick(6.0)
+    assert run.alarms[-1] is None
 
 
 def test_when_the_disk_is_slow_images_go_first(tmp_path: Path) -> None:

@@ -65,6 +65,8 @@ class FlightStart:
     auditing: Auditing = field(default_factory=Auditing)
     scenario: str = ""
     """The simulated world, as `score/truth.py` states it; empty for real aircraft."""
+    running_jobs: int = 0
+    """Started before this record: their results are not in it, so a replay ends at the first."""
 
     @classmethod
     def now(
@@ -74,6 +76,7 @@ class FlightStart:
         started_at_ns: int,
         auditing: Auditing | None = None,
         scenario: str = "",
+        running_jobs: int = 0,
     ) -> "FlightStart":
         """Return the start of a record by this version on this computer."""
         return cls(
@@ -86,6 +89,7 @@ class FlightStart:
             station,
             Auditing() if auditing is None else auditing,
             scenario,
+            running_jobs,
         )
 
 

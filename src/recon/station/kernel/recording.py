@@ -1,7 +1,8 @@
 """What a run leaves: every step with its outputs and audit, all link bytes, topics to look at.
 
 `Recorder` takes steps and bytes from a driver, on its thread. It only keeps them until the next
-tick, so that no order waits; then they are encoded and handed to the process that writes.
+tick, so that no order waits; then they are encoded and handed to the process that writes, or wait
+for the file's beginning, up to `WAITING_BYTES`.
 
 Theory of operation. One file is one flight, with the time on the ground before it:
 
@@ -11,26 +12,29 @@ Theory of operation. One file is one flight, with the time on the ground before 
 
 A file begins with the state of the station, for replays, which a thread encodes while steps wait.
 Results of jobs are not recorded, so a file begins at a moment at which no job runs. When the
-process that writes has died, another one begins a new file, also in flight.
+process that writes has died, another one begins a new file, also in flight; where jobs never pause
+for `RESTART_WITHIN_S`, beside running jobs, and a replay of it is then compared up to the first
+result of them.
 """
 
 import threading
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
+from itertools import chain
 from pathlib import Path
 from typing import Any, Protocol
 
 import msgspec
-import numpy as np
 
 from recon import version
 from recon.link.tap import Direction
 from recon.model.errors import describe_fault
-from recon.model.event import Event, PacketReceived, RecordFailed, Tick
+from recon.model.event import Event, LinkClosed, PacketReceived, RecordFailed, Tick
 from recon.model.shade import ShadeMap, SunForecast
 from recon.model.units import seconds_to_ns
 from recon.record.audit import AuditEntry
 from recon.record.flight_messages import (
+    HEAD,
     LINK_HEAD,
     STEP_HEAD,
     Beginning,
@@ -39,7 +43,7 @@ from recon.record.flight_messages import (
     packed,
 )
 from recon.record.mcap_file import compressor
-from recon.record.record_process import CLOSE_WITHIN_S, RecordProcess
+from recon.record.record_process import BULK_SHARE, CLOSE_WITHIN_S, RING_BYTES, RecordProcess
 from recon.site import Site
 from recon.station.audit.entries import Auditing
 from recon.station.kernel.recorded_values import (
@@ -56,13 +60,14 @@ AFTER_LANDING_S = 30.0
 GROUND_FILE_S = 300.0
 """A flight's file has at most so much of the time before it."""
 RESTART_AFTER_S = 5.0
+RESTART_WITHIN_S = 30.0
+"""A record that cannot be replayed is better than none."""
 
-STEP_BYTES = 1000
-"""What a step holds, more or less, before it is encoded."""
 BULK_BYTES = 16 * 1024
 """A read of so many bytes is part of an image."""
-KEPT_STEPS = 20_000
-"""While the first state of a file is encoded: a minute of the busiest traffic."""
+WAITING_BYTES = RING_BYTES // 4
+"""While the first state of a file is encoded: minutes of telemetry, or a second of raw frames."""
+WAITING_BULK_BYTES = int(BULK_SHARE * WAITING_BYTES)
 
 
 class Audited(Protocol):
@@ -102,7 +107,7 @@ class _TakenBytes:
     data: bytes
     at_ns: int
     start: int
-    """Bytes of the link in this direction before these."""
+    """Bytes that came from the app before these."""
 
 
 class Recorder:
@@ -126,13 +131,18 @@ class Recorder:
         self._kept: list[_TakenStep | _TakenBytes] = []
         self._encoding: threading.Thread | None = None
         self._beginning: bytes | None = None
-        self._ends: dict[tuple[int, Direction], int] = {}
+        self._waiting: list[tuple[bytes, ...]] = []
+        """Encoded items that wait for the file's beginning."""
+        self._waiting_bytes = 0
+        self._ends: dict[int, int] = {}
+        """Bytes that came from the app of each open link."""
         self._jobs: set[tuple[str, int]] = set()
         self._number = self._dropped_bytes = 0
         self._has_flown = self._reports_flown = False
         self._quiet_since_ns = 0
         """When the file began, or, with a flight in it, when the last vehicle was on the ground."""
-        self._restart_at_ns: int | None = None
+        self._died_at_ns: int | None = None
+        self._restart_at_ns = 0
         self._reported: str | None = None
         self._fault: str | None = None
 
@@ -144,8 +154,10 @@ class Recorder:
     def take(self, step: StepTaken) -> None:
         """Record a step; once a tick, hand over what was taken since the last one."""
         self._number += 1
-        self._keep(_recorded(step, self._number, self._audited.entries))
+        self._kept.append(_recorded(step, self._number, self._audited.entries))
         self._follow_jobs(step)
+        if isinstance(step.event, LinkClosed):
+            self._ends.pop(step.event.link_id, None)
         if isinstance(step.event, Tick):
             self._hand_over()
             self._follow_flight(step.after, step.now_ns)
@@ -153,9 +165,11 @@ class Recorder:
 
     def tap(self, link_id: int, direction: Direction, data: bytes, at_ns: int) -> None:
         """Record a link's bytes."""
-        start = self._ends.get((link_id, direction), 0)
-        self._ends[link_id, direction] = start + len(data)
-        self._keep(_TakenBytes(link_id, direction, data, at_ns, start))
+        start = 0
+        if direction is Direction.FROM_APP:
+            start = self._ends.get(link_id, 0)
+            self._ends[link_id] = start + len(data)
+        self._kept.append(_TakenBytes(link_id, direction, data, at_ns, start))
 
     def close(self, within_s: float = CLOSE_WITHIN_S) -> None:
         """Hand over the rest, and have the file finished, as far as the disk takes it in time."""
@@ -169,43 +183,48 @@ class Recorder:
         """Bytes of links that are in no record of this run."""
         return self._dropped_bytes + self.process.dropped_bytes
 
-    def _keep(self, item: _TakenStep | _TakenBytes) -> None:
-        if len(self._kept) < KEPT_STEPS:
-            self._kept.append(item)
-        else:
-            self._drop(item)
-
     def _hand_over(self) -> None:
+        """Encode what was taken since the last tick; hand it over, or let it wait."""
+        begins = self._begin_parts()
+        if begins is None:
+            self._encode_kept(WAITING_BYTES, WAITING_BULK_BYTES)
+            return
+        process, used_bytes = self.process, sum(map(len, begins))
+        self._encode_kept(process.room_bytes - used_bytes, process.bulk_room_bytes - used_bytes)
+        process.put(chain(begins, *self._waiting))
+        self._waiting, self._waiting_bytes = [], 0
+
+    def _begin_parts(self) -> tuple[bytes, ...] | None:
+        """Return what comes first of all, None while the file's beginning is not ready for it."""
         if self._encoding is not None:
             if self._encoding.is_alive():
-                return
+                return None
             self._encoding = None
-        process = self.process
-        room_bytes, bulk_bytes = process.room_bytes, process.bulk_room_bytes
-        if self._beginning is not None and len(self._beginning) > room_bytes // 2:
-            return
-        parts: list[bytes] = []
+        begins: tuple[bytes, ...] = ()
         if self._beginning is not None:
-            parts += packed(ItemKind.BEGIN, self._beginning)
-            self._beginning = None
+            begins += packed(ItemKind.BEGIN, self._beginning)
         if self._reports_flown:
-            self._reports_flown = False
-            parts += packed(ItemKind.FLOWN)
-        used_bytes = sum(map(len, parts))
+            begins += packed(ItemKind.FLOWN)
+        if begins and sum(map(len, begins)) + self._waiting_bytes > self.process.room_bytes:
+            return None
+        self._beginning, self._reports_flown = None, False
+        return begins
+
+    def _encode_kept(self, limit_bytes: int, bulk_limit_bytes: int) -> None:
+        """Encode what was taken as far as all that waits stays within limits; drop the rest."""
         kept, self._kept = self._kept, []
         for item in kept:
             if isinstance(item, _TakenBytes):
-                limit_bytes = bulk_bytes if len(item.data) >= BULK_BYTES else room_bytes
-                new = _bytes_parts(item)
+                most_bytes = bulk_limit_bytes if len(item.data) >= BULK_BYTES else limit_bytes
+                parts = _bytes_parts(item)
             else:
-                limit_bytes, new = room_bytes, self._step_parts(item)
-            size_bytes = sum(map(len, new))
-            if used_bytes + size_bytes > limit_bytes:
+                most_bytes, parts = limit_bytes, self._step_parts(item)
+            total_bytes = self._waiting_bytes + sum(map(len, parts))
+            if total_bytes > most_bytes:
                 self._drop(item)
                 continue
-            parts += new
-            used_bytes += size_bytes
-        process.put(parts)
+            self._waiting.append(parts)
+            self._waiting_bytes = total_bytes
 
     def _drop(self, item: _TakenStep | _TakenBytes) -> None:
         if isinstance(item, _TakenStep):
@@ -260,26 +279,48 @@ class Recorder:
         return self._encoding is not None or self._beginning is not None
 
     def _restart(self, station: Station, now_ns: int) -> None:
-        """Have another process begin a new file."""
-        if self._restart_at_ns is None:
+        """Have another process begin a new file; try again later if it cannot be started."""
+        if self._died_at_ns is None:
+            self._died_at_ns = now_ns
             self._restart_at_ns = now_ns + seconds_to_ns(RESTART_AFTER_S)
-        if now_ns < self._restart_at_ns or self._jobs or self._encoding is not None:
+        waits_for_jobs = self._jobs and now_ns < self._died_at_ns + seconds_to_ns(RESTART_WITHIN_S)
+        if now_ns < self._restart_at_ns or waits_for_jobs or self._encoding is not None:
             return
-        self._restart_at_ns = None
+        process = self._new_process()
+        try:
+            process.start()
+        except OSError:
+            self._restart_at_ns = now_ns + seconds_to_ns(RESTART_AFTER_S)
+            return
+        self._died_at_ns = None
         self._forget_drops()
         self.process.close(0.0)
-        self.process = self._new_process()
-        self.process.start()
+        self.process = process
         self._begin_file(station, now_ns)
 
     def _begin_file(self, station: Station, now_ns: int) -> None:
-        """Begin a file with this state; what is taken from now on waits for it."""
+        """Begin a file with this state; what is taken from now on waits for it.
+
+        What still waits came before this state, for a file that never began: it is dropped.
+        """
+        self._drop_waiting()
         self._forget_drops()
+        self._fault = None
         self._number, self._quiet_since_ns = 0, now_ns
         self._has_flown = self._reports_flown = False
-        start = FlightStart.now(self._site, station, now_ns, self._audited.memory, self._scenario)
+        memory, jobs = self._audited.memory, len(self._jobs)
+        start = FlightStart.now(self._site, station, now_ns, memory, self._scenario, jobs)
         self._encoding = threading.Thread(target=self._encode, args=(start,), name="record-start")
         self._encoding.start()
+
+    def _drop_waiting(self) -> None:
+        for item in self._kept:
+            self._drop(item)
+        for head, *_ in self._waiting:
+            kind, size_bytes = HEAD.unpack(head)
+            if kind == ItemKind.LINK:
+                self.process.dropped_bytes += size_bytes - LINK_HEAD.size
+        self._kept, self._waiting, self._waiting_bytes = [], [], 0
 
     def _forget_drops(self) -> None:
         """What one file lacks is no problem of the next one."""
@@ -287,25 +328,13 @@ class Recorder:
         self.process.dropped_bytes = self.process.dropped_steps = 0
 
     def _encode(self, start: FlightStart) -> None:
-        about = {
-            "version": version(),
-            "python": start.python,
-            "numpy": np.__version__,
-            "machine": start.machine,
-            "site": start.site.name,
-            "origin": None if start.site.frame is None else asdict(start.site.frame.origin),
-            "imagers": list(start.site.imagers),
-            "vehicles": {s: each.display_name for s, each in start.site.profiles.items()},
-            "scenario": start.scenario,
-            "settings": asdict(start.station.settings),
-        }
-        text = msgspec.json.encode(about, enc_hook=str)
+        state, text = b"", b"{}"
         try:
+            text = msgspec.json.encode(_about(start), enc_hook=str)
             # A codec of its own: it compiles types as it meets them.
             state = compressor().compress(values_codec().encode(start, FlightStart))
         except Exception as fault:
             self._fault = f"the record begins without the station's state: {describe_fault(fault)}"
-            state = b""
         self._beginning = msgspec.msgpack.encode(Beginning(start.started_at_ns, state, text))
 
     def _report_problem(self) -> None:
@@ -313,6 +342,23 @@ class Recorder:
         if problem != self._reported:
             self._reported = problem
             self._handle(RecordFailed(problem))
+
+
+def _about(start: FlightStart) -> dict[str, Any]:
+    """Return the start as a person reads it."""
+    return {
+        "version": start.version,
+        "python": start.python,
+        "numpy": start.numpy,
+        "machine": start.machine,
+        "site": start.site.name,
+        "origin": None if start.site.frame is None else asdict(start.site.frame.origin),
+        "imagers": list(start.site.imagers),
+        "vehicles": {s: each.display_name for s, each in start.site.profiles.items()},
+        "scenario": start.scenario,
+        "running_jobs": start.running_jobs,
+        "settings": asdict(start.station.settings),
+    }
 
 
 def is_flying(station: Station) -> bool:

@@ -213,9 +213,15 @@ class Replay:
     def _end_of_job(self, end: EndOfJob) -> Event | None:
         job = self._jobs.pop((end.kind, end.job_id), None)
         if job is None:
+            start = self.found.start
+            began_before = start is not None and start.running_jobs > 0
             self.found.trouble = (
                 f"step {self.found.steps + 1}: job {end.job_id} ({end.kind[:40]}) has ended, and "
-                "this version has not started it"
+                + (
+                    "it was started before this record: what follows cannot be compared"
+                    if began_before
+                    else "this version has not started it"
+                )
             )
             return None
         if end.how not in (DONE, FAILED):
