@@ -7,6 +7,7 @@ import signal
 from collections import defaultdict
 from pathlib import Path
 from typing import Any
+from unittest.mock import MagicMock
 
 import cv2
 import msgspec
@@ -43,6 +44,7 @@ from recon.record.record_process import NICENESS, RecordProcess
 from recon.record.record_writer import RecordWriter
 from recon.site import Site
 from recon.station.kernel import recording as recording_of_kernel
+from recon.station.kernel import run
 from recon.station.kernel.recording import (
     BULK_BYTES,
     RESTART_AFTER_S,
@@ -205,18 +207,18 @@ def steps_of(process: FullProcess) -> list[int]:
 def test_a_file_has_nothing_from_before_its_state(tmp_path: Path) -> None:
     """The process dies before the first file's beginning could be handed over."""
     first, second = FullProcess(tmp_path, 0), FullProcess(tmp_path, 10**8)
-    run = Restarts(first, second)
-    run.recorder.tap(1, Direction.FROM_APP, b"before", 5)
+    scene = Restarts(first, second)
+    scene.recorder.tap(1, Direction.FROM_APP, b"before", 5)
     for _ in range(7):
-        run.tick(1.0)
+        scene.tick(1.0)
     first.is_dead = True
     for now_s in (1.0, RESTART_AFTER_S + 1.0):
-        run.recorder.tap(1, Direction.FROM_APP, b"before", 5)
-        run.tick(now_s)
-    run.tick(RESTART_AFTER_S + 1.1)
+        scene.recorder.tap(1, Direction.FROM_APP, b"before", 5)
+        scene.tick(now_s)
+    scene.tick(RESTART_AFTER_S + 1.1)
     assert [item.kind for item in second.items] == [ItemKind.BEGIN, ItemKind.STEP]
     assert steps_of(second) == [1]
-    assert run.recorder.dropped_bytes == 3 * len(b"before")
+    assert scene.recorder.dropped_bytes == 3 * len(b"before")
 
 
 def test_a_process_that_cannot_be_started_is_tried_again(
@@ -227,30 +229,30 @@ def test_a_process_that_cannot_be_started_is_tried_again(
 
     first, second, third = (FullProcess(tmp_path, 10**8) for _ in range(3))
     monkeypatch.setattr(second, "start", start)
-    run = Restarts(first, second, third)
-    run.tick(1.0)
+    scene = Restarts(first, second, third)
+    scene.tick(1.0)
     first.is_dead = True
     for now_s in (1.0, 6.0, 10.0):
-        run.tick(now_s)
-    assert run.recorder.process is first
-    assert run.alarms == [f"the process that writes the record to {tmp_path} has ended"]
-    run.tick(11.0)
-    run.tick(11.1)
-    assert run.alarms[1:] == [None]
+        scene.tick(now_s)
+    assert scene.recorder.process is first
+    assert scene.alarms == [f"the process that writes the record to {tmp_path} has ended"]
+    scene.tick(11.0)
+    scene.tick(11.1)
+    assert scene.alarms[1:] == [None]
     assert steps_of(third) == [1]
 
 
 def test_a_restart_does_not_wait_for_jobs_that_never_pause(tmp_path: Path) -> None:
     first, second = FullProcess(tmp_path, 10**8), FullProcess(tmp_path, 10**8)
-    run = Restarts(first, second)
-    run.recorder._jobs.add(("images", 1))
-    run.tick(1.0)
+    scene = Restarts(first, second)
+    scene.recorder._jobs.add(("images", 1))
+    scene.tick(1.0)
     first.is_dead = True
-    run.tick(1.0)
-    run.tick(RESTART_WITHIN_S)
-    assert run.recorder.process is first
-    run.tick(RESTART_WITHIN_S + 1.0)
-    run.tick(RESTART_WITHIN_S + 1.1)
+    scene.tick(1.0)
+    scene.tick(RESTART_WITHIN_S)
+    assert scene.recorder.process is first
+    scene.tick(RESTART_WITHIN_S + 1.0)
+    scene.tick(RESTART_WITHIN_S + 1.1)
     begins = msgspec.msgpack.decode(second.items[0].content, type=Beginning)
     assert json.loads(begins.about)["running_jobs"] == 1
 
@@ -261,30 +263,30 @@ def test_what_waits_for_a_beginning_is_bounded_by_bytes(
     monkeypatch.setattr(recording_of_kernel, "WAITING_BYTES", 200_000)
     monkeypatch.setattr(recording_of_kernel, "WAITING_BULK_BYTES", 100_000)
     process = FullProcess(tmp_path, 0)
-    run = Restarts(process)
+    scene = Restarts(process)
     for _ in range(20):
-        run.recorder.tap(1, Direction.FROM_APP, bytes(BULK_BYTES), 5)
-        run.recorder.tap(1, Direction.TO_APP, b"order", 5)
-        run.tick(1.0)
+        scene.recorder.tap(1, Direction.FROM_APP, bytes(BULK_BYTES), 5)
+        scene.recorder.tap(1, Direction.TO_APP, b"order", 5)
+        scene.tick(1.0)
     kept_bytes = 100_000 // BULK_BYTES * BULK_BYTES
     assert process.dropped_bytes == 20 * BULK_BYTES - kept_bytes
     assert process.dropped_steps == 0
     process.left_bytes = 10**8
-    run.tick(1.0)
+    scene.tick(1.0)
     assert len(steps_of(process)) == 21
     assert [i.kind for i in process.items].count(ItemKind.LINK) == 20 + kept_bytes // BULK_BYTES
 
 
 def test_a_full_ring_gets_no_more_than_its_room(tmp_path: Path) -> None:
     process = FullProcess(tmp_path, 10**8)
-    run = Restarts(process)
-    run.tick(1.0)
+    scene = Restarts(process)
+    scene.tick(1.0)
     process.left_bytes = 4
-    run.recorder._reports_flown = True
-    run.tick(1.1)
+    scene.recorder._reports_flown = True
+    scene.tick(1.1)
     assert process.left_bytes == 4
     process.left_bytes = 10**8
-    run.tick(1.2)
+    scene.tick(1.2)
     assert [item.kind for item in process.items[-3:]] == [
         ItemKind.FLOWN,
         ItemKind.STEP,
@@ -293,12 +295,12 @@ def test_a_full_ring_gets_no_more_than_its_room(tmp_path: Path) -> None:
 
 
 def test_links_that_closed_take_no_memory(tmp_path: Path) -> None:
-    run = Restarts(FullProcess(tmp_path, 10**8))
+    scene = Restarts(FullProcess(tmp_path, 10**8))
     for link_id in range(5):
-        run.recorder.tap(link_id, Direction.FROM_APP, b"telemetry", 5)
-        run.recorder.tap(link_id, Direction.TO_APP, b"order", 5)
-        run.recorder.take(taken(LinkClosed(link_id, "closed")))
-    assert run.recorder._ends == {}
+        scene.recorder.tap(link_id, Direction.FROM_APP, b"telemetry", 5)
+        scene.recorder.tap(link_id, Direction.TO_APP, b"order", 5)
+        scene.recorder.take(taken(LinkClosed(link_id, "closed")))
+    assert scene.recorder._ends == {}
 
 
 def test_a_file_without_its_start_is_a_problem_until_it_ends(
@@ -310,12 +312,12 @@ def test_a_file_without_its_start_is_a_problem_until_it_ends(
     monkeypatch.setattr(recording_of_kernel, "GROUND_FILE_S", 5.0)
     with monkeypatch.context() as patch:
         patch.setattr(recording_of_kernel, "_about", fails)
-        run = Restarts(FullProcess(tmp_path, 10**8))
-        run.tick(1.0)
-    assert run.alarms[-1] is not None
-    assert "without the station's state" in run.alarms[-1]
-    run.tick(6.0)
-    assert run.alarms[-1] is None
+        scene = Restarts(FullProcess(tmp_path, 10**8))
+        scene.tick(1.0)
+    assert scene.alarms[-1] is not None
+    assert "without the station's state" in scene.alarms[-1]
+    scene.tick(6.0)
+    assert scene.alarms[-1] is None
 
 
 def test_when_the_disk_is_slow_images_go_first(tmp_path: Path) -> None:
@@ -468,6 +470,16 @@ def test_a_failed_record_is_an_alarm_until_it_is_written_again() -> None:
     scene.run_for(0.2)
     found = [a for a in driver.station.alarms.alarms.values() if a.condition.rule == "record"]
     assert not any(each.is_active for each in found)
+
+
+def test_windows_records_nothing_and_raises_the_alarm(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(run, "IS_SUPPORTED", False)
+    config = run.RunConfig(Site("test"), record_folder=tmp_path, is_record_required=True)
+    driver, unused = MagicMock(), MagicMock()
+    assert run._start_record(config, driver, unused, unused, unused) is None
+    assert driver.handle.call_args.args == (RecordFailed("flights are not recorded on Windows"),)
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (3, 5), (90, 160)])

@@ -74,8 +74,6 @@ class RecordProcess:
     @property
     def problem(self) -> str | None:
         """What is not recorded, and why; None while everything is."""
-        if not IS_SUPPORTED:
-            return "flights are not recorded on Windows"
         if self.is_dead:
             return f"the process that writes the record to {self.folder} has ended"
         if self.status.problem is not None:
@@ -99,8 +97,6 @@ class RecordProcess:
 
     def start(self) -> None:
         """Start the process; raises OSError."""
-        if not IS_SUPPORTED:
-            return
         descriptor = shared_file(RING_BYTES)
         self._ring = SharedRing(descriptor, RING_BYTES)
         command = [sys.executable, "-m", "recon.record.record_process"]
@@ -189,7 +185,7 @@ def main(folder: str, library: str, descriptor: str, ring_bytes: str) -> None:
     """Write what comes until standard input ends; report on standard output."""
     _be_nice()
     for ignored in (signal.SIGINT, signal.SIGTERM):
-        # It ends after the station, which may have more to say.
+        # It ends after the station, which may still send items.
         signal.signal(ignored, signal.SIG_IGN)
     inbox = RingInbox(SharedRing(int(descriptor), int(ring_bytes), allocates=True))
     writer = RecordWriter(

@@ -20,6 +20,8 @@ from recon.fleet.admission import AllowedApp
 from recon.link.server import LinkServer
 from recon.link.settings import LinkSettings
 from recon.model.errors import RecordError
+from recon.model.event import RecordFailed
+from recon.record.record_process import IS_SUPPORTED
 from recon.record.users_file import default_users_file
 from recon.site import Site, demo_site_folder
 from recon.site.reading import site_digest
@@ -249,7 +251,7 @@ def _start_guard(
     folder: Path,
     stack: AsyncExitStack,
 ) -> GuardLine | None:
-    """FlightStart the guard, after the one of a station that has died here has given way."""
+    """Start the guard, after the one of a station that has died here has given way."""
     acts = take_over_from_orphan(folder)
     if config.stop_port is None:
         return None
@@ -442,6 +444,9 @@ def _start_record(
     after everything else has ended."""
     folder = config.record_folder
     if folder is None:
+        return None
+    if not IS_SUPPORTED:
+        driver.handle(RecordFailed("flights are not recorded on Windows"))
         return None
     if config.is_record_required:
         _require_writable(folder)
