@@ -45,7 +45,7 @@ class Plain:
     def flush(self, topics: Topics, *, with_images: bool) -> None:
         pass
 
-    def finish(self, topics: Topics) -> None:
+    def finish(self, topics: Topics, *, with_images: bool) -> None:
         pass
 
 

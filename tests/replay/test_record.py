@@ -30,6 +30,7 @@ from recon.model.shade import ShadeMap, SunForecast
 from recon.model.units import seconds_to_ns
 from recon.record import foxglove
 from recon.record.flight_messages import (
+    BULK_BYTES,
     HEAD,
     STEP_HEAD,
     Beginning,
@@ -37,16 +38,15 @@ from recon.record.flight_messages import (
     Item,
     ItemKind,
 )
-from recon.record.link_bytes import LINKS_TOPIC
+from recon.record.link_bytes import LINKS_TOPIC, link_bytes
 from recon.record.mcap_file import STEPS_TOPIC
-from recon.record.mcap_read import McapReading, RecordMessage
+from recon.record.mcap_read import MAGIC, McapReading, RecordMessage
 from recon.record.record_process import NICENESS, RecordProcess
 from recon.record.record_writer import RecordWriter
 from recon.site import Site
 from recon.station.kernel import recording as recording_of_kernel
 from recon.station.kernel import run
 from recon.station.kernel.recording import (
-    BULK_BYTES,
     RESTART_AFTER_S,
     RESTART_WITHIN_S,
     Recorder,
@@ -348,8 +348,63 @@ def test_when_the_disk_is_slow_images_go_first(tmp_path: Path) -> None:
     assert process.problem.endswith("the record lacks steps")
 
 
-def test_without_images_telemetry_orders_and_audit_stay(tmp_path: Path) -> None:
+def written(process: FullProcess, folder: Path, free_bytes: int = 10**12) -> RecordWriter:
+    """Return a writer that has written what a process was handed."""
     inbox: queue.SimpleQueue[Item | None] = queue.SimpleQueue()
+    for item in (*process.items, None):
+        inbox.put(item)
+    writer = RecordWriter(
+        folder,
+        FlightMessages(),
+        inbox,
+        "test",
+        begins=lambda item: item.kind is ItemKind.BEGIN,
+        free_bytes=lambda _folder: free_bytes,
+    )
+    writer._look_at_disk()
+    writer.run()
+    return writer
+
+
+def test_many_small_images_of_one_read_are_all_in_the_record(tmp_path: Path) -> None:
+    process = FullProcess(tmp_path, 10**9)
+    recorder = Recorder(lambda: process, lambda _event: None, Audits(), Site("test"))
+    recorder.start(Station(), 0)
+    jpegs = [b"\xff\xd8" + bytes([number]) for number in range(70)]
+    packets = [wire.encode(wire.CompressedImage(target_fps_hz=1.0, jpeg=jpeg)) for jpeg in jpegs]
+    recorder.tap(1, Direction.FROM_APP, b"".join(packets), 5)
+    end = 0
+    for jpeg, packet in zip(jpegs, packets, strict=True):
+        start, end = end, end + len(packet)
+        recorder.take(taken(PacketReceived(1, ImageReport(1.0, jpeg=jpeg), 5, start, end)))
+    recorder.take(taken(Tick()))
+    recorder.close()
+    path = written(process, tmp_path).path
+    assert path is not None
+    found = check(path)
+    assert (found.differences, found.trouble, found.steps) == ([], "", 71)
+    with path.open("rb") as file:
+        file.read(len(MAGIC))
+        assert b"".join(each.data for each in link_bytes(file)) == b"".join(packets)
+
+
+def test_without_images_damaged_frames_are_lost_too(tmp_path: Path) -> None:
+    process = FullProcess(tmp_path, 10**9)
+    recorder = Recorder(lambda: process, lambda _event: None, Audits(), Site("test"))
+    recorder.start(Station(), 0)
+    recorder.tap(1, Direction.FROM_APP, bytes(BULK_BYTES), 5)
+    recorder.tap(1, Direction.FROM_APP, b"telemetry", 5)
+    recorder.take(taken(Tick()))
+    recorder.close()
+    path = written(process, tmp_path, free_bytes=0).path
+    assert path is not None
+    with path.open("rb") as file:
+        items = [i for i in McapReading(file).items() if isinstance(i, RecordMessage)]
+    links = [msgspec.msgpack.decode(i.data) for i in items if i.topic == LINKS_TOPIC]
+    assert [(m["data"], m.get("lost", 0)) for m in links] == [(b"", BULK_BYTES), (b"telemetry", 0)]
+
+
+def test_without_images_telemetry_orders_and_audit_stay(tmp_path: Path) -> None:
     process = FullProcess(tmp_path, 10**9)
     seen: list[Any] = []
     recorder = Recorder(lambda: process, seen.append, Audits(), Site("test"))
@@ -358,22 +413,11 @@ def test_without_images_telemetry_orders_and_audit_stay(tmp_path: Path) -> None:
     core = wire.encode(wire.MessageString(type=1, text=b"hello"))
     recorder.tap(1, Direction.FROM_APP, core + jpeg + core, 5)
     recorder.tap(1, Direction.TO_APP, b"order", 5)
-    end = len(core) + len(jpeg)
-    recorder.take(taken(PacketReceived(1, ImageReport(1.0, jpeg=bytes(1000)), 5, end)))
+    start, end = len(core), len(core) + len(jpeg)
+    recorder.take(taken(PacketReceived(1, ImageReport(1.0, jpeg=bytes(1000)), 5, start, end)))
     recorder.take(taken(Tick()))
     recorder.close()
-    for item in (*process.items, None):
-        inbox.put(item)
-    writer = RecordWriter(
-        tmp_path,
-        FlightMessages(),
-        inbox,
-        "test",
-        begins=lambda item: item.kind is ItemKind.BEGIN,
-        free_bytes=lambda _folder: 0,
-    )
-    writer._look_at_disk()
-    writer.run()
+    writer = written(process, tmp_path, free_bytes=0)
     assert writer.path is not None
     with writer.path.open("rb") as file:
         messages = [i for i in McapReading(file).items() if isinstance(i, RecordMessage)]

@@ -13,7 +13,7 @@ use std::borrow::Cow;
 pub struct Deframer {
     inner: recon_wire::Deframer,
     arrivals_ns: Vec<i64>,
-    ends: Vec<u64>,
+    spans: Vec<(u64, u64)>,
 }
 
 impl Deframer {
@@ -24,16 +24,16 @@ impl Deframer {
         step: impl FnOnce(&mut recon_wire::Deframer, &mut dyn FnMut(Packet, Arrival)),
     ) -> PyResult<Vec<Py<PyAny>>> {
         let mut delivered = Ok(Vec::new());
-        let (arrivals_ns, ends) = (&mut self.arrivals_ns, &mut self.ends);
+        let (arrivals_ns, spans) = (&mut self.arrivals_ns, &mut self.spans);
         arrivals_ns.clear();
-        ends.clear();
+        spans.clear();
         step(&mut self.inner, &mut |packet, arrival| {
             if let Ok(list) = &mut delivered {
                 match to_python(py, packet) {
                     Ok(object) => {
                         list.push(object);
                         arrivals_ns.push(arrival.at_ns);
-                        ends.push(arrival.end);
+                        spans.push((arrival.start, arrival.end));
                     }
                     Err(error) => delivered = Err(error),
                 }
@@ -52,7 +52,7 @@ impl Deframer {
         Self {
             inner: recon_wire::Deframer::new(limits),
             arrivals_ns: Vec::new(),
-            ends: Vec::new(),
+            spans: Vec::new(),
         }
     }
 
@@ -98,10 +98,10 @@ impl Deframer {
         self.arrivals_ns.clone()
     }
 
-    /// Bytes of the stream up to the end of each packet of the latest call, in order.
+    /// Bytes of the stream before each packet of the latest call, and up to its end, in order.
     #[getter]
-    fn ends(&self) -> Vec<u64> {
-        self.ends.clone()
+    fn spans(&self) -> Vec<(u64, u64)> {
+        self.spans.clone()
     }
 
     /// What it has seen so far: a snapshot.

@@ -59,6 +59,8 @@ impl Default for Counters {
 pub struct Arrival {
     /// When its last byte arrived.
     pub at_ns: i64,
+    /// Bytes of the stream before it.
+    pub start: u64,
     /// Bytes of the stream up to its end.
     pub end: u64,
 }
@@ -379,6 +381,7 @@ impl Deframer {
                 self.counters.unknown_pid += u64::from(!is_known(pid));
                 let arrival = Arrival {
                     at_ns: self.arrived_ns(self.position - 1),
+                    start: self.position - size as u64,
                     end: self.position,
                 };
                 sink(packet, arrival);

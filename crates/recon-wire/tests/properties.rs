@@ -172,10 +172,11 @@ proptest! {
         }
         let mut end = header.len();
         for ((packet, bytes), (came, arrival)) in packets.iter().zip(&frames).zip(&found) {
+            let start = end as u64;
             end += bytes.len();
             let read = starts.iter().rposition(|&start| start < end).expect("the first starts at 0");
             let at_ns = read as i64 * 100_000_000;
-            prop_assert_eq!((came, *arrival), (packet, Arrival { at_ns, end: end as u64 }));
+            prop_assert_eq!((came, *arrival), (packet, Arrival { at_ns, start, end: end as u64 }));
         }
         prop_assert_eq!(found.len(), packets.len());
     }

@@ -257,8 +257,8 @@ class Session:
     def _events(self, packets: list[wire.Packet]) -> list[Event]:
         events: list[Event] = []
         deframer = self._deframer
-        places = zip(packets, deframer.arrivals_ns, deframer.ends, strict=True)
-        for packet, arrived_at_ns, stream_end in places:
+        places = zip(packets, deframer.arrivals_ns, deframer.spans, strict=True)
+        for packet, arrived_at_ns, (start, end) in places:
             report = to_report(packet)
             if isinstance(report, AckReport):
                 answered = self.acks.answered(report, arrived_at_ns)
@@ -268,7 +268,7 @@ class Session:
                 events += self._other_aircraft(report.serial)
             if isinstance(report, CoreReport | ExtendedReport):
                 self._telemetry_at_ns = arrived_at_ns
-            events.append(PacketReceived(self.link_id, report, arrived_at_ns, stream_end))
+            events.append(PacketReceived(self.link_id, report, arrived_at_ns, start, end))
             self._last_packet_at_ns = arrived_at_ns
         if packets:
             self._has_packets = True

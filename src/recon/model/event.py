@@ -33,13 +33,15 @@ class PacketReceived:
     """A packet arrived from a companion app.
 
     `arrived_at_ns` is when its last byte was read from the socket, which can be seconds before this
-    event: damaged or false bytes in front withhold a packet. None means now. `stream_end` counts
-    the bytes of the link up to the packet's end: the record finds a frame's bytes by it.
+    event: damaged or false bytes in front withhold a packet. None means now. `stream_start`
+    and `stream_end` count the bytes from the app before the packet and up to its end: the record
+    finds a frame's bytes by them.
     """
 
     link_id: int
     report: Report
     arrived_at_ns: int | None = None
+    stream_start: int = 0
     stream_end: int = 0
 
     def received_at_ns(self, now_ns: int) -> int:

@@ -34,12 +34,14 @@ MSGPACK = "msgpack"
 
 HEAD = struct.Struct("<BI")
 LINK_HEAD = struct.Struct("<IBqQ")
-"""Link, whether from the app, time, and bytes of the link in this direction before these."""
+"""Link, whether from the app, time, and bytes from the app before these."""
 STEP_HEAD = struct.Struct("<QqH")
 """Number, time, bytes of the vehicle's name, which follow; then the step."""
 
-MOST_REFERRED = 64
-"""Frames whose event has not come yet; it comes right behind."""
+BULK_BYTES = 16 * 1024
+"""Bytes of so long a read are part of an image."""
+MOST_HELD_BYTES = 256 * 1024**2
+"""Of all links whose packets have not ended: ten of the largest images."""
 _LOG_LEVELS = {"alarm.raised": "warning", "alarm.worse": "error", "order.failed": "error"}
 
 
@@ -91,7 +93,6 @@ class FlightMessages:
         self._streams: dict[int, LinkStream] = {}
         self._names: dict[int, str] = {}
         self._frame = 0
-        self._frames: dict[tuple[int, int], int] = {}
         self._latest_ns = 0
         self._codec = Codec()
 
@@ -101,7 +102,6 @@ class FlightMessages:
         topics.file.add_attachment(START_NAME, START_TYPE, begins.start, begins.at_ns)
         topics.file.add_attachment(ABOUT_NAME, "application/json", begins.about, begins.at_ns)
         self._frame = 0
-        self._frames.clear()
 
     def write(self, item: Item, topics: Topics, *, with_images: bool) -> None:
         """Write one item."""
@@ -110,23 +110,22 @@ class FlightMessages:
             case ItemKind.LINK:
                 self._write_bytes(content, topics, with_images)
             case ItemKind.STEP:
-                self._write_step(content, topics)
+                self._write_step(content, topics, with_images)
             case ItemKind.SHADE | ItemKind.SUN:
                 self._write_map(item, topics)
 
     def flush(self, topics: Topics, *, with_images: bool) -> None:
-        """Write bytes that have waited too long for the end of their frame."""
-        if not with_images:
-            return
-        for link_id, stream in self._streams.items():
-            for part in stream.overdue(self._latest_ns):
-                self._write_part(link_id, part, topics, with_images=True)
+        """Write bytes that have waited too long for the end of their packet."""
+        for link_id, stream in self._streams.items() if with_images else ():
+            self._write_parts(link_id, stream.overdue(self._latest_ns), topics, with_images)
+        while sum(each.held_bytes for each in self._streams.values()) > MOST_HELD_BYTES:
+            link_id, stream = max(self._streams.items(), key=lambda each: each[1].held_bytes)
+            self._write_parts(link_id, stream.forget(), topics, with_images)
 
-    def finish(self, topics: Topics) -> None:
+    def finish(self, topics: Topics, *, with_images: bool) -> None:
         """Write what still waits: the file ends."""
         for link_id, stream in self._streams.items():
-            for part in stream.rest():
-                self._write_part(link_id, part, topics, with_images=True)
+            self._write_parts(link_id, stream.rest(), topics, with_images)
 
     def _write_bytes(self, content: bytes, topics: Topics, with_images: bool) -> None:
         link_id, is_from_app, at_ns, start = LINK_HEAD.unpack_from(content)
@@ -137,28 +136,33 @@ class FlightMessages:
             topics.add(LINKS_TOPIC, MSGPACK, msgspec.msgpack.encode(message), at_ns)
             return
         stream = self._streams.setdefault(link_id, LinkStream())
-        for part in stream.take(start, data, at_ns):
-            self._write_part(link_id, part, topics, with_images=with_images)
+        self._write_parts(link_id, stream.take(start, data, at_ns), topics, with_images)
 
-    def _write_part(
-        self, link_id: int, part: PlainBytes | FrameBytes, topics: Topics, *, with_images: bool
-    ) -> None:
-        if isinstance(part, PlainBytes):
-            message = LinkMessage(link_id, True, part.data, lost=part.lost)
-        elif not with_images:
-            self._refer(link_id, part.end, 0)
-            message = LinkMessage(link_id, True, b"", lost=part.end - part.start - part.skip)
-        else:
-            self._frame += 1
-            self._refer(link_id, part.end, self._frame)
-            self._write_frame(self._names.get(link_id, f"link-{link_id}"), part, topics)
-            message = LinkMessage(link_id, True, part.around, self._frame, part.skip)
-        topics.add(LINKS_TOPIC, MSGPACK, msgspec.msgpack.encode(message), part.at_ns)
-
-    def _refer(self, link_id: int, end: int, frame: int) -> None:
-        self._frames[link_id, end] = frame
-        while len(self._frames) > MOST_REFERRED:
-            del self._frames[next(iter(self._frames))]
+    def _write_parts(
+        self,
+        link_id: int,
+        parts: Iterable[PlainBytes | FrameBytes],
+        topics: Topics,
+        with_images: bool,
+    ) -> int:
+        """Write bytes of a link; return the number of the frame in them, 0 without one."""
+        number = 0
+        for part in parts:
+            if isinstance(part, FrameBytes):
+                if with_images:
+                    number = self._frame = self._frame + 1
+                    self._write_frame(self._names.get(link_id, f"link-{link_id}"), part, topics)
+                    message = LinkMessage(link_id, True, part.around, number, part.skip, part.lost)
+                else:
+                    message = LinkMessage(
+                        link_id, True, b"", lost=part.lost + part.size_bytes - part.skip
+                    )
+            elif with_images or len(part.data) < BULK_BYTES:
+                message = LinkMessage(link_id, True, part.data, lost=part.lost)
+            else:
+                message = LinkMessage(link_id, True, b"", lost=part.lost + len(part.data))
+            topics.add(LINKS_TOPIC, MSGPACK, msgspec.msgpack.encode(message), part.at_ns)
+        return number
 
     def _write_frame(self, vehicle: str, frame: FrameBytes, topics: Topics) -> None:
         place, at_ns, packet = f"/vehicles/{vehicle}", frame.at_ns, frame.packet
@@ -175,7 +179,7 @@ class FlightMessages:
             schema=lambda: foxglove.schema_of(foxglove.RAW_IMAGE),
         )
 
-    def _write_step(self, content: bytes, topics: Topics) -> None:
+    def _write_step(self, content: bytes, topics: Topics, with_images: bool) -> None:
         number, at_ns, name_bytes = STEP_HEAD.unpack_from(content)
         at = STEP_HEAD.size + name_bytes
         vehicle, data = content[STEP_HEAD.size : at].decode(), content[at:]
@@ -184,22 +188,33 @@ class FlightMessages:
         event = message["event"]
         if event[TAG] == "PacketReceived":
             self._names[event["link_id"]] = vehicle
+            number_of_frame = self._write_packet(event, at_ns, topics, with_images)
             if event["report"][TAG] == "ImageReport":
-                place = event["link_id"], event["stream_end"]
-                event["report"]["frame"] = self._frames.pop(place, 0)
+                event["report"]["frame"] = number_of_frame
                 data = msgspec.msgpack.encode(message)
             elif event["report"][TAG] == "CoreReport":
                 _add_location(topics, event["report"], vehicle, at_ns)
         elif event[TAG] == "LinkClosed":
-            self._end_link(event["link_id"], topics)
+            self._names.pop(event["link_id"], None)
+            rest = self._streams.pop(event["link_id"], LinkStream()).rest()
+            self._write_parts(event["link_id"], rest, topics, with_images)
         topics.add(STEPS_TOPIC, MSGPACK, data, at_ns, number=number)
         _add_log(topics, message["audit"], at_ns)
         self._add_missions(topics, message["outputs"], at_ns)
 
-    def _end_link(self, link_id: int, topics: Topics) -> None:
-        self._names.pop(link_id, None)
-        for part in self._streams.pop(link_id, LinkStream()).rest():
-            self._write_part(link_id, part, topics, with_images=True)
+    def _write_packet(
+        self, event: Mapping[str, Any], at_ns: int, topics: Topics, with_images: bool
+    ) -> int:
+        """Write the bytes of a packet; return the number of its frame, 0 without one."""
+        stream = self._streams.get(event["link_id"])
+        if stream is None:
+            return 0
+        parts: Iterable[PlainBytes | FrameBytes] = stream.packet(event["stream_end"])
+        if event["report"][TAG] == "ImageReport":
+            arrived_at_ns = event["arrived_at_ns"]
+            came_ns = at_ns if arrived_at_ns is None else arrived_at_ns
+            parts = stream.image(event["stream_start"], event["stream_end"], came_ns)
+        return self._write_parts(event["link_id"], parts, topics, with_images)
 
     def _add_missions(self, topics: Topics, outputs: Iterable[Any], at_ns: int) -> None:
         for output in outputs:

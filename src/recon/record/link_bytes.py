@@ -3,9 +3,10 @@
 A frame's pixels, or its JPEG, stand in the topic of its images; the bytes of its link refer to them
 and hold what stands around them. Read together they are the link's bytes exactly.
 
-`LinkStream` cuts the bytes of one app where its frames begin and end. Bytes of a frame that has not
-ended within `HALF_FRAME_S` are written as they are, so that a power cut does not cost them; the
-rest of that frame refers to the image.
+`LinkStream` holds the bytes of one app until the step of their packet comes: it states where the
+packet begins and ends, and whether it is an image. Bytes that have waited `HALF_FRAME_S` are
+written as they are, so that a power cut does not cost them; the rest of that frame refers to the
+image.
 """
 
 from collections import deque
@@ -26,13 +27,8 @@ from recon.record.mcap_read import McapReading, RecordMessage
 
 LINKS_TOPIC = "/recon/link_bytes"
 HALF_FRAME_S = 0.25
-FRAMES_KEPT = 16
-"""Frames read that no bytes and no event have named yet; each stands right before its own."""
 
 TRAILER_BYTES = 2
-IMAGE_HEAD_BYTES = 15
-"""Before the pixels: sync, size, PID, fps, rows and columns."""
-JPEG_HEAD_BYTES = 11
 
 ImagePacket = wire.Image | wire.CompressedImage
 Picture = RawImage | CompressedImage
@@ -70,10 +66,11 @@ class FrameBytes:
     packet: ImagePacket
     around: bytes
     skip: int
-    start: int
-    end: int
-    """Of the packet, in the stream of its link."""
+    size_bytes: int
+    """Of the whole packet."""
     at_ns: int
+    lost: int = 0
+    """Bytes before these that never came here."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,84 +83,98 @@ class PlainBytes:
 
 
 class LinkStream:
-    """The bytes from one app, in the order they came."""
+    """The bytes from one app, in the order they came; what was written is kept for its image."""
 
     def __init__(self) -> None:
-        self._deframer = wire.Deframer()
-        self._base = self._end = self._written = 0
-        self._lost = 0
-        self._held: deque[tuple[int, bytes, int]] = deque()
+        self._held = bytearray()
+        self._start = self._written = self._lost = 0
+        self._reads: deque[tuple[int, int]] = deque()
+        """End and time of each read that is not wholly written."""
 
-    def take(self, start: int, data: bytes, at_ns: int) -> Iterator[PlainBytes | FrameBytes]:
-        """Take one read that begins at byte `start` of the link; yield what can be written."""
+    @property
+    def held_bytes(self) -> int:
+        """Memory taken."""
+        return len(self._held)
+
+    @property
+    def _end(self) -> int:
+        return self._start + len(self._held)
+
+    def take(self, start: int, data: bytes, at_ns: int) -> Iterator[PlainBytes]:
+        """Take one read that begins at byte `start` of the link; yield what is before a gap."""
         if start != self._end:
-            yield from self._written_up_to(self._end)
-            self._restart_at(start)
-        self._held.append((start, data, at_ns))
-        self._end = start + len(data)
-        frames = self._frames(self._deframer.feed(data, at_ns))
-        while self._deframer.is_busy:
-            frames += self._frames(self._deframer.resume())
-        for packet, end in frames:
-            yield from self._frame(packet, end, at_ns)
-        yield from self._written_up_to(self._end - self._deframer.pending_bytes)
-        self._forget()
+            yield from self.rest()
+            self._lost += max(0, start - self._end)
+            self._held.clear()
+            self._start = self._written = start
+        self._held += data
+        self._reads.append((self._end, at_ns))
 
-    def overdue(self, now_ns: int) -> Iterator[PlainBytes | FrameBytes]:
-        """Yield bytes that have waited too long for the end of their frame."""
-        since_ns = next((at for start, d, at in self._held if start + len(d) > self._written), None)
-        if since_ns is not None and now_ns - since_ns >= seconds_to_ns(HALF_FRAME_S):
-            yield from self._written_up_to(self._end)
+    def packet(self, end: int) -> Iterator[PlainBytes]:
+        """Yield the reads that are over with a packet that is no image."""
+        while self._reads and self._reads[0][0] <= end:
+            yield from self._written_up_to(self._reads[0][0])
+        self._forget_before(end)
 
-    def rest(self) -> Iterator[PlainBytes | FrameBytes]:
+    def image(self, start: int, end: int, at_ns: int) -> Iterator[PlainBytes | FrameBytes]:
+        """Yield an image packet and what is before it; no frame where some of it never came."""
+        packet = self._image(start, end)
+        if packet is None:
+            yield from self.packet(end)
+            return
+        yield from self._written_up_to(start)
+        if isinstance(packet, wire.Image):
+            payload_bytes = packet.pixels.nbytes
+        else:
+            payload_bytes = len(packet.jpeg)
+        tail = end - self._start
+        head = tail - TRAILER_BYTES - payload_bytes
+        around = self._held[start - self._start : head] + self._held[tail - TRAILER_BYTES : tail]
+        skip = max(0, self._written - start)
+        lost, self._lost = self._lost, 0
+        self._written = max(self._written, end)
+        while self._reads and self._reads[0][0] <= end:
+            self._reads.popleft()
+        self._forget_before(end)
+        yield FrameBytes(packet, bytes(around), skip, end - start, at_ns, lost)
+
+    def overdue(self, now_ns: int) -> Iterator[PlainBytes]:
+        """Yield bytes that have waited too long for the end of their packet."""
+        if self._reads and now_ns - self._reads[0][1] >= seconds_to_ns(HALF_FRAME_S):
+            yield from self.rest()
+
+    def rest(self) -> Iterator[PlainBytes]:
         """Yield what is held: the link has ended, or the file."""
         yield from self._written_up_to(self._end)
 
-    def _restart_at(self, start: int) -> None:
-        self._lost = max(0, start - self._end)
-        self._deframer, self._base = wire.Deframer(), start
-        self._held.clear()
-        self._written = start
+    def forget(self) -> Iterator[PlainBytes]:
+        """Yield what is held and keep nothing: its memory is needed."""
+        yield from self.rest()
+        self._forget_before(self._end)
 
-    def _frames(self, packets: list[wire.Packet]) -> list[tuple[ImagePacket, int]]:
-        ends = zip(packets, self._deframer.ends, strict=True)
-        return [(p, self._base + end) for p, end in ends if isinstance(p, ImagePacket)]
-
-    def _frame(
-        self, packet: ImagePacket, end: int, at_ns: int
-    ) -> Iterator[PlainBytes | FrameBytes]:
-        head_bytes, payload_bytes = (
-            (IMAGE_HEAD_BYTES, packet.pixels.nbytes)
-            if isinstance(packet, wire.Image)
-            else (JPEG_HEAD_BYTES, len(packet.jpeg))
-        )
-        start = end - head_bytes - payload_bytes - TRAILER_BYTES
-        yield from self._written_up_to(start)
-        around = self._bytes(start, start + head_bytes) + self._bytes(end - TRAILER_BYTES, end)
-        skip = max(0, self._written - start)
-        self._written = max(self._written, end)
-        yield FrameBytes(packet, around, skip, start, end, at_ns)
+    def _image(self, start: int, end: int) -> ImagePacket | None:
+        if not self._start <= start <= end <= self._end:
+            return None
+        try:
+            packet = wire.decode(bytes(self._held[start - self._start : end - self._start]))
+        except wire.WireError:
+            return None
+        return packet if isinstance(packet, ImagePacket) else None
 
     def _written_up_to(self, end: int) -> Iterator[PlainBytes]:
-        for start, data, at_ns in self._held:
-            first, last = max(start, self._written), min(start + len(data), end)
-            if first < last:
-                part = data if last - first == len(data) else data[first - start : last - start]
-                yield PlainBytes(part, at_ns, self._lost)
-                self._lost = 0
-        self._written = max(self._written, end)
+        while self._written < end:
+            read_end, at_ns = self._reads[0]
+            first, last = self._written - self._start, min(read_end, end) - self._start
+            part = PlainBytes(bytes(self._held[first:last]), at_ns, self._lost)
+            self._written, self._lost = self._start + last, 0
+            if self._written == read_end:
+                self._reads.popleft()
+            yield part
 
-    def _bytes(self, first: int, last: int) -> bytes:
-        return b"".join(
-            data[max(0, first - start) : max(0, last - start)]
-            for start, data, _ in self._held
-            if start < last and start + len(data) > first
-        )
-
-    def _forget(self) -> None:
-        needed_from = self._end - self._deframer.pending_bytes
-        while self._held and self._held[0][0] + len(self._held[0][1]) <= needed_from:
-            self._held.popleft()
+    def _forget_before(self, end: int) -> None:
+        count = max(0, min(end, self._written) - self._start)
+        del self._held[:count]
+        self._start += count
 
 
 _PICTURES: dict[str, type[RawImage] | type[CompressedImage]] = {
@@ -173,24 +184,22 @@ _PICTURES: dict[str, type[RawImage] | type[CompressedImage]] = {
 
 
 class Pictures:
-    """The frames of a record, as they come, until they are named."""
+    """The newest frame of a record: its bytes and its step stand right behind it."""
 
     def __init__(self) -> None:
-        self._kept: dict[int, RecordMessage] = {}
+        self._newest: RecordMessage | None = None
 
     def take(self, item: RecordMessage) -> bool:
         """Take a message if it is a frame; return whether it is."""
         if item.schema not in _PICTURES:
             return False
-        self._kept[item.sequence] = item
-        while len(self._kept) > FRAMES_KEPT:
-            del self._kept[next(iter(self._kept))]
+        self._newest = item
         return True
 
     def get(self, number: int) -> Picture | None:
         """Return the frame of a number, None without one; raises `RecordError` for damage."""
-        item = self._kept.get(number)
-        if item is None:
+        item = self._newest
+        if item is None or item.sequence != number:
             return None
         try:
             picture: Picture = _PICTURES[item.schema].FromString(item.data)

@@ -70,7 +70,7 @@ class Messages(Protocol):
     def flush(self, topics: Topics, *, with_images: bool) -> None:
         """Write what must not wait any longer; a chunk is about to be written."""
 
-    def finish(self, topics: Topics) -> None:
+    def finish(self, topics: Topics, *, with_images: bool) -> None:
         """Write what still waits; the file is about to end."""
 
 
@@ -215,7 +215,7 @@ class RecordWriter:
 
     def _end_file(self) -> None:
         if self._topics is not None:
-            self._guarded(self._messages.finish)
+            self._guarded(lambda t: self._messages.finish(t, with_images=self._has_images))
             self._retry(self._topics.file.finish)
             self._topics = None
 

@@ -34,6 +34,7 @@ from recon.model.shade import ShadeMap, SunForecast
 from recon.model.units import seconds_to_ns
 from recon.record.audit import AuditEntry
 from recon.record.flight_messages import (
+    BULK_BYTES,
     HEAD,
     LINK_HEAD,
     STEP_HEAD,
@@ -63,8 +64,6 @@ RESTART_AFTER_S = 5.0
 RESTART_WITHIN_S = 30.0
 """A record that cannot be replayed is better than none."""
 
-BULK_BYTES = 16 * 1024
-"""A read of so many bytes is part of an image."""
 WAITING_BYTES = RING_BYTES // 4
 """While the first state of a file is encoded: minutes of telemetry, or a second of raw frames."""
 WAITING_BULK_BYTES = int(BULK_SHARE * WAITING_BYTES)
