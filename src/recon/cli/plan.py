@@ -2,6 +2,7 @@
 
 import re
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -21,13 +22,14 @@ from recon.guidance.survey.imaging import (
     height_for_gsd_m,
     speed_limits,
 )
-from recon.guidance.survey.plan import SurveySurroundings
+from recon.guidance.survey.plan import SLOWEST_MPS, SurveySurroundings, survey_fault
 from recon.model.airspace import Region, ZoneKind
 from recon.model.command import Refusal
 from recon.model.errors import ReconError
 from recon.model.geo import LocalFrame
 from recon.model.survey import Survey
 from recon.model.survey_camera import CAMERAS, CameraModel, camera_named, of_diagonal
+from recon.model.units import is_finite
 from recon.safety.energy import Consumption
 from recon.safety.settings import EnergySettings
 from recon.site import Site, load_site
@@ -132,23 +134,28 @@ def plan_command(
         model = _camera(camera, image_px, diagonal, home)
         chosen_height_m = _height_m(model, gsd, height)
         exposure_s = _exposure_s(exposure)
-        fastest_mps = home.limits.max_speed_mps
-        if interval is None:
-            interval = best_interval_s(model, chosen_height_m, front, exposure_s, fastest_mps)
-        lens = model.at_interval(interval)
-        limits = speed_limits(lens, chosen_height_m, front, exposure_s, fastest_mps)
-        speed_mps = _speed_mps(speed, limits)
+        _refuse_non_finite({"--endurance-min": endurance, "--cost-per-hour": hourly})
+        # Speed limits are calculated from the survey's numbers: these are checked first.
         survey = Survey(
             1,
             name,
             area,
             chosen_height_m,
-            speed_mps,
-            lens,
+            SLOWEST_MPS,
+            model.at_interval(model.timer_s[0] if interval is None else interval),
             front,
             side,
             bearing,
         )
+        fault = survey_fault(survey)
+        if fault is not None:
+            raise RefusedPlanError(f"refused: {fault}")
+        fastest_mps = home.limits.max_speed_mps
+        if interval is None:
+            interval = best_interval_s(model, chosen_height_m, front, exposure_s, fastest_mps)
+        lens = model.at_interval(interval)
+        limits = speed_limits(lens, chosen_height_m, front, exposure_s, fastest_mps)
+        survey = replace(survey, speed_mps=_speed_mps(speed, limits), camera=lens)
         plan = plan_survey(survey, frame, _surroundings(home))
         if isinstance(plan, Refusal):
             raise RefusedPlanError(f"refused: {plan.reason}")
@@ -204,6 +211,13 @@ def _camera(name: str, image_px: str | None, diagonal: float | None, site: Site)
     return CameraModel("own", "own camera", *optics, timer_s, "rolling", "options")
 
 
+def _refuse_non_finite(options: dict[str, float | None]) -> None:
+    """The bounds of an option let NaN pass."""
+    for name, value in options.items():
+        if value is not None and not is_finite(value):
+            raise PlanError(f"{name}: expected a number, got {value:g}")
+
+
 def _height_m(model: CameraModel, gsd: str | None, height_m: float | None) -> float:
     if (gsd is None) == (height_m is None):
         raise PlanError("give either --gsd, such as 2cm, or --height in metres")
@@ -240,6 +254,11 @@ def _speed_mps(asked_mps: float | None, limits: tuple[SpeedLimit, ...]) -> float
     if asked_mps is not None:
         return asked_mps
     most_mps = limits[0].speed_mps
+    if most_mps < SLOWEST_MPS:
+        raise RefusedPlanError(
+            f"refused: the speed limit is {most_mps:.2g} m/s ({limits[0].reason}), and "
+            f"{SLOWEST_MPS:g} m/s is the least: expose shorter or fly higher"
+        )
     return int(most_mps / SPEED_STEP_MPS + 1e-9) * SPEED_STEP_MPS
 
 

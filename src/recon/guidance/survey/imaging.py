@@ -88,8 +88,7 @@ def best_interval_s(
         camera = model.at_interval(interval_s)
         return speed_limits(camera, height_m, front_overlap, exposure_s, fastest_mps)[0].speed_mps
 
-    best_mps = fastest(model.timer_s[0])
-    return max(s for s in model.timer_s if fastest(s) >= best_mps * (1.0 - 1e-9))
+    return max(model.timer_s, key=lambda interval_s: (round(fastest(interval_s), 9), interval_s))
 
 
 def exposure_text(exposure_s: float) -> str:

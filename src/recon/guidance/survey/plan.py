@@ -18,11 +18,15 @@ from recon.guidance.survey.settings import DEFAULT, SurveySettings
 from recon.model.airspace import Region
 from recon.model.command import Refusal
 from recon.model.geo import LocalFrame
+from recon.model.mission import DJI
 from recon.model.survey import Survey
 from recon.model.units import is_finite
 
 MOST_CELLS = 4_000_000
 """400 ha in cells of 1 m: more takes too much memory."""
+
+SLOWEST_MPS = 0.5
+"""Along rows: a survey this slow takes all day."""
 
 MOST_ROWS = 2_000
 """More rows than this come from a wrong height or region."""
@@ -47,7 +51,7 @@ def _number_faults(survey: Survey) -> Iterator[str]:
     camera = survey.camera
     numbers = (
         ("height", survey.height_above_takeoff_m, 1.0, 500.0, " m"),
-        ("speed", survey.speed_mps, 0.5, 15.0, " m/s"),
+        ("speed", survey.speed_mps, SLOWEST_MPS, DJI.max_speed_mps, " m/s"),
         ("camera's field of view across", camera.across_deg, 5.0, 150.0, " degrees"),
         ("camera's field of view along", camera.along_deg, 5.0, 150.0, " degrees"),
         ("camera's interval", camera.interval_s, 0.1, 60.0, " s"),
