@@ -10,12 +10,12 @@ shutter = "mechanical"       # or "global", "rolling"
 """
 
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from msgspec import Meta, Struct
 
 from recon.model.errors import SiteError
-from recon.model.survey_camera import CameraModel, of_diagonal, of_sensor
+from recon.model.survey_camera import CameraModel, Shutter, of_diagonal, of_sensor
 from recon.site.reading import convert, read_toml, refuse_non_finite
 from recon.site.schema import Pixels
 
@@ -45,7 +45,7 @@ class SurveyCameraTable(Struct, frozen=True, forbid_unknown_fields=True):
     sensor_mm: tuple[Millimetres, Millimetres] | None = None
     focal_mm: Millimetres | None = None
     diagonal_deg: Annotated[float, Meta(ge=5.0, le=150.0)] | None = None
-    shutter: Literal["global", "mechanical", "rolling"] = "rolling"
+    shutter: Shutter = "rolling"
 
 
 class _File(Struct, frozen=True, forbid_unknown_fields=True):

@@ -1,21 +1,17 @@
 """What a survey will take, against what vehicles then fly and against sums by hand."""
 
-import numpy as np
 import pytest
 from tests.guidance.survey.fields import (
-    FRAME,
     holed,
     l_shape,
     planned,
     rectangle,
-    region,
     survey_of,
 )
 from tests.guidance.survey.flyers import Flights, begun, fleet
 
 from recon.guidance.survey import Surveyor
 from recon.guidance.survey.estimate import Batteries, SurveyEstimate, estimate
-from recon.guidance.survey.plan import SurveySurroundings, plan_survey
 from recon.model.airspace import Region
 from recon.model.command import Refusal
 from recon.model.survey import Survey
@@ -92,19 +88,3 @@ def test_a_region_too_far_for_any_battery_is_a_sentence() -> None:
     assert isinstance(made, Refusal)
     assert made.reason.startswith("a full battery gives 240 s for rows, and the row ")
     assert "take off nearer to it, divide the region, or turn the rows" in made.reason
-
-
-@pytest.mark.parametrize(
-    ("over", "words"),
-    [
-        (region([(0, 0), (100, 100), (100, 0), (0, 100)]), "cross"),
-        (region([(0, 0), (100, 0), (50, 0)]), "cannot be surveyed"),
-        (region([(900, 0), (1000, 0), (1000, 90)]), "lies outside the site's boundary"),
-    ],
-)
-def test_regions_that_cannot_be_flown_are_a_sentence_each(over: Region, words: str) -> None:
-    fence = SurveySurroundings(Region(np.array([(-50, -50), (400, -50), (400, 400), (-50, 400)])))
-    refused = plan_survey(survey_of(over), FRAME, fence)
-    assert isinstance(refused, Refusal)
-    assert words in refused.reason
-    assert refused.reason.count("\n") == 0

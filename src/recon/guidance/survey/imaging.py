@@ -3,10 +3,10 @@
 All of it for a camera that looks straight down, over ground as high as the takeoff point.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 from recon.guidance.survey.settings import DEFAULT, SurveySettings
+from recon.model.mission import DJI
 from recon.model.survey import SurveyCamera
 from recon.model.survey_camera import CameraModel
 
@@ -15,9 +15,6 @@ MOST_BLUR_PX = 0.5
 
 EXPOSURE_S = 1.0 / 1000.0
 """What surveys in sun are set to with shutter priority; in shade it gets longer."""
-
-DJI_FASTEST_MPS = 15.0
-"""Of a waypoint mission."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +44,7 @@ def speed_limits(
     height_m: float,
     front_overlap: float,
     exposure_s: float = EXPOSURE_S,
-    fastest_mps: float = DJI_FASTEST_MPS,
+    fastest_mps: float = DJI.max_speed_mps,
 ) -> tuple[SpeedLimit, ...]:
     """Return every limit of the speed along rows, the lowest first.
 
@@ -77,7 +74,7 @@ def best_interval_s(
     height_m: float,
     front_overlap: float,
     exposure_s: float = EXPOSURE_S,
-    fastest_mps: float = DJI_FASTEST_MPS,
+    fastest_mps: float = DJI.max_speed_mps,
 ) -> float:
     """Return the timer setting that allows the highest speed, and of those the longest.
 
@@ -100,8 +97,3 @@ def blur_px(camera: SurveyCamera, height_m: float, speed_mps: float, exposure_s:
     """Return how far the ground moves during an exposure, in pixels; 0 without pixels."""
     gsd_m = camera.gsd_m(height_m)
     return 0.0 if gsd_m is None else speed_mps * exposure_s / gsd_m
-
-
-def lowest(limits: Sequence[SpeedLimit]) -> SpeedLimit:
-    """Return the limit that counts."""
-    return min(limits, key=lambda limit: limit.speed_mps)
