@@ -2,6 +2,7 @@
 
 import contextlib
 import json
+from dataclasses import replace
 from math import cos, radians
 from pathlib import Path
 from typing import Any
@@ -14,8 +15,13 @@ from shapely.geometry import shape  # type: ignore[import-untyped, unused-ignore
 from typer.testing import CliRunner
 
 from recon.cli.commands import app
-from recon.cli.plan import PlanError, _exposure_s, _gsd_m
-from recon.site import demo_site_folder
+from recon.cli.plan import PlanError, _exposure_s, _gsd_m, least_enduring
+from recon.model.units import Stamped
+from recon.model.vehicle import VehicleProfile, VehicleState
+from recon.safety import PreparedAirspace
+from recon.safety.settings import EnergySettings
+from recon.site import Site, demo_site_folder
+from recon.station.operations.survey.availability import time_left_s
 
 LATITUDE, LONGITUDE = 41.9, -93.6
 M_PER_LATITUDE = 111_070.0
@@ -141,6 +147,43 @@ def test_a_region_that_batteries_do_not_last_for_is_a_sentence(field: Path) -> N
     code, out = recon(field, "--height", 60, "--endurance-min", 2)
     assert code == 1
     assert "refused: a full battery gives " in out
+
+
+ENDURANCES_S = st.sampled_from([None, 900.0, 1_500.0])
+GO_HOME_M = st.sampled_from([None, 30.0, 80.0])
+
+
+@given(st.lists(st.tuples(ENDURANCES_S, GO_HOME_M), max_size=3), st.floats(10.0, 120.0))
+def test_a_battery_lasts_as_long_as_the_station_counts_for_the_least_enduring_drone(
+    drones: list[tuple[float | None, float | None]], height_m: float
+) -> None:
+    profiles = {
+        f"SIM-{number}": VehicleProfile(
+            f"SIM-{number}", endurance_s=endurance_s, go_home_height_m=go_home_m
+        )
+        for number, (endurance_s, go_home_m) in enumerate(drones)
+    }
+    site = Site("test", profiles=profiles)
+    planned = least_enduring(site, None, height_m)
+    assert planned.endurance_s <= 1_500.0
+    settings, air = EnergySettings(), PreparedAirspace(site.airspace)
+    for profile in profiles.values() or [VehicleProfile("S-1")]:
+        known = replace(profile, endurance_s=profile.endurance_s or 1_500.0)
+        full = VehicleState(
+            1,
+            "S-1",
+            known,
+            battery_fraction=Stamped(1.0, 0),
+            height_above_takeoff_m=Stamped(height_m, 0),
+        )
+        station_s = time_left_s(full, air, settings)
+        assert station_s is not None
+        assert planned.level_flight_s(1.0, height_m, 0.25) <= station_s + 1e-9
+
+
+def test_without_a_site_the_highest_go_home_height_is_assumed() -> None:
+    uses = least_enduring(Site("none"), None, 60.0)
+    assert uses.level_flight_s(1.0, 60.0, 0.25) == pytest.approx(636.0, abs=1.0)
 
 
 def test_a_sites_region_pads_and_own_camera_are_used(tmp_path: Path) -> None:

@@ -30,7 +30,8 @@ from recon.model.geo import LocalFrame
 from recon.model.survey import Survey
 from recon.model.survey_camera import CAMERAS, CameraModel, camera_named, of_diagonal
 from recon.model.units import is_finite
-from recon.safety.energy import Consumption
+from recon.model.vehicle import VehicleProfile
+from recon.safety.energy import Consumption, profile_consumption
 from recon.safety.settings import EnergySettings
 from recon.site import Site, load_site
 from recon.site.site import default_site
@@ -280,8 +281,8 @@ def _needs(
     pads_m = takeoff_places_m(site)[:drones]
     west_m, south_m = plan.survey.region.outline_m.min(axis=0).tolist()
     places_m = (*pads_m, *([(west_m, south_m)] * (drones - len(pads_m))))
-    uses = _consumption(site, endurance_min)
     height_m = plan.survey.height_above_takeoff_m
+    uses = least_enduring(site, endurance_min, height_m)
     level_s = uses.level_flight_s(1.0, height_m, site.limits.battery_reserve_fraction)
     fleet = [
         Surveyor(f"drone {number}", place_m, time_left_s=level_s, home_m=place_m)
@@ -306,19 +307,26 @@ def takeoff_places_m(site: Site) -> tuple[tuple[float, float], ...]:
     return tuple((float(e), float(n)) for e, n, _ in enu_from_points(site.frame, pads))
 
 
-def _consumption(site: Site, endurance_min: float | None) -> Consumption:
-    """Return what the least enduring drone uses, in some wind."""
-    flying = [p for serial, p in site.profiles.items() if serial not in site.imagers]
-    known_s = [profile.endurance_s for profile in flying if profile.endurance_s is not None]
-    if endurance_min is not None:
-        known_s = [60.0 * endurance_min]
-    heights_m = [p.go_home_height_m for p in flying if p.go_home_height_m is not None]
+def least_enduring(site: Site, endurance_min: float | None, height_m: float) -> Consumption:
+    """Return what the drone uses whose full battery lasts the shortest at a height, in some wind.
+
+    A drone of unknown endurance is taken to have `ENDURANCE_MIN`.
+    """
     settings = EnergySettings()
-    return Consumption(
-        min(known_s, default=60.0 * ENDURANCE_MIN),
-        settings.unknown_wind_load,
-        max(heights_m, default=0.0),
-        settings,
+
+    def uses(profile: VehicleProfile) -> Consumption:
+        unless_given_s = profile.endurance_s or 60.0 * ENDURANCE_MIN
+        endurance_s = unless_given_s if endurance_min is None else 60.0 * endurance_min
+        known = replace(profile, endurance_s=endurance_s)
+        found = profile_consumption(known, site.limits, settings.unknown_wind_load, settings)
+        assert found is not None  # its endurance is known
+        return found
+
+    flying = [p for serial, p in site.profiles.items() if serial not in site.imagers]
+    reserve = site.limits.battery_reserve_fraction
+    return min(
+        map(uses, flying or [VehicleProfile("")]),
+        key=lambda each: each.level_flight_s(1.0, height_m, reserve),
     )
 
 

@@ -23,10 +23,11 @@ from itertools import accumulate, pairwise
 from math import atan2, cos, hypot, sin
 
 from recon.geo.distance import offset_north_east_m
+from recon.model.airspace import FlightLimits
 from recon.model.command import Body, FlyMission, StickFrame
 from recon.model.geo import LatLon
 from recon.model.mission import Mission
-from recon.model.vehicle import VehicleState
+from recon.model.vehicle import VehicleProfile, VehicleState
 from recon.safety.airspace import PreparedAirspace
 from recon.safety.datum import home
 from recon.safety.path.order_path import StickFlight, StraightFlight, order_path
@@ -113,13 +114,22 @@ def consumption(
     vehicle: VehicleState, airspace: PreparedAirspace, settings: EnergySettings
 ) -> Consumption | None:
     """Return what a vehicle uses, or None while its profile has no endurance."""
-    profile = vehicle.profile
-    if profile is None or profile.endurance_s is None:
+    if vehicle.profile is None:
+        return None
+    limits, wind_load = airspace.airspace.limits, _wind_load(vehicle, settings)
+    return profile_consumption(vehicle.profile, limits, wind_load, settings)
+
+
+def profile_consumption(
+    profile: VehicleProfile, limits: FlightLimits, wind_load: float, settings: EnergySettings
+) -> Consumption | None:
+    """Return what a vehicle of this profile uses in a wind, or None without an endurance."""
+    if profile.endurance_s is None:
         return None
     height_m = profile.go_home_height_m
     if height_m is None:
-        height_m = airspace.airspace.limits.max_height_above_ground_m
-    return Consumption(profile.endurance_s, _wind_load(vehicle, settings), height_m, settings)
+        height_m = limits.max_height_above_ground_m
+    return Consumption(profile.endurance_s, wind_load, height_m, settings)
 
 
 def place_of(vehicle: VehicleState) -> Point | None:
