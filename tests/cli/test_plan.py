@@ -63,7 +63,7 @@ def test_a_field_is_planned_by_pixel_size(field: Path) -> None:
     assert code == 0
     assert "area  12.0" in out
     assert "height  75 m above takeoff" in out
-    assert "limit 10.0 m/s: blur of 0.5 pixel at an exposure of 1/1000 s" in out
+    assert "speed limit  10.0 m/s: blur of 0.5 pixel at an exposure of 1/1000 s" in out
     assert "batteries  1, full, of 25 min hovering each" in out
     found = figures(field, "--camera", "mavic3m", "--gsd", "2cm")
     assert found["gsd_m"] == pytest.approx(0.02, rel=0.001)

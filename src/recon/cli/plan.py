@@ -10,20 +10,20 @@ import typer
 
 from recon.cli.connection import REFUSED, WRONG_USE, JsonOption
 from recon.cli.output import print_json, print_table, printable
-from recon.cli.plan_output import ImagingFigures, figures_of, geojson_of, rows_of
+from recon.cli.plan_output import ImagingFigures, figures_of, geojson_of, plan_rows_of
 from recon.cli.plan_picture import Theme, picture_png
 from recon.cli.region_file import file_origin, region_in
 from recon.geo import enu_from_points
-from recon.guidance.survey import Surveyor, SurveyPlan, plan_survey
-from recon.guidance.survey.estimate import Batteries, SurveyEstimate, estimate
+from recon.guidance.survey import Surveyor, SurveyPlan, plan_survey, surroundings_of
+from recon.guidance.survey.estimate import Batteries, SurveyEstimate, corner_of, estimate
 from recon.guidance.survey.imaging import (
     SpeedLimit,
     best_interval_s,
     height_for_gsd_m,
     speed_limits,
 )
-from recon.guidance.survey.plan import SLOWEST_MPS, SurveySurroundings, survey_fault
-from recon.model.airspace import Region, ZoneKind
+from recon.guidance.survey.plan import SLOWEST_MPS, survey_fault
+from recon.model.airspace import Region
 from recon.model.command import Refusal
 from recon.model.errors import ReconError
 from recon.model.geo import LocalFrame
@@ -156,17 +156,19 @@ def plan_command(
             interval = best_interval_s(model, chosen_height_m, front, exposure_s, fastest_mps)
         lens = model.at_interval(interval)
         limits = speed_limits(lens, chosen_height_m, front, exposure_s, fastest_mps)
+        surroundings = None if home.frame is None else surroundings_of(home.airspace)
         survey = replace(survey, speed_mps=_speed_mps(speed, limits), camera=lens)
-        plan = plan_survey(survey, frame, _surroundings(home))
+        plan = plan_survey(survey, frame, surroundings)
         if isinstance(plan, Refusal):
             raise RefusedPlanError(f"refused: {plan.reason}")
         needs, uses = _needs(plan, home, drones, endurance)
         imaging = ImagingFigures(model, limits, exposure_s)
-        figures = figures_of(plan, needs, imaging, uses.endurance_s, batteries, hourly)
+        figures = figures_of(plan, needs, imaging, uses.endurance_s, hourly)
+        figures["warnings"] += _too_few(needs.batteries, batteries)
         if as_json:
             print_json(figures)
         else:
-            print_table(f"plan of {name}", ("what", "value"), rows_of(figures))
+            print_table(f"plan of {name}", ("what", "value"), plan_rows_of(figures))
         if png is not None:
             _write(png, picture_png(plan, needs, figures["title"], theme))
         if geojson is not None:
@@ -263,14 +265,6 @@ def _speed_mps(asked_mps: float | None, limits: tuple[SpeedLimit, ...]) -> float
     return int(most_mps / SPEED_STEP_MPS + 1e-9) * SPEED_STEP_MPS
 
 
-def _surroundings(site: Site) -> SurveySurroundings | None:
-    if site.frame is None:
-        return None
-    air = site.airspace
-    keep_out = tuple(zone.region for zone in air.zones if zone.kind is ZoneKind.KEEP_OUT)
-    return SurveySurroundings(air.boundary, keep_out, air.limits.boundary_margin_m)
-
-
 def _needs(
     plan: SurveyPlan, site: Site, drones: int, endurance_min: float | None
 ) -> tuple[SurveyEstimate, Consumption]:
@@ -279,8 +273,7 @@ def _needs(
     Without pads all take off at the region's south-west corner.
     """
     pads_m = takeoff_places_m(site)[:drones]
-    west_m, south_m = plan.survey.region.outline_m.min(axis=0).tolist()
-    places_m = (*pads_m, *([(west_m, south_m)] * (drones - len(pads_m))))
+    places_m = (*pads_m, *([corner_of(plan)] * (drones - len(pads_m))))
     height_m = plan.survey.height_above_takeoff_m
     uses = least_enduring(site, endurance_min, height_m)
     level_s = uses.level_flight_s(1.0, height_m, site.limits.battery_reserve_fraction)
@@ -288,11 +281,19 @@ def _needs(
         Surveyor(f"drone {number}", place_m, time_left_s=level_s, home_m=place_m)
         for number, place_m in enumerate(places_m, start=1)
     ]
-    landing_s = height_m / uses.settings.landing_mps + uses.settings.touchdown_s
-    made = estimate(plan, fleet, Batteries(level_s, landing_s=landing_s))
+    made = estimate(plan, fleet, Batteries(level_s, landing_s=uses.settings.landing_s(height_m)))
     if isinstance(made, Refusal):
         raise RefusedPlanError(f"refused: {made.reason}")
     return made, uses
+
+
+def _too_few(needed: int | None, there: int | None) -> list[str]:
+    if needed is None or there is None or needed <= there:
+        return []
+    return [
+        f"{needed} full batteries are needed, {there} are there: fly higher, overlap less, divide "
+        "the region, or charge between flights"
+    ]
 
 
 def takeoff_places_m(site: Site) -> tuple[tuple[float, float], ...]:

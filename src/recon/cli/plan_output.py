@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -10,9 +10,10 @@ import shapely  # type: ignore[import-untyped, unused-ignore]
 
 from recon.geo import geo_from_enu
 from recon.guidance.survey import SurveyPlan
-from recon.guidance.survey.estimate import PlannedFlight, SurveyEstimate, plan_warnings
-from recon.guidance.survey.imaging import SpeedLimit, blur_px, exposure_text
+from recon.guidance.survey.estimate import PlannedFlight, SurveyEstimate, plan_figures
+from recon.guidance.survey.imaging import SpeedLimit, exposure_text
 from recon.guidance.survey.missions import NADIR_DEG
+from recon.guidance.survey.plan import area_of
 from recon.guidance.survey.route import Place
 from recon.model.survey_camera import CameraModel
 
@@ -35,121 +36,116 @@ def figures_of(
     needs: SurveyEstimate,
     imaging: ImagingFigures,
     endurance_s: float,
-    batteries: int | None,
     cost_per_hour: float | None,
 ) -> dict[str, Any]:
     """Return everything that a plan states, in SI units; `warnings` are sentences."""
     survey, lens = plan.survey, plan.survey.camera
-    height_m, cells = survey.height_above_takeoff_m, plan.cells
-    reached_m2 = float(cells.is_reached.sum()) * cells.cell_m2
-    region_m2 = shapely.Polygon(survey.region.outline_m, list(survey.region.holes_m)).area
-    limit = imaging.limits[0]
+    height_m = survey.height_above_takeoff_m
     return {
+        **asdict(plan_figures(plan, needs, imaging.limits[0], imaging.exposure_s)),
         "title": survey.name,
         "camera": imaging.model.title,
         "camera_source": imaging.model.source,
         "shutter": imaging.model.shutter,
-        "region_m2": float(region_m2),
-        "reached_m2": min(reached_m2, float(region_m2)),
         "height_above_takeoff_m": height_m,
-        "gsd_m": lens.gsd_m(height_m),
         "footprint_m": [lens.across_m(height_m), lens.along_m(height_m)],
         "front_overlap": 1.0 - plan.swath.photo_m / lens.along_m(height_m),
         "side_overlap": 1.0 - plan.lattice.spacing_m / lens.across_m(height_m),
         "gimbal_pitch_deg": NADIR_DEG,
         "speed_mps": survey.speed_mps,
-        "speed_limit_mps": limit.speed_mps,
-        "speed_limited_by": limit.reason,
         "speed_limits": [[each.speed_mps, each.reason] for each in imaging.limits],
         "interval_s": lens.interval_s,
         "exposure_s": imaging.exposure_s,
-        "blur_px": blur_px(lens, height_m, survey.speed_mps, imaging.exposure_s),
-        "rows": len({piece.row for piece in plan.pieces}),
         "row_parts": len(plan.pieces),
         "row_spacing_m": plan.lattice.spacing_m,
         "row_bearing_deg": plan.lattice.bearing_deg,
         "lead_in_m": plan.swath.lead_m,
         "rows_m": sum(flight.rows_m for d in needs.drones for flight in d.flights),
-        "photos": needs.photos,
-        "photos_in_all": needs.photos_in_all,
-        "time_s": needs.time_s,
-        "flown_s": needs.flown_s,
         "endurance_s": endurance_s,
-        "batteries": needs.batteries,
         "cost": None if cost_per_hour is None else cost_per_hour * needs.flown_s / 3600.0,
         "drones": [
-            {"name": d.serial, "time_s": d.time_s, "flights_s": [f.time_s for f in d.flights]}
-            for d in needs.drones
+            {
+                "vehicle_name": drone.serial,
+                "time_s": drone.time_s,
+                "flights": len(drone.flights),
+                "flights_s": [flight.time_s for flight in drone.flights],
+            }
+            for drone in needs.drones
         ],
-        "warnings": _warnings(plan, needs, limit, batteries),
     }
 
 
-def _warnings(
-    plan: SurveyPlan, needs: SurveyEstimate, limit: SpeedLimit, batteries: int | None
-) -> list[str]:
-    found = plan_warnings(plan, limit)
-    if batteries is not None and needs.batteries is not None and needs.batteries > batteries:
-        found.append(
-            f"{needs.batteries} full batteries are needed, {batteries} are there: fly higher, "
-            "overlap less, divide the region, or charge between flights"
-        )
-    return found
+def rows_of(
+    figures: dict[str, Any], flown: Sequence[tuple[str, str]] = ()
+) -> list[tuple[str, str]]:
+    """Return a plan's figures, or those of a station's estimate, as rows of a table.
 
-
-def rows_of(figures: dict[str, Any]) -> list[tuple[str, str]]:
-    """Return the figures as rows of a table, in words and units."""
-    across_m, along_m = figures["footprint_m"]
+    `flown`: more rows, of how it is flown.
+    """
     gsd = "unknown" if figures["gsd_m"] is None else f"{100.0 * figures['gsd_m']:.2f} cm"
-    flights = [len(drone["flights_s"]) for drone in figures["drones"]]
-    rows = [
+    batteries = "unknown: no endurance"
+    if figures["batteries"] is not None:
+        batteries = f"{figures['batteries']}, full"
+    if "endurance_s" in figures:
+        batteries += f", of {figures['endurance_s'] / 60.0:g} min hovering each"
+    return [
         ("area", f"{figures['region_m2'] / HECTARE_M2:.2f} ha"),
-        ("camera", f"{figures['camera']}, {figures['shutter']} shutter"),
-        ("height", f"{figures['height_above_takeoff_m']:g} m above takeoff"),
         ("pixel on the ground", gsd),
-        ("photo", f"{across_m:.1f} x {along_m:.1f} m, straight down"),
-        ("overlap", f"front {figures['front_overlap']:.0%}, side {figures['side_overlap']:.0%}"),
-        (
-            "speed",
-            f"{figures['speed_mps']:.1f} m/s; limit {figures['speed_limit_mps']:.1f} m/s: "
-            f"{figures['speed_limited_by']}",
-        ),
-        ("photo every", f"{figures['interval_s']:g} s (set the camera's timer)"),
-        ("blur", f"{figures['blur_px']:.2f} pixel at {exposure_text(figures['exposure_s'])}"),
-        (
-            "rows",
-            f"{figures['rows']}, {figures['row_spacing_m']:.1f} m apart, bearing "
-            f"{figures['row_bearing_deg']:.0f} deg, lead-in {figures['lead_in_m']:.0f} m",
-        ),
-        ("length of rows", f"{figures['rows_m'] / 1000.0:.2f} km"),
+        ("speed limit", f"{figures['speed_limit_mps']:.1f} m/s: {figures['speed_limited_by']}"),
+        ("rows", f"{figures['rows']}"),
+        *flown,
         ("photos", f"{figures['photos']} on rows, {figures['photos_in_all']} by the timer in all"),
         ("time", minutes(figures["time_s"])),
         ("in the air", f"{minutes(figures['flown_s'])}, all drones together"),
-        (
-            "batteries",
-            f"{figures['batteries']}, full, of {figures['endurance_s'] / 60.0:g} min hovering each",
+        ("batteries", batteries),
+        *(() if figures.get("cost") is None else [("cost", f"{figures['cost']:.2f}")]),
+        *(
+            (
+                drone["vehicle_name"],
+                f"{minutes(drone['time_s'])} in {counted(drone['flights'], 'flight')}",
+            )
+            for drone in figures["drones"]
         ),
+        *(("warning", text) for text in figures["warnings"]),
     ]
-    if figures["cost"] is not None:
-        rows.append(("cost", f"{figures['cost']:.2f}"))
-    rows += [
-        (drone["name"], f"{minutes(drone['time_s'])} in {count} flight{'s'[: count != 1]}")
-        for drone, count in zip(figures["drones"], flights, strict=True)
-    ]
-    return rows + [("warning", text) for text in figures["warnings"]]
 
 
-def minutes(seconds: float) -> str:
+def plan_rows_of(figures: dict[str, Any]) -> list[tuple[str, str]]:
+    """Return everything that a plan states as rows of a table."""
+    across_m, along_m = figures["footprint_m"]
+    flown = [
+        (
+            "row spacing",
+            f"{figures['row_spacing_m']:.1f} m, bearing {figures['row_bearing_deg']:.0f} deg, "
+            f"lead-in {figures['lead_in_m']:.0f} m",
+        ),
+        ("length of rows", f"{figures['rows_m'] / 1000.0:.2f} km"),
+        ("camera", f"{figures['camera']}, {figures['shutter']} shutter"),
+        ("height", f"{figures['height_above_takeoff_m']:g} m above takeoff"),
+        ("speed", f"{figures['speed_mps']:.1f} m/s"),
+        ("photo", f"{across_m:.1f} x {along_m:.1f} m, straight down"),
+        ("photo every", f"{figures['interval_s']:g} s (set the camera's timer)"),
+        ("overlap", f"front {figures['front_overlap']:.0%}, side {figures['side_overlap']:.0%}"),
+        ("blur", f"{figures['blur_px']:.2f} pixel at {exposure_text(figures['exposure_s'])}"),
+    ]
+    return rows_of(figures, flown)
+
+
+def counted(number: int, noun: str) -> str:
+    """Return "1 flight", "2 flights"."""
+    return f"{number} {noun}{'s'[: number != 1]}"
+
+
+def minutes(seconds: float | None) -> str:
     """Return a duration in whole minutes, rounded up."""
-    return f"{-int(-seconds // 60)} min"
+    return "unknown" if seconds is None else f"{-int(-seconds // 60)} min"
 
 
 def geojson_of(plan: SurveyPlan, needs: SurveyEstimate) -> bytes:
     """Return a FeatureCollection: the region, what the photos cover, each row in its order."""
     survey = plan.survey
-    region = shapely.Polygon(survey.region.outline_m, list(survey.region.holes_m))
     features = [
-        _feature(plan, region, {"kind": "region", "name": survey.name}),
+        _feature(plan, area_of(survey.region), {"kind": "region", "name": survey.name}),
         _feature(plan, footprints_m(plan), {"kind": "photos"}),
     ]
     for drone in needs.drones:

@@ -6,7 +6,7 @@ from math import ceil, floor, log10
 import cv2
 import numpy as np
 
-from recon.cli.plan_output import flights_in_order, minutes, row_ends_m
+from recon.cli.plan_output import counted, flights_in_order, minutes, row_ends_m
 from recon.guidance.survey import SurveyPlan
 from recon.guidance.survey.estimate import SurveyEstimate
 from recon.model.imagery import RgbImage
@@ -91,8 +91,8 @@ def _legend(picture: RgbImage, needs: SurveyEstimate, top: int, scale: float, th
         row = top + 12 + LINE_PX * number
         colour = DRONES[(number - 1) % len(DRONES)]
         cv2.line(picture, (MARGIN_PX, row - 6), (MARGIN_PX + 36, row - 6), colour, 3)
-        count = len(drone.flights)
-        text = f"{drone.serial}: {minutes(drone.time_s)}, {count} flight{'s'[: count != 1]}"
+        flights = counted(len(drone.flights), "flight")
+        text = f"{drone.serial}: {minutes(drone.time_s)}, {flights}"
         _text(picture, text, row, theme, 0.55, MARGIN_PX + 48)
 
 

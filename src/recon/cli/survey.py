@@ -21,7 +21,7 @@ from recon.cli.connection import (
     run_at_station,
 )
 from recon.cli.output import print_json, print_line, print_table
-from recon.client import ClientError, Refusal, Station, SurveyCommands, SurveyPreview, SurveyStatus
+from recon.client import ClientError, Refusal, Station, SurveyCommands, SurveyStatus
 from recon.model.geo import GeoPoint
 from recon.model.survey import PLANNER_GOALS, WhenDone, unknown_survey
 
@@ -173,37 +173,14 @@ def estimate_command(
         elif preview.refusal is not None:
             print_line(f"refused: {preview.refusal}")
         else:
-            print_table("estimate", ("what", "value"), _preview_rows(preview))
+            # Imported here: geometry takes longer to load than a pause may wait.
+            from recon.cli.plan_output import rows_of
+
+            figures = msgspec.to_builtins(preview)
+            print_table("estimate", ("what", "value"), rows_of(figures))
         return REFUSED if preview.refusal or preview.warnings else DONE
 
     run_at_station(address, token_file, work)
-
-
-def _preview_rows(preview: SurveyPreview) -> list[tuple[str, str]]:
-    gsd = "unknown" if preview.gsd_m is None else f"{100.0 * preview.gsd_m:.2f} cm"
-    batteries = "unknown: no endurance" if preview.batteries is None else f"{preview.batteries}"
-    return [
-        ("area", f"{preview.region_m2 / HECTARE_M2:.2f} ha"),
-        ("rows", f"{preview.rows}"),
-        ("pixel on the ground", gsd),
-        ("speed limit", f"{preview.speed_limit_mps:.1f} m/s: {preview.speed_limited_by}"),
-        ("time", _minutes(preview.time_s)),
-        ("in the air", f"{_minutes(preview.flown_s)}, all drones together"),
-        ("photos", f"{preview.photos} on rows, {preview.photos_in_all} by the timer in all"),
-        ("batteries", batteries),
-        *(
-            (
-                drone.vehicle_name,
-                f"{_minutes(drone.time_s)} in {drone.flights} flight{'s'[: drone.flights != 1]}",
-            )
-            for drone in preview.drones
-        ),
-        *(("warning", text) for text in preview.warnings),
-    ]
-
-
-def _minutes(seconds: float | None) -> str:
-    return "unknown" if seconds is None else f"{-int(-seconds // 60)} min"
 
 
 @survey_app.command("pause")

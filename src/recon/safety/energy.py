@@ -75,9 +75,7 @@ class Consumption:
 
     def landing(self, height_m: float) -> float:
         """Return the fraction for landing from a height."""
-        s = self.settings
-        seconds = max(0.0, height_m) / s.landing_mps + s.touchdown_s
-        return self.fraction(seconds * s.sink_load)
+        return self.fraction(self.settings.landing_s(height_m) * self.settings.sink_load)
 
     def level_flight_s(self, has: float, height_m: float, reserve: float) -> float:
         """Return how long a charge lasts for level flight from a height, above its pad.

@@ -100,6 +100,10 @@ class EnergySettings:
     """An order that ends this much farther from home at most does not lead away from it: a place
     being held, with its corrections."""
 
+    def landing_s(self, height_m: float) -> float:
+        """Return how long go-home's landing takes from a height above the pad."""
+        return max(0.0, height_m) / self.landing_mps + self.touchdown_s
+
 
 @dataclass(frozen=True, slots=True)
 class BlindStopSettings:

@@ -1,9 +1,11 @@
 """What a survey is estimated to take, against what the whole station then flies in virtual time."""
 
+import numpy as np
 import pytest
 from tests.station.operations.test_survey_return_to_home import is_home
 from tests.station.surveyed_world import asked, field, surveyed_world
 
+from recon.model.airspace import Region
 from recon.station.api_views.survey_preview import survey_preview
 
 APART = ((0.0, -40.0), (120.0, -40.0))
@@ -37,3 +39,18 @@ def test_a_vehicle_that_cannot_join_is_a_sentence() -> None:
     assert preview is not None
     assert preview().refusal == "Vehicle 'SIM-9' not found"
     assert preview().time_s is None
+
+
+def test_area_and_rows_are_those_that_a_plan_without_a_station_has() -> None:
+    """A hole cuts rows into parts, and cells are larger than the region's edge is exact."""
+    west, east, south, north = 0.0, 201.0, 0.0, 121.0
+    ring = [(west, south), (east, south), (east, north), (west, north)]
+    hole = [(80.0, 40.0), (120.0, 40.0), (120.0, 80.0), (80.0, 80.0)]
+    world = surveyed_world(1)
+    world.asks(asked(Region(np.array(ring), (np.array(hole),))))
+    preview = survey_preview(world.driver.station, world.record(), ())
+    assert preview is not None
+    plan = world.record().state.plan
+    assert len({piece.row for piece in plan.pieces}) < len(plan.pieces)
+    assert preview().rows == len({piece.row for piece in plan.pieces})
+    assert preview().region_m2 == pytest.approx(201.0 * 121.0 - 40.0 * 40.0)

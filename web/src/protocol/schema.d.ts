@@ -2888,7 +2888,10 @@ export interface components {
             refusal: string | null;
             /** Region M2 */
             region_m2: number;
-            /** Rows */
+            /**
+             * Rows
+             * @description whole rows, however many parts they are cut into
+             */
             rows: number;
             /** Speed Limit Mps */
             speed_limit_mps: number;

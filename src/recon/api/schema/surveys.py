@@ -184,7 +184,7 @@ class SurveyEstimateView(Message):
     refusal: str | None
     region_m2: float
     reached_m2: float
-    rows: int
+    rows: int = Field(description="whole rows, however many parts they are cut into")
     gsd_m: float | None = Field(description="pixel on the ground; null: pixels are not known")
     blur_px: float = Field(description="of motion during an exposure of 1/1000 s")
     speed_limit_mps: float

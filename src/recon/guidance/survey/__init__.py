@@ -16,7 +16,7 @@ from recon.guidance.survey.life import (
     start,
     step,
 )
-from recon.guidance.survey.plan import SurveyPlan, SurveySurroundings, plan_survey
+from recon.guidance.survey.plan import SurveyPlan, SurveySurroundings, plan_survey, surroundings_of
 from recon.guidance.survey.planners import PLANNERS, Planner
 from recon.guidance.survey.progress import CoverageProgress, PositionSample
 from recon.guidance.survey.settings import SurveySettings
@@ -52,4 +52,5 @@ __all__ = [
     "returning",
     "start",
     "step",
+    "surroundings_of",
 ]

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import ceil, floor, hypot
 
-from recon.guidance.survey.imaging import SpeedLimit
+from recon.guidance.survey.imaging import SpeedLimit, blur_px
 from recon.guidance.survey.missions import Track, flight_time_s
-from recon.guidance.survey.plan import RULE, SurveyPlan
+from recon.guidance.survey.plan import RULE, SurveyPlan, area_of
 from recon.guidance.survey.rounds import shares, sortie
 from recon.guidance.survey.route import Place, Route
 from recon.guidance.survey.state import Surveyor
@@ -124,11 +124,60 @@ def estimate(
     return SurveyEstimate(tuple(drones), interval_s, batteries.level_s is not None)
 
 
+def corner_of(plan: SurveyPlan) -> Place:
+    """Return the region's south-west corner: where drones take off whose place is not known."""
+    west_m, south_m = plan.survey.region.outline_m.min(axis=0).tolist()
+    return west_m, south_m
+
+
+@dataclass(frozen=True, slots=True)
+class PlanFigures:
+    """What operators see of a plan; times, photos and batteries are None without an estimate."""
+
+    region_m2: float
+    reached_m2: float
+    """Imaged by the rows with certainty."""
+    rows: int
+    gsd_m: float | None
+    blur_px: float
+    speed_limit_mps: float
+    speed_limited_by: str
+    time_s: float | None
+    flown_s: float | None
+    photos: int | None
+    photos_in_all: int | None
+    batteries: int | None
+    warnings: list[str]
+
+
+def plan_figures(
+    plan: SurveyPlan, needs: SurveyEstimate | None, limit: SpeedLimit, exposure_s: float
+) -> PlanFigures:
+    """Return the figures of a plan. `limit`: the lowest of its speed limits."""
+    survey, cells = plan.survey, plan.cells
+    height_m, region_m2 = survey.height_above_takeoff_m, area_of(survey.region).area
+    return PlanFigures(
+        region_m2=region_m2,
+        reached_m2=min(float(cells.is_reached.sum()) * cells.cell_m2, region_m2),
+        rows=len({piece.row for piece in plan.pieces}),
+        gsd_m=survey.camera.gsd_m(height_m),
+        blur_px=blur_px(survey.camera, height_m, survey.speed_mps, exposure_s),
+        speed_limit_mps=limit.speed_mps,
+        speed_limited_by=limit.reason,
+        time_s=None if needs is None else needs.time_s,
+        flown_s=None if needs is None else needs.flown_s,
+        photos=None if needs is None else needs.photos,
+        photos_in_all=None if needs is None else needs.photos_in_all,
+        batteries=None if needs is None else needs.batteries,
+        warnings=_warnings(plan, limit),
+    )
+
+
 MOST_SKIPPED = 0.005
 """Of the region that rows may not reach without a warning: cells at an edge."""
 
 
-def plan_warnings(plan: SurveyPlan, limit: SpeedLimit) -> list[str]:
+def _warnings(plan: SurveyPlan, limit: SpeedLimit) -> list[str]:
     """Return a sentence for a speed above its lowest limit, and for ground that is not reached."""
     found: list[str] = []
     speed_mps, cells = plan.survey.speed_mps, plan.cells

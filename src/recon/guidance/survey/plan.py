@@ -15,7 +15,7 @@ from recon.guidance.survey.missions import RegionPaths
 from recon.guidance.survey.route import Place, RowLeg
 from recon.guidance.survey.rows import Piece, best_bearing_deg, lattice_over, row_pieces
 from recon.guidance.survey.settings import DEFAULT, SurveySettings
-from recon.model.airspace import Region
+from recon.model.airspace import Airspace, Region, ZoneKind
 from recon.model.command import Refusal
 from recon.model.geo import LocalFrame
 from recon.model.mission import DJI
@@ -95,7 +95,7 @@ def _size_faults(survey: Survey, settings: SurveySettings) -> Iterator[str]:
             f"the region is {wide_m / 1000:.1f} x {high_m / 1000:.1f} km: too large for cells of "
             f"{survey.cell_m:g} m"
         )
-    area_m2 = _area(survey.region).area
+    area_m2 = area_of(survey.region).area
     if area_m2 < survey.cell_m**2:
         yield (
             f"the region {survey.name} is {area_m2:.2g} m², less than a cell of {survey.cell_m:g} "
@@ -119,6 +119,12 @@ class SurveySurroundings:
     boundary: Region | None = None
     keep_out: tuple[Region, ...] = ()
     margin_m: float = 5.0
+
+
+def surroundings_of(air: Airspace) -> SurveySurroundings:
+    """Return a site's boundary and all its keep-out zones, whatever their heights."""
+    keep_out = tuple(zone.region for zone in air.zones if zone.kind is ZoneKind.KEEP_OUT)
+    return SurveySurroundings(air.boundary, keep_out, air.limits.boundary_margin_m)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -187,7 +193,7 @@ def plan_survey(
     fault = survey_fault(survey, settings)
     if fault is not None:
         return Refusal(RULE, fault)
-    area, swath = _area(survey.region), swath_of(survey, settings)
+    area, swath = area_of(survey.region), swath_of(survey, settings)
     bearing_deg = survey.row_bearing_deg
     if bearing_deg is None:
         bearing_deg = best_bearing_deg(area, swath, settings)
@@ -224,13 +230,14 @@ def _left(
 ) -> shapely.Geometry:
     margin_m = surroundings.margin_m + settings.kept_off_m
     if surroundings.boundary is not None:
-        inside = shapely.buffer(_area(surroundings.boundary), -margin_m)
+        inside = shapely.buffer(area_of(surroundings.boundary), -margin_m)
         flyable = shapely.intersection(flyable, inside)
-    shut = [shapely.buffer(_area(region), margin_m) for region in surroundings.keep_out]
+    shut = [shapely.buffer(area_of(region), margin_m) for region in surroundings.keep_out]
     return shapely.difference(flyable, shapely.union_all(shut))
 
 
-def _area(region: Region) -> shapely.Polygon:
+def area_of(region: Region) -> shapely.Polygon:
+    """Return a region with its holes, east-north metres."""
     return shapely.Polygon(region.outline_m, list(region.holes_m))
 
 
@@ -238,7 +245,7 @@ def _no_rows(survey: Survey, surroundings: SurveySurroundings | None) -> str:
     if surroundings is None:
         return f"the region {survey.name} is too small for a row"
     boundary = surroundings.boundary
-    if boundary is not None and not shapely.intersects(_area(boundary), _area(survey.region)):
+    if boundary is not None and not shapely.intersects(area_of(boundary), area_of(survey.region)):
         return (
             f"the region {survey.name} lies outside the site's boundary: move the region, or the "
             "boundary in the site's folder"

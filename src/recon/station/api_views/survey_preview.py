@@ -1,12 +1,18 @@
 """What a planned survey will take with named vehicles, as they stand now; nothing changes."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 from recon.api import schema
 from recon.guidance.survey import Surveyor, SurveyPlan
-from recon.guidance.survey.estimate import Batteries, SurveyEstimate, estimate, plan_warnings
-from recon.guidance.survey.imaging import EXPOSURE_S, blur_px, speed_limits
+from recon.guidance.survey.estimate import (
+    Batteries,
+    SurveyEstimate,
+    corner_of,
+    estimate,
+    plan_figures,
+)
+from recon.guidance.survey.imaging import EXPOSURE_S, speed_limits
 from recon.model.command import Refusal
 from recon.model.units import Stamped
 from recon.model.vehicle import VehicleState
@@ -31,11 +37,10 @@ def survey_preview(
     plan, found = state.plan, [station.fleet.vehicles.get(serial) for serial in serials]
     vehicles = [vehicle for vehicle in found if vehicle is not None]
     problem = _problem(station, serials, vehicles)
-    fleet = [_surveyor(station, vehicle) for vehicle in vehicles] or [_one_drone(plan)]
+    fleet = [_surveyor(station, vehicle) for vehicle in vehicles] or [Surveyor("", corner_of(plan))]
     energy = station.settings.safety.energy
-    landing_s = plan.survey.height_above_takeoff_m / energy.landing_mps + energy.touchdown_s
-    full_s = _full_s(station, plan, vehicles)
-    batteries = Batteries(full_s, landing_s=landing_s)
+    landing_s = energy.landing_s(plan.survey.height_above_takeoff_m)
+    batteries = Batteries(_full_s(station, plan, vehicles), landing_s=landing_s)
     fastest_mps = station.airspace.airspace.limits.max_speed_mps
     names = {vehicle.serial or "": vehicle.display_name for vehicle in vehicles}
 
@@ -73,11 +78,6 @@ def _surveyor(station: Station, vehicle: VehicleState) -> Surveyor:
     )
 
 
-def _one_drone(plan: SurveyPlan) -> Surveyor:
-    west_m, south_m = plan.survey.region.outline_m.min(axis=0).tolist()
-    return Surveyor("", (west_m, south_m))
-
-
 def _full_s(station: Station, plan: SurveyPlan, vehicles: Sequence[VehicleState]) -> float | None:
     """Return how long the least enduring vehicle's full battery lasts; None if one is unknown."""
     lasting_s: list[float] = []
@@ -100,27 +100,17 @@ def _view(
     names: dict[str, str],
     fastest_mps: float,
 ) -> schema.SurveyEstimateView:
-    survey, camera, cells = plan.survey, plan.survey.camera, plan.cells
-    height_m = survey.height_above_takeoff_m
-    limit, *_others = speed_limits(camera, height_m, survey.front_overlap, EXPOSURE_S, fastest_mps)
-    region_m2 = float(cells.is_inside.sum()) * cells.cell_m2
-    reached_m2 = float(cells.is_reached.sum()) * cells.cell_m2
-    needs = made if isinstance(made, SurveyEstimate) else None
+    survey, needs = plan.survey, made if isinstance(made, SurveyEstimate) else None
+    limit, *_others = speed_limits(
+        survey.camera,
+        survey.height_above_takeoff_m,
+        survey.front_overlap,
+        EXPOSURE_S,
+        fastest_mps,
+    )
     return schema.SurveyEstimateView(
         survey_id=survey.id,
         refusal=made.reason if isinstance(made, Refusal) else None,
-        region_m2=region_m2,
-        reached_m2=reached_m2,
-        rows=len(plan.pieces),
-        gsd_m=camera.gsd_m(height_m),
-        blur_px=blur_px(camera, height_m, survey.speed_mps, EXPOSURE_S),
-        speed_limit_mps=limit.speed_mps,
-        speed_limited_by=limit.reason,
-        time_s=None if needs is None else needs.time_s,
-        flown_s=None if needs is None else needs.flown_s,
-        photos=None if needs is None else needs.photos,
-        photos_in_all=None if needs is None else needs.photos_in_all,
-        batteries=None if needs is None else needs.batteries,
         drones=[
             schema.DroneEstimateView(
                 serial=drone.serial or None,
@@ -130,5 +120,5 @@ def _view(
             )
             for drone in (() if needs is None else needs.drones)
         ],
-        warnings=plan_warnings(plan, limit),
+        **asdict(plan_figures(plan, needs, limit, EXPOSURE_S)),
     )

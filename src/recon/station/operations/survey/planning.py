@@ -18,9 +18,9 @@ from recon.guidance.survey import (
     plan_survey,
     returning,
     step,
+    surroundings_of,
 )
 from recon.guidance.survey.plan import RULE
-from recon.model.airspace import ZoneKind
 from recon.model.command import Refusal
 from recon.model.event import SurveyRequested
 from recon.model.geo import LocalFrame
@@ -90,9 +90,9 @@ def request_survey(station: Station, event: SurveyRequested, now_ns: int) -> Ste
     refusal = refusal_of(station)
     if refusal is not None:
         return _put(station, replace(record, refusal=refusal)), ()
-    frame = station.airspace.airspace.frame
-    assert frame is not None  # or it was refused
-    work = SurveyPlanRequest(event.survey, frame, surroundings(station))
+    air = station.airspace.airspace
+    assert air.frame is not None  # or it was refused
+    work = SurveyPlanRequest(event.survey, air.frame, surroundings_of(air))
     return _put(station, record), (Job(event.survey.id, PLAN_SURVEY, work),)
 
 
@@ -102,13 +102,6 @@ def refusal_of(station: Station) -> Refusal | None:
         return Refusal(RULE, NO_SITE)
     alive = [each for each in station.surveys.records.values() if not each.is_over]
     return Refusal(RULE, TOO_MANY) if len(alive) >= SURVEYS_KEPT else None
-
-
-def surroundings(station: Station) -> SurveySurroundings:
-    """Return the site's boundary and all its keep-out zones, whatever their heights."""
-    air = station.airspace.airspace
-    keep_out = tuple(zone.region for zone in air.zones if zone.kind is ZoneKind.KEEP_OUT)
-    return SurveySurroundings(air.boundary, keep_out, air.limits.boundary_margin_m)
 
 
 def _planned(station: Station, survey_id: int, plan: SurveyPlan | Refusal, _now_ns: int) -> Stepped:

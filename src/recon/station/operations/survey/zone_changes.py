@@ -17,7 +17,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from recon.geo import Footprints
-from recon.guidance.survey import SurveyPlan, SurveyState, SurveySurroundings, plan_survey
+from recon.guidance.survey import (
+    SurveyPlan,
+    SurveyState,
+    SurveySurroundings,
+    plan_survey,
+    surroundings_of,
+)
 from recon.guidance.survey.replan import replanned
 from recon.model.command import Hover, Refusal
 from recon.model.control import AuthorityHolder
@@ -28,7 +34,6 @@ from recon.safety.airspace import PreparedZone
 from recon.safety.datum import places_m
 from recon.station.control import order_gateway
 from recon.station.operations.survey.availability import is_flown
-from recon.station.operations.survey.planning import surroundings
 from recon.station.state.station import Station, take_id
 from recon.station.state.steps import Job, JobKind, Output, Stepped
 from recon.station.state.survey_record import PendingStep, SurveyMember, SurveyRecord
@@ -72,12 +77,12 @@ def start_replan(station: Station, record: SurveyRecord, now_ns: int) -> Stepped
     """Hold what would enter a zone, and start to plan the survey anew."""
     station, held = _hold_crossing(station, record, now_ns)
     record = station.surveys.records[record.survey.id]
-    state, frame = record.state, station.airspace.airspace.frame
+    state, air = record.state, station.airspace.airspace
     assert state is not None, "it is outdated, and so was planned"
-    assert frame is not None, "a survey was planned, so the site has a frame"
+    assert air.frame is not None, "a survey was planned, so the site has a frame"
     flying = frozenset(each.serial for each in record.members.values() if is_flown(station, each))
     surveys, changes = station.surveys, station.temporary_zones.changes
-    work = SurveyReplanRequest(state, frame, surroundings(station), flying, changes, now_ns)
+    work = SurveyReplanRequest(state, air.frame, surroundings_of(air), flying, changes, now_ns)
     job = Job(surveys.next_job_id, REPLAN_SURVEY, work)
     # None of the observations is counted by it: they wait for the next step.
     kept = record.positions.first, record.shade_maps.first
