@@ -6,9 +6,10 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from recon.cli.commands import app
 from recon.cli.demo import demo_command
 from recon.cli.site import site_app
-from recon.model.errors import SiteError
+from recon.model.errors import ReconError, SiteError
 from recon.model.event import SiteRedrawn
 from recon.record import file_set
 from recon.record.codec import Codec
@@ -80,6 +81,41 @@ def test_an_import_is_added_or_replaces(folder: Path, tmp_path: Path) -> None:
     change = file_set.last_change(folder)
     assert change is not None
     assert change.what == "import of b.geojson"
+
+
+@pytest.fixture
+def interrupted(folder: Path, tmp_path: Path) -> Path:
+    """A site with the region north, and a crash while the region south was added to it."""
+    for name in ("north", "south"):
+        file = layer_file(tmp_path / f"{name}.geojson", name)
+        recon_site("import", str(folder), str(file), "--as", "survey_regions")
+    history = folder / HISTORY_FOLDER
+    (history / "0002").rename(history / "0002.unfinished")
+    return folder
+
+
+UNDONE = "a change of the site that was interrupted is undone"
+
+
+def test_an_import_begins_from_a_repaired_folder(interrupted: Path, tmp_path: Path) -> None:
+    third = layer_file(tmp_path / "c.geojson", "west")
+    text = recon_site("import", str(interrupted), str(third), "--as", "survey_regions")
+    assert UNDONE in text
+    assert [each.properties["name"] for each in read_drawing(interrupted)] == ["north", "west"]
+
+
+def test_a_plan_uses_a_repaired_folder(interrupted: Path) -> None:
+    words = ("plan", "south", "--site", str(interrupted), "--height", "60")
+    planned = CliRunner().invoke(app, words)
+    assert planned.exit_code == 2
+    assert UNDONE in planned.stderr
+    assert "Survey region 'south' not found, nor a file; available: north" in planned.stderr
+
+
+def test_a_folder_that_cannot_be_repaired_is_a_sentence(interrupted: Path) -> None:
+    (interrupted / HISTORY_FOLDER / "0002.unfinished" / "manifest.json").write_text("{")
+    with pytest.raises(ReconError, match=r"0002\.unfinished"):
+        recon_site("check", str(interrupted))
 
 
 def test_pads_stand_on_the_sites_ground(folder: Path, tmp_path: Path) -> None:

@@ -13,13 +13,13 @@ import recon
 from recon.cli.foreground import print_now, run_in_loop
 from recon.cli.run import HAS_GUARD, console_folder, guard_port, print_started
 from recon.cli.scripted_operator import fly_surveys
+from recon.cli.site import opened_site
 from recon.model.errors import ReconError
-from recon.record.file_set import finish_interrupted
 from recon.record.users_file import state_folder
 from recon.score import Scenario, ScenarioError, load_scenario
 from recon.score.scenario_sky import sky_of
 from recon.score.truth import world_text
-from recon.site import SiteError, load_site
+from recon.site import SiteError
 from recon.station.audit.start import default_place
 from recon.station.kernel.run import RunConfig, Started, run
 
@@ -102,8 +102,7 @@ def _rehearse(
     try:
         if scenario is not None:
             raise ScenarioError("expected --site or --scenario, got both: a scenario has a site")
-        finish_interrupted(folder)
-        own = load_site(folder)
+        own = opened_site(folder)
         simulated = [serial for serial in own.profiles if serial.startswith(SIMULATED)]
         if not simulated:
             raise SiteError(

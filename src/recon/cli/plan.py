@@ -13,6 +13,7 @@ from recon.cli.output import print_json, print_table, printable
 from recon.cli.plan_output import ImagingFigures, figures_of, geojson_of, plan_rows_of
 from recon.cli.plan_picture import Theme, picture_png
 from recon.cli.region_file import file_origin, region_in
+from recon.cli.site import opened_site
 from recon.geo import enu_from_points
 from recon.guidance.survey import Surveyor, SurveyPlan, plan_survey, surroundings_of
 from recon.guidance.survey.estimate import Batteries, SurveyEstimate, corner_of, estimate
@@ -33,7 +34,7 @@ from recon.model.units import is_finite
 from recon.model.vehicle import VehicleProfile
 from recon.safety.energy import Consumption, profile_consumption
 from recon.safety.settings import EnergySettings
-from recon.site import Site, load_site
+from recon.site import Site
 from recon.site.site import default_site
 
 MOST_DRONES = 16
@@ -130,7 +131,7 @@ def plan_command(
             return
         if region is None:
             raise PlanError("name a region: a GeoJSON file, or a survey region of --site")
-        home = default_site() if site is None else load_site(site)
+        home = default_site() if site is None else opened_site(site)
         name, area, frame = _region(region, feature, home)
         model = _camera(camera, image_px, diagonal, home)
         chosen_height_m = _height_m(model, gsd, height)
@@ -332,7 +333,7 @@ def least_enduring(site: Site, endurance_min: float | None, height_m: float) -> 
 
 
 def _print_cameras(site: Path | None) -> None:
-    own = {} if site is None else load_site(site).cameras
+    own = {} if site is None else opened_site(site).cameras
     rows = [
         (
             model.key,

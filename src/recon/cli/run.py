@@ -11,12 +11,12 @@ import recon
 from recon.api.app import create_app
 from recon.cli.foreground import print_now, run_in_loop
 from recon.cli.qr import qr_lines
+from recon.cli.site import opened_site
 from recon.cli.users import UsersOption
 from recon.link.settings import LinkSettings
 from recon.record.audit import shown
-from recon.record.file_set import finish_interrupted
 from recon.record.users_file import state_folder
-from recon.site import Site, default_site, demo_site_folder, load_site, site_report
+from recon.site import Site, default_site, demo_site_folder, site_report
 from recon.site.app_list import APPS_FILE, read_app_list
 from recon.station.api_views.service import Service
 from recon.station.audit.start import AuditPlace
@@ -98,11 +98,10 @@ def run_command(
     ] = LinkSettings().garbage_limit_bytes,
 ) -> None:
     """Run the station until Ctrl+C."""
-    if site is not None and finish_interrupted(site):
-        print_now(f"{site}: a change of the site that was interrupted is undone")
+    opened = default_site() if site is None else opened_site(site)
     apps_file = apps or apps_file_of(site)
     config = RunConfig(
-        site=default_site() if site is None else load_site(site),
+        site=opened,
         link_host=link_host,
         link_port=link_port,
         is_announced=announce,

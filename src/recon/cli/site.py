@@ -1,16 +1,20 @@
 """`recon site`: a site's folder made, checked, and filled from files of other programs."""
 
+import sys
 from datetime import UTC, datetime
 from enum import Enum
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from recon.cli.commands import new_app
-from recon.cli.output import print_line
+from recon.cli.output import print_line, printable
 from recon.model.errors import SiteError
 from recon.model.geo import GeoPoint
+
+if TYPE_CHECKING:
+    from recon.site import Site
 
 site_app = new_app(help="Make, check and import into a site's folder.", no_args_is_help=True)
 
@@ -53,12 +57,9 @@ def new_command(
 @site_app.command("check")
 def check_command(folder: FolderArgument) -> None:
     """Read a site as a start does: print its report and warnings, or what is wrong."""
-    from recon.record.file_set import finish_interrupted
-    from recon.site import load_site, site_report
+    from recon.site import site_report
 
-    if finish_interrupted(folder):
-        print_line(f"{folder}: a change of the site that was interrupted is undone")
-    for line in site_report(load_site(folder)):
+    for line in site_report(opened_site(folder)):
         print_line(line)
 
 
@@ -73,16 +74,15 @@ def import_command(
 ) -> None:
     """Import shapes as a layer of a site. A running station does not see it before its restart."""
     from recon.record.file_set import replace_files
-    from recon.site import load_site
     from recon.site.drawing import DrawnFeature, read_drawing, stage_drawing
     from recon.site.imports import LARGEST_IMPORT_BYTES, read_import
     from recon.site.reading import read_bounded
 
+    frame = opened_site(folder).frame
+    assert frame is not None, "a folder's site has an origin"
     found = read_import(file.name, read_bounded(file, LARGEST_IMPORT_BYTES, "a file to import"))
     kept = [each for each in read_drawing(folder) if not (replaces and each.layer == layer.value)]
     # A file's heights may count from anywhere: pads stand on the site's ground.
-    frame = load_site(folder).frame
-    assert frame is not None, "a folder's site has an origin"
     is_pads = layer is Layer.LANDING_PADS
     own = {"altitude_m": frame.origin.ellipsoid_height_m} if is_pads else {}
     kind = "Point" if is_pads else "Polygon"
@@ -101,6 +101,27 @@ def import_command(
         raise SiteError(f"{folder} cannot be written: {problem.strerror or problem}") from problem
     left_out = found.left_out + len(found.features) - len(new)
     print_line(f"{len(new)} imported into {layer.value}, {left_out} left out")
+
+
+def opened_site(folder: Path) -> "Site":
+    """Load a site as each start does: a change that a crash has interrupted is undone first.
+
+    Raises `SiteError`, or `RecordError` for a change that was edited by hand.
+    """
+    from recon.record.file_set import finish_interrupted
+    from recon.site import load_site
+
+    try:
+        is_repaired = finish_interrupted(folder)
+    except OSError as problem:
+        raise SiteError(
+            f"{folder}: an interrupted change cannot be undone: {problem.strerror or problem}"
+        ) from problem
+    if is_repaired:
+        # Not among results, which may be JSON.
+        text = f"{folder}: a change of the site that was interrupted is undone"
+        print(printable(text), file=sys.stderr, flush=True)
+    return load_site(folder)
 
 
 def _place(text: str) -> tuple[float, float]:
