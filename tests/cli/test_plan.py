@@ -3,7 +3,7 @@
 import contextlib
 import json
 from dataclasses import replace
-from math import cos, radians
+from math import atan, cos, degrees, radians
 from pathlib import Path
 from typing import Any
 
@@ -204,6 +204,20 @@ def test_a_sites_region_pads_and_own_camera_are_used(tmp_path: Path) -> None:
     assert "south-east field" in out
 
 
+def test_a_file_of_cameras_adds_to_the_table_and_to_the_sites(field: Path, tmp_path: Path) -> None:
+    own = tmp_path / "my-cameras.toml"
+    own.write_text(
+        '[[cameras]]\nname = "wide"\nimage_px = [6000, 4000]\ndiagonal_deg = 84\ntimer_s = [1.0]\n'
+    )
+    found = figures(field, "--cameras", own, "--camera", "wide", "--height", 60)
+    assert (found["camera"], found["camera_source"]) == ("wide", "my-cameras.toml")
+    half_m = found["gsd_m"] * (6000.0**2 + 4000.0**2) ** 0.5 / 2.0
+    assert degrees(2.0 * atan(half_m / 60.0)) == pytest.approx(84.0)
+    listed = recon("--camera", "list", "--cameras", own)[1]
+    assert "wide  wide  6000 x 4000" in listed
+    assert "p1-35mm" in listed
+
+
 def test_the_cameras_are_listed_with_their_sources() -> None:
     code, out = recon("--camera", "list")
     assert code == 0
@@ -222,7 +236,7 @@ def test_the_cameras_are_listed_with_their_sources() -> None:
         (("--gsd", "two"), 2, "--gsd: expected 0.5 mm to 5 m"),
         (("--height", "60", "--camera", "mavic9"), 2, "Camera 'mavic9' not found"),
         (("--height", "60", "--exposure", "1/0"), 2, "--exposure: expected"),
-        (("--height", "60", "--image-px", "6000"), 2, "an own camera needs --image-px"),
+        (("--height", "60", "--cameras", "missing.toml"), 2, "missing.toml: expected a file"),
         (("--height", "60", "--endurance-min", "nan"), 2, "--endurance-min: expected a number"),
         (("--height", "60", "--cost-per-hour", "inf"), 2, "--cost-per-hour: expected a number"),
         (("--height", "900"), 1, "the height is 900 m: 1 to 500 m are possible"),

@@ -2,6 +2,7 @@
 
 import re
 import sys
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
@@ -14,6 +15,7 @@ from recon.cli.plan_output import ImagingFigures, figures_of, geojson_of, plan_r
 from recon.cli.plan_picture import Theme, picture_png
 from recon.cli.region_file import file_origin, region_in
 from recon.cli.site import opened_site
+from recon.cli.survey import BearingOption, FeatureOption, FrontOption, SideOption
 from recon.geo import enu_from_points
 from recon.guidance.survey import Surveyor, SurveyPlan, plan_survey, surroundings_of
 from recon.guidance.survey.estimate import Batteries, SurveyEstimate, corner_of, estimate
@@ -29,13 +31,14 @@ from recon.model.command import Refusal
 from recon.model.errors import ReconError
 from recon.model.geo import LocalFrame
 from recon.model.survey import Survey
-from recon.model.survey_camera import CAMERAS, CameraModel, camera_named, of_diagonal
+from recon.model.survey_camera import CAMERAS, CameraModel, camera_named
 from recon.model.units import is_finite
 from recon.model.vehicle import VehicleProfile
 from recon.safety.energy import Consumption, profile_consumption
 from recon.safety.settings import EnergySettings
 from recon.site import Site
 from recon.site.site import default_site
+from recon.site.survey_cameras import read_cameras_file
 
 MOST_DRONES = 16
 ENDURANCE_MIN = 25.0
@@ -62,25 +65,16 @@ def plan_command(
     height: Annotated[
         float | None, typer.Option("--height", help="Metres above takeoff, instead of --gsd.")
     ] = None,
-    feature: Annotated[
-        str | None, typer.Option("--feature", help="Name of the feature in the file.")
-    ] = None,
+    feature: FeatureOption = None,
     drones: Annotated[
         int, typer.Option("--drones", min=1, max=MOST_DRONES, help="How many fly.")
     ] = 1,
     speed: Annotated[
         float | None, typer.Option("--speed", help="Metres per second; default: the most allowed.")
     ] = None,
-    front: Annotated[
-        float, typer.Option("--front-overlap", help="Overlap of photos along a row, 0 to 0.95.")
-    ] = 0.7,
-    side: Annotated[
-        float, typer.Option("--side-overlap", help="Overlap of rows, 0 to 0.95.")
-    ] = 0.6,
-    bearing: Annotated[
-        float | None,
-        typer.Option("--bearing", help="Of the rows, degrees; default: fewest turns."),
-    ] = None,
+    front: FrontOption = 0.7,
+    side: SideOption = 0.6,
+    bearing: BearingOption = None,
     interval: Annotated[
         float | None,
         typer.Option("--interval", help="Seconds between photos; default: the timer's best."),
@@ -102,15 +96,11 @@ def plan_command(
         ),
     ] = None,
     batteries: Annotated[
-        int | None, typer.Option("--batteries", min=1, help="How many full ones there are.")
+        int | None, typer.Option("--batteries", min=1, help="Full batteries available.")
     ] = None,
-    image_px: Annotated[
-        str | None,
-        typer.Option("--image-px", help="Own camera: pixels across x along, as 6000x4000."),
-    ] = None,
-    diagonal: Annotated[
-        float | None,
-        typer.Option("--diagonal-deg", help="Own camera: diagonal field of view, degrees."),
+    cameras: Annotated[
+        Path | None,
+        typer.Option("--cameras", help="Your own cameras, as in a site's cameras.toml."),
     ] = None,
     hourly: Annotated[
         float | None,
@@ -126,44 +116,26 @@ def plan_command(
     Nothing flies and nothing is sent.
     """
     try:
+        home = default_site() if site is None else opened_site(site)
+        known = (
+            dict(home.cameras)
+            if cameras is None
+            else {**home.cameras, **read_cameras_file(cameras)}
+        )
         if camera == "list":
-            _print_cameras(site)
+            _print_cameras({**CAMERAS, **known})
             return
         if region is None:
             raise PlanError("name a region: a GeoJSON file, or a survey region of --site")
-        home = default_site() if site is None else opened_site(site)
-        name, area, frame = _region(region, feature, home)
-        model = _camera(camera, image_px, diagonal, home)
-        chosen_height_m = _height_m(model, gsd, height)
-        exposure_s = _exposure_s(exposure)
         _refuse_non_finite({"--endurance-min": endurance, "--cost-per-hour": hourly})
-        # Speed limits are calculated from the survey's numbers: these are checked first.
-        survey = Survey(
-            1,
-            name,
-            area,
-            chosen_height_m,
-            SLOWEST_MPS,
-            model.at_interval(model.timer_s[0] if interval is None else interval),
-            front,
-            side,
-            bearing,
-        )
-        fault = survey_fault(survey)
-        if fault is not None:
-            raise RefusedPlanError(f"refused: {fault}")
-        fastest_mps = home.limits.max_speed_mps
-        if interval is None:
-            interval = best_interval_s(model, chosen_height_m, front, exposure_s, fastest_mps)
-        lens = model.at_interval(interval)
-        limits = speed_limits(lens, chosen_height_m, front, exposure_s, fastest_mps)
-        surroundings = None if home.frame is None else surroundings_of(home.airspace)
-        survey = replace(survey, speed_mps=_speed_mps(speed, limits), camera=lens)
-        plan = plan_survey(survey, frame, surroundings)
-        if isinstance(plan, Refusal):
-            raise RefusedPlanError(f"refused: {plan.reason}")
+        model = camera_named(camera, known.values())
+        name, area, frame = _region(region, feature, home)
+        lens = model.at_interval(model.timer_s[0] if interval is None else interval)
+        height_m = _height_m(model, gsd, height)
+        draft = Survey(1, name, area, height_m, SLOWEST_MPS, lens, front, side, bearing)
+        imaging = _imaging(draft, model, interval, _exposure_s(exposure), home)
+        plan = _plan(draft, imaging, speed, frame, home)
         needs, uses = _needs(plan, home, drones, endurance)
-        imaging = ImagingFigures(model, limits, exposure_s)
         figures = figures_of(plan, needs, imaging, uses.endurance_s, hourly)
         figures["warnings"] += _too_few(needs.batteries, batteries)
         if as_json:
@@ -198,21 +170,45 @@ def _region(name: str, feature: str | None, site: Site) -> tuple[str, Region, Lo
     return own_name, region, frame
 
 
-def _camera(name: str, image_px: str | None, diagonal: float | None, site: Site) -> CameraModel:
-    if image_px is None and diagonal is None:
-        return camera_named(name, site.cameras.values())
-    found = re.fullmatch(r"(\d{2,5})x(\d{2,5})", image_px or "")
-    if found is None or diagonal is None or not 5.0 <= diagonal <= 150.0:
-        raise PlanError(
-            "an own camera needs --image-px ACROSSxALONG, such as 6000x4000, and --diagonal-deg "
-            "of 5 to 150"
+def _imaging(
+    draft: Survey, model: CameraModel, interval_s: float | None, exposure_s: float, site: Site
+) -> ImagingFigures:
+    """Return the timer's interval, the best one unless given, and what limits the speed.
+
+    Both are calculated from the survey's other numbers: these are checked first.
+    """
+    fault = survey_fault(draft)
+    if fault is not None:
+        raise RefusedPlanError(f"refused: {fault}")
+    known = (draft.height_above_takeoff_m, draft.front_overlap, exposure_s)
+    fastest_mps = site.limits.max_speed_mps
+    if interval_s is None:
+        interval_s = best_interval_s(model, *known, fastest_mps)
+    lens = model.at_interval(interval_s)
+    return ImagingFigures(model, lens, speed_limits(lens, *known, fastest_mps), exposure_s)
+
+
+def _plan(
+    draft: Survey, imaging: ImagingFigures, speed_mps: float | None, frame: LocalFrame, site: Site
+) -> SurveyPlan:
+    """Return the rows of a survey at a speed, the most that is allowed unless given."""
+    speed_mps = _most_mps(imaging.limits[0]) if speed_mps is None else speed_mps
+    surroundings = None if site.frame is None else surroundings_of(site.airspace)
+    survey = replace(draft, speed_mps=speed_mps, camera=imaging.lens)
+    plan = plan_survey(survey, frame, surroundings)
+    if isinstance(plan, Refusal):
+        raise RefusedPlanError(f"refused: {plan.reason}")
+    return plan
+
+
+def _most_mps(limit: SpeedLimit) -> float:
+    """Return the most that a limit allows, rounded down to a tenth."""
+    if limit.speed_mps < SLOWEST_MPS:
+        raise RefusedPlanError(
+            f"refused: the speed limit is {limit.speed_mps:.2g} m/s ({limit.reason}), and "
+            f"{SLOWEST_MPS:g} m/s is the least: expose shorter or fly higher"
         )
-    across, along = (int(side) for side in found.groups())
-    if min(across, along) == 0:
-        raise PlanError("--image-px: expected pixels above 0")
-    timer_s = (1.0, 2.0, 3.0, 5.0, 10.0)
-    optics = of_diagonal(across, along, diagonal)
-    return CameraModel("own", "own camera", *optics, timer_s, "rolling", "options")
+    return int(limit.speed_mps / SPEED_STEP_MPS + 1e-9) * SPEED_STEP_MPS
 
 
 def _refuse_non_finite(options: dict[str, float | None]) -> None:
@@ -251,19 +247,6 @@ def _exposure_s(text: str) -> float:
     if not 1e-5 <= value <= 1.0:
         raise PlanError(f"--exposure: expected 1/100000 to 1 s, such as 1/1000, got {text!a}")
     return value
-
-
-def _speed_mps(asked_mps: float | None, limits: tuple[SpeedLimit, ...]) -> float:
-    """Return the speed asked for, or the most allowed, rounded down to a tenth."""
-    if asked_mps is not None:
-        return asked_mps
-    most_mps = limits[0].speed_mps
-    if most_mps < SLOWEST_MPS:
-        raise RefusedPlanError(
-            f"refused: the speed limit is {most_mps:.2g} m/s ({limits[0].reason}), and "
-            f"{SLOWEST_MPS:g} m/s is the least: expose shorter or fly higher"
-        )
-    return int(most_mps / SPEED_STEP_MPS + 1e-9) * SPEED_STEP_MPS
 
 
 def _needs(
@@ -332,8 +315,7 @@ def least_enduring(site: Site, endurance_min: float | None, height_m: float) -> 
     )
 
 
-def _print_cameras(site: Path | None) -> None:
-    own = {} if site is None else opened_site(site).cameras
+def _print_cameras(cameras: Mapping[str, CameraModel]) -> None:
     rows = [
         (
             model.key,
@@ -344,7 +326,7 @@ def _print_cameras(site: Path | None) -> None:
             model.shutter,
             model.source,
         )
-        for model in {**CAMERAS, **own}.values()
+        for model in cameras.values()
     ]
     columns = ("name", "camera", "pixels", "field of view", "shortest timer", "shutter", "source")
     print_table("cameras", columns, rows)

@@ -15,6 +15,7 @@ from recon.guidance.survey.imaging import SpeedLimit, exposure_text
 from recon.guidance.survey.missions import NADIR_DEG
 from recon.guidance.survey.plan import area_of
 from recon.guidance.survey.route import Place
+from recon.model.survey import SurveyCamera
 from recon.model.survey_camera import CameraModel
 
 HECTARE_M2 = 10_000.0
@@ -27,6 +28,8 @@ class ImagingFigures:
     """The camera, what limits its speed (the lowest first), and the exposure that was assumed."""
 
     model: CameraModel
+    lens: SurveyCamera
+    """The camera at the timer's interval."""
     limits: tuple[SpeedLimit, ...]
     exposure_s: float
 

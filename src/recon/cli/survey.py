@@ -36,6 +36,18 @@ survey_app = new_app(
 
 NumberArgument = Annotated[int, typer.Argument(metavar="ID", help="The survey's number.")]
 
+FeatureOption = Annotated[
+    str | None, typer.Option("--feature", help="Name of the feature in the file.")
+]
+FrontOption = Annotated[
+    float, typer.Option("--front-overlap", help="Overlap of photos along a row, 0 to 0.95.")
+]
+SideOption = Annotated[float, typer.Option("--side-overlap", help="Overlap of rows, 0 to 0.95.")]
+BearingOption = Annotated[
+    float | None,
+    typer.Option("--bearing", help="Of the rows, degrees; default: the fewest turns."),
+]
+
 
 class SurveyNumberError(ClientError):
     """No survey has this number."""
@@ -51,23 +63,14 @@ def create_command(
     ],
     height: Annotated[float, typer.Option("--height", help="Metres above takeoff.")],
     speed: Annotated[float, typer.Option("--speed", help="Metres per second.")] = 5.0,
-    feature: Annotated[
-        str | None, typer.Option("--feature", help="Name of the feature in the file.")
-    ] = None,
+    feature: FeatureOption = None,
     name: Annotated[str | None, typer.Option("--name", help="Name of the survey.")] = None,
     planner: Annotated[
         str, typer.Option("--planner", help=f"{' or '.join(PLANNER_GOALS)}.")
     ] = "lawnmower_once",
-    front: Annotated[
-        float, typer.Option("--front-overlap", help="Overlap of photos along a row, 0 to 0.95.")
-    ] = 0.7,
-    side: Annotated[
-        float, typer.Option("--side-overlap", help="Overlap of rows, 0 to 0.95.")
-    ] = 0.6,
-    bearing: Annotated[
-        float | None,
-        typer.Option("--bearing", help="Of the rows, degrees; default: shortest flight."),
-    ] = None,
+    front: FrontOption = 0.7,
+    side: SideOption = 0.6,
+    bearing: BearingOption = None,
     camera: Annotated[
         str | None,
         typer.Option("--camera", help="Name of a camera; `recon plan --camera list`."),

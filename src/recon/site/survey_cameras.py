@@ -1,4 +1,4 @@
-"""A site's own survey cameras: `cameras.toml` in its folder, beside site.toml.
+"""Survey cameras of one's own: `cameras.toml` in a site's folder, or a file like it.
 
 [[cameras]]
 name = "a6000-16mm"
@@ -55,8 +55,11 @@ class _File(Struct, frozen=True, forbid_unknown_fields=True):
 def read_survey_cameras(folder: Path) -> dict[str, CameraModel]:
     """Return the folder's own cameras by name, none without the file. Raises `SiteError`."""
     path = folder / CAMERAS_FILE
-    if not path.is_file():
-        return {}
+    return read_cameras_file(path) if path.is_file() else {}
+
+
+def read_cameras_file(path: Path) -> dict[str, CameraModel]:
+    """Return the cameras of a file by name. Raises `SiteError`."""
     data = read_toml(path, LARGEST_BYTES, "a file of cameras")
     refuse_non_finite(path, data, "")
     tables = convert(path, data, _File, "").cameras
@@ -65,24 +68,22 @@ def read_survey_cameras(folder: Path) -> dict[str, CameraModel]:
     cameras: dict[str, CameraModel] = {}
     for number, table in enumerate(tables, start=1):
         key = f"cameras (entry {number})"
-        model = _model(f"{path}: {key}", convert(path, table, SurveyCameraTable, key))
+        model = _model(path, key, convert(path, table, SurveyCameraTable, key))
         if model.key in cameras:
             raise SiteError(f"{path}: {key}.name: expected each name once, got {model.key!a} again")
         cameras[model.key] = model
     return cameras
 
 
-def _model(place: str, table: SurveyCameraTable) -> CameraModel:
+def _model(path: Path, key: str, table: SurveyCameraTable) -> CameraModel:
     by_sensor = table.sensor_mm is not None and table.focal_mm is not None
     has_part = table.sensor_mm is not None or table.focal_mm is not None
     if by_sensor == (table.diagonal_deg is not None) or has_part != by_sensor:
-        raise SiteError(f"{place}: expected sensor_mm and focal_mm, or diagonal_deg alone")
+        raise SiteError(f"{path}: {key}: expected sensor_mm and focal_mm, or diagonal_deg alone")
     if table.sensor_mm is not None and table.focal_mm is not None:
         optics = of_sensor(*table.image_px, table.sensor_mm, table.focal_mm)
     else:
         assert table.diagonal_deg is not None
         optics = of_diagonal(*table.image_px, table.diagonal_deg)
     timer_s = tuple(sorted(set(table.timer_s)))
-    return CameraModel(
-        table.name, table.name, *optics, timer_s, table.shutter, f"the site's {CAMERAS_FILE}"
-    )
+    return CameraModel(table.name, table.name, *optics, timer_s, table.shutter, path.name)
