@@ -86,5 +86,6 @@ def test_a_region_too_far_for_any_battery_is_a_sentence() -> None:
     vehicle = Surveyor("S-1", (0.0, -3000.0))
     made = estimate(planned(survey_of(rectangle())), [vehicle], Batteries(300.0))
     assert isinstance(made, Refusal)
-    assert made.reason.startswith("a full battery gives 240 s for rows, and the row ")
+    assert made.reason.startswith("a full battery gives 240 s for rows, and row ")
+    assert ", with the flights there and back, takes " in made.reason
     assert "take off nearer to it, divide the region, or turn the rows" in made.reason

@@ -271,7 +271,7 @@ def _too_far(plan: SurveyPlan, first: Route, vehicle: Surveyor) -> str:
     needs_s = flight_time_s(track, speed_mps, vehicle.place_m, home_m, settings)
     has_s = (vehicle.time_left_s or 0.0) * settings.flight_time_share
     return (
-        f"a full battery gives {floor(has_s)} s for rows, and the row {first[0].piece.row + 1} "
-        f"with the way there and back takes {ceil(needs_s)} s: "
+        f"a full battery gives {floor(has_s)} s for rows, and row {first[0].piece.row + 1}, "
+        f"with the flights there and back, takes {ceil(needs_s)} s: "
         "take off nearer to it, divide the region, or turn the rows"
     )
