@@ -108,6 +108,17 @@ def test_geojson_has_the_rows_of_each_drone_in_their_order(field: Path, tmp_path
     assert cv2.imread(str(png)).shape[2] == 3
 
 
+@pytest.mark.parametrize("turn", [1, -1])
+def test_rings_are_oriented_as_geojson_asks(tmp_path: Path, turn: int) -> None:
+    corners_m = [(0, 0), (400, 0), (400, 300), (0, 300)][::turn]
+    out = tmp_path / "out.geojson"
+    figures(written(tmp_path, *corners_m), "--height", 60, "--geojson", out)
+    shapes = [shape(f["geometry"]) for f in json.loads(out.read_text())["features"]]
+    areas = [each for each in shapes if each.geom_type == "Polygon"]
+    assert len(areas) == 2
+    assert all(each.exterior.is_ccw for each in areas)
+
+
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_the_picture_stands_out_on_its_ground(field: Path, tmp_path: Path, theme: str) -> None:
     png = tmp_path / "out.png"

@@ -3,11 +3,20 @@
 import numpy as np
 import numpy.typing as npt
 import pytest
+import shapely  # type: ignore[import-untyped, unused-ignore]
 from hypothesis import given
 from hypothesis import strategies as st
 
-from recon.geo import Footprints, Polygon, region_fault
+from recon.geo import (
+    Footprints,
+    Polygon,
+    enu_from_geo,
+    geojson_geometry,
+    region_fault,
+    shape_of,
+)
 from recon.model.airspace import Region
+from recon.model.geo import GeoPoint, LocalFrame
 
 SQUARE = np.array([[0.0, 0.0], [100.0, 0.0], [100.0, 100.0], [0.0, 100.0]])
 HOLE = np.array([[40.0, 40.0], [60.0, 40.0], [60.0, 60.0], [40.0, 60.0]])
@@ -174,3 +183,18 @@ def test_any_ring_is_a_polygon_or_has_a_fault(corners: list[tuple[float, float]]
     region = Region(np.array(corners, float).reshape(-1, 2))
     fault = region_fault(region)
     assert fault or Polygon(region).area_m2 > 0.0
+
+
+@pytest.mark.parametrize("turn", [1, -1])
+def test_geojson_has_longitude_first_and_the_outer_ring_counter_clockwise(turn: int) -> None:
+    frame = LocalFrame(GeoPoint(45.0, 8.0, 100.0))
+    area = shape_of(Region(SQUARE[::turn], (HOLE[::turn],)))
+    geometry = geojson_geometry(frame, area)
+    outer, hole = (np.array(ring) for ring in geometry["coordinates"])
+    assert geometry["type"] == "Polygon"
+    assert shapely.LinearRing(outer).is_ccw
+    assert not shapely.LinearRing(hole).is_ccw
+    for ring, places_m in ((outer, SQUARE), (hole, HOLE)):
+        assert (ring[0] == ring[-1]).all()
+        back_m = enu_from_geo(frame, ring[:, 1], ring[:, 0], np.full(len(ring), 100.0))[:-1, :2]
+        assert {tuple(p) for p in back_m.round(0)} == {tuple(p) for p in places_m}

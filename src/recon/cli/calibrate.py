@@ -4,7 +4,6 @@ import sys
 from pathlib import Path
 from typing import Annotated
 
-import cv2
 import numpy as np
 import typer
 
@@ -23,6 +22,7 @@ from recon.camera.calibration import (
 from recon.camera.photo_files import photo_size, read_photo
 from recon.cli.connection import WRONG_USE
 from recon.cli.output import print_line, print_table, printable
+from recon.cli.picture import png_of
 from recon.cli.progress import progress_over
 from recon.model.errors import ReconError, RecordError
 from recon.record.atomic_file import replace_file
@@ -65,7 +65,7 @@ def calibrate_command(
         coverage = coverage_of(calibration, circle)
         _write(out, format_camera(calibration.camera).encode())
         drawn = picture or out.with_suffix(".png")
-        _write(drawn, _png(residual_picture(calibration, coverage, circle)))
+        _write(drawn, png_of(residual_picture(calibration, coverage, circle)))
     except ReconError as problem:
         print(f"recon calibrate: {printable(str(problem))}", file=sys.stderr)
         raise typer.Exit(WRONG_USE) from None
@@ -155,11 +155,6 @@ def _print_summary(
         )
     for warning in warnings_of(calibration, coverage):
         print_line(f"warning: {warning}")
-
-
-def _png(picture: np.ndarray) -> bytes:
-    _, data = cv2.imencode(".png", picture[..., ::-1])
-    return data.tobytes()
 
 
 def _write(path: Path, data: bytes) -> None:

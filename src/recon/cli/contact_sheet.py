@@ -3,6 +3,7 @@
 import cv2
 import numpy as np
 
+from recon.cli.picture import png_of
 from recon.model.imagery import GroundImage, RgbImage
 from recon.model.shade import ShadeMap
 
@@ -41,5 +42,4 @@ def sheet_png(tiles: list[RgbImage]) -> bytes:
     missing = -len(tiles) % across
     full = [*tiles, *([np.zeros((TILE_PX, TILE_PX, 3), dtype=np.uint8)] * missing)]
     rows = [np.hstack(full[first : first + across]) for first in range(0, len(full), across)]
-    _, data = cv2.imencode(".png", np.vstack(rows)[..., ::-1])
-    return data.tobytes()
+    return png_of(np.vstack(rows))

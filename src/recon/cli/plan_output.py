@@ -5,22 +5,18 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-import numpy as np
 import shapely  # type: ignore[import-untyped, unused-ignore]
 
-from recon.geo import geo_from_enu
+from recon.geo import geojson_geometry, shape_of
 from recon.guidance.survey import SurveyPlan
 from recon.guidance.survey.estimate import PlannedFlight, SurveyEstimate, plan_figures
 from recon.guidance.survey.imaging import SpeedLimit, exposure_text
 from recon.guidance.survey.missions import NADIR_DEG
-from recon.guidance.survey.plan import area_of
 from recon.guidance.survey.route import Place
 from recon.model.survey import SurveyCamera
 from recon.model.survey_camera import CameraModel
 
 HECTARE_M2 = 10_000.0
-DECIMALS = 7
-"""Of a degree: a centimetre."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,7 +144,7 @@ def geojson_of(plan: SurveyPlan, needs: SurveyEstimate) -> bytes:
     """Return a FeatureCollection: the region, what the photos cover, each row in its order."""
     survey = plan.survey
     features = [
-        _feature(plan, area_of(survey.region), {"kind": "region", "name": survey.name}),
+        _feature(plan, shape_of(survey.region), {"kind": "region", "name": survey.name}),
         _feature(plan, footprints_m(plan), {"kind": "photos"}),
     ]
     for drone in needs.drones:
@@ -190,12 +186,7 @@ def footprints_m(plan: SurveyPlan) -> shapely.Geometry:
 
 
 def _feature(plan: SurveyPlan, shape_m: shapely.Geometry, known: dict[str, Any]) -> dict[str, Any]:
-    def lon_lat(places_m: np.typing.NDArray[np.float64]) -> np.typing.NDArray[np.float64]:
-        flat_m = np.column_stack([places_m, np.zeros(len(places_m))])
-        latitude_deg, longitude_deg, _ = geo_from_enu(plan.frame, flat_m)
-        return np.column_stack([longitude_deg, latitude_deg]).round(DECIMALS)
-
-    geometry: dict[str, Any] = shapely.geometry.mapping(shapely.transform(shape_m, lon_lat))
+    geometry = geojson_geometry(plan.frame, shape_m)
     return {"type": "Feature", "properties": known, "geometry": geometry}
 
 

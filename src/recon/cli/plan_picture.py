@@ -1,28 +1,20 @@
 """A picture of a survey plan: region, rows by drone, takeoff, scale."""
 
 from enum import Enum
-from math import ceil, floor, log10
+from math import ceil
 
 import cv2
 import numpy as np
 
+from recon.cli.picture import COLOURS, png_of
 from recon.cli.plan_output import counted, flights_in_order, minutes, row_ends_m
+from recon.geo import round_length_m
 from recon.guidance.survey import SurveyPlan
 from recon.guidance.survey.estimate import SurveyEstimate
 from recon.model.imagery import RgbImage
 
 SIDE_PX, MARGIN_PX, HEAD_PX, LINE_PX = 1000, 40, 56, 26
 FONT = cv2.FONT_HERSHEY_SIMPLEX
-DRONES = (
-    (0, 114, 178),
-    (213, 94, 0),
-    (0, 158, 115),
-    (204, 121, 167),
-    (86, 180, 233),
-    (230, 159, 0),
-)
-"""Okabe and Ito's colours (red, green, blue), which colour-blind eyes tell apart; those of them
-that stand out on light and dark alike."""
 
 
 class Theme(Enum):
@@ -67,7 +59,7 @@ def picture_png(plan: SurveyPlan, needs: SurveyEstimate, title: str, theme: Them
     rings = [px(ring_m) for ring_m in (region.outline_m, *region.holes_m)]
     cv2.polylines(picture, rings, True, INK[theme], 1, cv2.LINE_AA)
     for drone, flight in flights_in_order(needs):
-        colour = DRONES[drone % len(DRONES)]
+        colour = COLOURS[drone % len(COLOURS)]
         for track in flight.tracks_m:
             cv2.polylines(picture, [px(np.array(track))], False, colour, 1, cv2.LINE_AA)
         for ends in row_ends_m(plan, flight):
@@ -77,29 +69,22 @@ def picture_png(plan: SurveyPlan, needs: SurveyEstimate, title: str, theme: Them
         cv2.circle(picture, start.tolist(), 8, INK[theme], 1, cv2.LINE_AA)
     _text(picture, f"{title}: {minutes(needs.time_s)}, {needs.photos} photos", 34, theme, 0.8)
     _legend(picture, needs, height + HEAD_PX, scale, theme)
-    _ok, data = cv2.imencode(".png", picture[..., ::-1])
-    return data.tobytes()
+    return png_of(picture)
 
 
 def _legend(picture: RgbImage, needs: SurveyEstimate, top: int, scale: float, theme: Theme) -> None:
     """A scale of round length, then a line for each drone."""
-    long_m = _round_length(0.25 * SIDE_PX / scale)
+    long_m = round_length_m(0.25 * SIDE_PX / scale)
     end = MARGIN_PX + round(long_m * scale)
     cv2.line(picture, (MARGIN_PX, top + 8), (end, top + 8), INK[theme], 2)
     _text(picture, f"{long_m:g} m, north is up", top + 14, theme, 0.55, end + 12)
     for number, drone in enumerate(needs.drones, start=1):
         row = top + 12 + LINE_PX * number
-        colour = DRONES[(number - 1) % len(DRONES)]
+        colour = COLOURS[(number - 1) % len(COLOURS)]
         cv2.line(picture, (MARGIN_PX, row - 6), (MARGIN_PX + 36, row - 6), colour, 3)
         flights = counted(len(drone.flights), "flight")
         text = f"{drone.serial}: {minutes(drone.time_s)}, {flights}"
         _text(picture, text, row, theme, 0.55, MARGIN_PX + 48)
-
-
-def _round_length(most_m: float) -> float:
-    """The largest of 1, 2, 5 times a power of ten that is no more."""
-    power = 10.0 ** floor(log10(most_m))
-    return power * max(step for step in (1, 2, 5) if step * power <= most_m or step == 1)
 
 
 def _text(

@@ -5,13 +5,12 @@ from collections.abc import Mapping
 import cv2
 import numpy as np
 
+from recon.cli.picture import COLOURS, png_of
 from recon.model.imagery import RgbImage
 from recon.score.forecast_figures import Calibration
 
 SIDE_PX, MARGIN_PX, LEGEND_PX = 480, 64, 190
 INK, GRID = (40, 40, 40), (210, 210, 210)
-# Okabe and Ito's colours, which colour-blind eyes tell apart; here in red, green, blue.
-COLOURS = ((0, 114, 178), (213, 94, 0), (0, 158, 115), (204, 121, 167), (86, 180, 233), (0, 0, 0))
 FEWEST = 50
 """Cells in a bin for a point: fewer are chance."""
 
@@ -33,8 +32,7 @@ def reliability_png(title: str, curves: Mapping[str, Calibration]) -> bytes:
         row = MARGIN_PX + 24 * number + 12
         cv2.line(picture, (width - LEGEND_PX - 40, row), (width - LEGEND_PX - 10, row), colour, 3)
         _text(picture, name, (width - LEGEND_PX, row + 5))
-    _ok, data = cv2.imencode(".png", cv2.cvtColor(picture, cv2.COLOR_RGB2BGR))
-    return data.tobytes()
+    return png_of(picture)
 
 
 def _points(calibration: Calibration) -> list[tuple[float, float, float]]:

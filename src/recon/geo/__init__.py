@@ -4,6 +4,7 @@ Lengths are metres; local coordinates are east, north, up of the site's origin. 
 and return (N, 2) or (N, 3) float64; NaN or infinity gives the safe answer, never an exception.
 """
 
+from recon.geo.distance import round_length_m
 from recon.geo.grid_cells import cell_at, cell_centres_m, nearest_cells
 from recon.geo.local_frame import (
     OnGlobe,
@@ -17,7 +18,15 @@ from recon.geo.local_frame import (
     tangent_plane,
 )
 from recon.geo.path import DEFAULT_CHORD_ERROR_M, Path, corner_hulls, rounded_path, straight_path
-from recon.geo.polygon import Box, Footprints, Polygon, region_fault, thinned_ring
+from recon.geo.polygon import (
+    Box,
+    Footprints,
+    Polygon,
+    geojson_geometry,
+    region_fault,
+    shape_of,
+    thinned_ring,
+)
 from recon.geo.sun import SunPosition, sun_position, utc_at_elevation
 from recon.geo.surface import Surface
 
@@ -38,10 +47,13 @@ __all__ = [
     "enu_from_point",
     "enu_from_points",
     "geo_from_enu",
+    "geojson_geometry",
     "nearest_cells",
     "point_from_enu",
     "region_fault",
+    "round_length_m",
     "rounded_path",
+    "shape_of",
     "shift_east_north_m",
     "straight_path",
     "sun_position",

@@ -5,7 +5,7 @@ under 0.2 % up to 60 degrees of latitude.
 """
 
 from functools import lru_cache
-from math import cos, degrees, hypot, radians, sin, sqrt
+from math import cos, degrees, floor, hypot, log10, radians, sin, sqrt
 
 from recon.geo.local_frame import OnGlobe
 from recon.model.geo import LatLon
@@ -54,3 +54,9 @@ def _metres_per_radian(latitude_deg: float) -> tuple[float, float]:
     w = sqrt(1.0 - ECCENTRICITY_SQUARED * sin(latitude_rad) ** 2)
     meridian_m = SEMI_MAJOR_AXIS_M * (1.0 - ECCENTRICITY_SQUARED) / w**3
     return meridian_m, SEMI_MAJOR_AXIS_M / w * cos(latitude_rad)
+
+
+def round_length_m(most_m: float) -> float:
+    """Return the longest of 1, 2, 5 times a power of ten that is no more: for a scale bar."""
+    power = 10.0 ** floor(log10(most_m))
+    return power * max(step for step in (1, 2, 5) if step * power <= most_m or step == 1)

@@ -6,18 +6,23 @@ shapely) does the geometry, so that touching and grazing are decided in one plac
 
 from functools import cached_property
 from math import hypot, inf
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 import shapely  # type: ignore[import-untyped, unused-ignore]
 
+from recon.geo.local_frame import geo_from_enu
 from recon.model.airspace import Region
+from recon.model.geo import LocalFrame
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
 IntArray = npt.NDArray[np.int64]
 ShapeArray = npt.NDArray[np.object_]
+
+DECIMALS = 7
+"""Of a degree in GeoJSON: a centimetre."""
 
 FARTHEST_M = 1e8
 """Farther than any two places on earth; GEOS overflows on far larger numbers."""
@@ -171,7 +176,7 @@ class Polygon:
         fault = region_fault(region)
         if fault is not None:
             raise ValueError(f"expected a polygon whose edges do not meet, but {fault}")
-        self._take(_shape(region))
+        self._take(shape_of(region))
 
     def _take(self, area: shapely.Polygon) -> None:
         self._area = area
@@ -307,7 +312,7 @@ def region_fault(region: Region) -> str | None:
         return "it has fewer than three corners"
     if not all(is_on_earth(ring).all() for ring in rings):
         return "it has a corner that is not finite or not on the earth"
-    shape = _shape(region)
+    shape = shape_of(region)
     # GEOS appends the position in brackets.
     reason, _, place = str(shapely.is_valid_reason(shape)).partition("[")
     if reason == "Valid Geometry":
@@ -331,8 +336,25 @@ def _circle_inside(area: shapely.Polygon) -> tuple[FloatArray, float]:
     return shapely.get_coordinates(middle)[0], radius_m
 
 
-def _shape(region: Region) -> shapely.Polygon:
+def shape_of(region: Region) -> shapely.Polygon:
+    """Return a region with its holes as shapely has it, east-north metres."""
     return shapely.Polygon(region.outline_m, list(region.holes_m))
+
+
+def geojson_geometry(frame: LocalFrame, shape_m: shapely.Geometry) -> dict[str, Any]:
+    """Return a shape in east-north metres as a GeoJSON geometry (RFC 7946): longitude first.
+
+    Outer rings are counter-clockwise, holes clockwise.
+    """
+
+    def lon_lat(places_m: FloatArray) -> FloatArray:
+        flat_m = np.column_stack([places_m, np.zeros(len(places_m))])
+        latitude_deg, longitude_deg, _ = geo_from_enu(frame, flat_m)
+        return np.column_stack([longitude_deg, latitude_deg]).round(DECIMALS)
+
+    turned = shapely.orient_polygons(shapely.transform(shape_m, lon_lat))
+    geometry: dict[str, Any] = shapely.geometry.mapping(turned)
+    return geometry
 
 
 def thinned_ring(ring_m: FloatArray, within_m: float) -> FloatArray:

@@ -8,9 +8,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import ceil, floor, hypot
 
+from recon.geo import shape_of
 from recon.guidance.survey.imaging import SpeedLimit, blur_px
 from recon.guidance.survey.missions import Track, flight_time_s
-from recon.guidance.survey.plan import RULE, SurveyPlan, area_of
+from recon.guidance.survey.plan import RULE, SurveyPlan
 from recon.guidance.survey.rounds import shares, sortie
 from recon.guidance.survey.route import Place, Route
 from recon.guidance.survey.state import Surveyor
@@ -155,7 +156,7 @@ def plan_figures(
 ) -> PlanFigures:
     """Return the figures of a plan. `limit`: the lowest of its speed limits."""
     survey, cells = plan.survey, plan.cells
-    height_m, region_m2 = survey.height_above_takeoff_m, area_of(survey.region).area
+    height_m, region_m2 = survey.height_above_takeoff_m, shape_of(survey.region).area
     return PlanFigures(
         region_m2=region_m2,
         reached_m2=min(float(cells.is_reached.sum()) * cells.cell_m2, region_m2),

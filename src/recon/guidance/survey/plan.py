@@ -7,7 +7,7 @@ from math import hypot
 import numpy as np
 import shapely  # type: ignore[import-untyped, unused-ignore]
 
-from recon.geo import region_fault
+from recon.geo import region_fault, shape_of
 from recon.guidance.survey.cells import BoolArray, CoverageCells, cells_over
 from recon.guidance.survey.imaging import longest_photo_m
 from recon.guidance.survey.lattice import RowLattice, Swath, swath_of
@@ -95,7 +95,7 @@ def _size_faults(survey: Survey, settings: SurveySettings) -> Iterator[str]:
             f"the region is {wide_m / 1000:.1f} x {high_m / 1000:.1f} km: too large for cells of "
             f"{survey.cell_m:g} m"
         )
-    area_m2 = area_of(survey.region).area
+    area_m2 = shape_of(survey.region).area
     if area_m2 < survey.cell_m**2:
         yield (
             f"the region {survey.name} is {area_m2:.2g} m², less than a cell of {survey.cell_m:g} "
@@ -193,7 +193,7 @@ def plan_survey(
     fault = survey_fault(survey, settings)
     if fault is not None:
         return Refusal(RULE, fault)
-    area, swath = area_of(survey.region), swath_of(survey, settings)
+    area, swath = shape_of(survey.region), swath_of(survey, settings)
     bearing_deg = survey.row_bearing_deg
     if bearing_deg is None:
         bearing_deg = best_bearing_deg(area, swath, settings)
@@ -230,22 +230,17 @@ def _left(
 ) -> shapely.Geometry:
     margin_m = surroundings.margin_m + settings.kept_off_m
     if surroundings.boundary is not None:
-        inside = shapely.buffer(area_of(surroundings.boundary), -margin_m)
+        inside = shapely.buffer(shape_of(surroundings.boundary), -margin_m)
         flyable = shapely.intersection(flyable, inside)
-    shut = [shapely.buffer(area_of(region), margin_m) for region in surroundings.keep_out]
+    shut = [shapely.buffer(shape_of(region), margin_m) for region in surroundings.keep_out]
     return shapely.difference(flyable, shapely.union_all(shut))
-
-
-def area_of(region: Region) -> shapely.Polygon:
-    """Return a region with its holes, east-north metres."""
-    return shapely.Polygon(region.outline_m, list(region.holes_m))
 
 
 def _no_rows(survey: Survey, surroundings: SurveySurroundings | None) -> str:
     if surroundings is None:
         return f"the region {survey.name} is too small for a row"
     boundary = surroundings.boundary
-    if boundary is not None and not shapely.intersects(area_of(boundary), area_of(survey.region)):
+    if boundary is not None and not shapely.intersects(shape_of(boundary), shape_of(survey.region)):
         return (
             f"the region {survey.name} lies outside the site's boundary: move the region, or the "
             "boundary in the site's folder"
