@@ -175,6 +175,45 @@ describe("saving", () => {
     expect(page.site.undone).toEqual(["r2"]);
   });
 
+  it("keeps what was drawn meanwhile, as changes of what was saved", async () => {
+    const draft = await open();
+    draft.addAt("boundary", HERE, 50);
+    const drawing = { ...page.site.drawing, revision: "r2", features: [FIELD] };
+    page.site.response = { ...ACCEPTED, layers: ["boundary"], drawing };
+    const saving = draft.save();
+    draft.addAt("keep_out", HERE, 20);
+    await saving;
+    expect(draft.features().map(({ layer }) => layer)).toEqual(["boundary", "keep_out"]);
+    expect([draft.isChanged(), draft.canUndo()]).toEqual([true, true]);
+    expect(draft.selected()?.layer).toBe("keep_out");
+    expect(draft.notice()?.text).toBe("Saved: boundary. In force now");
+    page.clock.advance(CHECK_MS);
+    expect(page.site.asked.at(-1)?.[1].revision).toBe("r2");
+  });
+
+  it("leaves a ring that is being drawn", async () => {
+    const draft = await open();
+    draft.addAt("boundary", HERE, 50);
+    page.site.response = { ...ACCEPTED, drawing: { ...page.site.drawing, revision: "r2" } };
+    const saving = draft.save();
+    draft.draw({ layer: "keep_out", hole: false });
+    await saving;
+    draft.finish(SQUARE);
+    expect(draft.features().map(({ layer }) => layer)).toEqual(["boundary", "keep_out"]);
+  });
+
+  it("states what an undo of the last save leaves in a draft edited meanwhile", async () => {
+    const draft = await open(FIELD);
+    page.site.response = { ...ACCEPTED, layers: ["boundary"], drawing: page.site.drawing };
+    const undoing = draft.undoSaved();
+    draft.addAt("keep_out", HERE, 20);
+    await undoing;
+    expect(draft.features()).toHaveLength(2);
+    expect(draft.notice()?.text).toBe(
+      "Undone: boundary. In force now. This draft was edited meanwhile and still has what was undone",
+    );
+  });
+
   it("keeps the draft when it is refused, with the reason", async () => {
     const draft = await open();
     draft.addAt("boundary", HERE, 50);
@@ -186,6 +225,29 @@ describe("saving", () => {
       text: "Not saved: In the air: Drone 1",
       isProblem: true,
     });
+  });
+});
+
+describe("loading again", () => {
+  it("keeps what was drawn meanwhile, at the revision it was drawn on", async () => {
+    const draft = await open(FIELD);
+    page.site.drawing = { ...page.site.drawing, revision: "r2", features: [] };
+    const loading = draft.discard();
+    draft.addAt("keep_out", HERE, 20);
+    await loading;
+    expect([draft.features().length, draft.saved()?.revision]).toEqual([2, "r1"]);
+    expect(draft.notice()).toMatchObject({
+      text: "Not loaded again: the draft was edited meanwhile",
+      isProblem: true,
+    });
+  });
+
+  it("forgets the edits and the ring that is being drawn", async () => {
+    const draft = await open(FIELD);
+    draft.addAt("keep_out", HERE, 20);
+    draft.draw({ layer: "keep_out", hole: false });
+    await draft.discard();
+    expect([draft.features().length, draft.tool(), draft.isChanged()]).toEqual([1, null, false]);
   });
 });
 

@@ -24,7 +24,8 @@ import {
  * Theory of operation. The drawing is loaded from the station, edited here, and saved as a whole. Each edit
  * replaces the list of features, so undo and redo are earlier and later lists. After a pause the station is
  * asked to check the draft, as it would at its start, and answers with one sentence, about one feature if it
- * can. Saving sends the revision that was loaded: the station refuses a draft of an older one.
+ * can. Saving sends the revision that was loaded: the station refuses a draft of an older one. The answer to a
+ * save replaces the list, unless it was edited meanwhile: then only the revision is new.
  */
 
 /** What a press on the map adds. `hole`: a hole of the selected feature instead of a new one. */
@@ -189,36 +190,54 @@ export function createSiteDraft(
     setPast([]);
     setFuture([]);
     setSelectedId(null);
-    setTool(null);
     show(view.features.map((one) => featureOf(nextId++, one)));
   };
-  /** One request at a time; `done` gets its answer. */
+  /** One request at a time; `done` gets its answer, and the features when it was asked. */
   const ask = async <T>(
     about: Notice["about"],
     send: () => Promise<Outcome<T>>,
-    done: (answer: T) => void,
+    done: (answer: T, asked: readonly DraftFeature[]) => void,
   ) => {
     if (isBusy()) return;
     setBusy(true);
     setNotice(null);
+    const asked = features();
     const outcome = await send();
     setBusy(false);
-    if (outcome.kind === "answered") done(outcome.value);
+    if (outcome.kind === "answered") done(outcome.value, asked);
     else setNotice({ about, text: outcome.problem, isProblem: true });
   };
-  const loaded = (verb: string) => (answer: SiteDrawingResponse) => {
-    if (!answer.accepted || answer.drawing === null) {
-      setVerdict(verdictOf({ kind: "answered", value: answer }, features()));
-      const text = `Not ${verb}: ${answer.reason ?? "no reason given"}`;
-      setNotice({ about: "site", text, isProblem: true });
-      return;
-    }
-    load(answer.drawing);
-    const what = layersText(answer.layers);
-    const text = what === "" ? `${capital(verb)}: nothing changes` : `${capital(verb)}: ${what}`;
-    setNotice({ about: "site", text: `${text}. In force now`, isProblem: false });
-  };
-  const reload = () => ask("site", () => source.siteDrawing(), load);
+  /** An answer takes seconds: a draft that was edited meanwhile, or a ring half drawn, is kept. */
+  const isEditedSince = (asked: readonly DraftFeature[]) => features() !== asked || tool() !== null;
+  const loaded =
+    (verb: string, ifEdited = "") =>
+    (answer: SiteDrawingResponse, asked: readonly DraftFeature[]) => {
+      if (!answer.accepted || answer.drawing === null) {
+        setVerdict(verdictOf({ kind: "answered", value: answer }, asked));
+        const text = `Not ${verb}: ${answer.reason ?? "no reason given"}`;
+        setNotice({ about: "site", text, isProblem: true });
+        return;
+      }
+      const isEdited = isEditedSince(asked);
+      if (isEdited) {
+        setSaved(answer.drawing);
+        checkSoon();
+      } else load(answer.drawing);
+      const what = layersText(answer.layers);
+      const text = what === "" ? `${capital(verb)}: nothing changes` : `${capital(verb)}: ${what}`;
+      const rest = isEdited ? ifEdited : "";
+      setNotice({ about: "site", text: `${text}. In force now${rest}`, isProblem: false });
+    };
+  const reload = () =>
+    ask(
+      "site",
+      () => source.siteDrawing(),
+      (view, asked) => {
+        if (!isEditedSince(asked)) return load(view);
+        const text = "Not loaded again: the draft was edited meanwhile";
+        setNotice({ about: "site", text, isProblem: true });
+      },
+    );
 
   return {
     isOn,
@@ -295,12 +314,20 @@ export function createSiteDraft(
       setPast([...past(), features()]);
       show(next);
     },
-    discard: reload,
+    discard: () => {
+      setTool(null);
+      return reload();
+    },
     recheck: () => {
       if (verdict().kind !== "none") checkSoon();
     },
     save: () => ask("site", () => source.saveSite(request()), loaded("saved")),
-    undoSaved: () => ask("site", () => source.undoSite(saved()?.revision ?? ""), loaded("undone")),
+    undoSaved: () =>
+      ask(
+        "site",
+        () => source.undoSite(saved()?.revision ?? ""),
+        loaded("undone", ". This draft was edited meanwhile and still has what was undone"),
+      ),
     readFile: (file) =>
       ask(
         "import",
