@@ -100,7 +100,11 @@ export function createConsole(
   });
   const flyHere = createFlyHere(single, source, orderApi, clock);
   const zoneDraft = createZoneDraft();
-  const siteDraft = createSiteDraft(source, clock, () => fleet.site?.ground_altitude_m ?? null);
+  const siteDraft = createSiteDraft(
+    source.site,
+    clock,
+    () => fleet.site?.ground_altitude_m ?? null,
+  );
   // A press on the map means one thing at a time.
   const modes = [
     { isOn: flyHere.isOn, leave: () => flyHere.isOn() && flyHere.toggle() },

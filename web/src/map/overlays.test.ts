@@ -96,17 +96,17 @@ describe("the overlay", () => {
 
   it("retries a failed picture", async () => {
     const overlay = createOverlay();
-    const surveyCells = vi.fn(async () => ({ kind: "failed", problem: "no" }) as const);
-    const layer = new SurveyCellsLayer(overlay, { surveyCells });
+    const cells = vi.fn(async () => ({ kind: "failed", problem: "no" }) as const);
+    const layer = new SurveyCellsLayer(overlay, { cells });
     layer.add(fakeMap().map);
     overlay.show("cells");
     layer.update(scene(1, 1));
     await settled();
     layer.update(scene(2, 1));
-    expect(surveyCells).toHaveBeenCalledOnce();
+    expect(cells).toHaveBeenCalledOnce();
     layer.update(scene(4, 1));
-    expect(surveyCells).toHaveBeenCalledTimes(2);
-    expect(surveyCells).toHaveBeenCalledWith(7, 1200);
+    expect(cells).toHaveBeenCalledTimes(2);
+    expect(cells).toHaveBeenCalledWith(7, 1200);
   });
 });
 

@@ -1,6 +1,7 @@
 import type { ImageSource, Map as MapLibre } from "maplibre-gl";
 import { type Accessor, createSignal } from "solid-js";
 import type { Outcome, Picture, StationSource } from "../source/stationSource";
+import type { SurveyRequests } from "../source/surveyRequests";
 import { shownSurvey } from "../text/survey";
 import { type Corners, cornersOf } from "./features";
 import type { Layer, Scene } from "./scene";
@@ -154,7 +155,7 @@ export class ForecastLayer extends PictureOverlay {
 export class SurveyCellsLayer extends PictureOverlay {
   constructor(
     private readonly overlay: Overlay,
-    private readonly source: Pick<StationSource, "surveyCells">,
+    private readonly surveys: Pick<SurveyRequests, "cells">,
   ) {
     super("survey-cells");
   }
@@ -166,7 +167,7 @@ export class SurveyCellsLayer extends PictureOverlay {
     return {
       key: `${survey.id}:${cells.number}`,
       corners: cells.corners,
-      fetch: () => this.source.surveyCells(survey.id, cells.number),
+      fetch: () => this.surveys.cells(survey.id, cells.number),
     };
   }
 }

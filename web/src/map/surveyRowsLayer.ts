@@ -1,7 +1,7 @@
 import type { Feature } from "geojson";
 import type { Map as MapLibre } from "maplibre-gl";
 import type { SurveyWays } from "../protocol";
-import type { StationSource } from "../source/stationSource";
+import type { SurveyRequests } from "../source/surveyRequests";
 import { shownSurvey } from "../text/survey";
 import type { Colours } from "./colours";
 import { addFeatures, lineFeature, type Point, setFeatures } from "./features";
@@ -23,7 +23,7 @@ export class SurveyRowsLayer implements Layer {
   private isFetching = false;
   private notBefore_ns = 0;
 
-  constructor(private readonly source: Pick<StationSource, "surveyWays">) {}
+  constructor(private readonly surveys: Pick<SurveyRequests, "ways">) {}
 
   add(map: MapLibre, colours: Colours): void {
     this.map = map;
@@ -62,8 +62,8 @@ export class SurveyRowsLayer implements Layer {
     if (!isNew || this.isFetching || scene.state.time_ns < this.notBefore_ns) return;
     this.isFetching = true;
     this.notBefore_ns = scene.state.time_ns + REPEAT_NS;
-    void this.source
-      .surveyWays(survey.id)
+    void this.surveys
+      .ways(survey.id)
       .then((outcome) => {
         if (outcome.kind === "answered") this.draw(key, outcome.value);
       })

@@ -7,7 +7,8 @@ import type {
   SiteDrawingView,
 } from "../protocol";
 import type { Clock } from "../source/clock";
-import type { Outcome, StationSource } from "../source/stationSource";
+import type { SiteRequests } from "../source/siteRequests";
+import type { Outcome } from "../source/stationSource";
 import { listNames } from "../text/names";
 import {
   type Attribute,
@@ -109,7 +110,7 @@ export const LEAST_CORNERS = 3;
 
 /** `groundAltitude_m` is where a pad is put: a drawing has no heights. */
 export function createSiteDraft(
-  source: StationSource,
+  site: SiteRequests,
   clock: Clock,
   groundAltitude_m: () => number | null,
 ): SiteDraft {
@@ -181,7 +182,7 @@ export function createSiteDraft(
   };
   const check = async (number: number) => {
     const asked = features();
-    const outcome = await source.checkSite(request());
+    const outcome = await site.check(request());
     if (number === checks) setVerdict(verdictOf(outcome, asked));
   };
 
@@ -231,7 +232,7 @@ export function createSiteDraft(
   const reload = () =>
     ask(
       "site",
-      () => source.siteDrawing(),
+      () => site.drawing(),
       (view, asked) => {
         if (!isEditedSince(asked)) return load(view);
         const text = "Not loaded again: the draft was edited meanwhile";
@@ -321,17 +322,17 @@ export function createSiteDraft(
     recheck: () => {
       if (verdict().kind !== "none") checkSoon();
     },
-    save: () => ask("site", () => source.saveSite(request()), loaded("saved")),
+    save: () => ask("site", () => site.save(request()), loaded("saved")),
     undoSaved: () =>
       ask(
         "site",
-        () => source.undoSite(saved()?.revision ?? ""),
+        () => site.undo(saved()?.revision ?? ""),
         loaded("undone", ". This draft was edited meanwhile and still has what was undone"),
       ),
     readFile: (file) =>
       ask(
         "import",
-        () => source.importSite(file),
+        () => site.readFile(file),
         ({ features: found, left_out, reason }) => {
           if (reason !== null) {
             setNotice({ about: "import", text: reason, isProblem: true });

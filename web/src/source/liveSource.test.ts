@@ -1,4 +1,4 @@
-import { describe, expect, it } from "vitest";
+import { describe, expect, it, vi } from "vitest";
 import { FakeClock } from "../testing/fakeClock";
 import { FakeSocket } from "../testing/fakeSocket";
 import { station, vehicle } from "../testing/fakeState";
@@ -30,6 +30,12 @@ function setUp(answer: Answer, token: string | null = null) {
 }
 
 const posted = (requests: Request[]) => requests.filter(({ method }) => method === "POST");
+
+const HOVER = { serials: ["A"], order: { kind: "hover" as const } };
+const ZONE = { kind: "person" as const, reason: "a walker" };
+const SURVEY = { height_above_takeoff_m: 40, speed_mps: 5 };
+const DRAWING = { revision: "r1", features: [] };
+const ALL = { serial: null, about: null, before: null };
 
 const json = (value: unknown, status = 200) => Response.json(value, { status });
 
@@ -199,11 +205,30 @@ describe("the live source", () => {
     });
   });
 
-  it("reports that an unanswered order may have arrived", async () => {
+  it.each<[request: string, send: (source: LiveSource) => Promise<unknown>, ifLate: string]>([
+    ["an order", (one) => one.order(HOVER), "may still have arrived: check the command list"],
+    ["an all stop", (one) => one.allStop(), "may still have arrived: check the command list"],
+    ["a check of an order", (one) => one.check(HOVER), "Try again"],
+    ["a zone", (one) => one.drawZone(ZONE), "may still have taken effect"],
+    ["a survey's start", (one) => one.surveys.start(1, [], false), "may still have taken effect"],
+    ["a survey's plan", (one) => one.surveys.plan(SURVEY), "No drone moves"],
+    ["a picture", (one) => one.groundImage(1), "Try again"],
+    ["the timeline", (one) => one.timeline(ALL, 50), "Try again"],
+    ["a flight's figures", (one) => one.flights.figures("a"), "recon export"],
+    ["a flight's file", (one) => one.flights.file("a", "sun.tif"), "recon export"],
+    ["the site", (one) => one.site.drawing(), "Nothing was saved"],
+    ["a check of the site", (one) => one.site.check(DRAWING), "Nothing was saved"],
+    ["a file to import", (one) => one.site.readFile(new File([], "a.kml")), "Nothing was saved"],
+    ["the site's save", (one) => one.site.save(DRAWING), "whether it was saved"],
+    ["the site's undo", (one) => one.site.undo("r1"), "whether it was saved"],
+  ])("states how long it waited for %s, and what to do", async (_, send, ifLate) => {
+    const limit = vi.spyOn(AbortSignal, "timeout");
     const late = new DOMException("signal timed out", "TimeoutError");
-    const { source } = setUp(() => Promise.reject(late));
-    expect(await source.allStop()).toMatchObject({
-      problem: expect.stringContaining("may still have arrived"),
+    const outcome = await send(setUp(() => Promise.reject(late)).source);
+    const waited_s = Number(limit.mock.lastCall?.[0]) / 1000;
+    limit.mockRestore();
+    expect(outcome).toMatchObject({
+      problem: expect.stringMatching(`did not answer within ${waited_s} s\\. .*${ifLate}`),
     });
   });
 

@@ -1,18 +1,20 @@
 import { createSignal } from "solid-js";
-import type { AccessView, AuthorityHolder, SiteDrawingRequest, StationState } from "../protocol";
+import type { AccessView, AuthorityHolder, StationState } from "../protocol";
 import type { Clock, Instant } from "./clock";
+import { flightRequests } from "./flightRequests";
 import { Requests } from "./requests";
+import { siteRequests } from "./siteRequests";
+import { StationHttp } from "./stationHttp";
 import type {
   Connection,
-  FlightFile,
   NamedOrder,
-  NewSurvey,
   NewZone,
   StationSource,
   TimelineFilter,
 } from "./stationSource";
 import { newStreamOwner, type Socket, Stream } from "./stream";
 import { StreamLag } from "./streamLag";
+import { surveyRequests } from "./surveyRequests";
 
 /** Dependencies of a live source; tests pass fakes. */
 export interface LiveSourceOptions {
@@ -38,8 +40,12 @@ export class LiveSource implements StationSource {
   readonly state;
   readonly connection;
   readonly person;
+  readonly site;
+  readonly flights;
+  readonly surveys;
   private readonly lag = new StreamLag();
   private readonly stream: Stream;
+  private readonly http: StationHttp;
   private readonly requests: Requests;
   private readonly clock: Clock;
   private owner = "";
@@ -53,7 +59,11 @@ export class LiveSource implements StationSource {
     this.connection = connection;
     const [person, setPerson] = createSignal<AccessView | null>(null);
     this.person = person;
-    this.requests = new Requests(origin, token, (request) => options.fetch(request));
+    this.http = new StationHttp(origin, token, (request) => options.fetch(request));
+    this.requests = new Requests(this.http);
+    this.site = siteRequests(this.http);
+    this.flights = flightRequests(this.http);
+    this.surveys = surveyRequests(this.http, () => this.stationNowMs());
     const url = `${origin.replace(/^http/, "ws")}/api/stream`;
     const open = () => {
       // A new owner: orders held by an earlier connection stay stopped.
@@ -130,26 +140,6 @@ export class LiveSource implements StationSource {
     return this.requests.timeline(filter, atMost);
   }
 
-  siteDrawing() {
-    return this.requests.siteDrawing();
-  }
-
-  checkSite(drawing: SiteDrawingRequest) {
-    return this.requests.checkSite(drawing);
-  }
-
-  saveSite(drawing: SiteDrawingRequest) {
-    return this.requests.saveSite(drawing);
-  }
-
-  undoSite(revision: string) {
-    return this.requests.undoSite(revision);
-  }
-
-  importSite(file: File) {
-    return this.requests.importSite(file);
-  }
-
   releaseStop(serials: readonly string[] | null) {
     return this.requests.releaseStop(serials);
   }
@@ -201,77 +191,33 @@ export class LiveSource implements StationSource {
   }
 
   vehicleFrame(serial: string, frameId: number) {
-    return this.requests.picture(
+    return this.http.picture(
       `/api/vehicle/frame.jpg?serial=${encodeURIComponent(serial)}&id=${frameId}`,
     );
   }
 
   groundImage(frameId: number) {
-    return this.requests.picture(`/api/ground-image.png?id=${frameId}`);
+    return this.http.picture(`/api/ground-image.png?id=${frameId}`);
   }
 
   sharedAddressCode() {
-    return this.requests.picture("/api/access/qr.svg");
+    return this.http.picture("/api/access/qr.svg");
   }
 
   appAddressCode() {
-    return this.requests.picture("/api/apps/qr.svg");
-  }
-
-  flights() {
-    return this.requests.flights();
-  }
-
-  flightFigures(name: string) {
-    return this.requests.flightFigures(name);
-  }
-
-  flightFile(name: string, file: FlightFile) {
-    return this.requests.flightFile(name, `files/${file}`);
-  }
-
-  flightRecord(name: string) {
-    return this.requests.flightFile(name, "record.mcap");
+    return this.http.picture("/api/apps/qr.svg");
   }
 
   groundImageFile() {
-    return this.requests.picture("/api/ground-image.tif");
-  }
-
-  planSurvey(survey: NewSurvey) {
-    return this.requests.planSurvey(survey);
-  }
-
-  startSurvey(id: number, serials: readonly string[], allowTakeoff: boolean) {
-    return this.requests.startSurvey(id, serials, allowTakeoff, this.stationNowMs());
-  }
-
-  stopSurvey(id: number, word: "pause" | "abort") {
-    return this.requests.stopSurvey(id, word);
-  }
-
-  surveyEstimate(id: number, serials: readonly string[]) {
-    return this.requests.surveyEstimate(id, serials);
-  }
-
-  cameras() {
-    return this.requests.cameras();
-  }
-
-  surveyWays(id: number) {
-    return this.requests.surveyWays(id);
-  }
-
-  surveyCells(id: number, number: number) {
-    return this.requests.picture(`/api/surveys/${id}/cells.png?id=${number}`);
+    return this.http.picture("/api/ground-image.tif");
   }
 
   shadePicture(number: number) {
-    return this.requests.picture(`/api/shade.png?id=${number}`);
+    return this.http.picture(`/api/shade.png?id=${number}`);
   }
 
   forecastPicture(number: number, lead_s: number) {
-    return this.requests.picture(`/api/forecast.png?id=${number}&lead_s=${lead_s}`);
+    return this.http.picture(`/api/forecast.png?id=${number}&lead_s=${lead_s}`);
   }
 
   sunAt(latitudeDeg: number, longitudeDeg: number) {

@@ -3,28 +3,20 @@ import type {
   AccessView,
   ActionResponse,
   AuthorityHolder,
-  FlightFiguresView,
-  FlightView,
-  ImportedView,
   Order,
   OrderResult,
   PreflightView,
-  SiteDrawingRequest,
-  SiteDrawingResponse,
-  SiteDrawingView,
   StationState,
   SunAtView,
-  SurveyCameraView,
-  SurveyEstimateView,
-  SurveyRequest,
-  SurveyResponse,
-  SurveyWays,
   TemporaryZoneRequest,
   TemporaryZoneResponse,
   TimelineView,
   UpwindView,
 } from "../protocol";
 import type { Instant } from "./clock";
+import type { FlightRequests } from "./flightRequests";
+import type { SiteRequests } from "./siteRequests";
+import type { SurveyRequests } from "./surveyRequests";
 
 /** State of the connection to the station; `reason` is a clause without a full stop. */
 export type Connection =
@@ -55,10 +47,6 @@ export interface NamedOrder {
   readonly order: Order;
 }
 
-/** A survey to plan; omitted fields use the station's defaults. */
-export type NewSurvey = Pick<SurveyRequest, "height_above_takeoff_m" | "speed_mps"> &
-  Partial<Omit<SurveyRequest, "camera">> & { camera?: Partial<SurveyRequest["camera"]> };
-
 /** A temporary zone to draw; omitted fields use the station's defaults. */
 export type NewZone = Pick<TemporaryZoneRequest, "kind" | "reason"> & Partial<TemporaryZoneRequest>;
 
@@ -71,15 +59,6 @@ export interface TimelineFilter {
   /** The number of the entry before which the lines are wanted. */
   readonly before: number | null;
 }
-/** A file that the station makes of a flight record. */
-export type FlightFile =
-  | "tracks.gpx"
-  | "tracks.geojson"
-  | "tracks.csv"
-  | "surveys.kml"
-  | "sun.tif"
-  | "coverage.png"
-  | "report.html";
 
 /** Where the page gets states from and sends orders to: a running station or a recording. */
 export interface StationSource {
@@ -88,6 +67,9 @@ export interface StationSource {
   readonly connection: Accessor<Connection>;
   /** The person of this page's requests; null until the station has stated it. */
   readonly person: Accessor<AccessView | null>;
+  readonly site: SiteRequests;
+  readonly flights: FlightRequests;
+  readonly surveys: SurveyRequests;
   /** The address for other computers as a QR code. */
   sharedAddressCode(): Promise<Outcome<Picture>>;
   /** The address for companion apps as a QR code. */
@@ -132,21 +114,6 @@ export interface StationSource {
   vehicleFrame(serial: string, frameId: number): Promise<Outcome<Picture>>;
   groundImage(frameId: number): Promise<Outcome<Picture>>;
   groundImageFile(): Promise<Outcome<Picture>>;
-  /** Plans a survey; nothing moves. */
-  planSurvey(survey: NewSurvey): Promise<Outcome<SurveyResponse>>;
-  /** Starts a survey with these vehicles and gives guidance control of them. */
-  startSurvey(
-    id: number,
-    serials: readonly string[],
-    allowTakeoff: boolean,
-  ): Promise<Outcome<SurveyResponse>>;
-  stopSurvey(id: number, word: "pause" | "abort"): Promise<Outcome<SurveyResponse>>;
-  /** What a planned survey will take with these vehicles; without any, with one drone. */
-  surveyEstimate(id: number, serials: readonly string[]): Promise<Outcome<SurveyEstimateView>>;
-  /** The survey cameras that a plan may name. */
-  cameras(): Promise<Outcome<readonly SurveyCameraView[]>>;
-  surveyWays(id: number): Promise<Outcome<SurveyWays>>;
-  surveyCells(id: number, number: number): Promise<Outcome<Picture>>;
   shadePicture(number: number): Promise<Outcome<Picture>>;
   forecastPicture(number: number, lead_s: number): Promise<Outcome<Picture>>;
   /** The light at a place, and when it changes next. */
@@ -155,21 +122,5 @@ export interface StationSource {
   upwindPlace(serial: string): Promise<Outcome<UpwindView>>;
   /** What happened in this run, the newest first. */
   timeline(filter: TimelineFilter, atMost: number): Promise<Outcome<TimelineView>>;
-  /** The site's layers with all corners, as they are in its folder. */
-  siteDrawing(): Promise<Outcome<SiteDrawingView>>;
-  /** Checks a drawing as the station would at its start; nothing is saved. */
-  checkSite(drawing: SiteDrawingRequest): Promise<Outcome<SiteDrawingResponse>>;
-  /** Saves a drawing in the site's folder and brings it into force. */
-  saveSite(drawing: SiteDrawingRequest): Promise<Outcome<SiteDrawingResponse>>;
-  /** Takes back the newest save. */
-  undoSite(revision: string): Promise<Outcome<SiteDrawingResponse>>;
-  /** Reads the polygons and points of a file of another program; nothing is saved. */
-  importSite(file: File): Promise<Outcome<ImportedView>>;
-  /** The flight records in the station's folder, the newest first. */
-  flights(): Promise<Outcome<readonly FlightView[]>>;
-  /** Takes seconds: the station reads the record. */
-  flightFigures(name: string): Promise<Outcome<FlightFiguresView>>;
-  flightFile(name: string, file: FlightFile): Promise<Outcome<Picture>>;
-  flightRecord(name: string): Promise<Outcome<Picture>>;
   close(): void;
 }

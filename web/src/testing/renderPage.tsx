@@ -21,16 +21,17 @@ import type {
   UpwindPlaceView,
   UpwindView,
 } from "../protocol";
+import type { FlightFile, FlightRequests } from "../source/flightRequests";
+import type { SiteRequests } from "../source/siteRequests";
 import type {
   Connection,
-  FlightFile,
   NamedOrder,
-  NewSurvey,
   NewZone,
   Outcome,
   StationSource,
   TimelineFilter,
 } from "../source/stationSource";
+import type { NewSurvey, SurveyRequests } from "../source/surveyRequests";
 import type { ThemeSwitch } from "../theme/theme";
 import { FakeClock } from "./fakeClock";
 import { surveyEstimate } from "./fakeState";
@@ -132,9 +133,9 @@ interface Recorded {
   upwindPlace: Outcome<UpwindView>;
   site: FakeSite;
   estimate: SurveyEstimateView;
-  cameras: readonly SurveyCameraView[];
+  cameras: SurveyCameraView[];
   timeline: RenderedPage["timeline"];
-  flights: Outcome<readonly FlightView[]>;
+  flights: Outcome<FlightView[]>;
   figures: Outcome<FlightFiguresView>;
 }
 
@@ -239,7 +240,7 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
       recorded.upwindPlace = { kind: "answered", value: { place, reason: "" } };
     },
     showFlights: (value, figures) => {
-      recorded.flights = { kind: "answered", value };
+      recorded.flights = { kind: "answered", value: [...value] };
       recorded.figures = figures;
     },
     showPreflight: (value) => {
@@ -345,19 +346,83 @@ function fakeSource(
     vehicleFrame: (serial, frameId) => recorded.fetchFrame(serial, frameId),
     groundImage: noPicture,
     groundImageFile: noPicture,
-    planSurvey: async (plannedSurvey) => {
+    shadePicture: noPicture,
+    forecastPicture: noPicture,
+    sunAt: noPicture,
+    upwindPlace: async () => recorded.upwindPlace,
+    timeline: async (filter, atMost) => {
+      recorded.timeline.asked.push(filter);
+      const found = recorded.timeline.entries.filter(
+        ({ n, serial }) =>
+          (filter.before === null || n < filter.before) &&
+          (filter.serial === null || serial === filter.serial),
+      );
+      const value = { entries: found.slice(0, atMost), has_more: found.length > atMost };
+      return { kind: "answered", value };
+    },
+    site: fakeSiteRequests(recorded.site),
+    flights: fakeFlightRequests(recorded),
+    surveys: fakeSurveyRequests(recorded),
+    close: () => {},
+  };
+}
+
+function fakeSiteRequests(site: FakeSite): SiteRequests {
+  const answer = async () => ({ kind: "answered", value: site.response }) as const;
+  return {
+    drawing: async () => ({ kind: "answered", value: site.drawing }),
+    check: (drawing) => {
+      site.asked.push(["check", drawing]);
+      return answer();
+    },
+    save: (drawing) => {
+      site.asked.push(["save", drawing]);
+      return answer();
+    },
+    undo: (revision) => {
+      site.undone.push(revision);
+      return answer();
+    },
+    readFile: async (file) => {
+      site.files.push(file);
+      return { kind: "answered", value: site.imported };
+    },
+  };
+}
+
+function fakeFlightRequests(recorded: Recorded): FlightRequests {
+  return {
+    list: async () => recorded.flights,
+    figures: async (flight) => {
+      recorded.requests.push({ flight });
+      return recorded.figures;
+    },
+    file: async (flight, file) => {
+      recorded.requests.push({ flight, file });
+      return { kind: "answered", value: { blob: new Blob(["x"]), frameId: null } };
+    },
+    record: async (flight) => {
+      recorded.requests.push({ flight, file: "record.mcap" });
+      return { kind: "failed", problem: "no record in this test" };
+    },
+  };
+}
+
+function fakeSurveyRequests(recorded: Recorded): SurveyRequests {
+  return {
+    plan: async (plannedSurvey) => {
       recorded.requests.push({ plannedSurvey });
       return { kind: "answered", value: { ...recorded.response, survey: null } };
     },
-    startSurvey: async (startedSurvey, serials, takeoff) => {
+    start: async (startedSurvey, serials, takeoff) => {
       recorded.requests.push({ startedSurvey, serials, takeoff });
       return { kind: "answered", value: { ...recorded.response, survey: null } };
     },
-    stopSurvey: async (stoppedSurvey, word) => {
+    stop: async (stoppedSurvey, word) => {
       recorded.requests.push({ stoppedSurvey, word });
       return { kind: "answered", value: { ...recorded.response, survey: null } };
     },
-    surveyEstimate: async (_id, serials) => ({
+    estimate: async (_id, serials) => ({
       kind: "answered",
       value: {
         ...recorded.estimate,
@@ -370,60 +435,8 @@ function fakeSource(
       },
     }),
     cameras: async () => ({ kind: "answered", value: recorded.cameras }),
-    surveyWays: noPicture,
-    surveyCells: noPicture,
-    shadePicture: noPicture,
-    forecastPicture: noPicture,
-    sunAt: noPicture,
-    upwindPlace: async () => recorded.upwindPlace,
-    ...fakeSiteRequests(recorded.site),
-    timeline: async (filter, atMost) => {
-      recorded.timeline.asked.push(filter);
-      const found = recorded.timeline.entries.filter(
-        ({ n, serial }) =>
-          (filter.before === null || n < filter.before) &&
-          (filter.serial === null || serial === filter.serial),
-      );
-      const value = { entries: found.slice(0, atMost), has_more: found.length > atMost };
-      return { kind: "answered", value };
-    },
-    flights: async () => recorded.flights,
-    flightFigures: async (flight) => {
-      recorded.requests.push({ flight });
-      return recorded.figures;
-    },
-    flightFile: async (flight, file) => {
-      recorded.requests.push({ flight, file });
-      return { kind: "answered", value: { blob: new Blob(["x"]), frameId: null } };
-    },
-    flightRecord: async (flight) => {
-      recorded.requests.push({ flight, file: "record.mcap" });
-      return { kind: "failed", problem: "no record in this test" };
-    },
-    close: () => {},
-  };
-}
-
-function fakeSiteRequests(site: FakeSite) {
-  const answer = async () => ({ kind: "answered", value: site.response }) as const;
-  return {
-    siteDrawing: async () => ({ kind: "answered", value: site.drawing }) as const,
-    checkSite: (drawing: SiteDrawingRequest) => {
-      site.asked.push(["check", drawing]);
-      return answer();
-    },
-    saveSite: (drawing: SiteDrawingRequest) => {
-      site.asked.push(["save", drawing]);
-      return answer();
-    },
-    undoSite: (revision: string) => {
-      site.undone.push(revision);
-      return answer();
-    },
-    importSite: async (file: File) => {
-      site.files.push(file);
-      return { kind: "answered", value: site.imported } as const;
-    },
+    ways: noPicture,
+    cells: noPicture,
   };
 }
 

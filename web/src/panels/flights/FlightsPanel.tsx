@@ -1,8 +1,9 @@
 import { createEffect, createSignal, For, on, onCleanup, onMount, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { FlightFiguresView, FlightView } from "../../protocol";
+import type { FlightFile } from "../../source/flightRequests";
 import { saveAs } from "../../source/saveAs";
-import type { FlightFile, Outcome, Picture } from "../../source/stationSource";
+import type { Outcome, Picture } from "../../source/stationSource";
 import { flightTime } from "../../text/flights";
 import { formatAge, formatBytes, formatFraction } from "../../text/quantities";
 import { formatArea } from "../../text/survey";
@@ -28,7 +29,7 @@ export function FlightsPanel() {
   const [problem, setProblem] = createSignal<string | null>(null);
   const [chosen, setChosen] = createSignal<string | null>(null);
   const list = async () => {
-    const outcome = await source.flights();
+    const outcome = await source.flights.list();
     setProblem(outcome.kind === "failed" ? outcome.problem : null);
     if (outcome.kind === "answered") setFlights(outcome.value);
   };
@@ -103,7 +104,7 @@ function Flight(props: { flight: FlightView }) {
         showPicture(null);
         setProblem(null);
         setReading(true);
-        const found = await source.flightFigures(name);
+        const found = await source.flights.figures(name);
         if (name !== props.flight.name) return;
         setReading(false);
         if (found.kind === "failed") {
@@ -112,7 +113,7 @@ function Flight(props: { flight: FlightView }) {
         }
         setFigures(found.value);
         if (found.value.region_m2 === null) return;
-        const picture = await source.flightFile(name, "coverage.png");
+        const picture = await source.flights.file(name, "coverage.png");
         if (name === props.flight.name && picture.kind === "answered") {
           showPicture(picture.value.blob);
         }
@@ -158,7 +159,7 @@ function Flight(props: { flight: FlightView }) {
               disabled={isReading()}
               onClick={() =>
                 void save(
-                  source.flightFile(props.flight.name, file),
+                  source.flights.file(props.flight.name, file),
                   `${props.flight.name}-${file}`,
                 )
               }
@@ -177,7 +178,7 @@ function Flight(props: { flight: FlightView }) {
               : "The whole record, for replays and bug reports"
           }
           onClick={() =>
-            void save(source.flightRecord(props.flight.name), `${props.flight.name}.mcap`)
+            void save(source.flights.record(props.flight.name), `${props.flight.name}.mcap`)
           }
         >
           Record MCAP

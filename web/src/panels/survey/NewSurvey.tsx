@@ -25,7 +25,7 @@ export function NewSurvey(props: {
   const { source, fleet, lacks } = useConsole();
   const [isPlanning, setPlanning] = createSignal(false);
   const [cameras] = createResource(async () => {
-    const outcome = await source.cameras();
+    const outcome = await source.surveys.cameras();
     return outcome.kind === "answered" ? outcome.value : [];
   });
   const regions = () => (fleet.site?.areas ?? []).filter(({ kind }) => kind === "survey");
@@ -33,7 +33,7 @@ export function NewSurvey(props: {
     const data = new FormData(form);
     setPlanning(true);
     const model = String(data.get("camera") ?? "");
-    const outcome = await source.planSurvey({
+    const outcome = await source.surveys.plan({
       region: String(data.get("region")),
       height_above_takeoff_m: Number(data.get("height")),
       speed_mps: Number(data.get("speed")),

@@ -105,7 +105,7 @@ function Start(props: SurveyProps) {
   const label = () => START_LABELS[props.survey.phase] ?? "Start with selected";
   const start = async () => {
     const { serials } = targets();
-    props.onResult(await source.startSurvey(props.survey.id, serials, allowTakeoff()));
+    props.onResult(await source.surveys.start(props.survey.id, serials, allowTakeoff()));
     setAllowTakeoff(false);
   };
   const subject = () =>
@@ -137,7 +137,7 @@ const STOPS = { pause: "Pause", abort: "Abort", hold: "Hold returning drones" } 
 function Stop(props: SurveyProps & { word: keyof typeof STOPS }) {
   const { source } = useConsole();
   const word = () => (props.word === "hold" ? "abort" : props.word);
-  const stop = async () => props.onResult(await source.stopSurvey(props.survey.id, word()));
+  const stop = async () => props.onResult(await source.surveys.stop(props.survey.id, word()));
   const label = () => STOPS[props.word];
   return (
     <GuardButton

@@ -16,7 +16,7 @@ export function SurveyPreview(props: { survey: SurveyView }) {
   // By key: the selection is a new object with every state, ten times a second.
   const [outcome] = createResource(
     () => asked().key,
-    () => source.surveyEstimate(asked().id, asked().serials),
+    () => source.surveys.estimate(asked().id, asked().serials),
   );
   const estimate = (): SurveyEstimateView | null => {
     const latest = outcome.latest;

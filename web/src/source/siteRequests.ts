@@ -1,0 +1,32 @@
+import type { ImportedView, SiteDrawingRequest } from "../protocol";
+import { answered, SITE_READ, SITE_SAVE, type StationHttp } from "./stationHttp";
+
+export type SiteRequests = ReturnType<typeof siteRequests>;
+
+/** The site's layers: read, checked and saved. */
+export function siteRequests(http: StationHttp) {
+  const { client } = http;
+  return {
+    /** The site's layers with all corners, as they are in its folder. */
+    drawing: () => answered(SITE_READ, (signal) => client.GET("/api/site/drawing", { signal })),
+    /** Checks a drawing as the station would at its start; nothing is saved. */
+    check: (body: SiteDrawingRequest) =>
+      answered(SITE_READ, (signal) => client.POST("/api/site/drawing/check", { body, signal })),
+    /** Saves a drawing in the site's folder and brings it into force. */
+    save: (body: SiteDrawingRequest) =>
+      answered(SITE_SAVE, (signal) => client.POST("/api/site/drawing", { body, signal })),
+    /** Takes back the newest save. */
+    undo: (revision: string) =>
+      answered(SITE_SAVE, (signal) =>
+        client.POST("/api/site/drawing/undo", { body: { revision }, signal }),
+      ),
+    /** Reads the polygons and points of a file of another program; nothing is saved. */
+    readFile: (file: File) =>
+      http.read(
+        SITE_READ,
+        `/api/site/import?name=${encodeURIComponent(file.name.slice(-100))}`,
+        { method: "POST", body: file },
+        (response): Promise<ImportedView> => response.json(),
+      ),
+  };
+}

@@ -1,0 +1,63 @@
+import type { SurveyRequest, SurveyResponse, SurveyWays } from "../protocol";
+import { answered, CHANGE, PLANNING, READ, type StationHttp } from "./stationHttp";
+
+/** A survey to plan; omitted fields use the station's defaults. */
+export type NewSurvey = Pick<SurveyRequest, "height_above_takeoff_m" | "speed_mps"> &
+  Partial<Omit<SurveyRequest, "camera">> & { camera?: Partial<SurveyRequest["camera"]> };
+
+export type SurveyRequests = ReturnType<typeof surveyRequests>;
+
+/** `stationNowMs`: an order to move that arrives long after it was given is refused. */
+export function surveyRequests(http: StationHttp, stationNowMs: () => number | null) {
+  const { client } = http;
+  return {
+    /** Plans a survey; nothing moves. */
+    plan: (survey: NewSurvey) => {
+      // Omitted fields have defaults at the station; the generated type cannot express that.
+      const body = survey as SurveyRequest;
+      return answered(PLANNING, (signal) => client.POST("/api/surveys", { body, signal }), asPairs);
+    },
+    /** Starts a survey with these vehicles and gives guidance control of them. */
+    start: (survey_id: number, serials: readonly string[], takeoff: boolean) => {
+      const body = { serials: [...serials], takeoff, given_at_unix_ms: stationNowMs() };
+      const options = { params: { path: { survey_id } }, body };
+      return answered(
+        CHANGE,
+        (signal) => client.POST("/api/surveys/{survey_id}/start", { ...options, signal }),
+        asPairs,
+      );
+    },
+    stop: (survey_id: number, command: "pause" | "abort") => {
+      const params = { path: { survey_id, command } };
+      return answered(
+        CHANGE,
+        (signal) => client.POST("/api/surveys/{survey_id}/{command}", { params, signal }),
+        asPairs,
+      );
+    },
+    /** What a planned survey will take with these vehicles; without any, with one drone. */
+    estimate: (survey_id: number, serials: readonly string[]) => {
+      const params = { path: { survey_id }, query: { serial: [...serials] } };
+      return answered(READ, (signal) =>
+        client.GET("/api/surveys/{survey_id}/estimate", { params, signal }),
+      );
+    },
+    /** The survey cameras that a plan may name. */
+    cameras: () => answered(READ, (signal) => client.GET("/api/cameras", { signal })),
+    ways: (survey_id: number) => {
+      const params = { path: { survey_id } };
+      return answered(
+        READ,
+        (signal) => client.GET("/api/surveys/{survey_id}/ways", { params, signal }),
+        (data) => data as SurveyWays,
+      );
+    },
+    cells: (id: number, number: number) =>
+      http.picture(`/api/surveys/${id}/cells.png?id=${number}`),
+  };
+}
+
+/** openapi-fetch widens pairs to lists; the station sends pairs. */
+function asPairs(data: unknown): SurveyResponse {
+  return data as SurveyResponse;
+}
