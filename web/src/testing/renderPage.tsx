@@ -51,7 +51,12 @@ export interface RenderedPage {
   /** The site's folder behind the page. */
   readonly site: FakeSite;
   /** All entries of the timeline, the newest first, and what was asked for. */
-  readonly timeline: { entries: TimelineEntryView[]; readonly asked: TimelineFilter[] };
+  readonly timeline: {
+    entries: TimelineEntryView[];
+    /** Why it cannot be read; null: it can. */
+    problem: string | null;
+    readonly asked: TimelineFilter[];
+  };
   /** Sets the answer to every further order. */
   answerWith(results: readonly OrderResult[]): void;
   /** Sets the answer to every further request other than orders. */
@@ -200,7 +205,7 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
         source: "specifications",
       },
     ],
-    timeline: { entries: [], asked: [] },
+    timeline: { entries: [], problem: null, asked: [] },
     flights: { kind: "answered", value: [] },
     figures: { kind: "failed", problem: "no figures in this test" },
   };
@@ -352,6 +357,8 @@ function fakeSource(
     upwindPlace: async () => recorded.upwindPlace,
     timeline: async (filter, atMost) => {
       recorded.timeline.asked.push(filter);
+      const { problem } = recorded.timeline;
+      if (problem !== null) return { kind: "failed", problem };
       const found = recorded.timeline.entries.filter(
         ({ n, serial }) =>
           (filter.before === null || n < filter.before) &&

@@ -8,6 +8,8 @@ import "./timeline.css";
 
 const EVERY_MS = 2_000;
 const PAGE = 50;
+/** Lines kept: the panel may be open for a day. */
+const MOST = 500;
 const ALL = "";
 
 const SUBJECTS: readonly (readonly [TimelineSubject, string])[] = [
@@ -23,13 +25,19 @@ export function TimelinePanel() {
   const { source, clock, fleet } = useConsole();
   const [serial, setSerial] = createSignal<string | null>(null);
   const [about, setAbout] = createSignal<TimelineSubject | null>(null);
-  const [entries, setEntries] = createSignal<readonly TimelineEntryView[]>([]);
+  /** Null before the first answer. */
+  const [entries, setEntries] = createSignal<readonly TimelineEntryView[] | null>(null);
   const [hasMore, setMore] = createSignal(false);
   const [problem, setProblem] = createSignal<string | null>(null);
   let question = 0;
   let cancel = () => {};
 
-  /** `isNew` starts over with the newest; otherwise older ones are added. */
+  const shown = () => entries() ?? [];
+  const show = (next: readonly TimelineEntryView[]) => {
+    setEntries(next.slice(0, MOST));
+    if (next.length > MOST) setMore(true);
+  };
+  /** Joins the newest to those shown; with `before`, adds those before that number. */
   const load = async (before: number | null) => {
     const asked = question;
     const outcome = await source.timeline(
@@ -41,26 +49,30 @@ export function TimelinePanel() {
     if (outcome.kind === "failed") return;
     const found = outcome.value.entries;
     if (before !== null) {
-      setEntries([...entries(), ...found]);
+      // They were added already, or the newest have started over.
+      if (shown().at(-1)?.n !== before) return;
       setMore(outcome.value.has_more);
+      show([...shown(), ...found]);
       return;
     }
     const last = found.at(-1)?.n ?? 0;
-    const older = entries().filter(({ n }) => n < last);
+    const older = shown().filter(({ n }) => n < last);
     // A gap means that more came than one page holds: what is older is asked for again.
-    const isJoined = entries().some(({ n }) => n >= last);
-    setEntries(isJoined ? [...found, ...older] : found);
+    const isJoined = shown().some(({ n }) => n >= last);
     if (!isJoined || older.length === 0) setMore(outcome.value.has_more);
+    show(isJoined ? [...found, ...older] : found);
   };
   const follow = async () => {
+    const asked = question;
     await load(null);
-    cancel = clock.after(EVERY_MS, () => void follow());
+    if (asked === question) cancel = clock.after(EVERY_MS, () => void follow());
   };
   createEffect(
     on([serial, about], () => {
       question += 1;
       cancel();
-      setEntries([]);
+      setEntries(null);
+      setProblem(null);
       void follow();
     }),
   );
@@ -100,21 +112,37 @@ export function TimelinePanel() {
         </label>
       </div>
       <Problem text={problem()} />
-      <Show when={entries().length > 0} fallback={<Empty>Nothing has happened.</Empty>}>
+      <Show
+        when={shown().length > 0}
+        fallback={
+          <Show when={problem() === null}>
+            <Empty>{entries() === null ? "Loading the timeline." : "Nothing has happened."}</Empty>
+          </Show>
+        }
+      >
         {/* Scrollable lists are reached by keyboard too. */}
         {/* biome-ignore lint/a11y/noNoninteractiveTabindex: it scrolls */}
         <ol class="timeline" tabIndex={0} aria-label="What happened, the newest first">
-          <For each={entries()}>{(entry) => <Line entry={entry} />}</For>
+          <For each={shown()}>{(entry) => <Line entry={entry} />}</For>
         </ol>
         <Show when={hasMore()}>
           <div class="section">
-            <button
-              type="button"
-              class="button"
-              onClick={() => void load(entries().at(-1)?.n ?? null)}
+            <Show
+              when={shown().length < MOST}
+              fallback={
+                <p class="muted">
+                  The newest {MOST} are shown. Choose a drone or a subject to see earlier ones.
+                </p>
+              }
             >
-              Earlier
-            </button>
+              <button
+                type="button"
+                class="button"
+                onClick={() => void load(shown().at(-1)?.n ?? null)}
+              >
+                Earlier
+              </button>
+            </Show>
           </div>
         </Show>
       </Show>

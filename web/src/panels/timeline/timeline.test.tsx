@@ -65,10 +65,61 @@ describe("the timeline", () => {
     expect(lines()).toEqual([]);
   });
 
-  it("ends with its panel", async () => {
+  it("adds earlier entries once, however often they are asked for", async () => {
+    await open(...Array.from({ length: 170 }, (_, index) => entry(170 - index)));
+    const earlier = find<HTMLButtonElement>(page.root, ".section .button");
+    earlier.click();
+    earlier.click();
+    await settled();
+    expect(lines()).toHaveLength(150);
+    expect(new Set(lines()).size).toBe(150);
+  });
+
+  it("drops earlier entries that no longer follow the last one shown", async () => {
+    await open(...Array.from({ length: 170 }, (_, index) => entry(170 - index)));
+    page.timeline.entries = Array.from({ length: 470 }, (_, index) => entry(470 - index));
+    // More came than one page holds, so the newest replace those shown, just before the earlier ones come.
+    page.clock.advance(2000);
+    find<HTMLButtonElement>(page.root, ".section .button").click();
+    await settled();
+    const numbers = lines().map((line) => Number(/Hover (\d+)/.exec(line)?.[1]));
+    expect(numbers).toEqual(numbers.map((_, index) => 470 - index));
+  });
+
+  it("keeps the newest 500", async () => {
+    const count = 650;
+    await open(...Array.from({ length: count }, (_, index) => entry(count - index)));
+    for (let press = 0; press < 5; press += 1) {
+      find<HTMLButtonElement>(page.root, ".section .button").click();
+      await settled();
+    }
+    expect(lines()).toHaveLength(500);
+    expect(page.root.textContent).toContain("The newest 500 are shown");
+    page.timeline.entries.unshift(entry(count + 1));
+    page.clock.advance(2000);
+    await settled();
+    expect(lines()).toHaveLength(500);
+    expect(lines()[0]).toContain(`Hover ${count + 1}`);
+  });
+
+  it("states that nothing has happened only when the station has answered so", async () => {
+    page = renderPage(TimelinePanel, station([vehicle(1)]));
+    expect(page.root.textContent).not.toContain("Nothing has happened");
+    await settled();
+    expect(page.root.textContent).toContain("Nothing has happened");
+    page.timeline.problem = "Station unreachable";
+    page.clock.advance(2000);
+    await settled();
+    expect(page.root.textContent).toContain("Station unreachable");
+    expect(page.root.textContent).not.toContain("Nothing has happened");
+  });
+
+  it("ends with its panel, also before an answer", async () => {
     await open(entry(1));
+    page.clock.advance(2000);
     page.dispose();
     const asked = page.timeline.asked.length;
+    await settled();
     page.clock.advance(10_000);
     await settled();
     expect(page.timeline.asked).toHaveLength(asked);
