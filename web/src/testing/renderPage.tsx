@@ -66,8 +66,8 @@ export interface RenderedPage {
   /** Sets the place upwind of further answers. */
   findUpwind(place: UpwindPlaceView): void;
   showPreflight(preflight: PreflightView): void;
-  /** Sets the flight records and the figures of each. */
-  showFlights(flights: readonly FlightView[], figures: Outcome<FlightFiguresView>): void;
+  /** Sets the flight records, or why they cannot be read, and the figures of each. */
+  showFlights(flights: readonly FlightView[] | string, figures: FlightFiguresView | string): void;
   failPreflight(problem: string): void;
   /** Sets how vehicle pictures are fetched. */
   fetchFramesWith(fetch: StationSource["vehicleFrame"]): void;
@@ -244,9 +244,9 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
     findUpwind: (place) => {
       recorded.upwindPlace = { kind: "answered", value: { place, reason: "" } };
     },
-    showFlights: (value, figures) => {
-      recorded.flights = { kind: "answered", value: [...value] };
-      recorded.figures = figures;
+    showFlights: (flights, figures) => {
+      recorded.flights = outcomeOf(typeof flights === "string" ? flights : [...flights]);
+      recorded.figures = outcomeOf(figures);
     },
     showPreflight: (value) => {
       recorded.preflight = { kind: "answered", value };
@@ -372,6 +372,13 @@ function fakeSource(
     surveys: fakeSurveyRequests(recorded),
     close: () => {},
   };
+}
+
+/** A text is a problem. */
+function outcomeOf<T>(answer: T | string): Outcome<T> {
+  return typeof answer === "string"
+    ? { kind: "failed", problem: answer }
+    : { kind: "answered", value: answer };
 }
 
 function fakeSiteRequests(site: FakeSite): SiteRequests {

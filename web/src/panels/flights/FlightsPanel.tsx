@@ -1,4 +1,4 @@
-import { createEffect, createSignal, For, on, onCleanup, onMount, Show } from "solid-js";
+import { createMemo, createResource, createSignal, For, onCleanup, onMount, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { FlightFiguresView, FlightView } from "../../protocol";
 import type { FlightFile } from "../../source/flightRequests";
@@ -25,7 +25,8 @@ const LARGEST_RECORD_BYTES = 500e6;
 /** The flight records in the station's folder: coverage of each, and its files. */
 export function FlightsPanel() {
   const { source } = useConsole();
-  const [flights, setFlights] = createSignal<readonly FlightView[]>([]);
+  /** Null before the first answer. */
+  const [flights, setFlights] = createSignal<readonly FlightView[] | null>(null);
   const [problem, setProblem] = createSignal<string | null>(null);
   const [chosen, setChosen] = createSignal<string | null>(null);
   const list = async () => {
@@ -34,7 +35,7 @@ export function FlightsPanel() {
     if (outcome.kind === "answered") setFlights(outcome.value);
   };
   onMount(() => void list());
-  const flight = () => flights().find(({ name }) => name === chosen());
+  const flight = () => flights()?.find(({ name }) => name === chosen());
   return (
     <Panel
       title="After the flight"
@@ -53,8 +54,16 @@ export function FlightsPanel() {
     >
       <Problem text={problem()} />
       <Show
-        when={flights().length > 0}
-        fallback={<Empty>No flight records in the station's folder.</Empty>}
+        when={flights()?.length}
+        fallback={
+          <Show when={problem() === null}>
+            <Empty>
+              {flights() === null
+                ? "Loading the flight records."
+                : "No flight records in the station's folder."}
+            </Empty>
+          </Show>
+        }
       >
         <ul class="list flights-list">
           <For each={flights()}>
@@ -76,59 +85,47 @@ export function FlightsPanel() {
             )}
           </For>
         </ul>
-        <Show when={flight()}>{(one) => <Flight flight={one()} />}</Show>
+        <Show when={flight()?.name} keyed>
+          {(name) => <Flight name={name} whyNoRecord={whyNoRecord(flight())} />}
+        </Show>
       </Show>
     </Panel>
   );
 }
 
-/** Figures and coverage of the chosen flight, and what can be downloaded. */
-function Flight(props: { flight: FlightView }) {
+/** Why the record itself cannot be downloaded; null: it can. */
+function whyNoRecord(flight: FlightView | undefined): string | null {
+  if (flight?.is_recording) return "Record MCAP: this flight is still being recorded.";
+  if ((flight?.size_bytes ?? 0) <= LARGEST_RECORD_BYTES) return null;
+  return "Record MCAP: too large for a browser; copy it from the station's folder.";
+}
+
+/** Figures and coverage of one flight, and what can be downloaded. */
+function Flight(props: { name: string; whyNoRecord: string | null }) {
   const { source } = useConsole();
-  const [figures, setFigures] = createSignal<FlightFiguresView | null>(null);
-  const [coverage, setCoverage] = createSignal<string | null>(null);
-  const [problem, setProblem] = createSignal<string | null>(null);
-  const [isReading, setReading] = createSignal(false);
-  const showPicture = (blob: Blob | null) => {
-    const shown = coverage();
-    if (shown !== null) URL.revokeObjectURL(shown);
-    setCoverage(blob === null ? null : URL.createObjectURL(blob));
-  };
-  onCleanup(() => showPicture(null));
-
-  createEffect(
-    on(
-      () => props.flight.name,
-      async (name) => {
-        setFigures(null);
-        showPicture(null);
-        setProblem(null);
-        setReading(true);
-        const found = await source.flights.figures(name);
-        if (name !== props.flight.name) return;
-        setReading(false);
-        if (found.kind === "failed") {
-          setProblem(found.problem);
-          return;
-        }
-        setFigures(found.value);
-        if (found.value.region_m2 === null) return;
-        const picture = await source.flights.file(name, "coverage.png");
-        if (name === props.flight.name && picture.kind === "answered") {
-          showPicture(picture.value.blob);
-        }
-      },
-    ),
+  const [found] = createResource(() => source.flights.figures(props.name));
+  const figures = () => answerOf(found());
+  const [picture] = createResource(
+    () => (figures()?.region_m2 ?? null) !== null,
+    () => source.flights.file(props.name, "coverage.png"),
   );
-
+  const coverage = createMemo(() => {
+    const blob = answerOf(picture())?.blob;
+    if (blob === undefined) return null;
+    const url = URL.createObjectURL(blob);
+    onCleanup(() => URL.revokeObjectURL(url));
+    return url;
+  });
+  const [saved, setSaved] = createSignal<Outcome<Picture> | null>(null);
+  const [isSaving, setSaving] = createSignal(false);
   const save = async (asked: Promise<Outcome<Picture>>, as: string) => {
-    setReading(true);
+    setSaving(true);
     const outcome = await asked;
-    setReading(false);
-    setProblem(outcome.kind === "failed" ? outcome.problem : null);
+    setSaving(false);
+    setSaved(outcome);
     if (outcome.kind === "answered") saveAs(outcome.value.blob, as);
   };
-  const isLarge = () => props.flight.size_bytes > LARGEST_RECORD_BYTES;
+  const isReading = () => found.loading || isSaving();
   return (
     <div class="section" data-testid="flight">
       <Show when={isReading()}>
@@ -136,7 +133,8 @@ function Flight(props: { flight: FlightView }) {
           Reading the record…
         </p>
       </Show>
-      <Problem text={problem()} />
+      <Problem text={problemOf(found())} />
+      <Problem text={problemOf(saved())} />
       <Show when={coverage()}>
         {(url) => (
           <figure class="flights-coverage">
@@ -158,10 +156,7 @@ function Flight(props: { flight: FlightView }) {
               class="button"
               disabled={isReading()}
               onClick={() =>
-                void save(
-                  source.flights.file(props.flight.name, file),
-                  `${props.flight.name}-${file}`,
-                )
+                void save(source.flights.file(props.name, file), `${props.name}-${file}`)
               }
             >
               {title}
@@ -171,21 +166,24 @@ function Flight(props: { flight: FlightView }) {
         <button
           type="button"
           class="button"
-          disabled={isReading() || props.flight.is_recording || isLarge()}
-          title={
-            isLarge()
-              ? "Too large for a browser: copy it from the station's folder"
-              : "The whole record, for replays and bug reports"
-          }
-          onClick={() =>
-            void save(source.flights.record(props.flight.name), `${props.flight.name}.mcap`)
-          }
+          disabled={isReading() || props.whyNoRecord !== null}
+          title="The whole record, for replays and bug reports"
+          onClick={() => void save(source.flights.record(props.name), `${props.name}.mcap`)}
         >
           Record MCAP
         </button>
       </div>
+      <Show when={props.whyNoRecord}>{(reason) => <p class="muted">{reason()}</p>}</Show>
     </div>
   );
+}
+
+function answerOf<T>(outcome: Outcome<T> | null | undefined): T | null {
+  return outcome?.kind === "answered" ? outcome.value : null;
+}
+
+function problemOf(outcome: Outcome<unknown> | null | undefined): string | null {
+  return outcome?.kind === "failed" ? outcome.problem : null;
 }
 
 function Figures(props: { figures: FlightFiguresView }) {

@@ -41,12 +41,11 @@ const FIGURES: FlightFiguresView = {
 /** The panel after its list has come. */
 async function show(flights: readonly FlightView[], figures: FlightFiguresView | string = FIGURES) {
   page = renderPage(FlightsPanel, station([vehicle(1)]));
-  page.showFlights(
-    flights,
-    typeof figures === "string"
-      ? { kind: "failed", problem: figures }
-      : { kind: "answered", value: figures },
-  );
+  page.showFlights(flights, figures);
+  await refresh();
+}
+
+async function refresh() {
   find(page.root, "[aria-label=Refresh]").click();
   await settled();
 }
@@ -76,9 +75,16 @@ describe("the list", () => {
     expect(flightTime("ground-20250620T160412Z")).toBe("2025-06-20 16:04, on the ground");
   });
 
-  it("states that there are no records", async () => {
-    await show([]);
-    expect(page.root.textContent).toContain("No flight records in the station's folder.");
+  it("states that there are no records only when the station has answered so", async () => {
+    const none = "No flight records in the station's folder.";
+    page = renderPage(FlightsPanel, station([vehicle(1)]));
+    expect(page.root.textContent).not.toContain(none);
+    await settled();
+    expect(page.root.textContent).toContain(none);
+    page.showFlights("Station unreachable", FIGURES);
+    await refresh();
+    expect(page.root.textContent).toContain("Station unreachable");
+    expect(page.root.textContent).not.toContain(none);
   });
 });
 
@@ -121,6 +127,26 @@ describe("a flight", () => {
     await settled();
     expect(page.root.textContent).toContain("its record has no place");
     expect(button("Tracks GPX").disabled).toBe(false);
+    const click = vi.spyOn(HTMLAnchorElement.prototype, "click").mockImplementation(() => {});
+    press("Tracks GPX");
+    await settled();
+    expect(click).toHaveBeenCalledOnce();
+    click.mockRestore();
+    expect(page.root.textContent).toContain("its record has no place");
+  });
+
+  it("shows neither problem nor files of one chosen before, and is read once", async () => {
+    await show([flight(), flight({ name: "long" })]);
+    press("2025-06-20 16:04");
+    await settled();
+    press("Record MCAP");
+    press("long");
+    await settled();
+    expect(page.root.textContent).not.toContain("no record in this test");
+    expect(find(page.root, "[data-testid=flight]").textContent).toContain("Alder");
+    const asked = page.requests.length;
+    await refresh();
+    expect(page.requests).toHaveLength(asked);
   });
 
   it("offers a record neither while it grows nor when a browser cannot hold it", async () => {
@@ -128,9 +154,10 @@ describe("a flight", () => {
     press("2025-06-20 16:04");
     await settled();
     expect(button("Record MCAP").disabled).toBe(true);
+    expect(page.root.textContent).toContain("still being recorded");
     press("long");
     await settled();
     expect(button("Record MCAP").disabled).toBe(true);
-    expect(button("Record MCAP").title).toContain("copy it");
+    expect(page.root.textContent).toContain("copy it from the station's folder");
   });
 });
