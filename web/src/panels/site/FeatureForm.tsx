@@ -1,4 +1,4 @@
-import { createSignal, For, Index, Show } from "solid-js";
+import { createEffect, createMemo, createSignal, For, Index, on, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { LonLat } from "../../map/localGrid";
 import { LEAST_CORNERS } from "../../site/siteDraft";
@@ -100,27 +100,48 @@ function TextField(props: { label: string; value: Attribute; onChange: (text: st
   );
 }
 
-/** A number or, empty, nothing; what is no number stays in the field and is marked. */
+/** A number or, empty, nothing. */
 function NumberField(props: { feature: DraftFeature; name: string; label: string }) {
   const { siteDraft } = useConsole();
-  const [isBad, setBad] = createSignal(false);
   const change = (text: string) => {
     const value = text.trim() === "" ? null : Number(text.replace(",", "."));
-    setBad(Number.isNaN(value));
-    if (!Number.isNaN(value)) siteDraft.setProperty(props.feature.id, props.name, value);
+    if (Number.isNaN(value)) return false;
+    siteDraft.setProperty(props.feature.id, props.name, value);
+    return true;
   };
   return (
+    // biome-ignore lint/a11y/noLabelWithoutControl: its control is the component's
     <label>
       {props.label}
-      <input
-        class="field"
-        type="text"
+      <CheckedField
+        text={String(props.feature.properties[props.name] ?? "")}
         inputmode="decimal"
-        aria-invalid={isBad()}
-        value={String(props.feature.properties[props.name] ?? "")}
-        onChange={(event) => change(event.currentTarget.value)}
+        onChange={change}
       />
     </label>
+  );
+}
+
+/** What cannot be read (`onChange` returns false) stays in the field, marked, until there is a new text. */
+function CheckedField(props: {
+  text: string;
+  inputmode: "decimal" | "text";
+  label?: string;
+  onChange: (text: string) => boolean;
+}) {
+  const [isBad, setBad] = createSignal(false);
+  const text = createMemo(() => props.text);
+  createEffect(on(text, () => setBad(false)));
+  return (
+    <input
+      class="field"
+      type="text"
+      inputmode={props.inputmode}
+      aria-label={props.label}
+      aria-invalid={isBad()}
+      value={text()}
+      onChange={(event) => setBad(!props.onChange(event.currentTarget.value))}
+    />
   );
 }
 
@@ -208,22 +229,19 @@ function Corner(props: {
   onInsert: () => void;
   onRemove: () => void;
 }) {
-  const [isBad, setBad] = createSignal(false);
   const change = (text: string) => {
     const to = cornerOf(text);
-    setBad(to === null);
     if (to !== null) props.onMove(to);
+    return to !== null;
   };
   const name = () => (props.isAlone ? "Place" : `Corner ${props.number}`);
   return (
     <li class="site-corner">
-      <input
-        class="field"
-        type="text"
-        aria-label={`${name()}: latitude, longitude`}
-        aria-invalid={isBad()}
-        value={cornerText(props.corner)}
-        onChange={(event) => change(event.currentTarget.value)}
+      <CheckedField
+        text={cornerText(props.corner)}
+        inputmode="text"
+        label={`${name()}: latitude, longitude`}
+        onChange={change}
       />
       <Show when={!props.isAlone}>
         <button

@@ -34,12 +34,7 @@ export function SitePanel() {
       name="site"
       class="site"
       actions={
-        <button
-          type="button"
-          class="button"
-          aria-pressed={siteDraft.isOn()}
-          onClick={() => void toggle()}
-        >
+        <button type="button" class="button" onClick={() => void toggle()}>
           {siteDraft.isOn() ? "Close" : "Edit"}
         </button>
       }
@@ -90,8 +85,9 @@ function Editor() {
             </For>
           </ul>
         </Show>
-        <Show when={selected()} keyed={false}>
-          {(feature) => <FeatureForm feature={feature()} />}
+        {/* By id: what was typed for one feature is not shown for the next. */}
+        <Show when={selected()?.id} keyed>
+          <Show when={selected()}>{(feature) => <FeatureForm feature={feature()} />}</Show>
         </Show>
         <ImportForm />
         <SaveForm />
@@ -105,6 +101,7 @@ function AddForm() {
   const { siteDraft, mapCentre } = useConsole();
   const [layer, setLayer] = createSignal<LayerName>("boundary");
   const tool = siteDraft.tool;
+  const isDrawing = () => tool()?.hole === false;
   const add = () => {
     const centre = mapCentre();
     if (centre !== null) siteDraft.addAt(layer(), centre, centre.width_m * SQUARE_SHARE);
@@ -115,7 +112,7 @@ function AddForm() {
       aria-label="New feature"
       onSubmit={(event) => {
         event.preventDefault();
-        siteDraft.draw({ layer: layer(), hole: false });
+        siteDraft.draw(isDrawing() ? null : { layer: layer(), hole: false });
       }}
     >
       <label class="site-wide">
@@ -130,7 +127,7 @@ function AddForm() {
           </For>
         </select>
       </label>
-      <button type="submit" class="button" aria-pressed={tool() !== null}>
+      <button type="submit" class="button" aria-pressed={isDrawing()}>
         Draw on map
       </button>
       <button type="button" class="button" onClick={add}>

@@ -33,13 +33,16 @@ function press(text: string) {
   button(text).click();
 }
 
-function type(label: string, text: string) {
+function field(label: string): HTMLInputElement {
   const named = [...page.root.querySelectorAll("label")].find(({ textContent }) =>
     textContent?.startsWith(label),
   );
-  const field = named?.querySelector("input, select") ?? find(page.root, `[aria-label='${label}']`);
-  (field as HTMLInputElement).value = text;
-  field.dispatchEvent(new Event("change", { bubbles: true }));
+  return named?.querySelector("input, select") ?? find(page.root, `[aria-label='${label}']`);
+}
+
+function type(label: string, text: string) {
+  field(label).value = text;
+  field(label).dispatchEvent(new Event("change", { bubbles: true }));
 }
 
 function corners(): string[] {
@@ -71,6 +74,41 @@ describe("with the keyboard alone", () => {
     type("Corner 2: latitude, longitude", "here");
     expect(page.shared.siteDraft.features()).toBe(before);
     expect(page.root.querySelectorAll("[aria-invalid='true']")).toHaveLength(1);
+  });
+
+  it("a text that is no number ends with the selection, and with a new value", async () => {
+    await open();
+    const { siteDraft } = page.shared;
+    siteDraft.addAt("keep_out", HERE, 100);
+    siteDraft.addAt("keep_out", HERE, 100);
+    const marked = () => page.root.querySelectorAll("[aria-invalid='true']").length;
+    type("Floor, m", "low");
+    type("Corner 1: latitude, longitude", "here");
+    expect(marked()).toBe(2);
+    siteDraft.select(siteDraft.features()[0]?.id ?? null);
+    expect(marked()).toBe(0);
+    expect(field("Floor, m").value).toBe("");
+    type("Floor, m", "5");
+    type("Corner 1: latitude, longitude", "41.95, -93.65");
+    type("Floor, m", "low");
+    type("Corner 1: latitude, longitude", "here");
+    siteDraft.undo();
+    expect([marked(), field("Floor, m").value]).toEqual([1, "low"]);
+    siteDraft.undo();
+    expect([marked(), field("Floor, m").value]).toEqual([0, ""]);
+  });
+
+  it("drawing on the map is begun and ended by the same button, not by a hole's", async () => {
+    await open();
+    const { siteDraft } = page.shared;
+    const isPressed = () => button("Draw on map").getAttribute("aria-pressed");
+    press("Draw on map");
+    expect([siteDraft.tool()?.layer, isPressed()]).toEqual(["boundary", "true"]);
+    press("Draw on map");
+    expect([siteDraft.tool(), isPressed()]).toEqual([null, "false"]);
+    press("At map centre");
+    press("Draw a hole");
+    expect([siteDraft.tool()?.hole, isPressed()]).toEqual([true, "false"]);
   });
 
   it("long outlines are listed a page at a time", async () => {

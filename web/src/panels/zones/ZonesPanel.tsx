@@ -21,7 +21,6 @@ export function ZonesPanel() {
         <button
           type="button"
           class="button"
-          aria-pressed={zoneDraft.isOn()}
           title="Keep drones out of a place at once (Z)"
           onClick={() => zoneDraft.toggle()}
         >
