@@ -11,8 +11,8 @@ import { DRAFT_FILL, DRAFT_POINT, layerColour } from "./siteDraftLayer";
 const CORNER_PX = 24;
 
 /**
- * Editing the site with a pointer: a press selects a feature, whose rings are then in the hands of the ring
- * editor; with a tool, presses draw a new ring. The editor's library is loaded when it is first needed.
+ * Editing the site with a pointer: a press selects a feature, whose rings are then edited by the ring editor;
+ * with a tool, presses draw a new ring. The editor's library is loaded when it is first needed.
  */
 export function createSiteEditing(map: MapLibre, draft: SiteDraft, theme: ThemeSwitch): void {
   const [editor, setEditor] = createSignal<RingEditor | null>(null);
@@ -40,15 +40,15 @@ export function createSiteEditing(map: MapLibre, draft: SiteDraft, theme: ThemeS
     return one !== null && isDraggable(one) ? one : null;
   });
   createEffect(() => {
-    const [hands, tool, one] = [editor(), draft.isOn() ? draft.tool() : null, edited()];
+    const [ringEditor, tool, one] = [editor(), draft.isOn() ? draft.tool() : null, edited()];
     theme.changes();
-    if (hands === null) return;
+    if (ringEditor === null) return;
     const colours = readColours(document);
     const layer = tool?.layer ?? one?.layer ?? "boundary";
-    hands.recolour({ line: layerColour(layer, colours), casing: colours.casing });
-    if (tool !== null) hands.draw(tool.layer === "landing_pads" ? "point" : "polygon");
-    else if (one !== null) hands.edit(one);
-    else hands.rest();
+    ringEditor.recolour({ line: layerColour(layer, colours), casing: colours.casing });
+    if (tool !== null) ringEditor.draw(tool.layer === "landing_pads" ? "point" : "polygon");
+    else if (one !== null) ringEditor.edit(one);
+    else ringEditor.rest();
   });
 
   const select = (event: MapMouseEvent) => {

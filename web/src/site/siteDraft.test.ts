@@ -191,6 +191,20 @@ describe("saving", () => {
     expect(page.site.asked.at(-1)?.[1].revision).toBe("r2");
   });
 
+  it("names the layers that change, or that nothing does", async () => {
+    const draft = await open();
+    draft.addAt("boundary", HERE, 50);
+    const { drawing } = page.site;
+    page.site.response = { ...ACCEPTED, layers: ["boundary", "keep_out", "landing_pads"], drawing };
+    await draft.save();
+    expect(draft.notice()?.text).toBe(
+      "Saved: boundary, keep-out zones and landing pads. In force now",
+    );
+    page.site.response = { ...ACCEPTED, layers: [], drawing };
+    await draft.save();
+    expect(draft.notice()?.text).toBe("Saved: nothing changes");
+  });
+
   it("leaves a ring that is being drawn", async () => {
     const draft = await open();
     draft.addAt("boundary", HERE, 50);

@@ -9,7 +9,7 @@ import type {
 import type { Clock } from "../source/clock";
 import type { SiteRequests } from "../source/siteRequests";
 import type { Outcome } from "../source/stationSource";
-import { listNames } from "../text/names";
+import { capitalised, listNames } from "../text/names";
 import {
   type Attribute,
   type DraftFeature,
@@ -225,9 +225,13 @@ export function createSiteDraft(
         checkSoon();
       } else load(answer.drawing);
       const what = layersText(answer.layers);
-      const text = what === "" ? `${capital(verb)}: nothing changes` : `${capital(verb)}: ${what}`;
+      const changes = what === "" ? "nothing changes" : `${what}. In force now`;
       const rest = isEdited ? ifEdited : "";
-      setNotice({ about: "site", text: `${text}. In force now${rest}`, isProblem: false });
+      setNotice({
+        about: "site",
+        text: `${capitalised(verb)}: ${changes}${rest}`,
+        isProblem: false,
+      });
     };
   const reload = () =>
     ask(
@@ -379,13 +383,8 @@ function verdictOf(outcome: Outcome<SiteDrawingResponse>, asked: readonly DraftF
 
 /** The layers that change, in words. */
 function layersText(layers: readonly LayerName[]): string {
-  return listNames(
-    layers.map((layer) => layer.replaceAll("_", " ").replace("keep out", "keep-out")),
-  );
-}
-
-function capital(text: string): string {
-  return text.charAt(0).toUpperCase() + text.slice(1);
+  const many = (name: string) => (name === LAYERS.boundary.name ? name : `${name}s`);
+  return listNames(layers.map((layer) => many(LAYERS[layer].name).toLowerCase()));
 }
 
 /** A name that no other feature of the layer has; the boundary needs none. */
