@@ -2,6 +2,7 @@ import type { Map as MapLibre } from "maplibre-gl";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import type { Outcome, Picture } from "../source/stationSource";
 import { shadeLine, station, survey } from "../testing/fakeState";
+import { settled } from "../testing/renderPage";
 import { createOverlay, ForecastLayer, ShadeLayer, SurveyCellsLayer } from "./overlays";
 import { wayFeatures } from "./surveyRowsLayer";
 
@@ -44,8 +45,6 @@ function scene(second: number, number: number) {
   const state = station([], { time_ns: second * 1e9, shade, surveys: [survey(7)] });
   return { state, behindS: 0, selected: [], plannedTarget: null, zoneDraft: null, siteDraft: null };
 }
-
-const settled = () => new Promise((done) => setTimeout(done));
 
 beforeEach(() => {
   vi.spyOn(URL, "createObjectURL").mockImplementation(() => "blob:1");

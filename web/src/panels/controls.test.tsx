@@ -8,7 +8,7 @@ import type {
   StationState,
 } from "../protocol";
 import { hazard, station, vehicle } from "../testing/fakeState";
-import { find, type RenderedPage, renderPage } from "../testing/renderPage";
+import { find, type RenderedPage, renderPage, settled } from "../testing/renderPage";
 import { VehicleDetail } from "./detail/VehicleDetail";
 import { SeparationBanner, SeparationSwitch } from "./separation/SeparationHold";
 import { StopBanner } from "./stop/StopLatch";
@@ -20,9 +20,6 @@ const show = (part: Parameters<typeof renderPage>[0], state: StationState) => {
 };
 afterEach(() => page.dispose());
 
-const settled = async () => {
-  for (let turn = 0; turn < 5; turn += 1) await Promise.resolve();
-};
 const button = (name: string) => find(page.root, `[aria-label^="${name}"]`);
 const press = (name: string) =>
   button(name).dispatchEvent(new PointerEvent("pointerdown", { bubbles: true, button: 0 }));

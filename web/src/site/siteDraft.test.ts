@@ -2,7 +2,7 @@ import { createRoot } from "solid-js";
 import { afterEach, describe, expect, it } from "vitest";
 import type { DrawnFeatureView, SiteDrawingResponse } from "../protocol";
 import { station, vehicle } from "../testing/fakeState";
-import { type RenderedPage, renderPage } from "../testing/renderPage";
+import { type RenderedPage, renderPage, settled } from "../testing/renderPage";
 import { areaHa, cornerOf, cornerText, featureOf, squareAround, viewOf } from "./siteFeatures";
 
 let page: RenderedPage;
@@ -35,10 +35,6 @@ const ACCEPTED: SiteDrawingResponse = {
   drawing: null,
 };
 const CHECK_MS = 600;
-
-async function settled() {
-  for (let turn = 0; turn < 5; turn += 1) await Promise.resolve();
-}
 
 async function open(...features: DrawnFeatureView[]) {
   page = createRoot(() => renderPage(() => null, station([vehicle(1)])));

@@ -460,3 +460,17 @@ export function find<E extends Element = HTMLElement>(root: ParentNode, selector
   if (element === null) throw new Error(`No element matches ${selector}.`);
   return element;
 }
+
+/** The first button with this label, or whose text begins with it. */
+export function findButton(root: ParentNode, text: string): HTMLButtonElement {
+  const found = [...root.querySelectorAll("button")].find(
+    (one) => one.getAttribute("aria-label") === text || one.textContent?.startsWith(text),
+  );
+  if (found === undefined) throw new Error(`No button "${text}".`);
+  return found;
+}
+
+/** Lets answers of fakes arrive, and what is asked because of them. */
+export async function settled(): Promise<void> {
+  for (let turn = 0; turn < 10; turn += 1) await Promise.resolve();
+}

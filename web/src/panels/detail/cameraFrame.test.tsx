@@ -2,7 +2,7 @@ import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import type { StationState } from "../../protocol";
 import type { Outcome, Picture } from "../../source/stationSource";
 import { station, vehicle } from "../../testing/fakeState";
-import { find, type RenderedPage, renderPage } from "../../testing/renderPage";
+import { find, type RenderedPage, renderPage, settled } from "../../testing/renderPage";
 import { VehicleDetail } from "./VehicleDetail";
 
 /** The state at `second` that announces frame `id`; frame n is captured at second n. */
@@ -33,10 +33,6 @@ beforeEach(() => {
 afterEach(() => page.dispose());
 
 const caption = () => page.root.querySelector("figcaption")?.textContent ?? null;
-
-async function settled(): Promise<void> {
-  for (let turn = 0; turn < 4; turn += 1) await Promise.resolve();
-}
 
 /** Answers the request with the picture of frame `frameId`. */
 async function deliver(index: number, frameId: number | null): Promise<void> {

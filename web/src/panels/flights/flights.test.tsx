@@ -1,7 +1,7 @@
 import { afterEach, describe, expect, it, vi } from "vitest";
 import type { FlightFiguresView, FlightView } from "../../protocol";
 import { station, vehicle } from "../../testing/fakeState";
-import { find, type RenderedPage, renderPage } from "../../testing/renderPage";
+import { find, findButton, type RenderedPage, renderPage, settled } from "../../testing/renderPage";
 import { flightTime } from "../../text/flights";
 import { FlightsPanel } from "./FlightsPanel";
 
@@ -50,17 +50,7 @@ async function refresh() {
   await settled();
 }
 
-async function settled() {
-  for (let turn = 0; turn < 10; turn += 1) await Promise.resolve();
-}
-
-function button(text: string): HTMLButtonElement {
-  const found = [...page.root.querySelectorAll("button")].find((one) =>
-    one.textContent?.includes(text),
-  );
-  if (found === undefined) throw new Error(`No button "${text}"`);
-  return found;
-}
+const button = (text: string) => findButton(page.root, text);
 
 function press(text: string) {
   button(text).click();

@@ -2,15 +2,12 @@ import { afterEach, beforeEach, describe, expect, it } from "vitest";
 import { courseOf, courseText } from "../../orders/course";
 import { numberIn } from "../../orders/flyHere";
 import { at, orderResult, station, vehicle } from "../../testing/fakeState";
-import { find, type RenderedPage, renderPage } from "../../testing/renderPage";
+import { find, type RenderedPage, renderPage, settled } from "../../testing/renderPage";
 import { FlyHereCard } from "./FlyHereCard";
 
 const lonLat = (east_m: number, north_m: number) => {
   const [lon, lat] = at(east_m, north_m);
   return { lon, lat };
-};
-const settled = async () => {
-  for (let turn = 0; turn < 5; turn += 1) await Promise.resolve();
 };
 
 describe("the course", () => {

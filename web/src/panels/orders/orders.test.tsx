@@ -1,6 +1,6 @@
 import { afterEach, beforeEach, describe, expect, it } from "vitest";
 import { command, orderResult, station, vehicle } from "../../testing/fakeState";
-import { find, type RenderedPage, renderPage } from "../../testing/renderPage";
+import { find, type RenderedPage, renderPage, settled } from "../../testing/renderPage";
 import { AllStop } from "../bar/TopBar";
 import { AnswerNotice } from "./AnswerNotice";
 import { OrderBar } from "./OrderBar";
@@ -147,9 +147,6 @@ describe("all stop", () => {
 
 describe("the station's answer", () => {
   const line = () => find(page.root, ".toast-line").textContent ?? "";
-  const settled = async () => {
-    for (let turn = 0; turn < 3; turn += 1) await Promise.resolve();
-  };
   const stopAll = async () => {
     find(page.root, ".all-stop").click();
     await settled();

@@ -1,17 +1,13 @@
 import { afterEach, describe, expect, it } from "vitest";
 import { squareAround } from "../../site/siteFeatures";
 import { station, vehicle } from "../../testing/fakeState";
-import { find, type RenderedPage, renderPage } from "../../testing/renderPage";
+import { find, findButton, type RenderedPage, renderPage, settled } from "../../testing/renderPage";
 import { SitePanel } from "./SitePanel";
 
 let page: RenderedPage;
 afterEach(() => page?.dispose());
 
 const HERE = { lon: -93.6, lat: 41.9 };
-
-async function settled() {
-  for (let turn = 0; turn < 5; turn += 1) await Promise.resolve();
-}
 
 async function open(locked_reason: string | null = null) {
   page = renderPage(SitePanel, station([vehicle(1)]));
@@ -21,13 +17,7 @@ async function open(locked_reason: string | null = null) {
   await settled();
 }
 
-function button(text: string): HTMLButtonElement {
-  const found = [...page.root.querySelectorAll("button")].find(
-    (one) => one.textContent === text || one.getAttribute("aria-label") === text,
-  );
-  if (found === undefined) throw new Error(`No button "${text}"`);
-  return found;
-}
+const button = (text: string) => findButton(page.root, text);
 
 function press(text: string) {
   button(text).click();

@@ -1,7 +1,7 @@
 import { afterEach, describe, expect, it } from "vitest";
 import type { LookAsideView, UpwindPlaceView } from "../../protocol";
 import { groundImage, shadeLine, station, vehicle } from "../../testing/fakeState";
-import { find, type RenderedPage, renderPage } from "../../testing/renderPage";
+import { find, type RenderedPage, renderPage, settled } from "../../testing/renderPage";
 import { lightPercents } from "../../text/light";
 import { vehicleLabel } from "../../text/names";
 import { GUARD_MS } from "../guard/GuardButton";
@@ -160,7 +160,6 @@ describe("view upwind", () => {
     await settled();
   }
 
-  const settled = () => new Promise((resolve) => setTimeout(resolve));
   const text = () => find(page.root, "[data-testid=upwind-place]").textContent;
   const buttons = () =>
     page.root.querySelectorAll<HTMLButtonElement>("section[aria-label='View upwind'] button");

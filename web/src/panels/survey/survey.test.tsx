@@ -1,7 +1,7 @@
 import { afterEach, describe, expect, it } from "vitest";
 import type { SurveyView } from "../../protocol";
 import { area, station, survey, vehicle } from "../../testing/fakeState";
-import { find, type RenderedPage, renderPage } from "../../testing/renderPage";
+import { find, type RenderedPage, renderPage, settled } from "../../testing/renderPage";
 import { sharePercent, shownSurvey } from "../../text/survey";
 import { SurveyPanel } from "./SurveyPanel";
 
@@ -17,10 +17,6 @@ function hold(name: string, ms: number) {
   button.dispatchEvent(new PointerEvent("pointerdown", { bubbles: true, button: 0 }));
   page.clock.advance(ms);
   button.dispatchEvent(new PointerEvent("pointerup", { bubbles: true, button: 0 }));
-}
-
-async function settled() {
-  for (let turn = 0; turn < 5; turn++) await Promise.resolve();
 }
 
 describe("a survey in the list", () => {

@@ -1,15 +1,11 @@
 import { afterEach, describe, expect, it } from "vitest";
 import type { TimelineEntryView } from "../../protocol";
 import { station, vehicle } from "../../testing/fakeState";
-import { find, type RenderedPage, renderPage } from "../../testing/renderPage";
+import { find, type RenderedPage, renderPage, settled } from "../../testing/renderPage";
 import { clockTime, TimelinePanel } from "./TimelinePanel";
 
 let page: RenderedPage;
 afterEach(() => page?.dispose());
-
-async function settled() {
-  for (let turn = 0; turn < 5; turn += 1) await Promise.resolve();
-}
 
 function entry(n: number, changes: Partial<TimelineEntryView> = {}): TimelineEntryView {
   const utc = "2026-05-01T12:00:00.5Z";
