@@ -13,7 +13,7 @@ from PIL.TiffImagePlugin import IFDRational
 
 from recon.geo import geo_from_enu
 from recon.model.airspace import Region
-from recon.model.event import ClockRead, Event, PacketReceived, SurveyRequested
+from recon.model.event import ClockRead, Event, PacketReceived, SurveyRequested, SurveyStarted
 from recon.model.geo import GeoPoint, GroundGrid, LatLon, LocalFrame
 from recon.model.report import CoreReport, ExtendedReport
 from recon.model.shade import ShadeMap, SunForecast
@@ -106,7 +106,8 @@ def flight(*ways: Rows, maps_every_s: float = 4.0, path: Path = Path("made.mcap"
     ends_s = max(way.starts_s + way.lasts_s for way in ways)
     maps = [true_map(float(at_s)) for at_s in np.arange(0.5, ends_s, maps_every_s)]
     outline = ((-90.0, -90.0), (90.0, -90.0), (90.0, 90.0), (-90.0, 90.0))
-    survey = FlownSurvey(outline, (), HEIGHT_M, SPEED_MPS)
+    starts = ((START_NS, frozenset(tracks)),)
+    survey = FlownSurvey(outline, (), HEIGHT_M, SPEED_MPS, "field", starts=starts)
     return FlightData(
         path,
         FRAME,
@@ -131,6 +132,7 @@ def write_record(
     site: str = "made field",
     entries: Sequence[tuple[float, Entry]] = (),
     forecast: Probability | None = None,
+    refused_start_of: int | None = None,
 ) -> Path:
     """Write a made flight as the station records one, by the station's own codec.
 
@@ -157,11 +159,21 @@ def write_record(
         topics.add(STEPS_TOPIC, MSGPACK, msgspec.msgpack.encode(value), at_ns)
 
     step(ClockRead(UTC_AHEAD_NS + START_NS), START_NS)
-    for each in made.surveys:
+    for number, each in enumerate(made.surveys, start=1):
         survey = Survey(
-            1, each.name or "field", Region(np.array(each.outline_m)), HEIGHT_M, SPEED_MPS
+            number,
+            each.name,
+            Region(np.array(each.outline_m)),
+            each.height_above_takeoff_m,
+            each.speed_mps,
+            each.camera,
         )
         step(SurveyRequested(survey, "test"), START_NS)
+        for at_ns, serials in each.starts:
+            step(SurveyStarted(number, tuple(serials), "test"), at_ns)
+    if refused_start_of is not None:
+        refused = {"kind": "survey.refused", "text": "refused"}
+        step(SurveyStarted(refused_start_of, ("SIM-1",), "test"), START_NS, refused)
     for at_s, entry in entries:
         at_ns = START_NS + round(at_s * NS_PER_S)
         step(ClockRead(UTC_AHEAD_NS + at_ns), at_ns, entry)

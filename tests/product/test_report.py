@@ -131,6 +131,26 @@ def test_cover_and_coverage_are_those_of_the_construction(report: FlightReport) 
     assert report.covered.share(1) >= report.covered.enough > 0.5
 
 
+def test_only_surveys_that_were_started_count(tmp_path: Path) -> None:
+    made = flight(maps_every_s=60.0)
+    (flown,) = made.surveys
+    far = tuple((east + 400.0, north) for east, north in flown.outline_m)
+    idle = replace(flown, outline_m=far, height_above_takeoff_m=200.0, starts=())
+    later = replace(flown, name="later", starts=((START_NS + 30 * NS_PER_S, frozenset({"SIM-1"})),))
+    made = replace(made, surveys=[flown, idle, later])
+    path = write_record(made, tmp_path / "a.mcap", refused_start_of=2)
+    read = read_flight(path)
+    assert [each.name for each in read.surveys] == ["field", "later"]
+    assert [read.survey_of("SIM-1", START_NS + s * NS_PER_S).name for s in (29, 31)] == [
+        "field",
+        "later",
+    ]
+    assert read.survey_of("SIM-2", START_NS) is None
+    covered = report_of(path).covered
+    assert covered is not None
+    assert covered.share(0) == 1.0
+
+
 def test_alarms_flights_and_decisions_of_the_log(report: FlightReport) -> None:
     seconds = [(each.text, each.severity, each.ended_ns) for each in report.alarms]
     ended_ns = START_NS + 30 * NS_PER_S

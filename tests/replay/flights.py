@@ -15,7 +15,8 @@ from tempfile import TemporaryDirectory
 from tests.oracles.eight_vehicles import eight_vehicles
 from tests.oracles.same_again import FAULTS, bad_link
 from tests.replay.record_flight import Recorded, recording
-from tests.station.surveyed_world import surveyed_world
+from tests.station.returning_world import FRAME
+from tests.station.surveyed_world import SURVEY_ID, asked, surveyed_world
 
 from recon.site import Site
 from recon.station.kernel.virtual import VirtualDriver
@@ -73,10 +74,11 @@ def pictures_in_two(folder: Path) -> None:
 
 
 def survey_in_two(folder: Path) -> None:
-    """A survey, with a new file in flight."""
+    """A survey beside one that is never started, with a new file in flight."""
     world = surveyed_world(2)
-    with recording(world.driver, Site("reference"), folder) as record:
+    with recording(world.driver, Site("reference", FRAME), folder) as record:
         world.asks()
+        world.asks(asked(id=SURVEY_ID + 1, name="not flown"))
         world.starts("SIM-1", "SIM-2")
         world.runs(10.0)
         new_file(record, world.driver)

@@ -19,6 +19,7 @@ from tests.record.test_record_writer import until
 from tests.replay.flights import FOLDER, pictures_in_two, survey_in_two
 from tests.replay.record_flight import Audits, recording
 from tests.station.station_world import square_mission, world
+from tests.station.surveyed_world import asked
 
 from recon import wire
 from recon.link.tap import Direction
@@ -28,6 +29,7 @@ from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.report import ImageReport
 from recon.model.shade import ShadeMap, SunForecast
 from recon.model.units import seconds_to_ns
+from recon.product.flight import read_flight
 from recon.record import foxglove
 from recon.record.flight_messages import (
     BULK_BYTES,
@@ -500,6 +502,12 @@ def test_a_file_that_begins_in_flight_gives_the_same(flight: Any, tmp_path: Path
         found = check(path)
         assert (found.differences, found.trouble) == ([], "")
         assert found.jobs >= 2
+        if flight is survey_in_two:
+            (flown,) = read_flight(path).surveys
+            want = asked()
+            assert (flown.name, flown.camera) == (want.name, want.camera)
+            assert flown.outline_m == tuple(map(tuple, want.region.outline_m.tolist()))
+            assert flown.starts[0][1] == {"SIM-1", "SIM-2"}
 
 
 def test_a_failed_record_is_an_alarm_until_it_is_written_again() -> None:

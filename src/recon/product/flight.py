@@ -6,8 +6,8 @@ values of events, and `recon/about.json`. The file is hostile: each value is che
 
 import json
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -38,6 +38,10 @@ FULL = 250
 MOST_CELLS = 16_000_000
 MOST_MAPS = 20_000
 """Five hours with one map a second."""
+MOST_STARTS = 1_000
+"""Of surveys."""
+BEFORE_ALL_NS = 0
+"""When surveys were started that run as a record begins."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -70,7 +74,7 @@ class KeptMap:
 
 @dataclass(frozen=True, slots=True)
 class FlownSurvey:
-    """A survey as it was requested; rings in east-north metres."""
+    """A survey as it was requested and started; rings in east-north metres."""
 
     outline_m: tuple[tuple[float, float], ...]
     holes_m: tuple[tuple[tuple[float, float], ...], ...]
@@ -78,6 +82,8 @@ class FlownSurvey:
     speed_mps: float
     name: str = ""
     camera: SurveyCamera = field(default_factory=SurveyCamera)
+    starts: tuple[tuple[int, frozenset[str]], ...] = ()
+    """Each start in this record, in order: its time, and the serials it names."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -95,6 +101,7 @@ class FlightData:
     maps: Sequence[KeptMap] = ()
     """In the order of time."""
     surveys: Sequence[FlownSurvey] = ()
+    """Those that were started, or were running when the record began."""
     utc_ahead_ns: int = 0
     trouble: str = ""
     """Why reading ended early; empty if it did not."""
@@ -108,6 +115,17 @@ class FlightData:
         level = np.column_stack([points_m, np.zeros(len(points_m))])
         latitude_deg, longitude_deg, _height = geo_from_enu(self.frame, level)
         return list(zip(longitude_deg.tolist(), latitude_deg.tolist(), strict=True))
+
+    def survey_of(self, serial: str, at_ns: int) -> FlownSurvey | None:
+        """Return the survey that a vehicle was last started for; None before any start."""
+        starts = (
+            (start_ns, number)
+            for number, each in enumerate(self.surveys)
+            for start_ns, serials in each.starts
+            if start_ns <= at_ns and serial in serials
+        )
+        newest = max(starts, default=None)
+        return None if newest is None else self.surveys[newest[1]]
 
     @property
     def survey_tracks(self) -> dict[str, RecordedTrack]:
@@ -130,9 +148,14 @@ def read_flight(path: Path) -> FlightData:
 
 
 class _Step(msgspec.Struct, frozen=True):
-    """The event of a step, of which some kinds are read."""
+    """The event of a step, of which some kinds are read, and its audit."""
 
     event: dict[str, Any]
+    audit: msgspec.Raw = msgspec.Raw(b"\x90")
+
+
+class _Entry(msgspec.Struct, frozen=True):
+    kind: str
 
 
 TrackRow = tuple[int, float, float, float, float]
@@ -150,7 +173,9 @@ class _Reader:
     _utc_ahead_ns: int = 0
     _grid: GroundGrid | None = None
     _maps: list[KeptMap] = field(default_factory=list)
-    _surveys: list[FlownSurvey] = field(default_factory=list)
+    _surveys: dict[int, FlownSurvey] = field(default_factory=dict)
+    """By id: all that were requested."""
+    _starts: int = 0
     _serials: dict[int, str] = field(default_factory=dict)
     _links: dict[int, list[TrackRow]] = field(default_factory=dict)
     _decoder: msgspec.msgpack.Decoder[_Step] = field(
@@ -191,7 +216,7 @@ class _Reader:
             self._imagers,
             self._grid,
             sorted(self._maps, key=lambda each: each.at_ns),
-            self._surveys,
+            [each for each in self._surveys.values() if each.starts],
             self._utc_ahead_ns,
             trouble,
         )
@@ -207,25 +232,43 @@ class _Reader:
                 self._frame = LocalFrame(point)
             self._imagers = frozenset(str(each) for each in about.get("imagers", ()))
             self._names = {str(k): str(v) for k, v in about.get("vehicles", {}).items()}
+            for each in about.get("surveys", ()):
+                self._surveys[int(each["id"])] = _survey(each)
+                if each["flown_by"]:
+                    self._started(int(each["id"]), each["flown_by"], BEFORE_ALL_NS)
         except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as problem:
             raise RecordError(f"{self.path}: {ABOUT_NAME} is damaged: {problem}") from problem
 
     def _step(self, item: RecordMessage) -> None:
         try:
-            self._event(self._decoder.decode(item.data).event, item.log_ns)
+            self._event(self._decoder.decode(item.data), item.log_ns)
         except (msgspec.MsgspecError, ValueError, TypeError, KeyError) as problem:
             raise RecordError(
                 f"{self.path}: step {item.sequence} is damaged: {problem}"
             ) from problem
 
-    def _event(self, event: Mapping[str, Any], at_ns: int) -> None:
+    def _event(self, step: _Step, at_ns: int) -> None:
+        event = step.event
         match event.get("_"):
             case "PacketReceived":
                 self._report(event, at_ns)
             case "ClockRead":
                 self._utc_ahead_ns = int(event["wall_ns"]) - at_ns
             case "SurveyRequested":
-                self._surveys.append(_survey(event["survey"]))
+                self._surveys[int(event["survey"]["id"])] = _survey(event["survey"])
+            case "SurveyStarted":
+                audit = msgspec.msgpack.decode(step.audit, type=list[_Entry])
+                if all(entry.kind != "survey.refused" for entry in audit):
+                    self._started(int(event["survey_id"]), event["serials"], at_ns)
+
+    def _started(self, survey_id: int, serials: Iterable[Any], at_ns: int) -> None:
+        self._starts += 1
+        if self._starts > MOST_STARTS:
+            raise ValueError(f"expected at most {MOST_STARTS} starts of surveys, got more")
+        survey = self._surveys.get(survey_id)
+        if survey is not None:
+            start = at_ns, frozenset(str(each) for each in serials)
+            self._surveys[survey_id] = replace(survey, starts=(*survey.starts, start))
 
     def _report(self, event: Mapping[str, Any], at_ns: int) -> None:
         report, link = event["report"], int(event["link_id"])
@@ -322,8 +365,9 @@ def _camera(value: Mapping[str, Any] | None) -> SurveyCamera:
     return SurveyCamera(across_deg, along_deg, interval_s)
 
 
-def _ring(value: Mapping[str, Any]) -> tuple[tuple[float, float], ...]:
-    points = np.frombuffer(value["data"], "<f8").reshape(-1, 2)
+def _ring(value: Mapping[str, Any] | list[Any]) -> tuple[tuple[float, float], ...]:
+    flat = value if isinstance(value, list) else np.frombuffer(value["data"], "<f8")
+    points = np.asarray(flat, dtype=np.float64).reshape(-1, 2)
     if not 3 <= len(points) <= 100_000 or not np.isfinite(points).all():
         raise ValueError("expected a ring of at least three corners")
     return tuple((east, north) for east, north in points.tolist())

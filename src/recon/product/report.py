@@ -16,6 +16,7 @@ from shapely import affinity
 
 from recon.geo import cell_centres_m
 from recon.model.severity import Severity
+from recon.model.survey import SurveyCamera
 from recon.model.units import NS_PER_S
 from recon.product.coverage import ENOUGH_VIEWS, region_of
 from recon.product.flight import UNKNOWN, FlightData, FlownSurvey
@@ -158,23 +159,21 @@ def _covered(
 
 def _estimated(flight: FlightData) -> Iterator[tuple[int, shapely.Polygon]]:
     """Yield times and footprints of photos, as the survey's camera takes them along the tracks."""
-    if not (flight.surveys and flight.survey_tracks):
-        return
-    survey = flight.surveys[-1]
-    tracks = flight.survey_tracks.values()
-    begins, ends = (f(int(t.at_ns[n]) for t in tracks) for f, n in ((min, 0), (max, -1)))
-    lowest_m = AT_HEIGHT_SHARE * survey.height_above_takeoff_m
-    for at_ns in range(begins, ends, round(survey.camera.interval_s * NS_PER_S)):
-        for track in tracks:
-            if not track.at_ns[0] <= at_ns <= track.at_ns[-1]:
-                continue
-            east_m, north_m, height_m = (
-                float(np.interp(at_ns, track.at_ns, each))
-                for each in (track.east_m, track.north_m, track.height_m)
-            )
-            yaw_deg = float(track.yaw_deg[np.searchsorted(track.at_ns, at_ns)])
-            if height_m >= lowest_m and np.isfinite(yaw_deg):
-                yield at_ns, _footprint(survey, east_m, north_m, height_m, yaw_deg)
+    for track in flight.survey_tracks.values():
+        at_ns, ends_ns = int(track.at_ns[0]), int(track.at_ns[-1])
+        while at_ns <= ends_ns:
+            survey = flight.survey_of(track.serial, at_ns)
+            camera = SurveyCamera() if survey is None else survey.camera
+            if survey is not None:
+                east_m, north_m, height_m = (
+                    float(np.interp(at_ns, track.at_ns, each))
+                    for each in (track.east_m, track.north_m, track.height_m)
+                )
+                yaw_deg = float(track.yaw_deg[np.searchsorted(track.at_ns, at_ns)])
+                is_high = height_m >= AT_HEIGHT_SHARE * survey.height_above_takeoff_m
+                if is_high and np.isfinite(yaw_deg):
+                    yield at_ns, _footprint(survey, east_m, north_m, height_m, yaw_deg)
+            at_ns += round(camera.interval_s * NS_PER_S)
 
 
 def _footprint(

@@ -9,7 +9,7 @@ import platform
 import sys
 from collections.abc import Iterable
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cache
 from ipaddress import IPv4Network, IPv6Network, ip_network
 from pathlib import Path
@@ -45,6 +45,7 @@ from recon.station.state.steps import (
     SendCommand,
     WithdrawMotion,
 )
+from recon.station.state.survey_record import SurveyRecord
 from recon.station.state.vehicle_control import VehicleSnapshot
 
 DONE, FAILED, DROPPED = "done", "failed", "dropped"
@@ -244,6 +245,22 @@ def _sent(approved: ApprovedCommand) -> _Sent:
         approved.altitude_offset_m,
         approved.approved_at_ns,
     )
+
+
+def survey_facts(record: SurveyRecord) -> dict[str, Any]:
+    """Return a survey that was requested before the file, for readers of any version.
+
+    `flown_by` are the vehicles that fly for it as the file begins; none while it does not run.
+    """
+    survey, state = record.survey, record.state
+    return {
+        **{each.name: getattr(survey, each.name) for each in fields(survey)},
+        "region": {
+            "outline_m": survey.region.outline_m.tolist(),
+            "holes_m": [hole.tolist() for hole in survey.region.holes_m],
+        },
+        "flown_by": state.serials if state is not None and record.is_running else (),
+    }
 
 
 def audit_builtins(entries: Iterable[AuditEntry]) -> list[dict[str, Any]]:

@@ -51,6 +51,7 @@ from recon.station.kernel.recorded_values import (
     FlightStart,
     audit_builtins,
     output_builtins,
+    survey_facts,
     values_codec,
 )
 from recon.station.state.station import Station
@@ -355,6 +356,9 @@ def _about(start: FlightStart) -> dict[str, Any]:
         "imagers": list(start.site.imagers),
         "vehicles": {s: each.display_name for s, each in start.site.profiles.items()},
         "scenario": start.scenario,
+        "surveys": [
+            survey_facts(each) for each in start.station.surveys.records.values() if not each.is_over
+        ],
         "running_jobs": start.running_jobs,
         "settings": asdict(start.station.settings),
     }
