@@ -16,6 +16,7 @@ from tests.product.made_flight import (
     ONE,
     OTHER,
     START_NS,
+    Rows,
     flight,
     sun,
     write_card,
@@ -29,7 +30,7 @@ from recon.geo import cell_centres_m
 from recon.model.errors import RecordError
 from recon.model.units import NS_PER_S
 from recon.product.flight import read_flight
-from recon.product.flight_log import FORECAST_TOPIC, LogReader, read_log
+from recon.product.flight_log import FORECAST_TOPIC, FlightLog, LogReader, read_log
 from recon.product.report import FlightReport, flight_report
 from recon.product.report_page import report_html
 from recon.product.tagged import tagged_photos
@@ -129,6 +130,23 @@ def test_cover_and_coverage_are_those_of_the_construction(report: FlightReport) 
     assert report.covered.is_estimated
     assert report.covered.share(0) == 1.0
     assert report.covered.share(1) >= report.covered.enough > 0.5
+
+
+def test_ground_beyond_the_shade_maps_is_of_the_region() -> None:
+    made = flight(Rows(west_m=0.0), maps_every_s=60.0)
+    outline = ((0.0, -90.0), (250.0, -90.0), (250.0, 90.0), (0.0, 90.0))
+    made = replace(made, surveys=[replace(made.surveys[0], outline_m=outline)])
+    covered = flight_report(made, FlightLog(), None).covered
+    assert covered is not None
+    assert covered.area_m2 == pytest.approx(250.0 * 180.0)
+    # The last row is 200 m east, half a footprint is 39 m; the maps end 150 m east.
+    assert covered.share(0) == pytest.approx(239.0 / 250.0, abs=0.01)
+    assert 0.3 < covered.share(1) < 150.0 / 250.0
+    # From no more than a few cells a region may not take all memory.
+    far = ((0.0, 0.0), (9e6, 0.0), (9e6, 9e6))
+    made = replace(made, surveys=[replace(made.surveys[0], outline_m=far)])
+    with pytest.raises(RecordError, match="expected regions of surveys near the shade maps"):
+        flight_report(made, FlightLog(), None)
 
 
 def test_only_surveys_that_were_started_count(tmp_path: Path) -> None:

@@ -165,7 +165,7 @@ class MapFrame:
 
 def map_frame(report: FlightReport) -> MapFrame:
     """Return the frame of all maps: the surveys' region, or all that was flown over."""
-    if report.area is not None and not report.area.is_empty:
+    if report.area is not None:
         west, south, east, north = report.area.bounds
     else:
         tracks = report.flight.tracks.values()

@@ -48,7 +48,8 @@ class Ground:
 def region_of(surveys: Iterable[FlownSurvey]) -> shapely.Geometry | None:
     """Return the union of surveys' regions in east-north metres; None without any."""
     areas = [shapely.Polygon(each.outline_m, each.holes_m).buffer(0.0) for each in surveys]
-    return shapely.union_all(areas) if areas else None
+    area = shapely.union_all(areas)
+    return None if area.is_empty else area
 
 
 def region_of_views(views: Sequence[PhotoView]) -> shapely.Geometry:

@@ -38,6 +38,8 @@ FULL = 250
 MOST_CELLS = 16_000_000
 MOST_MAPS = 20_000
 """Five hours with one map a second."""
+FARTHEST_M = 1e7
+"""From the site's origin: a quarter round the earth."""
 MOST_STARTS = 1_000
 """Of surveys."""
 BEFORE_ALL_NS = 0
@@ -368,6 +370,6 @@ def _camera(value: Mapping[str, Any] | None) -> SurveyCamera:
 def _ring(value: Mapping[str, Any] | list[Any]) -> tuple[tuple[float, float], ...]:
     flat = value if isinstance(value, list) else np.frombuffer(value["data"], "<f8")
     points = np.asarray(flat, dtype=np.float64).reshape(-1, 2)
-    if not 3 <= len(points) <= 100_000 or not np.isfinite(points).all():
-        raise ValueError("expected a ring of at least three corners")
+    if not 3 <= len(points) <= 100_000 or not (np.abs(points) <= FARTHEST_M).all():
+        raise ValueError("expected a ring of at least three corners near the site")
     return tuple((east, north) for east, north in points.tolist())

@@ -25,7 +25,9 @@ from recon.product.shadow_record import (
     SUNLIT,
     PhotosByCell,
     SunByCell,
+    grid_over,
     photos_by_cell,
+    place_on,
     sun_by_cell,
 )
 from recon.product.sun_at import SunHistory
@@ -55,7 +57,10 @@ class AlarmSpan:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Covered:
-    """What was photographed of the region, by cell of the shade maps; arrays are (R, C)."""
+    """What was photographed of the region, by cell; arrays are (R, C).
+
+    Cells are those of the shade maps, and as many around them as the region needs.
+    """
 
     region: BoolMap
     """Cells of the region; all that photos show if no survey was flown."""
@@ -63,11 +68,8 @@ class Covered:
     sun: SunByCell
     is_estimated: bool
     """From tracks: no photos were tagged."""
-
-    @property
-    def area_m2(self) -> float:
-        """Of the region."""
-        return float(self.region.sum()) * self.sun.grid.cell_m**2
+    area_m2: float
+    """Of the region."""
 
     def share(self, least_sunlit: int) -> float:
         """Return the region's share that so many photos show in sun; 0 asks for photos at all."""
@@ -129,7 +131,7 @@ def flight_report(
         end_ns,
         covered,
         area,
-        () if covered is None else tuple(_cover(flight, covered.region)),
+        () if covered is None else tuple(_cover(flight, covered)),
         Counter(each.state for each in photos or ()),
         _airborne(log.lines, end_ns),
         _alarms(log.lines),
@@ -148,13 +150,14 @@ def _covered(
         if photos is None
         else [(each.at_ns, each.footprint) for each in photos]
     )
-    by_cell = photos_by_cell(history, shown)
+    grid = history.grid if area is None else grid_over(area, history.grid)
+    by_cell, sun = photos_by_cell(history, shown, grid), sun_by_cell(history, grid)
     if area is None:
         region = by_cell.photos > 0
-    else:
-        places = np.meshgrid(*cell_centres_m(history.grid))
-        region = np.asarray(shapely.contains_xy(area, *places), dtype=np.bool_)
-    return Covered(region, by_cell, sun_by_cell(history), photos is None)
+        return Covered(region, by_cell, sun, photos is None, float(region.sum()) * grid.cell_m**2)
+    places = np.meshgrid(*cell_centres_m(grid))
+    region = np.asarray(shapely.contains_xy(area, *places), dtype=np.bool_)
+    return Covered(region, by_cell, sun, photos is None, float(area.area))
 
 
 def _estimated(flight: FlightData) -> Iterator[tuple[int, shapely.Polygon]]:
@@ -186,7 +189,9 @@ def _footprint(
     return affinity.affine_transform(box, (c, s, -s, c, east_m, north_m))
 
 
-def _cover(flight: FlightData, region: BoolMap) -> Iterator[tuple[int, float]]:
+def _cover(flight: FlightData, covered: Covered) -> Iterator[tuple[int, float]]:
+    assert flight.grid is not None  # or nothing is covered
+    region = covered.region[place_on(covered.sun.grid, flight.grid)]
     for each in flight.maps:
         is_known = (each.sun != UNKNOWN) & region
         if is_known.any():

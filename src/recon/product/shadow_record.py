@@ -6,17 +6,19 @@ cell's first and last time are known to the seconds between two maps.
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from math import ceil
 
 import numpy as np
 import numpy.typing as npt
 import shapely  # type: ignore[import-untyped, unused-ignore]
 
 from recon.geo import cell_centres_m
+from recon.model.errors import RecordError
 from recon.model.geo import GroundGrid
 from recon.model.shade import SUNLIT_TRANSMITTANCE, FloatMap
 from recon.model.units import NS_PER_S
 from recon.product.coverage import LEAST_CONFIDENCE
-from recon.product.flight import FULL, UNKNOWN, FlightData
+from recon.product.flight import FULL, MOST_CELLS, UNKNOWN, FlightData
 from recon.product.sun_at import SunHistory
 from recon.record.shade_geotiff import CogBand, cog_bytes
 
@@ -54,12 +56,43 @@ class PhotosByCell:
     sunlit: IntMap
 
 
-def sun_by_cell(history: SunHistory) -> SunByCell:
-    """Return when each cell was in sun, by the shade maps."""
-    grid = history.grid
-    shape = grid.rows, grid.cols
-    first_ns, last_ns = np.zeros((2, *shape), dtype=np.int64)
-    maps, sunlit = np.zeros((2, *shape), dtype=np.int32)
+def grid_over(area: shapely.Geometry, grid: GroundGrid) -> GroundGrid:
+    """Return a grid with as many more cells around it as an area needs.
+
+    Raises `RecordError` for an area that needs too many.
+    """
+    west, south, east, north = area.bounds
+    cell_m = grid.cell_m
+    left, above = (
+        max(0, ceil(beyond_m / cell_m)) for beyond_m in (grid.west_m - west, north - grid.north_m)
+    )
+    cols = left + max(grid.cols, ceil((east - grid.west_m) / cell_m))
+    rows = above + max(grid.rows, ceil((grid.north_m - south) / cell_m))
+    if rows * cols > MOST_CELLS:
+        raise RecordError(
+            f"expected regions of surveys near the shade maps, got {west:.0f} to {east:.0f} m east "
+            f"and {south:.0f} to {north:.0f} m north of the site's origin"
+        )
+    west_m, north_m = grid.west_m - left * cell_m, grid.north_m + above * cell_m
+    return GroundGrid(grid.frame, west_m, north_m, cell_m, rows, cols)
+
+
+def place_on(wide: GroundGrid, grid: GroundGrid) -> tuple[slice, slice]:
+    """Return where a grid lies on a `grid_over` of it."""
+    row = round((wide.north_m - grid.north_m) / grid.cell_m)
+    col = round((grid.west_m - wide.west_m) / grid.cell_m)
+    return slice(row, row + grid.rows), slice(col, col + grid.cols)
+
+
+def sun_by_cell(history: SunHistory, wide: GroundGrid | None = None) -> SunByCell:
+    """Return when each cell was in sun, by the shade maps; on a `grid_over` of theirs if given."""
+    grid = wide or history.grid
+    shape, place = (grid.rows, grid.cols), place_on(grid, history.grid)
+    found = SunByCell(
+        grid, *np.zeros((2, *shape), dtype=np.int64), *np.zeros((2, *shape), dtype=np.int32)
+    )
+    first_ns, last_ns = found.first_ns[place], found.last_ns[place]
+    maps, sunlit = found.maps[place], found.sunlit_maps[place]
     for each in history.maps:
         is_known = each.sun != UNKNOWN
         is_lit = is_known & (each.sun >= SUNLIT)
@@ -67,27 +100,31 @@ def sun_by_cell(history: SunHistory) -> SunByCell:
         sunlit += is_lit
         first_ns[is_lit & (sunlit == 1)] = each.at_ns
         last_ns[is_lit] = each.at_ns
-    return SunByCell(grid, first_ns, last_ns, maps, sunlit)
+    return found
 
 
 def photos_by_cell(
-    history: SunHistory, photos: Iterable[tuple[int, shapely.Polygon]]
+    history: SunHistory,
+    photos: Iterable[tuple[int, shapely.Polygon]],
+    wide: GroundGrid | None = None,
 ) -> PhotosByCell:
     """Return how many photos show each cell, and how many of them in sun.
 
-    `photos` are station times in ns and footprints in east-north metres.
+    `photos` are station times in ns and footprints in east-north metres. Cells are those of the
+    shade maps, or of a `grid_over` of theirs.
     """
-    grid = history.grid
+    grid = wide or history.grid
+    place = place_on(grid, history.grid)
     photos_of, sunlit = np.zeros((2, grid.rows, grid.cols), dtype=np.int32)
-    sun, sun_ns = history.at(0), 0
+    is_lit, lit_ns = np.zeros(photos_of.shape, dtype=np.bool_), None
     for at_ns, footprint in photos:
         window, is_on = _cells_in(footprint, grid)
-        if at_ns != sun_ns:
-            sun, sun_ns = history.at(at_ns), at_ns
-        is_sure = sun.confidence[window] >= LEAST_CONFIDENCE
-        is_lit = is_sure & (sun.transmittance[window] >= SUNLIT_TRANSMITTANCE)
+        if at_ns != lit_ns:
+            sun, lit_ns = history.at(at_ns), at_ns
+            is_sure = sun.confidence >= LEAST_CONFIDENCE
+            is_lit[place] = is_sure & (sun.transmittance >= SUNLIT_TRANSMITTANCE)
         photos_of[window] += is_on
-        sunlit[window] += is_on & is_lit
+        sunlit[window] += is_on & is_lit[window]
     return PhotosByCell(photos_of, sunlit)
 
 
