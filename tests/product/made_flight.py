@@ -107,7 +107,9 @@ def flight(*ways: Rows, maps_every_s: float = 4.0, path: Path = Path("made.mcap"
     maps = [true_map(float(at_s)) for at_s in np.arange(0.5, ends_s, maps_every_s)]
     outline = ((-90.0, -90.0), (90.0, -90.0), (90.0, 90.0), (-90.0, 90.0))
     starts = ((START_NS, frozenset(tracks)),)
-    survey = FlownSurvey(outline, (), HEIGHT_M, SPEED_MPS, "field", starts=starts)
+    survey = FlownSurvey(
+        outline, (), HEIGHT_M, SPEED_MPS, "field", row_bearing_deg=0.0, starts=starts
+    )
     return FlightData(
         path,
         FRAME,
@@ -167,6 +169,7 @@ def write_record(
             each.height_above_takeoff_m,
             each.speed_mps,
             each.camera,
+            row_bearing_deg=each.row_bearing_deg,
         )
         step(SurveyRequested(survey, "test"), START_NS)
         for at_ns, serials in each.starts:

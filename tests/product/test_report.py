@@ -13,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.product.made_flight import (
     GRID,
+    HEIGHT_M,
     ONE,
     OTHER,
     START_NS,
@@ -29,7 +30,7 @@ from recon.cli.report import BROWSERS, print_pdf
 from recon.geo import cell_centres_m
 from recon.model.errors import RecordError
 from recon.model.units import NS_PER_S
-from recon.product.flight import read_flight
+from recon.product.flight import RecordedTrack, read_flight
 from recon.product.flight_log import FORECAST_TOPIC, FlightLog, LogReader, read_log
 from recon.product.report import FlightReport, flight_report
 from recon.product.report_page import report_html
@@ -149,6 +150,31 @@ def test_ground_beyond_the_shade_maps_is_of_the_region() -> None:
         flight_report(made, FlightLog(), None)
 
 
+@pytest.mark.parametrize(
+    ("course", "height_m", "speed_mps", "is_photographed"),
+    [
+        ((0.0, 1.0), HEIGHT_M, 8.0, True),
+        ((0.6, 0.8), HEIGHT_M, 8.0, False),
+        ((0.0, 1.0), HEIGHT_M + 10.0, 8.0, False),
+        ((0.0, 1.0), HEIGHT_M, 14.0, False),
+    ],
+)
+def test_only_what_is_flown_along_rows_is_photographed(
+    course: tuple[float, float], height_m: float, speed_mps: float, is_photographed: bool
+) -> None:
+    """The way to the first row and home, at their own height or speed, count for no survey."""
+    made = flight(maps_every_s=60.0)
+    at_s = np.arange(0.0, 20.0, 0.1)
+    east_m, north_m = (each * speed_mps * at_s - 80.0 for each in course)
+    yaw_deg = np.full_like(at_s, np.rad2deg(np.arctan2(*course)))
+    at_ns = START_NS + np.rint(at_s * NS_PER_S).astype(np.int64)
+    height = np.full_like(at_s, height_m)
+    way = RecordedTrack("SIM-1", at_ns, east_m, north_m, height, yaw_deg)
+    covered = flight_report(replace(made, tracks={"SIM-1": way}), FlightLog(), None).covered
+    assert covered is not None
+    assert (covered.share(0) > 0.1) == is_photographed
+
+
 def test_only_surveys_that_were_started_count(tmp_path: Path) -> None:
     made = flight(maps_every_s=60.0)
     (flown,) = made.surveys
@@ -159,11 +185,10 @@ def test_only_surveys_that_were_started_count(tmp_path: Path) -> None:
     path = write_record(made, tmp_path / "a.mcap", refused_start_of=2)
     read = read_flight(path)
     assert [each.name for each in read.surveys] == ["field", "later"]
-    assert [read.survey_of("SIM-1", START_NS + s * NS_PER_S).name for s in (29, 31)] == [
-        "field",
-        "later",
-    ]
-    assert read.survey_of("SIM-2", START_NS) is None
+    track = read.tracks["SIM-1"]
+    parts = [(each.name, part) for each, part in read.parts_by_survey(track)]
+    assert parts == [("field", slice(0, 300)), ("later", slice(300, len(track.at_ns)))]
+    assert read.parts_by_survey(replace(track, serial="SIM-2")) == []
     covered = report_of(path).covered
     assert covered is not None
     assert covered.share(0) == 1.0

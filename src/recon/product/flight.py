@@ -8,6 +8,7 @@ import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -18,9 +19,10 @@ from foxglove_schemas_protobuf.Grid_pb2 import Grid
 from google.protobuf.message import DecodeError
 
 from recon.geo import enu_from_geo, geo_from_enu
+from recon.model.airspace import Region
 from recon.model.errors import RecordError
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
-from recon.model.survey import SurveyCamera
+from recon.model.survey import Survey, SurveyCamera
 from recon.model.units import NS_PER_S
 from recon.record.foxglove import SHADE_TOPIC
 from recon.record.mcap_file import ABOUT_NAME, STEPS_TOPIC
@@ -84,8 +86,23 @@ class FlownSurvey:
     speed_mps: float
     name: str = ""
     camera: SurveyCamera = field(default_factory=SurveyCamera)
+    side_overlap: float = 0.6
+    row_bearing_deg: float | None = None
     starts: tuple[tuple[int, frozenset[str]], ...] = ()
     """Each start in this record, in order: its time, and the serials it names."""
+
+    def request(self) -> Survey:
+        """Return it as guidance plans it."""
+        return Survey(
+            0,
+            self.name,
+            Region(np.array(self.outline_m), tuple(np.array(hole) for hole in self.holes_m)),
+            self.height_above_takeoff_m,
+            self.speed_mps,
+            self.camera,
+            side_overlap=self.side_overlap,
+            row_bearing_deg=self.row_bearing_deg,
+        )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -118,16 +135,21 @@ class FlightData:
         latitude_deg, longitude_deg, _height = geo_from_enu(self.frame, level)
         return list(zip(longitude_deg.tolist(), latitude_deg.tolist(), strict=True))
 
-    def survey_of(self, serial: str, at_ns: int) -> FlownSurvey | None:
-        """Return the survey that a vehicle was last started for; None before any start."""
-        starts = (
+    def parts_by_survey(self, track: RecordedTrack) -> list[tuple[FlownSurvey, slice]]:
+        """Return the parts of a track, each with the survey its vehicle was last started for."""
+        starts = sorted(
             (start_ns, number)
             for number, each in enumerate(self.surveys)
             for start_ns, serials in each.starts
-            if start_ns <= at_ns and serial in serials
+            if track.serial in serials
         )
-        newest = max(starts, default=None)
-        return None if newest is None else self.surveys[newest[1]]
+        cuts = np.searchsorted(track.at_ns, [start_ns for start_ns, _number in starts]).tolist()
+        return [
+            (self.surveys[number], slice(cut, end))
+            for (_start_ns, number), (cut, end) in zip(
+                starts, pairwise([*cuts, len(track.at_ns)]), strict=True
+            )
+        ]
 
     @property
     def survey_tracks(self) -> dict[str, RecordedTrack]:
@@ -353,6 +375,8 @@ def _survey(value: Mapping[str, Any]) -> FlownSurvey:
         float(value["speed_mps"]),
         str(value.get("name", "")),
         _camera(value.get("camera")),
+        float(value.get("side_overlap", 0.6)),
+        None if value.get("row_bearing_deg") is None else float(value["row_bearing_deg"]),
     )
 
 

@@ -4,10 +4,13 @@ What is shown is what the record states; without tagged photos the covered groun
 the tracks and the survey's camera, and called so.
 """
 
+import heapq
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from math import cos, radians, sin
+from itertools import pairwise
+from math import cos, isfinite, radians, sin
+from operator import itemgetter
 
 import numpy as np
 import numpy.typing as npt
@@ -15,11 +18,15 @@ import shapely  # type: ignore[import-untyped, unused-ignore]
 from shapely import affinity
 
 from recon.geo import cell_centres_m
+from recon.guidance.survey import PositionSample, SurveySettings
+from recon.guidance.survey.lattice import axes
+from recon.guidance.survey.plan import row_bearing_deg, survey_fault
+from recon.guidance.survey.progress import is_photographed
+from recon.model.errors import RecordError
 from recon.model.severity import Severity
-from recon.model.survey import SurveyCamera
-from recon.model.units import NS_PER_S
+from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.product.coverage import ENOUGH_VIEWS, region_of
-from recon.product.flight import UNKNOWN, FlightData, FlownSurvey
+from recon.product.flight import UNKNOWN, FlightData, FlownSurvey, IntArray, RecordedTrack
 from recon.product.flight_log import FlightLog, LogLine
 from recon.product.shadow_record import (
     SUNLIT,
@@ -35,8 +42,8 @@ from recon.product.tagged import TaggedPhoto
 
 BoolMap = npt.NDArray[np.bool_]
 
-AT_HEIGHT_SHARE = 0.9
-"""Of the survey's height: lower photos are of takeoffs and landings."""
+MOST_PHOTOS = 100_000
+"""Estimated: five hours of ten vehicles with a photo every two seconds."""
 SEVERITY_RANK = {each.value: rank for rank, each in enumerate(Severity)}
 NO_DECISION = ("alarm.", "link.", "app.", "vehicle.home_set")
 STEPS_OF_AN_ORDER = frozenset(
@@ -161,22 +168,55 @@ def _covered(
 
 
 def _estimated(flight: FlightData) -> Iterator[tuple[int, shapely.Polygon]]:
-    """Yield times and footprints of photos, as the survey's camera takes them along the tracks."""
-    for track in flight.survey_tracks.values():
-        at_ns, ends_ns = int(track.at_ns[0]), int(track.at_ns[-1])
-        while at_ns <= ends_ns:
-            survey = flight.survey_of(track.serial, at_ns)
-            camera = SurveyCamera() if survey is None else survey.camera
-            if survey is not None:
-                east_m, north_m, height_m = (
-                    float(np.interp(at_ns, track.at_ns, each))
-                    for each in (track.east_m, track.north_m, track.height_m)
-                )
-                yaw_deg = float(track.yaw_deg[np.searchsorted(track.at_ns, at_ns)])
-                is_high = height_m >= AT_HEIGHT_SHARE * survey.height_above_takeoff_m
-                if is_high and np.isfinite(yaw_deg):
-                    yield at_ns, _footprint(survey, east_m, north_m, height_m, yaw_deg)
-            at_ns += round(camera.interval_s * NS_PER_S)
+    """Yield times and footprints of photos, as the survey's camera takes them along its rows.
+
+    What counts as flown along rows is what counts for a running survey too. In the order of time;
+    raises `RecordError` for more than `MOST_PHOTOS`.
+    """
+    parts = [
+        _estimated_part(survey, track, part)
+        for track in flight.survey_tracks.values()
+        for survey, part in flight.parts_by_survey(track)
+    ]
+    for number, each in enumerate(heapq.merge(*parts, key=itemgetter(0))):
+        if number >= MOST_PHOTOS:
+            raise RecordError(f"{flight.path}: expected at most {MOST_PHOTOS} photos, got more")
+        yield each
+
+
+def _estimated_part(
+    survey: FlownSurvey, track: RecordedTrack, part: slice
+) -> Iterator[tuple[int, shapely.Polygon]]:
+    request, settings = survey.request(), SurveySettings()
+    if survey_fault(request, settings) is not None:
+        return
+    turn = axes(row_bearing_deg(request, settings)).T
+    every_ns = seconds_to_ns(survey.camera.interval_s)
+    values = np.column_stack([track.east_m, track.north_m, track.height_m])
+    for a, b in pairwise(_thinned(track.at_ns, part, seconds_to_ns(settings.least_step_s))):
+        begin_ns, end_ns = int(track.at_ns[a]), int(track.at_ns[b])
+        along_m, across_m = ((values[b, :2] - values[a, :2]) @ turn).tolist()
+        ends = (
+            PositionSample(begin_ns, *values[a].tolist()),
+            PositionSample(end_ns, *values[b].tolist()),
+        )
+        if not is_photographed(request, settings, ends, (along_m, across_m)):
+            continue
+        yaw_deg = float(track.yaw_deg[b])
+        for at_ns in range(-(-begin_ns // every_ns) * every_ns, end_ns, every_ns):
+            share = (at_ns - begin_ns) / (end_ns - begin_ns)
+            east_m, north_m, height_m = (values[a] + share * (values[b] - values[a])).tolist()
+            if isfinite(yaw_deg):
+                yield at_ns, _footprint(survey, east_m, north_m, height_m, yaw_deg)
+
+
+def _thinned(at_ns: IntArray, part: slice, least_ns: int) -> Iterator[int]:
+    """Yield the indices of times that are so far apart."""
+    last_ns = None
+    for index, each_ns in enumerate(at_ns[part].tolist(), start=part.start):
+        if last_ns is None or each_ns - last_ns >= least_ns:
+            last_ns = each_ns
+            yield index
 
 
 def _footprint(

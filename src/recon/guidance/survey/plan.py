@@ -194,10 +194,7 @@ def plan_survey(
     if fault is not None:
         return Refusal(RULE, fault)
     area, swath = shape_of(survey.region), swath_of(survey, settings)
-    bearing_deg = survey.row_bearing_deg
-    if bearing_deg is None:
-        bearing_deg = best_bearing_deg(area, swath, settings)
-    lattice = lattice_over(area, bearing_deg % 180.0, swath, settings)
+    lattice = lattice_over(area, row_bearing_deg(survey, settings), swath, settings)
     flyable = shapely.buffer(area, row_reach_m(lattice, swath) + settings.kept_off_m)
     if surroundings is not None:
         flyable = _left(flyable, surroundings, settings)
@@ -209,6 +206,14 @@ def plan_survey(
     cells = cells_over(area, frame, survey.cell_m, lattice, pieces, swath)
     counted = _counted(survey, swath, lattice, settings)
     return SurveyPlan(survey, frame, settings, lattice, swath, counted, pieces, ways, cells)
+
+
+def row_bearing_deg(survey: Survey, settings: SurveySettings = DEFAULT) -> float:
+    """Return the bearing of the rows, 0 to 180, of a survey without a `survey_fault`."""
+    bearing_deg = survey.row_bearing_deg
+    if bearing_deg is None:
+        bearing_deg = best_bearing_deg(shape_of(survey.region), swath_of(survey, settings), settings)
+    return bearing_deg % 180.0
 
 
 def row_reach_m(lattice: RowLattice, swath: Swath) -> float:

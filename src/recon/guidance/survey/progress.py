@@ -22,9 +22,10 @@ import numpy.typing as npt
 
 from recon.guidance.survey.cells import BoolArray, CoverageCells, IntArray
 from recon.guidance.survey.plan import SurveyPlan
+from recon.guidance.survey.settings import SurveySettings
 from recon.guidance.survey.view import Crossing, Window, crossing, nearest_map, sunlit_cells
 from recon.model.shade import ShadeMap
-from recon.model.survey import CellState
+from recon.model.survey import CellState, Survey
 from recon.model.units import ns_to_seconds, seconds_to_ns
 
 StateArray = npt.NDArray[np.uint8]
@@ -166,7 +167,8 @@ class _Count:
             before = None
         lying = plan.lattice.along_across_m([(a.east_m, a.north_m), (b.east_m, b.north_m)])
         start, end = ((float(along), float(across)) for along, across in lying)
-        if not _is_photographed(plan, (a, b), (end[0] - start[0], end[1] - start[1])):
+        moved_m = end[0] - start[0], end[1] - start[1]
+        if not is_photographed(plan.survey, plan.settings, (a, b), moved_m):
             return
         times_ns = (a.at_ns, b.at_ns)
         cross = crossing(plan.cells, plan.lattice, plan.counted_swath, (start, end), times_ns)
@@ -204,11 +206,16 @@ class _Count:
         )
 
 
-def _is_photographed(
-    plan: SurveyPlan, ends: tuple[PositionSample, PositionSample], moved_m: tuple[float, float]
+def is_photographed(
+    survey: Survey,
+    settings: SurveySettings,
+    ends: tuple[PositionSample, PositionSample],
+    moved_m: tuple[float, float],
 ) -> bool:
-    """Whether a way is flown as the rows are: height, course, speed, and no gap in time."""
-    settings, survey = plan.settings, plan.survey
+    """Whether a way is flown as the rows are: height, course, speed, and no gap in time.
+
+    `moved_m` is the way along and across the rows.
+    """
     took_s = ns_to_seconds(ends[1].at_ns - ends[0].at_ns)
     if not 0.0 < took_s <= settings.longest_gap_s:
         return False
