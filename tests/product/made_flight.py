@@ -135,10 +135,12 @@ def write_record(
     entries: Sequence[tuple[float, Entry]] = (),
     forecast: Probability | None = None,
     refused_start_of: int | None = None,
+    events: Sequence[tuple[int, Mapping[str, Any]]] = (),
 ) -> Path:
     """Write a made flight as the station records one, by the station's own codec.
 
-    `entries` are of the audit, each with its time since the flight's start.
+    `entries` are of the audit, each with its time since the flight's start; `events` are written
+    as they are, each with its station time.
     """
     file = McapFile(path, "test")
     about = {
@@ -180,6 +182,8 @@ def write_record(
     for at_s, entry in entries:
         at_ns = START_NS + round(at_s * NS_PER_S)
         step(ClockRead(UTC_AHEAD_NS + at_ns), at_ns, entry)
+    for at_ns, event in events:
+        topics.add(STEPS_TOPIC, MSGPACK, msgspec.msgpack.encode({"event": event}), at_ns)
     for link, each in enumerate(made.tracks.values(), start=1):
         extended = ExtendedReport(each.serial, 14, 5, False, False, 0.8, None, None, None, None, 0)
         step(PacketReceived(link, extended), START_NS)

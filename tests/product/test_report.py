@@ -1,9 +1,11 @@
 """`recon report` on flights made by construction: its figures, and pages that hold hostile text."""
 
 import contextlib
+import math
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -41,6 +43,7 @@ HOSTILE = "\"><script>alert(1)</script><img src=//x.example onerror=alert(2)>{{ 
 PLACES = np.meshgrid(*cell_centres_m(GRID))
 SIM_1 = "Drone 1"
 MADE = flight(maps_every_s=60.0)
+HOUR_NS = 3_600 * NS_PER_S
 
 
 def entry(kind: str, text: str = "text", vehicle: str = SIM_1, **details: object) -> dict:
@@ -300,6 +303,42 @@ def test_no_browser_is_a_clear_refusal(monkeypatch: pytest.MonkeyPatch, tmp_path
         (tmp_path / name).chmod(0o755)
         with pytest.raises(RecordError, match="did not print the page: 'no display'"):
             print_pdf(tmp_path / "r.html", tmp_path / "r.pdf")
+
+
+def core(arrived_at_ns: object) -> dict[str, Any]:
+    """A position report's event."""
+    place = {"latitude_deg": 41.9, "longitude_deg": -93.6}
+    report = {"_": "CoreReport", "position": place, "height_above_takeoff_m": 60.0}
+    report["attitude"] = None
+    return {"_": "PacketReceived", "link_id": 1, "report": report, "arrived_at_ns": arrived_at_ns}
+
+
+@pytest.mark.parametrize(
+    ("log_ns", "event", "why"),
+    [
+        (START_NS, core(2**62), "arrived"),
+        (START_NS, core(2**63), "arrived"),
+        (START_NS, core(1e300), "whole number"),
+        (2 * HOUR_NS, core(2 * HOUR_NS - HOUR_NS - 1), "arrived"),
+        (2**63, core(None), "station time"),
+        (START_NS, {"_": "ClockRead", "wall_ns": math.inf}, "whole number"),
+        (START_NS, {"_": "ClockRead", "wall_ns": -(2**63)}, "a clock"),
+        (START_NS, {"_": "PacketReceived", "link_id": math.inf, "report": {}}, "infinity"),
+    ],
+)
+def test_a_time_that_cannot_be_is_refused(
+    log_ns: int, event: dict[str, Any], why: str, tmp_path: Path
+) -> None:
+    made = replace(MADE, maps=[], tracks={})
+    path = write_record(made, tmp_path / "a.mcap", events=[(log_ns, event)])
+    with pytest.raises(RecordError, match=f"step .* is damaged: .*{why}"):
+        read_flight(path)
+
+
+def test_photos_are_capped(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("recon.product.report.MOST_PHOTOS", 10)
+    with pytest.raises(RecordError, match="expected at most 10 photos"):
+        flight_report(MADE, FlightLog(), None)
 
 
 NUMBERS = st.one_of(st.integers(-(2**31), 2**31 - 1), st.sampled_from([0, 1, 150]))

@@ -40,6 +40,10 @@ FULL = 250
 MOST_CELLS = 16_000_000
 MOST_MAPS = 20_000
 """Five hours with one map a second."""
+LATEST_NS = 2**62
+"""A computer's clock in the year 2116; half of what an array of times takes."""
+LONGEST_WITHHELD_NS = 3_600 * NS_PER_S
+"""Of a packet behind damaged bytes: links that bring nothing else are closed long before."""
 FARTHEST_M = 1e7
 """From the site's origin: a quarter round the earth."""
 MOST_STARTS = 1_000
@@ -260,13 +264,15 @@ class _Reader:
                 self._surveys[int(each["id"])] = _survey(each)
                 if each["flown_by"]:
                     self._started(int(each["id"]), each["flown_by"], BEFORE_ALL_NS)
-        except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as problem:
+        except (*DAMAGES, AttributeError, RecursionError) as problem:
             raise RecordError(f"{self.path}: {ABOUT_NAME} is damaged: {problem}") from problem
 
     def _step(self, item: RecordMessage) -> None:
         try:
+            if item.log_ns > LATEST_NS:
+                raise ValueError(f"station time {item.log_ns} ns")
             self._event(self._decoder.decode(item.data), item.log_ns)
-        except (msgspec.MsgspecError, ValueError, TypeError, KeyError) as problem:
+        except (msgspec.MsgspecError, *DAMAGES) as problem:
             raise RecordError(
                 f"{self.path}: step {item.sequence} is damaged: {problem}"
             ) from problem
@@ -277,7 +283,10 @@ class _Reader:
             case "PacketReceived":
                 self._report(event, at_ns)
             case "ClockRead":
-                self._utc_ahead_ns = int(event["wall_ns"]) - at_ns
+                wall_ns = _whole(event["wall_ns"])
+                if not 0 <= wall_ns <= LATEST_NS:
+                    raise ValueError(f"expected a clock after 1970, got {wall_ns} ns")
+                self._utc_ahead_ns = wall_ns - at_ns
             case "SurveyRequested":
                 self._surveys[int(event["survey"]["id"])] = _survey(event["survey"])
             case "SurveyStarted":
@@ -296,8 +305,15 @@ class _Reader:
 
     def _report(self, event: Mapping[str, Any], at_ns: int) -> None:
         report, link = event["report"], int(event["link_id"])
-        # Bytes in front of a packet may have withheld it.
-        at_ns = at_ns if event.get("arrived_at_ns") is None else int(event["arrived_at_ns"])
+        if event.get("arrived_at_ns") is not None:
+            # Bytes in front of a packet may have withheld it.
+            withheld_ns = at_ns - _whole(event["arrived_at_ns"])
+            if not 0 <= withheld_ns <= LONGEST_WITHHELD_NS:
+                raise ValueError(
+                    f"expected a packet that arrived within an hour before {at_ns} ns, got one "
+                    f"that arrived at {at_ns - withheld_ns} ns"
+                )
+            at_ns -= withheld_ns
         kind = report.get("_")
         if kind == "ExtendedReport" and report["serial"]:
             self._serials[link] = str(report["serial"])
@@ -331,10 +347,15 @@ class _Reader:
         sun = np.where(is_known, np.clip(np.nan_to_num(transmittance), 0.0, 1.0) * FULL, UNKNOWN)
         sure = np.where(is_known, np.clip(np.nan_to_num(confidence), 0.0, 1.0) * 255.0, 0.0)
         at_ns = found.timestamp.seconds * NS_PER_S + found.timestamp.nanos
+        if abs(at_ns) > LATEST_NS:
+            raise RecordError(f"{self.path}: a shade map is damaged: station time {at_ns} ns")
         self._maps.append(
             KeptMap(at_ns, np.rint(sun).astype(np.uint8), np.rint(sure).astype(np.uint8))
         )
 
+
+DAMAGES = (ValueError, TypeError, KeyError, OverflowError)
+"""What the values of a damaged record raise."""
 
 _ORIGIN = ("latitude_deg", "longitude_deg", "ellipsoid_height_m")
 
@@ -364,6 +385,12 @@ def _track(serial: str, rows: Sequence[TrackRow], frame: LocalFrame) -> Recorded
     ground_m = np.full(len(values), frame.origin.ellipsoid_height_m)
     enu_m = enu_from_geo(frame, values[:, 0], values[:, 1], ground_m)
     return RecordedTrack(serial, at_ns, enu_m[:, 0], enu_m[:, 1], values[:, 2], values[:, 3])
+
+
+def _whole(value: Any) -> int:
+    if type(value) is not int:
+        raise ValueError(f"expected a whole number, got {value!a:.40}")
+    return value
 
 
 def _survey(value: Mapping[str, Any]) -> FlownSurvey:
