@@ -3,6 +3,7 @@
 import json
 import xml.etree.ElementTree as ET
 from dataclasses import replace
+from importlib.resources import files
 from pathlib import Path
 
 import cv2
@@ -16,7 +17,9 @@ from typer.testing import CliRunner
 from recon.cli.commands import app
 from recon.geo import enu_from_geo
 from recon.model.errors import RecordError
-from recon.product.exports import FLIGHT_FORMATS, kml
+from recon.model.units import NS_PER_S
+from recon.product.charts import NOT_SHOWN, SHADE_ONLY, SUNLIT, WELL_SUNLIT
+from recon.product.exports import FLIGHT_FORMATS, coverage_picture, kml
 from recon.product.flight import FlownSurvey, read_flight
 
 HOSTILE = '<b>&"]]>\x00\x1b\ud800'
@@ -84,6 +87,30 @@ def test_the_sun_by_cell_and_the_figures(record: Path, tmp_path: Path) -> None:
     assert found["vehicles"] == ["Drone 1", "Drone 2"]
     assert found["region_m2"] == pytest.approx(180.0**2)
     assert 0.5 < found["well_sunlit_share"] <= found["sunlit_share"] <= 1.0
+
+
+def test_ground_of_the_region_without_photos_has_a_colour_of_its_own() -> None:
+    made = flight(maps_every_s=30.0)
+    track = made.tracks["SIM-1"]
+    # The first row only, 100 m west; and a region without its corner in the south-east.
+    cut = np.searchsorted(track.at_ns, track.at_ns[0] + 36 * NS_PER_S)
+    fields = ("at_ns", "east_m", "north_m", "height_m", "yaw_deg")
+    track = replace(track, **{name: getattr(track, name)[:cut] for name in fields})
+    outline = ((-90.0, -90.0), (0.0, -90.0), (0.0, 0.0), (90.0, 0.0), (90.0, 90.0), (-90.0, 90.0))
+    surveys = [replace(made.surveys[0], outline_m=outline)]
+    data = coverage_picture(replace(made, tracks={"SIM-1": track}, surveys=surveys))
+    picture = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
+    assert picture is not None
+    pixels = cv2.cvtColor(picture, cv2.COLOR_BGRA2RGBA)
+    assert pixels[20, 80].tolist() == list(NOT_SHOWN)
+    assert pixels[80, 80].tolist() == [0, 0, 0, 0]
+    assert pixels[40, 3].tolist() in [list(each) for each in (SHADE_ONLY, SUNLIT, WELL_SUNLIT)]
+    key = files("recon.product").joinpath("report.html").read_text()
+    console = Path("web/src/panels/flights/flights.css").read_text()
+    for red, green, blue, _alpha in (NOT_SHOWN, SHADE_ONLY, SUNLIT, WELL_SUNLIT):
+        colour = f"#{red:02x}{green:02x}{blue:02x}"
+        assert colour in key
+        assert colour in console
 
 
 def test_what_cannot_be_exported_is_refused(record: Path, tmp_path: Path) -> None:

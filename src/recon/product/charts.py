@@ -34,7 +34,8 @@ SCALE_PX = 34.0
 MOST_POINTS = 1500
 """Of one line: more are not seen."""
 
-SHADE_ONLY, SUNLIT, WELL_SUNLIT = (116, 134, 158, 255), (240, 205, 120, 255), (226, 164, 30, 255)
+NOT_SHOWN, SHADE_ONLY = (122, 44, 56, 255), (116, 134, 158, 255)
+SUNLIT, WELL_SUNLIT = (240, 205, 120, 255), (226, 164, 30, 255)
 """Red, green, blue, alpha; distinct in grey too, from dark to bright."""
 DARKEST, BRIGHTEST = np.array([54.0, 70.0, 104.0]), np.array([255.0, 236.0, 170.0])
 
@@ -184,7 +185,7 @@ def coverage_map(report: FlightReport, covered: Covered) -> Markup:
 
 def _coverage_pixels(covered: Covered) -> ByteMap:
     shown, sunlit = covered.photos.photos, covered.photos.sunlit
-    pixels = np.zeros((*shown.shape, 4), dtype=np.uint8)
+    pixels = np.full((*shown.shape, 4), NOT_SHOWN, dtype=np.uint8)
     pixels[shown > 0] = SHADE_ONLY
     pixels[sunlit > 0] = SUNLIT
     pixels[sunlit >= ENOUGH_VIEWS] = WELL_SUNLIT

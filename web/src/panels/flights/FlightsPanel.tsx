@@ -143,6 +143,7 @@ function Flight(props: { name: string; whyNoRecord: string | null }) {
               <span class="flights-well">in sun on enough photos</span>
               <span class="flights-sunlit">on fewer</span>
               <span class="flights-shade">not surely in sun</span>
+              <span class="flights-gap">not photographed</span>
             </figcaption>
           </figure>
         )}
