@@ -10,7 +10,7 @@ from recon.model.units import NS_PER_S
 from recon.product.charts import coverage_png
 from recon.product.flight import FlightData, FlownSurvey, RecordedTrack
 from recon.product.flight_log import FlightLog, read_log
-from recon.product.report import FlightReport, flight_report
+from recon.product.report import Covered, FlightReport, flight_report
 from recon.product.shadow_record import sun_by_cell, sun_cog
 from recon.product.tag import sun_history
 from recon.record.tracks import xml_text
@@ -92,9 +92,7 @@ def figures_json(flight: FlightData) -> bytes:
 
 def figures(report: FlightReport) -> dict[str, Any]:
     """Return the figures of a report; shares are 0 to 1, None where nothing is known."""
-    covered, flight = report.covered, report.flight
-    shares = [share for _at_ns, share in report.cover]
-    has_region = covered is not None and bool(covered.region.any())
+    flight = report.flight
     return {
         "record": flight.path.name,
         "site": str(report.log.about.get("site") or ""),
@@ -103,14 +101,24 @@ def figures(report: FlightReport) -> dict[str, Any]:
         "vehicles": [report.name_of(serial) for serial in flight.tracks],
         "surveys": [each.name for each in flight.surveys],
         "airborne_s": round(report.airborne_s, 1),
-        "region_m2": round(covered.area_m2, 1) if covered and has_region else None,
-        "photographed_share": covered.share(0) if covered and has_region else None,
-        "sunlit_share": covered.share(1) if covered and has_region else None,
-        "well_sunlit_share": covered.enough if covered and has_region else None,
-        "mean_sun_share": sum(shares) / len(shares) if shares else None,
+        **_coverage(report.covered),
+        "mean_sun_share": report.mean_sun,
         "shade_maps": len(flight.maps),
         "alarms": len(report.alarms),
         "trouble": flight.trouble,
+    }
+
+
+def _coverage(covered: Covered | None) -> dict[str, float | None]:
+    if covered is None or not covered.region.any():
+        return dict.fromkeys(
+            ("region_m2", "photographed_share", "sunlit_share", "well_sunlit_share")
+        )
+    return {
+        "region_m2": round(covered.area_m2, 1),
+        "photographed_share": covered.share(0),
+        "sunlit_share": covered.share(1),
+        "well_sunlit_share": covered.enough,
     }
 
 

@@ -139,6 +139,12 @@ class FlightData:
         latitude_deg, longitude_deg, _height = geo_from_enu(self.frame, level)
         return list(zip(longitude_deg.tolist(), latitude_deg.tolist(), strict=True))
 
+    @property
+    def span_ns(self) -> tuple[int, int]:
+        """The first and the last time of any track."""
+        tracks = self.tracks.values()
+        return min(int(t.at_ns[0]) for t in tracks), max(int(t.at_ns[-1]) for t in tracks)
+
     def parts_by_survey(self, track: RecordedTrack) -> list[tuple[FlownSurvey, slice]]:
         """Return the parts of a track, each with the survey its vehicle was last started for."""
         starts = sorted(

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from math import cos, isfinite, radians, sin
 from operator import itemgetter
+from statistics import fmean
 
 import numpy as np
 import numpy.typing as npt
@@ -117,6 +118,11 @@ class FlightReport:
         spans = [span for each in self.airborne.values() for span in each]
         return sum(end - begin for begin, end in spans) / NS_PER_S
 
+    @property
+    def mean_sun(self) -> float | None:
+        """The share of the region in sun, mean over the shade maps; None without any."""
+        return fmean(share for _at_ns, share in self.cover) if self.cover else None
+
     def name_of(self, serial: str) -> str:
         """Return a vehicle's name."""
         return self.flight.names.get(serial, serial)
@@ -126,8 +132,7 @@ def flight_report(
     flight: FlightData, log: FlightLog, photos: Sequence[TaggedPhoto] | None
 ) -> FlightReport:
     """Return the report of a flight; `photos` as tagged, None where no photos were tagged."""
-    begin_ns = min(int(track.at_ns[0]) for track in flight.tracks.values())
-    end_ns = max(int(track.at_ns[-1]) for track in flight.tracks.values())
+    begin_ns, end_ns = flight.span_ns
     area, covered = region_of(flight.surveys), None
     if flight.grid is not None and flight.maps:
         covered = _covered(flight, SunHistory(flight.grid, flight.maps), area, photos)

@@ -14,8 +14,9 @@ from recon.model.severity import Severity
 from recon.model.units import NS_PER_S
 from recon.product import charts
 from recon.product.coverage import ENOUGH_VIEWS
+from recon.product.flight import FlightData
 from recon.product.flight_log import LEADS_S
-from recon.product.report import FlightReport
+from recon.product.report import AlarmSpan, FlightReport
 
 MOST_DECISIONS, MOST_ALARMS = 300, 100
 LEVELS = frozenset(each.value for each in Severity)
@@ -54,7 +55,7 @@ def _context(report: FlightReport) -> dict[str, Any]:
         "battery_chart": charts.batteries(report),
         "leads": [_lead(report, lead_s) for lead_s in sorted(report.log.leads)],
         "shortest_lead": f"{LEADS_S[0]:g} s",
-        "alarms": [_alarm(report, number) for number in range(len(report.alarms))][:MOST_ALARMS],
+        "alarms": [_alarm(flight, each) for each in report.alarms[:MOST_ALARMS]],
         "more_alarms": max(0, len(report.alarms) - MOST_ALARMS),
         "decisions": [
             {"at": flight.utc(each.at_ns)[11:19], "text": each.text, "by": each.by}
@@ -82,9 +83,8 @@ def _figures(report: FlightReport) -> Sequence[tuple[str, str, str]]:
     if report.photo_states:
         sunlit = f"{report.photo_states.get('sunlit', 0)} sunlit"
         rows.append(("Photos", f"{sum(report.photo_states.values())}", sunlit))
-    if report.cover:
-        mean = sum(share for _at, share in report.cover) / len(report.cover)
-        rows.append(("Mean sun on the region", f"{100.0 * mean:.0f}", "%"))
+    if report.mean_sun is not None:
+        rows.append(("Mean sun on the region", f"{100.0 * report.mean_sun:.0f}", "%"))
     rows.append(("Duration", _minutes((report.end_ns - report.begin_ns) / NS_PER_S), "min"))
     rows.append(("In the air, together", _minutes(report.airborne_s), "min"))
     return rows
@@ -118,8 +118,7 @@ def _lead(report: FlightReport, lead_s: float) -> dict[str, str]:
     }
 
 
-def _alarm(report: FlightReport, number: int) -> dict[str, str]:
-    each, flight = report.alarms[number], report.flight
+def _alarm(flight: FlightData, each: AlarmSpan) -> dict[str, str]:
     return {
         "began": flight.utc(each.began_ns)[11:19],
         "ended": "at the end" if each.ended_ns is None else flight.utc(each.ended_ns)[11:19],

@@ -30,7 +30,6 @@ class TaggedPhoto:
     at_ns: int
     """Station time."""
     state: str
-    is_chosen: bool
     footprint: shapely.Polygon
 
 
@@ -47,9 +46,8 @@ def tagged_photos(folder: Path, flight: FlightData) -> list[TaggedPhoto]:
         raise RecordError(f"{path}: {problem.strerror}: run recon tag first") from problem
     except (csv.Error, UnicodeDecodeError) as problem:
         raise RecordError(f"{path}: expected the table of recon tag, got: {problem}") from problem
-    begins = min(int(track.at_ns[0]) for track in flight.tracks.values())
-    ends = max(int(track.at_ns[-1]) for track in flight.tracks.values())
-    if not any(begins <= each.at_ns <= ends for each in found):
+    begin_ns, end_ns = flight.span_ns
+    if not any(begin_ns <= each.at_ns <= end_ns for each in found):
         raise RecordError(f"{path}: expected photos of {flight.path.name}, got none of its time")
     return found
 
@@ -81,4 +79,4 @@ def _photo(row: Mapping[str, str], flight: FlightData) -> TaggedPhoto:
     if not np.isfinite(enu_m).all():
         raise ValueError("expected a footprint on earth")
     footprint = shapely.Polygon(enu_m[:, :2]).buffer(0.0)
-    return TaggedPhoto(row["name"], at_ns, row["state"], row["chosen"] == "yes", footprint)
+    return TaggedPhoto(row["name"], at_ns, row["state"], footprint)
