@@ -396,18 +396,18 @@ def _action(refusal: Refusal | None) -> schema.ActionResponse:
 
 
 _KINDS_OF: dict[TimelineSubject, tuple[str, ...]] = {
-    "orders": ("order.", "all_stop.", "authority.", "sticks."),
+    "orders": ("order.", "all_stop.", "authority.", "lease.", "sticks."),
     "alarms": ("alarm.", "separation_hold.", "hazard."),
     "flights": ("vehicle.", "link.", "app."),
     "operations": (
         "survey.",
         "fleet_return.",
         "look_aside.",
-        "imager_motion.",
+        "move_upwind.",
         "temporary_zone.",
         "site.",
     ),
-    "station": ("station.", "record.", "audit.", "login.", "users.", "operator", "preflight."),
+    "station": ("station.", "record.", "audit.", "login.", "users.", "preflight."),
 }
 """How the kinds of a subject's entries begin."""
 
