@@ -122,14 +122,22 @@ BODY_NAMES: dict[type, str] = {
 }
 
 
+def issued_by_station(why: str) -> str:
+    """Return the `issued_by` of an order that the station gives by itself.
+
+    No person's begins so: a name has neither colon nor space, and its address follows it.
+    """
+    return f"station: {why}"
+
+
 @dataclass(frozen=True, slots=True)
 class Command:
     """One order to one vehicle, or (all stop only) to one link without a serial.
 
     `takeoff` explicitly allows the vehicle to leave the ground. `role` is the role of the
     client: only the authority holder may set the vehicle in motion. `given_at_ns` is when its
-    person gave it, None if not stated; `issued_at_ns` when it reached the station. `person` is that
-    person's name; empty for the station's own orders.
+    person gave it, None if not stated; `issued_at_ns` when it reached the station. `person` is the
+    name that the operator lease is compared with; whether a person gave it, `is_own` states.
     """
 
     id: int
@@ -148,6 +156,11 @@ class Command:
     def name(self) -> str:
         """The body's name as the API and the audit write it."""
         return BODY_NAMES[type(self.body)]
+
+    @property
+    def is_own(self) -> bool:
+        """Whether the station gave it by itself, not a person nor what a person has started."""
+        return self.issued_by.startswith(issued_by_station(""))
 
     @property
     def moves(self) -> bool:

@@ -103,8 +103,7 @@ class OperatorOrder:
 
     `command_id` is chosen by the client, to match the answer. `owner` names the API stream whose
     end stops a setpoint stream; None for orders that do not depend on a connection. `given_at_ns`
-    is when its person gave it, in station time; None if not stated. `person` is that person's name;
-    empty for the station's own orders.
+    is when its person gave it, in station time; None if not stated. `person` is as in `Command`.
     """
 
     command_id: int

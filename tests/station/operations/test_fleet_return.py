@@ -14,7 +14,7 @@ from tests.station.station_world import square_mission
 
 from recon.model.command import FlyMission, Hover, LandNow, Phase, ReturnHome
 from recon.model.control import AuthorityHolder
-from recon.model.event import AuthorityTaken, SeparationHoldSwitched
+from recon.model.event import AuthorityTaken, OperatorOrder, SeparationHoldSwitched
 from recon.station.api_views.operation_views import fleet_return_view
 from recon.station.state.fleet_return_record import Stage
 
@@ -178,6 +178,17 @@ class TestInterruptions:
         assert stages.pop(member.serial) is Stage.RELEASED
         assert "replaced by land, ordered by test" in member.reason
         assert set(stages.values()) == {Stage.LANDED}
+
+    def test_by_the_order_of_a_person_whose_name_begins_as_the_station_does(self) -> None:
+        world = returning_world([(0, 100, 30), (60, 100, 40)], [(0, -20), (0, -20)])
+        world.call("SIM-1", "SIM-2")
+        world.runs(10.0)
+        (waiting,) = [m.serial for m in map(world.member, world.pads_m) if m.mission_id is None]
+        label, person = "station-2 (10.0.0.9)", "station-2"
+        hold = OperatorOrder(7, Hover(), label, serial=waiting, person=person)
+        world.world.driver.handle(hold)
+        world.runs(1.0)
+        assert world.member(waiting).stage is Stage.RELEASED
 
     def test_all_stop_ends_it_for_all_that_are_held(self) -> None:
         world = four_in_the_air()

@@ -12,7 +12,7 @@ from tests.station.station_world import square_mission
 from recon.fleet.state import Fleet
 from recon.geo import point_from_enu
 from recon.model.airspace import Airspace, LandingPad
-from recon.model.command import FlyMission, Hover, Phase
+from recon.model.command import FlyMission, Hover, Phase, issued_by_station
 from recon.model.event import FleetReturnOrdered, OperatorOrder
 from recon.model.geo import GeoPoint, LatLon, LocalFrame
 from recon.model.vehicle import VehicleProfile
@@ -76,7 +76,7 @@ class TestBeforeItsTurn:
         world.call("SIM-1", "SIM-2")
         world.runs(10.0)
         (waiting,) = [m.serial for m in map(world.member, world.pads_m) if m.mission_id is None]
-        held = OperatorOrder(-999, Hover(), "station: separation", serial=waiting)
+        held = OperatorOrder(-999, Hover(), issued_by_station("separation"), waiting)
         world.world.driver.handle(held)
         assert world.runs_until_over(300.0)
         assert set(world.stages().values()) == {Stage.LANDED}
@@ -93,7 +93,7 @@ class TestItsFlight:
         world = returning_world(ONE, [(0, 0)])
         world.call("SIM-1")
         world.runs(10.0)
-        held = OperatorOrder(-999, Hover(), "station: separation", serial="SIM-1")
+        held = OperatorOrder(-999, Hover(), issued_by_station("separation"), "SIM-1")
         world.world.driver.handle(held)
         world.runs(1.0)
         assert "replaced by hover, ordered by station: separation" in reason(world, "SIM-1")

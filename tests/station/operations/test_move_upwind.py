@@ -11,7 +11,7 @@ from tests.station.surveyed_world import SURVEY_ID, asked
 
 from recon.forecast import ForecastState
 from recon.model.airspace import Region, Zone, ZoneKind
-from recon.model.command import GoTo, Hover, Phase
+from recon.model.command import GoTo, Hover, Phase, issued_by_station
 from recon.model.control import AuthorityHolder
 from recon.model.event import (
     AllStopped,
@@ -402,3 +402,13 @@ def test_where_a_person_has_sent_it_there_it_stays(
     blowing(world, 2.0)
     assert not has_begun(world)
     assert "move_upwind:refused" not in alarms(world)
+
+
+def test_a_hold_of_the_station_does_not_decide_where_it_stays() -> None:
+    world = surveying()
+    hold = OperatorOrder(-999, Hover(), issued_by_station("separation"), IMAGER)
+    world.surveyed.driver.handle(hold)
+    blowing(world, 8.0)
+    better_for_long(world)
+    blowing(world, 2.0)
+    assert newest(world).stage is MotionStage.UPWIND

@@ -14,7 +14,7 @@ leave the ground are followed by `takeoff_stops`.
 from collections.abc import Iterator
 
 from recon.fleet.flight_table import ModeKind, kind_of
-from recon.model.command import EMERGENCY_BODIES, FlyMission
+from recon.model.command import EMERGENCY_BODIES, FlyMission, issued_by_station
 from recon.model.control import Commanded
 from recon.model.event import OperatorOrder
 from recon.model.units import seconds_to_ns
@@ -37,8 +37,8 @@ def stops_again(station: Station, serials: tuple[str, ...], now_ns: int) -> Iter
             continue
         mission = _unshown_mission(station, stop, now_ns)
         if mission is not None:
-            issuer = f"station: the mission of order {mission.command.id} began after the stop"
-            yield OperatorOrder(0, stop.command.body, issuer, serial)
+            why = f"the mission of order {mission.command.id} began after the stop"
+            yield OperatorOrder(0, stop.command.body, issued_by_station(why), serial)
 
 
 def _confirmed_stop(station: Station, serial: str) -> OrderRecord | None:

@@ -15,14 +15,14 @@ order, or when the vehicle is no longer in stick mode: its pilot flies it.
 from collections.abc import Iterator
 from dataclasses import replace
 
-from recon.model.command import Command, Hover, VirtualStick
+from recon.model.command import Command, Hover, VirtualStick, issued_by_station
 from recon.model.event import OperatorOrder
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import FlightMode, VehicleState
 from recon.station.state.station import Station, take_id
 from recon.station.state.vehicle_control import PendingNeutral
 
-ISSUER = "station: end of a stick"
+ISSUER = issued_by_station("end of a stick")
 
 
 def begin(station: Station, command: Command, now_ns: int) -> Station:

@@ -8,7 +8,15 @@ from typing import NamedTuple
 
 from recon.fleet.flight_table import Instruction, Place, Verdict, read
 from recon.guidance.steering import halted
-from recon.model.command import Command, Hover, Phase, Refusal, StickFrame, VirtualStick
+from recon.model.command import (
+    Command,
+    Hover,
+    Phase,
+    Refusal,
+    StickFrame,
+    VirtualStick,
+    issued_by_station,
+)
 from recon.model.control import AuthorityHolder, Commanded
 from recon.model.event import OperatorOrder
 from recon.model.replacing import replace
@@ -21,7 +29,7 @@ from recon.station.state.setpoint_stream import SetpointStream
 from recon.station.state.station import Station, take_id
 from recon.station.state.steps import Judge, Output, SendCommand
 
-ISSUER = "station: end of a stream of sticks"
+ISSUER = issued_by_station("end of a stream of sticks")
 RULE = "steering_ended"
 
 

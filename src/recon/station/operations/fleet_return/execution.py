@@ -31,7 +31,7 @@ from recon.guidance.fleet_return import (
     mission_of,
     whole_claim,
 )
-from recon.model.command import FlyMission, Hover, Phase, Refusal
+from recon.model.command import FlyMission, Hover, Phase, Refusal, issued_by_station
 from recon.model.control import AuthorityHolder
 from recon.model.event import OperatorOrder
 from recon.model.units import seconds_to_ns
@@ -110,8 +110,8 @@ def _hold_late_starters(station: Station, running: FleetReturn, now_ns: int) -> 
         if member.since_ns != now_ns or record is None or record.phase is not Phase.TIMED_OUT:
             continue
         station, number = take_id(station)
-        by = f"station: fleet return: the mission of order {record.command.id} was ignored"
-        hold = OperatorOrder(number, Hover(), by, serial=member.serial)
+        why = f"fleet return: the mission of order {record.command.id} was ignored"
+        hold = OperatorOrder(number, Hover(), issued_by_station(why), serial=member.serial)
         station, sent = order_gateway.submit(station, hold, now_ns)
         outputs += sent
     return station, tuple(outputs)

@@ -12,7 +12,6 @@ from recon.station.state.orders import OrderRecord, mission_end_text
 from recon.station.state.station import Station
 from recon.station.steering import neutral_setpoint
 
-STATION_ISSUER = "station"
 STANDING_MPS = 0.5
 FRESH_S = 1.0
 
@@ -86,7 +85,7 @@ def _taken(station: Station, member: ReturningVehicle, now_ns: int) -> Returning
         return None
     command = newest.command
     words = f"replaced by {command.name.replace('_', ' ')}, ordered by {command.issued_by}"
-    if not command.issued_by.startswith(STATION_ISSUER):
+    if not command.is_own:
         return member.at(Stage.RELEASED, now_ns, words)
     if isinstance(command.body, Hover) and member.stage not in UNDER_WAY:
         return None  # it hovers anyway

@@ -11,7 +11,7 @@ A motion ends in one of two ways, and control goes back to the operator with eit
 
 from collections.abc import Callable
 
-from recon.model.command import GoTo, Hover, Phase
+from recon.model.command import GoTo, Hover, Phase, issued_by_station
 from recon.model.control import AuthorityHolder
 from recon.model.event import OperatorOrder
 from recon.model.replacing import replace
@@ -107,6 +107,6 @@ def put(station: Station, motion: ImagerMotion) -> Station:
 
 def _ordered_hold(station: Station, motion: ImagerMotion, why: str, now_ns: int) -> Stepped:
     station, number = take_id(station)
-    by = f"station: {why}"
+    by = issued_by_station(why)
     hold = OperatorOrder(number, Hover(), by, serial=motion.serial, role=AuthorityHolder.GUIDANCE)
     return order_gateway.submit(station, hold, now_ns)

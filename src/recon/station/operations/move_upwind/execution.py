@@ -162,4 +162,4 @@ def _is_a_persons(record: OrderRecord) -> bool:
     command = record.command
     if command.role is not AuthorityHolder.OPERATOR or lane_of(command) is Lane.CAMERA:
         return False
-    return not is_refused(record) and not command.issued_by.startswith("station: ")
+    return not is_refused(record) and not command.is_own

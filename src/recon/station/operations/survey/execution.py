@@ -22,7 +22,7 @@ from math import hypot
 from types import MappingProxyType
 
 from recon.guidance.survey import NO_BATTERY, PositionSample, refused
-from recon.model.command import Hover, Phase
+from recon.model.command import Hover, Phase, issued_by_station
 from recon.model.control import AuthorityHolder
 from recon.model.event import OperatorOrder
 from recon.model.replacing import replace
@@ -220,7 +220,7 @@ def _read_missions(
         if order is not None and order.phase is Phase.TIMED_OUT and record.is_running:
             station, number = take_id(station)
             why = f"the mission of order {order.command.id} was ignored"
-            by = f"station: survey {record.survey.name}: {why}"
+            by = issued_by_station(f"survey {record.survey.name}: {why}")
             hold = OperatorOrder(
                 number, Hover(), by, serial=member.serial, role=AuthorityHolder.GUIDANCE
             )

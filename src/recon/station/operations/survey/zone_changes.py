@@ -25,7 +25,7 @@ from recon.guidance.survey import (
     surroundings_of,
 )
 from recon.guidance.survey.replan import replanned
-from recon.model.command import Hover, Refusal
+from recon.model.command import Hover, Refusal, issued_by_station
 from recon.model.control import AuthorityHolder
 from recon.model.event import OperatorOrder
 from recon.model.geo import LocalFrame
@@ -98,7 +98,8 @@ def _hold_crossing(station: Station, record: SurveyRecord, now_ns: int) -> Stepp
         if zone is None:
             continue
         station, number = take_id(station)
-        by = f"station: survey {record.survey.name}: its rows lead through {zone.zone.name}"
+        why = f"survey {record.survey.name}: its rows lead through {zone.zone.name}"
+        by = issued_by_station(why)
         hold = OperatorOrder(
             number, Hover(), by, serial=member.serial, role=AuthorityHolder.GUIDANCE
         )
