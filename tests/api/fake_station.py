@@ -1,13 +1,12 @@
 """A station that the API can be put around, and its application under test."""
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
 from recon.api.app import create_app
-from recon.api.port import SiteFolder, SurveyCellStates, TimelineSubject
+from recon.api.port import SiteFolder, SurveyPort, TimelineSubject
 from recon.api.schema import (
     ActionResponse,
     AuditPage,
@@ -15,12 +14,6 @@ from recon.api.schema import (
     PreflightView,
     StationState,
     SunAtView,
-    SurveyCameraView,
-    SurveyEstimateView,
-    SurveyRequest,
-    SurveyResponse,
-    SurveyView,
-    SurveyWays,
     TemporaryZoneResponse,
     TimelineView,
     UpwindView,
@@ -199,41 +192,8 @@ class FakeStation:
     def upwind_place(self, serial: str | None, region: str | None) -> UpwindView:
         return self.service.upwind_place(serial, region)
 
-    def request_survey(self, asked: SurveyRequest, by: Person) -> SurveyResponse:
-        return self.service.request_survey(asked, by)
-
-    def survey(self, survey_id: int) -> SurveyView | None:
-        return self.service.survey(survey_id)
-
-    def start_survey(
-        self,
-        survey_id: int,
-        serials: list[str],
-        *,
-        takeoff: bool,
-        by: Person,
-        given_at_ns: int | None = None,
-    ) -> SurveyResponse:
-        return self.service.start_survey(
-            survey_id, serials, takeoff=takeoff, by=by, given_at_ns=given_at_ns
-        )
-
-    def stop_survey(self, survey_id: int, *, is_aborted: bool, by: Person) -> SurveyResponse:
-        return self.service.stop_survey(survey_id, is_aborted=is_aborted, by=by)
-
-    def survey_ways(self, survey_id: int) -> SurveyWays | None:
-        return self.service.survey_ways(survey_id)
-
-    def survey_estimate(
-        self, survey_id: int, serials: Sequence[str]
-    ) -> Callable[[], SurveyEstimateView] | None:
-        return self.service.survey_estimate(survey_id, serials)
-
-    def cameras(self) -> list[SurveyCameraView]:
-        return self.service.cameras()
-
-    def survey_cells(self, survey_id: int) -> SurveyCellStates | None:
-        return self.service.survey_cells(survey_id)
+    def surveys(self) -> SurveyPort:
+        return self.service.surveys()
 
     def site_folder(self) -> SiteFolder:
         return self.service.site_folder()

@@ -69,6 +69,47 @@ class SiteFolder(Protocol):
         """Return the polygons and points of a file; why it is refused is a result."""
 
 
+class SurveyPort(Protocol):
+    """The surveys of this run; every call returns at once, refusals are results, not errors."""
+
+    def ask(self, asked: SurveyRequest, by: Person) -> SurveyResponse:
+        """Request a survey; it is planned in the background, see `view`."""
+
+    def start(
+        self,
+        survey_id: int,
+        serials: list[str],
+        *,
+        takeoff: bool,
+        by: Person,
+        given_at_ns: int | None = None,
+    ) -> SurveyResponse:
+        """Start a survey with these vehicles, or add them; guidance gets control authority."""
+
+    def stop(self, survey_id: int, *, is_aborted: bool, by: Person) -> SurveyResponse:
+        """Pause or abort a survey; its vehicles hold."""
+
+    def view(self, survey_id: int) -> SurveyView | None:
+        """Return a survey as it stands."""
+
+    def ways(self, survey_id: int) -> SurveyWays | None:
+        """Return a survey's planned rows and flown paths; None without rows."""
+
+    def cells(self, survey_id: int) -> SurveyCellStates | None:
+        """Return the states of a survey's cells; None without rows."""
+
+    def preview(
+        self, survey_id: int, serials: Sequence[str]
+    ) -> Callable[[], SurveyEstimateView] | None:
+        """Return what estimates a survey with these vehicles; safe on any thread, may take long.
+
+        None without rows.
+        """
+
+    def cameras(self) -> list[SurveyCameraView]:
+        """Return the survey cameras that requests may name."""
+
+
 class StationPort(Protocol):
     """Every call returns at once."""
 
@@ -203,42 +244,8 @@ class StationPort(Protocol):
         None: the site's first one; the region of the running survey, or all of the site's.
         """
 
-    def request_survey(self, asked: SurveyRequest, by: Person) -> SurveyResponse:
-        """Request a survey; it is planned in the background, see `survey`."""
-
-    def survey(self, survey_id: int) -> SurveyView | None:
-        """Return a survey as it stands."""
-
-    def start_survey(
-        self,
-        survey_id: int,
-        serials: list[str],
-        *,
-        takeoff: bool,
-        by: Person,
-        given_at_ns: int | None = None,
-    ) -> SurveyResponse:
-        """Start a survey with these vehicles, or add them; guidance gets control authority."""
-
-    def stop_survey(self, survey_id: int, *, is_aborted: bool, by: Person) -> SurveyResponse:
-        """Pause or abort a survey; its vehicles hold."""
-
-    def survey_ways(self, survey_id: int) -> SurveyWays | None:
-        """Return a survey's planned rows and flown paths; None without rows."""
-
-    def survey_cells(self, survey_id: int) -> SurveyCellStates | None:
-        """Return the states of a survey's cells; None without rows."""
-
-    def survey_estimate(
-        self, survey_id: int, serials: Sequence[str]
-    ) -> Callable[[], SurveyEstimateView] | None:
-        """Return what estimates a survey with these vehicles; safe on any thread, may take long.
-
-        None without rows.
-        """
-
-    def cameras(self) -> list[SurveyCameraView]:
-        """Return the survey cameras that requests may name."""
+    def surveys(self) -> SurveyPort:
+        """Return the surveys."""
 
     def geotiff(self, image: GroundImage) -> bytes:
         """Return a ground image as a GeoTIFF file; may take long, safe on any thread."""

@@ -27,7 +27,7 @@ def _add_commands(app: FastAPI, port: StationPort) -> None:
     @app.post("/api/surveys")
     async def ask(asked: schema.SurveyRequest, request: Request) -> schema.SurveyResponse:
         """Plan a survey of a region. Responds when its rows are planned; nothing flies."""
-        answer = port.request_survey(asked, person_of(request))
+        answer = port.surveys().ask(asked, person_of(request))
         if answer.survey is None:
             return answer
         return _planned(await _until_planned(port, answer.survey))
@@ -41,7 +41,7 @@ def _add_commands(app: FastAPI, port: StationPort) -> None:
         On a running survey the vehicles join, or resume.
         """
         by = person_of(request)
-        return port.start_survey(
+        return port.surveys().start(
             survey_id,
             asked.serials,
             takeoff=asked.takeoff,
@@ -54,7 +54,7 @@ def _add_commands(app: FastAPI, port: StationPort) -> None:
         survey_id: int, command: Literal["pause", "abort"], request: Request
     ) -> schema.SurveyResponse:
         """Pause a survey, or abort it for good. Its vehicles hold where they are."""
-        return port.stop_survey(survey_id, is_aborted=command == "abort", by=person_of(request))
+        return port.surveys().stop(survey_id, is_aborted=command == "abort", by=person_of(request))
 
 
 def _add_views(app: FastAPI, port: StationPort) -> None:
@@ -66,13 +66,13 @@ def _add_views(app: FastAPI, port: StationPort) -> None:
     @app.get("/api/surveys/{survey_id}", responses=PROBLEMS)
     async def survey(survey_id: int) -> schema.SurveyView:
         """One survey with its figures."""
-        known = port.survey(survey_id)
+        known = port.surveys().view(survey_id)
         return found(known, "" if known is not None else _unknown_survey(port, survey_id))
 
     @app.get("/api/surveys/{survey_id}/ways", responses=PROBLEMS)
     async def ways(survey_id: int) -> schema.SurveyWays:
         """A survey's planned rows, the missions in flight, and the paths flown so far."""
-        rows = port.survey_ways(survey_id)
+        rows = port.surveys().ways(survey_id)
         return found(rows, "" if rows is not None else _no_rows(port, survey_id))
 
     @app.get("/api/surveys/{survey_id}/estimate", responses=PROBLEMS)
@@ -84,7 +84,7 @@ def _add_views(app: FastAPI, port: StationPort) -> None:
         ] = [],  # noqa: B006
     ) -> schema.SurveyEstimateView:
         """What a survey will take with these vehicles: time, photos, batteries. Nothing flies."""
-        work = port.survey_estimate(survey_id, serial)
+        work = port.surveys().preview(survey_id, serial)
         return await asyncio.to_thread(
             found(work, "" if work is not None else _no_rows(port, survey_id))
         )
@@ -92,14 +92,14 @@ def _add_views(app: FastAPI, port: StationPort) -> None:
     @app.get("/api/cameras")
     async def cameras() -> list[schema.SurveyCameraView]:
         """The survey cameras that a request may name: the table's and the site's own."""
-        return port.cameras()
+        return port.surveys().cameras()
 
     @app.get(
         "/api/surveys/{survey_id}/cells.png", response_class=Response, responses=PROBLEMS | PNG
     )
     async def cells(survey_id: int, form: Form = "picture") -> Response:
         """A survey's cells: not imaged, light unknown, in shade, in sun; corners in the survey."""
-        cells = port.survey_cells(survey_id)
+        cells = port.surveys().cells(survey_id)
         known = found(cells, "" if cells is not None else _no_rows(port, survey_id))
         is_picture = form == "picture"
         draw = pictures.cells_png if is_picture else pictures.cells_values_png
@@ -111,7 +111,7 @@ async def _until_planned(port: StationPort, asked: schema.SurveyView) -> schema.
     """Return a survey once it is planned or refused, or as it is after `PLANNED_WITHIN_S`."""
     newest = asked
     for _ in range(round(PLANNED_WITHIN_S / POLL_EVERY_S)):
-        newest = port.survey(asked.id) or newest
+        newest = port.surveys().view(asked.id) or newest
         if newest.phase != "planning":
             break
         await asyncio.sleep(POLL_EVERY_S)
@@ -127,7 +127,7 @@ def _planned(survey: schema.SurveyView) -> schema.SurveyResponse:
 
 
 def _no_rows(port: StationPort, survey_id: int) -> str:
-    survey = port.survey(survey_id)
+    survey = port.surveys().view(survey_id)
     if survey is None:
         return _unknown_survey(port, survey_id)
     return f"Survey {survey_id} has no rows: {survey.reason}"

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from tests.architecture.source import files, tree
 
-from recon.station.api_views.service import _KINDS_OF
+from recon.station.api_views.audit_service import KINDS_OF
 from recon.station.state.imager_motion import LookAside, MoveUpwind
 
 FROM_NAMES = {
@@ -43,7 +43,7 @@ def test_each_kind_that_is_written_has_exactly_one_subject() -> None:
     assert {"lease.taken_over", "move_upwind.{stage}", "survey.is_{phase}"} <= written
     assert {"authority.refused", "station.started", "audit.lost", "site.redrawn"} <= written
     subjects = {
-        kind: [subject for subject, begins in _KINDS_OF.items() if kind.startswith(begins)]
+        kind: [subject for subject, begins in KINDS_OF.items() if kind.startswith(begins)]
         for kind in written
     }
     assert {kind: found for kind, found in subjects.items() if len(found) != 1} == {}
@@ -51,5 +51,5 @@ def test_each_kind_that_is_written_has_exactly_one_subject() -> None:
 
 def test_each_subject_begins_as_a_kind_that_is_written() -> None:
     written = set(kinds())
-    begins = {each for kinds in _KINDS_OF.values() for each in kinds}
+    begins = {each for kinds in KINDS_OF.values() for each in kinds}
     assert {each for each in begins if not any(kind.startswith(each) for kind in written)} == set()

@@ -118,19 +118,6 @@ class PreflightView(Message):
     failsafe: list[FailsafeRowView] = Field(description="the site's failsafe matrix")
 
 
-class AuditEntryView(Message):
-    """One entry of the audit: what happened, who asked, about which vehicle."""
-
-    n: int
-    utc: str
-    kind: str
-    by: str
-    serial: str | None
-    vehicle: str
-    text: str
-    details: dict[str, Any]
-
-
 class TimelineEntryView(Message):
     """One line of the timeline."""
 
@@ -141,6 +128,12 @@ class TimelineEntryView(Message):
     serial: str | None
     vehicle: str
     text: str
+
+
+class AuditEntryView(TimelineEntryView):
+    """One entry of the audit: what happened, who asked, about which vehicle."""
+
+    details: dict[str, Any]
 
 
 class TimelineView(Message):

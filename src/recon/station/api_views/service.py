@@ -1,6 +1,6 @@
 """The API's port on a running station: requests become events, states become views."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from itertools import count
@@ -8,7 +8,7 @@ from pathlib import Path
 
 from recon import version
 from recon.api import schema
-from recon.api.port import SurveyCellStates, TimelineSubject
+from recon.api.port import TimelineSubject
 from recon.fleet import pairing
 from recon.model.command import Body, Refusal
 from recon.model.control import AuthorityHolder
@@ -35,10 +35,10 @@ from recon.model.shade import MaskMap, ShadeMap, SunForecast
 from recon.model.temporary_zone import DrawnZone
 from recon.model.units import ns_to_seconds
 from recon.record import geotiff_bytes
-from recon.record.audit import NumberedEntry, harmless
 from recon.record.audit_log import AuditLog
 from recon.site import Site
 from recon.station.api_views import RunningStation
+from recon.station.api_views.audit_service import audit_page, timeline
 from recon.station.api_views.imaging_views import sun_at_view, upwind_view
 from recon.station.api_views.order_service import OrderService, order_of
 from recon.station.api_views.site_service import SiteService
@@ -59,7 +59,7 @@ class Service:
     """Implements `recon.api.port.StationPort` on a driver."""
 
     driver: RunningStation
-    site: Site
+    _folder: SiteService
     link_addresses: list[str]
     capture_folder: str | None
     audit_log: AuditLog | None
@@ -72,18 +72,15 @@ class Service:
     recording: Callable[[], Path | None] = lambda: None
     """This run's record, once there is one."""
     numbers: VehicleNumbers = field(default_factory=VehicleNumbers)
-    _folder: SiteService = field(init=False)
 
-    def __post_init__(self) -> None:
-        self.edit(None)
+    @property
+    def site(self) -> Site:
+        """The site that is in force."""
+        return self._folder.site
 
     def edit(self, folder: Path | None) -> None:
         """Let the site be drawn and saved in this folder, which it was read from."""
-        self._folder = SiteService(self.driver, self.site, folder, self._take_site)
-
-    def _take_site(self, site: Site) -> None:
-        self.site = site
-        site_view(site)
+        self._folder = SiteService(self.driver, self.site, folder)
 
     @classmethod
     def around(
@@ -95,9 +92,8 @@ class Service:
         first_id: int = 1,
     ) -> "Service":
         """Return the service of a driver that is about to run; order ids start at `first_id`."""
-        # Simplifying outlines with very many corners takes a moment: now, not in flight.
-        site_view(site)
-        return cls(driver, site, [], capture_folder, audit_log, count(first_id).__next__)
+        site_folder = SiteService(driver, site, None)
+        return cls(driver, site_folder, [], capture_folder, audit_log, count(first_id).__next__)
 
     def state(self) -> schema.StationState:
         """Return everything a console shows, as of now."""
@@ -245,16 +241,11 @@ class Service:
         self, serial: str | None, about: TimelineSubject | None, before_n: int | None, at_most: int
     ) -> schema.TimelineView:
         """Return what happened in this run, the newest first."""
-        if self.audit_log is None:
-            return schema.TimelineView(entries=[], has_more=False)
-        kinds = () if about is None else _KINDS_OF[about]
-        found = self.audit_log.timeline(serial, kinds, before_n, at_most + 1)
-        entries = [_timeline_entry(stamped) for stamped in found[:at_most]]
-        return schema.TimelineView(entries=entries, has_more=len(found) > at_most)
+        return timeline(self.audit_log, serial, about, before_n, at_most)
 
     def audit(self, after: int, at_most: int) -> schema.AuditPage:
         """Return the audit's entries after a number, as far as they are in memory."""
-        return _audit_page(self.audit_log, after, at_most)
+        return audit_page(self.audit_log, after, at_most)
 
     def frame(self, serial: str) -> Frame | None:
         """Return a vehicle's newest frame."""
@@ -286,52 +277,8 @@ class Service:
         station, now_ns = self.driver.station, self.driver.now_ns()
         return upwind_view(station, self.site, serial, region, now_ns)
 
-    def request_survey(self, asked: schema.SurveyRequest, by: Person) -> schema.SurveyResponse:
-        """Request a survey."""
-        return self._surveys.ask(asked, by.label)
-
-    def survey(self, survey_id: int) -> schema.SurveyView | None:
-        """Return a survey as it stands."""
-        return self._surveys.view(survey_id)
-
-    def start_survey(
-        self,
-        survey_id: int,
-        serials: list[str],
-        *,
-        takeoff: bool,
-        by: Person,
-        given_at_ns: int | None = None,
-    ) -> schema.SurveyResponse:
-        """Start a survey with these vehicles, or add them."""
-        return self._surveys.start(
-            survey_id, serials, takeoff=takeoff, by=by, given_at_ns=given_at_ns
-        )
-
-    def stop_survey(self, survey_id: int, *, is_aborted: bool, by: Person) -> schema.SurveyResponse:
-        """Pause or abort a survey."""
-        return self._surveys.stop(survey_id, is_aborted=is_aborted, by=by.label)
-
-    def survey_ways(self, survey_id: int) -> schema.SurveyWays | None:
-        """Return a survey's planned rows and flown paths."""
-        return self._surveys.ways(survey_id)
-
-    def survey_estimate(
-        self, survey_id: int, serials: Sequence[str]
-    ) -> Callable[[], schema.SurveyEstimateView] | None:
-        """Return what estimates a survey with these vehicles; None without rows."""
-        return self._surveys.preview(survey_id, serials)
-
-    def cameras(self) -> list[schema.SurveyCameraView]:
-        """Return the survey cameras that requests may name."""
-        return self._surveys.cameras()
-
-    def survey_cells(self, survey_id: int) -> SurveyCellStates | None:
-        """Return the states of a survey's cells."""
-        return self._surveys.cells(survey_id)
-
-    @property
-    def _surveys(self) -> SurveyService:
+    def surveys(self) -> SurveyService:
+        """Return the surveys."""
         return SurveyService(self.driver, self.site, self._ids)
 
     def site_folder(self) -> SiteService:
@@ -393,60 +340,3 @@ def _action(refusal: Refusal | None) -> schema.ActionResponse:
     if refusal is not None:
         return schema.ActionResponse(accepted=False, rule=refusal.rule, reason=refusal.reason)
     return schema.ActionResponse(accepted=True, rule=None, reason=None)
-
-
-_KINDS_OF: dict[TimelineSubject, tuple[str, ...]] = {
-    "orders": ("order.", "all_stop.", "authority.", "lease.", "sticks."),
-    "alarms": ("alarm.", "separation_hold.", "hazard."),
-    "flights": ("vehicle.", "link.", "app."),
-    "operations": (
-        "survey.",
-        "fleet_return.",
-        "look_aside.",
-        "move_upwind.",
-        "temporary_zone.",
-        "site.",
-    ),
-    "station": ("station.", "record.", "audit.", "login.", "users.", "preflight."),
-}
-"""How the kinds of a subject's entries begin."""
-
-
-def _timeline_entry(stamped: NumberedEntry) -> schema.TimelineEntryView:
-    entry = stamped.entry
-    return schema.TimelineEntryView(
-        n=stamped.n,
-        utc=stamped.utc,
-        kind=entry.kind,
-        by=entry.by,
-        serial=entry.serial,
-        vehicle=entry.vehicle,
-        text=harmless(entry.text),
-    )
-
-
-def _audit_page(log: AuditLog | None, after: int, at_most: int) -> schema.AuditPage:
-    """Return entries after a number; an empty page without an audit."""
-    if log is None:
-        return schema.AuditPage(entries=[], first_n=0, last_n=0, file=None, problem=None)
-    return schema.AuditPage(
-        entries=[_audit_entry(stamped) for stamped in log.after(after, at_most)],
-        first_n=log.first_n,
-        last_n=log.last_n,
-        file=None if log.path is None else log.path.name,
-        problem=log.problem,
-    )
-
-
-def _audit_entry(stamped: NumberedEntry) -> schema.AuditEntryView:
-    entry = stamped.entry
-    return schema.AuditEntryView(
-        n=stamped.n,
-        utc=stamped.utc,
-        kind=entry.kind,
-        by=entry.by,
-        serial=entry.serial,
-        vehicle=entry.vehicle,
-        text=harmless(entry.text),
-        details=harmless(dict(entry.details)),
-    )

@@ -30,6 +30,7 @@ from recon.site.drawing import (
 )
 from recon.site.imports import read_import
 from recon.station.api_views import RunningStation
+from recon.station.api_views.site_view import site_view
 from recon.station.control import site_drawing
 
 NO_FOLDER = (
@@ -54,8 +55,6 @@ class SiteService:
     driver: RunningStation
     site: Site
     folder: Path | None
-    in_force: Callable[[Site], None]
-    """Called with the site after each change."""
     _applied: str | None = None
     """The digest of the files that are in force; None before the first reading."""
     _turn: asyncio.Lock = field(default_factory=asyncio.Lock)
@@ -63,6 +62,8 @@ class SiteService:
     """Held while a file is imported: each takes a process with memory of its own."""
 
     def __post_init__(self) -> None:
+        # Simplifying outlines with very many corners takes a moment: now, not in flight.
+        site_view(self.site)
         if self.folder is not None and self.locked_reason is None:
             self._applied = drawing_digest(self.folder)
 
@@ -224,7 +225,7 @@ class SiteService:
         self.site = replace(
             self.site, layers=drawn.layers, profiles=drawn.profiles, elevation=elevation
         )
-        self.in_force(self.site)
+        site_view(self.site)
         self._applied = await asyncio.to_thread(drawing_digest, folder)
         return None
 

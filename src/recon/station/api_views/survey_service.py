@@ -30,7 +30,7 @@ class SurveyService:
     site: Site
     ids: Callable[[], int]
 
-    def ask(self, asked: schema.SurveyRequest, by: str) -> schema.SurveyResponse:
+    def ask(self, asked: schema.SurveyRequest, by: Person) -> schema.SurveyResponse:
         """Request a survey; an invalid region is refused at once."""
         region = self._region(asked)
         if isinstance(region, Refusal):
@@ -40,7 +40,7 @@ class SurveyService:
         except SurveyCameraError as problem:
             return _refused(Refusal(RULE, str(problem)))
         number = self.ids()
-        self.driver.handle(SurveyRequested(_survey(number, asked, region, camera), by))
+        self.driver.handle(SurveyRequested(_survey(number, asked, region, camera), by.label))
         return self._taken(number)
 
     def start(
@@ -59,9 +59,9 @@ class SurveyService:
         self.driver.handle(event)
         return self._taken(survey_id) if refusal is None else _refused(refusal)
 
-    def stop(self, survey_id: int, *, is_aborted: bool, by: str) -> schema.SurveyResponse:
+    def stop(self, survey_id: int, *, is_aborted: bool, by: Person) -> schema.SurveyResponse:
         """Pause or abort a survey, unless that is refused."""
-        event = SurveyStopped(survey_id, by, is_aborted)
+        event = SurveyStopped(survey_id, by.label, is_aborted)
         refusal = stop_refusal(self.driver.station, event, self.driver.now_ns())
         self.driver.handle(event)
         return self._taken(survey_id) if refusal is None else _refused(refusal)
