@@ -14,12 +14,14 @@ from tests.api.fake_station import FakeStation, application
 
 from recon.api.schema import SiteDrawingRequest
 from recon.model.command import Refusal
+from recon.model.event import SiteRedrawn
 from recon.model.geo import GeoPoint
 from recon.model.person import Person, Role
 from recon.record import file_set
 from recon.site import load_site
 from recon.site.new_site import make_site
 from recon.station.control import site_drawing
+from recon.station.state.steps import StepTaken
 
 LON, LAT = -93.6034, 41.9012
 
@@ -109,6 +111,19 @@ def test_a_drawing_is_in_force_at_once_and_after_a_start(editor: Editor) -> None
     assert len(started.layers.survey_regions["north"].holes_m) == 1
     assert [each.name for each in started.layers.landing_pads] == ["home"]
     assert editor.drawing()["features"] == [BOUNDARY, pad("home"), REGION]
+
+
+def test_its_layers_are_named_alike_for_an_undo_and_in_the_audit(editor: Editor) -> None:
+    entries: list[str] = []
+
+    def observe(step: StepTaken) -> None:
+        if isinstance(step.event, SiteRedrawn):
+            entries.append(site_drawing.entry(step.before, step.event, step.now_ns).text)
+
+    editor.station.driver.observe = observe
+    editor.save(BOUNDARY, area("keep_out", ring(0.001), name="wood"))
+    assert editor.drawing()["undo"]["what"] == "boundary, keep-out"
+    assert entries == ["site drawn anew: boundary, keep-out"]
 
 
 def test_undo_takes_back_one_change_after_the_other(editor: Editor) -> None:

@@ -9,6 +9,7 @@ from typer.testing import CliRunner
 from recon.cli.commands import app
 from recon.cli.demo import demo_command
 from recon.cli.site import site_app
+from recon.model.airspace import SiteLayer
 from recon.model.errors import ReconError, SiteError
 from recon.model.event import SiteRedrawn
 from recon.record import file_set
@@ -154,10 +155,10 @@ def test_a_record_keeps_a_drawing(folder: Path, tmp_path: Path) -> None:
     airspace = site.airspace
     pads = {serial: profile.pad for serial, profile in site.profiles.items()}
     drawn = (airspace.boundary, airspace.zones, airspace.landing_pads, pads)
-    event = SiteRedrawn(*drawn, ("boundary",), "anna")
+    event = SiteRedrawn(*drawn, (SiteLayer.BOUNDARY,), "anna")
     codec = Codec()
     again: SiteRedrawn = codec.decode(codec.encode(event, SiteRedrawn), SiteRedrawn)
     assert again.boundary is not None
     assert airspace.boundary is not None
     assert again.boundary.outline_m.tolist() == airspace.boundary.outline_m.tolist()
-    assert (again.pads, again.layers, again.by) == (pads, ("boundary",), "anna")
+    assert (again.pads, again.layers, again.by) == (pads, (SiteLayer.BOUNDARY,), "anna")

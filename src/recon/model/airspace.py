@@ -1,7 +1,8 @@
 """A site's airspace: limits, boundary, zones, landing pads and elevation."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
-from enum import Enum
+from enum import Enum, StrEnum
 
 import numpy as np
 import numpy.typing as npt
@@ -31,6 +32,22 @@ class ZoneKind(Enum):
     """Stay out between floor and ceiling; without either, at every height."""
     HEIGHT = "height"
     """Fly no lower than the floor and no higher than the ceiling."""
+
+
+class SiteLayer(StrEnum):
+    """A layer of a site, by its key in site.toml."""
+
+    BOUNDARY = "boundary"
+    KEEP_OUT = "keep_out"
+    HEIGHT_ZONES = "height_zones"
+    LANDING_PADS = "landing_pads"
+    SURVEY_REGIONS = "survey_regions"
+
+
+def layers_text(layers: Iterable[SiteLayer]) -> str:
+    """Return the names of layers for readers."""
+    words = ("keep-out" if layer is SiteLayer.KEEP_OUT else layer.value for layer in layers)
+    return ", ".join(words).replace("_", " ")
 
 
 class HeightDatum(Enum):

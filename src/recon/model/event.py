@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from recon.model.airspace import ElevationModel, LandingPad, Region, Zone
+from recon.model.airspace import ElevationModel, LandingPad, Region, SiteLayer, Zone
 from recon.model.command import Body, Phase, Refusal
 from recon.model.control import AuthorityHolder
 from recon.model.geo import GeoPoint
@@ -266,7 +266,7 @@ class SiteRedrawn:
     zones: tuple[Zone, ...]
     landing_pads: tuple[LandingPad, ...]
     pads: Mapping[str, GeoPoint | None]
-    layers: tuple[str, ...]
+    layers: tuple[SiteLayer, ...]
     by: str
     is_undo: bool = False
     elevation: ElevationModel | None = None

@@ -14,17 +14,16 @@ from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, Literal, get_args
+from typing import Any
 
+from recon.model.airspace import SiteLayer
 from recon.model.errors import SiteError
 from recon.site.geojson import read_features
 from recon.site.load import LARGEST_FILE_BYTES, SITE_FILE, load_site
 from recon.site.reading import HISTORY_FOLDER, file_inside, read_bounded, read_toml
 from recon.site.site import Site
 
-LayerName = Literal["boundary", "keep_out", "height_zones", "landing_pads", "survey_regions"]
-LAYERS: tuple[LayerName, ...] = get_args(LayerName)
-FENCES: frozenset[LayerName] = frozenset(LAYERS) - {"survey_regions"}
+FENCES = frozenset(SiteLayer) - {SiteLayer.SURVEY_REGIONS}
 """The layers that the safety gate judges by."""
 
 MOST_STAGED_FILES = 200
@@ -39,7 +38,7 @@ _NOT_STAGED = frozenset({HISTORY_FOLDER, "references"})
 class DrawnFeature:
     """A feature of a layer: GeoJSON geometry of one polygon or point, and attributes."""
 
-    layer: LayerName
+    layer: SiteLayer
     geometry: Mapping[str, Any]
     properties: Mapping[str, Any]
 
@@ -50,7 +49,7 @@ class StagedSite:
 
     site: Site
     files: Mapping[str, bytes | None]
-    changed: tuple[LayerName, ...]
+    changed: tuple[SiteLayer, ...]
     """The layers that differ from those in the folder."""
 
 
@@ -92,7 +91,7 @@ def stage_drawing(folder: Path, features: Sequence[DrawnFeature]) -> StagedSite:
     now, wanted = _texts(read_drawing(folder)), _texts(features)
     named = _layer_files(folder)
     files: dict[str, bytes | None] = {}
-    for layer in LAYERS:
+    for layer in SiteLayer:
         if wanted.get(layer) == now.get(layer):
             continue
         if layer in wanted:
@@ -110,7 +109,7 @@ def stage_drawing(folder: Path, features: Sequence[DrawnFeature]) -> StagedSite:
 
 
 def _of_feature(
-    problem: SiteError, features: Sequence[DrawnFeature], named: Mapping[LayerName, str]
+    problem: SiteError, features: Sequence[DrawnFeature], named: Mapping[SiteLayer, str]
 ) -> SiteError:
     """Return the error with the feature that its text names by file and number, if it does."""
     found = _FEATURE_PLACE.match(str(problem))
@@ -142,18 +141,18 @@ def stage_files(folder: Path, files: Mapping[str, bytes | None]) -> StagedSite:
             site, then = load_site(staged), _texts(read_drawing(staged))
         except SiteError as problem:
             raise SiteError(str(problem).replace(f"{staged}{os.sep}", "")) from problem
-    changed = tuple(layer for layer in LAYERS if then.get(layer) != now.get(layer))
+    changed = tuple(layer for layer in SiteLayer if then.get(layer) != now.get(layer))
     return StagedSite(site, files, changed)
 
 
-def _texts(features: Sequence[DrawnFeature]) -> dict[LayerName, bytes]:
+def _texts(features: Sequence[DrawnFeature]) -> dict[SiteLayer, bytes]:
     """Return the file of each layer that has a feature."""
-    by_layer = {layer: [each for each in features if each.layer == layer] for layer in LAYERS}
+    by_layer = {layer: [each for each in features if each.layer == layer] for layer in SiteLayer}
     return {layer: _collection(layer, some) for layer, some in by_layer.items() if some}
 
 
 def _single(
-    layer: LayerName, geometry: Mapping[str, Any], properties: Mapping[str, Any]
+    layer: SiteLayer, geometry: Mapping[str, Any], properties: Mapping[str, Any]
 ) -> Iterator[DrawnFeature]:
     """Yield a feature, or one for each polygon of several, as the layers' names count them."""
     coordinates = geometry.get("coordinates")
@@ -163,12 +162,12 @@ def _single(
         return
     for part, rings in enumerate(coordinates, start=1):
         own = dict(properties)
-        if len(coordinates) > 1 and "name" in own and layer == "survey_regions":
+        if len(coordinates) > 1 and "name" in own and layer is SiteLayer.SURVEY_REGIONS:
             own["name"] = f"{own['name']}, part {part}"
         yield DrawnFeature(layer, {"type": "Polygon", "coordinates": rings}, own)
 
 
-def _collection(layer: LayerName, features: Sequence[DrawnFeature]) -> bytes:
+def _collection(layer: SiteLayer, features: Sequence[DrawnFeature]) -> bytes:
     """Return a layer's file; the same features give the same bytes."""
     lines = ",\n".join(
         json.dumps(
@@ -186,19 +185,19 @@ def _collection(layer: LayerName, features: Sequence[DrawnFeature]) -> bytes:
     )
 
 
-def _layer_files(folder: Path) -> dict[LayerName, str]:
+def _layer_files(folder: Path) -> dict[SiteLayer, str]:
     """Return the file of each layer that site.toml names."""
     table = read_toml(folder / SITE_FILE, LARGEST_FILE_BYTES, "a site file").get("layers", {})
     if not isinstance(table, dict):
         return {}
-    return {layer: name for layer in LAYERS if isinstance(name := table.get(layer), str)}
+    return {layer: name for layer in SiteLayer if isinstance(name := table.get(layer), str)}
 
 
 _SECTION = re.compile(r"^\s*\[layers\]\s*(#.*)?$")
 _ANY_SECTION = re.compile(r"^\s*\[")
 
 
-def _with_layers(folder: Path, text: str, named: Mapping[LayerName, str]) -> str:
+def _with_layers(folder: Path, text: str, named: Mapping[SiteLayer, str]) -> str:
     """Return the text of site.toml with these layers; everything else stays, comments too."""
     known = tomllib.loads(text).get("layers", {})
     if known == named:
@@ -210,7 +209,7 @@ def _with_layers(folder: Path, text: str, named: Mapping[LayerName, str]) -> str
         if _ANY_SECTION.match(line):
             is_inside = bool(_SECTION.match(line))
         key = line.split("=", 1)[0].strip()
-        if is_inside and "=" in line and key in LAYERS and key not in named:
+        if is_inside and "=" in line and key in SiteLayer and key not in named:
             continue
         kept.append(line)
         if _SECTION.match(line):

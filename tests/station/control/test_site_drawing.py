@@ -6,7 +6,7 @@ import numpy as np
 from tests.replay.record_flight import recording
 from tests.station.station_world import World, from_the_ground, square_mission, world
 
-from recon.model.airspace import Region, Zone, ZoneKind
+from recon.model.airspace import Region, SiteLayer, Zone, ZoneKind
 from recon.model.command import FlyMission, Phase, Refusal
 from recon.model.event import SiteRedrawn, ZoneDrawn
 from recon.model.geo import GeoPoint, LatLon
@@ -32,7 +32,7 @@ def drawn(
 ) -> SiteRedrawn:
     known = here.driver.station.airspace.airspace.boundary
     pads = {"SIM-1": pad or here.driver.station.fleet.profiles["SIM-1"].pad}
-    return SiteRedrawn(boundary or known, zones, _pads(here), pads, ("boundary",), "anna")
+    return SiteRedrawn(boundary or known, zones, _pads(here), pads, (SiteLayer.BOUNDARY,), "anna")
 
 
 def _pads(here: World) -> tuple[object, ...]:

@@ -5,8 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from recon.api.schema.message import Message, StrictMessage
-
-LayerName = Literal["boundary", "keep_out", "height_zones", "landing_pads", "survey_regions"]
+from recon.model.airspace import SiteLayer
 
 Position = Annotated[list[float], Field(min_length=2, max_length=3)]
 Ring = Annotated[list[Position], Field(max_length=10_000)]
@@ -24,7 +23,7 @@ class DrawnGeometry(StrictMessage):
 class DrawnFeatureView(StrictMessage):
     """A feature of a layer; its attributes are those of the layer's file."""
 
-    layer: LayerName
+    layer: Annotated[SiteLayer, Field(strict=False)]
     geometry: DrawnGeometry
     properties: dict[Annotated[str, Field(max_length=100)], Attribute] = Field(
         default={}, max_length=40
@@ -68,7 +67,7 @@ class SiteDrawingResponse(Message):
     rule: str | None
     reason: str | None
     feature: int | None = Field(description="the refused one's index in the request, if it is one")
-    layers: list[LayerName] = Field(description="those that change")
+    layers: list[SiteLayer] = Field(description="those that change")
     drawing: SiteDrawingView | None
 
 

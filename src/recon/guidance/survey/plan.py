@@ -212,7 +212,9 @@ def row_bearing_deg(survey: Survey, settings: SurveySettings = DEFAULT) -> float
     """Return the bearing of the rows, 0 to 180, of a survey without a `survey_fault`."""
     bearing_deg = survey.row_bearing_deg
     if bearing_deg is None:
-        bearing_deg = best_bearing_deg(shape_of(survey.region), swath_of(survey, settings), settings)
+        bearing_deg = best_bearing_deg(
+            shape_of(survey.region), swath_of(survey, settings), settings
+        )
     return bearing_deg % 180.0
 
 

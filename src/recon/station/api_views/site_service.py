@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from recon.api import schema
+from recon.model.airspace import SiteLayer, layers_text
 from recon.model.command import Refusal
 from recon.model.errors import ReconError, SiteError
 from recon.model.event import SiteRedrawn
@@ -102,7 +103,7 @@ class SiteService:
                 return _refused(refusal, event.layers)
             folder = self.folder
             if not is_check and staged.changed and folder is not None:
-                what = ", ".join(event.layers).replace("_", " ")
+                what = layers_text(event.layers)
                 refusal = await self._commit(
                     staged,
                     event,
@@ -112,7 +113,7 @@ class SiteService:
                 if refusal is not None:
                     return _refused(refusal, event.layers)
             view = None if is_check else await asyncio.to_thread(self._view)
-        return _accepted(event, view)
+        return _answer(event.layers, drawing=view)
 
     async def undo(self, revision: str, by: Person) -> schema.SiteDrawingResponse:
         """Take back the newest change."""
@@ -145,7 +146,7 @@ class SiteService:
             if refusal is not None:
                 return _refused(refusal, event.layers)
             view = await asyncio.to_thread(self._view)
-        return _accepted(event, view)
+        return _answer(event.layers, drawing=view)
 
     async def import_features(self, name: str, data: bytes) -> schema.ImportedView:
         """Return the polygons and points of a file, or why it is refused."""
@@ -302,30 +303,23 @@ def _refusal(reason: str) -> Refusal:
 
 
 def _refused(
-    refusal: Refusal, layers: tuple[str, ...] = (), feature: int | None = None
+    refusal: Refusal, layers: tuple[SiteLayer, ...] = (), feature: int | None = None
 ) -> schema.SiteDrawingResponse:
-    return schema.SiteDrawingResponse.model_validate(
-        {
-            "accepted": False,
-            "rule": refusal.rule,
-            "reason": refusal.reason,
-            "feature": feature,
-            "layers": list(layers),
-            "drawing": None,
-        }
-    )
+    return _answer(layers, refusal=refusal, feature=feature)
 
 
-def _accepted(
-    event: SiteRedrawn, view: schema.SiteDrawingView | None
+def _answer(
+    layers: tuple[SiteLayer, ...],
+    *,
+    refusal: Refusal | None = None,
+    feature: int | None = None,
+    drawing: schema.SiteDrawingView | None = None,
 ) -> schema.SiteDrawingResponse:
-    return schema.SiteDrawingResponse.model_validate(
-        {
-            "accepted": True,
-            "rule": None,
-            "reason": None,
-            "feature": None,
-            "layers": list(event.layers),
-            "drawing": view,
-        }
+    return schema.SiteDrawingResponse(
+        accepted=refusal is None,
+        rule=None if refusal is None else refusal.rule,
+        reason=None if refusal is None else refusal.reason,
+        feature=feature,
+        layers=list(layers),
+        drawing=drawing,
     )

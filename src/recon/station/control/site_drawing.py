@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from recon.model.airspace import Airspace, Region, Zone
+from recon.model.airspace import Airspace, Region, Zone, layers_text
 from recon.model.command import Refusal
 from recon.model.event import SiteRedrawn
 from recon.model.replacing import replace
@@ -78,15 +78,16 @@ def entry(before: Station, event: SiteRedrawn, now_ns: int) -> AuditEntry:
     if refused is not None:
         why = {"rule": refused.rule, "reason": refused.reason}
         return AuditEntry("site.refused", refused.reason, event.by, details=why)
-    layers = ", ".join(event.layers).replace("_", " ")
     verb = "last change undone" if event.is_undo else "drawn anew"
     details = {
-        "layers": list(event.layers),
+        "layers": [layer.value for layer in event.layers],
         "zones": [zone.name for zone in event.zones],
         "pads": [pad.name for pad in event.landing_pads],
         "has_boundary": event.boundary is not None,
     }
-    return AuditEntry("site.redrawn", f"site {verb}: {layers}", event.by, details=details)
+    return AuditEntry(
+        "site.redrawn", f"site {verb}: {layers_text(event.layers)}", event.by, details=details
+    )
 
 
 def _may_take_off_late(station: Station, now_ns: int) -> Iterator[str]:

@@ -357,7 +357,9 @@ def _about(start: FlightStart) -> dict[str, Any]:
         "vehicles": {s: each.display_name for s, each in start.site.profiles.items()},
         "scenario": start.scenario,
         "surveys": [
-            survey_facts(each) for each in start.station.surveys.records.values() if not each.is_over
+            survey_facts(each)
+            for each in start.station.surveys.records.values()
+            if not each.is_over
         ],
         "running_jobs": start.running_jobs,
         "settings": asdict(start.station.settings),
