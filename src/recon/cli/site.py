@@ -73,6 +73,7 @@ def import_command(
     ] = False,
 ) -> None:
     """Import shapes as a layer of a site. A running station does not see it before its restart."""
+    from recon.model.airspace import SiteLayer
     from recon.record.file_set import replace_files
     from recon.site.drawing import DrawnFeature, read_drawing, stage_drawing
     from recon.site.imports import LARGEST_IMPORT_BYTES, read_import
@@ -87,7 +88,7 @@ def import_command(
     own = {"altitude_m": frame.origin.ellipsoid_height_m} if is_pads else {}
     kind = "Point" if is_pads else "Polygon"
     new = [
-        DrawnFeature(layer.value, each.geometry, {"name": each.name or None, **own})
+        DrawnFeature(SiteLayer(layer.value), each.geometry, {"name": each.name or None, **own})
         for each in found.features
         if each.geometry["type"] == kind
     ]

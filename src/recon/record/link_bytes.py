@@ -123,12 +123,8 @@ class LinkStream:
             yield from self.packet(end)
             return
         yield from self._written_up_to(start)
-        if isinstance(packet, wire.Image):
-            payload_bytes = packet.pixels.nbytes
-        else:
-            payload_bytes = len(packet.jpeg)
         tail = end - self._start
-        head = tail - TRAILER_BYTES - payload_bytes
+        head = tail - TRAILER_BYTES - _payload_bytes(packet)
         around = self._held[start - self._start : head] + self._held[tail - TRAILER_BYTES : tail]
         skip = max(0, self._written - start)
         lost, self._lost = self._lost, 0
@@ -175,6 +171,10 @@ class LinkStream:
         count = max(0, min(end, self._written) - self._start)
         del self._held[:count]
         self._start += count
+
+
+def _payload_bytes(packet: ImagePacket) -> int:
+    return packet.pixels.nbytes if isinstance(packet, wire.Image) else len(packet.jpeg)
 
 
 _PICTURES: dict[str, type[RawImage] | type[CompressedImage]] = {

@@ -209,7 +209,7 @@ def _with_layers(folder: Path, text: str, named: Mapping[SiteLayer, str]) -> str
         if _ANY_SECTION.match(line):
             is_inside = bool(_SECTION.match(line))
         key = line.split("=", 1)[0].strip()
-        if is_inside and "=" in line and key in SiteLayer and key not in named:
+        if is_inside and "=" in line and key in frozenset(SiteLayer) and key not in named:
             continue
         kept.append(line)
         if _SECTION.match(line):
