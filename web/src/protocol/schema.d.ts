@@ -1420,11 +1420,7 @@ export interface components {
          */
         DrawnFeatureView: {
             geometry: components["schemas"]["DrawnGeometry"];
-            /**
-             * Layer
-             * @enum {string}
-             */
-            layer: "boundary" | "keep_out" | "height_zones" | "landing_pads" | "survey_regions";
+            layer: components["schemas"]["SiteLayer"];
             /**
              * Properties
              * @default {}
@@ -2488,7 +2484,7 @@ export interface components {
              * Layers
              * @description those that change
              */
-            layers: ("boundary" | "keep_out" | "height_zones" | "landing_pads" | "survey_regions")[];
+            layers: components["schemas"]["SiteLayer"][];
             /** Reason */
             reason: string | null;
             /** Rule */
@@ -2513,6 +2509,12 @@ export interface components {
             revision: string;
             undo: components["schemas"]["SavedChangeView"] | null;
         };
+        /**
+         * SiteLayer
+         * @description A layer of a site, by its key in site.toml.
+         * @enum {string}
+         */
+        SiteLayer: "boundary" | "keep_out" | "height_zones" | "landing_pads" | "survey_regions";
         /**
          * SiteUndoRequest
          * @description Takes back the newest change of the site.
