@@ -103,12 +103,12 @@ def test_a_gap_is_stated_and_frames_are_found_behind_it() -> None:
     fed.end += lost
     found = [*fed.found, *fed.stream.take(fed.end, image + text, 5)]
     start = fed.end
-    found += fed.stream.image(start - len(image), start, 5)
+    found += fed.stream.image(start - len(image), start, 5)  # Its beginning is lost.
     found += fed.stream.image(start, start + len(image), 5)
     found += fed.stream.rest()
-    assert [rebuilt(part) for part in found] == [text, image[:50], image, text]
-    assert [part.lost for part in found] == [0, 0, lost, 0]
-    assert [isinstance(part, FrameBytes) for part in found] == [False, False, True, False]
+    assert [rebuilt(part) for part in found] == [text + image[:50], image, text]
+    assert [part.lost for part in found] == [0, lost, 0]
+    assert [isinstance(part, FrameBytes) for part in found] == [False, True, False]
 
 
 def test_half_a_frame_does_not_wait_long_for_its_end() -> None:
