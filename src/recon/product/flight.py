@@ -188,7 +188,7 @@ class _Step(msgspec.Struct, frozen=True):
     audit: msgspec.Raw = msgspec.Raw(b"\x90")
 
 
-class _Entry(msgspec.Struct, frozen=True):
+class _AuditKind(msgspec.Struct, frozen=True):
     kind: str
 
 
@@ -296,7 +296,7 @@ class _Reader:
             case "SurveyRequested":
                 self._surveys[int(event["survey"]["id"])] = _survey(event["survey"])
             case "SurveyStarted":
-                audit = msgspec.msgpack.decode(step.audit, type=list[_Entry])
+                audit = msgspec.msgpack.decode(step.audit, type=list[_AuditKind])
                 if all(entry.kind != "survey.refused" for entry in audit):
                     self._started(int(event["survey_id"]), event["serials"], at_ns)
 
