@@ -154,8 +154,8 @@ class MissionAssignment:
     approach: tuple[LatLon, ...] = ()
     """Corners on the way to the first waypoint, from where the vehicle was, round keep-out zones;
     none where it is straight or none is known."""
-    straight_within_m: float = 0.0
-    """From a first row this near it may go there at the rows' height, and stay at the end of the
-    last: the next mission follows at once. 0: always by a layer of its own."""
+    straight_within_m: float | None = None
+    """To a first row this near it may fly at the rows' height. It stays at that height at the end
+    of the last row, since the next mission follows at once. None: always by a layer of its own."""
     stands_by: bool = False
     """Whether it only goes to its first waypoint, in its layer, and waits there."""

@@ -271,6 +271,36 @@ class TestDecisions:
         assert np.argsort(across).tolist() == np.argsort(own).tolist()
         assert {mission.straight_within_m for mission in missions} == {PLAN.settings.near_m}
 
+    @pytest.mark.parametrize("rim_m", [360.0, 330.0])
+    def test_none_begins_where_its_neighbour_does(self, rim_m: float) -> None:
+        """All is in sun throughout, or nearly all, and all vehicles come from the same side."""
+        sun = forecast(lambda east, _north, _lead: east < rim_m)
+        fleet = [Surveyor(f"S-{n}", (20.0 * n, -40.0)) for n in range(3)]
+        state, missions = decided(sun, *fleet)
+        assert len(missions) == 3
+        begins_m = [flight.corners_m[0] for flight in state.flights.values()]
+        assert all(np.hypot(a[0] - b[0], a[1] - b[1]) > 40.0 for a, b in combinations(begins_m, 2))
+        flown = [flown_rows(state, each.serial) for each in fleet]
+        assert len({rows[-1] > rows[0] for rows in flown}) == 1
+
+    @pytest.mark.parametrize(("height_m", "steps_aside"), [(61.0, True), (68.0, False)])
+    def test_one_that_waits_leaves_the_height_of_the_rows(
+        self, height_m: float, steps_aside: bool
+    ) -> None:
+        sun = forecast(lambda _east, _north, _lead: False)
+        waiting = Surveyor("S-1", (40.0, 100.0), height_above_takeoff_m=height_m)
+        on_ground = Surveyor("S-2", (0.0, -40.0), is_flying=False, height_above_takeoff_m=0.0)
+        state, missions = decided(sun, waiting, on_ground)
+        assert [(each.serial, each.stands_by) for each in missions] == [("S-1", True)] * steps_aside
+        if steps_aside:
+            assert state.flights["S-1"].corners_m == (waiting.place_m,)
+        assert state.decisions["S-1"].text.startswith("waits: no sun is expected")
+
+    def test_alone_it_waits_where_it_is(self) -> None:
+        sun = forecast(lambda _east, _north, _lead: False)
+        alone = Surveyor("S-1", (40.0, 100.0), height_above_takeoff_m=60.0)
+        assert decided(sun, alone)[1] == ()
+
     def test_a_refused_vehicle_is_decided_on_again_soon(self) -> None:
         sun = forecast(lambda _east, _north, _lead: True)
         here = Surveyor("S-1", (0.0, 60.0)), Surveyor("S-2", (0.0, 180.0))

@@ -51,13 +51,13 @@ class TestStraight:
         given = replace(rows(world, *FREE), straight_within_m=90.0)
         assert mission_of(dispatched(world, given)) == given.mission
 
-    @pytest.mark.parametrize("within_m", [0.0, 30.0])
-    def test_farther_off_it_goes_by_its_layer(self, within_m: float) -> None:
+    @pytest.mark.parametrize(("within_m", "stays"), [(None, False), (0.0, True), (30.0, True)])
+    def test_farther_off_it_goes_by_its_layer(self, within_m: float | None, stays: bool) -> None:
         world = started(2)
         given = replace(rows(world, *FREE), straight_within_m=within_m)
         flown = mission_of(dispatched(world, given))
         assert flown.waypoints[0].height_above_takeoff_m != HEIGHT_M
-        assert flown.waypoints[-1].height_above_takeoff_m != HEIGHT_M
+        assert (flown.waypoints[-1].height_above_takeoff_m == HEIGHT_M) is stays
 
     def test_where_the_gate_refuses_that_it_goes_by_its_layer(self) -> None:
         """Straight, it would pass the other vehicle on its way to the row."""
@@ -87,3 +87,14 @@ class TestInTheWay:
         waypoints = mission_of(dispatched(world, given)).waypoints
         assert len({each.height_above_takeoff_m for each in waypoints} - {HEIGHT_M}) == 1
         assert all(each.height_above_takeoff_m != HEIGHT_M for each in waypoints)
+
+    def test_one_that_waits_among_rows_steps_aside_on_the_spot(self) -> None:
+        world = started(2)
+        given = replace(rows(world, (0.0, -40.0)), stands_by=True)
+        level, aside = mission_of(dispatched(world, given)).waypoints
+        assert level.height_above_takeoff_m == pytest.approx(HEIGHT_M)
+        assert aside.height_above_takeoff_m != HEIGHT_M
+        assert (level.latitude_deg, level.longitude_deg) == (
+            aside.latitude_deg,
+            aside.longitude_deg,
+        )

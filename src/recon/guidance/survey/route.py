@@ -6,7 +6,7 @@ order of the shortest tour among those that always go on to the nearest end of a
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import hypot
 
@@ -40,6 +40,11 @@ def route_of(pieces: Sequence[Piece], lattice: RowLattice, start_m: Place | None
     entries = [_entries(chain) for chain in chains(pieces)]
     tours = _tours(entries, lattice, start_m)
     return min(tours, key=lambda tour: between_m(tour, lattice, start_m), default=())
+
+
+def reversed_route(route: Route) -> Route:
+    """Return the same legs flown from the end of the last to the beginning of the first."""
+    return tuple(replace(leg, is_reversed=not leg.is_reversed) for leg in reversed(route))
 
 
 def chains(pieces: Sequence[Piece]) -> list[Chain]:

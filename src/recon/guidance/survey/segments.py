@@ -94,6 +94,12 @@ class ExpectedSun:
     probability: FloatArray
     moments_s: FloatArray
 
+    def is_clear(self, chosen: BoolArray, least: float) -> bool:
+        """Return whether the mean probability over the chosen (S,) missing ground reaches it."""
+        missing_m2 = np.where(chosen, self.missing_m2, 0.0)
+        sun = float((missing_m2 @ self.probability).mean() / missing_m2.sum())
+        return sun >= least
+
 
 def expected_sun(
     segments: Segments,

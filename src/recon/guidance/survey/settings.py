@@ -138,6 +138,9 @@ class SurveySettings:
     """With this mean probability of sun for as long as is planned, nothing is gained by choosing:
     a share is flown row by row."""
 
+    all_clear_from: float = 0.95
+    """With this one over all that is missing, rows are shared as in a round."""
+
     share_worth: float = 0.15
     """Of a share's missing ground that must be expected in sun; else its vehicle helps others."""
 
@@ -156,8 +159,14 @@ class SurveySettings:
     swap_s: float = 300.0
     """The way home, landing, another battery, takeoff and the way back."""
 
-    swapped_from: float = 0.3
+    swapped_from: float = 0.2
     """Share used of a battery from which it is worth a change while little sun is expected."""
+
+    swap_later: float = 0.5
+    """Probability that a change put off now is needed at all before the survey is done."""
+
+    level_m: float = 3.0
+    """A height that differs by less from the rows' is at the rows' height: barometers drift."""
 
     forecast_age_s: float = 15.0
     """A forecast older than this is not used; one comes with each shade map."""

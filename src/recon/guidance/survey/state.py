@@ -37,6 +37,7 @@ class Surveyor:
     home_m: Place | None = None
     """Where it lands; None: at its present place."""
     is_flying: bool = True
+    height_above_takeoff_m: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

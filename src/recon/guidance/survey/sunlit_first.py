@@ -14,6 +14,8 @@ once. One call of `sunlit_first`:
    later, the vehicle goes to its first row and stands by in its layer; one on the ground stays
    there until it is time to take off. If nothing is expected in sun, it waits where it is.
 6. One that would wait returns to home instead if a change of battery costs less sun now than later.
+   One that waits at the rows' height climbs or sinks to its layer first, out of others' rows.
+7. If no vehicle is busy and all is in sun throughout, rows are shared as in a round.
 
 Each decision leaves a sentence. What a forecast does not know is its prior, so flights over ground
 whose light is unknown are worth something, and rows in shade are flown when nothing else is left:
@@ -36,10 +38,12 @@ from recon.guidance.survey.rounds import (
     fly_rounds,
     flying,
     may_ask,
+    shares,
     sortie,
     without_ended,
 )
-from recon.guidance.survey.route import Place, Route, RowLeg, route_of
+from recon.guidance.survey.route import Place, Route, RowLeg, reversed_route, route_of
+from recon.guidance.survey.rows import Piece
 from recon.guidance.survey.search import Flight, Pace, PlannedLeg, Search
 from recon.guidance.survey.segments import (
     NONE,
@@ -85,12 +89,35 @@ def sunlit_first(
     if expected is None:
         return _in_any_light(state, positions, now_ns)
     state = replace(state, waiting=NO_ROUTES, round=max(1, state.round), reason="under way")
+    rows = _clear_rows(state, segments, expected, idle) if len(idle) == len(able) else {}
     missions: list[MissionAssignment] = []
     for surveyor in idle:
         choice = _Choice(state, segments, expected, tuple(able.values()), surveyor, now_ns)
-        state, mission = choice.made()
+        own = rows.get(surveyor.serial)
+        state, mission = choice.made() if own is None else choice.flies_all(own)
         missions += mission
     return state, tuple(missions)
+
+
+def _clear_rows(
+    state: SurveyState, segments: Segments, expected: ExpectedSun, idle: Sequence[Surveyor]
+) -> Mapping[str, Route]:
+    """Return each vehicle's rows of all that is missing if it is in sun throughout, else none."""
+    is_free = (expected.missing_m2 > 0.0) & ~segments.under(_just_flown(state))
+    if not is_free.any() or not expected.is_clear(is_free, state.plan.settings.all_clear_from):
+        return {}
+    return shares(state.plan, _pieces(state, segments, is_free), idle)
+
+
+def _just_flown(state: SurveyState) -> list[RowLeg]:
+    return [leg for each in state.just_flown.values() for leg in each.route]
+
+
+def _pieces(state: SurveyState, segments: Segments, chosen: BoolArray) -> Sequence[Piece]:
+    """The missing ground of the chosen segments (S,), in pieces of rows."""
+    of_cell = segments.of_cell
+    is_missing = (state.progress.state < WANTED) & (of_cell != NONE) & chosen[of_cell]
+    return state.plan.pieces_over(is_missing)
 
 
 def _in_any_light(state: SurveyState, positions: Sequence[Surveyor], now_ns: int) -> Step:
@@ -148,8 +175,8 @@ class _Choice:
         if not free.any():
             return self._waits("waits: others are on what is left")
         share = self._share(free)
-        if self._is_clear(share):
-            return self._flies_all(share)
+        if self.expected.is_clear(share, self.settings.clear_from):
+            return self.flies_all(self._rows(share))
         flight = self._best(share)
         if (flight.waits_s > 0.0 or not flight.legs) and self._is_time_to_swap(free):
             return self._returns()
@@ -163,9 +190,8 @@ class _Choice:
 
     def _free(self) -> BoolArray:
         """(S,): segments with missing ground that no vehicle flies, or has just flown."""
-        state = self.state
-        flown = [leg for flight in state.flights.values() for leg in flight.route]
-        flown += [leg for each in state.just_flown.values() for leg in each.route]
+        flown = [leg for flight in self.state.flights.values() for leg in flight.route]
+        flown += _just_flown(self.state)
         free: BoolArray = (self.expected.missing_m2 > 0.0) & ~self.segments.under(flown)
         return free
 
@@ -180,8 +206,9 @@ class _Choice:
     def _is_time_to_swap(self, free: BoolArray) -> bool:
         """Whether a change of battery costs less sun now than later.
 
-        Now it costs the sun expected on free ground until the vehicle is back; later, in sun
-        throughout, all of that time, as probably as the battery has been used.
+        Now it costs the sun expected on free ground until the vehicle is back. Later, in sun
+        throughout, it costs all of that time, if it is needed at all: the more probably the more of
+        the battery has been used.
         """
         surveyor, swap_s = self.surveyor, self.settings.swap_s
         if not surveyor.is_flying or surveyor.charge_share is None:
@@ -191,8 +218,8 @@ class _Choice:
         missing_m2 = self.expected.missing_m2[free]
         sun = missing_m2 @ self.expected.probability[free] / missing_m2.sum()
         used = 1.0 - surveyor.charge_share
-        is_worth = used >= self.settings.swapped_from
-        return is_worth and float(sun[self.expected.moments_s <= swap_s].mean()) < used
+        is_worth, later = used >= self.settings.swapped_from, used * self.settings.swap_later
+        return is_worth and float(sun[self.expected.moments_s <= swap_s].mean()) < later
 
     def _returns(self) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
         minutes = self.settings.swap_s / 60.0
@@ -200,17 +227,20 @@ class _Choice:
         state = self._decided(text, self.now_ns + seconds_to_ns(self.settings.retry_s), True)
         return state, ()
 
-    def _is_clear(self, share: BoolArray) -> bool:
-        missing_m2 = np.where(share, self.expected.missing_m2, 0.0)
-        sun = float((missing_m2 @ self.expected.probability).mean() / missing_m2.sum())
-        return sun >= self.settings.clear_from
+    def _rows(self, share: BoolArray) -> Route:
+        """The missing ground of a share row by row, to and fro, from the end that is near.
 
-    def _flies_all(self, share: BoolArray) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
-        """Fly a share row by row, to and fro."""
-        plan, of_cell = self.plan, self.segments.of_cell
-        is_missing = (self.state.progress.state < WANTED) & (of_cell != NONE) & share[of_cell]
+        All vehicles work across the field in the same direction, so that none begins where its
+        neighbour does.
+        """
         start_m = self._along_across_m(self.surveyor.place_m)
-        route = route_of(plan.pieces_over(is_missing), plan.lattice, start_m)
+        route = route_of(_pieces(self.state, self.segments, share), self.plan.lattice, start_m)
+        others = {_direction(flight.route) for flight in self.state.flights.values()} - {0}
+        is_against = others == {-_direction(route)}
+        return reversed_route(route) if is_against else route
+
+    def flies_all(self, route: Route) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
+        """Fly these rows, which are in sun throughout."""
         rows = sorted({leg.piece.row + 1 for leg in route})
         return self._flies(route, f"flies rows {rows[0]} to {rows[-1]}: in sun throughout")
 
@@ -292,7 +322,7 @@ class _Choice:
         return replace(leg.route, piece=self.plan.long_enough(piece, leg.route.piece))
 
     def _stands_by(self, flight: Flight) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
-        plan, state, surveyor = self.plan, self.state, self.surveyor
+        plan, surveyor = self.plan, self.surveyor
         first = flight.legs[0]
         entry, _ = first.route.ends_m(plan.lattice, plan.swath.lead_m)
         ((east_m, north_m),) = plan.lattice.east_north_m([entry]).tolist()
@@ -303,23 +333,49 @@ class _Choice:
             return self._waits(f"waits: sun is expected on {sun}")
         if not surveyor.is_flying and flight.waits_s > self._starts_s + self.settings.standby_s:
             return self._waits(f"waits on the ground: sun is expected on {sun}")
-        corners_m = ((east_m, north_m),)
-        ends_ns = self.now_ns + seconds_to_ns(first.from_s)
-        mission = AssignedMission(state.missions + 1, (), corners_m, 0.0, ends_ns)
-        state = self._decided(f"goes to row {row} and stands by: sun is expected on {sun}")
-        state, given = flying(state, surveyor, mission, ())
-        return state, (replace(given, stands_by=True),)
+        there_ns = self.now_ns + seconds_to_ns(first.from_s)
+        text = f"goes to row {row} and stands by: sun is expected on {sun}"
+        return self._goes((east_m, north_m), there_ns, text)
 
     def _waits(
         self, text: str, again_s: float | None = None
     ) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
+        if self._is_among_rows:
+            return self._steps_aside(text)
         again_s = self.settings.decided_again_s if again_s is None else again_s
         return self._decided(text, self.now_ns + seconds_to_ns(again_s)), ()
+
+    @property
+    def _is_among_rows(self) -> bool:
+        """Whether it hovers where other vehicles fly rows."""
+        height_m = self.surveyor.height_above_takeoff_m
+        if height_m is None or not self.surveyor.is_flying or len(self.able) == 1:
+            return False
+        off_m = abs(height_m - self.plan.survey.height_above_takeoff_m)
+        return off_m < self.settings.level_m
+
+    def _steps_aside(self, text: str) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
+        aside_ns = self.now_ns + seconds_to_ns(self._starts_s + self.settings.layer_s / 2.0)
+        return self._goes(self.surveyor.place_m, aside_ns, text)
+
+    def _goes(
+        self, place_m: Place, there_ns: int, text: str
+    ) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
+        """Stand by in its layer over a place, without rows."""
+        mission = AssignedMission(self.state.missions + 1, (), (place_m,), 0.0, there_ns)
+        state, given = flying(self._decided(text), self.surveyor, mission, ())
+        return state, (replace(given, stands_by=True),)
 
     def _decided(self, text: str, again_ns: int = 0, returns: bool = False) -> SurveyState:
         decision = Decision(text, again_ns, returns)
         decisions = {**self.state.decisions, self.surveyor.serial: decision}
         return replace(self.state, decisions=MappingProxyType(decisions))
+
+
+def _direction(route: Route) -> int:
+    """1 if it leads to higher rows, -1 to lower ones, 0 neither."""
+    rows = (route[-1].piece.row - route[0].piece.row) if route else 0
+    return (rows > 0) - (rows < 0)
 
 
 def finished_together_s(busy_s: np.ndarray, work_s: float) -> float:

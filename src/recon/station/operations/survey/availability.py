@@ -40,6 +40,7 @@ def available_vehicles(station: Station, record: SurveyRecord, now_ns: int) -> I
             charge_share=left_s / full_s if left_s is not None and full_s else None,
             home_m=None if home_m is None else (float(home_m[0]), float(home_m[1])),
             is_flying=vehicle.is_flying.value is True,
+            height_above_takeoff_m=vehicle.height_above_takeoff_m.value,
         )
 
 

@@ -3,9 +3,12 @@
 All rows are flown at one height. A vehicle that crosses other rows at that height, or hovers at the
 end of its own, comes too near to other vehicles, and the gate would refuse their missions until it
 is gone. So each vehicle of a survey has heights of its own: it flies to its first row at one of
-them, and climbs or sinks back to it after the last row.
+them, and climbs or sinks back to it after the last row. A planner that gives the next mission at
+once leaves that out: then the vehicle flies straight to a row that is near, where the gate sees
+room, and one that has to wait steps aside into its layer.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from recon.geo.distance import horizontal_distance_m
@@ -14,7 +17,7 @@ from recon.model.command import FlyMission, Refusal
 from recon.model.control import AuthorityHolder
 from recon.model.event import OperatorOrder
 from recon.model.geo import LatLon
-from recon.model.mission import Mission
+from recon.model.mission import Mission, Waypoint
 from recon.model.survey import MissionAssignment
 from recon.model.vehicle import VehicleState
 from recon.safety import judge
@@ -88,12 +91,13 @@ def _straight(
 ) -> OperatorOrder | None:
     """The order to fly its rows from where it is, at their height; None where that is too far."""
     here, height_m = vehicle.position.value, vehicle.height_above_takeoff_m.value
-    if here is None or height_m is None or given.approach:
+    within_m = given.straight_within_m
+    if here is None or height_m is None or within_m is None or given.approach:
         return None
     first = given.mission.waypoints[0]
     far_m = horizontal_distance_m(here, LatLon(first.latitude_deg, first.longitude_deg))
     is_level = abs(height_m - first.height_above_takeoff_m) < LEVEL_M
-    if not is_level or far_m > given.straight_within_m or given.stands_by:
+    if not is_level or far_m > within_m or given.stands_by:
         return None
     return replace(_order(record, given, vehicle), body=FlyMission(given.mission))
 
@@ -112,7 +116,15 @@ def _orders(
     if given.stands_by:
         missions = standing_by(given.mission, vehicle, number, count, limits, given.approach)
     else:
-        missions = with_approaches(given.mission, vehicle, number, count, limits, given.approach)
+        missions = with_approaches(
+            given.mission,
+            vehicle,
+            number,
+            count,
+            limits,
+            given.approach,
+            ends_in_layer=given.straight_within_m is None,
+        )
     return tuple(replace(order, body=FlyMission(mission)) for mission in missions)
 
 
@@ -136,15 +148,30 @@ def standing_by(
     limits: FlightLimits,
     corners: tuple[LatLon, ...] = (),
 ) -> tuple[Mission, ...]:
-    """Return the mission to the mission's first waypoint, at each of the vehicle's own heights."""
-    rows_m = mission.waypoints[0].height_above_takeoff_m
-    first = replace(mission, waypoints=mission.waypoints[:1])
+    """Return the mission to the mission's first waypoint, at each of the vehicle's own heights.
+
+    Where it is there already it climbs or sinks on the spot.
+    """
+    here, height_m = vehicle.position.value, vehicle.height_above_takeoff_m.value
+    first = replace(mission.waypoints[0], gimbal_pitch_deg=None)
+    if here is None or height_m is None:
+        return (replace(mission, waypoints=(first,)),)
+    far_m = horizontal_distance_m(here, LatLon(first.latitude_deg, first.longitude_deg))
+    is_there = far_m < NEAR_M and abs(height_m - first.height_above_takeoff_m) < LEVEL_M
     flown = []
-    for layer_m in _own_layers_m(rows_m, number, count, limits):
-        approach = _with_approach(first, vehicle, layer_m, corners).waypoints[:-1]
-        if approach:
-            flown.append(replace(first, waypoints=approach))
-    return tuple(dict.fromkeys(flown)) or (first,)
+    for layer_m in _own_layers_m(first.height_above_takeoff_m, number, count, limits):
+        there = replace(first, height_above_takeoff_m=layer_m)
+        begins = _turns(there, (here, *corners)) if not is_there else (first,)
+        flown.append(replace(mission, waypoints=(*begins, there)))
+    return tuple(dict.fromkeys(flown))
+
+
+def _turns(waypoint: Waypoint, places: Iterable[LatLon]) -> tuple[Waypoint, ...]:
+    """Return the waypoint at each of several places."""
+    return tuple(
+        replace(waypoint, latitude_deg=place.latitude_deg, longitude_deg=place.longitude_deg)
+        for place in places
+    )
 
 
 def with_approaches(
@@ -154,9 +181,11 @@ def with_approaches(
     count: int,
     limits: FlightLimits,
     corners: tuple[LatLon, ...] = (),
+    *,
+    ends_in_layer: bool = True,
 ) -> tuple[Mission, ...]:
     """Return the mission with each possible approach: straight up or down, across, onto the first
-    row; and off the last row to the same height.
+    row; and off the last row to the same height, if it `ends_in_layer`.
 
     One for each of the vehicle's heights, the nearest to the rows first. `number` counts the
     survey's `count` vehicles from 0: no two share a height, as long as there are enough; beyond,
@@ -165,7 +194,7 @@ def with_approaches(
     rows_m = mission.waypoints[0].height_above_takeoff_m
     own_m = _own_layers_m(rows_m, number, count, limits)
     flown = tuple(_with_approach(mission, vehicle, layer_m, corners) for layer_m in own_m)
-    if count > 1:
+    if count > 1 and ends_in_layer:
         flown = tuple(_with_end(each, layer_m) for each, layer_m in zip(flown, own_m, strict=True))
     return tuple(dict.fromkeys(flown))
 
@@ -183,10 +212,7 @@ def _with_approach(
     if is_near and (is_level or far_m < 1.0):
         return mission
     plain = replace(first, gimbal_pitch_deg=None)
-    above, *turns = (
-        replace(plain, latitude_deg=place.latitude_deg, longitude_deg=place.longitude_deg)
-        for place in (here, *corners)
-    )
+    above, *turns = _turns(plain, (here, *corners))
     if is_near:
         return replace(mission, waypoints=(above, *mission.waypoints))
     way = (above, *turns, plain)
