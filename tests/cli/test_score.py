@@ -76,6 +76,18 @@ def test_two_planners_are_compared_seed_by_seed(tmp_path: Path) -> None:
     assert "1 of 1 runs were flown before" in CliRunner().invoke(app, other).stderr
 
 
+def test_surveys_alone_are_flown_the_same_and_score_no_maps(tmp_path: Path) -> None:
+    path = str(written(tmp_path, SHORT))
+    options = ["--planner", "lawnmower_once", "--seeds", "1"]
+    whole, alone = (
+        CliRunner().invoke(app, ["score", path, *options, *more]).stdout.rstrip().split("\n\n")
+        for more in ([], ["--surveys-only"])
+    )
+    assert whole[1] == alone[1]
+    assert "| time to 95 % imaged, min |" in alone[1]
+    assert len(alone) == 2 < len(whole)
+
+
 def test_a_detection_is_compared_with_the_ideal_one_seed_by_seed(tmp_path: Path) -> None:
     path = str(written(tmp_path, SHORT))
     options = ["--detection", "otsu", "--forecast", "none", "--seeds", "1"]
@@ -106,6 +118,7 @@ def test_options_choose_methods(tmp_path: Path) -> None:
         (["--forecast", "magic"], f"--forecast: expected {known('forecast')}, got"),
         (["--against", "magic"], "--against: expected advection or global_shift or"),
         (["--against", "persistence", "--forecast", "none"], "expected a forecast to compare"),
+        (["--against", "persistence", "--surveys-only"], "--surveys-only: expected --against a"),
         (["--jobs", "0"], "--jobs: expected 1 or more, got 0"),
         (["--cluster", "127.0.0.1:1"], "expected a Dask scheduler at 127.0.0.1:1, got"),
     ],

@@ -112,7 +112,8 @@ class StationRun:
             for path in self._paths.values():
                 path.sample(self.driver.now_ns)
         station, now_ns = self.driver.station, self.driver.now_ns
-        self._shade.update(station, now_ns)
+        if self.scenario.methods.scores_maps:
+            self._shade.update(station, now_ns)
         self._record_refusals()
         for event in self._operator.events(station, now_ns):
             self.driver.handle(event)

@@ -81,11 +81,14 @@ class Methods:
     forecast: str = "advection"
     compared: tuple[str, ...] = ()
     """Forecast methods that are scored beside the station's own, on the same maps."""
+    scores_maps: bool = True
+    """Whether shade maps and forecasts are scored; without that a run ends with the survey."""
 
     @property
     def is_guidance_alone(self) -> bool:
         """Whether neither detection nor forecast is scored: a run then ends with the survey."""
-        return self.detection == IDEAL and self.forecast == NO_FORECAST
+        is_true = self.detection == IDEAL and self.forecast == NO_FORECAST
+        return is_true or not self.scores_maps
 
 
 @dataclass(frozen=True, slots=True)

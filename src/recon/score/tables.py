@@ -28,7 +28,9 @@ def tables(scenario: Scenario, runs: Sequence[RunScore], against: str | None = N
     `against` names the forecast that the others are compared with.
     """
     runs = sorted(runs, key=lambda each: each.seed)
-    parts = [_head(scenario, runs), _survey(scenario, runs), shade_table(runs)]
+    parts = [_head(scenario, runs), _survey(scenario, runs)]
+    if scenario.methods.scores_maps:
+        parts.append(shade_table(runs))
     if any(each.forecasts for each in runs):
         parts += forecast_tables(runs, scenario.methods.forecast, against)
     return "\n\n".join(parts)
@@ -67,6 +69,11 @@ def _survey(scenario: Scenario, runs: Sequence[RunScore]) -> str:
         row("violations: landed below battery reserve", _of(runs, "low_landings"), plain),
         row("violations: outside the fence", _of(runs, "breaches"), plain),
         row("orders refused by the gate", _of(runs, "refusals"), plain),
+        formatted(
+            "orders refused by the gate, for each mission",
+            ratio([(each.refusals, each.missions) for each in runs]),
+            fine,
+        ),
     ]
     return table(("survey", "mean", "95 %", "runs"), rows)
 
