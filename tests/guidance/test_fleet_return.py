@@ -34,6 +34,7 @@ from recon.guidance.fleet_return import (
     Separation,
     mission_of,
 )
+from recon.guidance.fleet_return.turn import hindrance
 from recon.model.airspace import HeightDatum, Region, Zone, ZoneKind
 
 CEILINGS_M = st.sampled_from([30.0, 45.0, 60.0, 120.0])
@@ -65,6 +66,19 @@ def hovering_row(count: int, pads: list[Pad], up_m: float = 30.0) -> list[Called
         )
         for i in range(count)
     ]
+
+
+@pytest.mark.parametrize("gap_m", [6.5, 7.8])
+def test_two_that_hover_too_near_one_above_the_other_part(gap_m: float) -> None:
+    pads = row_of_pads(2, 30.0)
+    low, high = hovering_row(2, pads, 60.0)
+    high = replace(high, place_m=(*low.place_m[:2], low.place_m[2] + gap_m), battery_fraction=0.1)
+    plan = scene_of([high, low]).plan()
+    assert [flight.serial for flight in plan.flights] == [low.serial, high.serial]
+    first, second = plan.flights
+    assert first.layer_up_m <= low.place_m[2] - KEPT.vertical_m
+    assert hindrance(second, [], [], [low.hovering], KEPT) is not None
+    assert hindrance(first, [], [], [high.hovering], KEPT) is None
 
 
 @settings(max_examples=examples(200), deadline=None)

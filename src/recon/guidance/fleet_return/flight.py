@@ -21,6 +21,9 @@ from recon.model.mission import Mission, Waypoint
 
 EastNorth = tuple[float, float]
 
+PARTING_M = 6.0
+"""Vehicles that hover one above the other by less are left to their pilots."""
+
 
 @dataclass(frozen=True, slots=True)
 class Volume:
@@ -49,6 +52,12 @@ def point(place_m: tuple[float, float, float]) -> Volume:
     """Return the piece that a hovering vehicle takes."""
     east_m, north_m, up_m = place_m
     return column((east_m, north_m), up_m, up_m)
+
+
+def leads_away(from_up_m: float, to_up_m: float, other_up_m: float) -> bool:
+    """Return whether a climb or descent takes a vehicle away from another, above or below it."""
+    gap_m = other_up_m - from_up_m
+    return abs(gap_m) >= PARTING_M and (to_up_m - from_up_m) * gap_m <= 0.0
 
 
 def level_legs(way_m: Sequence[EastNorth], up_m: float) -> tuple[Volume, ...]:
@@ -180,6 +189,14 @@ class ReturnFlight:
             *level_legs(self.way_m, self.layer_up_m),
             column(self.pad.east_north_m, self.layer_up_m, self.pad.up_m),
         )
+
+    def volumes_past(self, place_m: Place) -> tuple[Volume, ...]:
+        """What must be apart from a vehicle that hovers there: not a column that leads away.
+
+        Two that hover too near, one above the other, could otherwise never part.
+        """
+        leaves = leads_away(self.start_m[2], self.layer_up_m, place_m[2])
+        return self.volumes[1:] if leaves else self.volumes
 
 
 @dataclass(frozen=True, slots=True)

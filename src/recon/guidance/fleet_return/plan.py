@@ -8,7 +8,8 @@ on wind and on how long each landing takes.
 2. Vehicles are ordered by battery, lowest first in tenths; equal ones by distance to their pads.
 3. The first vehicle that can have a free layer gets the lowest one from which its whole flight
    (column up or down, level path, column over the pad) is separated from all vehicles that still
-   hover. Paths avoid closed zones by a visibility graph and Dijkstra's search (`ways`).
+   hover; a column that leads away from one that is too near already need not be. Paths avoid
+   closed zones by a visibility graph and Dijkstra's search (`ways`).
 4. When no free layer is left or fits, the next wave begins with all layers free.
 5. A vehicle that fits in no layer while all layers are free is left out, with the reason.
 
@@ -39,6 +40,7 @@ from recon.guidance.fleet_return.flight import (
     are_apart,
     column,
     distance_to_leg_m,
+    leads_away,
     point,
 )
 from recon.guidance.fleet_return.settings import FleetReturnSettings
@@ -215,12 +217,12 @@ class _Search:
         shut = self._column_faults[vehicle.serial]
         if shut is not None:
             return _Fault(shut)
-        pad = vehicle.pad
-        columns = (
-            column(vehicle.place_m[:2], vehicle.place_m[2], layer_m),
-            column(pad.east_north_m, layer_m, pad.up_m),
-        )
+        pad, up_m = vehicle.pad, vehicle.place_m[2]
+        own = column(vehicle.place_m[:2], up_m, layer_m)
+        landing = column(pad.east_north_m, layer_m, pad.up_m)
         for other in others:
+            leaves = leads_away(up_m, layer_m, other.place_m[2])
+            columns = (landing,) if leaves else (own, landing)
             if not are_apart(columns, [point(other.place_m)], self._separation):
                 reason = (
                     f"{other.name} hovers where it would climb, sink or land: nearer than "

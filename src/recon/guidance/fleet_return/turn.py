@@ -80,7 +80,8 @@ def hindrance(
         if not are_apart(volumes, other.volumes, separation):
             return f"{other.name} has not yet passed"
     for other_one in hovering:
-        if not are_apart(volumes, [point(other_one.place_m)], separation):
+        place_m = other_one.place_m
+        if not are_apart(flight.volumes_past(place_m), [point(place_m)], separation):
             return f"{other_one.name} hovers too near to its way"
     for earlier in before:
         if not are_apart(volumes, earlier.volumes, separation):
