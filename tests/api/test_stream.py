@@ -8,6 +8,7 @@ from collections.abc import AsyncIterator
 import pytest
 import uvicorn
 import websockets
+from starlette.types import ASGIApp
 from tests.api.fake_station import FakeStation, application
 from tests.patient_loop import run_patiently
 
@@ -30,10 +31,17 @@ class BigStation(FakeStation):
 
 @contextlib.asynccontextmanager
 async def served(station: FakeStation, access: Access | None = None) -> AsyncIterator[int]:
+    """Serve a station's application on a free port of loopback."""
+    async with serving(application(station, access=access)) as port:
+        yield port
+
+
+@contextlib.asynccontextmanager
+async def serving(app: ASGIApp) -> AsyncIterator[int]:
     """Serve an application on a free port of loopback, with the station's own connections."""
     listening = socket.create_server(("127.0.0.1", 0))
     config = uvicorn.Config(
-        application(station, access=access),
+        app,
         log_level="error",
         lifespan="off",
         http=HttpConnection,

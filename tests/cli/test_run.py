@@ -16,6 +16,7 @@ from recon import wire
 from recon.model.errors import RecordError
 from recon.record.link_bytes import LINKS_TOPIC, link_bytes
 from recon.record.mcap_repair import is_finished
+from recon.station.kernel.playback import Playback
 from recon.station.kernel.replay import check
 
 FREE = ("--link-port", "0", "--http-port", "0", "--no-guard")
@@ -44,6 +45,8 @@ def test_it_prints_its_addresses_and_ends_cleanly(number: int, tmp_path: Path) -
     (record,) = (tmp_path / "raw").iterdir()
     assert is_finished(record)
     assert HELLO in received(record)
+    with contextlib.closing(Playback(record)) as playback:
+        assert list(playback.move(playback.ends_ns).station.fleet.links) == [1]
 
 
 def test_stopped_again_and_again_it_still_ends_as_a_stop(tmp_path: Path) -> None:

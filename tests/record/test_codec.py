@@ -57,6 +57,15 @@ def there_and_back(value: Picture) -> Picture:
     return found
 
 
+def test_spectra_are_kept() -> None:
+    """A file that begins in flight has those of the forecast in its first state."""
+    spectrum = np.array([[1 + 2j, -0.5j]], np.complex64)
+    hint = npt.NDArray[np.complex64]
+    found = Codec().decode(Codec().encode(spectrum, hint), hint)
+    assert found.dtype == np.complex64
+    assert (found == spectrum).all()
+
+
 @pytest.mark.parametrize("shape", [None, 7, Circle(-0.0), Square(1.0), Square(5)])
 def test_each_type_of_a_union_comes_back(shape: object) -> None:
     back = there_and_back(picture(shape=shape))

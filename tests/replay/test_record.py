@@ -140,12 +140,13 @@ def test_a_map_begins_at_its_lower_left_corner() -> None:
     assert np.isnan(cells[3, 0, 0])
     assert cells[3, 5, 0] == transmittance[0, 5]
     leads = np.arange(48, dtype=np.uint8).reshape(2, 4, 6)
-    horizon = np.zeros((4, 6), np.float32)
+    horizon = np.arange(24, dtype=np.float32).reshape(4, 6)
     sun = SunForecast(GRID, 0, np.array([0.0, 60.0]), leads, horizon, 0.5, "test")
     grid = foxglove.forecast_grid(sun)
-    cells = np.frombuffer(grid.data, np.uint8).reshape(4, 6, 2)
-    assert [field.name for field in grid.fields] == ["sun_in_0_s", "sun_in_60_s"]
-    assert (cells[0, 2] == leads[:, 3, 2]).all()
+    cells = np.frombuffer(grid.data, np.uint8).reshape(4, 6, 2 + 4)
+    assert (cells[..., 2:].view("<f4")[..., 0] == horizon[::-1]).all()
+    assert [field.name for field in grid.fields] == ["sun_in_0_s", "sun_in_60_s", "horizon_s"]
+    assert (cells[0, 2, :2] == leads[:, 3, 2]).all()
 
 
 class FullProcess(RecordProcess):
@@ -218,7 +219,8 @@ def test_a_file_has_nothing_from_before_its_state(tmp_path: Path) -> None:
         scene.recorder.tap(1, Direction.FROM_APP, b"before", 5)
         scene.tick(now_s)
     scene.tick(RESTART_AFTER_S + 1.1)
-    assert [item.kind for item in second.items] == [ItemKind.BEGIN, ItemKind.STEP]
+    kinds = [ItemKind.BEGIN, ItemKind.STEP, ItemKind.KEYFRAME]
+    assert [item.kind for item in second.items] == kinds
     assert steps_of(second) == [1]
     assert scene.recorder.dropped_bytes == 3 * len(b"before")
 
@@ -266,6 +268,7 @@ def test_what_waits_for_a_beginning_is_bounded_by_bytes(
     monkeypatch.setattr(recording_of_kernel, "WAITING_BULK_BYTES", 100_000)
     process = FullProcess(tmp_path, 0)
     scene = Restarts(process)
+    monkeypatch.setattr(scene.recorder._keyframes, "due", lambda *_: ())
     for _ in range(20):
         scene.recorder.tap(1, Direction.FROM_APP, bytes(BULK_BYTES), 5)
         scene.recorder.tap(1, Direction.TO_APP, b"order", 5)

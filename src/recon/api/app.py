@@ -19,6 +19,7 @@ from recon.api.pairing_routes import add_pairing_routes
 from recon.api.permissions import require_listed_role
 from recon.api.picture_routes import add_picture_routes
 from recon.api.port import StationPort, TimelineSubject
+from recon.api.replay_routes import Replaying, add_replay_routes
 from recon.api.responses import PROBLEMS, found
 from recon.api.security import POLICY_VIOLATION, refuse_stream
 from recon.api.site_routes import add_site_routes
@@ -48,11 +49,13 @@ def create_app(
     version: str,
     shared: SharedAddress | None = None,
     flights: FlightArchive | None = None,
+    replay: Replaying | None = None,
 ) -> FastAPI:
     """Return the application around a station, to be put behind an `AccessCheck`.
 
     `console` is the folder with the built console; without one a page describes how to build it.
-    `shared` is the address for other computers; `flights` are the station's records.
+    `shared` is the address for other computers; `flights` are the station's records;
+    with a `replay` everything is refused that orders or changes anything.
     """
     app = FastAPI(
         title="Recon",
@@ -71,6 +74,7 @@ def create_app(
     add_survey_routes(app, port)
     add_flight_routes(app, flights or NoFlights())
     add_zone_routes(app, port)
+    add_replay_routes(app, replay)
     _add_console(app, console)
     _add_errors_and_headers(app)
     return app

@@ -50,6 +50,9 @@ LEAST_ROLE: dict[tuple[str, str], Role] = {
     ("GET", "/api/cameras"): Role.OBSERVER,
     ("GET", "/api/zones"): Role.OBSERVER,
     ("GET", "/api/site/drawing"): Role.OBSERVER,
+    ("GET", "/api/replay/marks"): Role.OBSERVER,
+    # Of a replay, which orders nothing; a live station refuses it.
+    ("POST", "/api/replay"): Role.OBSERVER,
     (STREAM, "/api/stream"): Role.OBSERVER,
     (STREAM, "/api/audit/stream"): Role.OBSERVER,
     ("POST", "/api/all-stop"): Role.OBSERVER,

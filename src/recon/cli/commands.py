@@ -115,7 +115,7 @@ COMMANDS = {
     ),
     "replay": CommandSource(
         "replay:replay_command",
-        "Run a recorded flight again: compare every output, or score other methods on it.",
+        "Show a recorded flight in the console, compare its outputs, or score other methods on it.",
     ),
     "export": CommandSource(
         "export:export_command",

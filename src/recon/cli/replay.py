@@ -1,7 +1,7 @@
-"""`recon replay`: run the step again on a recorded flight, and compare outputs or methods.
+"""`recon replay`: a recorded flight in the console, compared, or read by other methods.
 
-`--check` compares every output with the recorded one; `--what-if` also reads each image by other
-methods and prints their scores.
+Without an option it serves the console with the flight. `--check` compares every output with the
+recorded one; `--what-if` also reads each image by other methods and prints their scores.
 """
 
 import platform
@@ -37,15 +37,22 @@ def replay_command(
         Path | None,
         typer.Option(help="Scenario of a simulated flight, where --what-if does not find it."),
     ] = None,
+    http_port: Annotated[
+        int,
+        typer.Option(min=0, max=65535, help="Port of the console; 0: any free port."),
+    ] = 8080,
 ) -> None:
-    """Run a recorded flight again: compare every output, or score other methods on it.
+    """Show a recorded flight in the console, compare its outputs, or score other methods on it.
 
-    Exit code 0: equal to the bit; 1: a difference, or no record; 3: equal as far as the record
-    could be compared.
+    The console plays it at 0.1 to 50 times its speed; nothing can be ordered.
+
+    Exit code of --check and --what-if 0: equal to the bit; 1: a difference, or no record; 3: equal
+    as far as the record could be compared.
     """
-    if not (checks or asks):
-        raise typer.BadParameter("give --check or --what-if: there is no replay in the console yet")
     file, methods = _file_and_methods(words, asks)
+    if not (checks or asks):
+        _show(file, http_port)
+        return
     try:
         found = _asked(file, methods, scenario) if asks else check(file, _report)
     except OSError as problem:
@@ -59,6 +66,27 @@ def replay_command(
         raise typer.Exit(CUT_SHORT)
 
 
+def _show(file: Path, http_port: int) -> None:
+    """Serve the console with a recorded flight until Ctrl+C."""
+    from recon.api.schema import ReplayView
+    from recon.cli.foreground import print_now, run_in_loop
+    from recon.cli.run import console_folder
+    from recon.station.kernel.replay_run import run_replay
+
+    async def started(url: str, replay: ReplayView) -> None:
+        minutes, seconds = divmod(round(replay.duration_s), 60)
+        print_now(f"REPLAY of {shown(replay.file)}, {minutes} min {seconds} s: no orders possible")
+        if replay.trouble is not None:
+            print_now(f"the record ends early: {shown(replay.trouble)}")
+        print_now(f"console: {url}")
+
+    try:
+        run_in_loop(run_replay(file, http_port, console_folder(), started))
+    except OSError as problem:
+        typer.echo(f"recon replay: cannot read {file}: {problem.strerror}", err=True)
+        raise typer.Exit(2) from None
+
+
 def _file_and_methods(words: list[str], asks: bool) -> tuple[Path, dict[str, str]]:
     """Return the file, and the method of each kind that was asked for."""
     files, methods = [], {}
@@ -69,7 +97,9 @@ def _file_and_methods(words: list[str], asks: bool) -> tuple[Path, dict[str, str
         else:
             files.append(word)
     if len(files) != 1:
-        raise typer.BadParameter(f"expected one FILE, got {len(files)}: {shown(' '.join(files))}")
+        raise typer.BadParameter(
+            f"expected one FILE, for each is one flight; got {len(files)}: {shown(' '.join(files))}"
+        )
     if asks and not methods:
         raise typer.BadParameter("--what-if: expected detection=NAME, forecast=NAME or both")
     return Path(files[0]), methods

@@ -27,7 +27,7 @@ from recon.product.shadow_record import SUNLIT
 from recon.record.mcap_file import ABOUT_NAME, STEPS_TOPIC
 from recon.record.mcap_read import McapReading, RecordAttachment, RecordMessage
 
-FORECAST_TOPIC = "/forecast"
+FORECAST_TOPIC, LEAD_PREFIX = "/forecast", "sun_in_"
 MOST_LINES = 100_000
 MOST_TEXT = 2_000
 """Characters of one text: a reason is a sentence."""
@@ -212,7 +212,7 @@ def _is_on(message: Grid, grid: GroundGrid) -> bool:
     place = message.pose.position
     return (
         message.column_count == grid.cols
-        and message.cell_stride == len(message.fields) > 0
+        and 0 < len(message.fields) <= message.cell_stride
         and len(message.data) == grid.rows * grid.cols * message.cell_stride
         and math.isclose(message.cell_size.x, grid.cell_m)
         and math.isclose(place.x, grid.west_m, abs_tol=0.01)
@@ -224,11 +224,15 @@ def _leads(message: Grid, grid: GroundGrid) -> dict[float, npt.NDArray[np.float6
     """Return the probability of sun (R, C), row 0 north, by lead."""
     values = np.frombuffer(message.data, np.uint8).reshape(grid.rows, grid.cols, -1)[::-1]
     found = {}
-    for number, each in enumerate(message.fields):
-        lead_s = float(each.name.removeprefix("sun_in_").removesuffix("_s"))
-        if not 0.0 <= lead_s <= LONGEST_S:
-            raise ValueError(f"a forecast {lead_s:g} s ahead")
-        found[lead_s] = values[..., number] / 255.0
+    for each in message.fields:
+        if not each.name.startswith(LEAD_PREFIX):
+            continue  # the horizon
+        lead_s = float(each.name.removeprefix(LEAD_PREFIX).removesuffix("_s"))
+        if not 0.0 <= lead_s <= LONGEST_S or each.offset >= message.cell_stride:
+            raise ValueError(f"a forecast {lead_s:g} s ahead at byte {each.offset} of a cell")
+        found[lead_s] = values[..., each.offset] / 255.0
+    if not found:
+        raise ValueError("a forecast without leads")
     return found
 
 

@@ -22,7 +22,7 @@ from recon.model.errors import RecordError
 TAG = "_"
 """The key that names a type where a union allows several."""
 
-ARRAY_KINDS = "biuf"
+ARRAY_KINDS = "biufc"
 MOST_DIMENSIONS = 4
 _SCALARS: tuple[type[Any], ...] = (bool, int, float, str, bytes)
 

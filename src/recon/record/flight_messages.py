@@ -25,7 +25,7 @@ from recon.record.link_bytes import (
     LinkStream,
     PlainBytes,
 )
-from recon.record.mcap_file import ABOUT_NAME, STEPS_TOPIC
+from recon.record.mcap_file import ABOUT_NAME, KEYFRAMES_TOPIC, STEPS_TOPIC
 from recon.record.topics import Topics
 
 START_NAME = "recon/start"
@@ -56,6 +56,8 @@ class ItemKind(IntEnum):
     STEP = 3
     SHADE = 4
     SUN = 5
+    KEYFRAME = 6
+    """The station's state, with a step's head."""
 
 
 class Beginning(msgspec.Struct, frozen=True):
@@ -113,6 +115,10 @@ class FlightMessages:
                 self._write_step(content, topics, with_images)
             case ItemKind.SHADE | ItemKind.SUN:
                 self._write_map(item, topics)
+            case ItemKind.KEYFRAME:
+                number, at_ns, _name_bytes = STEP_HEAD.unpack_from(content)
+                data = content[STEP_HEAD.size :]
+                topics.add(KEYFRAMES_TOPIC, MSGPACK, data, at_ns, number=number)
 
     def flush(self, topics: Topics, *, with_images: bool) -> None:
         """Write bytes that have waited too long for the end of their packet."""
@@ -231,7 +237,7 @@ class FlightMessages:
             _add(topics, foxglove.SHADE_TOPIC, foxglove.shade_grid(shade), found.at_ns)
         else:
             sun = self._codec.from_builtins(found.value, SunForecast)
-            _add(topics, "/forecast", foxglove.forecast_grid(sun), found.at_ns)
+            _add(topics, foxglove.SUN_TOPIC, foxglove.forecast_grid(sun), found.at_ns)
 
 
 def _add_location(topics: Topics, core: Mapping[str, Any], vehicle: str, at_ns: int) -> None:

@@ -26,7 +26,7 @@ from recon.model.shade import ShadeMap, SunForecast
 
 ENCODING = "protobuf"
 SITE_FRAME = "site"
-SHADE_TOPIC = "/shade"
+SHADE_TOPIC, SUN_TOPIC = "/shade", "/forecast"
 RAW_IMAGE: Any = RawImage
 LENGTH_DELIMITED = 2
 """Protobuf's wire type of bytes."""
@@ -114,9 +114,15 @@ def shade_grid(shade: ShadeMap) -> Any:
 
 
 def forecast_grid(sun: SunForecast) -> Any:
-    """Return a forecast: the probability of sun at each lead, in 255ths; stamped when issued."""
-    layers = np.moveaxis(sun.sun_probability, 0, -1)
+    """Return a forecast: the probability of sun at each lead, in 255ths, then the horizon in s.
+
+    It is stamped when issued.
+    """
+    probability = np.moveaxis(sun.sun_probability, 0, -1)
+    horizon = np.ascontiguousarray(sun.horizon_s, "<f4")[..., np.newaxis].view(np.uint8)
+    layers = np.concatenate([probability, horizon], axis=-1)
     fields = [(f"sun_in_{lead_s:g}_s", n, UINT8) for n, lead_s in enumerate(sun.lead_s.tolist())]
+    fields.append(("horizon_s", len(fields), FLOAT32))
     return _grid(sun.grid, layers, fields, sun.issued_at_ns)
 
 

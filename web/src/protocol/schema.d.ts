@@ -475,6 +475,46 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/replay": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Transport
+         * @description Play, pause, change the speed or seek; everything else is refused in a replay.
+         */
+        post: operations["transport_api_replay_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/replay/marks": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Marks
+         * @description The alarms and orders of the record that is replayed.
+         */
+        get: operations["marks_api_replay_marks_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/separation-hold/{switch}": {
         parameters: {
             query?: never;
@@ -2295,6 +2335,79 @@ export interface components {
             link_id: number;
         };
         /**
+         * ReplayMark
+         * @description An alarm that was raised, or an order that was given, refused or failed.
+         */
+        ReplayMark: {
+            /**
+             * At S
+             * @description since the record's first state
+             */
+            at_s: number;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "alarm" | "order";
+            /** Text */
+            text: string;
+        };
+        /**
+         * ReplayMarksView
+         * @description The marks of a record, by time.
+         */
+        ReplayMarksView: {
+            /** Marks */
+            marks: components["schemas"]["ReplayMark"][];
+            /**
+             * Read Share
+             * @description of the record, from which they were read so far
+             */
+            read_share: number;
+        };
+        /**
+         * ReplayTransport
+         * @description What to change; null leaves it as it is.
+         */
+        ReplayTransport: {
+            /** Is Playing */
+            is_playing?: boolean | null;
+            /**
+             * Position S
+             * @description beyond the end: the end
+             */
+            position_s?: number | null;
+            /** Speed */
+            speed?: number | null;
+        };
+        /**
+         * ReplayView
+         * @description Where a replay stands in its record; a state's `time_ns` is the record's own time.
+         */
+        ReplayView: {
+            /** Duration S */
+            duration_s: number;
+            /** File */
+            file: string;
+            /** Is Playing */
+            is_playing: boolean;
+            /**
+             * Position S
+             * @description since the record's first state
+             */
+            position_s: number;
+            /**
+             * Speed
+             * @description times the recorded speed
+             */
+            speed: number;
+            /**
+             * Trouble
+             * @description why the record ends early; null: it does not
+             */
+            trouble: string | null;
+        };
+        /**
          * ReturnHomeOrder
          * @description Return at the aircraft's own go-home height and land.
          */
@@ -2580,6 +2693,8 @@ export interface components {
             links: components["schemas"]["LinkView"][];
             look_aside: components["schemas"]["LookAsideView"] | null;
             move_upwind: components["schemas"]["MoveUpwindView"] | null;
+            /** @description null: a live station */
+            replay: components["schemas"]["ReplayView"] | null;
             shade: components["schemas"]["ShadeLineView"] | null;
             site: components["schemas"]["SiteView"] | null;
             station: components["schemas"]["StationView"];
@@ -4226,6 +4341,77 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    transport_api_replay_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ReplayTransport"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReplayView"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    marks_api_replay_marks_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReplayMarksView"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
         };

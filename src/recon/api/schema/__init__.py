@@ -30,6 +30,12 @@ from recon.api.schema.orders import (
     TimelineEntryView,
     TimelineView,
 )
+from recon.api.schema.replay import (
+    ReplayMark,
+    ReplayMarksView,
+    ReplayTransport,
+    ReplayView,
+)
 from recon.api.schema.requests import (
     AdmitAppRequest,
     AnyOrder,
@@ -179,6 +185,10 @@ __all__ = [
     "PreflightView",
     "Problem",
     "RefuseAppRequest",
+    "ReplayMark",
+    "ReplayMarksView",
+    "ReplayTransport",
+    "ReplayView",
     "ReturningView",
     "SavedChangeView",
     "SeenFromView",

@@ -6,6 +6,7 @@ from pydantic import Field
 
 from recon.api.schema.message import Message
 from recon.api.schema.orders import AlarmView, CommandView
+from recon.api.schema.replay import ReplayView
 from recon.api.schema.site import GroundImageView, ShadeLineView, SiteView, UpwindPlaceView
 from recon.api.schema.surveys import SurveyView
 from recon.api.schema.vehicles import VehicleView
@@ -146,3 +147,4 @@ class StationState(Message):
     move_upwind: MoveUpwindView | None
     shade: ShadeLineView | None
     surveys: list[SurveyView]
+    replay: ReplayView | None = Field(description="null: a live station")

@@ -1,9 +1,11 @@
 """The audit as the API's messages: its entries after a number, and the timeline's lines."""
 
+from pathlib import Path
+from typing import Protocol
+
 from recon.api import schema
 from recon.api.port import TimelineSubject
 from recon.record.audit import NumberedEntry, harmless
-from recon.record.audit_log import AuditLog
 
 KINDS_OF: dict[TimelineSubject, tuple[str, ...]] = {
     "orders": ("order.", "all_stop.", "authority.", "lease.", "sticks."),
@@ -22,8 +24,36 @@ KINDS_OF: dict[TimelineSubject, tuple[str, ...]] = {
 """How the kinds of a subject's entries begin."""
 
 
+class KeptEntries(Protocol):
+    """The entries of an audit, as far as they are at hand."""
+
+    @property
+    def path(self) -> Path | None:
+        """Its file, if there is one."""
+
+    @property
+    def problem(self) -> str | None:
+        """Why it cannot be written, while that is so."""
+
+    @property
+    def first_n(self) -> int:
+        """The number of the oldest entry; 0 before the first."""
+
+    @property
+    def last_n(self) -> int:
+        """The number of the latest entry; 0 before the first."""
+
+    def after(self, n: int, at_most: int) -> list[NumberedEntry]:
+        """Return the entries after a number, the oldest first."""
+
+    def timeline(
+        self, serial: str | None, kinds: tuple[str, ...], before_n: int | None, at_most: int
+    ) -> list[NumberedEntry]:
+        """Return notable entries, the newest first: of one vehicle, and of kinds that begin so."""
+
+
 def timeline(
-    log: AuditLog | None,
+    log: KeptEntries | None,
     serial: str | None,
     about: TimelineSubject | None,
     before_n: int | None,
@@ -38,7 +68,7 @@ def timeline(
     return schema.TimelineView(entries=entries, has_more=len(found) > at_most)
 
 
-def audit_page(log: AuditLog | None, after: int, at_most: int) -> schema.AuditPage:
+def audit_page(log: KeptEntries | None, after: int, at_most: int) -> schema.AuditPage:
     """Return entries after a number; an empty page without an audit."""
     if log is None:
         return schema.AuditPage(entries=[], first_n=0, last_n=0, file=None, problem=None)

@@ -35,10 +35,9 @@ from recon.model.shade import MaskMap, ShadeMap, SunForecast
 from recon.model.temporary_zone import DrawnZone
 from recon.model.units import ns_to_seconds
 from recon.record import geotiff_bytes
-from recon.record.audit_log import AuditLog
 from recon.site import Site
 from recon.station.api_views import RunningStation
-from recon.station.api_views.audit_service import audit_page, timeline
+from recon.station.api_views.audit_service import KeptEntries, audit_page, timeline
 from recon.station.api_views.imaging_views import sun_at_view, upwind_view
 from recon.station.api_views.order_service import OrderService, order_of
 from recon.station.api_views.site_service import SiteService
@@ -62,7 +61,7 @@ class Service:
     _folder: SiteService
     link_addresses: list[str]
     capture_folder: str | None
-    audit_log: AuditLog | None
+    audit_log: KeptEntries | None
     _ids: Callable[[], int]
     app_url: str | None = None
     """The first address for apps on other devices; None on loopback."""
@@ -71,6 +70,8 @@ class Service:
     """How many bytes of links the record has lost so far."""
     recording: Callable[[], Path | None] = lambda: None
     """This run's record, once there is one."""
+    replay: Callable[[], schema.ReplayView | None] = lambda: None
+    """Where a replay stands; None on a live station."""
     numbers: VehicleNumbers = field(default_factory=VehicleNumbers)
 
     @property
@@ -88,7 +89,7 @@ class Service:
         driver: RunningStation,
         site: Site,
         capture_folder: str | None,
-        audit_log: AuditLog | None = None,
+        audit_log: KeptEntries | None = None,
         first_id: int = 1,
     ) -> "Service":
         """Return the service of a driver that is about to run; order ids start at `first_id`."""
@@ -314,7 +315,9 @@ class Service:
         links = self.driver.links
         sessions = {} if links is None else links.sessions()
         numbers = self.numbers.of(self.driver.station.fleet)
-        return DriverState(sessions, self._station_view(now_ns), site_view(self.site), numbers)
+        return DriverState(
+            sessions, self._station_view(now_ns), site_view(self.site), numbers, self.replay()
+        )
 
     def _station_view(self, now_ns: int) -> schema.StationView:
         links = self.driver.links

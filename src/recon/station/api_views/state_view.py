@@ -48,6 +48,7 @@ class DriverState:
     site: schema.SiteView | None
     numbers: Mapping[str, int]
     """The number of each serial."""
+    replay: schema.ReplayView | None = None
 
 
 def state_view(station: Station, around: DriverState, now_ns: int) -> schema.StationState:
@@ -68,6 +69,7 @@ def state_view(station: Station, around: DriverState, now_ns: int) -> schema.Sta
         move_upwind=move_upwind_view(station, now_ns),
         shade=shade_view(station, now_ns),
         surveys=survey_views(station, now_ns),
+        replay=around.replay,
     )
 
 

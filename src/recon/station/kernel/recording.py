@@ -47,6 +47,7 @@ from recon.record.mcap_file import compressor
 from recon.record.record_process import BULK_SHARE, CLOSE_WITHIN_S, RING_BYTES, RecordProcess
 from recon.site import Site
 from recon.station.audit.entries import Auditing
+from recon.station.kernel.keyframe import DueKeyframe, Keyframes, keyframe_bytes
 from recon.station.kernel.recorded_values import (
     FlightStart,
     audit_builtins,
@@ -128,7 +129,7 @@ class Recorder:
         self._audited = audited
         self._site, self._scenario = site, scenario
         self._codec = values_codec()
-        self._kept: list[_TakenStep | _TakenBytes] = []
+        self._kept: list[_TakenStep | DueKeyframe | _TakenBytes] = []
         self._encoding: threading.Thread | None = None
         self._beginning: bytes | None = None
         self._waiting: list[tuple[bytes, ...]] = []
@@ -141,6 +142,7 @@ class Recorder:
         self._has_flown = self._reports_flown = False
         self._quiet_since_ns = 0
         """When the file began, or, with a flight in it, when the last vehicle was on the ground."""
+        self._keyframes = Keyframes()
         self._died_at_ns: int | None = None
         self._restart_at_ns = 0
         self._reported: str | None = None
@@ -158,6 +160,7 @@ class Recorder:
         self._follow_jobs(step)
         if isinstance(step.event, LinkClosed):
             self._ends.pop(step.event.link_id, None)
+        self._kept += self._keyframes.due(step, self._number)
         if isinstance(step.event, Tick):
             self._hand_over()
             self._follow_flight(step.after, step.now_ns)
@@ -217,8 +220,12 @@ class Recorder:
             if isinstance(item, _TakenBytes):
                 most_bytes = bulk_limit_bytes if len(item.data) >= BULK_BYTES else limit_bytes
                 parts = _bytes_parts(item)
+            elif isinstance(item, DueKeyframe):
+                most_bytes, parts = bulk_limit_bytes, self._state_parts(item)
             else:
                 most_bytes, parts = limit_bytes, self._step_parts(item)
+            if not parts:
+                continue
             total_bytes = self._waiting_bytes + sum(map(len, parts))
             if total_bytes > most_bytes:
                 self._drop(item)
@@ -226,10 +233,10 @@ class Recorder:
             self._waiting.append(parts)
             self._waiting_bytes = total_bytes
 
-    def _drop(self, item: _TakenStep | _TakenBytes) -> None:
+    def _drop(self, item: _TakenStep | DueKeyframe | _TakenBytes) -> None:
         if isinstance(item, _TakenStep):
             self.process.dropped_steps += 1
-        else:
+        elif isinstance(item, _TakenBytes):  # the next keyframe stands for one that is dropped
             self.process.dropped_bytes += len(item.data)
 
     def _step_parts(self, item: _TakenStep) -> tuple[bytes, ...]:
@@ -246,6 +253,14 @@ class Recorder:
         if item.sun is not None:
             parts += self._value_parts(ItemKind.SUN, item.now_ns, item.sun, SunForecast)
         return parts
+
+    def _state_parts(self, item: DueKeyframe) -> tuple[bytes, ...]:
+        try:
+            data = keyframe_bytes(self._codec, item)
+        except Exception as fault:  # steps go on: they are what a flight is explained by
+            self._fault = f"a replay in the console lacks states: {describe_fault(fault)}"
+            return ()
+        return packed(ItemKind.KEYFRAME, STEP_HEAD.pack(item.number, item.now_ns, 0), data)
 
     def _value_parts(self, kind: ItemKind, at_ns: int, value: Any, hint: Any) -> tuple[bytes, ...]:
         timed = TimedValue(at_ns, self._codec.to_builtins(value, hint))
@@ -307,6 +322,7 @@ class Recorder:
         self._forget_drops()
         self._fault = None
         self._number, self._quiet_since_ns = 0, now_ns
+        self._keyframes.begin(station, now_ns)
         self._has_flown = self._reports_flown = False
         memory, jobs = self._audited.memory, len(self._jobs)
         start = FlightStart.now(self._site, station, now_ns, memory, self._scenario, jobs)

@@ -21,6 +21,7 @@ from recon.model.errors import RecordError
 from recon.model.event import Event, PacketReceived
 from recon.model.report import ImageReport
 from recon.model.units import ns_to_seconds
+from recon.record.codec import Codec
 from recon.record.digest import digest
 from recon.record.flight_messages import START_NAME
 from recon.record.link_bytes import Picture, Pictures
@@ -146,14 +147,7 @@ class Replay:
             self._take_step(item)
 
     def _begin(self, packed: bytes) -> None:
-        try:
-            size = zstandard.frame_content_size(packed)
-            if not 0 <= size <= MOST_RECORD_BYTES:
-                raise RecordError(f"expected a start of up to {MOST_RECORD_BYTES} bytes")
-            data = zstandard.ZstdDecompressor().decompress(packed, max_output_size=size)
-        except zstandard.ZstdError as problem:
-            raise RecordError(f"the record's start is damaged: {problem}") from problem
-        start: FlightStart = self._codec.decode(data, FlightStart)
+        start = read_start(self._codec, packed)
         self.found.start, self.station, self._auditing = start, start.station, start.auditing
         self._runner = JobRunner(start.site)
         if self._on_start is not None:
@@ -169,7 +163,7 @@ class Replay:
             return
         assert found.start is not None
         found.lasted_s = ns_to_seconds(item.log_ns - found.start.started_at_ns)
-        recorded = _step_message(item)
+        recorded = step_message(item)
         event = self._event(self._codec.from_builtins(recorded["event"], Event))
         if event is None:
             return
@@ -206,7 +200,7 @@ class Replay:
                     "time: what follows cannot be compared"
                 )
                 return None
-            return replace(value, report=_report_of(picture, value.report))
+            return replace(value, report=report_of(picture, value.report))
         event: Event = value
         return event
 
@@ -248,7 +242,8 @@ def _step(station: Station, event: Event, now_ns: int) -> Stepped:
         return after_fault(TICK_PARTS, station, event, fault, now_ns)
 
 
-def _report_of(image: Picture, report: FrameReport) -> ImageReport:
+def report_of(image: Picture, report: FrameReport) -> ImageReport:
+    """Return the report of a recorded frame; raises `RecordError` for a damaged one."""
     if isinstance(image, CompressedImage):
         return ImageReport(report.target_fps_hz, jpeg=image.data)
     if len(image.data) != 3 * image.width * image.height:
@@ -257,7 +252,21 @@ def _report_of(image: Picture, report: FrameReport) -> ImageReport:
     return ImageReport(report.target_fps_hz, rgb=pixels)
 
 
-def _step_message(item: RecordMessage) -> dict[str, Any]:
+def read_start(codec: Codec, packed: bytes) -> FlightStart:
+    """Return what a record begins with; raises `RecordError` for a damaged one."""
+    try:
+        size = zstandard.frame_content_size(packed)
+        if not 0 <= size <= MOST_RECORD_BYTES:
+            raise RecordError(f"expected a start of up to {MOST_RECORD_BYTES} bytes")
+        data = zstandard.ZstdDecompressor().decompress(packed, max_output_size=size)
+    except zstandard.ZstdError as problem:
+        raise RecordError(f"the record's start is damaged: {problem}") from problem
+    start: FlightStart = codec.decode(data, FlightStart)
+    return start
+
+
+def step_message(item: RecordMessage) -> dict[str, Any]:
+    """Return event, outputs and audit of a recorded step; raises `RecordError` for damage."""
     try:
         message = msgspec.msgpack.decode(item.data, type=dict[str, Any])
     except (msgspec.MsgspecError, ValueError, RecursionError) as problem:
