@@ -17,7 +17,7 @@ process.env["RECON_E2E_RUN"] ??= String(process.pid);
 const args = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
 
 /** Tests with a whole station and its simulated vehicles. */
-const LIVE = ["site.spec.ts", "station.spec.ts", "surveys.spec.ts"];
+const LIVE = ["replay.spec.ts", "site.spec.ts", "station.spec.ts", "surveys.spec.ts"];
 
 export default defineConfig({
   testDir: "e2e",

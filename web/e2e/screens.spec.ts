@@ -8,6 +8,7 @@ import { fieldPicture } from "./fake/picture";
 import { FakeStation } from "./fake/station";
 import { drawnShare } from "./mapPicture";
 import { openPanel } from "./openPanel";
+import { startReplay } from "./stationProcess";
 import { applyTheme, THEMES } from "./themes";
 
 /** Screenshots for review: `npm run screens`, then `web/screens/`. */
@@ -52,6 +53,33 @@ for (const theme of THEMES) {
     for (let step = 1; step <= 5; step += 1) fake.send(fleetState(64, step / 10));
     await page.waitForTimeout(1500);
     await page.screenshot({ path: `screens/fleet-${theme.name}.png` });
+  });
+}
+
+/**
+ * The pictures of a replay in the documents: `recon demo` for seven minutes, then
+ * `RECON_REPLAY=RECORD.mcap npm run screens -- -g documents`, and `web/screens/replay-*.png` to `docs/images/`.
+ */
+const REPLAYED = process.env["RECON_REPLAY"] ?? "";
+const REPLAYED_AT_S = process.env["RECON_REPLAY_AT_S"] ?? "300";
+
+for (const theme of THEMES.filter(({ sun }) => !sun)) {
+  test(`a replay for the documents, ${theme.name}`, async ({ page }) => {
+    test.skip(REPLAYED === "", "RECON_REPLAY names no record");
+    const replay = await startReplay(REPLAYED);
+    try {
+      await page.emulateMedia({ colorScheme: theme.colorScheme });
+      await page.goto(replay.url);
+      await page.getByRole("slider", { name: "Position in the record" }).fill(REPLAYED_AT_S);
+      await expect(page.getByRole("region", { name: "Sun forecast" })).toBeVisible();
+      await page.keyboard.press("f");
+      await expect.poll(() => drawnShare(page)).toBeGreaterThan(0.1);
+      await expect(page.locator(".replay-alarms")).toHaveAttribute("d", /M/);
+      await page.waitForTimeout(2000);
+      await page.screenshot({ path: `screens/replay-${theme.name}.png` });
+    } finally {
+      await replay.stop();
+    }
   });
 }
 

@@ -20,8 +20,18 @@ export interface RunningStation {
 }
 
 /** Starts `RECON_E2E_COMMAND` with these arguments and waits for the console address it prints. */
-export async function startStation(...args: string[]): Promise<RunningStation> {
-  const station = spawn([COMMAND, ...args].join(" "), {
+export function startStation(...args: string[]): Promise<RunningStation> {
+  return started([COMMAND, ...args].join(" "));
+}
+
+/** Starts a replay of a flight record; its path may begin at the project's folder. */
+export function startReplay(path: string): Promise<RunningStation> {
+  const [program = ""] = COMMAND.split(" demo ");
+  return started(`${program} replay ${path} --http-port 0`);
+}
+
+async function started(command: string): Promise<RunningStation> {
+  const station = spawn(command, {
     cwd: PROJECT,
     shell: true,
     detached: true,

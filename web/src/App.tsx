@@ -17,6 +17,7 @@ import { LoginDialog } from "./panels/login/LoginDialog";
 import type { PanelName } from "./panels/openPanels";
 import { AnswerNotice } from "./panels/orders/AnswerNotice";
 import { OrderBar } from "./panels/orders/OrderBar";
+import { ReplayBar } from "./panels/replay/ReplayBar";
 import { FleetReturn } from "./panels/return/FleetReturn";
 import { SeparationBanner } from "./panels/separation/SeparationHold";
 import { SitePanel } from "./panels/site/SitePanel";
@@ -50,7 +51,7 @@ const PANELS: readonly (readonly [PanelName, () => ReturnType<typeof AlarmList>]
 export function App() {
   const { source, fleet, selection, orderApi, theme, fit, flyHere, zoneDraft, panels } =
     useConsole();
-  const { siteDraft } = useConsole();
+  const { siteDraft, isReplay } = useConsole();
   const [isHelpOpen, setHelpOpen] = createSignal(false);
   const keys = () => fleet.vehicles.map(vehicleKey);
   const select = (key: number, action: (key: number) => void) => {
@@ -75,9 +76,9 @@ export function App() {
         toggle: (number) => select(number, selection.toggle),
         selectAll: () => selection.all(keys()),
         clear,
-        flyHere: flyHere.toggle,
+        flyHere: () => !isReplay() && flyHere.toggle(),
         details: () => panels.toggle("vehicle"),
-        drawZone: zoneDraft.toggle,
+        drawZone: () => !isReplay() && zoneDraft.toggle(),
         undo: () => siteDraft.isOn() && siteDraft.undo(),
         redo: () => siteDraft.isOn() && siteDraft.redo(),
         fit,
@@ -99,7 +100,13 @@ export function App() {
   });
 
   return (
-    <div class="page" classList={{ "is-lost": source.connection().kind === "lost" }}>
+    <div
+      class="page"
+      classList={{
+        "is-lost": source.connection().kind === "lost",
+        "is-replay": isReplay(),
+      }}
+    >
       <MapView />
       <TopBar onHelp={() => setHelpOpen(!isHelpOpen())} />
       <div class="notices">
@@ -110,8 +117,10 @@ export function App() {
       </div>
       <aside class="dock dock-left" aria-label="Vehicles">
         <VehicleList />
-        <FlyHereCard />
-        <OrderBar />
+        <Show when={!isReplay()}>
+          <FlyHereCard />
+          <OrderBar />
+        </Show>
       </aside>
       <aside class="dock dock-right" aria-label="Panels">
         <For each={PANELS}>
@@ -126,6 +135,7 @@ export function App() {
         </Show>
       </aside>
       <TimeScale />
+      <ReplayBar />
       <LoginDialog />
       <HelpDialog isOpen={isHelpOpen()} onClose={() => setHelpOpen(false)} />
     </div>

@@ -16,7 +16,7 @@ import { createOrderApi, type OrderApi } from "./orders/orderApi";
 import { type Targets, targetsOf } from "./orders/targets";
 import { createZoneDraft, type ZoneDraft } from "./orders/zoneDraft";
 import type { OpenPanels } from "./panels/openPanels";
-import type { SurveyView } from "./protocol";
+import type { ReplayView, SurveyView } from "./protocol";
 import { createSiteDraft, type SiteDraft } from "./site/siteDraft";
 import type { Clock, Instant } from "./source/clock";
 import { lacking, type Role } from "./source/roles";
@@ -52,6 +52,10 @@ export interface Console {
   readonly theme: ThemeSwitch;
   readonly panels: OpenPanels;
   readonly login: Login;
+  /** Where a replay stands; null on a live station. */
+  readonly replay: Accessor<ReplayView | null>;
+  /** Whether this is a replay; changes only when that does. */
+  readonly isReplay: Accessor<boolean>;
   /** Why this person cannot do what needs a role; null when nothing is in the way. */
   lacks(needed: Role): string | null;
   /** Seconds to add to every age in the newest state; grows until the next state. */
@@ -73,6 +77,9 @@ export interface Console {
 export interface MapCentre extends LonLat {
   readonly width_m: number;
 }
+
+/** Why nothing can be ordered in a replay. */
+const NO_ORDERS = "This is a replay: no orders are possible";
 
 const ACTIVE: readonly SurveyView["phase"][] = ["running", "paused"];
 
@@ -118,6 +125,8 @@ export function createConsole(
       }),
     );
   }
+  const replay = () => source.state()?.replay ?? null;
+  const isReplay = createMemo(() => replay() !== null);
   const aim = (at: LonLat) => {
     if (!siteDraft.isOn()) (zoneDraft.isOn() ? zoneDraft : flyHere).aim(at);
   };
@@ -141,7 +150,9 @@ export function createConsole(
     theme,
     panels,
     login,
-    lacks: (needed) => lacking(source.person(), needed),
+    replay,
+    isReplay,
+    lacks: (needed) => (isReplay() ? NO_ORDERS : lacking(source.person(), needed)),
     behindS,
     fitRequests,
     fit: () => setFitRequests((count) => count + 1),

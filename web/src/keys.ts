@@ -21,6 +21,7 @@ export const SHORTCUTS: readonly { readonly keys: string; readonly action: strin
   { keys: "Ctrl + Z, Ctrl + Y", action: "Undo or redo an edit of the site" },
   { keys: "F", action: "Show everything on the map" },
   { keys: "T", action: "High contrast for bright sun, on or off" },
+  { keys: "Space", action: "Play or pause a replay" },
   { keys: "?", action: "Show this help" },
 ];
 

@@ -40,7 +40,7 @@ def replay_command(
     http_port: Annotated[
         int,
         typer.Option(min=0, max=65535, help="Port of the console; 0: any free port."),
-    ] = 8080,
+    ] = 0,
 ) -> None:
     """Show a recorded flight in the console, compare its outputs, or score other methods on it.
 
@@ -67,7 +67,10 @@ def replay_command(
 
 
 def _show(file: Path, http_port: int) -> None:
-    """Serve the console with a recorded flight until Ctrl+C."""
+    """Serve the console with a recorded flight until Ctrl+C.
+
+    By default on any free port: the usual address stays a live station's, where stops go.
+    """
     from recon.api.schema import ReplayView
     from recon.cli.foreground import print_now, run_in_loop
     from recon.cli.run import console_folder

@@ -8,6 +8,10 @@ type Schemas = components["schemas"];
 
 export type AccessView = Schemas["AccessView"];
 export type StationState = Schemas["StationState"];
+export type ReplayMark = Schemas["ReplayMark"];
+export type ReplayMarksView = Schemas["ReplayMarksView"];
+export type ReplayTransport = Partial<Schemas["ReplayTransport"]>;
+export type ReplayView = Schemas["ReplayView"];
 export type StationView = Schemas["StationView"];
 export type StopLatchView = Schemas["StopLatchView"];
 export type SiteView = Schemas["SiteView"];

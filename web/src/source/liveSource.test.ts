@@ -50,6 +50,23 @@ describe("the live source", () => {
     expect(source.connection().kind).toBe("live");
   });
 
+  it("adds no age in a replay, whose clock pauses and jumps", () => {
+    const { source, sockets, clock } = setUp(() => json({}));
+    const replay = {
+      file: "a.mcap",
+      duration_s: 100,
+      position_s: 0,
+      speed: 1,
+      is_playing: false,
+      trouble: null,
+    };
+    for (const time_ns of [90e9, 90e9, 5e9, 95e9]) {
+      sockets[0]?.deliver(station([vehicle(1)], { replay, time_ns }));
+      expect(source.behindS(clock.now())).toBe(0);
+      clock.advance(1000);
+    }
+  });
+
   it("sends the token as a header and as a subprotocol, never in a URL", async () => {
     const { source, sockets, requests } = setUp(() => new Response("png"), "s3cret-token");
     await source.groundImage(7);

@@ -2,6 +2,7 @@ import { createSignal } from "solid-js";
 import type { AccessView, AuthorityHolder, StationState } from "../protocol";
 import type { Clock, Instant } from "./clock";
 import { flightRequests } from "./flightRequests";
+import { replayRequests } from "./replayRequests";
 import { Requests } from "./requests";
 import { siteRequests } from "./siteRequests";
 import { StationHttp } from "./stationHttp";
@@ -43,6 +44,7 @@ export class LiveSource implements StationSource {
   readonly site;
   readonly flights;
   readonly surveys;
+  readonly replay;
   private readonly lag = new StreamLag();
   private readonly stream: Stream;
   private readonly http: StationHttp;
@@ -63,6 +65,7 @@ export class LiveSource implements StationSource {
     this.requests = new Requests(this.http);
     this.site = siteRequests(this.http);
     this.flights = flightRequests(this.http);
+    this.replay = replayRequests(this.http);
     this.surveys = surveyRequests(this.http, () => this.stationNowMs());
     const url = `${origin.replace(/^http/, "ws")}/api/stream`;
     const open = () => {
@@ -82,7 +85,8 @@ export class LiveSource implements StationSource {
         }
       },
       onState: (newest, isFirst) => {
-        if (isFirst) this.lag.restart(newest.time_ns, clock.now());
+        // A replay has a clock of its own, which pauses and jumps.
+        if (isFirst || newest.replay !== null) this.lag.restart(newest.time_ns, clock.now());
         else this.lag.record(newest.time_ns, clock.now());
         setState(newest);
       },

@@ -15,6 +15,7 @@ import type {
 } from "../protocol";
 import type { Instant } from "./clock";
 import type { FlightRequests } from "./flightRequests";
+import type { ReplayRequests } from "./replayRequests";
 import type { SiteRequests } from "./siteRequests";
 import type { SurveyRequests } from "./surveyRequests";
 
@@ -70,6 +71,8 @@ export interface StationSource {
   readonly site: SiteRequests;
   readonly flights: FlightRequests;
   readonly surveys: SurveyRequests;
+  /** Moves a replay; a live station refuses it. */
+  readonly replay: ReplayRequests;
   /** The address for other computers as a QR code. */
   sharedAddressCode(): Promise<Outcome<Picture>>;
   /** The address for companion apps as a QR code. */

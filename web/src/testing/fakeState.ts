@@ -227,6 +227,7 @@ export function station(
     move_upwind: null,
     shade: null,
     surveys: [],
+    replay: null,
     ...changes,
   };
 }

@@ -11,6 +11,8 @@ import type {
   ImportedView,
   OrderResult,
   PreflightView,
+  ReplayMarksView,
+  ReplayTransport,
   SiteDrawingRequest,
   SiteDrawingResponse,
   SiteDrawingView,
@@ -66,6 +68,8 @@ export interface RenderedPage {
   /** Sets the place upwind of further answers. */
   findUpwind(place: UpwindPlaceView): void;
   showPreflight(preflight: PreflightView): void;
+  /** Sets the marks of a replay. */
+  showMarks(marks: ReplayMarksView): void;
   /** Sets the flight records, or why they cannot be read, and the figures of each. */
   showFlights(flights: readonly FlightView[] | string, figures: FlightFiguresView | string): void;
   failPreflight(problem: string): void;
@@ -104,6 +108,7 @@ export type PageRequest =
       readonly takeoff: boolean;
     }
   | { readonly stoppedSurvey: number; readonly word: "pause" | "abort" }
+  | { readonly transport: ReplayTransport }
   | { readonly flight: string; readonly file?: FlightFile | "record.mcap" };
 
 /** A site's folder: what it answers, and what it was asked. */
@@ -140,6 +145,7 @@ interface Recorded {
   estimate: SurveyEstimateView;
   cameras: SurveyCameraView[];
   timeline: RenderedPage["timeline"];
+  marks: ReplayMarksView;
   flights: Outcome<FlightView[]>;
   figures: Outcome<FlightFiguresView>;
 }
@@ -206,6 +212,7 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
       },
     ],
     timeline: { entries: [], problem: null, asked: [] },
+    marks: { marks: [], read_share: 0 },
     flights: { kind: "answered", value: [] },
     figures: { kind: "failed", problem: "no figures in this test" },
   };
@@ -243,6 +250,9 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
     },
     findUpwind: (place) => {
       recorded.upwindPlace = { kind: "answered", value: { place, reason: "" } };
+    },
+    showMarks: (marks) => {
+      recorded.marks = marks;
     },
     showFlights: (flights, figures) => {
       recorded.flights = outcomeOf(typeof flights === "string" ? flights : [...flights]);
@@ -287,6 +297,16 @@ function fakeSource(
     sharedAddressCode: noPicture,
     appAddressCode: noPicture,
     behindS,
+    replay: {
+      marks: async () => ({ kind: "answered", value: recorded.marks }),
+      change: async (transport) => {
+        recorded.requests.push({ transport });
+        const replay = state()?.replay ?? null;
+        return replay === null
+          ? { kind: "failed", problem: "This station is live: nothing is replayed" }
+          : { kind: "answered", value: replay };
+      },
+    },
     order: async (order) => {
       recorded.orders.push(order);
       return { kind: "answered", value: recorded.answer };

@@ -4,7 +4,7 @@ import { formatAge } from "../../text/quantities";
 
 /** Shown while the connection is lost, with the age of the displayed data. */
 export function ConnectionBanner() {
-  const { source, fleet, behindS } = useConsole();
+  const { source, fleet, behindS, isReplay } = useConsole();
   const lost = () => {
     const connection = source.connection();
     return connection.kind === "lost" ? connection : null;
@@ -21,7 +21,9 @@ export function ConnectionBanner() {
           <Show when={connection().needsLogin !== true} fallback=". Log in again.">
             ; reconnecting (attempt {connection().attempt}).
           </Show>{" "}
-          Watch the aircraft and use the remote controllers.
+          {isReplay()
+            ? "This is a replay: start recon replay again."
+            : "Watch the aircraft and use the remote controllers."}
         </div>
       )}
     </Show>

@@ -3,6 +3,7 @@ import { useConsole } from "../../console";
 import { simulation } from "../../fleet/vehicleStatus";
 import { formatAge, formatHeading, formatQuantity } from "../../text/quantities";
 import { THEME_NAMES, type Theme } from "../../theme/theme";
+import { ReplayMark } from "../replay/ReplayBar";
 import { AlarmsButton } from "./AlarmsButton";
 import { PanelMenu } from "./PanelMenu";
 import { StatusButton } from "./StatusButton";
@@ -10,7 +11,7 @@ import "./bar.css";
 
 /** The top bar: readiness, site, shadows, alarms, and all stop alone in the right corner. */
 export function TopBar(props: { onHelp: () => void }) {
-  const { fleet } = useConsole();
+  const { fleet, isReplay } = useConsole();
   const kind = createMemo(() => simulation(fleet.vehicles));
   return (
     <header class="card bar" classList={{ "is-simulation": kind() === "all" }}>
@@ -39,7 +40,9 @@ export function TopBar(props: { onHelp: () => void }) {
       >
         ?
       </button>
-      <AllStop />
+      <Show when={isReplay()} fallback={<AllStop />}>
+        <ReplayMark />
+      </Show>
     </header>
   );
 }

@@ -22,7 +22,7 @@ export function GuardButton(props: {
   needs?: Role;
   onConfirm: () => void;
 }) {
-  const { clock, lacks } = useConsole();
+  const { clock, lacks, isReplay } = useConsole();
   const lack = () => lacks(props.needs ?? "operator");
   const timer = createHoldTimer(
     clock,
@@ -51,7 +51,9 @@ export function GuardButton(props: {
       {props.label}
       <small class="guard-hint" aria-hidden="true">
         {lack() !== null
-          ? `needs ${props.needs ?? "operator"}`
+          ? isReplay()
+            ? "replay"
+            : `needs ${props.needs ?? "operator"}`
           : seconds() < 1
             ? "hold briefly"
             : `hold ${seconds()} s`}
