@@ -120,6 +120,7 @@ bench: setup ## Measurements, each beside a baseline of the same run
 	$(RUN) python -m benches.station.bench_all_stop
 	$(RUN) python -m benches.station.bench_guard
 	$(RUN) python -m benches.record.bench_record
+	$(RUN) python -m benches.record.bench_replay_seek
 	$(RUN) python -m benches.product.bench_tag
 	$(RUN) python -m benches.cli.bench_startup
 
