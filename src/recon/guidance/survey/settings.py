@@ -138,8 +138,8 @@ class SurveySettings:
     """With this mean probability of sun for as long as is planned, nothing is gained by choosing:
     a share is flown row by row."""
 
-    all_clear_from: float = 0.95
-    """With this one over all that is missing, rows are shared as in a round."""
+    clear_now_from: float = 0.9
+    """With this one now on each segment that is missing, too, rows are shared as in a round."""
 
     share_worth: float = 0.15
     """Of a share's missing ground that must be expected in sun; else its vehicle helps others."""

@@ -104,7 +104,10 @@ def _clear_rows(
 ) -> Mapping[str, Route]:
     """Return each vehicle's rows of all that is missing if it is in sun throughout, else none."""
     is_free = (expected.missing_m2 > 0.0) & ~segments.under(_just_flown(state))
-    if not is_free.any() or not expected.is_clear(is_free, state.plan.settings.all_clear_from):
+    settings = state.plan.settings
+    if not is_free.any() or not expected.is_clear(is_free, settings.clear_from):
+        return {}
+    if expected.probability[is_free, 0].min() < settings.clear_now_from:
         return {}
     return shares(state.plan, _pieces(state, segments, is_free), idle)
 
