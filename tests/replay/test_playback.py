@@ -1,6 +1,7 @@
 """A record's states by time: as they were, from wherever one comes; cut and foreign files."""
 
 import asyncio
+import io
 import random
 from collections.abc import Iterator
 from pathlib import Path
@@ -10,6 +11,7 @@ import pytest
 import zstandard
 from hypothesis import given
 from hypothesis import strategies as st
+from mcap.reader import make_reader
 from tests.replay.flights import FOLDER
 from tests.replay.record_flight import recording
 from tests.station.station_world import world
@@ -338,7 +340,10 @@ def test_damage_stops_the_replay_where_it_is(tmp_path: Path) -> None:
 def test_a_file_of_nothing_but_damage_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "damaged.mcap"
     data = bytearray(flight("survey").read_bytes())
-    data[len(data) // 2] ^= 0xFF
+    summary = make_reader(io.BytesIO(data)).get_summary()
+    assert summary is not None
+    for chunk in summary.chunk_indexes:
+        data[chunk.chunk_start_offset + chunk.chunk_length // 2] ^= 0xFF
     path.write_bytes(data)
     with pytest.raises(RecordError, match="damaged chunk at byte"):
         opened(path)
