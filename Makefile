@@ -110,7 +110,7 @@ fuzz-android: ## A million hostile inputs for the companion app's codec, and as 
 	@tools/require.sh java mvn
 	$(MAVEN) test -pl core -Dtest='*FuzzTest' -Dfuzz.inputs=1000000
 
-bench: setup ## Measurements, each beside a baseline of the same run
+bench: setup web ## Measurements, each beside a baseline of the same run
 	cargo bench -p recon-wire
 	$(RUN) python -m pytest benches -p no:cacheprovider
 	$(RUN) python -m benches.safety.bench_watchdogs
@@ -123,6 +123,7 @@ bench: setup ## Measurements, each beside a baseline of the same run
 	$(RUN) python -m benches.record.bench_replay_seek
 	$(RUN) python -m benches.product.bench_tag
 	$(RUN) python -m benches.cli.bench_startup
+	$(RUN) python -m benches.console.bench_console
 
 fuzz: ## Fuzz the deframer and the packet decoder for a minute each (needs a nightly Rust)
 	@cargo fuzz --version >/dev/null 2>&1 || cargo install cargo-fuzz --locked --quiet
