@@ -31,6 +31,7 @@ class MovingApp(StoppedApp):
 
     def __init__(self, number: int, apps: int) -> None:
         super().__init__(number, None)
+        self.serial = f"MOVE-{number:03d}".encode()
         side = math.ceil(math.sqrt(apps))
         row, col = divmod(number, side)
         self._centre_m = (SPACING_M * (row - (side - 1) / 2), SPACING_M * (col - (side - 1) / 2))

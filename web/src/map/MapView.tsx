@@ -8,6 +8,7 @@ import { courseText } from "../orders/course";
 import { listNames, vehicleLabel } from "../text/names";
 import { BoundaryLayer, HeightZoneLayer, KeepOutLayer, SurveyLayer } from "./areaLayer";
 import { readColours } from "./colours";
+import { hideLayers } from "./features";
 import { FlyHereLayer } from "./flyHereLayer";
 import { GroundImageNote } from "./GroundImageNote";
 import { GraticuleLayer } from "./graticuleLayer";
@@ -88,6 +89,7 @@ export function MapView() {
     createSiteEditing(made, siteDraft, theme);
     made.on("load", () => {
       for (const layer of layers) layer.add(made, readColours(document));
+      hideLayers(made);
       setMap(made);
     });
     onCleanup(() => made.remove());
@@ -246,6 +248,8 @@ function createMap(container: HTMLElement, ground: string): MapLibre {
     dragRotate: false,
     pitchWithRotate: false,
     touchPitch: false,
+    // A fade would repaint the whole map at the rate of the screen after each change of a label.
+    fadeDuration: 0,
   });
   // North is always up, so that headings can be read directly.
   map.touchZoomRotate.disableRotation();

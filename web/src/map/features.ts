@@ -14,14 +14,37 @@ export function areaFeature(ring: Point[], properties: GeoJsonProperties): Featu
   return { type: "Feature", geometry: { type: "Polygon", coordinates: [ring] }, properties };
 }
 
+/**
+ * The deepest tiles of a source. Each tile of each source costs its share of a frame, also an empty one, and
+ * without a GPU that is most of the frame; a field is in one to four of these, some 900 m wide, and a place in one
+ * is exact to 0.1 m.
+ */
+const DEEPEST_TILES = 15;
+
 /** Adds an empty GeoJSON source. */
 export function addFeatures(map: MapLibre, id: string): void {
-  map.addSource(id, { type: "geojson", data: { type: "FeatureCollection", features: [] } });
+  const data = { type: "FeatureCollection", features: [] } as const;
+  map.addSource(id, { type: "geojson", data: { ...data, features: [] }, maxzoom: DEEPEST_TILES });
 }
 
-/** Replaces the features of a GeoJSON source. */
+/** Replaces the features of a GeoJSON source; the layers of one without features are hidden and cost nothing. */
 export function setFeatures(map: MapLibre, id: string, features: Feature[]): void {
   map.getSource<GeoJSONSource>(id)?.setData({ type: "FeatureCollection", features });
+  showLayers(map, (source) => source === id, features.length > 0);
+}
+
+/** Hides every layer with a source, until that has features. */
+export function hideLayers(map: MapLibre): void {
+  showLayers(map, (source) => source !== undefined, false);
+}
+
+function showLayers(map: MapLibre, has: (source: string | undefined) => boolean, are: boolean) {
+  const visibility = are ? "visible" : "none";
+  for (const id of map.getLayersOrder()) {
+    const layer = map.getLayer(id);
+    if (layer === undefined || !has(layer.source) || layer.visibility === visibility) continue;
+    map.setLayoutProperty(id, "visibility", visibility);
+  }
 }
 
 /** Corners of an image on the map: north-west, north-east, south-east, south-west. */

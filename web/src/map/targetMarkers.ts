@@ -1,6 +1,5 @@
 import { type Map as MapLibre, Marker } from "maplibre-gl";
 import type { LonLat } from "./localGrid";
-import { moveTo } from "./vehicleMarker";
 
 /** A target position with its label. */
 export interface Target {
@@ -50,4 +49,14 @@ export class TargetMarkers {
     this.shown.set(target.key, made);
     return made;
   }
+}
+
+/** Moves a marker and adds it to the map if needed. */
+function moveTo(marker: Marker, map: MapLibre, at: LonLat): void {
+  const isOnMap = marker.getElement().isConnected;
+  const before = isOnMap ? marker.getLngLat() : null;
+  if (before === null || before.lng !== at.lon || before.lat !== at.lat) {
+    marker.setLngLat([at.lon, at.lat]);
+  }
+  if (!isOnMap) marker.addTo(map);
 }

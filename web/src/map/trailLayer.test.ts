@@ -25,10 +25,12 @@ const PLAIN: Colours = {
 let drawings: GeoJSON.FeatureCollection[];
 let pixelsPerM: number;
 let zoomed: () => void;
+let time_s: number;
 let layer: TrailLayer;
 
 beforeEach(() => {
   drawings = [];
+  time_s = 1;
   pixelsPerM = PIXELS_PER_M;
   const [east] = at(1, 0);
   const [, north] = at(0, 1);
@@ -39,6 +41,7 @@ beforeEach(() => {
     on: (_event: string, action: () => void) => {
       zoomed = action;
     },
+    getLayersOrder: () => [],
     getSource: () => ({ setData: (data: GeoJSON.FeatureCollection) => drawings.push(data) }),
     project: ([lon, lat]: [number, number]) => ({
       x: ((lon - FIELD.lon) / (east - FIELD.lon)) * pixelsPerM,
@@ -54,7 +57,7 @@ function show(east_m: number, changes: Partial<VehicleView> = {}): void {
   const position = { longitude_deg, latitude_deg, age_s: 0.1 };
   const one = vehicle(1, { position, track: [at(-50, 0)], ...changes });
   layer.update({
-    state: station([one]),
+    state: station([one], { time_ns: time_s * 1e9 }),
     behindS: 0,
     selected: [],
     plannedTarget: null,
@@ -72,10 +75,21 @@ describe("trails", () => {
   });
 
   it("are not redrawn while the symbol hides the difference", () => {
-    for (const east_m of [0, 0, 2, 4, 5.9]) show(east_m);
+    for (const east_m of [0, 0, 2, 4, 5.9]) {
+      show(east_m);
+      time_s += 2;
+    }
     expect(drawings).toHaveLength(1);
     show(6.1);
     expect(drawings).toHaveLength(2);
+  });
+
+  it("are redrawn every two seconds at most, however fast a vehicle is", () => {
+    for (let tick = 0; tick <= 45; tick += 1) {
+      show(10 * tick);
+      time_s += 0.1;
+    }
+    expect(drawings).toHaveLength(3);
   });
 
   it("are redrawn when zooming uncovers their end", () => {

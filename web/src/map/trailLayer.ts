@@ -13,6 +13,8 @@ const REAL = "trails-real";
 const SIMULATED = "trails-simulated";
 /** Redraw only when a trail's end has moved this far: the symbol hides less, and drawing is expensive. */
 const HIDDEN_END_PX = 12;
+/** And not more often: the whole map is drawn again, and a frame with newer positions waits for that. */
+const REDRAW_NS = 2e9;
 
 /** Each vehicle's track in its colour, dashed if simulated. */
 export class TrailLayer implements Layer {
@@ -20,7 +22,7 @@ export class TrailLayer implements Layer {
   private colours: Colours | null = null;
   private scene: Scene | null = null;
   /** What was drawn last: each trail's appearance and end. */
-  private drawn = { looks: "", ends: new Map<number, LonLat>() };
+  private drawn = { looks: "", ends: new Map<number, LonLat>(), at_ns: 0 };
 
   add(map: MapLibre, colours: Colours): void {
     this.map = map;
@@ -58,7 +60,8 @@ export class TrailLayer implements Layer {
 
   update(scene: Scene): void {
     this.scene = scene;
-    this.drawIfVisible();
+    const since_ns = Math.abs(scene.state.time_ns - this.drawn.at_ns);
+    if (since_ns >= REDRAW_NS || looksOf(scene) !== this.drawn.looks) this.drawIfVisible();
   }
 
   recolour(colours: Colours): void {
@@ -89,7 +92,8 @@ export class TrailLayer implements Layer {
     if (map === null || colours === null || scene === null) return;
     const trails = scene.state.vehicles.flatMap((vehicle) => trail(vehicle, scene, colours) ?? []);
     setFeatures(map, SOURCE, trails);
-    this.drawn = { looks: looksOf(scene), ends: new Map(endsOf(scene)) };
+    const at_ns = scene.state.time_ns;
+    this.drawn = { looks: looksOf(scene), ends: new Map(endsOf(scene)), at_ns };
   }
 }
 

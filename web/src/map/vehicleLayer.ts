@@ -1,16 +1,13 @@
-import { type GeoJSONSource, type Map as MapLibre, Marker } from "maplibre-gl";
+import { type Map as MapLibre, Marker } from "maplibre-gl";
 import { simulation, stalenessNow, vehicleKey, vehicleStatus } from "../fleet/vehicleStatus";
 import type { VehicleView } from "../protocol";
 import { agedBy, formatAge, formatQuantity } from "../text/quantities";
 import { clustersOf, type Spot } from "./clusters";
-import { addFeatures } from "./features";
+import { type LabelSpot, placeLabels, type Side } from "./labels";
 import type { LonLat } from "./localGrid";
 import { type Layer, positionOf, type Scene } from "./scene";
 import { type MarkerPress, VehicleMarker } from "./vehicleMarker";
 
-const SOURCE = "vehicle-labels";
-const LABELS = "vehicle-labels";
-const PILL = "vehicle-pill";
 /** Below this zoom heights are left out, except of the selected vehicles. */
 const HEIGHTS_FROM_ZOOM = 14;
 
@@ -19,60 +16,33 @@ interface Placed {
   readonly at: LonLat;
   readonly isSelected: boolean;
   readonly isStale: boolean;
+  readonly text: string;
+}
+
+/** A vehicle's place on the screen. */
+interface PlacedSpot extends Spot, LabelSpot {
+  /** Whether its label is shown at every zoom. */
+  readonly isMarked: boolean;
+  readonly isOnGround: boolean;
 }
 
 /**
- * All vehicles with a known position: symbols as elements, which keyboard and screen readers reach; labels by
- * MapLibre, which drops those without room; clusters where many would hide each other.
+ * All vehicles with a known position: symbols as elements, which keyboard and screen readers reach, with labels where
+ * there is room; clusters where many would hide each other. The map itself is not drawn again for any of them: without
+ * a GPU that takes longer than the time between two states.
  */
 export class VehicleLayer implements Layer {
   private map: MapLibre | null = null;
   private readonly markers = new Map<number, VehicleMarker>();
   private readonly bubbles: Marker[] = [];
   private placed: readonly Placed[] = [];
-  private labelled = "";
-  private clustered: ReadonlySet<number> = new Set();
+  private sides = new Map<number, Side>();
 
   constructor(private readonly press: MarkerPress) {}
 
   add(map: MapLibre): void {
     this.map = map;
-    addFeatures(map, SOURCE);
-    map.addImage(PILL, pillImage(), {
-      stretchX: [[14, 18]],
-      stretchY: [[11, 13]],
-      content: [8, 2, 24, 22],
-      pixelRatio: 1,
-    });
-    map.addLayer({
-      id: LABELS,
-      type: "symbol",
-      source: SOURCE,
-      layout: {
-        "text-field": ["get", "text"],
-        // Drawn by the browser: the style has no glyphs, so nothing is fetched. The first name sets the weight.
-        "text-font": ["Recon Semibold", "sans-serif"],
-        "text-size": 15,
-        "text-max-width": 30,
-        "text-padding": 1,
-        "symbol-sort-key": ["get", "rank"],
-        "icon-image": PILL,
-        "icon-text-fit": "both",
-        "text-variable-anchor-offset": [
-          "left",
-          [1.7, 0],
-          "right",
-          [-1.7, 0],
-          "top",
-          [0, 1.7],
-          "bottom",
-          [0, -1.7],
-        ],
-      },
-      paint: { "text-color": ["get", "colour"] },
-    });
-    map.on("zoom", () => this.cluster());
-    map.on("moveend", () => this.cluster());
+    map.on("move", () => this.arrange());
   }
 
   update(scene: Scene): void {
@@ -80,43 +50,35 @@ export class VehicleLayer implements Layer {
     if (map === null) return;
     const isMixed = simulation(scene.state.vehicles) === "mixed";
     this.placed = scene.state.vehicles.flatMap((vehicle) => placedOf(vehicle, scene) ?? []);
-    for (const { vehicle, at, isSelected } of this.placed) {
-      const marker = this.markerOf(vehicleKey(vehicle));
-      marker.show(map, vehicle, at, scene.behindS, isSelected, isMixed);
+    for (const { vehicle, isSelected } of this.placed) {
+      const marker = this.markerOf(map, vehicleKey(vehicle));
+      marker.show(vehicle, scene.behindS, isSelected, isMixed);
     }
     this.removeAllBut(new Set(this.placed.map(({ vehicle }) => vehicleKey(vehicle))));
-    this.cluster();
-    this.label(scene.behindS);
+    this.arrange();
   }
 
   recolour(): void {}
 
-  private label(behindS: number): void {
-    const { map } = this;
-    if (map === null) return;
-    const isNear = map.getZoom() >= HEIGHTS_FROM_ZOOM;
-    const features = this.placed
-      .filter((one) => one.isSelected || one.isStale || (isNear && this.isLabelled(one)))
-      .map((placed) => feature(placed, behindS));
-    const labelled = JSON.stringify(features);
-    if (labelled === this.labelled) return;
-    this.labelled = labelled;
-    map.getSource<GeoJSONSource>(SOURCE)?.setData({ type: "FeatureCollection", features });
-  }
-
-  /** On the ground a height means nothing, and a cluster has its own number. */
-  private isLabelled({ vehicle }: Placed): boolean {
-    return vehicle.is_flying.value !== false && !this.clustered.has(vehicleKey(vehicle));
-  }
-
-  /** Puts a count where many symbols would hide each other; a press zooms in on them. */
-  private cluster(): void {
+  /** Puts everything in its place on the screen. */
+  private arrange(): void {
     const { map } = this;
     if (map === null) return;
     const spots = this.placed.map((placed) => spotOf(map, placed));
+    for (const { key, x_px, y_px } of spots) this.markers.get(key)?.moveTo(x_px, y_px);
+    const alone = this.cluster(map, spots);
+    const isNear = map.getZoom() >= HEIGHTS_FROM_ZOOM;
+    // On the ground a height means nothing, and a cluster has its own number.
+    const wanted = alone.filter((spot) => spot.isMarked || (isNear && !spot.isOnGround));
+    this.sides = placeLabels(wanted, alone, this.sides);
+    for (const { key, text } of spots) this.markers.get(key)?.setLabel(text, this.sides.get(key));
+  }
+
+  /** Puts a count where many symbols would hide each other, and returns the others; a press zooms in on them. */
+  private cluster(map: MapLibre, spots: readonly PlacedSpot[]): readonly PlacedSpot[] {
     const clusters = clustersOf(spots);
-    this.clustered = new Set(clusters.flatMap(({ keys }) => keys));
-    for (const [key, marker] of this.markers) marker.setClustered(this.clustered.has(key));
+    const clustered = new Set(clusters.flatMap(({ keys }) => keys));
+    for (const [key, marker] of this.markers) marker.setClustered(clustered.has(key));
     while (this.bubbles.length > clusters.length) this.bubbles.pop()?.remove();
     for (const [index, { keys, x_px, y_px }] of clusters.entries()) {
       const at = map.unproject([x_px, y_px]);
@@ -128,12 +90,13 @@ export class VehicleLayer implements Layer {
       bubble.setLngLat(at);
       if (!element.isConnected) bubble.addTo(map);
     }
+    return spots.filter(({ key }) => !clustered.has(key));
   }
 
-  private markerOf(key: number): VehicleMarker {
+  private markerOf(map: MapLibre, key: number): VehicleMarker {
     const known = this.markers.get(key);
     if (known !== undefined) return known;
-    const marker = new VehicleMarker(key, this.press);
+    const marker = new VehicleMarker(key, this.press, map.getCanvasContainer());
     this.markers.set(key, marker);
     return marker;
   }
@@ -151,31 +114,36 @@ function placedOf(vehicle: VehicleView, scene: Scene): Placed | null {
   const at = positionOf(vehicle);
   if (at === null) return null;
   const isSelected = scene.selected.includes(vehicleKey(vehicle));
-  return { vehicle, at, isSelected, isStale: stalenessNow(vehicle, scene.behindS) !== "live" };
+  const isStale = stalenessNow(vehicle, scene.behindS) !== "live";
+  const text = labelText(vehicle, isSelected, isStale, scene.behindS);
+  return { vehicle, at, isSelected, isStale, text };
 }
 
-function spotOf(map: MapLibre, { vehicle, at, isSelected, isStale }: Placed): Spot {
-  const { x, y } = map.project([at.lon, at.lat]);
+function spotOf(map: MapLibre, { vehicle, at, isSelected, isStale, text }: Placed): PlacedSpot {
+  // Beside the date line the nearer of its places.
+  const turns = Math.round((map.getCenter().lng - at.lon) / 360);
+  const { x, y } = map.project([at.lon + 360 * turns, at.lat]);
   const isTrouble = isStale || vehicleStatus(vehicle, 0).severity !== null;
-  return { key: vehicleKey(vehicle), x_px: x, y_px: y, standsAlone: isSelected || isTrouble };
-}
-
-function feature(placed: Placed, behindS: number) {
-  const { vehicle, at, isSelected, isStale } = placed;
   return {
-    type: "Feature" as const,
-    geometry: { type: "Point" as const, coordinates: [at.lon, at.lat] },
-    properties: {
-      text: labelText(placed, behindS),
-      colour: isStale ? "#ffc2cd" : "#ffffff",
-      // The lowest finds its place first: the selected, then those in trouble, then by number.
-      rank: (isSelected ? 0 : isStale ? 1000 : 2000) + Math.max(0, vehicle.number),
-    },
+    key: vehicleKey(vehicle),
+    x_px: x,
+    y_px: y,
+    standsAlone: isSelected || isTrouble,
+    isMarked: isSelected || isStale,
+    isOnGround: vehicle.is_flying.value === false,
+    text,
+    // The selected first, then those in trouble, then by number.
+    rank: (isSelected ? 0 : isStale ? 1000 : 2000) + Math.max(0, vehicle.number),
   };
 }
 
 /** Height, or how old; with the name while selected. */
-function labelText({ vehicle, isSelected, isStale }: Placed, behindS: number): string {
+function labelText(
+  vehicle: VehicleView,
+  isSelected: boolean,
+  isStale: boolean,
+  behindS: number,
+): string {
   const age = formatAge(agedBy(vehicle.telemetry_age_s, behindS));
   const state = isStale ? `${age} old` : heightText(vehicle);
   return isSelected ? `${vehicle.name} · ${state}` : state;
@@ -201,17 +169,4 @@ function bubbleElement(map: MapLibre): HTMLElement {
     map.easeTo({ center: map.unproject(middle), zoom: map.getZoom() + 1.5, duration: 300 });
   });
   return element;
-}
-
-/** A dark rounded rectangle, stretched to each label; dark on every ground and theme. */
-function pillImage(): ImageData {
-  const [width, height] = [32, 24];
-  const canvas = new OffscreenCanvas(width, height);
-  const pen = canvas.getContext("2d");
-  if (pen === null) return new ImageData(width, height);
-  pen.fillStyle = "rgb(16 22 24 / 82%)";
-  pen.beginPath();
-  pen.roundRect(0, 0, width, height, 11);
-  pen.fill();
-  return pen.getImageData(0, 0, width, height);
 }

@@ -1,13 +1,16 @@
-import { type Map as MapLibre, Marker } from "maplibre-gl";
 import { badgeText, stalenessNow, vehicleStatus } from "../fleet/vehicleStatus";
 import type { VehicleView } from "../protocol";
 import { vehicleLabel } from "../text/names";
 import { colourOf, lookClasses } from "../theme/theme";
-import type { LonLat } from "./localGrid";
+import type { Side } from "./labels";
 
 const SVG = "http://www.w3.org/2000/svg";
-/** A nose that points up beyond the badge; 48 x 48. */
-const NOSE = "M24 0 33 15H15Z";
+/**
+ * A nose that points up beyond the badge, over a larger one as its outline; 48 x 48. An outline as a stroke would take
+ * a browser without a GPU as long as everything else of 64 vehicles.
+ */
+const NOSES = { "nose-casing": "M24 -2 35 16H13Z", nose: "M24 0 33 15H15Z" };
+const HALF_PX = 24;
 
 /** Actions of a press on a vehicle. */
 export interface MarkerPress {
@@ -22,37 +25,35 @@ export interface MarkerPress {
 export class VehicleMarker {
   private readonly button = document.createElement("button");
   private readonly badge = document.createElement("span");
+  private readonly label = document.createElement("span");
   private readonly symbol = document.createElementNS(SVG, "svg");
-  private readonly marker: Marker;
 
-  constructor(key: number, press: MarkerPress) {
+  constructor(key: number, press: MarkerPress, container: HTMLElement) {
     this.button.type = "button";
     this.button.className = `craft own-colour ${lookClasses(key)}`;
     this.button.style.setProperty("--own", colourOf(key));
     this.symbol.setAttribute("viewBox", "0 0 48 48");
     this.symbol.setAttribute("aria-hidden", "true");
-    const nose = document.createElementNS(SVG, "path");
-    nose.setAttribute("d", NOSE);
-    this.symbol.append(nose);
+    for (const [name, shape] of Object.entries(NOSES)) {
+      const nose = document.createElementNS(SVG, "path");
+      nose.setAttribute("class", name);
+      nose.setAttribute("d", shape);
+      this.symbol.append(nose);
+    }
     this.badge.className = "badge";
-    this.button.append(this.symbol, this.badge);
+    this.label.hidden = true;
+    this.label.setAttribute("aria-hidden", "true");
+    this.button.append(this.symbol, this.badge, this.label);
     this.button.addEventListener("click", (event) => {
       event.stopPropagation();
       if (event.shiftKey || event.ctrlKey || event.metaKey) press.toggle(key);
       else press.select(key);
     });
-    this.marker = new Marker({ element: this.button, anchor: "center" });
+    container.append(this.button);
   }
 
-  /** Updates the marker and adds it to the map if needed. */
-  show(
-    map: MapLibre,
-    vehicle: VehicleView,
-    at: LonLat,
-    behindS: number,
-    isSelected: boolean,
-    isMixed: boolean,
-  ): void {
+  /** Shows a vehicle's state. */
+  show(vehicle: VehicleView, behindS: number, isSelected: boolean, isMixed: boolean): void {
     const yaw_deg = vehicle.attitude.yaw_deg;
     // Whole degrees: finer changes are invisible but would redraw constantly.
     setStyle(this.symbol, "transform", `rotate(${Math.round(yaw_deg ?? 0)}deg)`);
@@ -68,7 +69,23 @@ export class VehicleMarker {
     setAttribute(this.button, "aria-label", text);
     setAttribute(this.button, "title", text);
     if (this.badge.textContent !== badgeText(vehicle)) this.badge.textContent = badgeText(vehicle);
-    moveTo(this.marker, map, at);
+  }
+
+  /** Moves it to a place on the map's screen, as its middle. */
+  moveTo(x_px: number, y_px: number): void {
+    // In two dimensions: MapLibre's own markers are each a layer of the browser's, drawn and laid over one by one.
+    const place = `translate(${Math.round(x_px) - HALF_PX}px, ${Math.round(y_px) - HALF_PX}px)`;
+    setStyle(this.button, "transform", place);
+  }
+
+  /** Shows a text beside the symbol; without a side it has no room. */
+  setLabel(text: string, side: Side | undefined): void {
+    const isHidden = side === undefined;
+    if (this.label.hidden !== isHidden) this.label.hidden = isHidden;
+    if (isHidden) return;
+    if (this.label.textContent !== text) this.label.textContent = text;
+    const look = `craft-label is-${side}`;
+    if (this.label.className !== look) this.label.className = look;
   }
 
   /** Hides it while a cluster stands for it. */
@@ -77,7 +94,7 @@ export class VehicleMarker {
   }
 
   remove(): void {
-    this.marker.remove();
+    this.button.remove();
   }
 }
 
@@ -86,21 +103,11 @@ function setAttribute(element: Element, name: string, value: string): void {
   if (element.getAttribute(name) !== value) element.setAttribute(name, value);
 }
 
-function setStyle(element: SVGElement, name: "transform", value: string): void {
+function setStyle(element: SVGElement | HTMLElement, name: "transform", value: string): void {
   if (element.style[name] !== value) element.style[name] = value;
 }
 
 function describe(vehicle: VehicleView, behindS: number): string {
   const kind = vehicle.is_simulated ? "simulated vehicle" : "vehicle";
   return `${kind} ${vehicleLabel(vehicle)}, ${vehicleStatus(vehicle, behindS).activity}`;
-}
-
-/** Moves a marker and adds it to the map if needed. */
-export function moveTo(marker: Marker, map: MapLibre, at: LonLat): void {
-  const isOnMap = marker.getElement().isConnected;
-  const before = isOnMap ? marker.getLngLat() : null;
-  if (before === null || before.lng !== at.lon || before.lat !== at.lat) {
-    marker.setLngLat([at.lon, at.lat]);
-  }
-  if (!isOnMap) marker.addTo(map);
 }

@@ -1,0 +1,77 @@
+/** What a label asks for: its symbol's place on the screen, and its text. */
+export interface LabelSpot {
+  readonly key: number;
+  readonly x_px: number;
+  readonly y_px: number;
+  readonly text: string;
+  /** The lowest finds its place first. */
+  readonly rank: number;
+}
+
+/** Where a label stands from its symbol. */
+export const SIDES = ["right", "left", "below", "above"] as const;
+export type Side = (typeof SIDES)[number];
+
+/** Half a symbol's badge, with a rim. */
+const SYMBOL_PX = 15;
+/** From the middle of a symbol to its label. */
+export const GAP_PX = 22;
+export const LABEL_HEIGHT_PX = 24;
+/** As wide as the widest digits and common letters are. */
+const LETTER_PX = 9;
+const EDGES_PX = 16;
+
+interface Frame {
+  readonly left: number;
+  readonly top: number;
+  readonly right: number;
+  readonly bottom: number;
+}
+
+/**
+ * A side for each label at which it covers no symbol and no other label; a label without such a side has none. A
+ * label keeps its side for as long as that is free.
+ */
+export function placeLabels(
+  wanted: readonly LabelSpot[],
+  symbols: readonly { readonly key: number; readonly x_px: number; readonly y_px: number }[],
+  before: ReadonlyMap<number, Side>,
+): Map<number, Side> {
+  const taken = symbols.map(({ key, x_px, y_px }) => ({ key, ...around(x_px, y_px, SYMBOL_PX) }));
+  const placed: Frame[] = [];
+  const sides = new Map<number, Side>();
+  for (const spot of [...wanted].sort((a, b) => a.rank - b.rank)) {
+    const kept = before.get(spot.key);
+    const tried = kept === undefined ? SIDES : [kept, ...SIDES.filter((side) => side !== kept)];
+    for (const side of tried) {
+      const frame = frameOf(spot, side);
+      const isFree =
+        !placed.some((other) => meets(frame, other)) &&
+        !taken.some((symbol) => symbol.key !== spot.key && meets(frame, symbol));
+      if (!isFree) continue;
+      placed.push(frame);
+      sides.set(spot.key, side);
+      break;
+    }
+  }
+  return sides;
+}
+
+function frameOf({ x_px: x, y_px: y, text }: LabelSpot, side: Side): Frame {
+  const width = EDGES_PX + LETTER_PX * text.length;
+  const half = LABEL_HEIGHT_PX / 2;
+  if (side === "right")
+    return { left: x + GAP_PX, right: x + GAP_PX + width, top: y - half, bottom: y + half };
+  if (side === "left")
+    return { left: x - GAP_PX - width, right: x - GAP_PX, top: y - half, bottom: y + half };
+  const top = side === "below" ? y + GAP_PX : y - GAP_PX - LABEL_HEIGHT_PX;
+  return { left: x - width / 2, right: x + width / 2, top, bottom: top + LABEL_HEIGHT_PX };
+}
+
+function around(x: number, y: number, half: number): Frame {
+  return { left: x - half, right: x + half, top: y - half, bottom: y + half };
+}
+
+function meets(a: Frame, b: Frame): boolean {
+  return a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+}
