@@ -5,9 +5,9 @@ import type { Page } from "@playwright/test";
  * map, a few hundredths with lines only, large with an image.
  */
 export async function drawnShare(page: Page): Promise<number> {
-  const picture = await page.locator(".map-canvas canvas").screenshot({
+  const picture = await page.locator(".maplibregl-canvas").screenshot({
     // The panels float over it and are in a picture of its place.
-    style: ".page > :not(.map), .maplibregl-marker, .craft { visibility: hidden !important; }",
+    style: ".page > :not(.map), .maplibregl-marker, .craft, .map-moving { visibility: hidden !important; }",
   });
   return page.evaluate(async (base64) => {
     const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));

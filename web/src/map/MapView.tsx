@@ -9,23 +9,21 @@ import { listNames, vehicleLabel } from "../text/names";
 import { BoundaryLayer, HeightZoneLayer, KeepOutLayer, SurveyLayer } from "./areaLayer";
 import { readColours } from "./colours";
 import { hideLayers } from "./features";
-import { FlyHereLayer } from "./flyHereLayer";
 import { GroundImageNote } from "./GroundImageNote";
 import { GraticuleLayer } from "./graticuleLayer";
 import { createDisplayedGround, GroundImageLayer } from "./groundImageLayer";
-import { HazardLayer } from "./hazardLayer";
 import { LayersButton } from "./LayersButton";
 import type { Box } from "./localGrid";
+import { MovingLayer } from "./movingLayer";
 import { ForecastLayer, ShadeLayer, SurveyCellsLayer } from "./overlays";
 import { PadLayer } from "./padLayer";
 import { createSunHere, SunHereNote } from "./SunHere";
 import { type DraftShapes, type Layer, type PlannedTarget, positionOf, wholeView } from "./scene";
 import { SiteDraftLayer } from "./siteDraftLayer";
 import { createSiteEditing } from "./siteEditing";
-import { SteeringLayer } from "./steeringLayer";
 import { SurveyRowsLayer } from "./surveyRowsLayer";
+import { TargetLayer } from "./targetLayer";
 import { TemporaryZoneLayer } from "./temporaryZoneLayer";
-import { TrailLayer } from "./trailLayer";
 import { VehicleLayer } from "./vehicleLayer";
 
 // Under Vite MapLibre does not find its worker and stays blank.
@@ -63,10 +61,8 @@ export function MapView() {
       new TemporaryZoneLayer(),
       new PadLayer(),
       new SiteDraftLayer(),
-      new HazardLayer(),
-      new TrailLayer(),
-      new SteeringLayer(),
-      new FlyHereLayer(),
+      new MovingLayer(),
+      new TargetLayer(),
       new VehicleLayer({ select: selection.only, toggle: selection.toggle }),
     ];
     made.on("click", ({ lngLat }) => aim({ lon: lngLat.lng, lat: lngLat.lat }));
