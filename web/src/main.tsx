@@ -6,6 +6,7 @@ import { App } from "./App";
 import { ConsoleProvider, createConsole } from "./console";
 import { createOpenPanels, NARROW } from "./panels/openPanels";
 import { browserClock } from "./source/clock";
+import { browserFrame } from "./source/framePacer";
 import { LiveSource } from "./source/liveSource";
 import { keepToken, takeLogin } from "./source/login";
 import { createThemeSwitch } from "./theme/theme";
@@ -31,6 +32,7 @@ function Page() {
     token: given.token,
     clock: browserClock,
     random: (bytes) => crypto.getRandomValues(bytes),
+    nextFrame: browserFrame,
     openSocket: (url, protocols) => new WebSocket(url, protocols),
     fetch: (request) => fetch(request),
   });

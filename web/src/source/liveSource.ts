@@ -2,6 +2,7 @@ import { createSignal } from "solid-js";
 import type { AccessView, AuthorityHolder, StationState } from "../protocol";
 import type { Clock, Instant } from "./clock";
 import { flightRequests } from "./flightRequests";
+import { FramePacer, type NextFrame } from "./framePacer";
 import { replayRequests } from "./replayRequests";
 import { Requests } from "./requests";
 import { siteRequests } from "./siteRequests";
@@ -27,7 +28,14 @@ export interface LiveSourceOptions {
   /** Fills the array with cryptographically random bytes. */
   random(bytes: Uint8Array): Uint8Array;
   openSocket(url: string, protocols: string[]): Socket;
+  /** Paces the states to the screen; without it every one is handed on. */
+  readonly nextFrame?: NextFrame;
   fetch(request: Request): Promise<Response>;
+}
+
+interface Received {
+  readonly newest: StationState;
+  readonly receivedAt: Instant;
 }
 
 /** WebSocket subprotocol of the stream. */
@@ -73,6 +81,14 @@ export class LiveSource implements StationSource {
       this.owner = newStreamOwner((bytes) => options.random(bytes));
       return options.openSocket(`${url}?owner=${this.owner}&changes=1`, streamProtocols(token));
     };
+    // Ages count from the state that is shown.
+    const show = ({ newest, receivedAt }: Received) => {
+      // A replay has a clock of its own, which pauses and jumps.
+      if (newest.replay !== null) this.lag.restart(newest.time_ns, receivedAt);
+      else this.lag.record(newest.time_ns, receivedAt);
+      setState(newest);
+    };
+    const pacer = new FramePacer(show, options.nextFrame ?? ((action) => action()));
     this.stream = new Stream(open, clock, {
       onConnection: (next) => {
         setConnection(next);
@@ -85,10 +101,10 @@ export class LiveSource implements StationSource {
         }
       },
       onState: (newest, isFirst) => {
-        // A replay has a clock of its own, which pauses and jumps.
-        if (isFirst || newest.replay !== null) this.lag.restart(newest.time_ns, clock.now());
-        else this.lag.record(newest.time_ns, clock.now());
-        setState(newest);
+        const received = { newest, receivedAt: clock.now() };
+        if (isFirst) this.lag.restart(newest.time_ns, received.receivedAt);
+        if (isFirst) pacer.restart(received);
+        else pacer.offer(received);
       },
     });
     this.stream.open();
