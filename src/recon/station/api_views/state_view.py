@@ -37,6 +37,10 @@ SHOWN_ORDERS = 50
 TRACK_POINTS_SHOWN = 120
 TRACK_DIGITS = 6
 """A tenth of a metre, finer than GNSS: the tracks are most of a state's bytes."""
+PLACE_DIGITS = 8
+"""A millimetre; further digits cannot be compressed."""
+DIGITS = 3
+"""Of seconds, metres, metres per second and degrees of angle."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +128,10 @@ def _vehicle(
         reported_is_flying=aged.flag(vehicle.reported_is_flying),
         doubts=doubt_views(vehicle, now_ns),
         position=aged.parts(
-            schema.PositionView, vehicle.position, ("latitude_deg", "longitude_deg")
+            schema.PositionView,
+            vehicle.position,
+            ("latitude_deg", "longitude_deg"),
+            PLACE_DIGITS,
         ),
         height_above_takeoff_m=aged.number(vehicle.height_above_takeoff_m),
         reported_altitude_m=aged.number(vehicle.reported_altitude_m),
@@ -155,24 +162,38 @@ def _vehicle(
 
 @dataclass(frozen=True, slots=True)
 class _Aging:
-    """Turns stamped values into views with ages."""
+    """Turns stamped values into views with ages, without the digits that mean nothing."""
 
     now_ns: int
 
+    def age_s(self, stamped: Stamped[Any]) -> float | None:
+        return _rounded(stamped.age_s(self.now_ns), DIGITS)
+
     def number(self, stamped: Stamped[Any]) -> schema.AgedNumber:
-        return schema.AgedNumber(value=stamped.value, age_s=stamped.age_s(self.now_ns))
+        value = _rounded(stamped.value, DIGITS)
+        return schema.AgedNumber(value=value, age_s=self.age_s(stamped))
 
     def flag(self, stamped: Stamped[bool]) -> schema.AgedFlag:
-        return schema.AgedFlag(value=stamped.value, age_s=stamped.age_s(self.now_ns))
+        return schema.AgedFlag(value=stamped.value, age_s=self.age_s(stamped))
 
     def word(self, stamped: Stamped[Any]) -> schema.AgedText:
         value: Enum | None = stamped.value
         text = None if value is None else value.name.lower()
-        return schema.AgedText(value=text, age_s=stamped.age_s(self.now_ns))
+        return schema.AgedText(value=text, age_s=self.age_s(stamped))
 
-    def parts(self, view: Callable[..., Any], stamped: Stamped[Any], names: Iterable[str]) -> Any:
-        values = {name: getattr(stamped.value, name, None) for name in names}
-        return view(**values, age_s=stamped.age_s(self.now_ns))
+    def parts(
+        self,
+        view: Callable[..., Any],
+        stamped: Stamped[Any],
+        names: Iterable[str],
+        digits: int = DIGITS,
+    ) -> Any:
+        values = {name: _rounded(getattr(stamped.value, name, None), digits) for name in names}
+        return view(**values, age_s=self.age_s(stamped))
+
+
+def _rounded(value: float | None, digits: int) -> float | None:
+    return None if value is None else round(float(value), digits)
 
 
 def _frame(frame: Frame | None, now_ns: int) -> schema.FrameView | None:
@@ -195,7 +216,7 @@ def _link(fleet: Fleet, record: LinkRecord, around: DriverState, now_ns: int) ->
         status=_link_status(fleet, record),
         claimed_serial=record.claimed_serial,
         waiting=_waiting(fleet, record, now_ns),
-        opened_age_s=ns_to_seconds(now_ns - record.opened_at_ns),
+        opened_age_s=_since_s(record.opened_at_ns, now_ns),
         last_packet_age_s=_age_s(record.last_packet_at_ns, now_ns),
         closed_reason=record.closed_reason,
         bytes_received=0 if session is None else session.bytes_received,
@@ -289,11 +310,15 @@ def _alarm(alarm: Alarm, now_ns: int) -> schema.AlarmView:
         link_id=condition.link_id,
         vehicle_name=condition.vehicle_name,
         text=condition.text,
-        raised_age_s=ns_to_seconds(now_ns - alarm.raised_at_ns),
+        raised_age_s=_since_s(alarm.raised_at_ns, now_ns),
         is_active=alarm.is_active,
         is_acknowledged=alarm.acknowledged_by is not None,
     )
 
 
 def _age_s(at_ns: int | None, now_ns: int) -> float | None:
-    return None if at_ns is None else ns_to_seconds(now_ns - at_ns)
+    return None if at_ns is None else _since_s(at_ns, now_ns)
+
+
+def _since_s(at_ns: int, now_ns: int) -> float:
+    return round(ns_to_seconds(now_ns - at_ns), DIGITS)
