@@ -19,10 +19,11 @@ export function smallTexts(page: Page): Promise<Fault[]> {
   });
 }
 
-/** Buttons and inputs smaller than 44 px in either direction; an input counts with its label. */
+/** What can be pressed or typed in, smaller than 44 px in either direction; an input counts with its label. */
 export function smallTargets(page: Page): Promise<Fault[]> {
   return page.evaluate(() => {
-    const targets = [...document.querySelectorAll<HTMLElement>("button, input")];
+    const kinds = "button, input, select, textarea, summary, a[href], [role=button], [role=slider]";
+    const targets = [...document.querySelectorAll<HTMLElement>(kinds)];
     return targets
       .filter((target) => target.checkVisibility())
       .flatMap((target) => {

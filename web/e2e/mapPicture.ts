@@ -8,7 +8,7 @@ export async function drawnShare(page: Page): Promise<number> {
   const picture = await page.locator(".maplibregl-canvas").screenshot({
     // The panels float over it and are in a picture of its place.
     style:
-      ".page > :not(.map), .maplibregl-marker, .craft, .map-moving { visibility: hidden !important; }",
+      ".page > :not(.map), .maplibregl-marker, .craft, .craft-label, .map-moving { visibility: hidden !important; }",
   });
   return page.evaluate(async (base64) => {
     const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));

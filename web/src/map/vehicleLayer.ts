@@ -23,6 +23,7 @@ interface Placed {
 interface PlacedSpot extends Spot, LabelSpot {
   /** Whether its label is shown at every zoom. */
   readonly isMarked: boolean;
+  readonly isStale: boolean;
   readonly isOnGround: boolean;
 }
 
@@ -71,7 +72,8 @@ export class VehicleLayer implements Layer {
     // On the ground a height means nothing, and a cluster has its own number.
     const wanted = alone.filter((spot) => spot.isMarked || (isNear && !spot.isOnGround));
     this.sides = placeLabels(wanted, alone, this.sides);
-    for (const { key, text } of spots) this.markers.get(key)?.setLabel(text, this.sides.get(key));
+    for (const { key, text, isStale } of spots)
+      this.markers.get(key)?.setLabel(text, this.sides.get(key), isStale);
   }
 
   /** Puts a count where many symbols would hide each other, and returns the others; a press zooms in on them. */
@@ -130,6 +132,7 @@ function spotOf(map: MapLibre, { vehicle, at, isSelected, isStale, text }: Place
     y_px: y,
     standsAlone: isSelected || isTrouble,
     isMarked: isSelected || isStale,
+    isStale,
     isOnGround: vehicle.is_flying.value === false,
     text,
     // The selected first, then those in trouble, then by number.

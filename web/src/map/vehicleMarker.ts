@@ -43,13 +43,13 @@ export class VehicleMarker {
     this.badge.className = "badge";
     this.label.hidden = true;
     this.label.setAttribute("aria-hidden", "true");
-    this.button.append(this.symbol, this.badge, this.label);
+    this.button.append(this.symbol, this.badge);
     this.button.addEventListener("click", (event) => {
       event.stopPropagation();
       if (event.shiftKey || event.ctrlKey || event.metaKey) press.toggle(key);
       else press.select(key);
     });
-    container.append(this.button);
+    container.append(this.button, this.label);
   }
 
   /** Shows a vehicle's state. */
@@ -76,15 +76,16 @@ export class VehicleMarker {
     // In two dimensions: MapLibre's own markers are each a layer of the browser's, drawn and laid over one by one.
     const place = `translate(${Math.round(x_px) - HALF_PX}px, ${Math.round(y_px) - HALF_PX}px)`;
     setStyle(this.button, "transform", place);
+    setStyle(this.label, "transform", place);
   }
 
   /** Shows a text beside the symbol; without a side it has no room. */
-  setLabel(text: string, side: Side | undefined): void {
+  setLabel(text: string, side: Side | undefined, isStale: boolean): void {
     const isHidden = side === undefined;
     if (this.label.hidden !== isHidden) this.label.hidden = isHidden;
     if (isHidden) return;
     if (this.label.textContent !== text) this.label.textContent = text;
-    const look = `craft-label is-${side}`;
+    const look = `craft-label is-${side}${isStale ? " is-stale" : ""}`;
     if (this.label.className !== look) this.label.className = look;
   }
 
@@ -95,6 +96,7 @@ export class VehicleMarker {
 
   remove(): void {
     this.button.remove();
+    this.label.remove();
   }
 }
 

@@ -118,7 +118,7 @@ export class Stream {
     this.sendKeepalive();
   }
 
-  /** Sent only after a state was received and shown, so that a hanging page loses its steered orders. */
+  /** Sent only after a state was received and handed on, so that a hanging page loses its steered orders. */
   private sendKeepalive(): void {
     const nowMs = this.clock.now().monotonicMs;
     if (this.socket === null || nowMs - this.keepaliveAtMs < KEEPALIVE_MS) return;

@@ -1,0 +1,157 @@
+import { expect, type Page, test } from "@playwright/test";
+import type { StationState, TimelineEntryView } from "../src/protocol";
+import { vehicle, zone } from "../src/testing/fakeState";
+import { axeFaults } from "./axe";
+import { busyState } from "./fake/busyState";
+import { DRAWING } from "./fake/drawnSite";
+import { CHECKLIST, fencedState } from "./fake/fencedState";
+import { FakeStation } from "./fake/station";
+import { surveyedState } from "./fake/surveyedState";
+import { smallTargets } from "./legibility";
+import { openPanel } from "./openPanel";
+import { THEMES } from "./themes";
+
+/** A laptop's and a phone's page, pixels. */
+const SIZES = [
+  { width: 1440, height: 900 },
+  { width: 390, height: 844 },
+] as const;
+
+const PANELS = [
+  "Alarms",
+  "Survey",
+  "Imaging drone",
+  "Temporary zones",
+  "Edit site",
+  "Return in layers",
+  "Orders",
+  "Timeline",
+  "Links",
+  "After the flight",
+  "Station and site",
+] as const;
+
+/** Something in every panel at once. */
+function fullState(): StationState {
+  const busy = busyState(0);
+  const surveyed = surveyedState(0);
+  const fenced = fencedState(0);
+  return {
+    ...surveyed,
+    site: fenced.site,
+    vehicles: [
+      ...surveyed.vehicles,
+      vehicle(5, { ...busy.vehicles[4], number: 5 }),
+      vehicle(6, { ...fenced.vehicles[2], number: 6, serial: "SN-006", name: "Fir" }),
+    ],
+    links: busy.links,
+    alarms: busy.alarms,
+    commands: [...busy.commands, ...fenced.commands],
+    fleet_return: fenced.fleet_return,
+    temporary_zones: [zone(1, [50, 40]), zone(2, [-70, -40], { kind: "crewed_aircraft" })],
+  };
+}
+
+const ENTRY: TimelineEntryView = {
+  n: 1,
+  utc: "2026-05-01T12:00:00.5Z",
+  kind: "order.sent",
+  by: "anna (10.0.0.2)",
+  serial: "SN-001",
+  vehicle: "Alder",
+  text: "hover 1: sent",
+};
+
+const FLIGHT = {
+  name: "flight-20250620T160412Z",
+  size_bytes: 55_204_853,
+  changed_at_unix_ms: 0,
+  is_recording: false,
+};
+
+async function openConsole(page: Page): Promise<FakeStation> {
+  const state = fullState();
+  const fake = await FakeStation.behind(page, state);
+  fake.drawing = DRAWING;
+  fake.preflight = CHECKLIST;
+  await page.route("**/api/timeline?**", (route) =>
+    route.fulfill({ json: { entries: [ENTRY], has_more: true } }),
+  );
+  await page.route("**/api/flights", (route) => route.fulfill({ json: [FLIGHT] }));
+  await page.addInitScript(() => localStorage.setItem("recon.panels", ""));
+  await page.goto("/");
+  const begin_ms = performance.now();
+  const timer = setInterval(() => {
+    fake.send({ ...state, time_ns: state.time_ns + (performance.now() - begin_ms) * 1e6 });
+  }, 500);
+  page.once("close", () => clearInterval(timer));
+  await expect(page.locator("button.craft")).toHaveCount(state.vehicles.length);
+  return fake;
+}
+
+/** All rules in the first theme; in the others only the colours differ. */
+async function faults(page: Page): Promise<string[]> {
+  const found: string[] = [...(await smallTargets(page))];
+  for (const { name } of THEMES) {
+    await page.evaluate((theme) => {
+      document.documentElement.dataset["theme"] = theme;
+    }, name);
+    const wrong = await axeFaults(page, name === THEMES[0].name ? null : ["color-contrast"]);
+    found.push(...wrong.map((fault) => `${name}: ${fault}`));
+  }
+  return found;
+}
+
+for (const size of SIZES) {
+  test(`every view meets WCAG 2.2 AA in each theme: ${size.width} px`, async ({ page }) => {
+    await page.setViewportSize(size);
+    const fake = await openConsole(page);
+    const wrong: Record<string, string[]> = {};
+    const check = async (view: string) => {
+      const found = await faults(page);
+      if (found.length > 0) wrong[view] = found;
+    };
+    const panels = page.locator(".dock-right .panel");
+    await page.keyboard.press("1");
+    await page.keyboard.press("d");
+    await check("Fly, vehicle details");
+    await page.keyboard.press("d");
+    await expect(panels).toHaveCount(0);
+    for (const panel of PANELS) {
+      await openPanel(page, panel);
+      await expect(panels).toHaveCount(1);
+      if (panel === "Edit site") {
+        await page.getByRole("button", { name: "Edit", exact: true }).click();
+        await page.getByRole("button", { name: /^farmyard/ }).click();
+      }
+      await check(panel);
+      await panels.getByRole("button", { name: /^Close ./ }).click();
+    }
+    await page.getByRole("button", { name: "Menu", exact: true }).click();
+    await check("Menu");
+    await page.keyboard.press("Escape");
+    await page.keyboard.press("?");
+    await check("Help");
+    await page.keyboard.press("Escape");
+    await fake.goOffline();
+    await expect(page.getByText("No connection to the station.")).toBeVisible();
+    await check("Connection lost");
+    expect(wrong).toEqual({});
+  });
+}
+
+test("the login meets WCAG 2.2 AA in each theme", async ({ page }) => {
+  await page.routeWebSocket(/\/api\/stream/, (socket) =>
+    socket.close({ code: 4401, reason: "token missing" }),
+  );
+  await page.route("**/api/**", (route) => route.abort());
+  await page.goto("/");
+  await expect(page.getByRole("dialog", { name: "Log in to Recon" })).toBeVisible();
+  await page.getByLabel("Token, or the whole address with it").fill("wrong");
+  await page.getByRole("button", { name: "Log in" }).click();
+  await page.getByRole("button", { name: "Log in" }).focus();
+  for (const size of SIZES) {
+    await page.setViewportSize(size);
+    expect(await faults(page), `${size.width} px`).toEqual([]);
+  }
+});
