@@ -46,7 +46,7 @@ test("plans a survey of a site region, flies it with two vehicles, pauses and ab
     const ways = page.waitForResponse(/\/api\/surveys\/\d+\/ways$/);
     await test.step("two with takeoff allowed fly it", async () => {
       for (const name of ["Drone 1", "Drone 2"]) {
-        await page.getByRole("checkbox", { name: new RegExp(name) }).check({ force: true });
+        await page.getByRole("checkbox", { name: new RegExp(name) }).press("Space");
       }
       await panel.getByLabel("Allow takeoff for this start").check();
       const start = panel.getByRole("button", { name: /^Start with selected: .*Drone 1.*Drone 2/ });
