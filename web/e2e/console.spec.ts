@@ -127,8 +127,8 @@ test("sends an order only to the named vehicles, and only when held", async ({ p
   const fake = await FakeStation.behind(page, station([vehicle(1), vehicle(2), vehicle(3)]));
   const timer = setInterval(() => fake.send(station([vehicle(1), vehicle(2), vehicle(3)])), 100);
   await page.goto("/");
-  await page.getByRole("checkbox", { name: "Add 2 Birch to the selection" }).check({ force: true });
-  await page.getByRole("checkbox", { name: "Add 3 Cedar to the selection" }).check({ force: true });
+  await page.getByRole("checkbox", { name: "Add 2 Birch to the selection" }).press("Space");
+  await page.getByRole("checkbox", { name: "Add 3 Cedar to the selection" }).press("Space");
   const land = page.getByRole("button", { name: "Land 2 Birch and 3 Cedar: hold for 1.5 seconds" });
   await land.click();
   await expect(page.getByText("2 Birch and 3 Cedar selected")).toBeVisible();

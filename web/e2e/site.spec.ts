@@ -76,7 +76,7 @@ test("a site is drawn and imported, flown, and its fences keep while it is flown
       const survey = page.getByRole("region", { name: "Survey", exact: true });
       await survey.getByRole("button", { name: "Plan survey" }).click();
       await expect(survey.getByText("Planned, not started")).toBeVisible();
-      await page.getByRole("checkbox", { name: /Drone 1/ }).check({ force: true });
+      await page.getByRole("checkbox", { name: /Drone 1/ }).press("Space");
       await survey.getByLabel("Allow takeoff for this start").check();
       const start = survey.getByRole("button", { name: /^Start with selected: .*Drone 1/ });
       await start.focus();
