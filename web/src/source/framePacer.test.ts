@@ -60,4 +60,20 @@ describe("the pace of states", () => {
     for (const value of [1, 2, 3]) pacer.offer(value);
     expect(shown).toEqual([1, 2, 3]);
   });
+
+  it("goes on after a state that could not be shown", () => {
+    const shown: number[] = [];
+    const due: (() => void)[] = [];
+    const pacer = new FramePacer<number>(
+      (value) => {
+        if (value === 1) throw new Error("it cannot be drawn");
+        shown.push(value);
+      },
+      (action) => due.push(action),
+    );
+    expect(() => pacer.offer(1)).toThrow();
+    pacer.offer(2);
+    while (due.length > 0) due.shift()?.();
+    expect(shown).toEqual([2]);
+  });
 });

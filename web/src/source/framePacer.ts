@@ -45,9 +45,12 @@ export class FramePacer<T> {
 
   private hand(value: T): void {
     this.isDrawing = true;
-    this.show(value);
-    // The frame with this value is drawn after the first callback, and handed to the screen before the second.
-    this.nextFrame(() => this.nextFrame(() => this.release()));
+    try {
+      this.show(value);
+    } finally {
+      // The frame with this value is drawn after the first callback, and handed to the screen before the second.
+      this.nextFrame(() => this.nextFrame(() => this.release()));
+    }
   }
 
   private release(): void {
