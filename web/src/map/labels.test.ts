@@ -28,6 +28,14 @@ describe("labels", () => {
     expect(sides.size).toBeLessThan(30);
   });
 
+  it("cover no target's label", () => {
+    const alone = [at(1, 0, 0)];
+    const target = { x_px: 40, y_px: 34, text: "1 Birch flying here" };
+    expect(placeLabels(alone, alone, new Map(), [target]).get(1)).toBe("below");
+    const low = { ...target, y_px: 80 };
+    expect(placeLabels(alone, alone, new Map([[1, "below"]]), [low]).get(1)).toBe("right");
+  });
+
   it("keep their side while it is free", () => {
     const alone = [at(1, 0, 0)];
     for (const side of SIDES) {

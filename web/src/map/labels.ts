@@ -28,17 +28,21 @@ interface Frame {
   readonly bottom: number;
 }
 
+/** A label that stands above its place, whatever it covers: a target's. */
+export type FixedLabel = Pick<LabelSpot, "x_px" | "y_px" | "text">;
+
 /**
- * A side for each label at which it covers no symbol and no other label; a label without such a side has none. A
- * label keeps its side for as long as that is free.
+ * A side for each label at which it covers no symbol and no other label, also none of the fixed ones; a label without
+ * such a side has none. A label keeps its side for as long as that is free.
  */
 export function placeLabels(
   wanted: readonly LabelSpot[],
   symbols: readonly { readonly key: number; readonly x_px: number; readonly y_px: number }[],
   before: ReadonlyMap<number, Side>,
+  fixed: readonly FixedLabel[] = [],
 ): Map<number, Side> {
   const taken = symbols.map(({ key, x_px, y_px }) => ({ key, ...around(x_px, y_px, SYMBOL_PX) }));
-  const placed: Frame[] = [];
+  const placed = fixed.map((label) => frameOf(label, "above"));
   const sides = new Map<number, Side>();
   for (const spot of [...wanted].sort((a, b) => a.rank - b.rank)) {
     const kept = before.get(spot.key);
@@ -57,7 +61,7 @@ export function placeLabels(
   return sides;
 }
 
-function frameOf({ x_px: x, y_px: y, text }: LabelSpot, side: Side): Frame {
+function frameOf({ x_px: x, y_px: y, text }: FixedLabel, side: Side): Frame {
   const width = EDGES_PX + LETTER_PX * text.length;
   const half = LABEL_HEIGHT_PX / 2;
   if (side === "right")

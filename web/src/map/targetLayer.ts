@@ -5,7 +5,7 @@ import { vehicleLabel } from "../text/names";
 import { formatQuantity } from "../text/quantities";
 import { colourOf } from "../theme/theme";
 import type { Layer, Scene } from "./scene";
-import { TargetMarkers } from "./targetMarkers";
+import { type Target, TargetMarkers } from "./targetMarkers";
 
 /** Targets: a ring at that of each vehicle under virtual stick control, and a dashed one at fly-here's while planned. */
 export class TargetLayer implements Layer {
@@ -30,7 +30,8 @@ export class TargetLayer implements Layer {
   recolour(): void {}
 }
 
-function targetOf(vehicle: VehicleView) {
+/** The target of a vehicle under virtual stick control, as none or one. */
+export function targetOf(vehicle: VehicleView): Target[] {
   const { steering } = vehicle;
   if (steering === null) return [];
   const height = formatQuantity(steering.height_above_takeoff_m, "m", 0);

@@ -6,6 +6,8 @@ import { clustersOf, type Spot } from "./clusters";
 import { type LabelSpot, placeLabels, type Side } from "./labels";
 import type { LonLat } from "./localGrid";
 import { type Layer, positionOf, type Scene } from "./scene";
+import { targetOf } from "./targetLayer";
+import type { Target } from "./targetMarkers";
 import { type MarkerPress, VehicleMarker } from "./vehicleMarker";
 
 /** Below this zoom heights are left out, except of the selected vehicles. */
@@ -37,6 +39,7 @@ export class VehicleLayer implements Layer {
   private readonly markers = new Map<number, VehicleMarker>();
   private readonly bubbles: Marker[] = [];
   private placed: readonly Placed[] = [];
+  private targets: readonly Target[] = [];
   private sides = new Map<number, Side>();
 
   constructor(private readonly press: MarkerPress) {}
@@ -51,6 +54,7 @@ export class VehicleLayer implements Layer {
     if (map === null) return;
     const isMixed = simulation(scene.state.vehicles) === "mixed";
     this.placed = scene.state.vehicles.flatMap((vehicle) => placedOf(vehicle, scene) ?? []);
+    this.targets = scene.state.vehicles.flatMap(targetOf);
     for (const { vehicle, isSelected } of this.placed) {
       const marker = this.markerOf(map, vehicleKey(vehicle));
       marker.show(vehicle, scene.behindS, isSelected, isMixed);
@@ -71,7 +75,8 @@ export class VehicleLayer implements Layer {
     const isNear = map.getZoom() >= HEIGHTS_FROM_ZOOM;
     // On the ground a height means nothing, and a cluster has its own number.
     const wanted = alone.filter((spot) => spot.isMarked || (isNear && !spot.isOnGround));
-    this.sides = placeLabels(wanted, alone, this.sides);
+    const fixed = this.targets.map(({ at, text }) => ({ text, ...onScreen(map, at) }));
+    this.sides = placeLabels(wanted, alone, this.sides, fixed);
     for (const { key, text, isStale } of spots)
       this.markers.get(key)?.setLabel(text, this.sides.get(key), isStale);
   }
@@ -122,14 +127,10 @@ function placedOf(vehicle: VehicleView, scene: Scene): Placed | null {
 }
 
 function spotOf(map: MapLibre, { vehicle, at, isSelected, isStale, text }: Placed): PlacedSpot {
-  // Beside the date line the nearer of its places.
-  const turns = Math.round((map.getCenter().lng - at.lon) / 360);
-  const { x, y } = map.project([at.lon + 360 * turns, at.lat]);
   const isTrouble = isStale || vehicleStatus(vehicle, 0).severity !== null;
   return {
     key: vehicleKey(vehicle),
-    x_px: x,
-    y_px: y,
+    ...onScreen(map, at),
     standsAlone: isSelected || isTrouble,
     isMarked: isSelected || isStale,
     isStale,
@@ -138,6 +139,13 @@ function spotOf(map: MapLibre, { vehicle, at, isSelected, isStale, text }: Place
     // The selected first, then those in trouble, then by number.
     rank: (isSelected ? 0 : isStale ? 1000 : 2000) + Math.max(0, vehicle.number),
   };
+}
+
+function onScreen(map: MapLibre, at: LonLat) {
+  // Beside the date line the nearer of its places.
+  const turns = Math.round((map.getCenter().lng - at.lon) / 360);
+  const { x, y } = map.project([at.lon + 360 * turns, at.lat]);
+  return { x_px: x, y_px: y };
 }
 
 /** Height, or how old; with the name while selected. */

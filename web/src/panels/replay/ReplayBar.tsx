@@ -32,6 +32,26 @@ export function ReplayBar() {
   return <Show when={isReplay() && replay()}>{(view) => <Transport view={view()} />}</Show>;
 }
 
+function StepButton(props: {
+  name: string;
+  icon: string;
+  mark: Mark | null;
+  onPress: (mark: Mark) => void;
+}) {
+  return (
+    <button
+      type="button"
+      class="button button-quiet"
+      aria-label={props.name}
+      title={props.name}
+      disabled={props.mark === null}
+      onClick={() => props.mark !== null && props.onPress(props.mark)}
+    >
+      <span aria-hidden="true">{props.icon}</span>
+    </button>
+  );
+}
+
 function Transport(props: { view: ReplayView }) {
   const { source, clock } = useConsole();
   const [problem, setProblem] = createSignal<string | null>(null);
@@ -77,9 +97,7 @@ function Transport(props: { view: ReplayView }) {
   const current = createMemo(() => markAt(marks(), position()));
   const next = () => marks().find(({ at_s }) => at_s > position() + 0.5) ?? null;
   const previous = () => marks().findLast(({ at_s }) => at_s < position() - 0.5) ?? null;
-  const toMark = (mark: Mark | null) => {
-    if (mark !== null) void seek(mark.at_s);
-  };
+  const toMark = (mark: Mark) => void seek(mark.at_s);
   return (
     <section class="card replay" aria-label="Replay">
       <div class="replay-row">
@@ -109,26 +127,8 @@ function Transport(props: { view: ReplayView }) {
             </For>
           </select>
         </label>
-        <button
-          type="button"
-          class="button button-quiet"
-          aria-label="Previous alarm or order"
-          title="Previous alarm or order"
-          disabled={previous() === null}
-          onClick={() => toMark(previous())}
-        >
-          <span aria-hidden="true">|◂</span>
-        </button>
-        <button
-          type="button"
-          class="button button-quiet"
-          aria-label="Next alarm or order"
-          title="Next alarm or order"
-          disabled={next() === null}
-          onClick={() => toMark(next())}
-        >
-          <span aria-hidden="true">▸|</span>
-        </button>
+        <StepButton name="Previous alarm or order" icon="|◂" mark={previous()} onPress={toMark} />
+        <StepButton name="Next alarm or order" icon="▸|" mark={next()} onPress={toMark} />
         <p class="replay-mark-text wire-text muted" aria-live="polite">
           {current()?.text ?? props.view.file}
         </p>
