@@ -7,7 +7,7 @@ process has left as well as a finished file. It never trusts a size that the fil
 import struct
 import zlib
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from io import BytesIO
 from typing import BinaryIO
 
@@ -75,11 +75,8 @@ class McapReading:
         """
         self.trouble = ""
         self._file = file
-        self._channels: dict[int, Channel] = {}
-        self._schemas: dict[int, Schema] = {}
-        start = start or file.read(len(MAGIC))
-        if start != MAGIC:
-            raise DamagedMcapError(f"expected an MCAP file, got one that begins with {start!a}")
+        self._declared = Declared()
+        check_magic(start or file.read(len(MAGIC)))
 
     def items(self) -> Iterator[RecordMessage | RecordAttachment]:
         """Yield messages and attachments in the order of the file, up to damage."""
@@ -108,36 +105,70 @@ class McapReading:
             raise DamagedMcapError(f"damaged record at byte {record.at}: {problem}") from problem
 
     def _chunk_items(self, data: bytes) -> Iterator[RecordMessage | RecordAttachment]:
-        at = 0
-        while at < len(data):
-            opcode, length = RECORD_HEAD.unpack_from(data, at)
-            at += RECORD_HEAD.size
-            if length > len(data) - at:
-                raise DamagedMcapError(f"a record of {length} bytes in a chunk with fewer left")
-            yield from self._item(opcode, data[at : at + length])
-            at += length
+        for opcode, start, end in chunk_records(data):
+            yield from self._item(opcode, data[start:end])
 
     def _item(self, opcode: int, content: bytes) -> Iterator[RecordMessage | RecordAttachment]:
         if opcode == Opcode.MESSAGE:
-            number, sequence, log_ns, _publish_ns = MESSAGE_FIELDS.unpack_from(content)
-            channel = self._channels.get(number)
-            if channel is None:
-                raise DamagedMcapError(f"a message on channel {number}, which is not declared")
-            schema = self._schemas.get(channel.schema_id)
-            name = "" if schema is None else schema.name
-            data = content[MESSAGE_FIELDS.size :]
-            yield RecordMessage(
-                channel.topic, channel.message_encoding, name, sequence, log_ns, data
-            )
-        elif opcode == Opcode.CHANNEL:
+            yield self._declared.message(content)
+        elif opcode == Opcode.ATTACHMENT:
+            yield attachment_of(content)
+        else:
+            self._declared.take(opcode, content)
+
+
+@dataclass(slots=True)
+class Declared:
+    """The channels and schemas of a file, as far as it was read, by number."""
+
+    channels: dict[int, Channel] = field(default_factory=dict)
+    schemas: dict[int, str] = field(default_factory=dict)
+
+    def take(self, opcode: int, content: bytes) -> None:
+        """Take a channel or a schema; other records change nothing."""
+        if opcode == Opcode.CHANNEL:
             channel = Channel.read(ReadDataStream(BytesIO(content)))
-            self._channels[channel.id] = channel
+            self.channels[channel.id] = channel
         elif opcode == Opcode.SCHEMA:
             schema = Schema.read(ReadDataStream(BytesIO(content)))
-            self._schemas[schema.id] = schema
-        elif opcode == Opcode.ATTACHMENT:
-            attachment = Attachment.read(ReadDataStream(BytesIO(content)))
-            yield RecordAttachment(attachment.name, attachment.media_type, attachment.data)
+            self.schemas[schema.id] = schema.name
+
+    def message(self, content: bytes) -> RecordMessage:
+        """Return a message; raises `DamagedMcapError` for one on an unknown channel."""
+        number, sequence, log_ns, _publish_ns = MESSAGE_FIELDS.unpack_from(content)
+        channel = self.channels.get(number)
+        if channel is None:
+            raise DamagedMcapError(f"a message on channel {number}, which is not declared")
+        schema, data = self.schemas.get(channel.schema_id, ""), content[MESSAGE_FIELDS.size :]
+        encoding = channel.message_encoding
+        return RecordMessage(channel.topic, encoding, schema, sequence, log_ns, data)
+
+
+def attachment_of(content: bytes) -> RecordAttachment:
+    """Return an attachment from its record."""
+    found = Attachment.read(ReadDataStream(BytesIO(content)))
+    return RecordAttachment(found.name, found.media_type, found.data)
+
+
+def check_magic(start: bytes) -> None:
+    """Raise `DamagedMcapError` unless these are MCAP's first bytes."""
+    if start != MAGIC:
+        raise DamagedMcapError(f"expected an MCAP file, got one that begins with {start!a}")
+
+
+def chunk_records(data: bytes) -> Iterator[tuple[int, int, int]]:
+    """Yield the records of an unpacked chunk: opcode, and where the content starts and ends.
+
+    Raises `DamagedMcapError` for one that is longer than what is left.
+    """
+    at = 0
+    while at < len(data):
+        opcode, length = RECORD_HEAD.unpack_from(data, at)
+        at += RECORD_HEAD.size
+        if length > len(data) - at:
+            raise DamagedMcapError(f"a record of {length} bytes in a chunk with fewer left")
+        yield opcode, at, at + length
+        at += length
 
 
 _READ = frozenset((Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE, Opcode.CHUNK, Opcode.ATTACHMENT))

@@ -9,13 +9,10 @@ import struct
 from bisect import bisect_right
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
-from io import BytesIO
 from pathlib import Path
 
-from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
-from mcap.records import Attachment, Channel, Schema
 
 from recon.model.errors import RecordError
 from recon.record.mcap_file import CHUNK_HEAD, RECORD_HEAD
@@ -23,8 +20,12 @@ from recon.record.mcap_read import (
     MAGIC,
     MESSAGE_FIELDS,
     DamagedMcapError,
+    Declared,
     RecordAttachment,
     RecordMessage,
+    attachment_of,
+    check_magic,
+    chunk_records,
     raw_records,
     unpacked_chunk,
 )
@@ -51,10 +52,8 @@ class RecordFile:
         """Open a file; raises OSError, and `RecordError` for one that is no MCAP file."""
         self.path = path
         self.trouble = ""
-        self.topics: set[str] = set()
         self.attachments: dict[str, RecordAttachment] = {}
-        self._channels: dict[int, Channel] = {}
-        self._schemas: dict[int, str] = {}
+        self._declared = Declared()
         self._chunks: list[_Chunk] = []
         self._file = path.open("rb")
         try:
@@ -68,6 +67,11 @@ class RecordFile:
     def close(self) -> None:
         """Close the file."""
         self._file.close()
+
+    @property
+    def topics(self) -> set[str]:
+        """The topics that it declares."""
+        return {channel.topic for channel in self._declared.channels.values()}
 
     @property
     def chunk_count(self) -> int:
@@ -96,7 +100,7 @@ class RecordFile:
         """
         wanted = None
         if topics is not None:
-            wanted = {n for n, each in self._channels.items() if each.topic in topics}
+            wanted = {n for n, each in self._declared.channels.items() if each.topic in topics}
         for chunk in self._chunks[first:past]:
             self._file.seek(chunk.at + RECORD_HEAD.size)
             content = self._file.read(chunk.length - RECORD_HEAD.size)
@@ -106,33 +110,17 @@ class RecordFile:
                 raise DamagedMcapError(f"damaged chunk at byte {chunk.at}: {problem}") from problem
 
     def _of_chunk(self, data: bytes, wanted: Collection[int] | None) -> Iterator[RecordMessage]:
-        at = 0
-        while at < len(data):
-            opcode, length = RECORD_HEAD.unpack_from(data, at)
-            at += RECORD_HEAD.size
-            if length > len(data) - at:
-                raise DamagedMcapError(f"a record of {length} bytes in a chunk with fewer left")
+        for opcode, start, end in chunk_records(data):
             if opcode == Opcode.MESSAGE:
-                number, sequence, log_ns, _ = MESSAGE_FIELDS.unpack_from(data, at)
+                number, *_ = MESSAGE_FIELDS.unpack_from(data, start)
                 if wanted is None or number in wanted:
-                    content = data[at + MESSAGE_FIELDS.size : at + length]
-                    yield self._message(number, sequence, log_ns, content)
-            at += length
-
-    def _message(self, number: int, sequence: int, log_ns: int, data: bytes) -> RecordMessage:
-        channel = self._channels.get(number)
-        if channel is None:
-            raise DamagedMcapError(f"a message on channel {number}, which is not declared")
-        schema = self._schemas.get(channel.schema_id, "")
-        encoding = channel.message_encoding
-        return RecordMessage(channel.topic, encoding, schema, sequence, log_ns, data)
+                    yield self._declared.message(data[start:end])
 
     def _scan(self) -> None:
-        start = self._file.read(len(MAGIC))
-        if start != MAGIC:
-            raise DamagedMcapError(
-                f"{self.path}: expected an MCAP file, got one that begins with {start!a}"
-            )
+        try:
+            check_magic(self._file.read(len(MAGIC)))
+        except DamagedMcapError as problem:
+            raise DamagedMcapError(f"{self.path}: {problem}") from problem
         try:
             for record in raw_records(self._file, len(MAGIC), _READ.__contains__):
                 if record.opcode == Opcode.DATA_END:
@@ -155,15 +143,8 @@ class RecordFile:
         self._chunks.append(_Chunk(at, length, first_ns, max(before_ns, last_ns)))
 
     def _add(self, opcode: int, content: bytes) -> None:
-        stream = ReadDataStream(BytesIO(content))
-        if opcode == Opcode.SCHEMA:
-            schema = Schema.read(stream)
-            self._schemas[schema.id] = schema.name
-        elif opcode == Opcode.CHANNEL:
-            channel = Channel.read(stream)
-            self._channels[channel.id] = channel
-            self.topics.add(channel.topic)
+        if opcode == Opcode.ATTACHMENT:
+            item = attachment_of(content)
+            self.attachments.setdefault(item.name, item)
         else:
-            found = Attachment.read(stream)
-            item = RecordAttachment(found.name, found.media_type, found.data)
-            self.attachments.setdefault(found.name, item)
+            self._declared.take(opcode, content)
