@@ -296,6 +296,20 @@ class TestDecisions:
             assert state.flights["S-1"].corners_m == (waiting.place_m,)
         assert state.decisions["S-1"].text.startswith("waits: no sun is expected")
 
+    def test_without_a_place_aside_it_waits_where_it_is_for_a_while(self) -> None:
+        sun = forecast(lambda _east, _north, _lead: False)
+        here = Surveyor("S-1", (40.0, 100.0), height_above_takeoff_m=60.0)
+        other = Surveyor("S-2", (0.0, -40.0), is_flying=False)
+        state, (aside,) = decided(sun, here, other)
+        state = refused(state, "S-1", aside.number, "no room", seconds_to_ns(1.0), may_end=True)
+        asked = []
+        for now_s in range(2, 30):
+            later = replace(sun, issued_at_ns=seconds_to_ns(now_s))
+            state, missions = decided(later, here, other, state=state, now_s=float(now_s))
+            asked += [now_s] * len(missions)
+            assert "S-1" not in state.decisions or "waits" in state.decisions["S-1"].text
+        assert asked == [19]
+
     def test_alone_it_waits_where_it_is(self) -> None:
         sun = forecast(lambda _east, _north, _lead: False)
         alone = Surveyor("S-1", (40.0, 100.0), height_above_takeoff_m=60.0)

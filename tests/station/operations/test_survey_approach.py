@@ -74,3 +74,7 @@ def test_without_room_for_layers_all_stay_at_the_rows_height() -> None:
     mission = square_mission(height_m=21.0)
     for flown in with_approaches(mission, standing(0.0), 0, 2, low):
         assert set(heights_m(flown)) == {21.0}
+    first = mission.waypoints[0]
+    there = LatLon(first.latitude_deg, first.longitude_deg)
+    level = VehicleState(None, position=Stamped(there), height_above_takeoff_m=Stamped(21.0))
+    assert standing_by(mission, level, 0, 2, low) == ()

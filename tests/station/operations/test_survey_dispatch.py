@@ -3,13 +3,23 @@
 from dataclasses import replace
 
 import pytest
-from tests.station.surveyed_world import HEIGHT_M, SurveyedWorld, asked, surveyed_world
+from tests.station.surveyed_world import (
+    HEIGHT_M,
+    SURVEY_ID,
+    SurveyedWorld,
+    asked,
+    surveyed_world,
+)
 
 from recon.geo import geo_from_enu
+from recon.guidance.survey import AssignedMission
 from recon.model.command import FlyMission
 from recon.model.mission import Mission, Waypoint
-from recon.model.survey import MissionAssignment
-from recon.station.operations.survey.mission_dispatch import Dispatch, dispatch
+from recon.model.survey import MissionAssignment, SurveyPhase
+from recon.station.operations.survey import execution
+from recon.station.operations.survey.mission_dispatch import NO_ROOM, Dispatch, dispatch
+from recon.station.operations.survey.planning import SurveyStepped
+from recon.station.state.survey_record import PendingStep
 
 
 def started(count: int) -> SurveyedWorld:
@@ -98,3 +108,24 @@ class TestInTheWay:
             aside.latitude_deg,
             aside.longitude_deg,
         )
+
+    def test_without_a_place_to_wait_at_it_stays_with_its_survey(
+        self, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        world = started(1)
+        given = replace(rows(world, (0.0, -40.0)), number=7, stands_by=True)
+        held = Dispatch(dispatched(world, given).order, in_the_way=NO_ROOM)
+        monkeypatch.setattr(execution, "dispatch", lambda *_: held)
+        state = world.state()
+        standing = AssignedMission(given.number, (), ((0.0, -40.0),), 0.0)
+        state = replace(state, flights={"SIM-1": standing})
+        pending = PendingStep(99, SURVEY_ID, 0, 0, 0)
+        station = world.driver.station
+        station = replace(station, surveys=replace(station.surveys, pending=pending))
+        step = SurveyStepped(state, (given,))
+        after, sent = execution.STEP_SURVEY.done(station, 99, step, world.driver.now_ns)
+        kept = after.surveys.records[SURVEY_ID].state
+        assert sent == ()
+        assert kept is not None
+        assert (kept.phase, kept.barred) == (SurveyPhase.RUNNING, frozenset())
+        assert kept.refusals["SIM-1"].reason.startswith("there is no other height")

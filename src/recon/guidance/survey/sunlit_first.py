@@ -350,7 +350,11 @@ class _Choice:
 
     @property
     def _is_among_rows(self) -> bool:
-        """Whether it hovers where other vehicles fly rows."""
+        """Whether it hovers where other vehicles fly rows, and may have a place aside."""
+        refused = self.state.refusals.get(self.surveyor.serial)
+        wait_ns = seconds_to_ns(self.settings.retry_s)
+        if refused is not None and self.now_ns < refused.again_ns + wait_ns:
+            return False
         height_m = self.surveyor.height_above_takeoff_m
         if height_m is None or not self.surveyor.is_flying or len(self.able) == 1:
             return False

@@ -257,7 +257,9 @@ def _order_mission(
     ready = dispatch(station, record, given, vehicle, now_ns)
     if ready.in_the_way is not None:
         why = f"{ready.in_the_way.reason}{ready.tried}"
-        state = refused(state, given.serial, given.number, why, now_ns)
+        # Without a place to wait at a vehicle waits where it is; that must not bar it from rows.
+        waits = given.stands_by
+        state = refused(state, given.serial, given.number, why, now_ns, may_end=waits)
         return replace(station, surveys=station.surveys.put(replace(record, state=state))), ()
     station, number = take_id(station)
     station, sent = order_gateway.submit(station, replace(ready.order, command_id=number), now_ns)
@@ -270,7 +272,9 @@ def _order_mission(
         record = asked_again(record, member, given.number, why, now_ns)
         return replace(station, surveys=station.surveys.put(record)), sent
     record = record.put(replace(member, unsent_since_ns=None))
-    record = replace(record, state=refused(state, given.serial, given.number, why, now_ns))
+    waits = given.stands_by
+    state = refused(state, given.serial, given.number, why, now_ns, may_end=waits)
+    record = replace(record, state=state)
     station = replace(station, surveys=station.surveys.put(record))
     if returns_home(record) and refusal.rule == BATTERY:
         return send_home(station, survey_id, given.serial, NO_BATTERY, now_ns)

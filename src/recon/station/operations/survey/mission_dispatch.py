@@ -49,6 +49,9 @@ LEVEL_M = 3.0
 """Heights that differ by less count as the same: barometers are no better."""
 
 
+NO_ROOM = Refusal(MAX_HEIGHT, "there is no other height to wait at below the site's ceiling")
+
+
 @dataclass(frozen=True, slots=True)
 class Dispatch:
     """The order for a mission, and words to add to a refusal by the gate; without number."""
@@ -56,7 +59,7 @@ class Dispatch:
     order: OperatorOrder
     tried: str = ""
     in_the_way: Refusal | None = None
-    """Another vehicle is in its way at all its heights: it is not ordered now."""
+    """Another vehicle is in its way at all its heights, or it has none: it is not ordered now."""
 
 
 def dispatch(
@@ -75,6 +78,8 @@ def dispatch(
     if straight is not None and _refusal(station, straight, now_ns) is None:
         return Dispatch(straight)
     orders = _orders(station, record, given, vehicle)
+    if not orders:
+        return Dispatch(_order(record, given, vehicle), in_the_way=NO_ROOM)
     refusals: list[Refusal] = []
     for order in orders:
         refusal = _refusal(station, order, now_ns)
@@ -150,7 +155,7 @@ def standing_by(
 ) -> tuple[Mission, ...]:
     """Return the mission to the mission's first waypoint, at each of the vehicle's own heights.
 
-    Where it is there already it climbs or sinks on the spot.
+    Where it is there already it climbs or sinks on the spot; none where there is no other height.
     """
     here, height_m = vehicle.position.value, vehicle.height_above_takeoff_m.value
     first = replace(mission.waypoints[0], gimbal_pitch_deg=None)
@@ -160,6 +165,8 @@ def standing_by(
     is_there = far_m < NEAR_M and abs(height_m - first.height_above_takeoff_m) < LEVEL_M
     flown = []
     for layer_m in _own_layers_m(first.height_above_takeoff_m, number, count, limits):
+        if is_there and abs(layer_m - first.height_above_takeoff_m) < LEVEL_M:
+            continue
         there = replace(first, height_above_takeoff_m=layer_m)
         begins = _turns(there, (here, *corners)) if not is_there else (first,)
         flown.append(replace(mission, waypoints=(*begins, there)))
