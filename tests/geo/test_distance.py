@@ -3,13 +3,14 @@
 from math import floor, log10
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from recon.geo import round_length_m
 
 
 @given(st.floats(1e-3, 1e6))
+@example(999_999.9999999999)
 def test_a_round_length_is_the_longest_that_fits(most_m: float) -> None:
     length_m = round_length_m(most_m)
     assert length_m <= most_m < 2.5 * length_m * (1.0 + 1e-9)

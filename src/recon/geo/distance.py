@@ -58,5 +58,7 @@ def _metres_per_radian(latitude_deg: float) -> tuple[float, float]:
 
 def round_length_m(most_m: float) -> float:
     """Return the longest of 1, 2, 5 times a power of ten that is no more: for a scale bar."""
-    power = 10.0 ** floor(log10(most_m))
-    return power * max(step for step in (1, 2, 5) if step * power <= most_m or step == 1)
+    # A logarithm just under a whole number is rounded up to it: the power below is tried as well.
+    exponent = floor(log10(most_m))
+    lengths = (step * 10.0**power for power in (exponent, exponent - 1) for step in (5, 2, 1))
+    return next(length_m for length_m in lengths if length_m <= most_m)
