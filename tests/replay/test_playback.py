@@ -387,10 +387,11 @@ def test_changed_bytes_of_keyframes_and_maps_are_refused_or_read() -> None:
 def test_a_fault_in_a_keyframe_costs_no_step(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def fails(*_: object) -> bytes:
+    def fails(*_: object) -> Iterator[bytes]:
+        yield b""
         raise TypeError("no hint")
 
-    monkeypatch.setattr(recording_of_kernel, "keyframe_bytes", fails)
+    monkeypatch.setattr(recording_of_kernel, "keyframe_pieces", fails)
     scene = world(1, keeps_log=False)
     with recording(scene.driver, Site("test"), tmp_path) as record:
         scene.run_for(3.0)

@@ -219,8 +219,7 @@ def test_a_file_has_nothing_from_before_its_state(tmp_path: Path) -> None:
         scene.recorder.tap(1, Direction.FROM_APP, b"before", 5)
         scene.tick(now_s)
     scene.tick(RESTART_AFTER_S + 1.1)
-    kinds = [ItemKind.BEGIN, ItemKind.STEP, ItemKind.KEYFRAME]
-    assert [item.kind for item in second.items] == kinds
+    assert [item.kind for item in second.items] == [ItemKind.BEGIN, ItemKind.STEP]
     assert steps_of(second) == [1]
     assert scene.recorder.dropped_bytes == 3 * len(b"before")
 
@@ -292,11 +291,32 @@ def test_a_full_ring_gets_no_more_than_its_room(tmp_path: Path) -> None:
     assert process.left_bytes == 4
     process.left_bytes = 10**8
     scene.tick(1.2)
-    assert [item.kind for item in process.items[-3:]] == [
+    assert [item.kind for item in process.items[-4:]] == [
         ItemKind.FLOWN,
+        ItemKind.KEYFRAME,
         ItemKind.STEP,
         ItemKind.STEP,
     ]
+
+
+def test_a_keyframe_takes_some_ticks_and_keeps_its_place(tmp_path: Path) -> None:
+    process = FullProcess(tmp_path, 10**8)
+    scene = Restarts(process)
+    scene.tick(1.0)
+    scene.tick(1.1)
+    assert [item.kind for item in process.items] == [ItemKind.BEGIN, ItemKind.STEP]
+    scene.tick(1.2)
+    assert [item.kind for item in process.items[2:]] == [ItemKind.KEYFRAME, *2 * [ItemKind.STEP]]
+    assert steps_of(process) == [1, 2, 3]
+
+
+def test_the_end_waits_for_no_further_tick_of_a_keyframe(tmp_path: Path) -> None:
+    process = FullProcess(tmp_path, 10**8)
+    scene = Restarts(process)
+    scene.tick(1.0)
+    scene.recorder.take(taken(LinkClosed(1, "closed")))
+    scene.recorder.close()
+    assert [item.kind for item in process.items[2:]] == [ItemKind.KEYFRAME, ItemKind.STEP]
 
 
 def test_links_that_closed_take_no_memory(tmp_path: Path) -> None:
@@ -453,7 +473,7 @@ def test_a_dead_process_is_an_alarm_and_another_one_goes_on(tmp_path: Path) -> N
         assert first.pid is not None
         assert os.getpriority(os.PRIO_PROCESS, first.pid) == min(19, os.nice(0) + NICENESS)
         group = Path(f"/proc/{first.pid}/autogroup")
-        assert not group.exists() or not group.read_text() or group.read_text().endswith(" 10\n")
+        assert not group.exists() or not group.read_text() or group.read_text().endswith(f" {NICENESS}\n")
         os.kill(first.pid, signal.SIGKILL)
         until(lambda: first.is_dead)
         scene.run_for(0.2)

@@ -1,13 +1,14 @@
 """The HTTP application: routes, the stream, the console's files."""
 
-from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Annotated, Any
 
-from fastapi import Depends, FastAPI, Query, Request, Response, WebSocket
+from fastapi import Depends, FastAPI, Query, Request, WebSocket
 from fastapi.exceptions import RequestValidationError, WebSocketRequestValidationError
 from fastapi.responses import HTMLResponse, JSONResponse
+from starlette.datastructures import MutableHeaders
 from starlette.exceptions import HTTPException as AnyHTTPException
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from recon.api import schema
 from recon.api.access_routes import add_access_routes
@@ -172,16 +173,34 @@ def _add_errors_and_headers(app: FastAPI) -> None:
     async def refused(_request: Request, problem: AnyHTTPException) -> JSONResponse:
         return JSONResponse({"error": str(problem.detail)}, status_code=problem.status_code)
 
-    @app.middleware("http")
-    async def add_headers(
-        request: Request, call_next: Callable[[Request], Awaitable[Response]]
-    ) -> Response:
-        response = await call_next(request)
-        for name, value in SECURITY_HEADERS.items():
-            response.headers.setdefault(name, value)
-        if request.url.path.startswith("/api/"):
-            response.headers.setdefault("Cache-Control", "no-store")
-        return response
+    app.add_middleware(_ResponseHeaders)
+
+
+class _ResponseHeaders:
+    """Adds the headers to every answer.
+
+    Plain ASGI: Starlette's own class for functions as middleware runs each request in tasks of its
+    own, and every switch between tasks of a busy event loop delays an all stop.
+    """
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] != "http":
+            await self._app(scope, receive, send)
+            return
+
+        async def send_with_headers(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                headers = MutableHeaders(scope=message)
+                for name, value in SECURITY_HEADERS.items():
+                    headers.setdefault(name, value)
+                if scope["path"].startswith("/api/"):
+                    headers.setdefault("Cache-Control", "no-store")
+            await send(message)
+
+        await self._app(scope, receive, send_with_headers)
 
 
 def _sentence(fault: dict[str, Any]) -> str:

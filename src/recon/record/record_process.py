@@ -40,7 +40,7 @@ RING_BYTES = 96 * 1024 * 1024
 BULK_SHARE = 0.6
 CLOSE_WITHIN_S = 5.0
 """A disk that hangs must not keep a stopped station from ending."""
-NICENESS = 10
+NICENESS = 19
 POLL_S = 0.02
 IS_SUPPORTED = sys.platform != "win32"
 """Windows hands no open file to another process in this way."""

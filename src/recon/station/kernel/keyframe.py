@@ -6,7 +6,7 @@ forecasts. `restored` puts the last two back from their topics; pixels are read 
 So a keyframe takes some tens of kB, and a state that a replay shows is the recorded one.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields, replace
 from functools import cache
 from typing import Any, get_type_hints
@@ -39,6 +39,8 @@ SAMPLES_KEPT = 30
 NO_PIXELS = np.zeros((0, 0, 3), np.uint8)
 _SELDOM = ("settings", "airspace")
 """Changed by a drawing, if ever: left out while they are as at the file's beginning."""
+_LARGE = ("fleet", "orders")
+"""With many vehicles nearly all of a keyframe."""
 _ALWAYS = tuple(each.name for each in fields(Station) if each.name not in _SELDOM)
 MOST_CELLS = 4_000_000
 
@@ -108,15 +110,26 @@ class Keyframes:
 
 def keyframe_bytes(codec: Codec, due: DueKeyframe) -> bytes:
     """Return a keyframe as it is recorded."""
+    *_, data = keyframe_pieces(codec, due)
+    return data
+
+
+def keyframe_pieces(codec: Codec, due: DueKeyframe) -> Iterator[bytes]:
+    """Encode a keyframe bit by bit: nothing is yielded but empty bytes until it is whole.
+
+    With 64 vehicles it takes 13 ms, more than an order should wait for; each piece takes 5 ms.
+    """
     hints, station = _hints(), due.station
     small = without_recorded(station)
-    parts = {
-        name: codec.to_builtins(getattr(small, name), hints[name])
-        for name in (*_ALWAYS, *sorted(due.changed))
-    }
+    parts = dict[str, msgspec.Raw]()
+    for name in (*_ALWAYS, *sorted(due.changed)):
+        value = codec.to_builtins(getattr(small, name), hints[name])
+        parts[name] = msgspec.Raw(msgspec.msgpack.encode(value))
+        if name in _LARGE:
+            yield b""
     maps = None if due.maps_at_ns is None else _map_facts(station.shade, due.maps_at_ns)
-    value = None if maps is None else codec.to_builtins(maps, MapFacts)
-    return msgspec.msgpack.encode({"parts": parts, "maps": value})
+    facts = None if maps is None else codec.to_builtins(maps, MapFacts)
+    yield msgspec.msgpack.encode({"parts": parts, "maps": facts})
 
 
 def without_recorded(station: Station) -> Station:

@@ -18,7 +18,7 @@ result of them.
 """
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
 from itertools import chain
 from pathlib import Path
@@ -47,7 +47,7 @@ from recon.record.mcap_file import compressor
 from recon.record.record_process import BULK_SHARE, CLOSE_WITHIN_S, RING_BYTES, RecordProcess
 from recon.site import Site
 from recon.station.audit.entries import Auditing
-from recon.station.kernel.keyframe import DueKeyframe, Keyframes, keyframe_bytes
+from recon.station.kernel.keyframe import DueKeyframe, Keyframes, keyframe_pieces
 from recon.station.kernel.recorded_values import (
     FlightStart,
     audit_builtins,
@@ -143,6 +143,8 @@ class Recorder:
         self._quiet_since_ns = 0
         """When the file began, or, with a flight in it, when the last vehicle was on the ground."""
         self._keyframes = Keyframes()
+        self._pieces: Iterator[bytes] | None = None
+        """Of the keyframe that is being encoded: the first item of what is kept."""
         self._died_at_ns: int | None = None
         self._restart_at_ns = 0
         self._reported: str | None = None
@@ -178,7 +180,7 @@ class Recorder:
         """Hand over the rest, and have the file finished, as far as the disk takes it in time."""
         if self._encoding is not None:
             self._encoding.join()
-        self._hand_over()
+        self._hand_over(has_time=True)
         self.process.close(within_s)
 
     @property
@@ -186,14 +188,17 @@ class Recorder:
         """Bytes of links that are in no record of this run."""
         return self._dropped_bytes + self.process.dropped_bytes
 
-    def _hand_over(self) -> None:
-        """Encode what was taken since the last tick; hand it over, or let it wait."""
+    def _hand_over(self, *, has_time: bool = False) -> None:
+        """Encode what was taken since the last tick; hand it over, or let it wait.
+
+        Without `has_time` a keyframe is encoded over some ticks, and what came after it waits.
+        """
         begins = self._begin_parts()
         if begins is None:
-            self._encode_kept(WAITING_BYTES, WAITING_BULK_BYTES)
+            self._encode_kept(WAITING_BYTES, WAITING_BULK_BYTES, has_time)
             return
-        process, used_bytes = self.process, sum(map(len, begins))
-        self._encode_kept(process.room_bytes - used_bytes, process.bulk_room_bytes - used_bytes)
+        process, used = self.process, sum(map(len, begins))
+        self._encode_kept(process.room_bytes - used, process.bulk_room_bytes - used, has_time)
         process.put(chain(begins, *self._waiting))
         self._waiting, self._waiting_bytes = [], 0
 
@@ -213,25 +218,32 @@ class Recorder:
         self._beginning, self._reports_flown = None, False
         return begins
 
-    def _encode_kept(self, limit_bytes: int, bulk_limit_bytes: int) -> None:
+    def _encode_kept(self, limit_bytes: int, bulk_limit_bytes: int, has_time: bool) -> None:
         """Encode what was taken as far as all that waits stays within limits; drop the rest."""
         kept, self._kept = self._kept, []
-        for item in kept:
+        for number, item in enumerate(kept):
             if isinstance(item, _TakenBytes):
                 most_bytes = bulk_limit_bytes if len(item.data) >= BULK_BYTES else limit_bytes
                 parts = _bytes_parts(item)
             elif isinstance(item, DueKeyframe):
-                most_bytes, parts = bulk_limit_bytes, self._state_parts(item)
+                most_bytes, parts = bulk_limit_bytes, self._state_parts(item, has_time)
+                if self._pieces is not None:
+                    self._kept = kept[number:]
+                    return
             else:
                 most_bytes, parts = limit_bytes, self._step_parts(item)
-            if not parts:
-                continue
-            total_bytes = self._waiting_bytes + sum(map(len, parts))
-            if total_bytes > most_bytes:
-                self._drop(item)
-                continue
-            self._waiting.append(parts)
-            self._waiting_bytes = total_bytes
+            if parts:
+                self._let_wait(item, parts, most_bytes)
+
+    def _let_wait(
+        self, item: _TakenStep | DueKeyframe | _TakenBytes, parts: tuple[bytes, ...], most: int
+    ) -> None:
+        total_bytes = self._waiting_bytes + sum(map(len, parts))
+        if total_bytes > most:
+            self._drop(item)
+            return
+        self._waiting.append(parts)
+        self._waiting_bytes = total_bytes
 
     def _drop(self, item: _TakenStep | DueKeyframe | _TakenBytes) -> None:
         if isinstance(item, _TakenStep):
@@ -254,13 +266,19 @@ class Recorder:
             parts += self._value_parts(ItemKind.SUN, item.now_ns, item.sun, SunForecast)
         return parts
 
-    def _state_parts(self, item: DueKeyframe) -> tuple[bytes, ...]:
+    def _state_parts(self, item: DueKeyframe, has_time: bool) -> tuple[bytes, ...]:
+        """Return a keyframe's parts; while it has `_pieces`, it is not whole."""
+        data = b""
         try:
-            data = keyframe_bytes(self._codec, item)
+            self._pieces = self._pieces or keyframe_pieces(self._codec, item)
+            data = next(filter(None, self._pieces)) if has_time else next(self._pieces)
+            if not data:
+                return ()
         except Exception as fault:  # steps go on: they are what a flight is explained by
             self._fault = f"a replay in the console lacks states: {describe_fault(fault)}"
-            return ()
-        return packed(ItemKind.KEYFRAME, STEP_HEAD.pack(item.number, item.now_ns, 0), data)
+        self._pieces = None
+        head = STEP_HEAD.pack(item.number, item.now_ns, 0)
+        return packed(ItemKind.KEYFRAME, head, data) if data else ()
 
     def _value_parts(self, kind: ItemKind, at_ns: int, value: Any, hint: Any) -> tuple[bytes, ...]:
         timed = TimedValue(at_ns, self._codec.to_builtins(value, hint))
@@ -286,6 +304,7 @@ class Recorder:
         lasts_s = AFTER_LANDING_S if self._has_flown else GROUND_FILE_S
         is_due = now_ns - self._quiet_since_ns >= seconds_to_ns(lasts_s)
         if is_due and not self._jobs and not self._is_beginning:
+            self._hand_over(has_time=True)
             self._begin_file(station, now_ns)
 
     @property
@@ -337,6 +356,7 @@ class Recorder:
             if kind == ItemKind.LINK:
                 self.process.dropped_bytes += size_bytes - LINK_HEAD.size
         self._kept, self._waiting, self._waiting_bytes = [], [], 0
+        self._pieces = None
 
     def _forget_drops(self) -> None:
         """What one file lacks is no problem of the next one."""
