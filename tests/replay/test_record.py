@@ -473,7 +473,11 @@ def test_a_dead_process_is_an_alarm_and_another_one_goes_on(tmp_path: Path) -> N
         assert first.pid is not None
         assert os.getpriority(os.PRIO_PROCESS, first.pid) == min(19, os.nice(0) + NICENESS)
         group = Path(f"/proc/{first.pid}/autogroup")
-        assert not group.exists() or not group.read_text() or group.read_text().endswith(f" {NICENESS}\n")
+        assert (
+            not group.exists()
+            or not group.read_text()
+            or group.read_text().endswith(f" {NICENESS}\n")
+        )
         os.kill(first.pid, signal.SIGKILL)
         until(lambda: first.is_dead)
         scene.run_for(0.2)

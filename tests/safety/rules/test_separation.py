@@ -24,7 +24,7 @@ from recon.model.mission import Mission
 from recon.model.units import Stamped
 from recon.model.vehicle import Failsafe, TrackPoint, VehicleState
 from recon.safety import PreparedAirspace, Situation, Traffic
-from recon.safety.rules.separation import separation
+from recon.safety.rules.separation import in_way_of_climb_home, separation
 
 NORTH = route((0.0, 0.0), (200.0, 0.0))
 
@@ -414,3 +414,49 @@ class TestOtherIntents:
         fast = aircraft("B", (150.0, 60.0), velocity=(0.0, 10.0, 0.0))
         refused(judged(past, aircraft("A"), fast), "under manual control")
         assert judged(past, aircraft("A"), aircraft("B", (150.0, 60.0))) is None
+
+
+class TestClimbHome:
+    """Who is in the way of the climb to go home: from 40 m to 60 m, 300 m north of home."""
+
+    def name_above(self, own: VehicleState, *traffic: VehicleState) -> str | None:
+        others = tuple(Traffic(state) for state in traffic)
+        return in_way_of_climb_home(own, Situation(NOW, own, (), airspace=AIR, traffic=others))
+
+    @pytest.mark.parametrize(
+        ("place", "height_m", "name"),
+        [
+            ((300.0, 0.0), 52.0, "B"),
+            ((305.0, 5.0), 64.0, "B"),
+            ((300.0, 0.0), 72.0, None),
+            ((300.0, 0.0), 30.0, None),
+            ((340.0, 0.0), 52.0, None),
+        ],
+    )
+    def test_one_that_hovers_above_within_the_minima(
+        self, place: tuple[float, float], height_m: float, name: str | None
+    ) -> None:
+        own = aircraft("A", (300.0, 0.0))
+        assert self.name_above(own, aircraft("B", place, height_m)) == name
+
+    def test_who_is_high_enough_does_not_climb(self) -> None:
+        own = aircraft("A", (300.0, 0.0), 62.0)
+        assert self.name_above(own, aircraft("B", (300.0, 0.0), 71.0)) is None
+
+    def test_one_on_the_way_further_on_is_left_to_the_watchdog(self) -> None:
+        own = aircraft("A", (300.0, 0.0))
+        assert self.name_above(own, aircraft("B", (150.0, 0.0), 60.0)) is None
+
+    def test_a_lost_vehicle_may_be_anywhere(self) -> None:
+        own = aircraft("A", (300.0, 0.0))
+        assert self.name_above(own, aircraft("B", (300.0, 0.0), 52.0, age_s=20.0)) is None
+
+    def test_nothing_is_in_the_way_where_that_is_unknown(self) -> None:
+        other = aircraft("B", (300.0, 0.0), 52.0)
+        assert self.name_above(aircraft("A", None), other) is None
+        nowhere = replace(aircraft("B", None), core_received_at_ns=NOW)
+        assert self.name_above(aircraft("A", (300.0, 0.0)), nowhere) is None
+        over_other_ground = aircraft("B", (300.0, 0.0), 52.0, home=(300.0, 0.0))
+        assert self.name_above(aircraft("A", (300.0, 0.0)), over_other_ground) is None
+        own = aircraft("A", None)
+        assert in_way_of_climb_home(own, Situation(NOW, own, ())) is None

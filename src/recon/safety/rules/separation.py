@@ -30,6 +30,7 @@ from recon.safety.prediction import (
     Conflict,
     FlightPart,
     Plane,
+    Predictor,
     Trajectory,
     VehicleMotion,
     first_conflict,
@@ -76,6 +77,31 @@ def separation(command: Command, situation: Situation) -> Refusal | None:
     if conflict is None:
         return None
     return _conflict(own, conflict, others[conflict.other], minima)
+
+
+def in_way_of_climb_home(vehicle: VehicleState, situation: Situation) -> str | None:
+    """Return the name of another vehicle that a climb to go home now would conflict with.
+
+    No rule: a person's return is never refused. It is for returns that the station gives by itself
+    and that have time, because an aircraft climbs where it is, also under another one. None where
+    that is unknown, and of a lost vehicle, which may be anywhere.
+    """
+    frame = frame_for(situation.airspace, vehicle)
+    plane = None if frame is None else Plane(frame.origin)
+    own = None if plane is None else _placed(vehicle, plane, situation)
+    if plane is None or own is None:
+        return None
+    prediction, minima = situation.settings.prediction, _minima(situation)
+    predictor = Predictor(own, prediction)
+    predictor.return_home()
+    trajectory = predictor.writer.trajectory(own.name, own.drift_m)
+    others = _others(own, trajectory, plane, situation)
+    for other in () if isinstance(others, Refusal) else others:
+        conflict = first_conflict(trajectory, (other,), minima, prediction)
+        parts = None if conflict is None else (conflict.own_part, conflict.other_part)
+        if parts and parts[0] == FlightPart.CLIMBING_HOME and parts[1] != FlightPart.HAZARD:
+            return other.name
+    return None
 
 
 def _placed(vehicle: VehicleState, plane: Plane, situation: Situation) -> VehicleMotion | None:

@@ -28,11 +28,13 @@ def command_of(station: Station, order: OperatorOrder, now_ns: int) -> Command:
     )
 
 
-def situation(station: Station, command: Command, now_ns: int) -> Situation:
+def situation(
+    station: Station, command: Command, now_ns: int, *, with_traffic: bool = False
+) -> Situation:
     """Return the snapshot the gate judges a command by.
 
-    Other traffic matters only to commands that set a vehicle in motion: a stop must not wait for
-    it.
+    Other traffic matters only to commands that set a vehicle in motion, unless it is asked for: a
+    stop must not wait for it.
     """
     target = station.target(command.serial, command.link_id)
     serial = "" if target is None or target.serial is None else target.serial
@@ -50,7 +52,7 @@ def situation(station: Station, command: Command, now_ns: int) -> Situation:
         stop_latch=station.stop_latch,
         intent=control.intent,
         stick_height_above_takeoff_m=_stick_height_m(control),
-        traffic=_traffic(station, command, serial, now_ns) if command.moves else (),
+        traffic=_traffic(station, command, serial, now_ns) if command.moves or with_traffic else (),
         preflight_override=control.preflight_override,
         facts=preflight.facts(station, target) if needs_checklist else NO_FACTS,
     )

@@ -6,6 +6,7 @@ is an occurrence:
     absent -> pending --held for the cell's delay--> ordered   --+
        ^         |                                   refused: tried again, a few times
        |         +-- an operator ordered something newer: left --+
+       |         +-- a return with time, another in the way of its climb: asked for each second
        +-- absent again (pending: at once; else after 3 s, batteries: at the landing)
 
 The reaction is an order like any other, placed by the kernel: judged by the gate, repeated,
@@ -121,9 +122,17 @@ def forget_others(station: Station) -> Station:
 
 
 def after_order(
-    station: Station, request: ReactionRequest, why_not: str | None, now_ns: int
+    station: Station,
+    request: ReactionRequest,
+    why_not: str | None,
+    now_ns: int,
+    *,
+    counts: bool = True,
 ) -> Station:
-    """Return the station after a requested reaction was ordered, or refused and why."""
+    """Return the station after a requested reaction was ordered, or not and why.
+
+    One that does not count as a try is asked for until it is given.
+    """
     state, settings = station.failsafe_state, station.settings.failsafe
     known = state.occurrences[request.serial]
     last = known[request.condition]
@@ -138,7 +147,7 @@ def after_order(
             last,
             outcome=ReactionOutcome.REFUSED,
             outcome_text=f"could not be ordered to {request.reaction.value} ({why_not})",
-            tries=last.tries + 1,
+            tries=last.tries + counts,
             retry_at_ns=now_ns + seconds_to_ns(settings.retry_s),
         )
     occurrences = {**known, request.condition: now}

@@ -4,13 +4,19 @@ from functools import partial
 
 from recon.model.command import Phase
 from recon.model.event import OperatorOrder
+from recon.model.failsafe_matrix import FailsafeCondition, Reaction
+from recon.safety.rules.separation import in_way_of_climb_home
 from recon.station.control import order_gateway
+from recon.station.control.situation_builder import command_of, situation
 from recon.station.failsafe import runner
 from recon.station.failsafe.facts import RunFacts
 from recon.station.failsafe.runner import ORDERED_BODIES, ReactionRequest
 from recon.station.kernel import fault_isolation
 from recon.station.state.station import Station, take_id
 from recon.station.state.steps import Output, Stepped
+
+_WITHOUT_TIME = FailsafeCondition.BATTERY_CRITICAL
+"""A return for any other reason can wait until nothing is in the way of its climb."""
 
 
 def run_failsafes(station: Station, now_ns: int) -> Stepped:
@@ -50,8 +56,20 @@ def _order(station: Station, request: ReactionRequest, now_ns: int) -> Stepped:
     issued_by = f"station: {request.condition.words}"
     body = ORDERED_BODIES[request.reaction]
     order = OperatorOrder(number, body, issued_by, request.serial)
+    if request.reaction is Reaction.RETURN and request.condition is not _WITHOUT_TIME:
+        in_way = _in_way(station, order, now_ns)
+        if in_way is not None:
+            why = f"{in_way} is in the way of its climb: lead one of the two aside"
+            return runner.after_order(station, request, why, now_ns, counts=False), ()
     station, sent = order_gateway.submit(station, order, now_ns)
     record = station.orders.records[number]
     is_refused = record.phase is Phase.REFUSED_BY_STATION
     why_not = record.note if is_refused else None
     return runner.after_order(station, request, why_not, now_ns), sent
+
+
+def _in_way(station: Station, order: OperatorOrder, now_ns: int) -> str | None:
+    """Return who hovers or flies where a return would climb: an aircraft climbs where it is."""
+    command = command_of(station, order, now_ns)
+    seen = situation(station, command, now_ns, with_traffic=True)
+    return None if seen.vehicle is None else in_way_of_climb_home(seen.vehicle, seen)
