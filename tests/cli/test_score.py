@@ -76,6 +76,19 @@ def test_two_planners_are_compared_seed_by_seed(tmp_path: Path) -> None:
     assert "1 of 1 runs were flown before" in CliRunner().invoke(app, other).stderr
 
 
+def test_another_scenario_is_compared_seed_by_seed(tmp_path: Path) -> None:
+    path = written(tmp_path, SHORT)
+    other = tmp_path / "longer.toml"
+    other.write_text(path.read_text().replace("limit_min = 1.0", "limit_min = 2.0"))
+    options = ["--planner", "lawnmower_once", "--seeds", "1", "--surveys-only"]
+    done = CliRunner().invoke(app, ["score", str(path), *options, "--against", str(other)])
+    assert done.exit_code == 0, done.stderr
+    assert "| over longer | ratio | 95 % | runs |" in done.stdout
+    done = CliRunner().invoke(app, ["score", str(path), *options, "--against", "absent.toml"])
+    assert done.exit_code == 2
+    assert "absent.toml" in done.stderr
+
+
 def test_surveys_alone_are_flown_the_same_and_score_no_maps(tmp_path: Path) -> None:
     path = str(written(tmp_path, SHORT))
     options = ["--planner", "lawnmower_once", "--seeds", "1"]

@@ -24,6 +24,7 @@ from recon.score.survey_table import survey_table
 
 MOST_SEEDS = 10_000
 DIGEST_LETTERS = 16
+SCENARIO_SUFFIX = ".toml"
 
 ScenarioArgument = Annotated[Path, typer.Argument(help="Scenario file, as in scenarios/.")]
 SeedsOption = Annotated[int, typer.Option(help="Number of runs, each with another sky.")]
@@ -33,7 +34,8 @@ AgainstOption = Annotated[
     str | None,
     typer.Option(
         help="A forecast: score all forecast methods, and compare them with this one by seed."
-        " A planner or detection: fly each seed with it too, and compare the surveys."
+        " A planner, a detection or another scenario's file: fly each seed with it too, and"
+        " compare the surveys."
     ),
 ]
 JobsOption = Annotated[
@@ -84,47 +86,67 @@ def score_command(
     """Fly a scenario by the whole station in virtual time and score its methods."""
     try:
         _check_numbers(seeds, first_seed, jobs)
-        loaded = with_methods(load_scenario(scenario), planner, detection, forecast)
-        if exposure is not None:
-            loaded = with_exposure(loaded, exposure is ExposureChoice.LOCKED)
-        if surveys_only:
-            loaded = replace(loaded, methods=replace(loaded.methods, scores_maps=False))
-        other = _other(loaded, against)
+        chosen = _Chosen(planner, detection, forecast, exposure, surveys_only)
+        loaded, other = chosen.scenario(scenario), chosen.other(scenario, against)
         if against is not None and other is None:
             loaded = _compared(loaded, against)
-        flying = _Flying(scenario, range(first_seed, first_seed + seeds), jobs, cluster, fresh)
-        runs = flying.runs_of(loaded)
-        others = flying.runs_of(other) if other is not None else []
+        flying = _Flying(range(first_seed, first_seed + seeds), jobs, cluster, fresh)
+        runs = flying.runs_of(scenario, loaded)
+        others = [] if other is None else flying.runs_of(*other)
     except ReconError as problem:
         print(f"recon score: {problem}", file=sys.stderr)
         raise typer.Exit(2) from None
     print(tables(loaded, runs, against if other is None else None))
     if against is not None and other is not None:
-        print(f"\n{survey_table(runs, others, against, loaded.limit_s)}")
+        limit_s = min(loaded.limit_s, other[1].limit_s)
+        print(f"\n{survey_table(runs, others, Path(against).stem, limit_s)}")
 
 
-def _other(scenario: Scenario, against: str | None) -> Scenario | None:
-    """Return the scenario with the other planner or detection; None if it is not one of these."""
-    if against in METHOD_NAMES["planner"]:
-        return with_methods(scenario, against, None, None)
-    if against in METHOD_NAMES["detection"]:
-        return with_methods(scenario, None, against, None)
-    return None
+@dataclass(frozen=True, slots=True)
+class _Chosen:
+    """The options that change a scenario."""
+
+    planner: str | None
+    detection: str | None
+    forecast: str | None
+    exposure: ExposureChoice | None
+    surveys_only: bool
+
+    def scenario(
+        self, path: Path, planner: str | None = None, detection: str | None = None
+    ) -> Scenario:
+        """Return a file's scenario with them, and with another planner or detection if given."""
+        names = planner or self.planner, detection or self.detection, self.forecast
+        loaded = with_methods(load_scenario(path), *names)
+        if self.exposure is not None:
+            loaded = with_exposure(loaded, self.exposure is ExposureChoice.LOCKED)
+        if self.surveys_only:
+            loaded = replace(loaded, methods=replace(loaded.methods, scores_maps=False))
+        return loaded
+
+    def other(self, path: Path, against: str | None) -> tuple[Path, Scenario] | None:
+        """Return the scenario to compare with and its file; None if `against` names none."""
+        if against in METHOD_NAMES["planner"]:
+            return path, self.scenario(path, planner=against)
+        if against in METHOD_NAMES["detection"]:
+            return path, self.scenario(path, detection=against)
+        if against is not None and against.endswith(SCENARIO_SUFFIX):
+            return Path(against), self.scenario(Path(against))
+        return None
 
 
 @dataclass(frozen=True, slots=True)
 class _Flying:
-    """Which runs of a scenario's file are wanted, and where they are flown."""
+    """Which runs of scenarios are wanted, and where they are flown."""
 
-    path: Path
     seeds: range
     jobs: int | None
     cluster: str | None
     fresh: bool
 
-    def runs_of(self, scenario: Scenario) -> list[RunScore]:
-        """Return the runs of a scenario: those flown before, and the others, which are kept."""
-        digest = runs_digest(self.path, scenario, code_digest())[:DIGEST_LETTERS]
+    def runs_of(self, path: Path, scenario: Scenario) -> list[RunScore]:
+        """Return the runs of a file's scenario: those flown before, and the others, now kept."""
+        digest = runs_digest(path, scenario, code_digest())[:DIGEST_LETTERS]
         kept = KeptRuns(state_folder() / "score" / f"{scenario.name}-{digest}")
         runs = [] if self.fresh else [run for seed in self.seeds if (run := kept.found(seed))]
         if runs:

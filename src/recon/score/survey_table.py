@@ -1,4 +1,4 @@
-"""Surveys of one planner or detection against those of another, seed by seed."""
+"""Surveys of one planner, detection or scenario against those of another, seed by seed."""
 
 from collections.abc import Sequence
 
@@ -15,8 +15,8 @@ def survey_table(
 ) -> str:
     """Return the ratios of `runs` over `others`, the runs with `against`, by seed.
 
-    A survey that has not reached 95 % in sun counts as the limit. Ratios are geometric means over
-    the seeds that both have flown, with 95 % intervals of the logarithms.
+    A survey that has not reached 95 % in sun within the limit counts as the limit. Ratios are
+    geometric means over the seeds that both have flown, with 95 % intervals of the logarithms.
     """
     by_seed = {each.seed: each for each in others}
     pairs = [(each, by_seed[each.seed]) for each in runs if each.seed in by_seed]
