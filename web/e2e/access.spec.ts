@@ -1,6 +1,6 @@
 import { expect, type Page, test } from "@playwright/test";
-import type { StationState, TimelineEntryView } from "../src/protocol";
-import { vehicle, zone } from "../src/testing/fakeState";
+import type { ReplayView, StationState, TimelineEntryView } from "../src/protocol";
+import { link, vehicle, zone } from "../src/testing/fakeState";
 import { axeFaults } from "./axe";
 import { busyState } from "./fake/busyState";
 import { DRAWING } from "./fake/drawnSite";
@@ -31,6 +31,22 @@ const PANELS = [
   "Station and site",
 ] as const;
 
+/** An app that waits to be admitted. */
+const WAITING = link(7, {
+  status: "waiting",
+  claimed_serial: null,
+  waiting: { serial: "SN-007", age_s: 42, reason: "its serial is not listed", is_flying: true },
+});
+
+const REPLAY = {
+  file: "flight-20250620T160412Z.mcap",
+  duration_s: 7200,
+  position_s: 600,
+  speed: 1,
+  is_playing: false,
+  trouble: null,
+} satisfies ReplayView;
+
 /** Something in every panel at once. */
 function fullState(): StationState {
   const busy = busyState(0);
@@ -44,7 +60,7 @@ function fullState(): StationState {
       vehicle(5, { ...busy.vehicles[4], number: 5 }),
       vehicle(6, { ...fenced.vehicles[2], number: 6, serial: "SN-006", name: "Fir" }),
     ],
-    links: busy.links,
+    links: [...busy.links, WAITING],
     alarms: busy.alarms,
     commands: [...busy.commands, ...fenced.commands],
     fleet_return: fenced.fleet_return,
@@ -69,14 +85,17 @@ const FLIGHT = {
   is_recording: false,
 };
 
-async function openConsole(page: Page): Promise<FakeStation> {
-  const state = fullState();
+/** Opens the console; `show` changes the states sent from then on. */
+async function openConsole(page: Page) {
+  let state = fullState();
   const fake = await FakeStation.behind(page, state);
   fake.drawing = DRAWING;
   fake.preflight = CHECKLIST;
   await page.route("**/api/timeline?**", (route) =>
     route.fulfill({ json: { entries: [ENTRY], has_more: true } }),
   );
+  const marks = { marks: [], read_share: 1 };
+  await page.route("**/api/replay/marks", (route) => route.fulfill({ json: marks }));
   await page.route("**/api/flights", (route) => route.fulfill({ json: [FLIGHT] }));
   await page.addInitScript(() => localStorage.setItem("recon.panels", ""));
   await page.goto("/");
@@ -86,7 +105,10 @@ async function openConsole(page: Page): Promise<FakeStation> {
   }, 500);
   page.once("close", () => clearInterval(timer));
   await expect(page.locator("button.craft")).toHaveCount(state.vehicles.length);
-  return fake;
+  const show = (changes: Partial<StationState>) => {
+    state = { ...state, ...changes };
+  };
+  return { fake, show };
 }
 
 /** All rules in the first theme; in the others only the colours differ. */
@@ -105,7 +127,7 @@ async function faults(page: Page): Promise<string[]> {
 for (const size of SIZES) {
   test(`every view meets WCAG 2.2 AA in each theme: ${size.width} px`, async ({ page }) => {
     await page.setViewportSize(size);
-    const fake = await openConsole(page);
+    const { fake, show } = await openConsole(page);
     const wrong: Record<string, string[]> = {};
     const check = async (view: string) => {
       const found = await faults(page);
@@ -116,6 +138,11 @@ for (const size of SIZES) {
     await page.keyboard.press("d");
     await check("Fly, vehicle details");
     await page.keyboard.press("d");
+    await page.keyboard.press("g");
+    await page.getByRole("button", { name: "Use map centre" }).press("Enter");
+    await page.getByText("Nudge in small steps").click();
+    await check("Fly here");
+    await page.keyboard.press("g");
     await expect(panels).toHaveCount(0);
     for (const panel of PANELS) {
       await openPanel(page, panel);
@@ -133,6 +160,14 @@ for (const size of SIZES) {
     await page.keyboard.press("?");
     await check("Help");
     await page.keyboard.press("Escape");
+    show({ stop_latch: { by: "anna", age_s: 2, released: [] } });
+    await expect(page.getByRole("button", { name: /^Release all/ })).toBeVisible();
+    await check("All stop in force");
+    show({ stop_latch: null, replay: REPLAY });
+    await expect(page.getByRole("slider", { name: "Position in the record" })).toBeVisible();
+    await check("Replay");
+    show({ replay: null });
+    await expect(page.getByRole("button", { name: /^All stop/ })).toBeVisible();
     await fake.goOffline();
     await expect(page.getByText("No connection to the station.")).toBeVisible();
     await check("Connection lost");

@@ -68,7 +68,7 @@ test("gives the whole window to the map at every width, and nothing scrolls", as
       return [whole, document.documentElement].map((one) => (one?.scrollHeight ?? 0) - 840);
     });
     expect(Math.max(...scrolled), `${width} px wide`).toBeLessThanOrEqual(0);
-    const hover = page.getByRole("button", { name: /^Hover 1 Alder/ });
+    const hover = page.getByRole("button", { name: /^Hover: 1 Alder/ });
     await expect(hover, `${width} px wide`).toBeInViewport({ ratio: 1 });
     // A middle that nothing covers is left for the map.
     const free = await page.locator(".map-free").boundingBox();
@@ -129,7 +129,7 @@ test("sends an order only to the named vehicles, and only when held", async ({ p
   await page.goto("/");
   await page.getByRole("checkbox", { name: "Add 2 Birch to the selection" }).press("Space");
   await page.getByRole("checkbox", { name: "Add 3 Cedar to the selection" }).press("Space");
-  const land = page.getByRole("button", { name: "Land 2 Birch and 3 Cedar: hold for 1.5 seconds" });
+  const land = page.getByRole("button", { name: "Land, hold 1.5 s: 2 Birch and 3 Cedar" });
   await land.click();
   await expect(page.getByText("2 Birch and 3 Cedar selected")).toBeVisible();
   expect(fake.orders).toEqual([]);

@@ -50,17 +50,21 @@ test("takes over a vehicle, overrides its checklist and clears a hazard area", a
   const fake = await open(page);
   await page.keyboard.press("1");
   await page.keyboard.press("d");
-  await hold(page, page.getByRole("button", { name: "Take over 1 Alder" }), () =>
+  await hold(page, page.getByRole("button", { name: "Take over, hold briefly: 1 Alder" }), () =>
     expect.poll(() => fake.requests.length).toBe(1),
   );
   await expect(page.getByText("→ Write go_home_height_m")).toBeVisible();
-  const override = page.getByRole("button", { name: "Override the checklist of 1 Alder" });
+  const override = page.getByRole("button", {
+    name: "Override the checklist, hold 1.5 s: 1 Alder",
+  });
   await expect(override).toHaveAttribute("aria-disabled", "true");
   await page.getByLabel("Reason for flying missions anyway").fill("height read off the app");
   await hold(page, override, () => expect.poll(() => fake.requests.length).toBe(2));
   await page.keyboard.press("3");
-  await hold(page, page.getByRole("button", { name: "Clear the hazard area of 3 Cedar" }), () =>
-    expect.poll(() => fake.requests.length).toBe(3),
+  await hold(
+    page,
+    page.getByRole("button", { name: "Clear hazard area, hold 1.5 s: 3 Cedar" }),
+    () => expect.poll(() => fake.requests.length).toBe(3),
   );
   expect(fake.requests).toEqual([
     ["/api/vehicle/authority?serial=SN-001", { holder: "operator", take_over: false }],
@@ -78,7 +82,7 @@ test("flies a vehicle to a target on the map only if the gate allows it", async 
   await page.locator(".map-canvas").click({ position: { x: 600, y: 420 } });
   await expect(page.getByText(`Refused: ${reason}`)).toBeVisible();
   await expect(page.locator(".fly-course")).toHaveText(/m, bearing \d{3}°, about/);
-  const go = page.getByRole("button", { name: "Fly 1 Alder there and hold" });
+  const go = page.getByRole("button", { name: "Fly there and hold, hold 1.5 s: 1 Alder" });
   await expect(go).toHaveAttribute("aria-disabled", "true");
   fake.checkResult = {};
   await expect(page.getByText("Allowed by the safety gate.")).toBeVisible();
@@ -93,8 +97,10 @@ test("flies a vehicle to a target on the map only if the gate allows it", async 
 test("returns the fleet in layers and shows waiting and excluded vehicles", async ({ page }) => {
   const fake = await open(page);
   await openPanel(page, "Return in layers");
-  await hold(page, page.getByRole("button", { name: "Return all vehicles in layers" }), () =>
-    expect.poll(() => fake.requests).toEqual([["/api/fleet-return", { serials: null }]]),
+  await hold(
+    page,
+    page.getByRole("button", { name: "Return all, hold 1.5 s: every vehicle, in layers" }),
+    () => expect.poll(() => fake.requests).toEqual([["/api/fleet-return", { serials: null }]]),
   );
   await expect(page.getByTestId("returning-SN-002")).toContainText("pad in use by Alder");
   await expect(page.getByTestId("returning-SN-003")).toContainText("not included");

@@ -78,7 +78,7 @@ test("a site is drawn and imported, flown, and its fences keep while it is flown
       await expect(survey.getByText("Planned, not started")).toBeVisible();
       await page.getByRole("checkbox", { name: /Drone 1/ }).press("Space");
       await survey.getByLabel("Allow takeoff for this start").check();
-      const start = survey.getByRole("button", { name: /^Start with selected: .*Drone 1/ });
+      const start = survey.getByRole("button", { name: /^Start with selected, .*Drone 1/ });
       await start.focus();
       await page.keyboard.down("Enter");
       await expect(survey.getByText(/^(Running|Stopped)/)).toBeVisible();

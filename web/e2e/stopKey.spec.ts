@@ -108,7 +108,7 @@ test("all stop stays pressed, names who stopped, and is released by a long press
   const card = page.getByRole("alert");
   await expect(card).toContainText("All stop in force by anna");
   await expect(card).toContainText("An operator or an administrator can release it");
-  await page.getByRole("button", { name: /^Release the all stop for .*Alder/ }).focus();
+  await page.getByRole("button", { name: /^Release all, .*Alder/ }).focus();
   await page.keyboard.down("Enter");
   await expect.poll(() => fake.requests).toEqual([["/api/all-stop/release", { serials: null }]]);
   await page.keyboard.up("Enter");

@@ -98,9 +98,9 @@ describe("control authority", () => {
   it("changes by a held button, not by a short press", async () => {
     show(VehicleDetail, heldBy("guidance"));
     page.shared.selection.only(1);
-    await hold("Take over 1 Alder", 300);
+    await hold("Take over, hold briefly: 1 Alder", 300);
     button("Take over").dispatchEvent(new PointerEvent("pointerup", { bubbles: true }));
-    await hold("Hand over 1 Alder", 450);
+    await hold("Hand over to pilot, hold briefly: 1 Alder", 450);
     expect(page.requests).toEqual([{ authority: "pilot", serial: "SN-001" }]);
   });
 
@@ -164,7 +164,7 @@ describe("the checklist", () => {
     const field = find<HTMLInputElement>(section, "input");
     field.value = "  short test hop ";
     field.dispatchEvent(new InputEvent("input", { bubbles: true }));
-    await hold("Override the checklist of 1 Alder: hold for 1.5 seconds", 1400);
+    await hold("Override the checklist, hold 1.5 s: 1 Alder", 1400);
     expect(page.requests).toEqual([]);
     page.clock.advance(200);
     await settled();
@@ -198,7 +198,7 @@ describe("a hazard area", () => {
     const root = show(VehicleDetail, station([one]));
     page.shared.selection.only(3);
     expect(root.textContent).toContain("anywhere within 50\u00a0m of its last position");
-    await hold("Clear the hazard area of 3 Cedar", 1000);
+    await hold("Clear hazard area, hold 1.5 s: 3 Cedar", 1000);
     expect(page.requests).toEqual([]);
     page.clock.advance(600);
     await settled();
@@ -223,8 +223,8 @@ describe("the all stop in force", () => {
 
   it("is released for all by a long press only", async () => {
     show(StopBanner, stopped);
-    button("Release the all stop for").click();
-    await hold("Release the all stop for", 1400);
+    button("Release all, hold 1.5 s: the all stop of").click();
+    await hold("Release all, hold 1.5 s: the all stop of", 1400);
     expect(page.requests).toEqual([]);
     page.clock.advance(200);
     await settled();
@@ -237,7 +237,7 @@ describe("the all stop in force", () => {
     expect(root.textContent).not.toContain("Release this vehicle");
     page.shared.selection.only(1);
     page.answerRequestsWith({ accepted: false, rule: "stop_latch", reason: "not in force" });
-    await hold("Release the all stop for", 1600);
+    await hold("Release this vehicle, hold 1.5 s: 1 Alder", 1600);
     expect(page.requests).toEqual([{ releasedStop: ["SN-001"] }]);
     expect(root.textContent).toContain("not in force");
   });

@@ -139,7 +139,7 @@ describe("alarms", () => {
     const root = show(AlarmList, station([vehicle(1)], { alarms }));
     const rows = [...root.querySelectorAll("li")].map((row) => row.textContent);
     expect(rows[0]).toContain("Cedar: Lost.");
-    find(root, "button[aria-label='Acknowledge Cedar: Lost.']").click();
+    find(root, "button[aria-label='OK: acknowledge Cedar: Lost.']").click();
     expect(page.acknowledged).toEqual([7]);
   });
 });

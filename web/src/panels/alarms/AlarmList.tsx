@@ -69,7 +69,7 @@ function GroupRow(props: { group: AlarmGroup }) {
         <button
           type="button"
           class="button alarm-ack"
-          aria-label={`Acknowledge ${props.group.title}`}
+          aria-label={`OK: acknowledge ${props.group.title}`}
           disabled={lacks("operator") !== null}
           title={
             lacks("operator") ?? "Seen: the colour goes, the alarm stays while its cause lasts"

@@ -38,7 +38,7 @@ export function AuthoritySection(props: {
           {(lease) => (
             <GuardButton
               label={`Take over from ${lease().person}`}
-              name={`Take over ${props.name} from ${lease().person}`}
+              of={props.name}
               class="guard-grave"
               hold_ms={GUARD_MS}
               subject={subject()}
@@ -49,7 +49,7 @@ export function AuthoritySection(props: {
         <Show when={props.authority.holder !== "operator" && others() === null}>
           <GuardButton
             label="Take over"
-            name={`Take over ${props.name}`}
+            of={props.name}
             hold_ms={BRIEF_MS}
             subject={subject()}
             onConfirm={() => void transfer("operator")}
@@ -59,7 +59,7 @@ export function AuthoritySection(props: {
           <GuardButton
             label="Hand over to pilot"
             needs="pilot"
-            name={`Hand over ${props.name} to its pilot`}
+            of={props.name}
             hold_ms={BRIEF_MS}
             subject={subject()}
             onConfirm={() => void transfer("pilot")}

@@ -53,7 +53,7 @@ describe("who operates a vehicle", () => {
   it("is taken over explicitly, after a hold", () => {
     page = renderPage(detail(ANNAS), station([vehicle(1)]));
     page.nameAs(BOB);
-    hold("Take over Alder from anna", GUARD_MS - 1);
+    hold("Take over from anna, hold 1.5 s: Alder", GUARD_MS - 1);
     expect(page.requests).toEqual([]);
     page.clock.advance(1);
     expect(page.requests).toEqual([{ authority: "operator", serial: "SN-001", takeOver: true }]);

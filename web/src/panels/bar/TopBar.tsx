@@ -3,6 +3,7 @@ import { useConsole } from "../../console";
 import { simulation } from "../../fleet/vehicleStatus";
 import { formatAge, formatHeading, formatQuantity } from "../../text/quantities";
 import { THEME_NAMES, type Theme } from "../../theme/theme";
+import { buttonName } from "../guard/GuardButton";
 import { ReplayMark } from "../replay/ReplayBar";
 import { AlarmsButton } from "./AlarmsButton";
 import { PanelMenu } from "./PanelMenu";
@@ -90,21 +91,22 @@ function ThemeButton() {
  */
 export function AllStop() {
   const { orderApi, fleet, behindS } = useConsole();
+  const inForce = () => {
+    const latch = fleet.stopLatch;
+    return latch === null ? null : `in force ${formatAge(latch.age_s + behindS())}`;
+  };
   return (
     <button
       type="button"
       class="all-stop"
       classList={{ "is-latched": fleet.stopLatch !== null }}
-      aria-label="All stop: all flying vehicles hold position"
+      aria-label={buttonName("All stop", inForce(), "all flying vehicles hold position")}
       aria-pressed={fleet.stopLatch !== null}
       aria-keyshortcuts="Shift+S"
       title="All flying vehicles hold position. Motors stay on. (Shift+S)"
       onClick={() => void orderApi.allStop()}
     >
-      <strong>ALL STOP</strong>
-      <Show when={fleet.stopLatch}>
-        {(latch) => <span>in force {formatAge(latch().age_s + behindS())}</span>}
-      </Show>
+      <strong>ALL STOP</strong> <Show when={inForce()}>{(text) => <span>{text()}</span>}</Show>
     </button>
   );
 }

@@ -65,7 +65,7 @@ export function FlyHereCard() {
         <CheckResult />
         <GuardButton
           label="Fly there and hold"
-          name={`Fly ${name()} there and hold`}
+          of={name()}
           class="fly-go"
           hold_ms={GUARD_MS}
           subject={flyHere.subject()}

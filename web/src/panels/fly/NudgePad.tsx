@@ -51,7 +51,7 @@ export function NudgePad(props: { name: string }) {
           {(nudge) => (
             <GuardButton
               label={nudge.icon}
-              name={`Nudge ${props.name} ${nudge.name}`}
+              of={`nudge ${props.name} ${nudge.name}`}
               class="guard-small"
               hold_ms={BRIEF_MS}
               subject={subject()}

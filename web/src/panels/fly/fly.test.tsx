@@ -150,7 +150,7 @@ describe("fly here", () => {
 
   it("nudges by the selected step after a brief hold", async () => {
     await begin();
-    const west = find(page.root, "[aria-label^='Nudge 1 Alder west']");
+    const west = find(page.root, "[aria-label^='W, hold briefly: nudge 1 Alder west']");
     west.dispatchEvent(new PointerEvent("pointerdown", { bubbles: true, button: 0 }));
     page.clock.advance(450);
     expect(page.orders).toEqual([

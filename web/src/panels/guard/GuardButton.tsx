@@ -12,8 +12,8 @@ export const BRIEF_MS = 400;
 /** A button that acts after being held for its time while its subject stays the same. */
 export function GuardButton(props: {
   label: string;
-  /** Accessible name in place of the label, such as with the vehicle's name; the hold time is appended. */
-  name?: string;
+  /** What the label leaves out, such as the vehicle's name; follows it in the accessible name. */
+  of?: string;
   hold_ms: number;
   /** Changes whenever the button's action changes; empty disables it. */
   subject: string;
@@ -35,31 +35,40 @@ export function GuardButton(props: {
   createEffect(() => {
     if (isDisabled()) timer.cancel();
   });
-  const seconds = () => props.hold_ms / 1000;
+  const hint = () => {
+    if (lack() !== null) return isReplay() ? "replay" : `needs ${props.needs ?? "operator"}`;
+    return holdHint(props.hold_ms);
+  };
   return (
     <button
       type="button"
       class={`button guard ${props.class ?? ""}`}
       classList={{ "is-holding": timer.kind() === "holding" }}
       aria-disabled={isDisabled()}
-      aria-label={`${props.name ?? props.label}: hold for ${seconds()} seconds`}
+      aria-label={buttonName(props.label, hint(), props.of)}
       title={lack() ?? undefined}
       aria-description={lack() ?? undefined}
       style={{ "--held": timer.progress() }}
       {...holdHandlers(timer, isDisabled)}
     >
-      {props.label}
-      <small class="guard-hint" aria-hidden="true">
-        {lack() !== null
-          ? isReplay()
-            ? "replay"
-            : `needs ${props.needs ?? "operator"}`
-          : seconds() < 1
-            ? "hold briefly"
-            : `hold ${seconds()} s`}
-      </small>
+      {props.label} <small class="guard-hint">{hint()}</small>
     </button>
   );
+}
+
+/** How a button is confirmed: `hold 1.5 s`; null when a press is enough. */
+export function holdHint(hold_ms: number): string | null {
+  if (hold_ms === 0) return null;
+  return hold_ms < 1000 ? "hold briefly" : `hold ${hold_ms / 1000} s`;
+}
+
+/**
+ * An accessible name that begins with what the button shows, so that speaking that presses it: `Land, hold 1.5 s:
+ * 2 Birch`.
+ */
+export function buttonName(label: string, hint: string | null, of?: string): string {
+  const shown = hint === null ? label : `${label}, ${hint}`;
+  return of === undefined ? shown : `${shown}: ${of}`;
 }
 
 const HOLD_KEYS = [" ", "Enter"];

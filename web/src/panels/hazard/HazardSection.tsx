@@ -24,7 +24,7 @@ export function HazardSection(props: { hazard: HazardView; name: string }) {
       </p>
       <GuardButton
         label="Clear hazard area"
-        name={`Clear the hazard area of ${props.name}`}
+        of={props.name}
         class="guard-grave"
         hold_ms={GUARD_MS}
         subject={props.hazard.dismissal_name}

@@ -34,21 +34,21 @@ export function WaitingApp(props: { linkId: number; address: string; waiting: Wa
       <div class="section-buttons">
         <GuardButton
           label="Admit"
-          name={`Admit ${name()} for good, from its present address`}
+          of={`${name()} for good, from its present address`}
           hold_ms={GUARD_MS}
           subject={subject()}
           onConfirm={() => void admit("always")}
         />
         <GuardButton
           label="Admit for this run"
-          name={`Admit ${name()} until the station stops`}
+          of={`${name()} until the station stops`}
           hold_ms={GUARD_MS}
           subject={subject()}
           onConfirm={() => void admit("session")}
         />
         <GuardButton
           label="Refuse for 5 min"
-          name={`Refuse ${name()} for 5 minutes`}
+          of={name()}
           hold_ms={GUARD_MS}
           subject={`${props.linkId} ${subject()}`}
           onConfirm={() => void refuse()}

@@ -40,10 +40,10 @@ describe("an app that waits to be admitted", () => {
 
   it("is admitted for good or for this run, after a hold", () => {
     page = renderPage(LinkList, waiting());
-    hold("Admit SN-NEW for good", GUARD_MS - 1);
+    hold("Admit, hold 1.5 s: SN-NEW for good", GUARD_MS - 1);
     expect(page.requests).toEqual([]);
     page.clock.advance(1);
-    hold("Admit SN-NEW until");
+    hold("Admit for this run, hold 1.5 s: SN-NEW until");
     expect(page.requests).toEqual([
       { admittedLink: 7, serial: "SN-NEW", lasting: "always" },
       { admittedLink: 7, serial: "SN-NEW", lasting: "session" },
@@ -52,7 +52,7 @@ describe("an app that waits to be admitted", () => {
 
   it("is not admitted when its serial changes during the hold", () => {
     page = renderPage(LinkList, waiting());
-    hold("Admit SN-NEW for good", GUARD_MS / 2);
+    hold("Admit, hold 1.5 s: SN-NEW for good", GUARD_MS / 2);
     page.receive(waiting({ serial: "SN-OTHER" }));
     page.clock.advance(GUARD_MS);
     expect(page.requests).toEqual([]);
@@ -60,17 +60,19 @@ describe("an app that waits to be admitted", () => {
 
   it("can only be refused without a serial", () => {
     page = renderPage(LinkList, waiting({ serial: null, is_flying: null }));
-    expect(find(page.root, '[aria-label^="Admit link 7 for"]').getAttribute("aria-disabled")).toBe(
-      "true",
-    );
-    hold("Refuse link 7");
+    expect(
+      find(page.root, '[aria-label^="Admit, hold 1.5 s: link 7 for"]').getAttribute(
+        "aria-disabled",
+      ),
+    ).toBe("true");
+    hold("Refuse for 5 min, hold 1.5 s: link 7");
     expect(page.requests).toEqual([{ refusedLink: 7 }]);
   });
 
   it("shows why the station did not admit it", async () => {
     page = renderPage(LinkList, waiting());
     page.answerRequestsWith({ accepted: false, rule: "pairing", reason: "Now another serial." });
-    hold("Admit SN-NEW for good");
+    hold("Admit, hold 1.5 s: SN-NEW for good");
     await Promise.resolve();
     await Promise.resolve();
     expect(page.root.textContent).toContain("Now another serial.");

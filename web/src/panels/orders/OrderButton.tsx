@@ -3,7 +3,7 @@ import { useConsole } from "../../console";
 import type { HoldTimer } from "../../orders/holdToConfirm";
 import type { OrderKind } from "../../orders/targets";
 import { listNames } from "../../text/names";
-import { holdHandlers } from "../guard/GuardButton";
+import { buttonName, holdHandlers, holdHint } from "../guard/GuardButton";
 
 /** An order button that acts when held, by pointer or keyboard, until its bar is full. */
 export function OrderButton(props: {
@@ -16,8 +16,10 @@ export function OrderButton(props: {
   const isDisabled = () => props.labels.length === 0 || lack() !== null;
   const hint = () => {
     if (lack() !== null) return "needs pilot";
-    return props.order.hold_ms > 0 ? `hold ${props.order.hold_ms / 1000} s` : null;
+    return holdHint(props.order.hold_ms);
   };
+  const recipients = () =>
+    props.labels.length === 0 ? "select vehicles first" : listNames(props.labels);
   createEffect(() => {
     if (isDisabled()) props.timer.cancel();
   });
@@ -27,7 +29,7 @@ export function OrderButton(props: {
       class={`button order order-${props.order.kind}`}
       classList={{ "is-holding": props.timer.kind() === "holding" }}
       aria-disabled={isDisabled()}
-      aria-label={accessibleName(props.order, props.labels)}
+      aria-label={buttonName(props.order.label, hint(), recipients())}
       title={lack() ?? props.order.note}
       aria-description={lack() ?? props.order.note}
       aria-keyshortcuts={`Shift+${props.order.key}`}
@@ -36,8 +38,7 @@ export function OrderButton(props: {
     >
       <OrderIcon kind={props.order.kind} />
       <span class="order-text">
-        {props.order.label}
-        <Show when={hint()}>{(text) => <small>{text()}</small>}</Show>
+        {props.order.label} <Show when={hint()}>{(text) => <small>{text()}</small>}</Show>
       </span>
     </button>
   );
@@ -52,12 +53,6 @@ function handlers(order: OrderKind, timer: HoldTimer, isDisabled: () => boolean)
     timer.release();
   };
   return { onClick: press };
-}
-
-function accessibleName(order: OrderKind, labels: readonly string[]): string {
-  if (labels.length === 0) return `${order.label}: select vehicles first`;
-  const named = `${order.label} ${listNames(labels)}`;
-  return order.hold_ms > 0 ? `${named}: hold for ${order.hold_ms / 1000} seconds` : named;
 }
 
 /** An icon for each order, so that orders differ by more than colour and position. */

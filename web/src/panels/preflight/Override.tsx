@@ -37,7 +37,7 @@ export function Override(props: { serial: string; name: string; onAccepted: () =
       <GuardButton
         needs="admin"
         label="Override the checklist"
-        name={`Override the checklist of ${props.name}`}
+        of={props.name}
         class="guard-grave"
         hold_ms={GUARD_MS}
         subject={subject()}

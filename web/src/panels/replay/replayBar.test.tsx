@@ -113,7 +113,7 @@ describe("the replay bar", () => {
     const button = find<HTMLButtonElement>(page.root, "button");
     expect(button.getAttribute("aria-disabled")).toBe("true");
     expect(button.title).toBe("This is a replay: no orders are possible");
-    expect(button.textContent).toBe("Abortreplay");
+    expect(button.textContent).toBe("Abort replay");
   });
 });
 

@@ -24,7 +24,7 @@ export function FleetReturn() {
         <div class="section-buttons">
           <GuardButton
             label="Return all"
-            name="Return all vehicles in layers"
+            of="every vehicle, in layers"
             hold_ms={GUARD_MS}
             subject={all()}
             onConfirm={() => void orderApi.fleetReturn(null, ["all vehicles in reach"])}
@@ -32,7 +32,7 @@ export function FleetReturn() {
           <Show when={hasTargets()}>
             <GuardButton
               label="Return selected"
-              name={`Return ${listNames(targets().labels)} in layers`}
+              of={`${listNames(targets().labels)}, in layers`}
               hold_ms={GUARD_MS}
               subject={targetsKey(targets())}
               onConfirm={() => void orderApi.fleetReturn(targets().serials, targets().labels)}

@@ -68,11 +68,11 @@ describe("the return in layers", () => {
       page.clock.advance(ms);
       button.dispatchEvent(new PointerEvent("pointerup", { bubbles: true, button: 0 }));
     };
-    hold("Return all vehicles", 1400);
+    hold("Return all, hold 1.5 s: every vehicle", 1400);
     expect(page.requests).toEqual([]);
-    hold("Return all vehicles", 1600);
+    hold("Return all, hold 1.5 s: every vehicle", 1600);
     page.shared.selection.only(2);
-    hold("Return 2 Birch", 1600);
+    hold("Return selected, hold 1.5 s: 2 Birch", 1600);
     expect(page.requests).toEqual([{ fleetReturn: null }, { fleetReturn: ["SN-002"] }]);
   });
 

@@ -30,7 +30,7 @@ function StopInForce(props: { latch: StopLatchView }) {
       </p>
       <GuardButton
         label="Release all"
-        name={`Release the all stop for ${names()}`}
+        of={`the all stop of ${names()}`}
         class="guard-grave"
         hold_ms={GUARD_MS}
         subject={`${props.latch.by} ${names()}`}
@@ -59,7 +59,7 @@ export function StopSection(props: { serial: string; name: string }) {
       </p>
       <GuardButton
         label="Release this vehicle"
-        name={`Release the all stop for ${props.name}`}
+        of={props.name}
         class="guard-grave"
         hold_ms={GUARD_MS}
         subject={props.serial}

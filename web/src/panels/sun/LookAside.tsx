@@ -19,7 +19,7 @@ export function LookAside() {
   const button = (label: string, name: string, serial: string) => (
     <GuardButton
       label={label}
-      name={`Fly ${name} 25 m aside and back`}
+      of={`fly ${name} 25 m aside and back`}
       hold_ms={GUARD_MS}
       subject={isUnderWay() ? "" : serial}
       onConfirm={() => void order(serial)}

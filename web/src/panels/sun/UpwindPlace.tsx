@@ -84,7 +84,7 @@ function Place(props: { vehicle: VehicleView }) {
         {(to) => (
           <GuardButton
             label="Fly upwind"
-            name={`Fly ${name()} ${metres(to())} to its place upwind`}
+            of={`${name()}, ${metres(to())}`}
             hold_ms={GUARD_MS}
             subject={JSON.stringify([to().latitude_deg, to().longitude_deg])}
             onConfirm={fly}

@@ -122,7 +122,7 @@ function Start(props: SurveyProps) {
       </label>
       <GuardButton
         label={label()}
-        name={`${label()}: ${[...targets().labels, `survey ${props.survey.name}`].join(", ")}`}
+        of={[...targets().labels, `survey ${props.survey.name}`].join(", ")}
         hold_ms={GUARD_MS}
         subject={subject()}
         onConfirm={() => void start()}
@@ -142,7 +142,7 @@ function Stop(props: SurveyProps & { word: keyof typeof STOPS }) {
   return (
     <GuardButton
       label={label()}
-      name={`${label()} survey ${props.survey.name}`}
+      of={`survey ${props.survey.name}`}
       needs="pilot"
       class={props.word === "abort" ? "guard-grave" : ""}
       // A pause is safe and reversible; an abort is final.

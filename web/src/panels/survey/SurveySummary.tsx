@@ -13,7 +13,7 @@ export function SurveySummary() {
         <button
           type="button"
           class="card survey-summary"
-          aria-label="Open the survey"
+          title="Open the survey"
           onClick={() => panels.open("survey")}
         >
           <span class="survey-head">

@@ -37,11 +37,11 @@ describe("a survey in the list", () => {
     hold("Start with selected", 2000);
     expect(page.requests).toEqual([]);
     page.shared.selection.only(2);
-    hold("Start with selected: 2 Birch", 1400);
+    hold("Start with selected, hold 1.5 s: 2 Birch", 1400);
     expect(page.requests).toEqual([]);
-    hold("Start with selected: 2 Birch", 1600);
+    hold("Start with selected, hold 1.5 s: 2 Birch", 1600);
     find<HTMLInputElement>(page.root, "input[type=checkbox]").click();
-    hold("Start with selected: 2 Birch", 1600);
+    hold("Start with selected, hold 1.5 s: 2 Birch", 1600);
     expect(page.requests).toEqual([
       { startedSurvey: 7, serials: ["SN-002"], takeoff: false },
       { startedSurvey: 7, serials: ["SN-002"], takeoff: true },
@@ -75,17 +75,17 @@ describe("a survey in the list", () => {
 
   it("is paused by a short press and aborted by a long one", () => {
     show(survey(7));
-    hold("Pause survey south field", 500);
-    hold("Abort survey south field", 500);
+    hold("Pause, hold briefly: survey south field", 500);
+    hold("Abort, hold 1.5 s: survey south field", 500);
     expect(page.requests).toEqual([{ stoppedSurvey: 7, word: "pause" }]);
-    hold("Abort survey south field", 1600);
+    hold("Abort, hold 1.5 s: survey south field", 1600);
     expect(page.requests[1]).toEqual({ stoppedSurvey: 7, word: "abort" });
   });
 
   it("shows why a request was refused", async () => {
     show(survey(7));
     page.answerRequestsWith({ accepted: false, rule: "survey", reason: "survey 7 has ended" });
-    hold("Pause survey south field", 500);
+    hold("Pause, hold briefly: survey south field", 500);
     await Promise.resolve();
     await Promise.resolve();
     expect(page.root.textContent).toContain("survey 7 has ended");
@@ -93,7 +93,7 @@ describe("a survey in the list", () => {
 
   it("that is complete holds its returning vehicles by a short press", () => {
     show(survey(7, { phase: "done" }));
-    hold("Hold returning drones survey south field", 500);
+    hold("Hold returning drones, hold briefly: survey south field", 500);
     expect(page.requests).toEqual([{ stoppedSurvey: 7, word: "abort" }]);
   });
 

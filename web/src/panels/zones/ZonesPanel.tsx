@@ -64,7 +64,7 @@ function ZoneRow(props: { zone: TemporaryZoneView }) {
       </p>
       <GuardButton
         label="End zone"
-        name={`End the zone ${zoneName(props.zone)}: flights may enter it again`}
+        of={`${zoneName(props.zone)}, flights may enter it again`}
         class="guard-grave"
         hold_ms={GUARD_MS}
         subject={String(props.zone.id)}

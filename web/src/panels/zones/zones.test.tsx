@@ -41,9 +41,9 @@ describe("a zone in force", () => {
 
   it("is ended by a long press only: that removes a safeguard", () => {
     show(zone(3));
-    hold("End the zone Person 3", 1400);
+    hold("End zone, hold 1.5 s: Person 3", 1400);
     expect(page.requests).toEqual([]);
-    hold("End the zone Person 3", 1600);
+    hold("End zone, hold 1.5 s: Person 3", 1600);
     expect(page.requests).toEqual([{ endedZone: 3 }]);
   });
 });
