@@ -1,4 +1,5 @@
 import { expect, type Locator, type Page, test } from "@playwright/test";
+import { area } from "../src/testing/fakeState";
 import { CHECKLIST, fencedState } from "./fake/fencedState";
 import { FakeStation } from "./fake/station";
 import { cornerFaults, overlaps } from "./layoutFaults";
@@ -44,6 +45,31 @@ test("draws fences with heights, pads, a hazard area and the target of a steered
   await expect(page.locator(".pad")).toHaveCount(2);
   await expect(page.getByText("2 Birch flying here, ↥ 42 m")).toBeVisible();
   await expect(page.getByText("Separation hold is OFF.")).toBeVisible();
+});
+
+test("labels of areas leave each other free on a phone", async ({ page }) => {
+  await page.setViewportSize({ width: 390, height: 844 });
+  const state = fencedState(0);
+  const heights = { floor_m: 45, ceiling_m: 90, datum: "ground" } as const;
+  const areas = [
+    area("boundary", [0, 0], 190),
+    area("height", [150, 160], 60, { name: "Power line", ...heights }),
+    area("keep_out", [-150, -160], 60),
+  ];
+  await FakeStation.behind(page, { ...state, site: state.site && { ...state.site, areas } });
+  await page.goto("/");
+  await expect(page.getByText("Boundary", { exact: true })).toBeVisible();
+  await expect(page.getByText(/^Height limit: Power line/)).toBeVisible();
+  await expect(page.getByText("Keep out: Barn")).toBeVisible();
+  const frames = await page
+    .locator(".area-label")
+    .evaluateAll((labels) =>
+      labels.map((label) => label.getBoundingClientRect().toJSON() as DOMRect),
+    );
+  const meet = (a: DOMRect, b: DOMRect) =>
+    a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+  for (const [index, frame] of frames.entries())
+    expect(frames.slice(index + 1).filter((other) => meet(frame, other))).toEqual([]);
 });
 
 test("takes over a vehicle, overrides its checklist and clears a hazard area", async ({ page }) => {

@@ -6,6 +6,7 @@ import "./map.css";
 import { useConsole } from "../console";
 import { courseText } from "../orders/course";
 import { listNames, vehicleLabel } from "../text/names";
+import { AreaLabelLayer } from "./areaLabelLayer";
 import { BoundaryLayer, HeightZoneLayer, KeepOutLayer, SurveyLayer } from "./areaLayer";
 import { readColours } from "./colours";
 import { hideLayers } from "./features";
@@ -59,6 +60,7 @@ export function MapView() {
       new KeepOutLayer(),
       new BoundaryLayer(),
       new TemporaryZoneLayer(),
+      new AreaLabelLayer(),
       new PadLayer(),
       new SiteDraftLayer(),
       new MovingLayer(),

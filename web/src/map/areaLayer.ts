@@ -1,11 +1,6 @@
-import {
-  type FillLayerSpecification,
-  type LineLayerSpecification,
-  type Map as MapLibre,
-  Marker,
-} from "maplibre-gl";
+import type { FillLayerSpecification, LineLayerSpecification, Map as MapLibre } from "maplibre-gl";
 import type { AreaView } from "../protocol";
-import { areaFeatures, areasOf, areaText, extent, labelPoint } from "./areas";
+import { areaFeatures, areasOf } from "./areas";
 import type { Colours } from "./colours";
 import { addFeatures, setFeatures } from "./features";
 import { type Hatch, hatchImage } from "./hatch";
@@ -22,16 +17,14 @@ export interface AreaStyle {
   readonly hatch: Hatch | null;
 }
 
-/** The site's areas of one kind: outline, fill pattern, labels. */
+/** The site's areas of one kind: outline and fill pattern. */
 export class AreaLayer implements Layer {
   private map: MapLibre | null = null;
   private shown = "";
-  private readonly labels: AreaLabels;
   private readonly id: string;
 
   constructor(private readonly style: AreaStyle) {
     this.id = `area-${style.kind}`;
-    this.labels = new AreaLabels(`area-label-${style.kind}`);
   }
 
   add(map: MapLibre, colours: Colours): void {
@@ -43,7 +36,6 @@ export class AreaLayer implements Layer {
     }
     map.addLayer(this.casing(colours));
     map.addLayer(this.outline(colours));
-    this.labels.add(map);
   }
 
   update(scene: Scene): void {
@@ -55,7 +47,6 @@ export class AreaLayer implements Layer {
     if (shown === this.shown) return;
     this.shown = shown;
     setFeatures(this.map, this.id, areaFeatures(site, this.style.kind));
-    this.labels.show(areas);
   }
 
   recolour(colours: Colours): void {
@@ -139,56 +130,5 @@ export class SurveyLayer extends AreaLayer {
       dash: [1, 2],
       hatch: null,
     });
-  }
-}
-
-/** Areas narrower than this on the screen get no label. */
-const LEAST_WIDTH_PX = 90;
-
-interface PlacedLabel {
-  readonly area: AreaView;
-  readonly marker: Marker;
-}
-
-/** Labels of areas as HTML markers: the map style has no fonts. */
-export class AreaLabels {
-  private map: MapLibre | null = null;
-  private placed: readonly PlacedLabel[] = [];
-
-  constructor(private readonly className: string) {}
-
-  add(map: MapLibre): void {
-    this.map = map;
-    map.on("zoom", () => this.hideNarrow());
-  }
-
-  show(areas: readonly AreaView[]): void {
-    const { map } = this;
-    if (map === null) return;
-    for (const { marker } of this.placed) marker.remove();
-    this.placed = areas.map((area) => {
-      const { lon, lat } = labelPoint(area);
-      const marker = new Marker({ element: this.element(area), anchor: "center" });
-      marker.setLngLat([lon, lat]).addTo(map);
-      return { area, marker };
-    });
-    this.hideNarrow();
-  }
-
-  private element(area: AreaView): HTMLElement {
-    const element = document.createElement("span");
-    element.className = `area-label ${this.className}`;
-    element.textContent = areaText(area);
-    return element;
-  }
-
-  private hideNarrow(): void {
-    const { map } = this;
-    if (map === null) return;
-    for (const { area, marker } of this.placed) {
-      const { west, east, north } = extent(area);
-      const width_px = map.project([east, north]).x - map.project([west, north]).x;
-      marker.getElement().hidden = width_px < LEAST_WIDTH_PX;
-    }
   }
 }

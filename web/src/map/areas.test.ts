@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { area, at, FIELD, station, vehicle } from "../testing/fakeState";
-import { areaFeatures, areasOf, areaText, labelPoint } from "./areas";
+import { areaFeatures, areasOf, areaText, labelPlaces } from "./areas";
 import { hatchImage } from "./hatch";
 import { padText } from "./padLayer";
 
@@ -49,10 +49,17 @@ describe("areas on the map", () => {
   });
 
   it("have their labels at the centre, a boundary at its northern edge", () => {
-    const middle = labelPoint(area("keep_out", [0, 0], 50));
-    expect(middle.lon).toBeCloseTo(FIELD.lon, 9);
-    expect(middle.lat).toBeCloseTo(FIELD.lat, 9);
-    expect(labelPoint(area("boundary", [0, 0], 300)).lat).toBeCloseTo(at(0, 300)[1], 9);
+    const [middle, ...edges] = labelPlaces(area("keep_out", [0, 0], 50));
+    expect(middle?.lon).toBeCloseTo(FIELD.lon, 9);
+    expect(middle?.lat).toBeCloseTo(FIELD.lat, 9);
+    expect(edges.map(({ side }) => side)).toEqual(["below", "above", "above", "below"]);
+    const corners = labelPlaces(area("boundary", [0, 0], 300)).map(({ lat }) => lat);
+    expect(corners[0]).toBeCloseTo(at(0, 300)[1], 9);
+    expect(corners.at(-1)).toBeCloseTo(at(0, -300)[1], 9);
+    const round = area("boundary", [0, 0], 300, {
+      rings: [[...Array(500).keys()].map((n) => at(Math.sin(n) * 300, Math.cos(n) * 300))],
+    });
+    expect(labelPlaces(round)).toHaveLength(8);
   });
 });
 

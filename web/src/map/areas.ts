@@ -52,15 +52,37 @@ export function areaHeights({ floor_m, ceiling_m, datum }: AreaView): string {
   return `${metres(floor_m)} to ${metres(ceiling_m)} ${from}`;
 }
 
-/** Position of an area's label: the northernmost corner of a boundary, otherwise the centre. */
-export function labelPoint(area: AreaView): LonLat {
-  const ring = outerRing(area);
-  if (area.kind === "boundary") {
-    const [lon, lat] = ring.reduce((top, next) => (next[1] > top[1] ? next : top));
-    return { lon, lat };
-  }
+/** A place for a label: in the middle over a point, or with an edge at it. */
+export interface LabelPlace extends LonLat {
+  readonly side: "over" | "above" | "below";
+}
+
+/**
+ * Places for an area's label, the best first. A boundary's is at a corner, the northernmost first; any other area's at
+ * the centre, else inside or outside of its northern or southern edge.
+ */
+export function labelPlaces(area: AreaView): LabelPlace[] {
+  if (area.kind === "boundary") return cornerPlaces(outerRing(area));
   const { west, east, south, north } = extent(area);
-  return { lon: (west + east) / 2, lat: (south + north) / 2 };
+  const lon = (west + east) / 2;
+  return [
+    { lon, lat: (south + north) / 2, side: "over" },
+    { lon, lat: north, side: "below" },
+    { lon, lat: south, side: "above" },
+    { lon, lat: north, side: "above" },
+    { lon, lat: south, side: "below" },
+  ];
+}
+
+/** So many corners of a boundary are tried for its label. */
+const CORNERS_TRIED = 8;
+
+function cornerPlaces(ring: readonly (readonly [number, number])[]): LabelPlace[] {
+  const southwards = [...ring].sort(([, a], [, b]) => b - a);
+  const step = Math.ceil(southwards.length / CORNERS_TRIED);
+  return southwards
+    .filter((_, index) => index % step === 0)
+    .map(([lon, lat]) => ({ lon, lat, side: "over" }));
 }
 
 /** The box around an area, degrees. */

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { type LabelSpot, placeLabels, SIDES } from "./labels";
+import { type Frame, type LabelSpot, placeFrames, placeLabels, SIDES } from "./labels";
 
 const at = (key: number, x_px: number, y_px: number, rank = key): LabelSpot => ({
   key,
@@ -45,3 +45,62 @@ describe("labels", () => {
     expect(placeLabels(beside, beside, new Map([[1, "left"]])).get(1)).toBe("right");
   });
 });
+
+describe("labels of areas", () => {
+  const frame = (left: number, top: number): Frame => ({
+    left,
+    top,
+    right: left + 80,
+    bottom: top + 20,
+  });
+  const overlaps = (a: Frame, b: Frame) =>
+    a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+
+  it("take their next place where a label of a lower rank has the first", () => {
+    const boundary = { key: "boundary", rank: 3, places: [frame(0, 0), frame(0, 200)] };
+    const height = { key: "height", rank: 2, places: [frame(30, 10), frame(30, 60)] };
+    const wanted = [boundary, height].map((label) => ({
+      ...label,
+      places: label.places.map((one, index) => [index, one] as const),
+    }));
+    expect(placeFrames(wanted)).toEqual(
+      new Map([
+        ["height", 0],
+        ["boundary", 1],
+      ]),
+    );
+  });
+
+  it("never cover each other, and one is left out only where each of its places is taken", () => {
+    for (let seed = 1; seed <= 50; seed += 1) {
+      const random = sequence(seed);
+      const wanted = [...Array(12).keys()].map((key) => ({
+        key,
+        rank: Math.floor(random() * 4),
+        places: [0, 1, 2].map(() => {
+          const one = frame(random() * 300, random() * 300);
+          return [one, one] as const;
+        }),
+      }));
+      const placed = placeFrames(wanted);
+      const frames = [...placed.values()];
+      for (const [index, one] of frames.entries())
+        expect(frames.slice(index + 1).some((other) => overlaps(one, other))).toBe(false);
+      for (const { key, rank, places } of wanted.filter(({ key }) => !placed.has(key))) {
+        const before = wanted.filter((other) => other.rank <= rank && other.key !== key);
+        const taken = before.flatMap((other) => placed.get(other.key) ?? []);
+        for (const [place] of places)
+          expect(taken.some((other) => overlaps(place, other))).toBe(true);
+      }
+    }
+  });
+});
+
+/** Numbers from 0 to 1, the same for the same seed. */
+function sequence(seed: number): () => number {
+  let state = seed;
+  return () => {
+    state = (state * 48271) % 2147483647;
+    return state / 2147483647;
+  };
+}

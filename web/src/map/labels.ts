@@ -21,7 +21,8 @@ export const LABEL_HEIGHT_PX = 24;
 const LETTER_PX = 9;
 const EDGES_PX = 16;
 
-interface Frame {
+/** A rectangle on the screen, pixels. */
+export interface Frame {
   readonly left: number;
   readonly top: number;
   readonly right: number;
@@ -42,23 +43,52 @@ export function placeLabels(
   fixed: readonly FixedLabel[] = [],
 ): Map<number, Side> {
   const taken = symbols.map(({ key, x_px, y_px }) => ({ key, ...around(x_px, y_px, SYMBOL_PX) }));
-  const placed = fixed.map((label) => frameOf(label, "above"));
-  const sides = new Map<number, Side>();
-  for (const spot of [...wanted].sort((a, b) => a.rank - b.rank)) {
-    const kept = before.get(spot.key);
-    const tried = kept === undefined ? SIDES : [kept, ...SIDES.filter((side) => side !== kept)];
-    for (const side of tried) {
-      const frame = frameOf(spot, side);
-      const isFree =
-        !placed.some((other) => meets(frame, other)) &&
-        !taken.some((symbol) => symbol.key !== spot.key && meets(frame, symbol));
-      if (!isFree) continue;
-      placed.push(frame);
-      sides.set(spot.key, side);
-      break;
-    }
+  const labels = wanted.map((spot) => ({
+    key: spot.key,
+    rank: spot.rank,
+    places: SIDES.map((side) => [side, frameOf(spot, side)] as const),
+  }));
+  const isBlocked = (key: number, frame: Frame) =>
+    taken.some((symbol) => symbol.key !== key && meets(frame, symbol));
+  return placeFrames(
+    labels,
+    before,
+    fixed.map((label) => frameOf(label, "above")),
+    isBlocked,
+  );
+}
+
+/** A label that may stand at several places, by key and rank; its frames on the screen, the best first. */
+export interface MovableLabel<Key, Place> {
+  readonly key: Key;
+  /** The lowest finds its place first. */
+  readonly rank: number;
+  readonly places: readonly (readonly [Place, Frame])[];
+}
+
+/**
+ * The place of each label at which it covers no label of a lower rank and nothing that is blocked; a label without such
+ * a place is left out. A label keeps the place it had `before` for as long as that is free.
+ */
+export function placeFrames<Key, Place>(
+  wanted: readonly MovableLabel<Key, Place>[],
+  before: ReadonlyMap<Key, Place> = new Map(),
+  fixed: readonly Frame[] = [],
+  isBlocked: (key: Key, frame: Frame) => boolean = () => false,
+): Map<Key, Place> {
+  const placed = [...fixed];
+  const found = new Map<Key, Place>();
+  for (const { key, places } of [...wanted].sort((a, b) => a.rank - b.rank)) {
+    const isKept = ([place]: readonly [Place, Frame]) => place === before.get(key);
+    const tried = [...places.filter(isKept), ...places.filter((place) => !isKept(place))];
+    const free = tried.find(
+      ([, frame]) => !placed.some((other) => meets(frame, other)) && !isBlocked(key, frame),
+    );
+    if (free === undefined) continue;
+    placed.push(free[1]);
+    found.set(key, free[0]);
   }
-  return sides;
+  return found;
 }
 
 function frameOf({ x_px: x, y_px: y, text }: FixedLabel, side: Side): Frame {

@@ -1,10 +1,8 @@
-import { type Map as MapLibre, Marker } from "maplibre-gl";
-import type { TemporaryZoneView } from "../protocol";
-import { zoneLabel } from "../text/zones";
+import type { Map as MapLibre } from "maplibre-gl";
 import type { Colours } from "./colours";
 import { addFeatures, areaFeature, lineFeature, type Point, setFeatures } from "./features";
 import { hatchImage } from "./hatch";
-import { circle, type LonLat } from "./localGrid";
+import { circle } from "./localGrid";
 import type { Layer, Scene, ZoneOutline } from "./scene";
 
 const SOURCE = "temporary-zones";
@@ -23,7 +21,6 @@ export class TemporaryZoneLayer implements Layer {
   private map: MapLibre | null = null;
   private shown = "";
   private drafted = "";
-  private readonly labels = new Map<number, Marker>();
 
   add(map: MapLibre, colours: Colours): void {
     this.map = map;
@@ -55,8 +52,7 @@ export class TemporaryZoneLayer implements Layer {
   update(scene: Scene): void {
     const { map } = this;
     if (map === null) return;
-    const zones = scene.state.temporary_zones;
-    const rings = zones.map(({ ring }) => ring as Point[]);
+    const rings = scene.state.temporary_zones.map(({ ring }) => ring as Point[]);
     const shown = JSON.stringify(rings);
     if (shown !== this.shown) {
       this.shown = shown;
@@ -66,7 +62,6 @@ export class TemporaryZoneLayer implements Layer {
         rings.map((ring) => areaFeature(ring, {})),
       );
     }
-    this.label(map, zones, scene.behindS);
     const drafted = JSON.stringify(scene.zoneDraft);
     if (drafted === this.drafted) return;
     this.drafted = drafted;
@@ -82,37 +77,6 @@ export class TemporaryZoneLayer implements Layer {
     for (const line of [CASING, DRAFT_CASING])
       map.setPaintProperty(line, "line-color", colours.casing);
   }
-
-  private label(map: MapLibre, zones: readonly TemporaryZoneView[], behindS: number): void {
-    for (const zone of zones) {
-      const { lon, lat } = southOf(zone);
-      const marker = this.labels.get(zone.id) ?? new Marker({ element: tag(), anchor: "top" });
-      const text = zoneLabel(zone, behindS);
-      if (marker.getElement().textContent !== text) marker.getElement().textContent = text;
-      if (this.labels.has(zone.id)) continue;
-      marker.setLngLat([lon, lat]).addTo(map);
-      this.labels.set(zone.id, marker);
-    }
-    const kept = new Set(zones.map(({ id }) => id));
-    for (const [id, marker] of this.labels) {
-      if (kept.has(id)) continue;
-      marker.remove();
-      this.labels.delete(id);
-    }
-  }
-}
-
-function tag(): HTMLElement {
-  const element = document.createElement("span");
-  element.className = "area-label area-label-temporary";
-  return element;
-}
-
-/** The middle of a zone's southern edge: its label below leaves the zone itself free. */
-function southOf({ ring }: TemporaryZoneView): LonLat {
-  const lons = ring.map(([lon]) => lon);
-  const lats = ring.map(([, lat]) => lat);
-  return { lon: (Math.min(...lons) + Math.max(...lons)) / 2, lat: Math.min(...lats) };
 }
 
 /** The line of a zone being drawn: a circle, or the corners so far; a single point as a small ring. */
