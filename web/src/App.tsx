@@ -5,6 +5,7 @@ import { vehicleKey } from "./fleet/vehicleStatus";
 import { actOnKey, isAllStop } from "./keys";
 import { MapView } from "./map/MapView";
 import { AlarmList } from "./panels/alarms/AlarmList";
+import { SilenceBanner } from "./panels/alarms/SoundControls";
 import { ConnectionBanner } from "./panels/bar/ConnectionBanner";
 import { TopBar } from "./panels/bar/TopBar";
 import { CommandList } from "./panels/commands/CommandList";
@@ -112,6 +113,7 @@ export function App() {
       <div class="notices">
         <ConnectionBanner />
         <StopBanner />
+        <SilenceBanner />
         <SeparationBanner />
         <AnswerNotice />
       </div>

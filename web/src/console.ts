@@ -18,6 +18,9 @@ import { createZoneDraft, type ZoneDraft } from "./orders/zoneDraft";
 import type { OpenPanels } from "./panels/openPanels";
 import type { ReplayView, SurveyView } from "./protocol";
 import { createSiteDraft, type SiteDraft } from "./site/siteDraft";
+import { type AlarmSound, createAlarmSound } from "./sound/alarmSound";
+import type { Mutes } from "./sound/mutes";
+import type { Speaker } from "./sound/speaker";
 import type { Clock, Instant } from "./source/clock";
 import { lacking, type Role } from "./source/roles";
 import type { StationSource } from "./source/stationSource";
@@ -51,6 +54,7 @@ export interface Console {
   readonly overlay: Overlay;
   readonly theme: ThemeSwitch;
   readonly panels: OpenPanels;
+  readonly alarmSound: AlarmSound;
   readonly login: Login;
   /** Where a replay stands; null on a live station. */
   readonly replay: Accessor<ReplayView | null>;
@@ -90,6 +94,7 @@ export function createConsole(
   clock: Clock,
   now: Accessor<Instant>,
   panels: OpenPanels,
+  sound: { readonly mutes: Mutes; readonly speaker: Speaker },
   login: Login = NO_LOGIN,
 ): Console {
   const fleet = createFleetView(source);
@@ -149,6 +154,7 @@ export function createConsole(
     overlay: createOverlay(() => fleet.surveys.some(({ phase }) => ACTIVE.includes(phase))),
     theme,
     panels,
+    alarmSound: createAlarmSound(source, isReplay, now, sound.mutes, sound.speaker),
     login,
     replay,
     isReplay,

@@ -5,6 +5,8 @@ import "./theme/page.css";
 import { App } from "./App";
 import { ConsoleProvider, createConsole } from "./console";
 import { createOpenPanels, NARROW } from "./panels/openPanels";
+import { createMutes } from "./sound/mutes";
+import { createSpeaker } from "./sound/speaker";
 import { browserClock } from "./source/clock";
 import { browserFrame } from "./source/framePacer";
 import { LiveSource } from "./source/liveSource";
@@ -42,6 +44,7 @@ function Page() {
     browserClock,
     now,
     createOpenPanels(localStorage, () => matchMedia(NARROW).matches),
+    { mutes: createMutes(localStorage), speaker: createSpeaker(window) },
     {
       hasToken: given.token !== null,
       fingerprint: given.fingerprint,

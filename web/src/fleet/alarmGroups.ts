@@ -20,10 +20,13 @@ export interface AlarmGroup {
 const CAUSES: Readonly<Record<string, string>> = {
   separation: "Separation",
   link_lost: "Telemetry lost",
+  connection: "Connection to the station",
+  stop_waits: "Stop not confirmed",
   serial_conflict: "Serial conflict",
   unidentified: "Serial number missing",
   battery: "Battery",
   geofence: "Geofence",
+  gnss: "GNSS",
   look_aside: "Look aside",
   move_upwind: "Move upwind",
 };
@@ -72,7 +75,8 @@ function counted(rule: string, alarms: number, vehicles: number): string {
   return vehicles > 1 ? `${vehicles} drones` : `${alarms} alarms`;
 }
 
-function causeName(rule: string): string {
+/** A cause by the station's rule, as a person names it. */
+export function causeName(rule: string): string {
   return CAUSES[rule] ?? capitalised(plainWords(rule));
 }
 

@@ -23,6 +23,9 @@ import type {
   UpwindPlaceView,
   UpwindView,
 } from "../protocol";
+import type { Announcement } from "../sound/announcements";
+import { createMutes } from "../sound/mutes";
+import type { SoundProblem, Speaker } from "../sound/speaker";
 import type { FlightFile, FlightRequests } from "../source/flightRequests";
 import type { SiteRequests } from "../source/siteRequests";
 import type {
@@ -79,6 +82,12 @@ export interface RenderedPage {
   connect(connection: Connection): void;
   /** Sets the person of the page's requests. */
   nameAs(person: AccessView): void;
+  /** Time goes on for what depends on it without a timer. */
+  tick(ms: number): void;
+  /** What was announced by sound. */
+  readonly announced: readonly Announcement[];
+  /** Sets why there is no sound. */
+  blockSound(problem: SoundProblem | null): void;
   /** Sets the age of the newest state, seconds. */
   age(behindS: number): void;
   dispose(): void;
@@ -168,6 +177,15 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
   const [connection, setConnection] = createSignal<Connection>({ kind: "live" });
   const [person, setPerson] = createSignal<AccessView | null>(null);
   const [now, setNow] = createSignal(clock.now());
+  const mutes = createMutes({ getItem: () => null, setItem: () => {} });
+  const [soundProblem, setSoundProblem] = createSignal<SoundProblem | null>(null);
+  const announced: Announcement[] = [];
+  const speaker: Speaker = {
+    announce: (announcement) => announced.push(announcement),
+    isSpeaking: () => false,
+    problem: soundProblem,
+    hasVoice: () => true,
+  };
   const recorded: Recorded = {
     orders: [],
     checks: [],
@@ -219,7 +237,7 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
   let behindS = 0;
   const source = fakeSource(state, connection, person, () => behindS, recorded);
   const { shared, disposeShared } = createRoot((disposeShared) => ({
-    shared: createConsole(source, PLAIN_THEME, clock, now, PANELS),
+    shared: createConsole(source, PLAIN_THEME, clock, now, PANELS, { mutes, speaker }),
     disposeShared,
   }));
   const root = document.createElement("div");
@@ -239,6 +257,12 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
     allStops: () => recorded.allStops,
     site: recorded.site,
     timeline: recorded.timeline,
+    announced,
+    blockSound: setSoundProblem,
+    tick: (ms) => {
+      clock.advance(ms);
+      setNow(clock.now());
+    },
     answerWith: (results) => {
       recorded.answer = results;
     },

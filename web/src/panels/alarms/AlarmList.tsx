@@ -2,10 +2,12 @@ import { createMemo, createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import { type AlarmGroup, groupAlarms } from "../../fleet/alarmGroups";
 import type { AlarmView } from "../../protocol";
+import { kindOf } from "../../sound/alarmSound";
 import { alarmText } from "../../text/names";
 import { formatAge } from "../../text/quantities";
 import { Empty, Panel } from "../Panel";
 import { SeverityMark } from "../SeverityMark";
+import { MuteButton, SoundControls } from "./SoundControls";
 import "./alarms.css";
 
 /** The alarms of station and vehicles by cause, worst first; one acknowledgement for each cause. */
@@ -16,6 +18,7 @@ export function AlarmList() {
   const keys = createMemo(() => groups().map(({ key }) => key), [], { equals: sameKeys });
   return (
     <Panel title="Alarms" name="alarms" count={groups().length}>
+      <SoundControls />
       <Show when={keys().length > 0} fallback={<Empty>No alarms.</Empty>}>
         <ul aria-live="assertive" aria-relevant="additions">
           <For each={keys()}>
@@ -65,6 +68,9 @@ function GroupRow(props: { group: AlarmGroup }) {
         </Show>
         <Show when={problem()}>{(text) => <p class="tone-error">{text()}</p>}</Show>
       </div>
+      <Show when={props.group.needsLook}>
+        <MuteButton kind={kindOf(props.group)} />
+      </Show>
       <Show when={!props.group.isAcknowledged}>
         <button
           type="button"

@@ -1,25 +1,36 @@
-import { createMemo } from "solid-js";
+import { createMemo, Show } from "solid-js";
 import { useConsole } from "../../console";
-import { groupAlarms } from "../../fleet/alarmGroups";
+import { causeName, groupAlarms } from "../../fleet/alarmGroups";
 import { worstSeverity } from "../../fleet/severity";
+import { capitalised } from "../../text/names";
+import { SpeakerIcon } from "../alarms/SoundControls";
 
 /** The number of alarms that ask for something, coloured by the worst not acknowledged yet; a press opens the list. */
 export function AlarmsButton() {
-  const { fleet, panels } = useConsole();
+  const { fleet, panels, alarmSound } = useConsole();
+  const { mutes } = alarmSound;
+  const isMuted = () => mutes.isAllMuted() || mutes.kinds().length > 0;
   const open = createMemo(() => groupAlarms(fleet.alarms).filter((group) => group.needsLook));
   const fresh = () => open().filter(({ isAcknowledged }) => !isAcknowledged);
   const worst = () => worstSeverity(fresh().map(({ severity }) => severity));
   const text = () => `${open().length} ${open().length === 1 ? "alarm" : "alarms"}`;
+  const muted = () =>
+    mutes.isAllMuted() ? "all muted" : `muted: ${mutes.kinds().map(causeName).join(", ")}`;
   return (
     <button
       type="button"
       class={`button bar-alarms ${worst() === null ? "" : `tone-ground-${worst()}`}`}
       aria-expanded={panels.isOpen("alarms")}
-      aria-label={text()}
+      aria-label={isMuted() ? `${text()}, ${muted()}` : text()}
+      title={isMuted() ? capitalised(muted()) : undefined}
       onClick={() => panels.toggle("alarms")}
     >
       <span aria-hidden="true">▲</span> {open().length}
       <span class="bar-word"> {open().length === 1 ? "alarm" : "alarms"}</span>
+      <Show when={isMuted()}>
+        {" "}
+        <SpeakerIcon isMuted={true} />
+      </Show>
     </button>
   );
 }

@@ -1,0 +1,108 @@
+import { For, Show } from "solid-js";
+import { useConsole } from "../../console";
+import { causeName } from "../../fleet/alarmGroups";
+import { kindOf } from "../../sound/alarmSound";
+import { SeverityMark } from "../SeverityMark";
+
+/** A loudspeaker, crossed out while muted. */
+export function SpeakerIcon(props: { isMuted: boolean }) {
+  return (
+    <svg class="speaker-icon" viewBox="0 0 24 24" width="22" height="22" aria-hidden="true">
+      <path d="M4 9v6h4l5 4V5L8 9Z" />
+      <Show when={props.isMuted} fallback={<path d="M16 9q2 3 0 6M18.5 6.5q4 5.5 0 11" />}>
+        <path d="M16 9l6 6M22 9l-6 6" />
+      </Show>
+    </svg>
+  );
+}
+
+/** All sound on or off, a test of it, and the kinds that are muted of their own. */
+export function SoundControls() {
+  const { alarmSound, isReplay } = useConsole();
+  const { mutes } = alarmSound;
+  const state = () => {
+    if (isReplay()) return "A replay makes no sound.";
+    if (mutes.isAllMuted()) return "All alarms are muted in this browser.";
+    if (alarmSound.problem() !== null) return PROBLEMS[alarmSound.problem() ?? "absent"];
+    return alarmSound.hasVoice() ? "Tone and speech." : "Tone only: no English voice is installed.";
+  };
+  return (
+    <section class="sound" aria-label="Sound of alarms">
+      <p>
+        <SpeakerIcon isMuted={mutes.isAllMuted()} /> {state()}
+      </p>
+      <div class="sound-buttons">
+        <button
+          type="button"
+          class="button"
+          aria-pressed={mutes.isAllMuted()}
+          onClick={() => mutes.muteAll(!mutes.isAllMuted())}
+        >
+          Mute all
+        </button>
+        <button type="button" class="button" onClick={() => alarmSound.test()}>
+          Test sound
+        </button>
+        <For each={mutes.kinds()}>
+          {(kind) => (
+            <button type="button" class="button" onClick={() => mutes.mute(kind, false)}>
+              Unmute {causeName(kind)}
+            </button>
+          )}
+        </For>
+      </div>
+    </section>
+  );
+}
+
+const PROBLEMS = {
+  blocked: "Press anywhere on this page to allow sound.",
+  absent: "This browser plays no sound: watch the screen.",
+} as const;
+
+/** Mutes one kind of alarm, or makes it sound again. */
+export function MuteButton(props: { kind: string }) {
+  const { mutes } = useConsole().alarmSound;
+  const isMuted = () => mutes.kinds().includes(props.kind);
+  return (
+    <button
+      type="button"
+      class="button button-quiet"
+      aria-pressed={isMuted()}
+      aria-label={`Mute ${causeName(props.kind)}`}
+      title={isMuted() ? "Muted in this browser" : "Mute this kind of alarm in this browser"}
+      onClick={() => mutes.mute(props.kind, !isMuted())}
+    >
+      <SpeakerIcon isMuted={isMuted() || mutes.isAllMuted()} />
+    </button>
+  );
+}
+
+/** Shown while a grave alarm makes no sound: silence must not pass for safety. */
+export function SilenceBanner() {
+  const { alarmSound } = useConsole();
+  const { mutes } = alarmSound;
+  const titles = () => alarmSound.silenced().map(({ title }) => title.replace(/\.$/, ""));
+  const kinds = () => [...new Set(alarmSound.silenced().map(kindOf))];
+  const isMuted = () => kinds().some(mutes.isMuted);
+  const unmute = () => {
+    mutes.muteAll(false);
+    for (const kind of kinds()) mutes.mute(kind, false);
+  };
+  return (
+    <Show when={titles().length > 0}>
+      <div class="card notice silence" role="alert">
+        <SeverityMark severity="critical" size={22} />
+        <p class="wire-text">
+          <strong>No sound for:</strong> {titles().join("; ")}.{" "}
+          {isMuted() ? "" : PROBLEMS[alarmSound.problem() ?? "absent"]}
+        </p>
+        <Show when={isMuted()}>
+          <button type="button" class="button" onClick={unmute}>
+            Unmute
+          </button>
+        </Show>
+      </div>
+    </Show>
+  );
+}
