@@ -43,7 +43,7 @@ test("draws fences with heights, pads, a hazard area and the target of a steered
   await expect(page.getByText("Keep out: Barn")).toBeVisible();
   await expect(page.getByText("Height limit: Power line, 45 m to 90 m above ground")).toBeVisible();
   await expect(page.locator(".pad")).toHaveCount(2);
-  await expect(page.getByText("2 Birch flying here, ↥ 42 m")).toBeVisible();
+  await expect(page.getByText("2 Birch flying here, ↥ 42 m ATO")).toBeVisible();
   await expect(page.getByText("Separation hold is OFF.")).toBeVisible();
 });
 

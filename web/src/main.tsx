@@ -11,6 +11,7 @@ import { browserClock } from "./source/clock";
 import { browserFrame } from "./source/framePacer";
 import { LiveSource } from "./source/liveSource";
 import { keepToken, takeLogin } from "./source/login";
+import { keepLengthUnit } from "./text/units";
 import { createThemeSwitch } from "./theme/theme";
 
 /** Refresh interval of displayed ages. */
@@ -29,6 +30,7 @@ function Page() {
   window.addEventListener("hashchange", () => {
     if (location.hash.includes("token=")) location.reload();
   });
+  keepLengthUnit(localStorage);
   const source = new LiveSource({
     origin: location.origin,
     token: given.token,

@@ -1,6 +1,7 @@
 import { Match, Show, Switch } from "solid-js";
 import { useConsole } from "../console";
 import { frameCaption, isSuperseded } from "../fleet/displayedFrame";
+import { formatLength } from "../text/units";
 import type { GroundImageInfo } from "./groundImageLayer";
 
 /** Frames arrive about once a second; after five missed ones the ground may have changed. */
@@ -23,7 +24,7 @@ export function GroundImageNote(props: { shown: GroundImageInfo | null }) {
 function alignment({ registration, registration_residual_m: residualM }: GroundImageInfo): string {
   if (registration === "unregistered") return "not aligned";
   if (registration === "lost") return "alignment lost: positions may be off by metres";
-  return residualM === null ? "aligned" : `aligned to ${residualM.toFixed(1)} m`;
+  return residualM === null ? "aligned" : `aligned to ${formatLength(residualM, 1)}`;
 }
 
 function ShownNote(props: { shown: GroundImageInfo }) {

@@ -1,6 +1,6 @@
 import type { Feature } from "geojson";
 import type { AreaView, SiteView } from "../protocol";
-import { formatQuantity } from "../text/quantities";
+import { formatLength } from "../text/units";
 import type { LonLat } from "./localGrid";
 
 /** The areas of one kind as GeoJSON features. */
@@ -46,10 +46,9 @@ function joined(text: string, heights: string): string {
 export function areaHeights({ floor_m, ceiling_m, datum }: AreaView): string {
   if (floor_m === null && ceiling_m === null) return "";
   const from = datum === "wgs84" ? "WGS84" : "above ground";
-  const metres = (m: number) => formatQuantity(m, "m", 0);
-  if (floor_m === null) return `up to ${metres(ceiling_m ?? 0)} ${from}`;
-  if (ceiling_m === null) return `from ${metres(floor_m)} ${from}`;
-  return `${metres(floor_m)} to ${metres(ceiling_m)} ${from}`;
+  if (floor_m === null) return `up to ${formatLength(ceiling_m ?? 0)} ${from}`;
+  if (ceiling_m === null) return `from ${formatLength(floor_m)} ${from}`;
+  return `${formatLength(floor_m)} to ${formatLength(ceiling_m)} ${from}`;
 }
 
 /** A place for a label: in the middle over a point, or with an edge at it. */

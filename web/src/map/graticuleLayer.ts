@@ -1,5 +1,6 @@
 import type { Feature } from "geojson";
 import type { Map as MapLibre } from "maplibre-gl";
+import { inLengthUnit, lengthUnit, metresOf } from "../text/units";
 import type { Colours } from "./colours";
 import { addFeatures, lineFeature, setFeatures } from "./features";
 import { gridLines, type LonLat, metresPerDegree, roundStepM } from "./localGrid";
@@ -10,10 +11,11 @@ const LINES = "graticule-lines";
 /** Smallest distance between lines on the screen. */
 const LEAST_GAP_PX = 96;
 
-/** Metric grid, and the scale bar. */
+/** A grid in round lengths, and the scale bar. */
 export class GraticuleLayer implements Layer {
   private map: MapLibre | null = null;
   private origin: LonLat | null = null;
+  private unit = lengthUnit();
 
   /** Sets width and text of `scaleBar`. */
   constructor(private readonly scaleBar: HTMLElement) {}
@@ -28,9 +30,11 @@ export class GraticuleLayer implements Layer {
 
   update(scene: Scene): void {
     // Keep the first origin: a grid that jumps is worse than one off centre.
-    if (this.origin !== null) return;
-    this.origin = gridOrigin(scene.state);
-    if (this.origin !== null) this.draw();
+    const origin = this.origin ?? gridOrigin(scene.state);
+    if (origin === this.origin && lengthUnit() === this.unit) return;
+    this.origin = origin;
+    this.unit = lengthUnit();
+    this.draw();
   }
 
   recolour(colours: Colours): void {
@@ -41,7 +45,8 @@ export class GraticuleLayer implements Layer {
   private draw(): void {
     if (this.map === null || this.origin === null) return;
     const metresPerPixel = metresPerPixelOf(this.map, this.origin.lat);
-    const step_m = roundStepM(LEAST_GAP_PX * metresPerPixel);
+    const step = roundStepM(inLengthUnit(LEAST_GAP_PX * metresPerPixel));
+    const step_m = metresOf(step);
     const bounds = this.map.getBounds();
     const box = {
       west: bounds.getWest(),
@@ -54,12 +59,12 @@ export class GraticuleLayer implements Layer {
       ...grid.eastings.map((line) => meridian(line.deg, box.south, box.north, line.m)),
       ...grid.northings.map((line) => parallel(line.deg, box.west, box.east, line.m)),
     ]);
-    this.drawScale(metresPerPixel, step_m);
+    this.drawScale(step_m / metresPerPixel, step);
   }
 
-  private drawScale(metresPerPixel: number, step_m: number): void {
-    this.scaleBar.style.width = `${step_m / metresPerPixel}px`;
-    this.scaleBar.textContent = distance(step_m);
+  private drawScale(width_px: number, step: number): void {
+    this.scaleBar.style.width = `${width_px}px`;
+    this.scaleBar.textContent = stepText(step);
   }
 }
 
@@ -102,6 +107,7 @@ function metresPerPixelOf(map: MapLibre, lat: number): number {
   return ((right.lng - left.lng) * metresPerDegree(lat).lon) / Math.max(1, width);
 }
 
-function distance(m: number): string {
-  return m >= 1000 ? `${m / 1000} km` : `${m} m`;
+function stepText(step: number): string {
+  const isLong = lengthUnit() === "m" && step >= 1000;
+  return isLong ? `${step / 1000} km` : `${step} ${lengthUnit()}`;
 }

@@ -47,7 +47,7 @@ describe("the note on the ground image", () => {
         registration_residual_m: 0.14,
       }),
     );
-    expect(text()).toMatch(/, aligned to 0\.1 m$/);
+    expect(text()).toMatch(/, aligned to 0\.1\u00a0m$/);
     ground.show(groundImage({ frame_id: 12, captured_age_s: 0.8, registration: "lost" }));
     expect(text()).toMatch(/, alignment lost: positions may be off by metres$/);
     expect(find(page.root, ".tone-warning").textContent).toMatch(/^alignment lost/);

@@ -2,7 +2,7 @@ import type { Map as MapLibre } from "maplibre-gl";
 import { vehicleKey } from "../fleet/vehicleStatus";
 import type { VehicleView } from "../protocol";
 import { vehicleLabel } from "../text/names";
-import { formatQuantity } from "../text/quantities";
+import { formatHeight } from "../text/units";
 import { colourOf } from "../theme/theme";
 import type { Layer, Scene } from "./scene";
 import { type Target, TargetMarkers } from "./targetMarkers";
@@ -34,7 +34,7 @@ export class TargetLayer implements Layer {
 export function targetOf(vehicle: VehicleView): Target[] {
   const { steering } = vehicle;
   if (steering === null) return [];
-  const height = formatQuantity(steering.height_above_takeoff_m, "m", 0);
+  const height = formatHeight(steering.height_above_takeoff_m);
   const action = steering.has_arrived ? "holding here" : "flying here";
   return [
     {

@@ -1,7 +1,8 @@
 import { type Map as MapLibre, Marker } from "maplibre-gl";
 import { simulation, stalenessNow, vehicleKey, vehicleStatus } from "../fleet/vehicleStatus";
 import type { VehicleView } from "../protocol";
-import { agedBy, formatAge, formatQuantity } from "../text/quantities";
+import { agedBy, formatAge } from "../text/quantities";
+import { formatHeight } from "../text/units";
 import { clustersOf, type Spot } from "./clusters";
 import { type LabelSpot, placeLabels, type Side } from "./labels";
 import type { LonLat } from "./localGrid";
@@ -162,7 +163,7 @@ function labelText(
 
 function heightText(vehicle: VehicleView): string {
   if (vehicle.is_flying.value !== true) return "on ground";
-  return formatQuantity(vehicle.height_above_takeoff_m.value, "m", 0);
+  return formatHeight(vehicle.height_above_takeoff_m.value);
 }
 
 function bubbleElement(map: MapLibre): HTMLElement {

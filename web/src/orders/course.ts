@@ -1,5 +1,6 @@
 import { type LonLat, metresPerDegree } from "../map/localGrid";
-import { formatAge, formatHeading, formatQuantity } from "../text/quantities";
+import { formatAge, formatHeading } from "../text/quantities";
+import { formatLength } from "../text/units";
 
 /** The straight line from one position to another. */
 export interface Course {
@@ -22,6 +23,6 @@ export function courseOf(from: LonLat, to: LonLat, climb_m: number, speed_mps: n
 
 /** `120 m, bearing 045°, about 24 s`. */
 export function courseText({ distance_m, bearing_deg, time_s }: Course): string {
-  const distance = formatQuantity(distance_m, "m", distance_m < 10 ? 1 : 0);
+  const distance = formatLength(distance_m, distance_m < 10 ? 1 : 0);
   return `${distance}, bearing ${formatHeading(bearing_deg)}, about ${formatAge(Math.ceil(time_s))}`;
 }

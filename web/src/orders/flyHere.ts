@@ -6,6 +6,7 @@ import type { Order, VehicleView } from "../protocol";
 import type { Clock } from "../source/clock";
 import type { StationSource } from "../source/stationSource";
 import { vehicleLabel } from "../text/names";
+import { createLengthField, type LengthField, numberIn } from "../text/units";
 import { type Course, courseOf } from "./course";
 import type { OrderApi } from "./orderApi";
 import { createOrderCheck, type OrderCheck } from "./orderCheck";
@@ -24,8 +25,9 @@ export interface FlyHere {
   /** The selected vehicle; null unless exactly one identified vehicle is selected. */
   readonly vehicle: Accessor<VehicleView | null>;
   readonly target: Accessor<LonLat | null>;
-  /** As typed: metres above takeoff, and metres per second. */
-  readonly height: Accessor<string>;
+  /** Above takeoff. */
+  readonly height: LengthField;
+  /** As typed: metres per second. */
   readonly speed: Accessor<string>;
   readonly course: Accessor<Course | null>;
   /** The safety gate's current result. */
@@ -36,7 +38,6 @@ export interface FlyHere {
   /** Clears the target, else leaves the mode. Returns false when neither was set. */
   clear(): boolean;
   aim(at: LonLat): void;
-  setHeight(text: string): void;
   setSpeed(text: string): void;
   confirm(): void;
   nudge(by: NudgeBy): void;
@@ -50,13 +51,13 @@ export function createFlyHere(
 ): FlyHere {
   const [isOn, setOn] = createSignal(false);
   const [target, setTarget] = createSignal<LonLat | null>(null);
-  const [height, setHeight] = createSignal("");
+  const height = createLengthField(null);
   const [speed, setSpeed] = createSignal(String(SPEED_MPS));
   const key = createMemo(() => {
     const selected = vehicle();
     return selected === null ? null : vehicleKey(selected);
   });
-  const order = createMemo(() => gotoOrder(target(), height(), speed()));
+  const order = createMemo(() => gotoOrder(target(), height.metres(), speed()));
   const serial = createMemo(() => vehicle()?.serial ?? null);
   const named = createMemo(() => {
     const [target_serial, body] = [serial(), order()];
@@ -89,7 +90,7 @@ export function createFlyHere(
       const selected = vehicle();
       if (isOn()) leave();
       else if (selected !== null) {
-        setHeight(currentHeight(selected));
+        height.set(currentHeight_m(selected));
         setOn(true);
       }
     },
@@ -100,7 +101,6 @@ export function createFlyHere(
       return true;
     },
     aim: (at) => isOn() && setTarget(at),
-    setHeight,
     setSpeed,
     confirm: () => {
       const ready = named();
@@ -121,16 +121,16 @@ const USUAL_HEIGHT_M = 30;
 const LEAST_HEIGHT_M = 5;
 
 /** The present height in flight; a usual one for a vehicle on the ground. */
-function currentHeight(vehicle: VehicleView): string {
+function currentHeight_m(vehicle: VehicleView): number | null {
   const { value } = vehicle.height_above_takeoff_m;
-  if (value === null) return "";
+  if (value === null) return null;
   const isLow = vehicle.is_flying.value === false || value < LEAST_HEIGHT_M;
-  return String(isLow ? USUAL_HEIGHT_M : Math.round(value));
+  return isLow ? USUAL_HEIGHT_M : value;
 }
 
 /** The order from the form; null while a part is missing or not a number. */
-function gotoOrder(target: LonLat | null, height: string, speed: string) {
-  const [height_m, speed_mps] = [numberIn(height), numberIn(speed)];
+function gotoOrder(target: LonLat | null, height_m: number | null, speed: string) {
+  const speed_mps = numberIn(speed);
   if (target === null || height_m === null || speed_mps === null || speed_mps <= 0) return null;
   return {
     kind: "goto",
@@ -139,13 +139,6 @@ function gotoOrder(target: LonLat | null, height: string, speed: string) {
     height_above_takeoff_m: height_m,
     speed_mps,
   } as const satisfies Order;
-}
-
-/** The number in a field, with a decimal point or comma; null when it is not a number. */
-export function numberIn(text: string): number | null {
-  const plain = text.trim().replace(",", ".");
-  const value = Number(plain);
-  return plain === "" || !Number.isFinite(value) ? null : value;
 }
 
 function courseTo(

@@ -1,10 +1,10 @@
 import { type Accessor, createMemo, createSignal } from "solid-js";
 import type { LonLat } from "../map/localGrid";
 import type { NewZone } from "../source/stationSource";
+import { createLengthField, type LengthField, numberIn } from "../text/units";
 import { ZONE_KINDS, type ZoneKind } from "../text/zones";
-import { numberIn } from "./flyHere";
 
-const RADIUS_M = "20";
+const RADIUS_M = 20;
 
 /** As many as the station takes. */
 const MOST_CORNERS = 64;
@@ -18,8 +18,9 @@ export interface ZoneDraft {
   readonly shape: Accessor<ZoneShape>;
   /** The centre of a circle, or the corners of an outline so far. */
   readonly points: Accessor<readonly LonLat[]>;
-  /** As typed: metres, minutes (empty: until ended), and words (empty: the kind's own). */
-  readonly radius: Accessor<string>;
+  /** Of a circle. */
+  readonly radius: LengthField;
+  /** As typed: minutes (empty: until ended), and words (empty: the kind's own). */
   readonly minutes: Accessor<string>;
   readonly reason: Accessor<string>;
   /** What to send; null while a part is missing or not a number. */
@@ -34,7 +35,6 @@ export interface ZoneDraft {
   undo(): void;
   setKind(kind: ZoneKind): void;
   setShape(shape: ZoneShape): void;
-  setRadius(text: string): void;
   setMinutes(text: string): void;
   setReason(text: string): void;
 }
@@ -44,10 +44,10 @@ export function createZoneDraft(): ZoneDraft {
   const [kind, setKind] = createSignal<ZoneKind>("person");
   const [shape, setShape] = createSignal<ZoneShape>("circle");
   const [points, setPoints] = createSignal<readonly LonLat[]>([]);
-  const [radius, setRadius] = createSignal(RADIUS_M);
+  const radius = createLengthField(RADIUS_M);
   const [minutes, setMinutes] = createSignal("");
   const [reason, setReason] = createSignal("");
-  const radius_m = createMemo(() => (shape() === "circle" ? numberIn(radius()) : null));
+  const radius_m = createMemo(() => (shape() === "circle" ? radius.metres() : null));
   const leave = () => {
     setPoints([]);
     setReason("");
@@ -93,7 +93,6 @@ export function createZoneDraft(): ZoneDraft {
       setShape(next);
       setPoints(points().slice(0, 1));
     },
-    setRadius,
     setMinutes,
     setReason,
   };

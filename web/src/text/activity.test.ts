@@ -6,12 +6,15 @@ const still = { north_mps: 0.2, east_mps: 0.1, down_mps: 0, age_s: 0.1 };
 
 describe("what a vehicle is doing", () => {
   it.each([
-    ["Flying · 45\u00a0m · 4\u00a0m/s", {}],
-    ["Holding · 45\u00a0m", { velocity_ned: still }],
-    ["All stop · 45\u00a0m", { is_stopped: true, velocity_ned: still }],
+    ["Flying · 45\u00a0m\u00a0ATO · 4\u00a0m/s", {}],
+    ["Holding · 45\u00a0m\u00a0ATO", { velocity_ned: still }],
+    ["All stop · 45\u00a0m\u00a0ATO", { is_stopped: true, velocity_ned: still }],
     ["On the ground", { is_flying: { value: false, age_s: 0.1 } }],
     ["On the ground · all stop", { is_flying: { value: false, age_s: 0.1 }, is_stopped: true }],
-    ["Landing · 45\u00a0m · 4\u00a0m/s", { flight_mode: { value: "auto_landing", age_s: 0.1 } }],
+    [
+      "Landing · 45\u00a0m\u00a0ATO · 4\u00a0m/s",
+      { flight_mode: { value: "auto_landing", age_s: 0.1 } },
+    ],
     ["Contact lost · 6.0 s", { staleness: "lost", telemetry_age_s: 6 }],
     ["Flight state unknown", { is_flying: { value: null, age_s: 0.1 } }],
     ["Waiting for serial number", { serial: null }],

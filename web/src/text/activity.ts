@@ -2,6 +2,7 @@ import type { FleetView } from "../fleet/fleetView";
 import { vehicleStatus } from "../fleet/vehicleStatus";
 import type { SurveyingView, SurveyView, VehicleView } from "../protocol";
 import { agedBy, formatAge, formatQuantity, groundSpeedMps } from "./quantities";
+import { formatHeight } from "./units";
 
 const ACTIVE: readonly SurveyView["phase"][] = ["running", "paused"];
 
@@ -53,7 +54,7 @@ function isStill({ velocity_ned: { north_mps, east_mps, down_mps } }: VehicleVie
 /** Height and, while it moves, speed. */
 function figures(vehicle: VehicleView): string[] {
   const { north_mps, east_mps } = vehicle.velocity_ned;
-  const height = formatQuantity(vehicle.height_above_takeoff_m.value, "m", 0);
+  const height = formatHeight(vehicle.height_above_takeoff_m.value);
   const speed = formatQuantity(groundSpeedMps(north_mps, east_mps), "m/s", 0);
   return isStill(vehicle) ? [height] : [height, speed];
 }

@@ -1,5 +1,6 @@
 import type { TemporaryZoneView } from "../protocol";
-import { formatAge, formatQuantity } from "./quantities";
+import { formatAge } from "./quantities";
+import { formatLength } from "./units";
 
 export type ZoneKind = TemporaryZoneView["kind"];
 
@@ -20,10 +21,10 @@ export function zoneHeights({
   floor_m,
   ceiling_m,
 }: Pick<TemporaryZoneView, "floor_m" | "ceiling_m">): string {
-  const metres = (m: number) => formatQuantity(m, "m", 0);
-  if (ceiling_m === null) return floor_m ? `from ${metres(floor_m)} up` : "all heights";
-  const from = floor_m ? `${metres(floor_m)} to ` : "up to ";
-  return `${from}${metres(ceiling_m)} above ground`;
+  if (ceiling_m === null)
+    return floor_m ? `from ${formatLength(floor_m)} above ground up` : "all heights";
+  const from = floor_m ? `${formatLength(floor_m)} to ` : "up to ";
+  return `${from}${formatLength(ceiling_m)} above ground`;
 }
 
 /** When it ends, `behindS` seconds after the state. */

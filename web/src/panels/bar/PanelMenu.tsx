@@ -1,5 +1,6 @@
 import { For } from "solid-js";
 import { useConsole } from "../../console";
+import { chooseLengthUnit, LENGTH_UNITS, type LengthUnit, lengthUnit } from "../../text/units";
 import { THEME_NAMES, type Theme } from "../../theme/theme";
 import { PersonTag } from "../login/PersonTag";
 import { PANEL_NAMES, type PanelName } from "../openPanels";
@@ -30,6 +31,7 @@ export function PanelMenu(props: { onHelp: () => void }) {
             )}
           </For>
           <Colours />
+          <Units />
           <button
             type="button"
             class="button button-quiet menu-item"
@@ -44,6 +46,23 @@ export function PanelMenu(props: { onHelp: () => void }) {
         </section>
       )}
     </Popover>
+  );
+}
+
+function Units() {
+  return (
+    <label class="menu-colours">
+      Units
+      <select
+        class="field"
+        value={lengthUnit()}
+        onChange={(event) => chooseLengthUnit(event.currentTarget.value as LengthUnit)}
+      >
+        <For each={Object.entries(LENGTH_UNITS)}>
+          {([name, text]) => <option value={name}>{text}</option>}
+        </For>
+      </select>
+    </label>
   );
 }
 

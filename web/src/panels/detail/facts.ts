@@ -8,6 +8,7 @@ import {
   UNKNOWN,
   unknownReason,
 } from "../../text/quantities";
+import { formatLength } from "../../text/units";
 
 /** One line of a vehicle's telemetry. */
 export interface Fact {
@@ -23,10 +24,8 @@ export interface Fact {
 export function factsOf(vehicle: VehicleView): Fact[] {
   const { position, attitude, velocity_ned: velocity } = vehicle;
   return [
-    aged("Height above takeoff", vehicle.height_above_takeoff_m, (m) => formatQuantity(m, "m")),
-    aged("Altitude (WGS84, as reported)", vehicle.reported_altitude_m, (m) =>
-      formatQuantity(m, "m"),
-    ),
+    aged("Height above takeoff", vehicle.height_above_takeoff_m, (m) => formatLength(m, 1)),
+    aged("Altitude (WGS84, as reported)", vehicle.reported_altitude_m, (m) => formatLength(m, 1)),
     fact("Speed over ground", groundSpeed(vehicle), velocity.age_s),
     fact("Climb rate", climb(velocity.down_mps), velocity.age_s),
     fact("Heading", formatHeading(attitude.yaw_deg), attitude.age_s),

@@ -2,6 +2,7 @@ import { Match, Show, Switch } from "solid-js";
 import { useConsole } from "../../console";
 import { courseText } from "../../orders/course";
 import { vehicleLabel } from "../../text/names";
+import { lengthUnit } from "../../text/units";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { SeverityMark } from "../SeverityMark";
 import { NudgePad } from "./NudgePad";
@@ -42,13 +43,13 @@ export function FlyHereCard() {
         </Show>
         <div class="fly-fields">
           <label>
-            Above takeoff, m
+            Above takeoff, {lengthUnit()}
             <input
               class="field"
               type="text"
               inputmode="decimal"
-              value={flyHere.height()}
-              onInput={(event) => flyHere.setHeight(event.currentTarget.value)}
+              value={flyHere.height.text()}
+              onInput={(event) => flyHere.height.type(event.currentTarget.value)}
             />
           </label>
           <label>

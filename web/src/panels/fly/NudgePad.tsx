@@ -1,9 +1,11 @@
 import { createSignal, For } from "solid-js";
 import { useConsole } from "../../console";
 import type { NudgeBy } from "../../orders/flyHere";
+import { type LengthUnit, lengthUnit, metresOf } from "../../text/units";
 import { BRIEF_MS, GuardButton } from "../guard/GuardButton";
 
-const STEPS_M = [1, 2, 5] as const;
+/** Round numbers of each unit. */
+const STEPS: Readonly<Record<LengthUnit, readonly number[]>> = { m: [1, 2, 5], ft: [3, 6, 15] };
 const TURN_DEG = 15;
 
 interface Nudge {
@@ -27,21 +29,23 @@ const NUDGES: readonly Nudge[] = [
 /** Small steps from the current position; each button must be held briefly. */
 export function NudgePad(props: { name: string }) {
   const { flyHere } = useConsole();
-  const [step_m, setStep_m] = createSignal<number>(STEPS_M[0]);
+  const [size, setSize] = createSignal(0);
+  const steps = () => STEPS[lengthUnit()];
+  const step_m = () => metresOf(steps()[size()] ?? 1);
   const subject = () => JSON.stringify([flyHere.vehicle()?.serial, step_m()]);
   return (
     <details class="nudges">
       <summary>Nudge in small steps</summary>
       <fieldset class="nudge-steps" aria-label="Step size">
-        <For each={STEPS_M}>
-          {(metres) => (
+        <For each={steps()}>
+          {(step, index) => (
             <button
               type="button"
               class="button"
-              aria-pressed={step_m() === metres}
-              onClick={() => setStep_m(metres)}
+              aria-pressed={size() === index()}
+              onClick={() => setSize(index())}
             >
-              {metres} m
+              {step} {lengthUnit()}
             </button>
           )}
         </For>

@@ -1,8 +1,8 @@
 import { afterEach, beforeEach, describe, expect, it } from "vitest";
 import { courseOf, courseText } from "../../orders/course";
-import { numberIn } from "../../orders/flyHere";
 import { at, orderResult, station, vehicle } from "../../testing/fakeState";
 import { find, type RenderedPage, renderPage, settled } from "../../testing/renderPage";
+import { numberIn } from "../../text/units";
 import { FlyHereCard } from "./FlyHereCard";
 
 const lonLat = (east_m: number, north_m: number) => {

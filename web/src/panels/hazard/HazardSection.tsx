@@ -2,7 +2,8 @@ import { createSignal } from "solid-js";
 import { useConsole } from "../../console";
 import type { HazardView } from "../../protocol";
 import { responseProblem } from "../../text/names";
-import { formatAge, formatQuantity } from "../../text/quantities";
+import { formatAge } from "../../text/quantities";
+import { formatLength } from "../../text/units";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Problem } from "../Panel";
 
@@ -19,8 +20,8 @@ export function HazardSection(props: { hazard: HazardView; name: string }) {
         <strong class="tone-critical">
           No telemetry for {formatAge(props.hazard.age_s + behindS())}.
         </strong>{" "}
-        The vehicle may be anywhere within {formatQuantity(props.hazard.radius_m, "m", 0)} of its
-        last position, or on its way home. Other vehicles keep clear until telemetry returns.
+        The vehicle may be anywhere within {formatLength(props.hazard.radius_m)} of its last
+        position, or on its way home. Other vehicles keep clear until telemetry returns.
       </p>
       <GuardButton
         label="Clear hazard area"

@@ -40,6 +40,12 @@ export function HelpDialog(props: { isOpen: boolean; onClose: () => void }) {
         force: only hover, return and land are sent until the vehicles are released. The pilot's
         sticks always override the station.
       </p>
+      <h2>Heights</h2>
+      <p>
+        ATO is above the vehicle's own takeoff point. Other heights name their datum in full. The
+        menu has metres or feet for heights and distances; sentences of the station and the site's
+        editor are in metres.
+      </p>
       <button type="button" class="button" onClick={() => props.onClose()}>
         Close
       </button>

@@ -3,7 +3,8 @@ import { useConsole } from "../../console";
 import { targetsKey } from "../../orders/targets";
 import type { FleetReturnView, ReturningView } from "../../protocol";
 import { listNames, personName } from "../../text/names";
-import { formatAge, formatQuantity } from "../../text/quantities";
+import { formatAge } from "../../text/quantities";
+import { formatLength } from "../../text/units";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Panel } from "../Panel";
 import { SeverityMark } from "../SeverityMark";
@@ -110,7 +111,7 @@ function Where(props: { vehicle: ReturningView }) {
   const height = () => props.vehicle.layer_height_above_takeoff_m;
   return (
     <>
-      <Show when={height() !== null}>, {formatQuantity(height(), "m", 0)} above takeoff</Show>
+      <Show when={height() !== null}>, {formatLength(height())} above takeoff</Show>
       <Show when={props.vehicle.pad}>{(pad) => <>, pad {pad()}</>}</Show>
     </>
   );

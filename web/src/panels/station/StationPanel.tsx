@@ -3,6 +3,7 @@ import { useConsole } from "../../console";
 import type { SiteView, StationView } from "../../protocol";
 import { saveAs } from "../../source/saveAs";
 import { formatAge, formatBytes, formatQuantity, UNKNOWN } from "../../text/quantities";
+import { formatLength } from "../../text/units";
 import { AppAddress } from "../links/AppAddress";
 import { SharedAddress } from "../login/SharedAddress";
 import { Panel } from "../Panel";
@@ -84,19 +85,13 @@ function SiteFacts(props: { site: SiteView }) {
     <Facts
       facts={[
         ["Site", props.site.name],
-        ["Ground altitude, WGS84", formatQuantity(props.site.ground_altitude_m, "m")],
+        ["Ground altitude, WGS84", formatLength(props.site.ground_altitude_m, 1)],
         ["Terrain", props.site.terrain === "model" ? "elevation model" : "assumed flat"],
-        [
-          "Max. height above ground",
-          formatQuantity(props.site.limits.max_height_above_ground_m, "m"),
-        ],
-        [
-          "Max. distance from home",
-          formatQuantity(props.site.limits.max_distance_from_home_m, "m"),
-        ],
+        ["Max. height above ground", formatLength(props.site.limits.max_height_above_ground_m, 1)],
+        ["Max. distance from home", formatLength(props.site.limits.max_distance_from_home_m, 1)],
         ["Imaging drones", props.site.imager_serials.join(", ") || UNKNOWN],
         ["Camera pose error, RMS", formatQuantity(props.site.pose_rms_px, "px", 2)],
-        ["Camera pose height", formatQuantity(props.site.pose_height_m, "m")],
+        ["Camera pose height above ground", formatLength(props.site.pose_height_m, 1)],
       ]}
     />
   );

@@ -3,9 +3,13 @@ import { useConsole } from "../../console";
 import type { LookAsideView } from "../../protocol";
 import { responseProblem, vehicleLabel } from "../../text/names";
 import { formatHeading } from "../../text/quantities";
+import { formatLength } from "../../text/units";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Problem } from "../Panel";
 import { isOver, MotionProgress } from "./MotionProgress";
+
+/** How far the station flies it aside. */
+const ASIDE_M = 25;
 
 /** Has an imaging drone fly aside and back, to tell even sun from even shade; and its progress. */
 export function LookAside() {
@@ -19,7 +23,7 @@ export function LookAside() {
   const button = (label: string, name: string, serial: string) => (
     <GuardButton
       label={label}
-      of={`fly ${name} 25 m aside and back`}
+      of={`fly ${name} ${formatLength(ASIDE_M)} aside and back`}
       hold_ms={GUARD_MS}
       subject={isUnderWay() ? "" : serial}
       onConfirm={() => void order(serial)}
@@ -29,7 +33,8 @@ export function LookAside() {
   return (
     <section class="section" aria-label="Look aside">
       <p class="muted">
-        Under an even sky, an imaging drone flies 25&nbsp;m aside and back, to tell sun from shade.
+        Under an even sky, an imaging drone flies {formatLength(ASIDE_M)} aside and back, to tell
+        sun from shade.
       </p>
       <For each={imagers()} fallback={button("Look aside", "the imaging drone", "")}>
         {(vehicle) =>

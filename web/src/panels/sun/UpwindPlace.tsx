@@ -9,7 +9,7 @@ import type {
 } from "../../protocol";
 import type { Outcome } from "../../source/stationSource";
 import { vehicleLabel } from "../../text/names";
-import { formatQuantity } from "../../text/quantities";
+import { formatLength } from "../../text/units";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { MotionProgress } from "./MotionProgress";
 
@@ -27,7 +27,7 @@ export function UpwindPlace() {
         {(view) => (
           <MotionProgress
             view={view()}
-            stage={`${STAGES[view().stage] ?? view().stage}, ${metres(view().place)}`}
+            stage={`${STAGES[view().stage] ?? view().stage}, ${distance(view().place)}`}
             testId="move-upwind"
           />
         )}
@@ -84,7 +84,7 @@ function Place(props: { vehicle: VehicleView }) {
         {(to) => (
           <GuardButton
             label="Fly upwind"
-            of={`${name()}, ${metres(to())}`}
+            of={`${name()}, ${distance(to())}`}
             hold_ms={GUARD_MS}
             subject={JSON.stringify([to().latitude_deg, to().longitude_deg])}
             onConfirm={fly}
@@ -102,8 +102,8 @@ const STAGES: Readonly<Partial<Record<MoveUpwindView["stage"], string>>> = {
   stopped: "stopped its flight upwind",
 };
 
-function metres({ distance_m }: UpwindPlaceView): string {
-  return formatQuantity(distance_m, "m", 0);
+function distance({ distance_m }: UpwindPlaceView): string {
+  return formatLength(distance_m);
 }
 
 function gotoOf(place: UpwindPlaceView): Order {

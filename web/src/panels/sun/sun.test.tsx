@@ -101,7 +101,7 @@ describe("look aside", () => {
 
   it("is ordered by a held button that names the imaging drone", () => {
     showImager(null);
-    expect(button().getAttribute("aria-label")).toContain("25 m aside and back");
+    expect(button().getAttribute("aria-label")).toContain("25\u00a0m aside and back");
     button().dispatchEvent(new PointerEvent("pointerdown", { bubbles: true, button: 0 }));
     page.clock.advance(GUARD_MS);
     expect(page.requests).toEqual([{ lookAside: "SN-001" }]);

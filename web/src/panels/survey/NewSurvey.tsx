@@ -2,6 +2,7 @@ import { createResource, createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { SurveyResponse } from "../../protocol";
 import type { Outcome } from "../../source/stationSource";
+import { createLengthField, inLengthUnit, lengthUnit } from "../../text/units";
 
 const PLANNERS = [
   ["lawnmower_once", "All rows once"],
@@ -14,6 +15,9 @@ const WHEN_DONE = [
   ["hover", "Hover"],
 ] as const;
 
+/** Heights above takeoff that can be planned, and the one offered. */
+const [LOWEST_M, HIGHEST_M, USUAL_HEIGHT_M] = [10, 120, 50];
+
 /**
  * Form to plan a survey of a site region. Planning moves nothing, so a plain press suffices. Collapsed once
  * there is a survey, since running surveys matter more.
@@ -23,6 +27,7 @@ export function NewSurvey(props: {
   onResult: (outcome: Outcome<SurveyResponse>) => void;
 }) {
   const { source, fleet, lacks } = useConsole();
+  const height = createLengthField(USUAL_HEIGHT_M);
   const [isPlanning, setPlanning] = createSignal(false);
   const [cameras] = createResource(async () => {
     const outcome = await source.surveys.cameras();
@@ -30,12 +35,14 @@ export function NewSurvey(props: {
   });
   const regions = () => (fleet.site?.areas ?? []).filter(({ kind }) => kind === "survey");
   const plan = async (form: HTMLFormElement) => {
+    const height_above_takeoff_m = height.metres();
+    if (height_above_takeoff_m === null) return;
     const data = new FormData(form);
     setPlanning(true);
     const model = String(data.get("camera") ?? "");
     const outcome = await source.surveys.plan({
       region: String(data.get("region")),
-      height_above_takeoff_m: Number(data.get("height")),
+      height_above_takeoff_m,
       speed_mps: Number(data.get("speed")),
       planner: String(data.get("planner")),
       camera: { model: model === "" ? null : model, interval_s: Number(data.get("interval")) },
@@ -68,8 +75,16 @@ export function NewSurvey(props: {
             </select>
           </label>
           <label>
-            Height above takeoff, m
-            <input name="height" type="number" min={10} max={120} step={1} value={50} required />
+            Height above takeoff, {lengthUnit()}
+            <input
+              type="number"
+              min={Math.ceil(inLengthUnit(LOWEST_M))}
+              max={Math.floor(inLengthUnit(HIGHEST_M))}
+              step={1}
+              value={height.text()}
+              onInput={(event) => height.type(event.currentTarget.value)}
+              required
+            />
           </label>
           <label>
             Speed, m/s

@@ -4,6 +4,7 @@ import type { ZoneShape } from "../../orders/zoneDraft";
 import type { TemporaryZoneView } from "../../protocol";
 import { personName, responseProblem } from "../../text/names";
 import { formatAge } from "../../text/quantities";
+import { lengthUnit } from "../../text/units";
 import { ZONE_KINDS, type ZoneKind, zoneEnd, zoneHeights, zoneName } from "../../text/zones";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Empty, Panel, Problem } from "../Panel";
@@ -133,13 +134,13 @@ function DrawForm() {
       </label>
       <Show when={zoneDraft.shape() === "circle"}>
         <label>
-          Radius, m
+          Radius, {lengthUnit()}
           <input
             class="field"
             type="text"
             inputmode="decimal"
-            value={zoneDraft.radius()}
-            onInput={(event) => zoneDraft.setRadius(event.currentTarget.value)}
+            value={zoneDraft.radius.text()}
+            onInput={(event) => zoneDraft.radius.type(event.currentTarget.value)}
           />
         </label>
       </Show>

@@ -97,7 +97,7 @@ describe("drawing a zone", () => {
     zoneDraft.setMinutes("ten");
     expect(zoneDraft.zone()).toBeNull();
     zoneDraft.setMinutes("");
-    zoneDraft.setRadius("-5");
+    zoneDraft.radius.type("-5");
     expect(zoneDraft.zone()).toBeNull();
   });
 
@@ -142,7 +142,7 @@ describe("a zone in words", () => {
     expect(zoneLabel(zone(3), 0)).toBe("Person 3, 2 min: keep out, up to 30\u00a0m above ground");
     expect(zoneLabel(zone(4, [0, 0], { age_s: 3 }), 0)).toContain("Person 4, new:");
     expect(zoneHeights({ floor_m: null, ceiling_m: null })).toBe("all heights");
-    expect(zoneHeights({ floor_m: 10, ceiling_m: null })).toBe("from 10\u00a0m up");
+    expect(zoneHeights({ floor_m: 10, ceiling_m: null })).toBe("from 10\u00a0m above ground up");
     expect(zoneHeights({ floor_m: 10, ceiling_m: 30 })).toBe("10\u00a0m to 30\u00a0m above ground");
     expect(zoneEnd(null, 0)).toBe("until ended");
   });
