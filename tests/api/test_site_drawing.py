@@ -271,7 +271,7 @@ def test_fences_are_an_administrators_and_regions_an_operators(editor: Editor) -
 
     assert saved(REGION) is None
     assert saved(REGION, BOUNDARY) == (
-        "anna has the role operator; boundary, zones and pads need admin"
+        "anna has the role operator; boundary, zones, pads and vehicles need admin"
     )
 
 

@@ -153,12 +153,12 @@ def test_a_record_keeps_a_drawing(folder: Path, tmp_path: Path) -> None:
     recon_site("import", str(folder), str(area), "--as", "boundary")
     site = load_site(folder)
     airspace = site.airspace
-    pads = {serial: profile.pad for serial, profile in site.profiles.items()}
-    drawn = (airspace.boundary, airspace.zones, airspace.landing_pads, pads)
+    profiles = site.profiles
+    drawn = (airspace.boundary, airspace.zones, airspace.landing_pads, profiles)
     event = SiteRedrawn(*drawn, (SiteLayer.BOUNDARY,), "anna")
     codec = Codec()
     again: SiteRedrawn = codec.decode(codec.encode(event, SiteRedrawn), SiteRedrawn)
     assert again.boundary is not None
     assert airspace.boundary is not None
     assert again.boundary.outline_m.tolist() == airspace.boundary.outline_m.tolist()
-    assert (again.pads, again.layers, again.by) == (pads, (SiteLayer.BOUNDARY,), "anna")
+    assert (again.profiles, again.layers, again.by) == (profiles, (SiteLayer.BOUNDARY,), "anna")

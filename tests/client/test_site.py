@@ -1,4 +1,4 @@
-"""The site's layers from Python: read, checked, saved and undone."""
+"""The site's layers and vehicles from Python: read, checked, saved and undone."""
 
 from pathlib import Path
 
@@ -6,7 +6,7 @@ from tests.api.fake_station import FakeStation, application
 from tests.client.running_station import serving
 from tests.patient_loop import run_patiently
 
-from recon.client import Refusal, SiteDrawing, SiteFeature, Station
+from recon.client import Refusal, SiteDrawing, SiteFeature, SiteVehicle, SiteVehicles, Station
 from recon.model.geo import GeoPoint
 from recon.site import load_site
 from recon.site.new_site import make_site
@@ -45,5 +45,27 @@ def test_layers_are_read_checked_saved_and_undone(tmp_path: Path) -> None:
             undone = await site.undo(saved.revision)
             assert isinstance(undone, SiteDrawing)
             assert undone.features == ()
+
+    run_patiently(main())
+
+
+def test_vehicles_are_read_and_saved(tmp_path: Path) -> None:
+    make_site(tmp_path, "field", GeoPoint(41.9012, -93.6034, 275.0), 1)
+    fake = FakeStation(load_site(tmp_path))
+    fake.service.edit(tmp_path)
+
+    async def main() -> None:
+        async with serving(application(fake)) as url, Station(url) as station:
+            site = station.site
+            before = await site.vehicles()
+            assert before.vehicles == (SiteVehicle("SIM-1", "Drone 1", 1, None, "takeoff"),)
+            new = SiteVehicle("NEW-9", number=9)
+            saved = await site.save_vehicles([*before.vehicles, new], before.revision)
+            assert isinstance(saved, SiteVehicles)
+            assert saved.vehicles == (*before.vehicles, new)
+            wrong = SiteVehicle("NEW-9", camera="none such")
+            refused = await site.save_vehicles([wrong], saved.revision)
+            assert isinstance(refused, Refusal)
+            assert "survey camera" in refused.reason
 
     run_patiently(main())

@@ -3,7 +3,7 @@ import type { ReplayView, StationState, TimelineEntryView } from "../src/protoco
 import { link, vehicle, zone } from "../src/testing/fakeState";
 import { axeFaults } from "./axe";
 import { busyState } from "./fake/busyState";
-import { DRAWING } from "./fake/drawnSite";
+import { DRAWING, REFUSED_VEHICLE, VEHICLES } from "./fake/drawnSite";
 import { CHECKLIST, fencedState } from "./fake/fencedState";
 import { FakeStation } from "./fake/station";
 import { surveyedState } from "./fake/surveyedState";
@@ -23,6 +23,7 @@ const PANELS = [
   "Imaging drone",
   "Temporary zones",
   "Edit site",
+  "Site vehicles",
   "Return in layers",
   "Orders",
   "Timeline",
@@ -90,6 +91,8 @@ async function openConsole(page: Page) {
   let state = fullState();
   const fake = await FakeStation.behind(page, state);
   fake.drawing = DRAWING;
+  fake.vehicles = VEHICLES;
+  fake.vehiclesResult = REFUSED_VEHICLE;
   fake.preflight = CHECKLIST;
   await page.route("**/api/timeline?**", (route) =>
     route.fulfill({ json: { entries: [ENTRY], has_more: true } }),
@@ -150,6 +153,12 @@ for (const size of SIZES) {
       if (panel === "Edit site") {
         await page.getByRole("button", { name: "Edit", exact: true }).click();
         await page.getByRole("button", { name: /^farmyard/ }).click();
+      }
+      if (panel === "Site vehicles") {
+        await page.getByRole("textbox", { name: "Name of SN-009" }).fill("Birch");
+        await page.getByRole("textbox", { name: "Number of SN-009" }).fill("1");
+        await page.keyboard.press("Tab");
+        await expect(page.getByText("Number: 1 is the number of Alder too")).toBeVisible();
       }
       await check(panel);
       await panels.getByRole("button", { name: /^Close ./ }).click();

@@ -2,7 +2,7 @@ import { expect, test } from "@playwright/test";
 import type { StationState } from "../src/protocol";
 import { alarm, link, station, vehicle } from "../src/testing/fakeState";
 import { busyState } from "./fake/busyState";
-import { DRAWING, HERE, REFUSED, sendAges } from "./fake/drawnSite";
+import { DRAWING, HERE, REFUSED, REFUSED_VEHICLE, sendAges, VEHICLES } from "./fake/drawnSite";
 import { fleetState } from "./fake/fleetState";
 import { fieldPicture } from "./fake/picture";
 import { FakeStation } from "./fake/station";
@@ -175,6 +175,22 @@ for (const theme of THEMES) {
       await panel.getByText(/edges do not meet/).waitFor();
       await page.waitForTimeout(1000);
       await page.screenshot({ path: `screens/site-${theme.name}-${size.width}.png` });
+    });
+
+    test(`site vehicles, ${theme.name} at ${size.width}x${size.height}`, async ({ page }) => {
+      await page.setViewportSize(size);
+      await page.emulateMedia({ colorScheme: theme.colorScheme });
+      const fake = await FakeStation.behind(page, HERE);
+      fake.vehicles = VEHICLES;
+      fake.vehiclesResult = REFUSED_VEHICLE;
+      sendAges(page, fake);
+      await page.goto("/");
+      await applyTheme(page, theme);
+      await openPanel(page, "Site vehicles");
+      await page.getByRole("textbox", { name: "Number of SN-009" }).fill("1");
+      await page.keyboard.press("Tab");
+      await page.getByText("Number: 1 is the number of Alder too").waitFor();
+      await page.screenshot({ path: `screens/vehicles-${theme.name}-${size.width}.png` });
     });
   }
 }

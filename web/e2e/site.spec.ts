@@ -72,6 +72,33 @@ test("a site is drawn and imported, flown, and its fences keep while it is flown
       await expect(panel.getByText("Saved: survey regions. In force now")).toBeVisible();
     });
 
+    const table = page.getByRole("region", { name: "Site vehicles", exact: true });
+    const saveTable = table.getByRole("button", { name: /^Save/ });
+    await test.step("vehicles are edited in a table, in force at once, and undone", async () => {
+      await openPanel(page, "Site vehicles");
+      await table.getByRole("textbox", { name: "Name of SIM-2" }).fill("Birch");
+      const number = table.getByRole("textbox", { name: "Number of SIM-2" });
+      await number.fill("1");
+      await number.press("Tab");
+      await expect(table.getByText("Number: 1 is the number of Drone 1 too")).toBeVisible();
+      await number.fill("12");
+      await table.getByRole("textbox", { name: "Serial, as the app shows it" }).fill("NEW-9");
+      await table.getByRole("button", { name: "Add vehicle" }).click();
+      await expect(table.getByText(/^Ready to save: SIM-2 name Drone 2 -> Birch/)).toBeVisible();
+      await saveTable.click();
+      await expect(table.getByText("Saved: 2 vehicles. In force now")).toBeVisible();
+      await expect(page.getByRole("checkbox", { name: /Birch/ })).toBeVisible();
+      await table.getByRole("button", { name: "Remove SIM-2" }).click();
+      await saveTable.click();
+      await expect(table.getByText("Saved: 1 vehicle. In force now")).toBeVisible();
+      await table.getByRole("button", { name: "Add SIM-2" }).click();
+      await expect(table.getByRole("row", { name: "SIM-2" })).toBeVisible();
+      await table.getByRole("button", { name: "Discard" }).click();
+      await table.getByRole("button", { name: /^Undo last save: vehicles/ }).click();
+      await expect(table.getByText("Undone. In force now")).toBeVisible();
+      await expect(page.getByRole("checkbox", { name: /Birch/ })).toBeVisible();
+    });
+
     await test.step("while a drone flies, a fence stays, and the refusal names it", async () => {
       const survey = page.getByRole("region", { name: "Survey", exact: true });
       await survey.getByRole("button", { name: "Plan survey" }).click();
@@ -90,6 +117,11 @@ test("a site is drawn and imported, flown, and its fences keep while it is flown
       await expect(
         panel.getByText(/^Not saved: Boundary, zones and pads change only/),
       ).toContainText("Drone 1");
+      const reference = table.getByRole("combobox", { name: "Altitude reference of SIM-1" });
+      await reference.selectOption("WGS84 ellipsoid");
+      await expect(table.getByText(/change, and it is added or removed, only while/)).toContainText(
+        "Drone 1. Land first",
+      );
     });
   } finally {
     await station.stop();

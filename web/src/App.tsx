@@ -22,6 +22,7 @@ import { ReplayBar } from "./panels/replay/ReplayBar";
 import { FleetReturn } from "./panels/return/FleetReturn";
 import { SeparationBanner } from "./panels/separation/SeparationHold";
 import { SitePanel } from "./panels/site/SitePanel";
+import { VehiclesPanel } from "./panels/site/VehiclesPanel";
 import { StationPanel } from "./panels/station/StationPanel";
 import { StopBanner } from "./panels/stop/StopLatch";
 import { SunPanel } from "./panels/sun/SunPanel";
@@ -40,6 +41,7 @@ const PANELS: readonly (readonly [PanelName, () => ReturnType<typeof AlarmList>]
   ["sun", SunPanel],
   ["zones", ZonesPanel],
   ["site", SitePanel],
+  ["vehicles", VehiclesPanel],
   ["return", FleetReturn],
   ["orders", CommandList],
   ["timeline", TimelinePanel],

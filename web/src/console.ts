@@ -18,6 +18,7 @@ import { createZoneDraft, type ZoneDraft } from "./orders/zoneDraft";
 import type { OpenPanels } from "./panels/openPanels";
 import type { ReplayView, SurveyView } from "./protocol";
 import { createSiteDraft, type SiteDraft } from "./site/siteDraft";
+import { createVehicleTable, type VehicleTable } from "./site/vehicleTable";
 import { type AlarmSound, createAlarmSound } from "./sound/alarmSound";
 import type { Mutes } from "./sound/mutes";
 import type { Speaker } from "./sound/speaker";
@@ -51,6 +52,7 @@ export interface Console {
   readonly flyHere: FlyHere;
   readonly zoneDraft: ZoneDraft;
   readonly siteDraft: SiteDraft;
+  readonly vehicleTable: VehicleTable;
   readonly overlay: Overlay;
   readonly theme: ThemeSwitch;
   readonly panels: OpenPanels;
@@ -117,6 +119,9 @@ export function createConsole(
     clock,
     () => fleet.site?.ground_altitude_m ?? null,
   );
+  const vehicleTable = createVehicleTable(source.site, clock);
+  createEffect(on(vehicleTable.saves, () => void siteDraft.refresh(), { defer: true }));
+  createEffect(on(siteDraft.saves, () => void vehicleTable.refresh(), { defer: true }));
   // A press on the map means one thing at a time.
   const modes = [
     { isOn: flyHere.isOn, leave: () => flyHere.isOn() && flyHere.toggle() },
@@ -151,6 +156,7 @@ export function createConsole(
     flyHere,
     zoneDraft,
     siteDraft,
+    vehicleTable,
     overlay: createOverlay(() => fleet.surveys.some(({ phase }) => ACTIVE.includes(phase))),
     theme,
     panels,

@@ -50,6 +50,7 @@ LEAST_ROLE: dict[tuple[str, str], Role] = {
     ("GET", "/api/cameras"): Role.OBSERVER,
     ("GET", "/api/zones"): Role.OBSERVER,
     ("GET", "/api/site/drawing"): Role.OBSERVER,
+    ("GET", "/api/site/vehicles"): Role.OBSERVER,
     ("GET", "/api/replay/marks"): Role.OBSERVER,
     # Of a replay, which orders nothing; a live station refuses it.
     ("POST", "/api/replay"): Role.OBSERVER,
@@ -79,6 +80,8 @@ LEAST_ROLE: dict[tuple[str, str], Role] = {
     ("POST", "/api/site/drawing/check"): Role.OPERATOR,
     ("POST", "/api/site/drawing/undo"): Role.OPERATOR,
     ("POST", "/api/site/import"): Role.OPERATOR,
+    ("POST", "/api/site/vehicles"): Role.OPERATOR,
+    ("POST", "/api/site/vehicles/check"): Role.OPERATOR,
     # Finding a lost vehicle is routine; the operators talk to those who look for it.
     ("POST", "/api/vehicle/hazard/dismiss"): Role.OPERATOR,
     # On is the operators', off the administrators': see `separation_hold_role`.

@@ -16,6 +16,9 @@ from recon.api.schema import (
     SiteDrawingRequest,
     SiteDrawingResponse,
     SiteDrawingView,
+    SiteVehiclesRequest,
+    SiteVehiclesResponse,
+    SiteVehiclesView,
     StationState,
     SunAtView,
     SurveyCameraView,
@@ -61,6 +64,14 @@ class SiteFolder(Protocol):
         self, asked: SiteDrawingRequest, by: Person, *, is_check: bool
     ) -> SiteDrawingResponse:
         """Check a drawing, save it and bring it into force; refusals are results, not errors."""
+
+    async def vehicles(self) -> SiteVehiclesView:
+        """Return the vehicles in the folder."""
+
+    async def save_vehicles(
+        self, asked: SiteVehiclesRequest, by: Person, *, is_check: bool
+    ) -> SiteVehiclesResponse:
+        """Check vehicles, save them and bring them into force; refusals are results."""
 
     async def undo(self, revision: str, by: Person) -> SiteDrawingResponse:
         """Take back the newest change; refusals are results, not errors."""

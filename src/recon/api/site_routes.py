@@ -1,4 +1,4 @@
-"""Routes for the site's layers: read, check, save, undo, import."""
+"""Routes for the site's layers and vehicles: read, check, save, undo, import."""
 
 from typing import Annotated
 
@@ -34,6 +34,28 @@ def add_site_routes(app: FastAPI, port: StationPort) -> None:
         administrator.
         """
         return await port.site_folder().save(asked, person_of(request), is_check=False)
+
+    @app.get("/api/site/vehicles")
+    async def vehicles() -> schema.SiteVehiclesView:
+        """The vehicles of the site's folder, also those that have never connected."""
+        return await port.site_folder().vehicles()
+
+    @app.post("/api/site/vehicles/check")
+    async def check_vehicles(
+        asked: schema.SiteVehiclesRequest, request: Request
+    ) -> schema.SiteVehiclesResponse:
+        """Check the vehicles as the station would at its start; nothing is saved."""
+        return await port.site_folder().save_vehicles(asked, person_of(request), is_check=True)
+
+    @app.post("/api/site/vehicles")
+    async def save_vehicles(
+        asked: schema.SiteVehiclesRequest, request: Request
+    ) -> schema.SiteVehiclesResponse:
+        """Save the vehicles in the site's folder and bring them into force, by an administrator.
+
+        The altitude reference and the number of a vehicle change only while it is on the ground.
+        """
+        return await port.site_folder().save_vehicles(asked, person_of(request), is_check=False)
 
     @app.post("/api/site/drawing/undo")
     async def undo(asked: schema.SiteUndoRequest, request: Request) -> schema.SiteDrawingResponse:

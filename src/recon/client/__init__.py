@@ -34,7 +34,7 @@ from recon.client.messages import (
     WaitingAppStatus,
 )
 from recon.client.order import Order, VehicleAnswer
-from recon.client.site import SiteCommands, SiteDrawing, SiteFeature
+from recon.client.site import SiteCommands, SiteDrawing, SiteFeature, SiteVehicle, SiteVehicles
 from recon.client.station import FleetCommands, Station
 from recon.client.surveys import (
     DronePreview,
@@ -92,6 +92,8 @@ __all__ = [
     "SiteCommands",
     "SiteDrawing",
     "SiteFeature",
+    "SiteVehicle",
+    "SiteVehicles",
     "Staleness",
     "Station",
     "StationUnreachableError",

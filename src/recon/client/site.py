@@ -1,4 +1,4 @@
-"""The site's layers: read, checked, saved and undone, as the console draws them."""
+"""The site's layers and vehicles: read, checked, saved and undone, as in the console."""
 
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal
@@ -34,6 +34,32 @@ class SiteDrawing(msgspec.Struct, frozen=True):
     """Why nothing can be saved; None if it can."""
 
 
+class SiteVehicle(msgspec.Struct, frozen=True):
+    """A vehicle of the site, connected or not; None leaves a key to the station's default."""
+
+    serial: str
+    name: str | None = None
+    number: int | None = None
+    camera: str | None = None
+    """The name of a survey camera."""
+    waypoint_altitude: Literal["wgs84", "takeoff"] | None = None
+    """The app's altitude reference; without one missions are refused."""
+
+
+class SiteVehicles(msgspec.Struct, frozen=True):
+    """The vehicles in the site's folder."""
+
+    revision: str
+    """Of what was read: a change of an older revision is refused."""
+    vehicles: tuple[SiteVehicle, ...]
+    locked_reason: str | None
+    """Why nothing can be saved; None if it can."""
+
+
+class _VehiclesMessage(AnswerMessage, frozen=True, kw_only=True):
+    vehicles: SiteVehicles | None
+
+
 class _DrawingMessage(AnswerMessage, frozen=True, kw_only=True):
     drawing: SiteDrawing | None
 
@@ -59,6 +85,29 @@ class SiteCommands:
         Boundary, zones and pads change only while all vehicles are on the ground.
         """
         return _drawing(await self._sent("/api/site/drawing", _request(features, revision)))
+
+    async def vehicles(self) -> SiteVehicles:
+        """Return the vehicles of the site, connected or not."""
+        return await self._http.get("/api/site/vehicles", SiteVehicles, "a site's vehicles")
+
+    async def save_vehicles(
+        self, vehicles: Sequence[SiteVehicle], revision: str
+    ) -> SiteVehicles | Refusal:
+        """Replace the vehicles of the site, in the folder and in force at once.
+
+        Altitude reference and number of a vehicle change only while it is on the ground.
+        """
+        request = {"revision": revision, "vehicles": msgspec.to_builtins(vehicles)}
+        try:
+            answer = await self._http.post(
+                "/api/site/vehicles", request, _VehiclesMessage, "an answer about the site"
+            )
+        except OrderInvalidError as problem:
+            return Refusal("site_form", str(problem))
+        if isinstance(answer, Refusal):
+            return answer
+        missing = "accepted, but the vehicles are not in the answer"
+        return answer.vehicles or answer.refusal or Refusal("site_form", missing)
 
     async def undo(self, revision: str) -> SiteDrawing | Refusal:
         """Take back the newest save."""

@@ -6,10 +6,10 @@ from dataclasses import dataclass, field
 from recon.model.airspace import ElevationModel, LandingPad, Region, SiteLayer, Zone
 from recon.model.command import Body, Phase, Refusal
 from recon.model.control import AuthorityHolder
-from recon.model.geo import GeoPoint
 from recon.model.report import Report
 from recon.model.survey import Survey
 from recon.model.temporary_zone import DrawnZone
+from recon.model.vehicle import VehicleProfile
 
 
 @dataclass(frozen=True, slots=True)
@@ -256,16 +256,16 @@ class ZoneEnded:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SiteRedrawn:
-    """A person has drawn the site's layers anew, and they are saved.
+    """A person has drawn the site's layers or edited its vehicles, and they are saved.
 
-    `pads` are those of vehicles, by serial. `layers` names what has changed. `elevation` covers the
-    new boundary; None: the model in force still does.
+    `profiles` are those of its vehicles, by serial. `layers` names those that have changed.
+    `elevation` covers the new boundary; None: the model in force still does.
     """
 
     boundary: Region | None
     zones: tuple[Zone, ...]
     landing_pads: tuple[LandingPad, ...]
-    pads: Mapping[str, GeoPoint | None]
+    profiles: Mapping[str, VehicleProfile]
     layers: tuple[SiteLayer, ...]
     by: str
     is_undo: bool = False

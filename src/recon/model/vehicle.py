@@ -112,6 +112,10 @@ class VehicleProfile:
     serial: str
     name: str = ""
     model: str = "unknown model"
+    number: int | None = None
+    """The number a person gave it; None: the station gives it one."""
+    camera: str | None = None
+    """The name of its survey camera; None when not configured."""
     waypoint_altitude: AltitudeReference = AltitudeReference.UNSET
     mount: Mount = Mount.GIMBAL
     pad: GeoPoint | None = None

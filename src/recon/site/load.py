@@ -11,6 +11,7 @@ import msgspec
 from recon.model.airspace import FlightLimits
 from recon.model.errors import SiteError
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
+from recon.model.survey_camera import CameraModel, SurveyCameraError, camera_named
 from recon.model.vehicle import AltitudeReference, Failsafe, Mount, VehicleProfile
 from recon.site.consistency import (
     refuse_high_go_home_heights,
@@ -45,7 +46,9 @@ APP_PRESETS: dict[str, dict[str, Any]] = {
 
 _PLAIN_KEYS = (
     "name",
+    "number",
     "model",
+    "camera",
     "max_waypoints",
     "battery_factor",
     "video_latency_s",
@@ -135,6 +138,7 @@ def load_site(folder: Path) -> Site:
     )
     failsafe = failsafe_from_tables(path, table.failsafe)
     cameras = read_survey_cameras(folder)
+    _refuse_unknown_cameras(path, profiles, cameras)
     site = Site(
         table.name, frame, grid, imagers, profiles, layers, limits, failsafe, cameras=cameras
     )
@@ -215,6 +219,7 @@ def _profiles(path: Path, tables: list[dict[str, Any]]) -> dict[str, VehicleProf
             )
         profiles[profile.serial] = profile
     _refuse_shared_names(path, profiles)
+    _refuse_shared_numbers(path, profiles)
     return profiles
 
 
@@ -229,6 +234,36 @@ def _refuse_shared_names(path: Path, profiles: Mapping[str, VehicleProfile]) -> 
                 f"has as its name or serial, got {name!a} again"
             )
         names.add(name)
+
+
+def _refuse_shared_numbers(path: Path, profiles: Mapping[str, VehicleProfile]) -> None:
+    """Raise `SiteError` for a number that stands for two vehicles."""
+    names: dict[int, str] = {}
+    for entry, profile in enumerate(profiles.values(), start=1):
+        number = profile.number
+        if number is None:
+            continue
+        if number in names:
+            raise SiteError(
+                f"{path}: vehicles (entry {entry}).number: expected a number that no other vehicle "
+                f"has, got {number}, the number of {names[number]!a}"
+            )
+        names[number] = profile.display_name
+
+
+def _refuse_unknown_cameras(
+    path: Path, profiles: Mapping[str, VehicleProfile], own: Mapping[str, CameraModel]
+) -> None:
+    """Raise `SiteError` for a survey camera that neither the table nor the site has."""
+    for entry, profile in enumerate(profiles.values(), start=1):
+        if profile.camera is None:
+            continue
+        try:
+            camera_named(profile.camera, own.values())
+        except SurveyCameraError as problem:
+            raise SiteError(
+                f"{path}: vehicles (entry {entry}).camera: expected a survey camera. {problem}"
+            ) from problem
 
 
 def _give_pads(path: Path, layers: Layers, profiles: dict[str, VehicleProfile]) -> None:

@@ -110,7 +110,11 @@ class VehicleTable(_Table, frozen=True):
 
     serial: Serial
     name: Text | None = None
+    number: Annotated[int, Meta(ge=1, le=9_999)] | None = None
+    """None: the station gives it one, kept in numbers.toml."""
     model: Text | None = None
+    camera: Annotated[str, Meta(max_length=40)] | None = None
+    """The name of a survey camera."""
     waypoint_altitude: Literal["wgs84", "takeoff"] | None = None
     mount: Literal["gimbal", "fixed"] | None = None
     pad: PadTable | None = None

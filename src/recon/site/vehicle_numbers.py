@@ -1,8 +1,8 @@
 """The numbers of a site's vehicles, numbers.toml: fixed by serial, across restarts.
 
 A number is what an operator reads on the map and presses on the keyboard, so it must never move to
-another aircraft. The station writes the file when it meets a new serial; a person may edit it while
-the station is stopped.
+another aircraft. The station writes the file when it meets a new serial. A number in site.toml
+comes first.
 """
 
 import json

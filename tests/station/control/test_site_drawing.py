@@ -1,17 +1,21 @@
 """A fence never changes under a flight; on the ground a drawing is in force with the next step."""
 
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import pytest
 from tests.replay.record_flight import recording
 from tests.station.station_world import World, from_the_ground, square_mission, world
 
-from recon.model.airspace import Region, SiteLayer, Zone, ZoneKind
+from recon.model.airspace import LandingPad, Region, SiteLayer, Zone, ZoneKind
 from recon.model.command import FlyMission, Phase, Refusal
 from recon.model.event import SiteRedrawn, ZoneDrawn
 from recon.model.geo import GeoPoint, LatLon
 from recon.model.temporary_zone import Circle, DrawnZone, TemporaryZoneKind
 from recon.model.units import seconds_to_ns
+from recon.model.vehicle import AltitudeReference
 from recon.sim.fleet import Airborne
 from recon.site import Site
 from recon.station.audit.entries import Auditing, audit
@@ -29,13 +33,18 @@ def drawn(
     boundary: Region | None = None,
     zones: tuple[Zone, ...] = (),
     pad: GeoPoint | None = None,
+    **vehicle: Any,
 ) -> SiteRedrawn:
     known = here.driver.station.airspace.airspace.boundary
-    pads = {"SIM-1": pad or here.driver.station.fleet.profiles["SIM-1"].pad}
-    return SiteRedrawn(boundary or known, zones, _pads(here), pads, (SiteLayer.BOUNDARY,), "anna")
+    profiles = dict(here.driver.station.fleet.profiles)
+    if pad is not None:
+        profiles["SIM-1"] = replace(profiles["SIM-1"], pad=pad)
+    profiles["SIM-1"] = replace(profiles["SIM-1"], **vehicle)
+    layers = (SiteLayer.BOUNDARY,)
+    return SiteRedrawn(boundary or known, zones, _pads(here), profiles, layers, "anna")
 
 
-def _pads(here: World) -> tuple[object, ...]:
+def _pads(here: World) -> tuple[LandingPad, ...]:
     return here.driver.station.airspace.airspace.landing_pads
 
 
@@ -123,3 +132,65 @@ def test_the_audit_has_what_was_drawn_and_what_was_refused() -> None:
         _, entries = audit(Auditing(), before, event, here.driver.station, now_ns)
         (entry,) = [each for each in entries if each.kind.startswith("site.")]
         assert (entry.kind, entry.by) == (kind, "anna")
+
+
+WGS84 = AltitudeReference.WGS84
+
+
+@pytest.mark.parametrize("change", [{"waypoint_altitude": WGS84}, {"number": 9}])
+def test_altitude_reference_and_number_do_not_change_in_flight(change: dict[str, Any]) -> None:
+    here = world(2)
+    here.run_for(2.0)
+    before = here.driver.station.fleet
+    event = drawn(here, **change)
+    refused = refusal(here, event)
+    assert refused is not None
+    assert refused.reason == (
+        "A vehicle's altitude reference and number change, and it is added or removed, only while "
+        "it is on the ground. In the air, or not known to be on the ground: SIM-1. Land first; "
+        "name and camera can be changed now"
+    )
+    here.driver.handle(event)
+    assert here.driver.station.fleet.profiles is before.profiles
+    removed = replace(event, profiles={"SIM-2": before.profiles["SIM-2"]})
+    assert refusal(here, removed) is not None
+
+
+def test_name_and_camera_change_in_flight() -> None:
+    here = world()
+    here.run_for(2.0)
+    event = drawn(here, name="Alder", camera="mini3pro")
+    assert refusal(here, event) is None
+    here.driver.handle(event)
+    vehicle = here.vehicle("SIM-1")
+    assert (vehicle.display_name, vehicle.profile) == ("Alder", event.profiles["SIM-1"])
+
+
+def test_a_vehicle_whose_telemetry_is_lost_counts_as_flying() -> None:
+    here = world()
+    here.run_for(2.0)
+    event = drawn(here, waypoint_altitude=WGS84)
+    station, later_ns = here.driver.station, here.driver.now_ns + seconds_to_ns(600.0)
+    assert site_drawing.refusal(station, event, later_ns) is not None
+
+
+def test_on_the_ground_the_next_mission_is_flown_by_the_new_reference() -> None:
+    here = world(airborne=Airborne.NONE)
+    here.run_for(2.0)
+    unset = drawn(here, waypoint_altitude=AltitudeReference.UNSET)
+    here.driver.handle(unset)
+    order = here.order("SIM-1", flight(here), takeoff=True)
+    assert here.record(order).phase is Phase.REFUSED_BY_STATION
+    here.driver.handle(drawn(here, waypoint_altitude=AltitudeReference.TAKEOFF))
+    order = here.order("SIM-1", flight(here), takeoff=True)
+    assert here.record(order).phase is Phase.SENT
+    # From here on it may be taking off.
+    assert refusal(here, drawn(here, waypoint_altitude=WGS84)) is not None
+
+
+def test_the_audit_has_each_changed_vehicle() -> None:
+    here = world(airborne=Airborne.NONE)
+    here.run_for(2.0)
+    event = replace(drawn(here, waypoint_altitude=WGS84), layers=())
+    entry = site_drawing.entry(here.driver.station, event, here.driver.now_ns)
+    assert entry.text == "site edited: vehicles; SIM-1 altitude reference takeoff -> wgs84"

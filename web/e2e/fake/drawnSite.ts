@@ -1,5 +1,10 @@
 import type { Page } from "@playwright/test";
-import type { SiteDrawingResponse, SiteDrawingView } from "../../src/protocol";
+import type {
+  SiteDrawingResponse,
+  SiteDrawingView,
+  SiteVehiclesResponse,
+  SiteVehiclesView,
+} from "../../src/protocol";
 import { station, vehicle } from "../../src/testing/fakeState";
 import type { FakeStation } from "./station";
 
@@ -53,7 +58,35 @@ export const REFUSED: SiteDrawingResponse = {
   reason: "Expected a polygon whose edges do not meet, but edges 1 and 3 do",
   feature: 2,
   layers: [],
+  has_vehicles: false,
   drawing: null,
+};
+
+/** Vehicles that are connected, and one that never was. */
+export const VEHICLES: SiteVehiclesView = {
+  revision: "r1",
+  locked_reason: null,
+  undo: DRAWING.undo,
+  vehicles: [
+    {
+      serial: "SN-001",
+      name: "Alder",
+      number: 1,
+      camera: "mini3pro",
+      waypoint_altitude: "takeoff",
+    },
+    { serial: "SN-009", name: null, number: 12, camera: null, waypoint_altitude: null },
+  ],
+};
+
+/** A refusal of the second vehicle. */
+export const REFUSED_VEHICLE: SiteVehiclesResponse = {
+  accepted: false,
+  rule: "site_drawing",
+  reason: "Number: 1 is the number of Alder too",
+  row: 1,
+  changes: [],
+  vehicles: null,
 };
 
 /** Sends states until the page closes: without, the page would report the station lost. */

@@ -6,9 +6,24 @@ import type {
   PreflightView,
   SiteDrawingResponse,
   SiteDrawingView,
+  SiteVehiclesResponse,
+  SiteVehiclesView,
   StationState,
+  SurveyCameraView,
   SurveyWays,
 } from "../../src/protocol";
+
+const MINI_3_PRO: SurveyCameraView = {
+  name: "mini3pro",
+  title: "DJI Mini 3 Pro",
+  across_px: 4032,
+  along_px: 3024,
+  across_deg: 71.6,
+  along_deg: 56.9,
+  timer_s: [2, 3, 5],
+  shutter: "rolling",
+  source: "",
+};
 
 /** A station inside the browser: answers requests and sends the states a test provides. */
 export class FakeStation {
@@ -39,7 +54,18 @@ export class FakeStation {
     reason: null,
     feature: null,
     layers: [],
+    has_vehicles: false,
     drawing: null,
+  };
+  /** The vehicles of the site's folder, and the answer to their checks and saves. */
+  vehicles: SiteVehiclesView = { revision: "r1", vehicles: [], locked_reason: null, undo: null };
+  vehiclesResult: SiteVehiclesResponse = {
+    accepted: true,
+    rule: null,
+    reason: null,
+    row: null,
+    changes: [],
+    vehicles: null,
   };
   /** Answer for any survey's paths. */
   ways: SurveyWays | null = null;
@@ -105,6 +131,9 @@ export class FakeStation {
     if (path.endsWith("/preflight") && this.preflight !== null) return { json: this.preflight };
     if (path.endsWith("/ways") && this.ways !== null) return { json: this.ways };
     if (path === "/api/site/drawing" && body === null) return { json: this.drawing };
+    if (path === "/api/site/vehicles" && body === null) return { json: this.vehicles };
+    if (path.startsWith("/api/site/vehicles")) return { json: this.vehiclesResult };
+    if (path === "/api/cameras") return { json: [MINI_3_PRO] };
     if (path.startsWith("/api/site/drawing")) return { json: this.drawingResult };
     const isControlRequest = /\/(authority|override|release|zones|end)$/.test(path);
     if (isControlRequest || path === "/api/fleet-return") {

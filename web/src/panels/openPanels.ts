@@ -8,6 +8,7 @@ export const PANEL_NAMES = {
   sun: "Imaging drone",
   zones: "Temporary zones",
   site: "Edit site",
+  vehicles: "Site vehicles",
   return: "Return in layers",
   orders: "Orders",
   timeline: "Timeline",

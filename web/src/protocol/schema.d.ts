@@ -644,6 +644,52 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/site/vehicles": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Vehicles
+         * @description The vehicles of the site's folder, also those that have never connected.
+         */
+        get: operations["vehicles_api_site_vehicles_get"];
+        put?: never;
+        /**
+         * Save Vehicles
+         * @description Save the vehicles in the site's folder and bring them into force, by an administrator.
+         *
+         *     The altitude reference and the number of a vehicle change only while it is on the ground.
+         */
+        post: operations["save_vehicles_api_site_vehicles_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/site/vehicles/check": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Check Vehicles
+         * @description Check the vehicles as the station would at its start; nothing is saved.
+         */
+        post: operations["check_vehicles_api_site_vehicles_check_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/state": {
         parameters: {
             query?: never;
@@ -2594,6 +2640,11 @@ export interface components {
              */
             feature: number | null;
             /**
+             * Has Vehicles
+             * @description whether an undo has changed vehicles
+             */
+            has_vehicles: boolean;
+            /**
              * Layers
              * @description those that change
              */
@@ -2635,6 +2686,86 @@ export interface components {
         SiteUndoRequest: {
             /** Revision */
             revision: string;
+        };
+        /**
+         * SiteVehiclesRequest
+         * @description All vehicles as they are to be: what is left out is removed.
+         */
+        SiteVehiclesRequest: {
+            /** Revision */
+            revision: string;
+            /** Vehicles */
+            vehicles: components["schemas"]["SiteVehicleView"][];
+        };
+        /**
+         * SiteVehiclesResponse
+         * @description Whether the vehicles were accepted, or why not; the vehicles after it.
+         */
+        SiteVehiclesResponse: {
+            /** Accepted */
+            accepted: boolean;
+            /**
+             * Changes
+             * @description one sentence for each vehicle that changes
+             */
+            changes: string[];
+            /** Reason */
+            reason: string | null;
+            /**
+             * Row
+             * @description the refused one's index in the request, if it is one
+             */
+            row: number | null;
+            /** Rule */
+            rule: string | null;
+            vehicles: components["schemas"]["SiteVehiclesView"] | null;
+        };
+        /**
+         * SiteVehiclesView
+         * @description The vehicles in the site's folder, connected or not.
+         */
+        SiteVehiclesView: {
+            /**
+             * Locked Reason
+             * @description why nothing can be saved here; null: it can
+             */
+            locked_reason: string | null;
+            /**
+             * Revision
+             * @description to be sent with a change: it is refused after another one
+             */
+            revision: string;
+            undo: components["schemas"]["SavedChangeView"] | null;
+            /** Vehicles */
+            vehicles: components["schemas"]["SiteVehicleView"][];
+        };
+        /**
+         * SiteVehicleView
+         * @description A vehicle of the site, as a row of a table. Wrong values are refused with a sentence.
+         */
+        SiteVehicleView: {
+            /**
+             * Camera
+             * @description a survey camera of `/api/cameras`
+             */
+            camera?: string | null;
+            /**
+             * Name
+             * @description null: the serial
+             */
+            name?: string | null;
+            /**
+             * Number
+             * @description its key, colour and shape; null: the station gives it one
+             */
+            number?: number | null;
+            /** Serial */
+            serial: string;
+            /**
+             * Waypoint Altitude
+             * @description the app's altitude reference; null: missions are refused
+             */
+            waypoint_altitude?: ("wgs84" | "takeoff") | null;
         };
         /**
          * SiteView
@@ -3493,6 +3624,11 @@ export interface components {
             authority: components["schemas"]["AuthorityView"];
             battery_fraction: components["schemas"]["AgedNumber"];
             battery_warning: components["schemas"]["AgedText"];
+            /**
+             * Camera
+             * @description its survey camera in site.toml
+             */
+            camera: string | null;
             camera_state: components["schemas"]["AgedText"];
             /** Conflict Link Ids */
             conflict_link_ids: number[];
@@ -4623,6 +4759,92 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["ImportedView"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    vehicles_api_site_vehicles_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SiteVehiclesView"];
+                };
+            };
+        };
+    };
+    save_vehicles_api_site_vehicles_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SiteVehiclesRequest"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SiteVehiclesResponse"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    check_vehicles_api_site_vehicles_check_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SiteVehiclesRequest"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SiteVehiclesResponse"];
                 };
             };
             /** @description Validation Error */

@@ -32,6 +32,7 @@ const ACCEPTED: SiteDrawingResponse = {
   reason: null,
   feature: null,
   layers: ["survey_regions"],
+  has_vehicles: false,
   drawing: null,
 };
 const CHECK_MS = 600;
@@ -352,5 +353,20 @@ describe("a feature", () => {
 
   it("shows a corner as it reads it", () => {
     expect(cornerOf(cornerText(HERE))).toEqual(HERE);
+  });
+});
+
+describe("beside the table of vehicles", () => {
+  it("keeps its edits, on the new revision, when vehicles are saved", async () => {
+    const draft = await open(FIELD);
+    draft.draw({ layer: "survey_regions", hole: false });
+    draft.finish(SQUARE);
+    page.site.drawing = { ...page.site.drawing, revision: "r2", features: [{ ...FIELD }] };
+    await draft.refresh();
+    expect(draft.features()).toHaveLength(2);
+    expect(draft.saved()?.revision).toBe("r2");
+    page.site.drawing = { ...page.site.drawing, revision: "r3", features: [] };
+    await draft.refresh();
+    expect([draft.saved()?.revision, draft.features().length]).toEqual(["r2", 2]);
   });
 });

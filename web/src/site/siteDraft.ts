@@ -90,6 +90,10 @@ export interface SiteDraft {
   redo(): void;
   /** Forgets all edits since the drawing was loaded, and loads it again. */
   discard(): Promise<void>;
+  /** How often this page has saved or undone something here. */
+  readonly saves: Accessor<number>;
+  /** Another part of the site was saved: edits stay, on the new revision. */
+  refresh(): Promise<void>;
   /** Checks again: what is in the air has changed. */
   recheck(): void;
   save(): Promise<void>;
@@ -122,6 +126,7 @@ export function createSiteDraft(
   const [future, setFuture] = createSignal<readonly (readonly DraftFeature[])[]>([]);
   const [selectedId, setSelectedId] = createSignal<number | null>(null);
   const [tool, setTool] = createSignal<Tool | null>(null);
+  const [saves, setSaves] = createSignal(0);
   const [verdict, setVerdict] = createSignal<Verdict>({ kind: "none" });
   const [notice, setNotice] = createSignal<Notice | null>(null);
   const [imported, setImported] = createSignal<readonly ImportChoice[]>([]);
@@ -219,12 +224,13 @@ export function createSiteDraft(
         setNotice({ about: "site", text, isProblem: true });
         return;
       }
+      setSaves(saves() + 1);
       const isEdited = isEditedSince(asked);
       if (isEdited) {
         setSaved(answer.drawing);
         checkSoon();
       } else load(answer.drawing);
-      const what = layersText(answer.layers);
+      const what = answer.has_vehicles ? "vehicles" : layersText(answer.layers);
       const changes = what === "" ? "nothing changes" : `${what}. In force now`;
       const rest = isEdited ? ifEdited : "";
       setNotice({
@@ -322,6 +328,19 @@ export function createSiteDraft(
     discard: () => {
       setTool(null);
       return reload();
+    },
+    saves,
+    refresh: async () => {
+      const before = saved();
+      if (before === null) return;
+      const asked = features();
+      const outcome = await site.drawing();
+      if (outcome.kind === "failed" || saved() !== before) return;
+      const { revision, undo, features: found } = outcome.value;
+      const isSame = JSON.stringify(found) === JSON.stringify(before.features);
+      // The features of before, by which edits are known.
+      if (isSame) setSaved({ ...before, revision, undo });
+      else if (!isChanged() && !isEditedSince(asked)) load(outcome.value);
     },
     recheck: () => {
       if (verdict().kind !== "none") checkSoon();

@@ -1,9 +1,9 @@
-import type { ImportedView, SiteDrawingRequest } from "../protocol";
+import type { ImportedView, SiteDrawingRequest, SiteVehiclesRequest } from "../protocol";
 import { answered, SITE_READ, SITE_SAVE, type StationHttp } from "./stationHttp";
 
 export type SiteRequests = ReturnType<typeof siteRequests>;
 
-/** The site's layers: read, checked and saved. */
+/** The site's layers and vehicles: read, checked and saved. */
 export function siteRequests(http: StationHttp) {
   const { client } = http;
   return {
@@ -20,6 +20,14 @@ export function siteRequests(http: StationHttp) {
       answered(SITE_SAVE, (signal) =>
         client.POST("/api/site/drawing/undo", { body: { revision }, signal }),
       ),
+    /** The vehicles of the site's folder, connected or not. */
+    vehicles: () => answered(SITE_READ, (signal) => client.GET("/api/site/vehicles", { signal })),
+    /** Checks vehicles as the station would at its start; nothing is saved. */
+    checkVehicles: (body: SiteVehiclesRequest) =>
+      answered(SITE_READ, (signal) => client.POST("/api/site/vehicles/check", { body, signal })),
+    /** Saves vehicles in the site's folder and brings them into force. */
+    saveVehicles: (body: SiteVehiclesRequest) =>
+      answered(SITE_SAVE, (signal) => client.POST("/api/site/vehicles", { body, signal })),
     /** Reads the polygons and points of a file of another program; nothing is saved. */
     readFile: (file: File) =>
       http.read(

@@ -39,6 +39,7 @@ export function vehicle(number: number, changes: Partial<VehicleView> = {}): Veh
     link_id: number,
     name: ["Alder", "Birch", "Cedar", "Dogwood", "Elm", "Fir"][number - 1] ?? `Vehicle ${number}`,
     model: "DJI Mavic 2 Pro",
+    camera: null,
     is_simulated: false,
     is_imager: false,
     authority: {

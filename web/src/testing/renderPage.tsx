@@ -16,6 +16,9 @@ import type {
   SiteDrawingRequest,
   SiteDrawingResponse,
   SiteDrawingView,
+  SiteVehiclesRequest,
+  SiteVehiclesResponse,
+  SiteVehiclesView,
   StationState,
   SurveyCameraView,
   SurveyEstimateView,
@@ -127,6 +130,10 @@ export interface FakeSite {
   response: SiteDrawingResponse;
   imported: ImportedView;
   readonly asked: (readonly [what: "check" | "save", drawing: SiteDrawingRequest])[];
+  /** The vehicles, and the answer to their checks and saves. */
+  vehicles: SiteVehiclesView;
+  vehiclesResponse: SiteVehiclesResponse;
+  readonly askedVehicles: (readonly [what: "check" | "save", vehicles: SiteVehiclesRequest])[];
   readonly undone: string[];
   readonly files: File[];
 }
@@ -208,8 +215,19 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
         reason: null,
         feature: null,
         layers: [],
+        has_vehicles: false,
         drawing: null,
       },
+      vehicles: { revision: "r1", vehicles: [], locked_reason: null, undo: null },
+      vehiclesResponse: {
+        accepted: true,
+        rule: null,
+        reason: null,
+        row: null,
+        changes: [],
+        vehicles: null,
+      },
+      askedVehicles: [],
       imported: { features: [], left_out: 0, reason: null },
       asked: [],
       undone: [],
@@ -440,6 +458,15 @@ function fakeSiteRequests(site: FakeSite): SiteRequests {
     undo: (revision) => {
       site.undone.push(revision);
       return answer();
+    },
+    vehicles: async () => ({ kind: "answered", value: site.vehicles }),
+    checkVehicles: async (vehicles) => {
+      site.askedVehicles.push(["check", vehicles]);
+      return { kind: "answered", value: site.vehiclesResponse };
+    },
+    saveVehicles: async (vehicles) => {
+      site.askedVehicles.push(["save", vehicles]);
+      return { kind: "answered", value: site.vehiclesResponse };
     },
     readFile: async (file) => {
       site.files.push(file);

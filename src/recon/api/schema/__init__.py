@@ -75,6 +75,10 @@ from recon.api.schema.site_drawing import (
     SiteDrawingResponse,
     SiteDrawingView,
     SiteUndoRequest,
+    SiteVehiclesRequest,
+    SiteVehiclesResponse,
+    SiteVehiclesView,
+    SiteVehicleView,
 )
 from recon.api.schema.station import (
     FleetReturnView,
@@ -199,6 +203,10 @@ __all__ = [
     "SiteDrawingResponse",
     "SiteDrawingView",
     "SiteUndoRequest",
+    "SiteVehicleView",
+    "SiteVehiclesRequest",
+    "SiteVehiclesResponse",
+    "SiteVehiclesView",
     "SiteView",
     "StalenessName",
     "StationState",

@@ -68,7 +68,53 @@ class SiteDrawingResponse(Message):
     reason: str | None
     feature: int | None = Field(description="the refused one's index in the request, if it is one")
     layers: list[SiteLayer] = Field(description="those that change")
+    has_vehicles: bool = Field(description="whether an undo has changed vehicles")
     drawing: SiteDrawingView | None
+
+
+class SiteVehicleView(StrictMessage):
+    """A vehicle of the site, as a row of a table. Wrong values are refused with a sentence."""
+
+    serial: Annotated[str, Field(max_length=300)]
+    name: Annotated[str, Field(max_length=300)] | None = Field(
+        default=None, description="null: the serial"
+    )
+    number: int | None = Field(
+        default=None, description="its key, colour and shape; null: the station gives it one"
+    )
+    camera: Annotated[str, Field(max_length=100)] | None = Field(
+        default=None, description="a survey camera of `/api/cameras`"
+    )
+    waypoint_altitude: Literal["wgs84", "takeoff"] | None = Field(
+        default=None, description="the app's altitude reference; null: missions are refused"
+    )
+
+
+class SiteVehiclesView(Message):
+    """The vehicles in the site's folder, connected or not."""
+
+    revision: str = Field(description="to be sent with a change: it is refused after another one")
+    vehicles: list[SiteVehicleView]
+    locked_reason: str | None = Field(description="why nothing can be saved here; null: it can")
+    undo: SavedChangeView | None
+
+
+class SiteVehiclesRequest(StrictMessage):
+    """All vehicles as they are to be: what is left out is removed."""
+
+    revision: Annotated[str, Field(max_length=64)]
+    vehicles: list[SiteVehicleView] = Field(max_length=200)
+
+
+class SiteVehiclesResponse(Message):
+    """Whether the vehicles were accepted, or why not; the vehicles after it."""
+
+    accepted: bool
+    rule: str | None
+    reason: str | None
+    row: int | None = Field(description="the refused one's index in the request, if it is one")
+    changes: list[str] = Field(description="one sentence for each vehicle that changes")
+    vehicles: SiteVehiclesView | None
 
 
 class ImportedFeatureView(Message):

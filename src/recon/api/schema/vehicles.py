@@ -151,6 +151,7 @@ class VehicleView(Message):
     link_id: int | None
     name: str
     model: str
+    camera: str | None = Field(description="its survey camera in site.toml")
     is_simulated: bool
     is_imager: bool
     authority: AuthorityView

@@ -1,6 +1,6 @@
 """The API's port on a running station: requests become events, states become views."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from itertools import count
@@ -81,7 +81,10 @@ class Service:
 
     def edit(self, folder: Path | None) -> None:
         """Let the site be drawn and saved in this folder, which it was read from."""
-        self._folder = SiteService(self.driver, self.site, folder)
+        self._folder = SiteService(self.driver, self.site, folder, self._vehicle_numbers)
+
+    def _vehicle_numbers(self) -> Mapping[str, int]:
+        return self.numbers.of(self.driver.station.fleet)
 
     @classmethod
     def around(

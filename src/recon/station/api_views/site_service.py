@@ -1,18 +1,18 @@
-"""The site's folder, edited while the station runs: drawings are checked, saved, and in force.
+"""The site's folder, edited while the station runs: changes are checked, saved, and in force.
 
 Files are read and written on threads. One change at a time; the event that brings it into force
 checks again what may have changed meanwhile, and what it refuses is put back.
 """
 
 import asyncio
-from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 from recon.api import schema
-from recon.model.airspace import SiteLayer, layers_text
+from recon.model.airspace import SiteLayer
 from recon.model.command import Refusal
 from recon.model.errors import ReconError, SiteError
 from recon.model.event import SiteRedrawn
@@ -30,9 +30,17 @@ from recon.site.drawing import (
     stage_files,
 )
 from recon.site.imports import read_import
+from recon.site.vehicle_rows import (
+    VehicleRow,
+    VehicleRowError,
+    read_vehicle_rows,
+    stage_vehicles,
+)
 from recon.station.api_views import RunningStation
 from recon.station.api_views.site_view import site_view
 from recon.station.control import site_drawing
+
+T = TypeVar("T")
 
 NO_FOLDER = (
     "The station was started without a site's folder; make one with recon site new FOLDER and "
@@ -56,6 +64,8 @@ class SiteService:
     driver: RunningStation
     site: Site
     folder: Path | None
+    numbers: Callable[[], Mapping[str, int]] = dict
+    """The vehicles' numbers in force, by serial."""
     _applied: str | None = None
     """The digest of the files that are in force; None before the first reading."""
     _turn: asyncio.Lock = field(default_factory=asyncio.Lock)
@@ -98,22 +108,50 @@ class SiteService:
             if isinstance(staged, Refusal):
                 return _refused(staged)
             event = self._event(staged, by, is_undo=False)
-            refusal = self._refusal(event, by)
+            refusal = await self._put_in_force(staged, event, by, is_check=is_check)
             if refusal is not None:
                 return _refused(refusal, event.layers)
-            folder = self.folder
-            if not is_check and staged.changed and folder is not None:
-                what = layers_text(event.layers)
-                refusal = await self._commit(
-                    staged,
-                    event,
-                    write=lambda: _save(folder, staged.files, event, what),
-                    put_back=lambda: _undo_last(folder),
-                )
-                if refusal is not None:
-                    return _refused(refusal, event.layers)
             view = None if is_check else await asyncio.to_thread(self._view)
         return _answer(event.layers, drawing=view)
+
+    async def vehicles(self) -> schema.SiteVehiclesView:
+        """Return the vehicles in the folder."""
+        async with self._turn:
+            return await asyncio.to_thread(self._vehicles_view)
+
+    async def save_vehicles(
+        self, asked: schema.SiteVehiclesRequest, by: Person, *, is_check: bool
+    ) -> schema.SiteVehiclesResponse:
+        """Check the vehicles; then save them and bring them into force, unless only checked."""
+        rows = [VehicleRow(**row.model_dump()) for row in asked.vehicles]
+        given = self.numbers()
+
+        def stage(folder: Path) -> StagedSite:
+            known = {row.serial: row.number for row in read_vehicle_rows(folder)}
+            kept = [
+                # The number that the station gave is not fixed in site.toml by a save.
+                replace(row, number=known.get(row.serial))
+                if row.number == given.get(row.serial)
+                else row
+                for row in rows
+            ]
+            return stage_vehicles(folder, kept)
+
+        async with self._turn:
+            try:
+                self._refuse_numbers(rows, given)
+                staged = await self._staged(asked.revision, stage)
+            except VehicleRowError as problem:
+                return _vehicles_answer(refusal=_refusal(str(problem)), row=problem.index)
+            if isinstance(staged, Refusal):
+                return _vehicles_answer(refusal=staged)
+            event = self._event(staged, by, is_undo=False)
+            changes = self._changes(event)
+            refusal = await self._put_in_force(staged, event, by, is_check=is_check)
+            if refusal is not None:
+                return _vehicles_answer(refusal=refusal)
+            view = None if is_check else await asyncio.to_thread(self._vehicles_view)
+        return _vehicles_answer(changes=changes, view=view)
 
     async def undo(self, revision: str, by: Person) -> schema.SiteDrawingResponse:
         """Take back the newest change."""
@@ -137,6 +175,7 @@ class SiteService:
             event = self._event(staged, by, is_undo=True)
             after = await asyncio.to_thread(_contents, folder, staged.files)
             about = {"what": change.what, "by": change.by, "utc": change.utc}
+            has_vehicles = bool(self._changes(event))
             refusal = self._refusal(event, by) or await self._commit(
                 staged,
                 event,
@@ -146,7 +185,7 @@ class SiteService:
             if refusal is not None:
                 return _refused(refusal, event.layers)
             view = await asyncio.to_thread(self._view)
-        return _answer(event.layers, drawing=view)
+        return _answer(event.layers, drawing=view, has_vehicles=has_vehicles)
 
     async def import_features(self, name: str, data: bytes) -> schema.ImportedView:
         """Return the polygons and points of a file, or why it is refused."""
@@ -178,7 +217,7 @@ class SiteService:
             if on_disk != revision:
                 return _refusal(CHANGED_MEANWHILE)
             return await asyncio.to_thread(stage, folder)
-        except DrawnFeatureError:
+        except (DrawnFeatureError, VehicleRowError):
             raise
         except ReconError as problem:
             return _refusal(str(problem))
@@ -187,11 +226,51 @@ class SiteService:
 
     def _refusal(self, event: SiteRedrawn, by: Person) -> Refusal | None:
         refusal = site_drawing.refusal(self.driver.station, event, self.driver.now_ns())
-        if refusal is None and FENCES & set(event.layers) and not by.role.includes(Role.ADMIN):
+        needs_admin = bool(FENCES & set(event.layers) or self._changes(event))
+        if refusal is None and needs_admin and not by.role.includes(Role.ADMIN):
             return _refusal(
-                f"{by.name} has the role {by.role.value}; boundary, zones and pads need admin"
+                f"{by.name} has the role {by.role.value}; boundary, zones, pads and vehicles need "
+                "admin"
             )
         return refusal
+
+    def _changes(self, event: SiteRedrawn) -> list[str]:
+        return list(site_drawing.changed_vehicles(self.site.profiles, event.profiles))
+
+    def _refuse_numbers(self, rows: Sequence[VehicleRow], given: Mapping[str, int]) -> None:
+        """Raise `VehicleRowError` for a number of another row, or of a vehicle that has no row."""
+        listed = {row.serial for row in rows}
+        connected = self.driver.station.fleet.vehicles
+        others = {given[s]: s for s in connected if s in given and s not in listed}
+        owners: dict[int, str] = {}
+        for index, row in enumerate(rows):
+            if row.number is None:
+                continue
+            if row.number in owners:
+                owner = owners[row.number]
+                raise VehicleRowError(index, f"Number: {row.number} is the number of {owner} too")
+            if row.number in others:
+                raise VehicleRowError(
+                    index,
+                    f"Number: {row.number} belongs to {others[row.number]}, which has connected "
+                    "and is not in the table; add it, or choose another number",
+                )
+            owners[row.number] = row.name or row.serial
+
+    async def _put_in_force(
+        self, staged: StagedSite, event: SiteRedrawn, by: Person, *, is_check: bool
+    ) -> Refusal | None:
+        """Save a staged change and bring it into force, unless that is refused or only checked."""
+        refusal, folder = self._refusal(event, by), self.folder
+        if refusal is not None or is_check or not staged.files or folder is None:
+            return refusal
+        what = site_drawing.change_text(event.layers, bool(self._changes(event))) or "site"
+        return await self._commit(
+            staged,
+            event,
+            write=lambda: _save(folder, staged.files, event, what),
+            put_back=lambda: _undo_last(folder),
+        )
 
     async def _commit(
         self,
@@ -232,14 +311,13 @@ class SiteService:
 
     def _event(self, staged: StagedSite, by: Person, *, is_undo: bool) -> SiteRedrawn:
         airspace = staged.site.airspace
-        pads = {serial: profile.pad for serial, profile in staged.site.profiles.items()}
         known, read = self.site.elevation, airspace.elevation
         has_other_ground = known is not None and read is not None and known.grid != read.grid
         return SiteRedrawn(
             airspace.boundary,
             airspace.zones,
             airspace.landing_pads,
-            pads,
+            staged.site.profiles,
             staged.changed,
             by.label,
             is_undo=is_undo,
@@ -247,25 +325,48 @@ class SiteService:
         )
 
     def _view(self) -> schema.SiteDrawingView:
+        read = self._read(read_drawing)
+        features = [_feature_view(each) for each in read.found]
+        return schema.SiteDrawingView(
+            revision=read.revision, features=features, locked_reason=read.locked, undo=read.undo
+        )
+
+    def _vehicles_view(self) -> schema.SiteVehiclesView:
+        read = self._read(read_vehicle_rows)
+        numbers = self.numbers()
+        rows = [
+            schema.SiteVehicleView(**{**asdict(row), "number": numbers.get(row.serial, row.number)})
+            for row in read.found
+        ]
+        return schema.SiteVehiclesView(
+            revision=read.revision, vehicles=rows, locked_reason=read.locked, undo=read.undo
+        )
+
+    def _read(self, read: Callable[[Path], tuple[T, ...]]) -> "_Read[T]":
+        """Return what is read of the folder, and why nothing can be saved in it, if so."""
         folder, locked = self.folder, self.locked_reason
         if folder is None:
-            return schema.SiteDrawingView(revision="", features=[], locked_reason=locked, undo=None)
+            return _Read("", (), locked, None)
         try:
             revision = drawing_digest(folder)
             if locked is None and revision != self._applied:
                 locked = CHANGED_BY_HAND
-            features = [_feature_view(each) for each in read_drawing(folder)]
+            found = read(folder)
         except (ReconError, OSError):
-            revision, features, locked = "", [], CHANGED_BY_HAND
+            return _Read("", (), CHANGED_BY_HAND, None)
         change = None if locked else file_set.last_change(folder)
-        return schema.SiteDrawingView(
-            revision=revision,
-            features=features,
-            locked_reason=locked,
-            undo=None
-            if change is None
-            else schema.SavedChangeView(what=change.what, by=change.by, utc=change.utc),
-        )
+        undo = None
+        if change is not None:
+            undo = schema.SavedChangeView(what=change.what, by=change.by, utc=change.utc)
+        return _Read(revision, found, locked, undo)
+
+
+@dataclass(frozen=True, slots=True)
+class _Read(Generic[T]):
+    revision: str
+    found: tuple[T, ...]
+    locked: str | None
+    undo: schema.SavedChangeView | None
 
 
 def _contents(folder: Path, files: file_set.Files) -> file_set.Files:
@@ -314,6 +415,7 @@ def _answer(
     refusal: Refusal | None = None,
     feature: int | None = None,
     drawing: schema.SiteDrawingView | None = None,
+    has_vehicles: bool = False,
 ) -> schema.SiteDrawingResponse:
     return schema.SiteDrawingResponse(
         accepted=refusal is None,
@@ -321,5 +423,23 @@ def _answer(
         reason=None if refusal is None else refusal.reason,
         feature=feature,
         layers=list(layers),
+        has_vehicles=has_vehicles,
         drawing=drawing,
+    )
+
+
+def _vehicles_answer(
+    *,
+    refusal: Refusal | None = None,
+    row: int | None = None,
+    changes: Sequence[str] = (),
+    view: schema.SiteVehiclesView | None = None,
+) -> schema.SiteVehiclesResponse:
+    return schema.SiteVehiclesResponse(
+        accepted=refusal is None,
+        rule=None if refusal is None else refusal.rule,
+        reason=None if refusal is None else refusal.reason,
+        row=row,
+        changes=list(changes),
+        vehicles=view,
     )

@@ -115,6 +115,7 @@ def _vehicle(
         link_id=vehicle.link_id,
         name=vehicle.display_name,
         model="unknown model" if profile is None else profile.model,
+        camera=None if profile is None else profile.camera,
         is_simulated=vehicle.is_simulated,
         is_imager=vehicle.serial in station.imaging.imagers,
         authority=authority_view(station, vehicle.serial, now_ns),

@@ -33,6 +33,14 @@ export function NewSurvey(props: {
     const outcome = await source.surveys.cameras();
     return outcome.kind === "answered" ? outcome.value : [];
   });
+  /** The camera that all drones which could fly have, by the site's table. */
+  const usual = () => {
+    const own = new Set(
+      fleet.vehicles.filter(({ is_imager }) => !is_imager).map(({ camera }) => camera),
+    );
+    const [camera, ...others] = own;
+    return others.length === 0 ? (camera ?? "") : "";
+  };
   const regions = () => (fleet.site?.areas ?? []).filter(({ kind }) => kind === "survey");
   const plan = async (form: HTMLFormElement) => {
     const height_above_takeoff_m = height.metres();
@@ -95,7 +103,11 @@ export function NewSurvey(props: {
             <select name="camera">
               <option value="">Other, 66° × 52°</option>
               <For each={cameras()}>
-                {({ name, title }) => <option value={name}>{title}</option>}
+                {({ name, title }) => (
+                  <option value={name} selected={name === usual()}>
+                    {title}
+                  </option>
+                )}
               </For>
             </select>
           </label>

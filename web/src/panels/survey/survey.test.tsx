@@ -1,5 +1,5 @@
 import { afterEach, describe, expect, it } from "vitest";
-import type { SurveyView } from "../../protocol";
+import type { SurveyView, VehicleView } from "../../protocol";
 import { area, station, survey, vehicle } from "../../testing/fakeState";
 import { find, type RenderedPage, renderPage, settled } from "../../testing/renderPage";
 import { sharePercent, shownSurvey } from "../../text/survey";
@@ -136,6 +136,21 @@ describe("a new survey", () => {
         },
       },
     ]);
+  });
+
+  it("begins with the camera that all survey drones have", async () => {
+    const regions = [area("survey", [0, 0], 50, { name: "south field" })];
+    const begun = async (...vehicles: VehicleView[]) => {
+      const base = station(vehicles);
+      const site = base.site === null ? null : { ...base.site, areas: regions };
+      page = renderPage(SurveyPanel, { ...base, site });
+      await settled();
+      return find<HTMLSelectElement>(page.root, "select[name=camera]").value;
+    };
+    const own = vehicle(1, { camera: "mini3pro" });
+    expect(await begun(own, vehicle(2, { is_imager: true }))).toBe("mini3pro");
+    page.dispose();
+    expect(await begun(own, vehicle(2))).toBe("");
   });
 
   it("is planned with a camera of the station's table and its timer", async () => {

@@ -1,0 +1,328 @@
+import {
+  createEffect,
+  createResource,
+  createSignal,
+  For,
+  Index,
+  on,
+  onMount,
+  Show,
+} from "solid-js";
+import { useConsole } from "../../console";
+import type { SiteVehicleView } from "../../protocol";
+import { personName } from "../../text/names";
+import { colourOf, lookClasses } from "../../theme/theme";
+import { Empty, Panel, Problem } from "../Panel";
+import "./vehicles.css";
+
+const REFERENCES = [
+  ["", "Not set: missions are refused"],
+  ["takeoff", "Above takeoff"],
+  ["wgs84", "WGS84 ellipsoid"],
+] as const;
+
+function referenceOf(text: string): "wgs84" | "takeoff" | null {
+  return text === "wgs84" || text === "takeoff" ? text : null;
+}
+
+/** The site's vehicles as a table: connected or not, edited, checked, saved, and in force without a restart. */
+export function VehiclesPanel() {
+  const { vehicleTable: table, fleet } = useConsole();
+  onMount(() => void table.open());
+  // What may change depends on what flies.
+  createEffect(
+    on(
+      () => fleet.vehicles.filter(({ is_flying }) => is_flying.value !== false).length,
+      () => table.recheck(),
+      { defer: true },
+    ),
+  );
+  const reason = () => table.saved()?.locked_reason ?? null;
+  return (
+    <Panel
+      title="Site vehicles"
+      name="vehicles"
+      class="site site-vehicles"
+      count={table.rows().length}
+    >
+      <Show when={table.saved() === null && !table.isBusy()}>
+        <div class="section">
+          <Problem text={table.notice()?.text ?? null} />
+        </div>
+      </Show>
+      <Show when={reason()}>
+        {(text) => (
+          <div class="section">
+            <Problem text={text()} />
+          </div>
+        )}
+      </Show>
+      <Show when={table.saved()} fallback={<Empty>Loading the vehicles.</Empty>}>
+        <Show when={table.rows().length > 0} fallback={<Empty>No vehicles are listed.</Empty>}>
+          <Rows />
+        </Show>
+        <AddVehicle />
+        <SaveVehicles />
+      </Show>
+    </Panel>
+  );
+}
+
+function Rows() {
+  const { vehicleTable: table, source } = useConsole();
+  const [cameras] = createResource(async () => {
+    const outcome = await source.surveys.cameras();
+    return outcome.kind === "answered" ? outcome.value : [];
+  });
+  return (
+    <table class="vehicle-table" aria-label="Vehicles of the site">
+      <thead>
+        <tr>
+          <For each={["Vehicle", "Number", "Name", "Altitude reference", "Camera"]}>
+            {(title) => <th scope="col">{title}</th>}
+          </For>
+          <th scope="col">
+            <span class="hidden-but-read">Remove</span>
+          </th>
+        </tr>
+      </thead>
+      <tbody>
+        <Index each={table.rows()}>
+          {(row, index) => <Row row={row()} index={index} cameras={cameras() ?? []} />}
+        </Index>
+      </tbody>
+    </table>
+  );
+}
+
+function Row(props: {
+  row: SiteVehicleView;
+  index: number;
+  cameras: readonly { readonly name: string; readonly title: string }[];
+}) {
+  const { vehicleTable: table, fleet } = useConsole();
+  const serial = () => props.row.serial;
+  const set = (change: Partial<SiteVehicleView>) => table.edit(props.index, change);
+  const state = () => {
+    const known = fleet.vehicles.find((vehicle) => vehicle.serial === serial());
+    if (known === undefined) return "not connected";
+    return known.is_imager ? "imaging drone" : "connected";
+  };
+  const problem = () => {
+    const verdict = table.verdict();
+    return verdict.kind === "refused" && verdict.row === props.index ? verdict.text : null;
+  };
+  const number = () => props.row.number ?? 0;
+  const isUnknownCamera = () =>
+    (props.row.camera ?? null) !== null &&
+    !props.cameras.some(({ name }) => name === props.row.camera);
+  return (
+    <tr aria-label={serial()} classList={{ "is-wrong": problem() !== null }}>
+      <th scope="row">
+        <div class="wire-text">{serial()}</div>
+        <div class="muted">{state()}</div>
+        <Problem text={problem()} />
+      </th>
+      <td data-label="Number">
+        <div class="vehicle-number own-colour" style={{ "--own": colourOf(number()) }}>
+          <span class={`badge ${lookClasses(number())}`} aria-hidden="true">
+            {number() || "?"}
+          </span>
+          <input
+            class="field"
+            inputmode="numeric"
+            aria-label={`Number of ${serial()}`}
+            placeholder="auto"
+            value={props.row.number ?? ""}
+            onChange={(event) => {
+              const text = event.currentTarget.value.trim();
+              const value = Number(text);
+              if (text !== "" && !Number.isInteger(value)) {
+                // The browser keeps the text: the value in force is shown again.
+                event.currentTarget.value = String(props.row.number ?? "");
+                return;
+              }
+              set({ number: text === "" ? null : value });
+            }}
+          />
+        </div>
+      </td>
+      <td data-label="Name">
+        <input
+          class="field"
+          aria-label={`Name of ${serial()}`}
+          placeholder={serial()}
+          value={props.row.name ?? ""}
+          onChange={(event) => set({ name: event.currentTarget.value.trim() || null })}
+        />
+      </td>
+      <td data-label="Altitude reference">
+        <select
+          class="field"
+          aria-label={`Altitude reference of ${serial()}`}
+          value={props.row.waypoint_altitude ?? ""}
+          onChange={(event) => set({ waypoint_altitude: referenceOf(event.currentTarget.value) })}
+        >
+          <For each={REFERENCES}>{([value, label]) => <option value={value}>{label}</option>}</For>
+        </select>
+      </td>
+      <td data-label="Camera">
+        <select
+          class="field"
+          aria-label={`Camera of ${serial()}`}
+          onChange={(event) => set({ camera: event.currentTarget.value || null })}
+        >
+          <option value="">No survey camera</option>
+          <Show when={isUnknownCamera()}>
+            <option value={props.row.camera ?? ""} selected>
+              {props.row.camera}
+            </option>
+          </Show>
+          <For each={props.cameras}>
+            {({ name, title }) => (
+              <option value={name} selected={name === props.row.camera}>
+                {title}
+              </option>
+            )}
+          </For>
+        </select>
+      </td>
+      <td>
+        <button
+          type="button"
+          class="button button-quiet"
+          aria-label={`Remove ${serial()}`}
+          title="Remove from the site"
+          onClick={() => table.remove(props.index)}
+        >
+          ✕
+        </button>
+      </td>
+    </tr>
+  );
+}
+
+/** A row by serial, and one for each connected vehicle that the site does not list. */
+function AddVehicle() {
+  const { vehicleTable: table, fleet } = useConsole();
+  const [serial, setSerial] = createSignal("");
+  const listed = () => new Set(table.rows().map((row) => row.serial));
+  const unlisted = () =>
+    fleet.vehicles.filter((vehicle) => vehicle.serial !== null && !listed().has(vehicle.serial));
+  const isListed = () => listed().has(serial().trim());
+  return (
+    <section class="section" aria-label="Add a vehicle">
+      <Show when={unlisted().length > 0}>
+        <p class="muted">Connected and not listed: missions are refused for them.</p>
+        <div class="section-buttons">
+          <For each={unlisted()}>
+            {(vehicle) => (
+              <button type="button" class="button" onClick={() => table.add(vehicle.serial ?? "")}>
+                Add <span class="wire-text">{vehicle.serial}</span>
+              </button>
+            )}
+          </For>
+        </div>
+      </Show>
+      <form
+        class="vehicle-add"
+        aria-label="Vehicle by serial"
+        onSubmit={(event) => {
+          event.preventDefault();
+          table.add(serial().trim());
+          setSerial("");
+        }}
+      >
+        <label>
+          Serial, as the app shows it
+          <input
+            class="field"
+            value={serial()}
+            onInput={(event) => setSerial(event.currentTarget.value)}
+          />
+        </label>
+        <button
+          type="submit"
+          class="button"
+          disabled={serial().trim() === "" || isListed()}
+          title={isListed() ? "It is listed already" : undefined}
+        >
+          Add vehicle
+        </button>
+      </form>
+    </section>
+  );
+}
+
+function SaveVehicles() {
+  const { vehicleTable: table, lacks } = useConsole();
+  const { saved, isBusy, isChanged, verdict, notice } = table;
+  const locked = () => saved()?.locked_reason ?? lacks("admin");
+  const general = () => {
+    const now = verdict();
+    return now.kind === "refused" && now.row === null ? now.text : null;
+  };
+  return (
+    <section class="section" aria-label="Save the vehicles">
+      <p role="status" class="site-verdict">
+        {verdictText()}
+      </p>
+      <Problem text={general()} />
+      <div class="section-buttons">
+        <button
+          type="button"
+          class="button site-save"
+          disabled={!isChanged() || isBusy() || locked() !== null}
+          title={locked() ?? undefined}
+          onClick={() => void table.save()}
+        >
+          Save, in force at once
+        </button>
+        <button
+          type="button"
+          class="button"
+          disabled={isBusy()}
+          onClick={() => void table.discard()}
+        >
+          {isChanged() ? "Discard" : "Reload"}
+        </button>
+      </div>
+      <Show when={notice()}>
+        {(one) => (
+          <Show when={one().isProblem} fallback={<p role="status">{one().text}</p>}>
+            <Problem text={one().text} />
+          </Show>
+        )}
+      </Show>
+      <Show when={saved()?.undo}>
+        {(change) => (
+          <button
+            type="button"
+            class="button"
+            disabled={isBusy() || isChanged() || locked() !== null}
+            title={isChanged() ? "Save or discard the changes first" : undefined}
+            onClick={() => void table.undoSaved()}
+          >
+            Undo last save: {change().what}, by {personName(change().by)}
+          </button>
+        )}
+      </Show>
+    </section>
+  );
+
+  function verdictText(): string {
+    const now = verdict();
+    switch (now.kind) {
+      case "none":
+        return "No changes.";
+      case "checking":
+        return "Checking the vehicles.";
+      case "accepted":
+        return now.changes.length === 0
+          ? "Nothing changes."
+          : `Ready to save: ${now.changes.join("; ")}.`;
+      case "refused":
+        return "Cannot be saved as it is:";
+    }
+  }
+}
