@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from recon.api.app import create_app
-from recon.api.port import SiteFolder, SurveyPort, TimelineSubject
+from recon.api.port import CalibrationPort, SiteFolder, SurveyPort, TimelineSubject
 from recon.api.schema import (
     ActionResponse,
     AuditPage,
@@ -197,6 +197,9 @@ class FakeStation:
 
     def site_folder(self) -> SiteFolder:
         return self.service.site_folder()
+
+    def calibration(self) -> CalibrationPort:
+        return self.service.calibration()
 
     def geotiff(self, image: GroundImage) -> bytes:
         return self.service.geotiff(image)

@@ -123,7 +123,7 @@ def test_undo_takes_back_one_change_after_the_other_also_of_the_layers_editor(
     assert editor.table()["undo"]["what"] == "vehicles"
     assert editor.client.get("/api/site/drawing").json()["undo"]["what"] == "vehicles"
     answer = editor.undo()
-    assert (answer["accepted"], answer["layers"], answer["has_vehicles"]) == (True, [], True)
+    assert (answer["accepted"], answer["layers"], answer["also"]) == (True, [], ["vehicles"])
     assert editor.numbers() == {"SIM-1": 1}
     editor.undo()
     assert editor.table()["vehicles"] == [one, two]

@@ -3,11 +3,13 @@ import type { ReplayView, StationState, TimelineEntryView } from "../src/protoco
 import { link, vehicle, zone } from "../src/testing/fakeState";
 import { axeFaults } from "./axe";
 import { busyState } from "./fake/busyState";
-import { DRAWING, REFUSED_VEHICLE, VEHICLES } from "./fake/drawnSite";
+import { DRAWING, FIT, FROZEN, REFUSED_VEHICLE, VEHICLES } from "./fake/drawnSite";
 import { CHECKLIST, fencedState } from "./fake/fencedState";
+import { fieldPicture } from "./fake/picture";
 import { FakeStation } from "./fake/station";
 import { surveyedState } from "./fake/surveyedState";
 import { smallTargets } from "./legibility";
+import { markOnePoint } from "./markedPoints";
 import { openPanel } from "./openPanel";
 import { THEMES } from "./themes";
 
@@ -24,6 +26,7 @@ const PANELS = [
   "Temporary zones",
   "Edit site",
   "Site vehicles",
+  "Calibrate camera",
   "Return in layers",
   "Orders",
   "Timeline",
@@ -92,6 +95,9 @@ async function openConsole(page: Page) {
   const fake = await FakeStation.behind(page, state);
   fake.drawing = DRAWING;
   fake.vehicles = VEHICLES;
+  fake.frozen = FROZEN;
+  fake.fit = FIT;
+  fake.showPicture(await fieldPicture(page));
   fake.vehiclesResult = REFUSED_VEHICLE;
   fake.preflight = CHECKLIST;
   await page.route("**/api/timeline?**", (route) =>
@@ -160,6 +166,7 @@ for (const size of SIZES) {
         await page.keyboard.press("Tab");
         await expect(page.getByText("Number: 1 is the number of Alder too")).toBeVisible();
       }
+      if (panel === "Calibrate camera") await markOnePoint(page);
       await check(panel);
       await panels.getByRole("button", { name: /^Close ./ }).click();
     }

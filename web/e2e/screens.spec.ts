@@ -2,11 +2,21 @@ import { expect, test } from "@playwright/test";
 import type { StationState } from "../src/protocol";
 import { alarm, link, station, vehicle } from "../src/testing/fakeState";
 import { busyState } from "./fake/busyState";
-import { DRAWING, HERE, REFUSED, REFUSED_VEHICLE, sendAges, VEHICLES } from "./fake/drawnSite";
+import {
+  DRAWING,
+  FIT,
+  FROZEN,
+  HERE,
+  REFUSED,
+  REFUSED_VEHICLE,
+  sendAges,
+  VEHICLES,
+} from "./fake/drawnSite";
 import { fleetState } from "./fake/fleetState";
 import { fieldPicture } from "./fake/picture";
 import { FakeStation } from "./fake/station";
 import { drawnShare } from "./mapPicture";
+import { markOnePoint } from "./markedPoints";
 import { openPanel } from "./openPanel";
 import { startReplay } from "./stationProcess";
 import { applyTheme, THEMES } from "./themes";
@@ -175,6 +185,21 @@ for (const theme of THEMES) {
       await panel.getByText(/edges do not meet/).waitFor();
       await page.waitForTimeout(1000);
       await page.screenshot({ path: `screens/site-${theme.name}-${size.width}.png` });
+    });
+
+    test(`calibration, ${theme.name} at ${size.width}x${size.height}`, async ({ page }) => {
+      await page.setViewportSize(size);
+      await page.emulateMedia({ colorScheme: theme.colorScheme });
+      const fake = await FakeStation.behind(page, HERE);
+      fake.frozen = FROZEN;
+      fake.fit = FIT;
+      fake.showPicture(await fieldPicture(page));
+      sendAges(page, fake);
+      await page.goto("/");
+      await applyTheme(page, theme);
+      await openPanel(page, "Calibrate camera");
+      await markOnePoint(page);
+      await page.screenshot({ path: `screens/calibration-${theme.name}-${size.width}.png` });
     });
 
     test(`site vehicles, ${theme.name} at ${size.width}x${size.height}`, async ({ page }) => {

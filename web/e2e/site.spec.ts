@@ -1,11 +1,14 @@
-import { mkdtemp, rm } from "node:fs/promises";
+import { cp, mkdtemp, readFile, rm } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
+import { fileURLToPath } from "node:url";
 import { expect, type Page, test } from "@playwright/test";
 import { openPanel } from "./openPanel";
 import { runRecon, startStation } from "./stationProcess";
 
 const CONNECT_WITHIN_MS = 60_000;
+
+const DEMO_SITE = fileURLToPath(new URL("../../src/recon/site/demo", import.meta.url));
 
 const RING = [
   [-93.6044, 41.9006],
@@ -122,6 +125,66 @@ test("a site is drawn and imported, flown, and its fences keep while it is flown
       await expect(table.getByText(/change, and it is added or removed, only while/)).toContainText(
         "Drone 1. Land first",
       );
+    });
+  } finally {
+    await station.stop();
+    await rm(folder, { recursive: true });
+  }
+});
+
+test("the imaging drone is calibrated on a frozen frame, residuals at once", async ({ page }) => {
+  test.setTimeout(240_000);
+  const folder = await mkdtemp(join(tmpdir(), "recon-calibration-"));
+  await cp(DEMO_SITE, folder, { recursive: true });
+  const before = await readFile(join(folder, "GCPs.txt"), "utf-8");
+  const marks = before
+    .split("\n")
+    .filter((line) => line !== "" && !line.startsWith("#"))
+    .map((line) => line.split(",").map((part) => part.trim()));
+  const station = await startStation("--site", folder);
+  try {
+    await page.goto(station.url);
+    await openPanel(page, "Calibrate camera");
+    const panel = page.getByRole("region", { name: "Calibrate camera", exact: true });
+    const points = panel.getByRole("list", { name: "Control points" });
+    const accept = panel.getByRole("button", { name: "Accept and save" });
+    await expect(async () => {
+      await panel.getByRole("button", { name: /^Freeze/ }).click();
+      await expect(panel.getByAltText(/^The frozen frame/)).toBeVisible({ timeout: 2_000 });
+    }).toPass({ timeout: CONNECT_WITHIN_MS });
+    await panel.getByRole("button", { name: /^Use the site's 8 surveyed points/ }).click();
+    const picture = panel.getByAltText(/^The frozen frame/);
+    const [cols, rows] = [3840, 2160];
+    const mark = async ([name = "", col = "", row = ""]: string[]) => {
+      await points.getByRole("button", { name: new RegExp(`^${name}\\b`) }).click();
+      await picture.scrollIntoViewIfNeeded();
+      const box = await picture.boundingBox();
+      const { x = 0, y = 0, width = 0, height = 0 } = box ?? {};
+      const at = [(Number(col) + 0.5) / cols, (Number(row) + 0.5) / rows] as const;
+      await page.mouse.click(x + at[0] * width, y + at[1] * height);
+    };
+    await test.step("three points are too few, and the reason is shown", async () => {
+      for (const one of marks.slice(0, 3)) await mark(one);
+      await expect(panel.getByText(/expected at least 4 control points, got 3/)).toBeVisible();
+      await expect(accept).toBeDisabled();
+    });
+    await test.step("more points give the camera, with the residual of each", async () => {
+      for (const one of marks.slice(3)) await mark(one);
+      await expect(panel.getByText(/^RMS \d\.\d+\spx · 1[12]\d\.\d\sm above ground/)).toBeVisible();
+      await expect(points.getByRole("button", { name: /px · .*m$/ })).toHaveCount(8);
+      await page.screenshot({ path: "screens/calibration-live.png" });
+    });
+    await test.step("accepted, the points are saved and undone", async () => {
+      await accept.click();
+      await expect(panel.getByText(/^Saved\. The next frames/)).toBeVisible();
+      expect(await readFile(join(folder, "GCPs.txt"), "utf-8")).not.toBe(before);
+      expect(await readFile(join(folder, "site.toml"), "utf-8")).toContain("[1280, 720]");
+      await openPanel(page, "Edit site");
+      const site = page.getByRole("region", { name: "Edit site", exact: true });
+      await site.getByRole("button", { name: "Edit", exact: true }).click();
+      await site.getByRole("button", { name: /^Undo last save: calibration/ }).click();
+      await expect(site.getByText("Undone: calibration. In force now")).toBeVisible();
+      expect(await readFile(join(folder, "GCPs.txt"), "utf-8")).toBe(before);
     });
   } finally {
     await station.stop();

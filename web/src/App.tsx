@@ -21,6 +21,7 @@ import { OrderBar } from "./panels/orders/OrderBar";
 import { ReplayBar } from "./panels/replay/ReplayBar";
 import { FleetReturn } from "./panels/return/FleetReturn";
 import { SeparationBanner } from "./panels/separation/SeparationHold";
+import { CalibrationPanel } from "./panels/site/CalibrationPanel";
 import { SitePanel } from "./panels/site/SitePanel";
 import { VehiclesPanel } from "./panels/site/VehiclesPanel";
 import { StationPanel } from "./panels/station/StationPanel";
@@ -42,6 +43,7 @@ const PANELS: readonly (readonly [PanelName, () => ReturnType<typeof AlarmList>]
   ["zones", ZonesPanel],
   ["site", SitePanel],
   ["vehicles", VehiclesPanel],
+  ["calibration", CalibrationPanel],
   ["return", FleetReturn],
   ["orders", CommandList],
   ["timeline", TimelinePanel],

@@ -17,6 +17,7 @@ import { type Targets, targetsOf } from "./orders/targets";
 import { createZoneDraft, type ZoneDraft } from "./orders/zoneDraft";
 import type { OpenPanels } from "./panels/openPanels";
 import type { ReplayView, SurveyView } from "./protocol";
+import { type Calibration, createCalibration } from "./site/calibration";
 import { createSiteDraft, type SiteDraft } from "./site/siteDraft";
 import { createVehicleTable, type VehicleTable } from "./site/vehicleTable";
 import { type AlarmSound, createAlarmSound } from "./sound/alarmSound";
@@ -53,6 +54,7 @@ export interface Console {
   readonly zoneDraft: ZoneDraft;
   readonly siteDraft: SiteDraft;
   readonly vehicleTable: VehicleTable;
+  readonly calibration: Calibration;
   readonly overlay: Overlay;
   readonly theme: ThemeSwitch;
   readonly panels: OpenPanels;
@@ -120,13 +122,19 @@ export function createConsole(
     () => fleet.site?.ground_altitude_m ?? null,
   );
   const vehicleTable = createVehicleTable(source.site, clock);
-  createEffect(on(vehicleTable.saves, () => void siteDraft.refresh(), { defer: true }));
-  createEffect(on(siteDraft.saves, () => void vehicleTable.refresh(), { defer: true }));
+  const calibration = createCalibration(source.site, clock);
+  createEffect(
+    on([vehicleTable.saves, calibration.saves], () => void siteDraft.refresh(), { defer: true }),
+  );
+  createEffect(
+    on([siteDraft.saves, calibration.saves], () => void vehicleTable.refresh(), { defer: true }),
+  );
   // A press on the map means one thing at a time.
   const modes = [
     { isOn: flyHere.isOn, leave: () => flyHere.isOn() && flyHere.toggle() },
     zoneDraft,
     siteDraft,
+    calibration,
   ];
   for (const mode of modes) {
     createEffect(
@@ -138,7 +146,8 @@ export function createConsole(
   const replay = () => source.state()?.replay ?? null;
   const isReplay = createMemo(() => replay() !== null);
   const aim = (at: LonLat) => {
-    if (!siteDraft.isOn()) (zoneDraft.isOn() ? zoneDraft : flyHere).aim(at);
+    if (calibration.isOn()) calibration.aim(at);
+    else if (!siteDraft.isOn()) (zoneDraft.isOn() ? zoneDraft : flyHere).aim(at);
   };
   // A draft may be saved when the last vehicle has landed, and no more when one takes off.
   const inTheAir = createMemo(
@@ -157,6 +166,7 @@ export function createConsole(
     zoneDraft,
     siteDraft,
     vehicleTable,
+    calibration,
     overlay: createOverlay(() => fleet.surveys.some(({ phase }) => ACTIVE.includes(phase))),
     theme,
     panels,

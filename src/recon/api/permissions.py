@@ -51,6 +51,7 @@ LEAST_ROLE: dict[tuple[str, str], Role] = {
     ("GET", "/api/zones"): Role.OBSERVER,
     ("GET", "/api/site/drawing"): Role.OBSERVER,
     ("GET", "/api/site/vehicles"): Role.OBSERVER,
+    ("GET", "/api/site/calibration/frame.jpg"): Role.OBSERVER,
     ("GET", "/api/replay/marks"): Role.OBSERVER,
     # Of a replay, which orders nothing; a live station refuses it.
     ("POST", "/api/replay"): Role.OBSERVER,
@@ -80,6 +81,9 @@ LEAST_ROLE: dict[tuple[str, str], Role] = {
     ("POST", "/api/site/drawing/check"): Role.OPERATOR,
     ("POST", "/api/site/drawing/undo"): Role.OPERATOR,
     ("POST", "/api/site/import"): Role.OPERATOR,
+    ("POST", "/api/site/calibration"): Role.OPERATOR,
+    ("POST", "/api/site/calibration/fit"): Role.OPERATOR,
+    ("POST", "/api/site/calibration/freeze"): Role.OPERATOR,
     ("POST", "/api/site/vehicles"): Role.OPERATOR,
     ("POST", "/api/site/vehicles/check"): Role.OPERATOR,
     # Finding a lost vehicle is routine; the operators talk to those who look for it.

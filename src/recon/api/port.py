@@ -10,6 +10,9 @@ import numpy.typing as npt
 from recon.api.schema import (
     ActionResponse,
     AuditPage,
+    CalibrationRequest,
+    CalibrationView,
+    FrozenFrameView,
     ImportedView,
     OrderResponse,
     PreflightView,
@@ -78,6 +81,22 @@ class SiteFolder(Protocol):
 
     async def import_features(self, name: str, data: bytes) -> ImportedView:
         """Return the polygons and points of a file; why it is refused is a result."""
+
+
+class CalibrationPort(Protocol):
+    """Imaging drones' cameras placed by points that are marked on kept frames."""
+
+    async def freeze(self, serial: str) -> FrozenFrameView:
+        """Keep the newest frame of an imaging drone; why none is kept is a result."""
+
+    def frame(self, serial: str) -> Frame | None:
+        """Return the kept frame."""
+
+    async def fit(self, asked: CalibrationRequest) -> CalibrationView:
+        """Return the camera's pose by these points; nothing is saved."""
+
+    async def accept(self, asked: CalibrationRequest, by: Person) -> CalibrationView:
+        """Save the points and bring them into force; refusals are results."""
 
 
 class SurveyPort(Protocol):
@@ -257,6 +276,9 @@ class StationPort(Protocol):
 
     def surveys(self) -> SurveyPort:
         """Return the surveys."""
+
+    def calibration(self) -> CalibrationPort:
+        """Return what places the imaging drones' cameras."""
 
     def geotiff(self, image: GroundImage) -> bytes:
         """Return a ground image as a GeoTIFF file; may take long, safe on any thread."""

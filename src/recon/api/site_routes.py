@@ -1,11 +1,14 @@
 """Routes for the site's layers and vehicles: read, check, save, undo, import."""
 
+import asyncio
 from typing import Annotated
 
-from fastapi import FastAPI, Query, Request
+from fastapi import FastAPI, Query, Request, Response
 
 from recon.api import schema
+from recon.api.pictures import frame_jpeg
 from recon.api.port import StationPort
+from recon.api.responses import PROBLEMS, found
 from recon.api.security import person_of
 
 
@@ -61,6 +64,33 @@ def add_site_routes(app: FastAPI, port: StationPort) -> None:
     async def undo(asked: schema.SiteUndoRequest, request: Request) -> schema.SiteDrawingResponse:
         """Take back the newest change of the site."""
         return await port.site_folder().undo(asked.revision, person_of(request))
+
+    @app.post("/api/site/calibration/freeze")
+    async def freeze(asked: schema.FrozenFrameRequest) -> schema.FrozenFrameView:
+        """Keep the newest frame of an imaging drone, for control points to be marked on."""
+        return await port.calibration().freeze(asked.serial)
+
+    @app.get("/api/site/calibration/frame.jpg", response_class=Response, responses=PROBLEMS)
+    async def frozen(serial: str) -> Response:
+        """The kept frame of an imaging drone."""
+        frame = found(port.calibration().frame(serial), f"No frame of {serial!r} is kept")
+        data = await asyncio.to_thread(frame_jpeg, frame)
+        return Response(data, media_type="image/jpeg", headers={"X-Frame-Id": str(frame.id)})
+
+    @app.post("/api/site/calibration/fit")
+    async def fit(asked: schema.CalibrationRequest) -> schema.CalibrationView:
+        """Solve the camera's pose by control points, with the residual of each; nothing is saved.
+
+        Refused are fewer than four points, points on a line, and points that do not fit.
+        """
+        return await port.calibration().fit(asked)
+
+    @app.post("/api/site/calibration")
+    async def calibrate(
+        asked: schema.CalibrationRequest, request: Request
+    ) -> schema.CalibrationView:
+        """Save the control points in the site's folder; the next frames are placed by them."""
+        return await port.calibration().accept(asked, person_of(request))
 
     @app.post("/api/site/import")
     async def import_file(

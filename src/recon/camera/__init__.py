@@ -16,7 +16,7 @@ from recon.camera.errors import (
 )
 from recon.camera.ground import GroundProjector, ground_maps
 from recon.camera.image_circle import ImageCircle, find_image_circle
-from recon.camera.motion import TelemetryReference, displaced_pose, mounted_pose, placing_error_m
+from recon.camera.motion import displaced_pose, mounted_pose, placing_error_m
 from recon.camera.omnidirectional import OmnidirectionalCamera
 from recon.camera.pose import PointResidual, PoseSolution, pose_from_points
 from recon.camera.text_files import (
@@ -28,6 +28,7 @@ from recon.camera.text_files import (
     parse_camera,
     parse_control_points,
 )
+from recon.model.imagery import TelemetryReference
 
 __all__ = [
     "CalibrationError",

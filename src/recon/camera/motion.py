@@ -4,58 +4,18 @@ Only differences of telemetry are used, so a constant error of position, height 
 What remains (drift of barometer, GNSS and compass) is unknown here: a moved pose has no covariance.
 """
 
-from dataclasses import dataclass
 from math import cos, hypot, radians, sin
-from typing import Self
 
 import numpy as np
 import numpy.typing as npt
 
-from recon.model.geo import LatLon
-from recon.model.imagery import CameraPose
-from recon.model.units import is_finite
-from recon.model.vehicle import Attitude, Mount
+from recon.model.imagery import CameraPose, TelemetryReference
+from recon.model.vehicle import Mount
 
 FloatArray = npt.NDArray[np.float64]
 
 POSITION_ERROR_M, HEADING_ERROR_DEG, TILT_ERROR_DEG = 3.0, 2.0, 1.0
 """Standard errors of an aircraft's GNSS, of its compass, and of a gimbal's straight down."""
-
-
-@dataclass(frozen=True, slots=True)
-class TelemetryReference:
-    """Position and attitude of the aircraft by telemetry, at one moment.
-
-    Height is above takeoff (barometric); yaw clockwise from north, pitch nose up, roll right side
-    down, as in core telemetry (ICD 3.1.1).
-    """
-
-    latitude_deg: float
-    longitude_deg: float
-    height_above_takeoff_m: float
-    yaw_deg: float
-    pitch_deg: float = 0.0
-    roll_deg: float = 0.0
-
-    @classmethod
-    def from_report(
-        cls,
-        position: LatLon | None,
-        height_above_takeoff_m: float | None,
-        attitude: Attitude | None,
-    ) -> Self | None:
-        """Return the reference of a telemetry report, None when a part is missing or not finite."""
-        if position is None or height_above_takeoff_m is None or attitude is None:
-            return None
-        values = (
-            position.latitude_deg,
-            position.longitude_deg,
-            height_above_takeoff_m,
-            attitude.yaw_deg,
-            attitude.pitch_deg,
-            attitude.roll_deg,
-        )
-        return cls(*values) if is_finite(*values) else None
 
 
 def displaced_pose(

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from recon.model.airspace import ElevationModel, LandingPad, Region, SiteLayer, Zone
 from recon.model.command import Body, Phase, Refusal
 from recon.model.control import AuthorityHolder
+from recon.model.imagery import CameraPose, Outlook, TelemetryReference
 from recon.model.report import Report
 from recon.model.survey import Survey
 from recon.model.temporary_zone import DrawnZone
@@ -272,6 +273,27 @@ class SiteRedrawn:
     elevation: ElevationModel | None = None
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class ImagerMarked:
+    """A person has marked control points on a frame of an imaging drone, and they are saved.
+
+    `pose` is the camera's in that frame, `telemetry` the aircraft's; None, as in a site without
+    them, when an undo takes that back. `rms_px` is None without control points.
+    """
+
+    serial: str
+    pose: CameraPose
+    telemetry: TelemetryReference | None
+    outlook: Outlook
+    rms_px: float | None
+    by: str
+
+    @property
+    def is_placed_by_telemetry(self) -> bool:
+        """Whether telemetry alone places the camera."""
+        return self.rms_px is None
+
+
 @dataclass(frozen=True, slots=True)
 class FleetReturnOrdered:
     """Vehicles return home in height layers, as landing missions.
@@ -455,6 +477,7 @@ Event = (
     | UsersChanged
     | ZoneEnded
     | SiteRedrawn
+    | ImagerMarked
     | FleetReturnOrdered
     | LookAsideOrdered
     | SurveyRequested

@@ -2,12 +2,14 @@
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import TypeAlias
+from typing import Self, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from recon.model.geo import GroundGrid
+from recon.model.geo import GroundGrid, LatLon
+from recon.model.units import is_finite
+from recon.model.vehicle import Attitude
 
 RgbImage: TypeAlias = npt.NDArray[np.uint8]
 FloatArray: TypeAlias = npt.NDArray[np.float64]
@@ -40,6 +42,42 @@ class CameraPose:
     rotation_enu_camera: FloatArray
     position_enu_m: FloatArray
     covariance: FloatArray | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class TelemetryReference:
+    """Position and attitude of the aircraft by telemetry, at one moment.
+
+    Height is above takeoff (barometric); yaw clockwise from north, pitch nose up, roll right side
+    down, as in core telemetry (ICD 3.1.1).
+    """
+
+    latitude_deg: float
+    longitude_deg: float
+    height_above_takeoff_m: float
+    yaw_deg: float
+    pitch_deg: float = 0.0
+    roll_deg: float = 0.0
+
+    @classmethod
+    def from_report(
+        cls,
+        position: LatLon | None,
+        height_above_takeoff_m: float | None,
+        attitude: Attitude | None,
+    ) -> Self | None:
+        """Return the reference of a telemetry report, None when a part is missing or not finite."""
+        if position is None or height_above_takeoff_m is None or attitude is None:
+            return None
+        values = (
+            position.latitude_deg,
+            position.longitude_deg,
+            height_above_takeoff_m,
+            attitude.yaw_deg,
+            attitude.pitch_deg,
+            attitude.roll_deg,
+        )
+        return cls(*values) if is_finite(*values) else None
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,9 +7,9 @@ import pytest
 
 from recon.camera.motion import TelemetryReference
 from recon.camera.registration import RegistrationState
-from recon.model.event import Event
+from recon.model.event import Event, ImagerMarked
 from recon.model.geo import GeoPoint, GroundGrid, LatLon, LocalFrame
-from recon.model.imagery import CameraPose, Frame, GroundImage, Registration
+from recon.model.imagery import CameraPose, Frame, GroundImage, Outlook, Registration
 from recon.model.units import NS_PER_S, Stamped
 from recon.model.vehicle import Attitude, VehicleState
 from recon.station.alarms.conditions import conditions
@@ -22,7 +22,7 @@ from recon.station.imaging.frames import (
 )
 from recon.station.imaging.projection import LaidFrame
 from recon.station.kernel.step import step
-from recon.station.state.imaging import ImagerFrames, Imaging, LayFrame
+from recon.station.state.imaging import ImagerFrames, Imaging, LayFrame, LayMarkedFrame
 from recon.station.state.station import Station
 from recon.station.state.steps import Job, JobDone, JobDropped, JobFailed
 
@@ -219,3 +219,23 @@ def image(registration: Registration, captured_at_s: float = 4.0) -> GroundImage
         registration,
         serial="IMAGER",
     )
+
+
+def test_a_new_marked_frame_places_the_next_frame_and_begins_registration_anew() -> None:
+    station = station_of(replace(observed(5), reference=TelemetryReference(0.0, 0.0, 100.0, 0.0)))
+    station, _ = offered(station, 2.0)
+    assert station.imaging.job_id is not None
+    marked = TelemetryReference(45.0, 9.0, 80.0, 10.0)
+    pose = CameraPose(np.eye(3), np.array([1.0, 2.0, 80.0]))
+    event = ImagerMarked("IMAGER", pose, marked, Outlook(1.0), 0.5, "anna")
+    before = station
+    station, _ = step(station, event, NS_PER_S)
+    imager_now = only(station)
+    assert (imager_now.reference, imager_now.is_reference_assumed) == (marked, False)
+    # The running job aligns by the old pose: the next frame does not wait for it.
+    station, job = offered(station, 4.0)
+    assert job is not None
+    assert isinstance(job.input, LayMarkedFrame)
+    assert (job.input.marked_pose, job.input.reference) == (pose, marked)
+    other = replace(event, serial="SIM-9")
+    assert step(before, other, NS_PER_S)[0].imaging is before.imaging

@@ -1,5 +1,7 @@
 import type { Page } from "@playwright/test";
 import type {
+  CalibrationView,
+  FrozenFrameView,
   SiteDrawingResponse,
   SiteDrawingView,
   SiteVehiclesResponse,
@@ -58,7 +60,7 @@ export const REFUSED: SiteDrawingResponse = {
   reason: "Expected a polygon whose edges do not meet, but edges 1 and 3 do",
   feature: 2,
   layers: [],
-  has_vehicles: false,
+  also: [],
   drawing: null,
 };
 
@@ -87,6 +89,31 @@ export const REFUSED_VEHICLE: SiteVehiclesResponse = {
   row: 1,
   changes: [],
   vehicles: null,
+};
+
+export const FROZEN: FrozenFrameView = {
+  accepted: true,
+  reason: null,
+  frame_id: 7,
+  cols: 1280,
+  rows: 720,
+  latitude_deg: LAT,
+  longitude_deg: LON,
+  surveyed: [
+    { name: "GATE", latitude_deg: LAT, longitude_deg: LON, altitude_m: 275 },
+    { name: "TRACK", latitude_deg: LAT + 0.0003, longitude_deg: LON, altitude_m: 275 },
+  ],
+};
+
+/** A fit with one point that is off. */
+export const FIT: CalibrationView = {
+  accepted: true,
+  rule: null,
+  reason: null,
+  rms_px: 2.31,
+  residuals: [{ name: "GATE", col_px: -6.2, row_px: 4.1, ground_m: 1.42 }],
+  height_above_ground_m: 119.6,
+  tilt_deg: 0.8,
 };
 
 /** Sends states until the page closes: without, the page would report the station lost. */

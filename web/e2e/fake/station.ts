@@ -1,6 +1,8 @@
 import type { Page, WebSocketRoute } from "@playwright/test";
 import type {
   AccessView,
+  CalibrationView,
+  FrozenFrameView,
   OrderRequest,
   OrderResult,
   PreflightView,
@@ -54,7 +56,7 @@ export class FakeStation {
     reason: null,
     feature: null,
     layers: [],
-    has_vehicles: false,
+    also: [],
     drawing: null,
   };
   /** The vehicles of the site's folder, and the answer to their checks and saves. */
@@ -67,6 +69,9 @@ export class FakeStation {
     changes: [],
     vehicles: null,
   };
+  /** What a freeze and a fit answer. */
+  frozen: FrozenFrameView | null = null;
+  fit: CalibrationView | null = null;
   /** Answer for any survey's paths. */
   ways: SurveyWays | null = null;
   private sockets: WebSocketRoute[] = [];
@@ -133,6 +138,15 @@ export class FakeStation {
     if (path === "/api/site/drawing" && body === null) return { json: this.drawing };
     if (path === "/api/site/vehicles" && body === null) return { json: this.vehicles };
     if (path.startsWith("/api/site/vehicles")) return { json: this.vehiclesResult };
+    if (path === "/api/site/calibration/freeze" && this.frozen !== null)
+      return { json: this.frozen };
+    if (path === "/api/site/calibration/frame.jpg" && this.picture !== null)
+      return {
+        body: this.picture,
+        contentType: "image/jpeg",
+        headers: { "X-Frame-Id": String(this.frozen?.frame_id) },
+      };
+    if (path.startsWith("/api/site/calibration")) return { json: this.fit };
     if (path === "/api/cameras") return { json: [MINI_3_PRO] };
     if (path.startsWith("/api/site/drawing")) return { json: this.drawingResult };
     const isControlRequest = /\/(authority|override|release|zones|end)$/.test(path);

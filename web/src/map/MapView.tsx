@@ -24,6 +24,7 @@ import { SiteDraftLayer } from "./siteDraftLayer";
 import { createSiteEditing } from "./siteEditing";
 import { SurveyRowsLayer } from "./surveyRowsLayer";
 import { TargetLayer } from "./targetLayer";
+import { TargetMarkers } from "./targetMarkers";
 import { TemporaryZoneLayer } from "./temporaryZoneLayer";
 import { VehicleLayer } from "./vehicleLayer";
 
@@ -37,7 +38,7 @@ const AGE_STEP_S = 0.2;
 export function MapView() {
   const { source, selection, theme, behindS, fitRequests, flyHere, zoneDraft, overlay } =
     useConsole();
-  const { aim, setMapCentre, siteDraft } = useConsole();
+  const { aim, setMapCentre, siteDraft, calibration } = useConsole();
   const [map, setMap] = createSignal<MapLibre | null>(null);
   const ground = createDisplayedGround(source);
   const sunHere = createSunHere(source, overlay, () => source.state()?.shade?.map?.number ?? null);
@@ -126,6 +127,16 @@ export function MapView() {
     for (const layer of layers) layer.update(scene);
   });
 
+  const controlPoints = new TargetMarkers("target-planned");
+  createEffect(() => {
+    const shown = map();
+    const placed = calibration.points().flatMap(({ id, name, place }) => {
+      const colour = id === calibration.selected()?.id ? "var(--accent)" : "var(--text)";
+      return place === null ? [] : [{ key: id, at: place, colour, text: name }];
+    });
+    if (shown !== null) controlPoints.show(shown, placed);
+  });
+
   createEffect(() => {
     theme.changes();
     const colours = readColours(document);
@@ -158,7 +169,10 @@ export function MapView() {
     <>
       <section
         class="map"
-        classList={{ "is-aiming": flyHere.isOn() || zoneDraft.isOn() || siteDraft.tool() !== null }}
+        classList={{
+          "is-aiming":
+            flyHere.isOn() || zoneDraft.isOn() || calibration.isOn() || siteDraft.tool() !== null,
+        }}
         aria-label="Map"
       >
         <div class="map-canvas" ref={holder} />

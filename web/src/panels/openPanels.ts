@@ -9,6 +9,7 @@ export const PANEL_NAMES = {
   zones: "Temporary zones",
   site: "Edit site",
   vehicles: "Site vehicles",
+  calibration: "Calibrate camera",
   return: "Return in layers",
   orders: "Orders",
   timeline: "Timeline",

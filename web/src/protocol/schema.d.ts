@@ -555,6 +555,88 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/site/calibration": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Calibrate
+         * @description Save the control points in the site's folder; the next frames are placed by them.
+         */
+        post: operations["calibrate_api_site_calibration_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/site/calibration/fit": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Fit
+         * @description Solve the camera's pose by control points, with the residual of each; nothing is saved.
+         *
+         *     Refused are fewer than four points, points on a line, and points that do not fit.
+         */
+        post: operations["fit_api_site_calibration_fit_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/site/calibration/frame.jpg": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Frozen
+         * @description The kept frame of an imaging drone.
+         */
+        get: operations["frozen_api_site_calibration_frame_jpg_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/site/calibration/freeze": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Freeze
+         * @description Keep the newest frame of an imaging drone, for control points to be marked on.
+         */
+        post: operations["freeze_api_site_calibration_freeze_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/site/drawing": {
         parameters: {
             query?: never;
@@ -1353,6 +1435,44 @@ export interface components {
             reason: string;
         };
         /**
+         * CalibrationRequest
+         * @description Control points marked on a kept frame.
+         */
+        CalibrationRequest: {
+            /** Frame Id */
+            frame_id: number;
+            /** Points */
+            points: components["schemas"]["ControlPointView"][];
+            /** Serial */
+            serial: string;
+        };
+        /**
+         * CalibrationView
+         * @description The camera's pose by the points, or why they give no pose.
+         */
+        CalibrationView: {
+            /** Accepted */
+            accepted: boolean;
+            /** Height Above Ground M */
+            height_above_ground_m: number | null;
+            /** Reason */
+            reason: string | null;
+            /** Residuals */
+            residuals: components["schemas"]["PointResidualView"][];
+            /**
+             * Rms Px
+             * @description of the frame's pixels
+             */
+            rms_px: number | null;
+            /** Rule */
+            rule: string | null;
+            /**
+             * Tilt Deg
+             * @description of the camera's axis from straight down
+             */
+            tilt_deg: number | null;
+        };
+        /**
          * CameraStartOrder
          * @description Send images.
          */
@@ -1476,6 +1596,30 @@ export interface components {
             times_sent: number;
             /** Vehicle Name */
             vehicle_name: string;
+        };
+        /**
+         * ControlPointView
+         * @description A control point on the globe, and where it is in the frame; a surveyed one has no pixel.
+         */
+        ControlPointView: {
+            /**
+             * Altitude M
+             * @description above the WGS84 ellipsoid; null: on the site's ground
+             */
+            altitude_m?: number | null;
+            /**
+             * Col Px
+             * @description from 0 at the first pixel's centre
+             */
+            col_px?: number | null;
+            /** Latitude Deg */
+            latitude_deg: number;
+            /** Longitude Deg */
+            longitude_deg: number;
+            /** Name */
+            name: string;
+            /** Row Px */
+            row_px?: number | null;
         };
         /**
          * DoubtView
@@ -1757,6 +1901,42 @@ export interface components {
             id: number;
             /** Received Age S */
             received_age_s: number;
+        };
+        /**
+         * FrozenFrameRequest
+         * @description The imaging drone whose newest frame is kept for marking.
+         */
+        FrozenFrameRequest: {
+            /** Serial */
+            serial: string;
+        };
+        /**
+         * FrozenFrameView
+         * @description A kept frame of an imaging drone, or why none can be kept.
+         */
+        FrozenFrameView: {
+            /** Accepted */
+            accepted: boolean;
+            /** Cols */
+            cols: number;
+            /** Frame Id */
+            frame_id: number | null;
+            /**
+             * Latitude Deg
+             * @description the aircraft's, when the frame was taken
+             */
+            latitude_deg: number | null;
+            /** Longitude Deg */
+            longitude_deg: number | null;
+            /** Reason */
+            reason: string | null;
+            /** Rows */
+            rows: number;
+            /**
+             * Surveyed
+             * @description of the site's file, without pixels
+             */
+            surveyed: components["schemas"]["ControlPointView"][];
         };
         /**
          * GoToOrder
@@ -2325,6 +2505,20 @@ export interface components {
             longitude_deg: number;
         };
         /**
+         * PointResidualView
+         * @description Observed minus predicted, in pixels of the frame and on the ground.
+         */
+        PointResidualView: {
+            /** Col Px */
+            col_px: number;
+            /** Ground M */
+            ground_m: number | null;
+            /** Name */
+            name: string;
+            /** Row Px */
+            row_px: number;
+        };
+        /**
          * PositionView
          * @description A vehicle's position (WGS84).
          */
@@ -2633,17 +2827,17 @@ export interface components {
         SiteDrawingResponse: {
             /** Accepted */
             accepted: boolean;
+            /**
+             * Also
+             * @description what an undo has changed beside layers
+             */
+            also: ("vehicles" | "calibration")[];
             drawing: components["schemas"]["SiteDrawingView"] | null;
             /**
              * Feature
              * @description the refused one's index in the request, if it is one
              */
             feature: number | null;
-            /**
-             * Has Vehicles
-             * @description whether an undo has changed vehicles
-             */
-            has_vehicles: boolean;
             /**
              * Layers
              * @description those that change
@@ -4609,6 +4803,143 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    calibrate_api_site_calibration_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["CalibrationRequest"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CalibrationView"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    fit_api_site_calibration_fit_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["CalibrationRequest"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CalibrationView"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    frozen_api_site_calibration_frame_jpg_get: {
+        parameters: {
+            query: {
+                serial: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    freeze_api_site_calibration_freeze_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["FrozenFrameRequest"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FrozenFrameView"];
                 };
             };
             /** @description Validation Error */

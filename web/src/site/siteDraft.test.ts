@@ -32,7 +32,7 @@ const ACCEPTED: SiteDrawingResponse = {
   reason: null,
   feature: null,
   layers: ["survey_regions"],
-  has_vehicles: false,
+  also: [],
   drawing: null,
 };
 const CHECK_MS = 600;

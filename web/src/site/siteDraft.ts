@@ -230,7 +230,9 @@ export function createSiteDraft(
         setSaved(answer.drawing);
         checkSoon();
       } else load(answer.drawing);
-      const what = answer.has_vehicles ? "vehicles" : layersText(answer.layers);
+      const what = [layersText(answer.layers), ...answer.also]
+        .filter((part) => part !== "")
+        .join(", ");
       const changes = what === "" ? "nothing changes" : `${what}. In force now`;
       const rest = isEdited ? ifEdited : "";
       setNotice({

@@ -1,4 +1,9 @@
-import type { ImportedView, SiteDrawingRequest, SiteVehiclesRequest } from "../protocol";
+import type {
+  CalibrationRequest,
+  ImportedView,
+  SiteDrawingRequest,
+  SiteVehiclesRequest,
+} from "../protocol";
 import { answered, SITE_READ, SITE_SAVE, type StationHttp } from "./stationHttp";
 
 export type SiteRequests = ReturnType<typeof siteRequests>;
@@ -28,6 +33,20 @@ export function siteRequests(http: StationHttp) {
     /** Saves vehicles in the site's folder and brings them into force. */
     saveVehicles: (body: SiteVehiclesRequest) =>
       answered(SITE_SAVE, (signal) => client.POST("/api/site/vehicles", { body, signal })),
+    /** Keeps the newest frame of an imaging drone, for control points to be marked on. */
+    freeze: (serial: string) =>
+      answered(SITE_READ, (signal) =>
+        client.POST("/api/site/calibration/freeze", { body: { serial }, signal }),
+      ),
+    /** The picture of the kept frame. */
+    frozenPicture: (serial: string) =>
+      http.picture(`/api/site/calibration/frame.jpg?serial=${encodeURIComponent(serial)}`),
+    /** Solves the camera's pose by control points; nothing is saved. */
+    fitCalibration: (body: CalibrationRequest) =>
+      answered(SITE_READ, (signal) => client.POST("/api/site/calibration/fit", { body, signal })),
+    /** Saves control points; the next frames are placed by them. */
+    calibrate: (body: CalibrationRequest) =>
+      answered(SITE_SAVE, (signal) => client.POST("/api/site/calibration", { body, signal })),
     /** Reads the polygons and points of a file of another program; nothing is saved. */
     readFile: (file: File) =>
       http.read(

@@ -6,8 +6,11 @@ import type {
   AccessView,
   ActionResponse,
   AuthorityHolder,
+  CalibrationRequest,
+  CalibrationView,
   FlightFiguresView,
   FlightView,
+  FrozenFrameView,
   ImportedView,
   OrderResult,
   PreflightView,
@@ -134,6 +137,10 @@ export interface FakeSite {
   vehicles: SiteVehiclesView;
   vehiclesResponse: SiteVehiclesResponse;
   readonly askedVehicles: (readonly [what: "check" | "save", vehicles: SiteVehiclesRequest])[];
+  /** What a freeze and a fit answer; the points that were asked about. */
+  frozen: FrozenFrameView;
+  fit: CalibrationView;
+  readonly askedFits: (readonly [what: "fit" | "accept", asked: CalibrationRequest])[];
   readonly undone: string[];
   readonly files: File[];
 }
@@ -215,7 +222,7 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
         reason: null,
         feature: null,
         layers: [],
-        has_vehicles: false,
+        also: [],
         drawing: null,
       },
       vehicles: { revision: "r1", vehicles: [], locked_reason: null, undo: null },
@@ -228,6 +235,26 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
         vehicles: null,
       },
       askedVehicles: [],
+      frozen: {
+        accepted: true,
+        reason: null,
+        frame_id: 7,
+        cols: 1280,
+        rows: 720,
+        latitude_deg: 41.9,
+        longitude_deg: -93.6,
+        surveyed: [],
+      },
+      fit: {
+        accepted: true,
+        rule: null,
+        reason: null,
+        rms_px: 1.25,
+        residuals: [],
+        height_above_ground_m: 110,
+        tilt_deg: 2,
+      },
+      askedFits: [],
       imported: { features: [], left_out: 0, reason: null },
       asked: [],
       undone: [],
@@ -467,6 +494,19 @@ function fakeSiteRequests(site: FakeSite): SiteRequests {
     saveVehicles: async (vehicles) => {
       site.askedVehicles.push(["save", vehicles]);
       return { kind: "answered", value: site.vehiclesResponse };
+    },
+    freeze: async () => ({ kind: "answered", value: site.frozen }),
+    frozenPicture: async () => ({
+      kind: "answered",
+      value: { blob: new Blob(["x"]), frameId: site.frozen.frame_id },
+    }),
+    fitCalibration: async (asked) => {
+      site.askedFits.push(["fit", asked]);
+      return { kind: "answered", value: site.fit };
+    },
+    calibrate: async (asked) => {
+      site.askedFits.push(["accept", asked]);
+      return { kind: "answered", value: site.fit };
     },
     readFile: async (file) => {
       site.files.push(file);

@@ -68,7 +68,9 @@ class SiteDrawingResponse(Message):
     reason: str | None
     feature: int | None = Field(description="the refused one's index in the request, if it is one")
     layers: list[SiteLayer] = Field(description="those that change")
-    has_vehicles: bool = Field(description="whether an undo has changed vehicles")
+    also: list[Literal["vehicles", "calibration"]] = Field(
+        description="what an undo has changed beside layers"
+    )
     drawing: SiteDrawingView | None
 
 
@@ -115,6 +117,67 @@ class SiteVehiclesResponse(Message):
     row: int | None = Field(description="the refused one's index in the request, if it is one")
     changes: list[str] = Field(description="one sentence for each vehicle that changes")
     vehicles: SiteVehiclesView | None
+
+
+class ControlPointView(StrictMessage):
+    """A control point on the globe, and where it is in the frame; a surveyed one has no pixel."""
+
+    name: Annotated[str, Field(max_length=100)]
+    latitude_deg: float
+    longitude_deg: float
+    altitude_m: float | None = Field(
+        default=None, description="above the WGS84 ellipsoid; null: on the site's ground"
+    )
+    col_px: float | None = Field(default=None, description="from 0 at the first pixel's centre")
+    row_px: float | None = None
+
+
+class FrozenFrameRequest(StrictMessage):
+    """The imaging drone whose newest frame is kept for marking."""
+
+    serial: Annotated[str, Field(max_length=300)]
+
+
+class FrozenFrameView(Message):
+    """A kept frame of an imaging drone, or why none can be kept."""
+
+    accepted: bool
+    reason: str | None
+    frame_id: int | None
+    cols: int
+    rows: int
+    latitude_deg: float | None = Field(description="the aircraft's, when the frame was taken")
+    longitude_deg: float | None
+    surveyed: list[ControlPointView] = Field(description="of the site's file, without pixels")
+
+
+class CalibrationRequest(StrictMessage):
+    """Control points marked on a kept frame."""
+
+    serial: Annotated[str, Field(max_length=300)]
+    frame_id: int
+    points: list[ControlPointView] = Field(max_length=200)
+
+
+class PointResidualView(Message):
+    """Observed minus predicted, in pixels of the frame and on the ground."""
+
+    name: str
+    col_px: float
+    row_px: float
+    ground_m: float | None
+
+
+class CalibrationView(Message):
+    """The camera's pose by the points, or why they give no pose."""
+
+    accepted: bool
+    rule: str | None
+    reason: str | None
+    rms_px: float | None = Field(description="of the frame's pixels")
+    residuals: list[PointResidualView]
+    height_above_ground_m: float | None
+    tilt_deg: float | None = Field(description="of the camera's axis from straight down")
 
 
 class ImportedFeatureView(Message):

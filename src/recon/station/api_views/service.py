@@ -38,6 +38,7 @@ from recon.record import geotiff_bytes
 from recon.site import Site
 from recon.station.api_views import RunningStation
 from recon.station.api_views.audit_service import KeptEntries, audit_page, timeline
+from recon.station.api_views.calibration_service import CalibrationService
 from recon.station.api_views.imaging_views import sun_at_view, upwind_view
 from recon.station.api_views.order_service import OrderService, order_of
 from recon.station.api_views.site_service import SiteService
@@ -73,6 +74,11 @@ class Service:
     replay: Callable[[], schema.ReplayView | None] = lambda: None
     """Where a replay stands; None on a live station."""
     numbers: VehicleNumbers = field(default_factory=VehicleNumbers)
+    _calibration: CalibrationService = field(init=False)
+
+    def __post_init__(self) -> None:
+        # Both change after this: a replay's frames come from its record.
+        self._calibration = CalibrationService(lambda: self._folder, lambda s: self.frame(s))
 
     @property
     def site(self) -> Site:
@@ -288,6 +294,10 @@ class Service:
     def site_folder(self) -> SiteService:
         """Return the site's folder."""
         return self._folder
+
+    def calibration(self) -> CalibrationService:
+        """Return what places the imaging drones' cameras by marked points."""
+        return self._calibration
 
     def geotiff(self, image: GroundImage) -> bytes:
         """Return a ground image as a GeoTIFF file."""

@@ -5,20 +5,22 @@ checks again what may have changed meanwhile, and what it refuses is put back.
 """
 
 import asyncio
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, Literal, TypeVar
+
+import numpy as np
 
 from recon.api import schema
-from recon.model.airspace import SiteLayer
+from recon.model.airspace import SiteLayer, layers_text
 from recon.model.command import Refusal
 from recon.model.errors import ReconError, SiteError
-from recon.model.event import SiteRedrawn
+from recon.model.event import ImagerMarked, SiteRedrawn
 from recon.model.person import Person, Role
 from recon.record import file_set
-from recon.site import Site, demo_site_folder
+from recon.site import Imager, Site, demo_site_folder
 from recon.site.drawing import (
     FENCES,
     DrawnFeature,
@@ -41,6 +43,7 @@ from recon.station.api_views.site_view import site_view
 from recon.station.control import site_drawing
 
 T = TypeVar("T")
+AlsoChanged = Literal["vehicles", "calibration"]
 
 NO_FOLDER = (
     "The station was started without a site's folder; make one with recon site new FOLDER and "
@@ -68,7 +71,7 @@ class SiteService:
     """The vehicles' numbers in force, by serial."""
     _applied: str | None = None
     """The digest of the files that are in force; None before the first reading."""
-    _turn: asyncio.Lock = field(default_factory=asyncio.Lock)
+    turn: asyncio.Lock = field(default_factory=asyncio.Lock)
     _reading: asyncio.Lock = field(default_factory=asyncio.Lock)
     """Held while a file is imported: each takes a process with memory of its own."""
 
@@ -88,7 +91,7 @@ class SiteService:
 
     async def drawing(self) -> schema.SiteDrawingView:
         """Return the layers in the folder."""
-        async with self._turn:
+        async with self.turn:
             return await asyncio.to_thread(self._view)
 
     async def save(
@@ -100,15 +103,15 @@ class SiteService:
         def stage(folder: Path) -> StagedSite:
             return stage_drawing(folder, features)
 
-        async with self._turn:
+        async with self.turn:
             try:
-                staged = await self._staged(asked.revision, stage)
+                staged = await self.staged(asked.revision, stage)
             except DrawnFeatureError as problem:
                 return _refused(_refusal(str(problem)), feature=problem.index)
             if isinstance(staged, Refusal):
                 return _refused(staged)
-            event = self._event(staged, by, is_undo=False)
-            refusal = await self._put_in_force(staged, event, by, is_check=is_check)
+            event = self.event_of(staged, by, is_undo=False)
+            refusal = await self.put_in_force(staged, event, by, is_check=is_check)
             if refusal is not None:
                 return _refused(refusal, event.layers)
             view = None if is_check else await asyncio.to_thread(self._view)
@@ -116,7 +119,7 @@ class SiteService:
 
     async def vehicles(self) -> schema.SiteVehiclesView:
         """Return the vehicles in the folder."""
-        async with self._turn:
+        async with self.turn:
             return await asyncio.to_thread(self._vehicles_view)
 
     async def save_vehicles(
@@ -137,17 +140,17 @@ class SiteService:
             ]
             return stage_vehicles(folder, kept)
 
-        async with self._turn:
+        async with self.turn:
             try:
                 self._refuse_numbers(rows, given)
-                staged = await self._staged(asked.revision, stage)
+                staged = await self.staged(asked.revision, stage)
             except VehicleRowError as problem:
                 return _vehicles_answer(refusal=_refusal(str(problem)), row=problem.index)
             if isinstance(staged, Refusal):
                 return _vehicles_answer(refusal=staged)
-            event = self._event(staged, by, is_undo=False)
+            event = self.event_of(staged, by, is_undo=False)
             changes = self._changes(event)
-            refusal = await self._put_in_force(staged, event, by, is_check=is_check)
+            refusal = await self.put_in_force(staged, event, by, is_check=is_check)
             if refusal is not None:
                 return _vehicles_answer(refusal=refusal)
             view = None if is_check else await asyncio.to_thread(self._vehicles_view)
@@ -155,7 +158,7 @@ class SiteService:
 
     async def undo(self, revision: str, by: Person) -> schema.SiteDrawingResponse:
         """Take back the newest change."""
-        async with self._turn:
+        async with self.turn:
             folder = self.folder
             if folder is None or self.locked_reason is not None:
                 return _refused(_refusal(self.locked_reason or NO_FOLDER))
@@ -169,13 +172,13 @@ class SiteService:
                     raise SiteError(f"{edited} was edited since then; an undo would lose that")
                 return stage_files(folder, file_set.files_before(folder, change))
 
-            staged = await self._staged(revision, stage)
+            staged = await self.staged(revision, stage)
             if isinstance(staged, Refusal):
                 return _refused(staged)
-            event = self._event(staged, by, is_undo=True)
+            event = self.event_of(staged, by, is_undo=True)
             after = await asyncio.to_thread(_contents, folder, staged.files)
             about = {"what": change.what, "by": change.by, "utc": change.utc}
-            has_vehicles = bool(self._changes(event))
+            also = self._also(staged, event)
             refusal = self._refusal(event, by) or await self._commit(
                 staged,
                 event,
@@ -185,7 +188,7 @@ class SiteService:
             if refusal is not None:
                 return _refused(refusal, event.layers)
             view = await asyncio.to_thread(self._view)
-        return _answer(event.layers, drawing=view, has_vehicles=has_vehicles)
+        return _answer(event.layers, drawing=view, also=also)
 
     async def import_features(self, name: str, data: bytes) -> schema.ImportedView:
         """Return the polygons and points of a file, or why it is refused."""
@@ -204,9 +207,10 @@ class SiteService:
         ]
         return schema.ImportedView(features=features, left_out=found.left_out, reason=None)
 
-    async def _staged(
-        self, revision: str, stage: Callable[[Path], StagedSite]
+    async def staged(
+        self, revision: str | None, stage: Callable[[Path], StagedSite]
     ) -> StagedSite | Refusal:
+        """Return a change of the folder, unless that is refused; without a revision of any."""
         if self.locked_reason is not None or self.folder is None:
             return _refusal(self.locked_reason or NO_FOLDER)
         folder = self.folder
@@ -214,7 +218,7 @@ class SiteService:
             on_disk = await asyncio.to_thread(drawing_digest, folder)
             if on_disk != self._applied:
                 return _refusal(CHANGED_BY_HAND)
-            if on_disk != revision:
+            if revision is not None and on_disk != revision:
                 return _refusal(CHANGED_MEANWHILE)
             return await asyncio.to_thread(stage, folder)
         except (DrawnFeatureError, VehicleRowError):
@@ -233,6 +237,25 @@ class SiteService:
                 "admin"
             )
         return refusal
+
+    def _also(self, staged: StagedSite, event: SiteRedrawn) -> list[AlsoChanged]:
+        """Return what a change is about beside layers."""
+        found: list[AlsoChanged] = []
+        if self._changes(event):
+            found.append("vehicles")
+        if any(self._marked(staged.site, event.by)):
+            found.append("calibration")
+        return found
+
+    def _marked(self, staged: Site, by: str) -> Iterator[ImagerMarked]:
+        """Yield the imaging drones whose camera is placed otherwise than in force."""
+        for serial, imager in staged.imagers.items():
+            known = self.site.imagers.get(serial)
+            if known is not None and not _is_placed_alike(known, imager):
+                rms_px = None if imager.solution is None else imager.solution.rms_px
+                yield ImagerMarked(
+                    serial, imager.marked_pose, imager.marked_frame, imager.outlook, rms_px, by
+                )
 
     def _changes(self, event: SiteRedrawn) -> list[str]:
         return list(site_drawing.changed_vehicles(self.site.profiles, event.profiles))
@@ -257,14 +280,15 @@ class SiteService:
                 )
             owners[row.number] = row.name or row.serial
 
-    async def _put_in_force(
+    async def put_in_force(
         self, staged: StagedSite, event: SiteRedrawn, by: Person, *, is_check: bool
     ) -> Refusal | None:
         """Save a staged change and bring it into force, unless that is refused or only checked."""
         refusal, folder = self._refusal(event, by), self.folder
         if refusal is not None or is_check or not staged.files or folder is None:
             return refusal
-        what = site_drawing.change_text(event.layers, bool(self._changes(event))) or "site"
+        parts = (layers_text(event.layers), *self._also(staged, event))
+        what = ", ".join(part for part in parts if part) or "site"
         return await self._commit(
             staged,
             event,
@@ -299,17 +323,26 @@ class SiteService:
                 )
             return refusal
         # Without an await between: the fence in force and the one shown are the same.
-        self.driver.handle(event)
         drawn = staged.site
+        marked = tuple(self._marked(drawn, event.by))
+        if not marked or event.layers or self._changes(event):
+            self.driver.handle(event)
+        for each in marked:
+            self.driver.handle(each)
         elevation = self.site.elevation if event.elevation is None else event.elevation
         self.site = replace(
-            self.site, layers=drawn.layers, profiles=drawn.profiles, elevation=elevation
+            self.site,
+            layers=drawn.layers,
+            profiles=drawn.profiles,
+            imagers=drawn.imagers,
+            elevation=elevation,
         )
         site_view(self.site)
         self._applied = await asyncio.to_thread(drawing_digest, folder)
         return None
 
-    def _event(self, staged: StagedSite, by: Person, *, is_undo: bool) -> SiteRedrawn:
+    def event_of(self, staged: StagedSite, by: Person, *, is_undo: bool) -> SiteRedrawn:
+        """Return the event that brings a staged site into force."""
         airspace = staged.site.airspace
         known, read = self.site.elevation, airspace.elevation
         has_other_ground = known is not None and read is not None and known.grid != read.grid
@@ -369,6 +402,15 @@ class _Read(Generic[T]):
     undo: schema.SavedChangeView | None
 
 
+def _is_placed_alike(one: Imager, other: Imager) -> bool:
+    a, b = one.marked_pose, other.marked_pose
+    return (
+        one.marked_frame == other.marked_frame
+        and np.array_equal(a.position_enu_m, b.position_enu_m)
+        and np.array_equal(a.rotation_enu_camera, b.rotation_enu_camera)
+    )
+
+
 def _contents(folder: Path, files: file_set.Files) -> file_set.Files:
     """Return the present contents of some files."""
     paths = {name: folder / name for name in files}
@@ -415,7 +457,7 @@ def _answer(
     refusal: Refusal | None = None,
     feature: int | None = None,
     drawing: schema.SiteDrawingView | None = None,
-    has_vehicles: bool = False,
+    also: Sequence[AlsoChanged] = (),
 ) -> schema.SiteDrawingResponse:
     return schema.SiteDrawingResponse(
         accepted=refusal is None,
@@ -423,7 +465,7 @@ def _answer(
         reason=None if refusal is None else refusal.reason,
         feature=feature,
         layers=list(layers),
-        has_vehicles=has_vehicles,
+        also=list(also),
         drawing=drawing,
     )
 

@@ -26,6 +26,7 @@ from recon.model.event import (
     AuthorityTaken,
     Event,
     HazardDismissed,
+    ImagerMarked,
     LinkLimitReached,
     LoginAccepted,
     LoginRefused,
@@ -51,6 +52,7 @@ from recon.station.control import (
     stop_latch,
     temporary_zones,
 )
+from recon.station.imaging import marking
 from recon.station.operations import OPERATIONS
 from recon.station.state.station import Station
 from recon.station.state.vehicle_control import VehicleControl
@@ -126,6 +128,8 @@ def _commands(before: Station, event: Event, after: Station, now_ns: int) -> Ite
             yield from _zone_refused(temporary_zones.end_refusal(before, event), by)
         case SiteRedrawn():
             yield site_drawing.entry(before, event, now_ns)
+        case ImagerMarked():
+            yield marking.entry(event)
         case HazardDismissed(serial, by):
             name = known_traffic.lost_key(before, serial) or serial
             yield _about(before, "hazard.dismissed", "hazard area dismissed", by, name)

@@ -8,8 +8,7 @@ waited longest; of each drone the newest one waits.
 
 from collections.abc import Iterator
 
-from recon.camera.motion import TelemetryReference
-from recon.model.imagery import Frame, Registration
+from recon.model.imagery import Frame, Registration, TelemetryReference
 from recon.model.replacing import replace
 from recon.model.report import ImageReport
 from recon.model.units import ns_to_seconds, seconds_to_ns
@@ -17,7 +16,13 @@ from recon.model.vehicle import VehicleProfile, VehicleState
 from recon.station.imaging import shade
 from recon.station.imaging.projection import LaidFrame, projection
 from recon.station.state.alarm_book import Condition, Severity
-from recon.station.state.imaging import ImagerFrames, ImagerSample, Imaging, LayFrame
+from recon.station.state.imaging import (
+    ImagerFrames,
+    ImagerSample,
+    Imaging,
+    LayFrame,
+    LayMarkedFrame,
+)
 from recon.station.state.station import Station
 from recon.station.state.steps import Job, JobKind, Stepped
 
@@ -95,7 +100,7 @@ def with_frame(
 
     It does not without telemetry at its capture, or without a marked frame on the ground.
     """
-    sample = _sample_at(imager.samples, frame.captured_at_ns)
+    sample = sample_at(imager.samples, frame.captured_at_ns)
     if sample is None:
         return replace(imager, latest_error=_MISSING)
     reference = imager.reference
@@ -105,6 +110,10 @@ def with_frame(
         reference = sample.telemetry
     dropped = imager.frames_dropped + (imager.waiting is not None)
     waiting = LayFrame(frame, sample.telemetry, reference, captured_utc_s)
+    if imager.marked_pose is not None:
+        waiting = LayMarkedFrame(
+            frame, sample.telemetry, reference, captured_utc_s, marked_pose=imager.marked_pose
+        )
     return replace(imager, reference=reference, waiting=waiting, frames_dropped=dropped)
 
 
@@ -160,8 +169,8 @@ def _laying_conditions(imager: ImagerFrames, trouble_after_s: float) -> Iterator
         )
 
 
-def _sample_at(samples: tuple[ImagerSample, ...], at_ns: int) -> ImagerSample | None:
-    """The sample nearest in time, unless even that one is too far off."""
+def sample_at(samples: tuple[ImagerSample, ...], at_ns: int) -> ImagerSample | None:
+    """Return the sample nearest in time, unless even that one is too far off."""
     nearest = min(samples, key=lambda sample: abs(sample.at_ns - at_ns), default=None)
     if nearest is None or abs(nearest.at_ns - at_ns) > seconds_to_ns(SAMPLE_NEAR_S):
         return None

@@ -22,7 +22,7 @@ from recon.model.replacing import replace
 from recon.model.units import ns_to_seconds
 from recon.model.vehicle import VehicleProfile
 from recon.site import Imager, Site
-from recon.station.state.imaging import LayFrame
+from recon.station.state.imaging import LayFrame, LayMarkedFrame
 
 SETTINGS = RegistrationSettings()
 _SEARCHING = "the image circle is not found in the frames yet"
@@ -97,7 +97,8 @@ def _telemetry_pose(site: Site, imager: Imager, frame: LocalFrame, work: LayFram
     marked, now = work.reference, work.telemetry
     mount = site.profiles.get(imager.serial, VehicleProfile(imager.serial)).mount
     shift_m = shift_east_north_m(frame, marked, now)
-    return displaced_pose(imager.marked_pose, marked, now, shift_m, mount)
+    of_run = work.marked_pose if isinstance(work, LayMarkedFrame) else None
+    return displaced_pose(of_run or imager.marked_pose, marked, now, shift_m, mount)
 
 
 def _toward_sun_enu(frame: LocalFrame, utc_s: float | None) -> FloatArray | None:

@@ -25,6 +25,7 @@ from recon.model.event import (
     Event,
     GuardActed,
     HazardDismissed,
+    ImagerMarked,
     LinkClosed,
     LinkLimitReached,
     LinkOpened,
@@ -62,7 +63,7 @@ from recon.station.control import (
     stop_latch,
     temporary_zones,
 )
-from recon.station.imaging import frames
+from recon.station.imaging import frames, marking
 from recon.station.kernel import fault_isolation
 from recon.station.kernel.failsafe_orders import run_failsafes, run_failsafes_isolated
 from recon.station.kernel.fault_isolation import TickPart
@@ -263,6 +264,7 @@ HANDLERS: Mapping[type[Any], Handler] = dict(
         changing(ZoneDrawn, temporary_zones.draw),
         changing(ZoneEnded, temporary_zones.end),
         changing(SiteRedrawn, site_drawing.redraw),
+        changing(ImagerMarked, marking.mark),
         on(AuthorityTaken, handover.take),
         changing(PersonConnected, operator_lease.connected),
         changing(PersonDisconnected, operator_lease.disconnected),

@@ -6,11 +6,10 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from recon.camera.motion import TelemetryReference
 from recon.camera.registration import RegistrationState
 from recon.detection import DetectionState, RejectedFrame
 from recon.forecast import ForecastState
-from recon.model.imagery import Frame, GroundImage, Outlook
+from recon.model.imagery import CameraPose, Frame, GroundImage, Outlook, TelemetryReference
 from recon.model.shade import MaskMap, ShadeMap, SunForecast, SunlitReference
 
 WAITING_KEPT = 8
@@ -46,6 +45,16 @@ class LayFrame:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class LayMarkedFrame(LayFrame):
+    """A frame to project by a pose that was marked in this run.
+
+    A type of its own: without such a pose a job's input is what earlier records have.
+    """
+
+    marked_pose: CameraPose | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class ImagerFrames:
     """Frames and ground images of one imaging drone.
 
@@ -62,13 +71,15 @@ class ImagerFrames:
     """Whether the site has no control points, so that telemetry alone places the camera."""
     outlook: Outlook | None = None
     """What its camera shows, by the site's files."""
+    marked_pose: CameraPose | None = None
+    """The camera's pose of a frame that was marked in this run; None: the site's."""
     samples: tuple[ImagerSample, ...] = ()
     ground_image: GroundImage | None = None
     captured_sigma_s: float = 0.0
     registration: RegistrationState = field(default_factory=RegistrationState)
     registration_problem: str = ""
     """Why the newest frame was not aligned; empty if it was."""
-    waiting: LayFrame | None = None
+    waiting: LayFrame | LayMarkedFrame | None = None
     frames_dropped: int = 0
     latest_error: str | None = None
 
