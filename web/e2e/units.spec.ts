@@ -30,5 +30,8 @@ test("feet are shown and typed, metres are sent, and the choice is kept", async 
   await page.keyboard.up("Enter");
   expect(fake.orders[0]?.order).toMatchObject({ kind: "goto", height_above_takeoff_m: 30.48 });
   await page.reload();
-  await expect(page.getByText(/Power line, 148 ft to 295 ft above ground/)).toBeVisible();
+  await expect(
+    page.getByText("Height limit: Power line, 148 ft to 295 ft above ground"),
+  ).toBeVisible();
+  await expect(page.getByText("2 Birch flying here, ↥ 138 ft ATO")).toBeVisible();
 });
