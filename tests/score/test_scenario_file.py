@@ -45,6 +45,7 @@ EXPECTED = {
     "clear-60ha-three",
     "clear-60ha-eight",
     "faults-wide",
+    "clear-sky-faults",
     "stress/cumulus-20",
     "stress/cumulus-40",
     "stress/cumulus-60",
