@@ -7,6 +7,7 @@ import pytest
 from recon.score.scripted_operator import (
     AbortSurvey,
     CallHome,
+    DismissHazard,
     DroneView,
     FieldView,
     OperatorAction,
@@ -71,6 +72,15 @@ def test_a_drone_without_a_task_is_started_after_20_s(drone: DroneView) -> None:
 )
 def test_a_busy_discharged_lost_or_returning_drone_is_left_alone(drone: DroneView) -> None:
     assert actions(ScriptedOperator(SERIALS), flying_view(drone), 60) == []
+
+
+def test_a_drone_lost_in_the_air_is_found_after_90_s() -> None:
+    lost = replace(FLYING, is_live=False)
+    assert actions(ScriptedOperator(SERIALS), flying_view(lost), 100) == [
+        (90, DismissHazard("SIM-1"))
+    ]
+    landed = replace(READY, is_live=False)
+    assert actions(ScriptedOperator(SERIALS), flying_view(landed), 100) == []
 
 
 def test_authority_is_taken_back_from_a_pilot_first() -> None:

@@ -15,6 +15,7 @@ from recon.score import Scenario
 from recon.score.scripted_operator import (
     AbortSurvey,
     CallHome,
+    DismissHazard,
     DroneView,
     FieldView,
     OperatorAction,
@@ -162,6 +163,8 @@ class _HttpOperator:
             case CallHome(serial):
                 ordered = await self._station.known(serial).return_home()
                 return ordered if isinstance(ordered, Refusal) else None
+            case DismissHazard():
+                return None  # the person at the console sees to it
             case TakeAuthority(serial):
                 return await self._station.known(serial).take()
         return answer if isinstance(answer, Refusal) else None

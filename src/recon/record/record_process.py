@@ -40,7 +40,7 @@ RING_BYTES = 96 * 1024 * 1024
 BULK_SHARE = 0.6
 CLOSE_WITHIN_S = 5.0
 """A disk that hangs must not keep a stopped station from ending."""
-NICENESS = 19
+NICENESS = 10
 POLL_S = 0.02
 IS_SUPPORTED = sys.platform != "win32"
 """Windows hands no open file to another process in this way."""
@@ -141,6 +141,8 @@ class RecordProcess:
                     self.status = msgspec.json.decode(line, type=Status)
         if not self._is_closing:
             self.is_dead = True
+        # One that was killed needs the processor to end, which may take a while on a busy computer.
+        self._process.wait()
 
 
 class RingInbox:

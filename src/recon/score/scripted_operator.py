@@ -5,7 +5,8 @@ Theory of operation. `decide` is called about once a second with a `FieldView` a
     no survey    plan one when all drones have been ready for SETTLED_S
     planned      start it with all drones, takeoff allowed
     flying       start a drone (again) that stands with a full battery, or hovers without a task;
-                 command return to home where a low-battery alarm is active and it is not returning
+                 command return to home where a low-battery alarm is active and it is not returning;
+                 dismiss the hazard area of one that has been lost in the air for FOUND_AFTER_S
     finished     nothing; with `repeats`, plan the next survey when all batteries are full again
     past limit_s abort, then command return to home, and again for drones stopped on the way
 
@@ -23,6 +24,8 @@ from enum import Enum, auto
 SETTLED_S = 3.0
 """After the last drone became ready: until battery and satellite count have arrived."""
 REACTION_S = 20.0
+FOUND_AFTER_S = 90.0
+"""Until an assistant has walked to where it came down: longer than any lost link of a scenario."""
 FULL_BATTERY_FRACTION = 0.9
 
 
@@ -107,11 +110,18 @@ class CallHome:
 
 
 @dataclass(frozen=True, slots=True)
+class DismissHazard:
+    """Clear the hazard area of a lost vehicle that has been located."""
+
+    serial: str
+
+
+@dataclass(frozen=True, slots=True)
 class AbortSurvey:
     """End the survey for good."""
 
 
-OperatorAction = RequestPlan | StartDrones | TakeAuthority | CallHome | AbortSurvey
+OperatorAction = RequestPlan | StartDrones | TakeAuthority | CallHome | DismissHazard | AbortSurvey
 
 
 @dataclass(slots=True)
@@ -159,6 +169,9 @@ class ScriptedOperator:
             is_at_risk = each.has_battery_alarm and each.is_out and not each.is_flying_home
             if self._lasts(f"{each.serial}: battery", is_at_risk, now_s):
                 yield CallHome(each.serial)
+            is_lost = not each.is_live and each.is_flying is True
+            if self._lasts(f"{each.serial}: lost", is_lost, now_s, FOUND_AFTER_S):
+                yield DismissHazard(each.serial)
         for each in drones:
             if self._lasts(f"{each.serial}: no task", _needs_start(each), now_s):
                 if each.is_under_pilot:

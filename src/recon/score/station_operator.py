@@ -10,6 +10,7 @@ from recon.model.control import AuthorityHolder
 from recon.model.event import (
     AuthorityTaken,
     Event,
+    HazardDismissed,
     OperatorOrder,
     SurveyRequested,
     SurveyStarted,
@@ -21,6 +22,7 @@ from recon.model.vehicle import FlightMode, Staleness
 from recon.score.scripted_operator import (
     AbortSurvey,
     CallHome,
+    DismissHazard,
     DroneView,
     FieldView,
     OperatorAction,
@@ -81,6 +83,8 @@ class StationOperator:
                 return SurveyStarted(SURVEY_ID, serials, BY, takeoff=True)
             case TakeAuthority(serial):
                 return AuthorityTaken(serial, AuthorityHolder.OPERATOR, BY)
+            case DismissHazard(serial):
+                return HazardDismissed(serial, BY)
             case AbortSurvey():
                 return SurveyStopped(SURVEY_ID, BY, is_aborted=True)
             case CallHome(serial):
