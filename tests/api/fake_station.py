@@ -6,7 +6,13 @@ from pathlib import Path
 import numpy as np
 
 from recon.api.app import create_app
-from recon.api.port import CalibrationPort, SiteFolder, SurveyPort, TimelineSubject
+from recon.api.port import (
+    CalibrationPort,
+    SiteFolder,
+    SiteVehiclesPort,
+    SurveyPort,
+    TimelineSubject,
+)
 from recon.api.schema import (
     ActionResponse,
     AuditPage,
@@ -197,6 +203,9 @@ class FakeStation:
 
     def site_folder(self) -> SiteFolder:
         return self.service.site_folder()
+
+    def site_vehicles(self) -> SiteVehiclesPort:
+        return self.service.site_vehicles()
 
     def calibration(self) -> CalibrationPort:
         return self.service.calibration()

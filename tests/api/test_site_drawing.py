@@ -2,7 +2,6 @@
 
 import asyncio
 import json
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +10,7 @@ import pytest
 import rasterio
 from tests.api.client import Client
 from tests.api.fake_station import FakeStation, application
+from tests.api.site_editor import SiteEditor
 
 from recon.api.schema import SiteDrawingRequest
 from recon.model.command import Refusal
@@ -62,31 +62,10 @@ BOUNDARY = area("boundary", ring(0.002), name="field")
 REGION = area("survey_regions", ring(0.0012), ring(0.0003), name="north")
 
 
-@dataclass
-class Editor:
+class Editor(SiteEditor):
     """A person who draws."""
 
-    folder: Path
-    station: FakeStation
-    client: Client = field(init=False)
-
-    def __post_init__(self) -> None:
-        self.station.service.edit(self.folder)
-        self.client = Client(application(self.station))
-
-    def drawing(self) -> dict[str, Any]:
-        view: dict[str, Any] = self.client.get("/api/site/drawing").json()
-        return view
-
-    def save(self, *features: dict[str, Any], end: str = "", revision: str = "") -> dict[str, Any]:
-        body = {"revision": revision or self.drawing()["revision"], "features": list(features)}
-        answer: dict[str, Any] = self.client.post(f"/api/site/drawing{end}", json=body).json()
-        return answer
-
-    def undo(self) -> dict[str, Any]:
-        body = {"revision": self.drawing()["revision"]}
-        answer: dict[str, Any] = self.client.post("/api/site/drawing/undo", json=body).json()
-        return answer
+    PART, ITEMS = "drawing", "features"
 
     def areas(self) -> list[str]:
         site = self.client.get("/api/state").json()["site"]
@@ -110,7 +89,7 @@ def test_a_drawing_is_in_force_at_once_and_after_a_start(editor: Editor) -> None
     assert started.layers.boundary is not None
     assert len(started.layers.survey_regions["north"].holes_m) == 1
     assert [each.name for each in started.layers.landing_pads] == ["home"]
-    assert editor.drawing()["features"] == [BOUNDARY, pad("home"), REGION]
+    assert editor.read()["features"] == [BOUNDARY, pad("home"), REGION]
 
 
 def test_its_layers_are_named_alike_for_an_undo_and_in_the_audit(editor: Editor) -> None:
@@ -122,15 +101,15 @@ def test_its_layers_are_named_alike_for_an_undo_and_in_the_audit(editor: Editor)
 
     editor.station.driver.observe = observe
     editor.save(BOUNDARY, area("keep_out", ring(0.001), name="wood"))
-    assert editor.drawing()["undo"]["what"] == "boundary, keep-out"
+    assert editor.read()["undo"]["what"] == "boundary, keep-out"
     assert entries == ["site drawn anew: boundary, keep-out"]
 
 
 def test_undo_takes_back_one_change_after_the_other(editor: Editor) -> None:
-    assert editor.drawing()["undo"] is None
+    assert editor.read()["undo"] is None
     editor.save(BOUNDARY)
     editor.save(BOUNDARY, REGION)
-    assert editor.drawing()["undo"]["what"] == "survey regions"
+    assert editor.read()["undo"]["what"] == "survey regions"
     assert editor.undo()["accepted"]
     assert editor.areas() == ["boundary"]
     assert editor.undo()["accepted"]
@@ -175,7 +154,7 @@ def test_what_a_start_would_refuse_is_not_saved(
     assert not answer["accepted"]
     assert expected in answer["reason"]
     assert "staged" not in answer["reason"]
-    assert editor.drawing()["features"] == []
+    assert editor.read()["features"] == []
     assert sorted(path.name for path in editor.folder.iterdir()) == ["site.toml"]
 
 
@@ -194,11 +173,11 @@ def test_a_check_saves_nothing(editor: Editor) -> None:
     answer = editor.save(BOUNDARY, end="/check")
     assert (answer["accepted"], answer["layers"]) == (True, ["boundary"])
     assert editor.areas() == []
-    assert editor.drawing()["undo"] is None
+    assert editor.read()["undo"] is None
 
 
 def test_one_of_two_screens_saves_first(editor: Editor) -> None:
-    seen = editor.drawing()["revision"]
+    seen = editor.read()["revision"]
     assert editor.save(BOUNDARY, revision=seen)["accepted"]
     assert "changed meanwhile" in editor.save(REGION, revision=seen)["reason"]
 
@@ -224,7 +203,7 @@ def test_an_undo_does_not_lose_what_was_edited_by_hand_before_a_restart(editor: 
 def test_layers_that_cannot_be_read_lock_the_drawing(editor: Editor) -> None:
     editor.save(BOUNDARY)
     (editor.folder / "boundary.geojson").write_text("{")
-    view = editor.drawing()
+    view = editor.read()
     assert "changed by hand" in view["locked_reason"]
     assert view["features"] == []
     assert "changed by hand" in editor.save(REGION)["reason"]
@@ -265,7 +244,7 @@ def test_fences_are_an_administrators_and_regions_an_operators(editor: Editor) -
     folder = editor.station.service.site_folder()
 
     def saved(*features: dict[str, Any]) -> str | None:
-        body = {"revision": editor.drawing()["revision"], "features": list(features)}
+        body = {"revision": editor.read()["revision"], "features": list(features)}
         asked = SiteDrawingRequest.model_validate(body)
         return asyncio.run(folder.save(asked, anna, is_check=False)).reason
 
@@ -290,7 +269,7 @@ def test_a_drone_that_takes_off_while_the_disk_is_busy_keeps_its_fence(
     assert editor.station.driver.station.airspace is in_force
     assert editor.areas() == ["boundary"]
     # What was refused is no change: the newest one to undo is still the boundary.
-    assert editor.drawing()["undo"]["what"] == "boundary"
+    assert editor.read()["undo"]["what"] == "boundary"
     monkeypatch.undo()
     assert editor.undo()["accepted"]
     assert editor.areas() == []
@@ -343,4 +322,4 @@ def test_an_import_is_only_shown(editor: Editor) -> None:
     assert np.allclose(found["geometry"]["coordinates"], [ring(0.001)], atol=1e-8)
     refused = editor.client.post("/api/site/import?name=a.zip", content=b"PK\x03\x04").json()
     assert "zip archive that can be read" in refused["reason"]
-    assert editor.drawing()["features"] == []
+    assert editor.read()["features"] == []

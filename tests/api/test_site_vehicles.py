@@ -2,15 +2,14 @@
 
 import asyncio
 import tomllib
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.api.client import Client
-from tests.api.fake_station import FakeStation, application
+from tests.api.fake_station import FakeStation
+from tests.api.site_editor import SiteEditor
 from tests.link.approved import core, extended
 
 from recon import wire
@@ -42,34 +41,13 @@ waypoint_altitude = "takeoff"
 """
 
 
-@dataclass
-class Editor:
+class Editor(SiteEditor):
     """A person who edits the table."""
 
-    folder: Path
-    station: FakeStation
-    client: Client = field(init=False)
-
-    def __post_init__(self) -> None:
-        self.station.service.edit(self.folder)
-        self.client = Client(application(self.station))
-
-    def table(self) -> dict[str, Any]:
-        view: dict[str, Any] = self.client.get("/api/site/vehicles").json()
-        return view
-
-    def save(self, *rows: dict[str, Any], end: str = "", revision: str = "") -> dict[str, Any]:
-        body = {"revision": revision or self.table()["revision"], "vehicles": list(rows)}
-        answer: dict[str, Any] = self.client.post(f"/api/site/vehicles{end}", json=body).json()
-        return answer
-
-    def undo(self) -> dict[str, Any]:
-        body = {"revision": self.table()["revision"]}
-        answer: dict[str, Any] = self.client.post("/api/site/drawing/undo", json=body).json()
-        return answer
+    PART, ITEMS = "vehicles", "vehicles"
 
     def numbers(self) -> dict[str, int]:
-        return {row["serial"]: row["number"] for row in self.table()["vehicles"]}
+        return {row["serial"]: row["number"] for row in self.read()["vehicles"]}
 
 
 @pytest.fixture
@@ -88,7 +66,7 @@ def commented(tmp_path: Path) -> Path:
 
 
 def test_edited_vehicles_are_in_force_at_once_and_after_a_start(editor: Editor) -> None:
-    one, two = editor.table()["vehicles"]
+    one, two = editor.read()["vehicles"]
     assert (one["serial"], one["number"], one["waypoint_altitude"]) == ("SIM-1", 1, "takeoff")
     edited = {
         **one,
@@ -117,16 +95,16 @@ def test_edited_vehicles_are_in_force_at_once_and_after_a_start(editor: Editor) 
 def test_undo_takes_back_one_change_after_the_other_also_of_the_layers_editor(
     editor: Editor,
 ) -> None:
-    one, two = editor.table()["vehicles"]
+    one, two = editor.read()["vehicles"]
     editor.save(one)
     editor.save({**one, "number": 9})
-    assert editor.table()["undo"]["what"] == "vehicles"
+    assert editor.read()["undo"]["what"] == "vehicles"
     assert editor.client.get("/api/site/drawing").json()["undo"]["what"] == "vehicles"
     answer = editor.undo()
     assert (answer["accepted"], answer["layers"], answer["also"]) == (True, [], ["vehicles"])
     assert editor.numbers() == {"SIM-1": 1}
     editor.undo()
-    assert editor.table()["vehicles"] == [one, two]
+    assert editor.read()["vehicles"] == [one, two]
     assert set(editor.station.driver.station.fleet.profiles) == {"SIM-1", "SIM-2"}
     assert editor.undo()["reason"] == "No change of the site to undo"
 
@@ -150,7 +128,7 @@ def test_a_wrong_value_gives_one_sentence_about_its_row_and_changes_nothing(
     editor: Editor, change: dict[str, Any], expected: str, end: str
 ) -> None:
     before = (editor.folder / "site.toml").read_bytes()
-    one, two = editor.table()["vehicles"]
+    one, two = editor.read()["vehicles"]
     answer = editor.save(two, {**one, **change}, end=end)
     assert not answer["accepted"]
     assert answer["reason"].startswith(expected)
@@ -158,11 +136,11 @@ def test_a_wrong_value_gives_one_sentence_about_its_row_and_changes_nothing(
     # SIM-2 comes second in the file also when it is first in the table.
     assert answer["row"] in (0, 1)
     assert (editor.folder / "site.toml").read_bytes() == before
-    assert editor.table()["vehicles"] == [one, two]
+    assert editor.read()["vehicles"] == [one, two]
 
 
 def test_two_vehicles_swap_their_numbers(editor: Editor) -> None:
-    one, two = editor.table()["vehicles"]
+    one, two = editor.read()["vehicles"]
     assert editor.save({**one, "number": 2}, {**two, "number": 1})["accepted"]
     assert editor.numbers() == {"SIM-1": 2, "SIM-2": 1}
 
@@ -174,7 +152,7 @@ def test_a_number_of_a_connected_vehicle_outside_the_table_stays_its_own(editor:
         driver.handle(PacketReceived(1, to_report(wire.decode(packet))))
     (known,) = editor.client.get("/api/state").json()["vehicles"]
     assert (known["serial"], known["number"]) == ("UNLISTED", 3)
-    one, two = editor.table()["vehicles"]
+    one, two = editor.read()["vehicles"]
     answer = editor.save(one, {**two, "number": 3})
     assert answer["reason"] == (
         "Number: 3 belongs to UNLISTED, which has connected and is not in the table; add it, or "
@@ -184,27 +162,27 @@ def test_a_number_of_a_connected_vehicle_outside_the_table_stays_its_own(editor:
 
 
 def test_a_check_saves_nothing(editor: Editor) -> None:
-    one, two = editor.table()["vehicles"]
+    one, two = editor.read()["vehicles"]
     answer = editor.save({**one, "name": "Alder"}, two, end="/check")
     assert (answer["accepted"], answer["changes"]) == (True, ["SIM-1 name Drone 1 -> Alder"])
-    assert editor.table()["vehicles"] == [one, two]
+    assert editor.read()["vehicles"] == [one, two]
 
 
 def test_one_of_two_screens_saves_first(editor: Editor) -> None:
-    table = editor.table()
+    table = editor.read()
     one, two = table["vehicles"]
     assert editor.save(one, revision=table["revision"])["accepted"]
     assert "changed meanwhile" in editor.save(two, revision=table["revision"])["reason"]
 
 
 def test_the_table_is_an_administrators(editor: Editor) -> None:
-    table = editor.table()
+    table = editor.read()
     rows = [{**table["vehicles"][0], "name": "Alder"}]
     body = {"revision": table["revision"], "vehicles": rows}
     asked = SiteVehiclesRequest.model_validate(body)
     anna = Person("anna", Role.OPERATOR)
-    folder = editor.station.service.site_folder()
-    answer = asyncio.run(folder.save_vehicles(asked, anna, is_check=False))
+    vehicles = editor.station.service.site_vehicles()
+    answer = asyncio.run(vehicles.save(asked, anna, is_check=False))
     assert answer.reason == (
         "anna has the role operator; boundary, zones, pads and vehicles need admin"
     )

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import pytest
 from tests.api.fake_station import FakeStation, application
 from tests.client.running_station import serving
 from tests.patient_loop import run_patiently
@@ -19,11 +20,16 @@ def region(*ring: list[float]) -> SiteFeature:
     return SiteFeature("survey_regions", geometry, {"name": "north"})
 
 
-def test_layers_are_read_checked_saved_and_undone(tmp_path: Path) -> None:
+@pytest.fixture
+def fake(tmp_path: Path) -> FakeStation:
+    """A station that edits a new site's folder."""
     make_site(tmp_path, "field", GeoPoint(41.9012, -93.6034, 275.0), 1)
-    fake = FakeStation(load_site(tmp_path))
-    fake.service.edit(tmp_path)
+    station = FakeStation(load_site(tmp_path))
+    station.service.edit(tmp_path)
+    return station
 
+
+def test_layers_are_read_checked_saved_and_undone(fake: FakeStation, tmp_path: Path) -> None:
     async def main() -> None:
         async with serving(application(fake)) as url, Station(url) as station:
             site = station.site
@@ -49,11 +55,7 @@ def test_layers_are_read_checked_saved_and_undone(tmp_path: Path) -> None:
     run_patiently(main())
 
 
-def test_vehicles_are_read_and_saved(tmp_path: Path) -> None:
-    make_site(tmp_path, "field", GeoPoint(41.9012, -93.6034, 275.0), 1)
-    fake = FakeStation(load_site(tmp_path))
-    fake.service.edit(tmp_path)
-
+def test_vehicles_are_read_and_saved(fake: FakeStation) -> None:
     async def main() -> None:
         async with serving(application(fake)) as url, Station(url) as station:
             site = station.site

@@ -76,7 +76,7 @@ LEAST_ROLE: dict[tuple[str, str], Role] = {
     ("POST", "/api/look-aside"): Role.OPERATOR,
     ("POST", "/api/surveys"): Role.OPERATOR,
     ("POST", "/api/surveys/{survey_id}/start"): Role.OPERATOR,
-    # Of regions to survey; boundary, zones and pads need an administrator: see `SiteService`.
+    # Of regions to survey; boundary, zones and pads need an administrator: see `EditedSite`.
     ("POST", "/api/site/drawing"): Role.OPERATOR,
     ("POST", "/api/site/drawing/check"): Role.OPERATOR,
     ("POST", "/api/site/drawing/undo"): Role.OPERATOR,

@@ -68,19 +68,23 @@ class SiteFolder(Protocol):
     ) -> SiteDrawingResponse:
         """Check a drawing, save it and bring it into force; refusals are results, not errors."""
 
-    async def vehicles(self) -> SiteVehiclesView:
-        """Return the vehicles in the folder."""
-
-    async def save_vehicles(
-        self, asked: SiteVehiclesRequest, by: Person, *, is_check: bool
-    ) -> SiteVehiclesResponse:
-        """Check vehicles, save them and bring them into force; refusals are results."""
-
     async def undo(self, revision: str, by: Person) -> SiteDrawingResponse:
         """Take back the newest change; refusals are results, not errors."""
 
     async def import_features(self, name: str, data: bytes) -> ImportedView:
         """Return the polygons and points of a file; why it is refused is a result."""
+
+
+class SiteVehiclesPort(Protocol):
+    """The table of the site's vehicles, in its folder."""
+
+    async def vehicles(self) -> SiteVehiclesView:
+        """Return the vehicles in the folder."""
+
+    async def save(
+        self, asked: SiteVehiclesRequest, by: Person, *, is_check: bool
+    ) -> SiteVehiclesResponse:
+        """Check vehicles, save them and bring them into force; refusals are results."""
 
 
 class CalibrationPort(Protocol):
@@ -276,6 +280,9 @@ class StationPort(Protocol):
 
     def surveys(self) -> SurveyPort:
         """Return the surveys."""
+
+    def site_vehicles(self) -> SiteVehiclesPort:
+        """Return the table of the site's vehicles."""
 
     def calibration(self) -> CalibrationPort:
         """Return what places the imaging drones' cameras."""

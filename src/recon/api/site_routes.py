@@ -1,4 +1,4 @@
-"""Routes for the site's layers and vehicles: read, check, save, undo, import."""
+"""Routes for the site's folder: layers, vehicles and the imaging drones' cameras."""
 
 import asyncio
 from typing import Annotated
@@ -14,7 +14,12 @@ from recon.api.security import person_of
 
 def add_site_routes(app: FastAPI, port: StationPort) -> None:
     """Add all routes of this module."""
+    _add_drawing(app, port)
+    _add_vehicles(app, port)
+    _add_calibration(app, port)
 
+
+def _add_drawing(app: FastAPI, port: StationPort) -> None:
     @app.get("/api/site/drawing")
     async def drawing() -> schema.SiteDrawingView:
         """The site's layers with all corners, to be drawn on."""
@@ -38,17 +43,34 @@ def add_site_routes(app: FastAPI, port: StationPort) -> None:
         """
         return await port.site_folder().save(asked, person_of(request), is_check=False)
 
+    @app.post("/api/site/drawing/undo")
+    async def undo(asked: schema.SiteUndoRequest, request: Request) -> schema.SiteDrawingResponse:
+        """Take back the newest change of the site."""
+        return await port.site_folder().undo(asked.revision, person_of(request))
+
+    @app.post("/api/site/import")
+    async def import_file(
+        request: Request, name: Annotated[str, Query(max_length=200)]
+    ) -> schema.ImportedView:
+        """Read polygons and points of a KML, KMZ, Shapefile (zip), GeoPackage or GeoJSON file.
+
+        The body is the file. Nothing is saved.
+        """
+        return await port.site_folder().import_features(name, await request.body())
+
+
+def _add_vehicles(app: FastAPI, port: StationPort) -> None:
     @app.get("/api/site/vehicles")
     async def vehicles() -> schema.SiteVehiclesView:
         """The vehicles of the site's folder, also those that have never connected."""
-        return await port.site_folder().vehicles()
+        return await port.site_vehicles().vehicles()
 
     @app.post("/api/site/vehicles/check")
     async def check_vehicles(
         asked: schema.SiteVehiclesRequest, request: Request
     ) -> schema.SiteVehiclesResponse:
         """Check the vehicles as the station would at its start; nothing is saved."""
-        return await port.site_folder().save_vehicles(asked, person_of(request), is_check=True)
+        return await port.site_vehicles().save(asked, person_of(request), is_check=True)
 
     @app.post("/api/site/vehicles")
     async def save_vehicles(
@@ -58,13 +80,10 @@ def add_site_routes(app: FastAPI, port: StationPort) -> None:
 
         The altitude reference and the number of a vehicle change only while it is on the ground.
         """
-        return await port.site_folder().save_vehicles(asked, person_of(request), is_check=False)
+        return await port.site_vehicles().save(asked, person_of(request), is_check=False)
 
-    @app.post("/api/site/drawing/undo")
-    async def undo(asked: schema.SiteUndoRequest, request: Request) -> schema.SiteDrawingResponse:
-        """Take back the newest change of the site."""
-        return await port.site_folder().undo(asked.revision, person_of(request))
 
+def _add_calibration(app: FastAPI, port: StationPort) -> None:
     @app.post("/api/site/calibration/freeze")
     async def freeze(asked: schema.FrozenFrameRequest) -> schema.FrozenFrameView:
         """Keep the newest frame of an imaging drone, for control points to be marked on."""
@@ -91,13 +110,3 @@ def add_site_routes(app: FastAPI, port: StationPort) -> None:
     ) -> schema.CalibrationView:
         """Save the control points in the site's folder; the next frames are placed by them."""
         return await port.calibration().accept(asked, person_of(request))
-
-    @app.post("/api/site/import")
-    async def import_file(
-        request: Request, name: Annotated[str, Query(max_length=200)]
-    ) -> schema.ImportedView:
-        """Read polygons and points of a KML, KMZ, Shapefile (zip), GeoPackage or GeoJSON file.
-
-        The body is the file. Nothing is saved.
-        """
-        return await port.site_folder().import_features(name, await request.body())

@@ -1,10 +1,10 @@
-"""The site's layers, drawn and saved."""
+"""The site's layers, vehicles and cameras: read, changed and saved."""
 
 from typing import Annotated, Literal
 
 from pydantic import Field
 
-from recon.api.schema.message import Message, StrictMessage
+from recon.api.schema.message import ActionResponse, Message, StrictMessage
 from recon.model.airspace import SiteLayer
 
 Position = Annotated[list[float], Field(min_length=2, max_length=3)]
@@ -38,34 +38,39 @@ class SavedChangeView(Message):
     utc: str
 
 
-class SiteDrawingView(Message):
-    """The layers as they are in the site's folder, unsimplified."""
+class SiteFolderView(Message):
+    """What can be saved in the site's folder."""
 
     revision: str = Field(description="to be sent with a change: it is refused after another one")
-    features: list[DrawnFeatureView]
     locked_reason: str | None = Field(description="why nothing can be saved here; null: it can")
     undo: SavedChangeView | None
 
 
-class SiteDrawingRequest(StrictMessage):
-    """All layers as they are to be: what is left out is removed."""
+class SiteDrawingView(SiteFolderView):
+    """The layers as they are in the site's folder, unsimplified."""
+
+    features: list[DrawnFeatureView]
+
+
+class SiteChangeRequest(StrictMessage):
+    """A change of what was read with this revision."""
 
     revision: Annotated[str, Field(max_length=64)]
+
+
+class SiteUndoRequest(SiteChangeRequest):
+    """Takes back the newest change of the site."""
+
+
+class SiteDrawingRequest(SiteChangeRequest):
+    """All layers as they are to be: what is left out is removed."""
+
     features: list[DrawnFeatureView] = Field(max_length=2_000)
 
 
-class SiteUndoRequest(StrictMessage):
-    """Takes back the newest change of the site."""
-
-    revision: Annotated[str, Field(max_length=64)]
-
-
-class SiteDrawingResponse(Message):
+class SiteDrawingResponse(ActionResponse):
     """Whether a drawing was accepted, or why not; the layers after it."""
 
-    accepted: bool
-    rule: str | None
-    reason: str | None
     feature: int | None = Field(description="the refused one's index in the request, if it is one")
     layers: list[SiteLayer] = Field(description="those that change")
     also: list[Literal["vehicles", "calibration"]] = Field(
@@ -92,28 +97,21 @@ class SiteVehicleView(StrictMessage):
     )
 
 
-class SiteVehiclesView(Message):
+class SiteVehiclesView(SiteFolderView):
     """The vehicles in the site's folder, connected or not."""
 
-    revision: str = Field(description="to be sent with a change: it is refused after another one")
     vehicles: list[SiteVehicleView]
-    locked_reason: str | None = Field(description="why nothing can be saved here; null: it can")
-    undo: SavedChangeView | None
 
 
-class SiteVehiclesRequest(StrictMessage):
+class SiteVehiclesRequest(SiteChangeRequest):
     """All vehicles as they are to be: what is left out is removed."""
 
-    revision: Annotated[str, Field(max_length=64)]
     vehicles: list[SiteVehicleView] = Field(max_length=200)
 
 
-class SiteVehiclesResponse(Message):
+class SiteVehiclesResponse(ActionResponse):
     """Whether the vehicles were accepted, or why not; the vehicles after it."""
 
-    accepted: bool
-    rule: str | None
-    reason: str | None
     row: int | None = Field(description="the refused one's index in the request, if it is one")
     changes: list[str] = Field(description="one sentence for each vehicle that changes")
     vehicles: SiteVehiclesView | None
@@ -168,12 +166,9 @@ class PointResidualView(Message):
     ground_m: float | None
 
 
-class CalibrationView(Message):
+class CalibrationView(ActionResponse):
     """The camera's pose by the points, or why they give no pose."""
 
-    accepted: bool
-    rule: str | None
-    reason: str | None
     rms_px: float | None = Field(description="of the frame's pixels")
     residuals: list[PointResidualView]
     height_above_ground_m: float | None

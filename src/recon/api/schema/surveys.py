@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from recon.api.schema.message import GivenAt, Message, StrictMessage
+from recon.api.schema.message import ActionResponse, GivenAt, Message, StrictMessage
 
 SurveyPhaseName = Literal["planning", "refused", "created", "running", "paused", "aborted", "done"]
 
@@ -215,10 +215,7 @@ class SurveyWays(Message):
     flown: list[SurveyWay]
 
 
-class SurveyResponse(Message):
+class SurveyResponse(ActionResponse):
     """The outcome of a survey command: accepted, or refused with a reason; and the survey."""
 
-    accepted: bool
-    rule: str | None
-    reason: str | None
     survey: SurveyView | None

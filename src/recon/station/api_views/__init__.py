@@ -4,9 +4,10 @@
 functions turn the station's state into the messages of `api/schema/`. Views only read the state.
 """
 
-from typing import Protocol
+from typing import Protocol, TypedDict
 
 from recon.link.server import LinkServer
+from recon.model.command import Refusal
 from recon.model.event import Event
 from recon.station.state.station import Station
 
@@ -31,3 +32,18 @@ class RunningStation(Protocol):
 
     def handle(self, event: Event) -> None:
         """Step the station by an event before returning, unless a step is already running."""
+
+
+class ActionOutcome(TypedDict):
+    """The fields of `schema.ActionResponse`, with which other responses begin."""
+
+    accepted: bool
+    rule: str | None
+    reason: str | None
+
+
+def outcome_of(refusal: Refusal | None) -> ActionOutcome:
+    """Return what a response states of a refusal; without one it was accepted."""
+    if refusal is None:
+        return ActionOutcome(accepted=True, rule=None, reason=None)
+    return ActionOutcome(accepted=False, rule=refusal.rule, reason=refusal.reason)

@@ -23,7 +23,8 @@ from recon.model.imagery import Frame
 from recon.model.person import Person
 from recon.site.calibration import MarkedPoints, solved, stage_calibration, surveyed_points
 from recon.site.drawing import StagedSite
-from recon.station.api_views.site_service import SiteService
+from recon.station.api_views import outcome_of
+from recon.station.api_views.edited_site import EditedSite
 from recon.station.imaging.frames import SAMPLE_NEAR_S, sample_at
 
 RULE = "calibration"
@@ -41,7 +42,7 @@ class _Frozen:
 class CalibrationService:
     """Frozen frames, and the points marked on them."""
 
-    folder: Callable[[], SiteService]
+    edited: EditedSite
     newest: Callable[[str], Frame | None]
     """A vehicle's newest frame, with its pixels."""
     _frozen: dict[str, _Frozen] = field(default_factory=dict)
@@ -49,9 +50,9 @@ class CalibrationService:
 
     async def freeze(self, serial: str) -> schema.FrozenFrameView:
         """Keep the newest frame of an imaging drone."""
-        folder = self.folder()
-        imager = folder.driver.station.imaging.imagers.get(serial)
-        if imager is None or serial not in folder.site.imagers:
+        edited = self.edited
+        imager = edited.driver.station.imaging.imagers.get(serial)
+        if imager is None or serial not in edited.site.imagers:
             return _not_frozen(f"{serial} is no imaging drone of this site")
         frame = self.newest(serial)
         if frame is None:
@@ -64,7 +65,7 @@ class CalibrationService:
             )
         try:
             frozen = _Frozen(frame, sample.telemetry, _size_px(frame))
-            surveyed = await asyncio.to_thread(_surveyed, folder.folder, serial)
+            surveyed = await asyncio.to_thread(_surveyed, edited.folder, serial)
         except ReconError as problem:
             return _not_frozen(str(problem))
         self._frozen[serial] = frozen
@@ -86,13 +87,12 @@ class CalibrationService:
 
     async def fit(self, asked: schema.CalibrationRequest) -> schema.CalibrationView:
         """Return the camera's pose by these points, or why they give none; nothing is saved."""
-        folder = self.folder()
         try:
             marked = self._marked(asked)
-            solution = await asyncio.to_thread(solved, folder.site, marked)
+            solution = await asyncio.to_thread(solved, self.edited.site, marked)
         except ReconError as problem:
             return _refused(Refusal(RULE, str(problem)))
-        return self._solved(folder, marked, solution)
+        return self._solved(marked, solution)
 
     async def accept(self, asked: schema.CalibrationRequest, by: Person) -> schema.CalibrationView:
         """Save the points in the site's folder, and place the next frames by them."""
@@ -104,29 +104,22 @@ class CalibrationService:
         def stage(path: Path) -> StagedSite:
             return stage_calibration(path, marked)
 
-        folder = self.folder()
-        async with folder.turn:
-            staged = await folder.staged(None, stage)
-            if isinstance(staged, Refusal):
-                return _refused(staged)
-            event = folder.event_of(staged, by, is_undo=False)
-            refusal = await folder.put_in_force(staged, event, by, is_check=False)
-        return fit if refusal is None else _refused(refusal)
+        async with self.edited.turn:
+            change = await self.edited.change(None, stage, by)
+        return fit if change.refusal is None else _refused(change.refusal)
 
     def _marked(self, asked: schema.CalibrationRequest) -> MarkedPoints:
         """Return the points of a request, with the ground's height where none is given."""
-        frozen, folder = self._frozen.get(asked.serial), self.folder()
-        if frozen is None or asked.serial not in folder.site.imagers:
+        frozen = self._frozen.get(asked.serial)
+        if frozen is None or asked.serial not in self.edited.site.imagers:
             raise SiteError(NO_FRAME)
         if frozen.frame.id != asked.frame_id:
             raise SiteError("Another frame was frozen meanwhile, perhaps on another screen")
-        points = tuple(_point(folder, each) for each in asked.points)
+        points = tuple(_point(self.edited, each) for each in asked.points)
         return MarkedPoints(asked.serial, points, frozen.size_px, frozen.telemetry)
 
-    def _solved(
-        self, folder: SiteService, marked: MarkedPoints, solution: PoseSolution
-    ) -> schema.CalibrationView:
-        camera = folder.site.imagers[marked.serial].camera
+    def _solved(self, marked: MarkedPoints, solution: PoseSolution) -> schema.CalibrationView:
+        camera = self.edited.site.imagers[marked.serial].camera
         # Residuals are at the lens's size; the person marks on the frame's.
         scale = 1.0 / scale_between(marked.image_size_px, (camera.cols, camera.rows))
         residuals = [
@@ -139,9 +132,7 @@ class CalibrationService:
             for each in solution.residuals
         ]
         return schema.CalibrationView(
-            accepted=True,
-            rule=None,
-            reason=None,
+            **outcome_of(None),
             rms_px=solution.rms_px * scale,
             residuals=residuals,
             height_above_ground_m=solution.height_above_ground_m,
@@ -149,7 +140,7 @@ class CalibrationService:
         )
 
 
-def _point(folder: SiteService, view: schema.ControlPointView) -> ControlPoint:
+def _point(edited: EditedSite, view: schema.ControlPointView) -> ControlPoint:
     if view.col_px is None or view.row_px is None:
         raise SiteError(f"control point {view.name}: mark it on the frame, or delete it")
     place = LatLon(view.latitude_deg, view.longitude_deg)
@@ -157,15 +148,15 @@ def _point(folder: SiteService, view: schema.ControlPointView) -> ControlPoint:
         raise SiteError(f"control point {view.name}: expected a latitude and longitude in degrees")
     altitude_m = view.altitude_m
     if altitude_m is None:
-        altitude_m = _ground_m(folder, view)
+        altitude_m = _ground_m(edited, view)
     return ControlPoint(
         view.name, view.col_px, view.row_px, view.latitude_deg, view.longitude_deg, altitude_m
     )
 
 
-def _ground_m(folder: SiteService, view: schema.ControlPointView) -> float:
+def _ground_m(edited: EditedSite, view: schema.ControlPointView) -> float:
     """Return the ground's height above the ellipsoid; raises `SiteError` where none is known."""
-    frame, airspace = folder.site.frame, folder.driver.station.airspace
+    frame, airspace = edited.site.frame, edited.driver.station.airspace
     assert frame is not None, "a site with an imaging drone has an origin"
     origin_m = frame.origin.ellipsoid_height_m
     place_m = enu_from_geo(frame, view.latitude_deg, view.longitude_deg, origin_m)[:, :2]
@@ -212,9 +203,7 @@ def _not_frozen(reason: str) -> schema.FrozenFrameView:
 
 def _refused(refusal: Refusal) -> schema.CalibrationView:
     return schema.CalibrationView(
-        accepted=False,
-        rule=refusal.rule,
-        reason=refusal.reason,
+        **outcome_of(refusal),
         rms_px=None,
         residuals=[],
         height_above_ground_m=None,

@@ -36,12 +36,14 @@ from recon.model.temporary_zone import DrawnZone
 from recon.model.units import ns_to_seconds
 from recon.record import geotiff_bytes
 from recon.site import Site
-from recon.station.api_views import RunningStation
+from recon.station.api_views import RunningStation, outcome_of
 from recon.station.api_views.audit_service import KeptEntries, audit_page, timeline
 from recon.station.api_views.calibration_service import CalibrationService
+from recon.station.api_views.edited_site import EditedSite
 from recon.station.api_views.imaging_views import sun_at_view, upwind_view
 from recon.station.api_views.order_service import OrderService, order_of
 from recon.station.api_views.site_service import SiteService
+from recon.station.api_views.site_vehicles import SiteVehiclesService
 from recon.station.api_views.site_view import site_view
 from recon.station.api_views.state_view import DriverState, state_view
 from recon.station.api_views.survey_service import SurveyService
@@ -59,7 +61,7 @@ class Service:
     """Implements `recon.api.port.StationPort` on a driver."""
 
     driver: RunningStation
-    _folder: SiteService
+    _edited: EditedSite
     link_addresses: list[str]
     capture_folder: str | None
     audit_log: KeptEntries | None
@@ -74,20 +76,25 @@ class Service:
     replay: Callable[[], schema.ReplayView | None] = lambda: None
     """Where a replay stands; None on a live station."""
     numbers: VehicleNumbers = field(default_factory=VehicleNumbers)
+    _drawing: SiteService = field(init=False)
+    _vehicles: SiteVehiclesService = field(init=False)
     _calibration: CalibrationService = field(init=False)
 
     def __post_init__(self) -> None:
-        # Both change after this: a replay's frames come from its record.
-        self._calibration = CalibrationService(lambda: self._folder, lambda s: self.frame(s))
+        self._drawing = SiteService(self._edited)
+        self._vehicles = SiteVehiclesService(self._edited, self._vehicle_numbers)
+        # A replay's frames come from its record.
+        self._calibration = CalibrationService(self._edited, lambda serial: self.frame(serial))
 
     @property
     def site(self) -> Site:
         """The site that is in force."""
-        return self._folder.site
+        return self._edited.site
 
     def edit(self, folder: Path | None) -> None:
-        """Let the site be drawn and saved in this folder, which it was read from."""
-        self._folder = SiteService(self.driver, self.site, folder, self._vehicle_numbers)
+        """Let the site be edited and saved in this folder, which it was read from."""
+        self._edited = EditedSite(self.driver, self.site, folder)
+        self.__post_init__()
 
     def _vehicle_numbers(self) -> Mapping[str, int]:
         return self.numbers.of(self.driver.station.fleet)
@@ -102,8 +109,8 @@ class Service:
         first_id: int = 1,
     ) -> "Service":
         """Return the service of a driver that is about to run; order ids start at `first_id`."""
-        site_folder = SiteService(driver, site, None)
-        return cls(driver, site_folder, [], capture_folder, audit_log, count(first_id).__next__)
+        edited = EditedSite(driver, site, None)
+        return cls(driver, edited, [], capture_folder, audit_log, count(first_id).__next__)
 
     def state(self) -> schema.StationState:
         """Return everything a console shows, as of now."""
@@ -293,7 +300,11 @@ class Service:
 
     def site_folder(self) -> SiteService:
         """Return the site's folder."""
-        return self._folder
+        return self._drawing
+
+    def site_vehicles(self) -> SiteVehiclesService:
+        """Return the table of the site's vehicles."""
+        return self._vehicles
 
     def calibration(self) -> CalibrationService:
         """Return what places the imaging drones' cameras by marked points."""
@@ -353,6 +364,4 @@ class Service:
 
 
 def _action(refusal: Refusal | None) -> schema.ActionResponse:
-    if refusal is not None:
-        return schema.ActionResponse(accepted=False, rule=refusal.rule, reason=refusal.reason)
-    return schema.ActionResponse(accepted=True, rule=None, reason=None)
+    return schema.ActionResponse(**outcome_of(refusal))

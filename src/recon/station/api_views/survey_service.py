@@ -15,7 +15,7 @@ from recon.model.survey import Survey, SurveyBudget, SurveyCamera, WhenDone
 from recon.model.survey_camera import CAMERAS, CameraModel, SurveyCameraError, camera_named
 from recon.site import Site
 from recon.site.geojson import Feature, regions_of
-from recon.station.api_views import RunningStation
+from recon.station.api_views import RunningStation, outcome_of
 from recon.station.api_views.operation_views import cells_number, survey_view, survey_ways
 from recon.station.api_views.survey_preview import Preview, survey_preview
 from recon.station.operations.survey.commands import start_refusal, stop_refusal
@@ -102,9 +102,7 @@ class SurveyService:
         )
 
     def _taken(self, survey_id: int) -> schema.SurveyResponse:
-        return schema.SurveyResponse(
-            accepted=True, rule=None, reason=None, survey=self.view(survey_id)
-        )
+        return schema.SurveyResponse(**outcome_of(None), survey=self.view(survey_id))
 
     def _region(self, asked: schema.SurveyRequest) -> Region | Refusal:
         """Return the site's region of that name, or the polygon; exactly one must be given."""
@@ -174,6 +172,4 @@ def _survey(
 
 
 def _refused(refusal: Refusal) -> schema.SurveyResponse:
-    return schema.SurveyResponse(
-        accepted=False, rule=refusal.rule, reason=refusal.reason, survey=None
-    )
+    return schema.SurveyResponse(**outcome_of(refusal), survey=None)
