@@ -2,7 +2,8 @@
 
 A section is a block of lines: its header, its keys, and its inner tables. What comes out is read
 again and compared with what was wanted (`is_read_as`), so that a file written in another form is
-refused, not damaged.
+refused, not damaged. tomlkit gives a comment above a section to the section before: removing a
+vehicle would then take its neighbour's comment, and leave its own above the neighbour.
 """
 
 import json
