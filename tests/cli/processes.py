@@ -67,8 +67,9 @@ class Started:
         return self.wait()
 
     def send(self, signal_number: int) -> None:
-        """Send a signal."""
-        os.kill(self.pid, signal_number)
+        """Send a signal; one that has ended since it was looked at gets none."""
+        with suppress(ProcessLookupError):
+            os.kill(self.pid, signal_number)
 
     @property
     def is_running(self) -> bool:
