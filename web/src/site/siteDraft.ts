@@ -8,8 +8,8 @@ import type {
 } from "../protocol";
 import type { Clock } from "../source/clock";
 import type { SiteRequests } from "../source/siteRequests";
-import type { Outcome } from "../source/stationSource";
-import { capitalised, listNames } from "../text/names";
+import { listNames } from "../text/names";
+import { type Answer, createSavedDraft, type SavedDraft } from "./savedDraft";
 import {
   type Attribute,
   type DraftFeature,
@@ -22,11 +22,9 @@ import {
 } from "./siteFeatures";
 
 /*
- * Theory of operation. The drawing is loaded from the station, edited here, and saved as a whole. Each edit
- * replaces the list of features, so undo and redo are earlier and later lists. After a pause the station is
- * asked to check the draft, as it would at its start, and answers with one sentence, about one feature if it
- * can. Saving sends the revision that was loaded: the station refuses a draft of an older one. The answer to a
- * save replaces the list, unless it was edited meanwhile: then only the revision is new.
+ * Theory of operation. The drawing is loaded, checked and saved as `savedDraft.ts` describes. Each edit replaces
+ * the list of features, so undo and redo are earlier and later lists. A ring that is half drawn is no edit yet, but
+ * counts as one when an answer would replace the list. The draft is checked only while the editor is open.
  */
 
 /** What a press on the map adds. `hole`: a hole of the selected feature instead of a new one. */
@@ -35,17 +33,9 @@ export interface Tool {
   readonly hole: boolean;
 }
 
-export type Verdict =
-  | { readonly kind: "none" }
-  | { readonly kind: "checking" }
-  | { readonly kind: "accepted"; readonly text: string }
-  | { readonly kind: "refused"; readonly text: string; readonly featureId: number | null };
-
-/** What became of the last request. */
-export interface Notice {
-  readonly about: "site" | "import";
-  readonly text: string;
-  readonly isProblem: boolean;
+/** The feature that a refusal is about. */
+interface FeaturePlace {
+  readonly featureId: number | null;
 }
 
 /** A feature of an imported file, and what it is to become; null: it is left out. */
@@ -56,20 +46,13 @@ export interface ImportChoice {
   readonly layer: LayerName | null;
 }
 
-export interface SiteDraft {
+export interface SiteDraft extends SavedDraft<SiteDrawingView, FeaturePlace> {
   readonly isOn: Accessor<boolean>;
-  /** A request that changes or reads the site is under way. */
-  readonly isBusy: Accessor<boolean>;
-  /** As saved; null before it was loaded. */
-  readonly saved: Accessor<SiteDrawingView | null>;
   readonly features: Accessor<readonly DraftFeature[]>;
   readonly selected: Accessor<DraftFeature | null>;
   readonly tool: Accessor<Tool | null>;
-  readonly isChanged: Accessor<boolean>;
   readonly canUndo: Accessor<boolean>;
   readonly canRedo: Accessor<boolean>;
-  readonly verdict: Accessor<Verdict>;
-  readonly notice: Accessor<Notice | null>;
   readonly imported: Accessor<readonly ImportChoice[]>;
   /** Opens the editor, with the site as it is unless there are edits; or closes it. */
   toggle(): Promise<void>;
@@ -88,16 +71,6 @@ export interface SiteDraft {
   setProperty(id: number, key: string, value: Attribute): void;
   undo(): void;
   redo(): void;
-  /** Forgets all edits since the drawing was loaded, and loads it again. */
-  discard(): Promise<void>;
-  /** How often this page has saved or undone something here. */
-  readonly saves: Accessor<number>;
-  /** Another part of the site was saved: edits stay, on the new revision. */
-  refresh(): Promise<void>;
-  /** Checks again: what is in the air has changed. */
-  recheck(): void;
-  save(): Promise<void>;
-  undoSaved(): Promise<void>;
   readFile(file: File): Promise<void>;
   choose(index: number, layer: LayerName | null): void;
   /** A press on an imported feature: it is taken, or left out. */
@@ -106,7 +79,6 @@ export interface SiteDraft {
   dropImported(): void;
 }
 
-const CHECK_AFTER_MS = 500;
 const MOST_UNDONE = 100;
 /** Features of a file that are all taken at first: of more, a few are wanted. */
 const MOST_TAKEN = 20;
@@ -119,39 +91,46 @@ export function createSiteDraft(
   groundAltitude_m: () => number | null,
 ): SiteDraft {
   const [isOn, setOn] = createSignal(false);
-  const [isBusy, setBusy] = createSignal(false);
-  const [saved, setSaved] = createSignal<SiteDrawingView | null>(null);
-  const [features, setFeatures] = createSignal<readonly DraftFeature[]>([]);
   const [past, setPast] = createSignal<readonly (readonly DraftFeature[])[]>([]);
   const [future, setFuture] = createSignal<readonly (readonly DraftFeature[])[]>([]);
   const [selectedId, setSelectedId] = createSignal<number | null>(null);
   const [tool, setTool] = createSignal<Tool | null>(null);
-  const [saves, setSaves] = createSignal(0);
-  const [verdict, setVerdict] = createSignal<Verdict>({ kind: "none" });
-  const [notice, setNotice] = createSignal<Notice | null>(null);
   const [imported, setImported] = createSignal<readonly ImportChoice[]>([]);
+  let nextId = 1;
+  const draft = createSavedDraft(
+    {
+      load: site.drawing,
+      check: site.check,
+      save: site.save,
+      undoSaved: ({ revision }) => site.undo(revision),
+      request: (revision, items: readonly DraftFeature[]) => ({
+        revision,
+        features: items.map(viewOf),
+      }),
+      answerOf,
+      savedIn: (view: SiteDrawingView) => view.features,
+      itemOf: (one) => featureOf(nextId++, one),
+      isEdited: ({ unedited }, before) => unedited !== before,
+      noPlace: { featureId: null },
+      isChecked: isOn,
+      isEditing: () => tool() !== null,
+      onLoad: () => {
+        setPast([]);
+        setFuture([]);
+        setSelectedId(null);
+      },
+    },
+    clock,
+  );
+  const { items: features, isChanged, checkSoon } = draft;
   const selected = createMemo(() => features().find(({ id }) => id === selectedId()) ?? null);
-  const isChanged = createMemo(() => {
-    const before = saved()?.features ?? [];
-    const now = features();
-    return now.length !== before.length || now.some(({ unedited }, i) => unedited !== before[i]);
-  });
   // A ring that is half drawn is no edit yet: an undo would take back the one before.
   const canUndo = () => tool() === null && past().length > 0;
   const canRedo = () => tool() === null && future().length > 0;
-  let nextId = 1;
-  let checks = 0;
-  let cancelCheck = () => {};
-
-  const show = (next: readonly DraftFeature[]) => {
-    setFeatures(next);
-    checkSoon();
-  };
   const edit = (next: readonly DraftFeature[]) => {
     setPast([...past(), features()].slice(-MOST_UNDONE));
     setFuture([]);
-    setNotice(null);
-    show(next);
+    draft.edit(next);
   };
   const editOne = (id: number, change: (one: DraftFeature) => Partial<DraftFeature>) =>
     edit(
@@ -174,102 +153,20 @@ export function createSiteDraft(
     setSelectedId(one.id);
   };
 
-  const request = () => ({
-    revision: saved()?.revision ?? "",
-    features: features().map(viewOf),
-  });
-  const checkSoon = () => {
-    cancelCheck();
-    checks += 1;
-    const isWanted = isOn() && isChanged() && saved()?.locked_reason === null;
-    setVerdict({ kind: isWanted ? "checking" : "none" });
-    if (isWanted) cancelCheck = clock.after(CHECK_AFTER_MS, () => void check(checks));
-  };
-  const check = async (number: number) => {
-    const asked = features();
-    const outcome = await site.check(request());
-    if (number === checks) setVerdict(verdictOf(outcome, asked));
-  };
-
-  const load = (view: SiteDrawingView) => {
-    setSaved(view);
-    setPast([]);
-    setFuture([]);
-    setSelectedId(null);
-    show(view.features.map((one) => featureOf(nextId++, one)));
-  };
-  /** One request at a time; `done` gets its answer, and the features when it was asked. */
-  const ask = async <T>(
-    about: Notice["about"],
-    send: () => Promise<Outcome<T>>,
-    done: (answer: T, asked: readonly DraftFeature[]) => void,
-  ) => {
-    if (isBusy()) return;
-    setBusy(true);
-    setNotice(null);
-    const asked = features();
-    const outcome = await send();
-    setBusy(false);
-    if (outcome.kind === "answered") done(outcome.value, asked);
-    else setNotice({ about, text: outcome.problem, isProblem: true });
-  };
-  /** An answer takes seconds: a draft that was edited meanwhile, or a ring half drawn, is kept. */
-  const isEditedSince = (asked: readonly DraftFeature[]) => features() !== asked || tool() !== null;
-  const loaded =
-    (verb: string, ifEdited = "") =>
-    (answer: SiteDrawingResponse, asked: readonly DraftFeature[]) => {
-      if (!answer.accepted || answer.drawing === null) {
-        setVerdict(verdictOf({ kind: "answered", value: answer }, asked));
-        const text = `Not ${verb}: ${answer.reason ?? "no reason given"}`;
-        setNotice({ about: "site", text, isProblem: true });
-        return;
-      }
-      setSaves(saves() + 1);
-      const isEdited = isEditedSince(asked);
-      if (isEdited) {
-        setSaved(answer.drawing);
-        checkSoon();
-      } else load(answer.drawing);
-      const what = [layersText(answer.layers), ...answer.also]
-        .filter((part) => part !== "")
-        .join(", ");
-      const changes = what === "" ? "nothing changes" : `${what}. In force now`;
-      const rest = isEdited ? ifEdited : "";
-      setNotice({
-        about: "site",
-        text: `${capitalised(verb)}: ${changes}${rest}`,
-        isProblem: false,
-      });
-    };
-  const reload = () =>
-    ask(
-      "site",
-      () => site.drawing(),
-      (view, asked) => {
-        if (!isEditedSince(asked)) return load(view);
-        const text = "Not loaded again: the draft was edited meanwhile";
-        setNotice({ about: "site", text, isProblem: true });
-      },
-    );
-
   return {
+    ...draft,
     isOn,
-    isBusy,
-    saved,
     features,
     selected,
     tool,
-    isChanged,
     canUndo,
     canRedo,
-    verdict,
-    notice,
     imported,
     toggle: async () => {
       setOn(!isOn());
       setTool(null);
       // A draft with edits is kept while the editor is closed; the station refuses it if it is out of date.
-      if (isOn() && !isChanged()) await reload();
+      if (isOn() && !isChanged()) await draft.discard();
       else checkSoon();
     },
     leave: () => {
@@ -318,59 +215,29 @@ export function createSiteDraft(
       if (!canUndo() || last === undefined) return;
       setPast(past().slice(0, -1));
       setFuture([features(), ...future()]);
-      show(last);
+      draft.put(last);
     },
     redo: () => {
       const [next, ...rest] = future();
       if (!canRedo() || next === undefined) return;
       setFuture(rest);
       setPast([...past(), features()]);
-      show(next);
+      draft.put(next);
     },
     discard: () => {
       setTool(null);
-      return reload();
+      return draft.discard();
     },
-    saves,
-    refresh: async () => {
-      const before = saved();
-      if (before === null) return;
-      const asked = features();
-      const outcome = await site.drawing();
-      if (outcome.kind === "failed" || saved() !== before) return;
-      const { revision, undo, features: found } = outcome.value;
-      const isSame = JSON.stringify(found) === JSON.stringify(before.features);
-      // The features of before, by which edits are known.
-      if (isSame) setSaved({ ...before, revision, undo });
-      else if (!isChanged() && !isEditedSince(asked)) load(outcome.value);
-    },
-    recheck: () => {
-      if (verdict().kind !== "none") checkSoon();
-    },
-    save: () => ask("site", () => site.save(request()), loaded("saved")),
-    undoSaved: () =>
-      ask(
-        "site",
-        () => site.undo(saved()?.revision ?? ""),
-        loaded("undone", ". This draft was edited meanwhile and still has what was undone"),
-      ),
     readFile: (file) =>
-      ask(
-        "import",
+      draft.ask(
         () => site.readFile(file),
         ({ features: found, left_out, reason }) => {
-          if (reason !== null) {
-            setNotice({ about: "import", text: reason, isProblem: true });
-            return;
-          }
+          if (reason !== null) return draft.note(reason, true, "import");
           const left = left_out === 0 ? "" : `; ${left_out} neither polygon nor point, left out`;
-          setNotice({
-            about: "import",
-            text: `${file.name}: ${found.length} read${left}`,
-            isProblem: false,
-          });
+          draft.note(`${file.name}: ${found.length} read${left}`, false, "import");
           setImported(choicesOf(found));
         },
+        "import",
       ),
     choose: (index, layer) =>
       setImported(imported().map((one, i) => (i === index ? { ...one, layer } : one))),
@@ -392,14 +259,20 @@ export function createSiteDraft(
   };
 }
 
-function verdictOf(outcome: Outcome<SiteDrawingResponse>, asked: readonly DraftFeature[]): Verdict {
-  if (outcome.kind === "failed") {
-    return { kind: "refused", text: outcome.problem, featureId: null };
-  }
-  const { accepted, reason, feature, layers } = outcome.value;
-  if (accepted) return { kind: "accepted", text: layersText(layers) };
-  const featureId = feature === null ? null : (asked[feature]?.id ?? null);
-  return { kind: "refused", text: reason ?? "no reason given", featureId };
+function answerOf(
+  response: SiteDrawingResponse,
+  asked: readonly DraftFeature[],
+): Answer<SiteDrawingView, FeaturePlace> {
+  const { accepted, reason, feature, layers, also, drawing } = response;
+  const changes = layersText(layers);
+  return {
+    accepted,
+    reason,
+    place: { featureId: feature === null ? null : (asked[feature]?.id ?? null) },
+    changes: changes === "" ? "" : `Ready to save. Changes: ${changes}.`,
+    changed: [changes, ...also].filter((part) => part !== "").join(", "),
+    view: drawing,
+  };
 }
 
 /** The layers that change, in words. */

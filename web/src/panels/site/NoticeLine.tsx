@@ -1,6 +1,6 @@
 import { Show } from "solid-js";
 import { useConsole } from "../../console";
-import type { Notice } from "../../site/siteDraft";
+import type { Notice } from "../../site/savedDraft";
 import { Problem } from "../Panel";
 
 /** What became of the last request, beside what it was about. */

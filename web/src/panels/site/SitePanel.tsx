@@ -263,7 +263,7 @@ function verdictText(verdict: ReturnType<ReturnType<typeof useConsole>["siteDraf
     case "checking":
       return "Checking the drawing.";
     case "accepted":
-      return verdict.text === "" ? "Nothing changes." : `Ready to save. Changes: ${verdict.text}.`;
+      return verdict.text || "Nothing changes.";
     case "refused":
       return "Cannot be saved as it is:";
   }

@@ -318,9 +318,7 @@ function SaveVehicles() {
       case "checking":
         return "Checking the vehicles.";
       case "accepted":
-        return now.changes.length === 0
-          ? "Nothing changes."
-          : `Ready to save: ${now.changes.join("; ")}.`;
+        return now.text || "Nothing changes.";
       case "refused":
         return "Cannot be saved as it is:";
     }

@@ -146,6 +146,15 @@ describe("the table of the site's vehicles", () => {
     expect(page.shared.vehicleTable.saved()?.revision).toBe("r2");
   });
 
+  it("keeps what is edited while it is loaded again, and states it", async () => {
+    await open([ALDER]);
+    const loading = page.shared.vehicleTable.discard();
+    type("Name of SN-001", "Ash");
+    await loading;
+    expect(page.shared.vehicleTable.rows()[0]?.name).toBe("Ash");
+    expect(page.root.textContent).toContain("Not loaded again: the draft was edited meanwhile");
+  });
+
   it("keeps what is edited while a save is under way", async () => {
     await open([ALDER]);
     page.site.vehiclesResponse = {
