@@ -3,6 +3,7 @@ import type { LonLat } from "../map/localGrid";
 import type { CalibrationView, ControlPointView } from "../protocol";
 import type { Clock } from "../source/clock";
 import type { SiteRequests } from "../source/siteRequests";
+import type { Notice } from "./savedDraft";
 
 /*
  * Theory of operation. A frame of the imaging drone is frozen by the station, which keeps its telemetry. Points
@@ -45,7 +46,7 @@ export interface Calibration {
   readonly selected: Accessor<MarkedPoint | null>;
   /** The newest answer about these points; null while one is awaited. */
   readonly fit: Accessor<CalibrationView | null>;
-  readonly notice: Accessor<{ readonly text: string; readonly isProblem: boolean } | null>;
+  readonly notice: Accessor<Omit<Notice, "about"> | null>;
   /** How often this page has saved points. */
   readonly saves: Accessor<number>;
   freeze(serial: string): Promise<void>;
@@ -75,7 +76,7 @@ export function createCalibration(site: SiteRequests, clock: Clock): Calibration
   const [points, setPoints] = createSignal<readonly MarkedPoint[]>([]);
   const [selectedId, setSelectedId] = createSignal<number | null>(null);
   const [fit, setFit] = createSignal<CalibrationView | null>(null);
-  const [notice, setNotice] = createSignal<{ text: string; isProblem: boolean } | null>(null);
+  const [notice, setNotice] = createSignal<Omit<Notice, "about"> | null>(null);
   const [saves, setSaves] = createSignal(0);
   const selected = createMemo(() => points().find(({ id }) => id === selectedId()) ?? null);
   let nextId = 1;

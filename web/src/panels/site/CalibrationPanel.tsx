@@ -5,6 +5,7 @@ import { cornerOf, cornerText } from "../../site/siteFeatures";
 import { plural } from "../../text/names";
 import { formatQuantity } from "../../text/quantities";
 import { Empty, Panel, Problem } from "../Panel";
+import { NoticeLine } from "./NoticeLine";
 import "./calibration.css";
 
 /** How many times as long as they are residuals are drawn. */
@@ -46,7 +47,7 @@ export function CalibrationPanel() {
               )}
             </For>
           </div>
-          <Notice />
+          <NoticeLine notice={calibration.notice()} />
         </div>
         {/* By the frame: another one has another picture. */}
         <Show when={calibration.frame()} keyed>
@@ -60,19 +61,6 @@ export function CalibrationPanel() {
         </Show>
       </Show>
     </Panel>
-  );
-}
-
-function Notice() {
-  const { calibration } = useConsole();
-  return (
-    <Show when={calibration.notice()}>
-      {(one) => (
-        <Show when={one().isProblem} fallback={<p role="status">{one().text}</p>}>
-          <Problem text={one().text} />
-        </Show>
-      )}
-    </Show>
   );
 }
 

@@ -14,7 +14,7 @@ const LEFT_OUT = "";
 export function ImportForm() {
   const { siteDraft } = useConsole();
   const [isOver, setOver] = createSignal(false);
-  const { imported, isBusy } = siteDraft;
+  const { imported, isBusy, notice } = siteDraft;
   const read = (files: FileList | null) => {
     const file = files?.[0];
     if (file !== undefined) void siteDraft.readFile(file);
@@ -51,7 +51,7 @@ export function ImportForm() {
         />
       </label>
       <p class="muted">KML, KMZ, Shapefile (zip), GeoPackage or GeoJSON; or drop it here.</p>
-      <NoticeLine about="import" />
+      <NoticeLine notice={notice()?.about === "import" ? notice() : null} />
       <Show when={imported().length > 0}>
         <p class="muted">
           Choose what each becomes. A press on its shape takes it or leaves it out.

@@ -1,17 +1,11 @@
 import { Show } from "solid-js";
-import { useConsole } from "../../console";
 import type { Notice } from "../../site/savedDraft";
 import { Problem } from "../Panel";
 
 /** What became of the last request, beside what it was about. */
-export function NoticeLine(props: { about: Notice["about"] }) {
-  const { siteDraft } = useConsole();
-  const mine = () => {
-    const notice = siteDraft.notice();
-    return notice?.about === props.about ? notice : null;
-  };
+export function NoticeLine(props: { notice: Omit<Notice, "about"> | null }) {
   return (
-    <Show when={mine()}>
+    <Show when={props.notice}>
       {(notice) => (
         <Show
           when={notice().isProblem}

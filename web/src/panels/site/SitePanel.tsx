@@ -8,12 +8,12 @@ import {
   LAYER_NAMES,
   LAYERS,
 } from "../../site/siteFeatures";
-import { personName, plural } from "../../text/names";
+import { plural } from "../../text/names";
 import { formatQuantity } from "../../text/quantities";
 import { Empty, Panel, Problem } from "../Panel";
 import { FeatureForm } from "./FeatureForm";
 import { ImportForm } from "./ImportForm";
-import { NoticeLine } from "./NoticeLine";
+import { SaveSection } from "./SaveSection";
 import "./site.css";
 
 /** What a shape without a pointer takes of the map's width. */
@@ -90,7 +90,7 @@ function Editor() {
           <Show when={selected()}>{(feature) => <FeatureForm feature={feature()} />}</Show>
         </Show>
         <ImportForm />
-        <SaveForm />
+        <Save />
       </Show>
     </>
   );
@@ -189,84 +189,22 @@ function facts(feature: DraftFeature): string {
   ].join(", ");
 }
 
-function SaveForm() {
-  const { siteDraft, lacks } = useConsole();
-  const { saved, isBusy, isChanged, verdict } = siteDraft;
-  const locked = () => saved()?.locked_reason ?? lacks("operator");
-  const general = () => {
-    const now = verdict();
-    return now.kind === "refused" && now.featureId === null ? now.text : null;
+function Save() {
+  const { siteDraft } = useConsole();
+  const isElsewhere = () => {
+    const verdict = siteDraft.verdict();
+    return verdict.kind === "refused" && verdict.featureId !== null;
   };
   return (
-    <section class="section" aria-label="Save the site">
-      <div class="section-buttons">
-        <button
-          type="button"
-          class="button"
-          disabled={!siteDraft.canUndo()}
-          onClick={() => siteDraft.undo()}
-        >
-          Undo
-        </button>
-        <button
-          type="button"
-          class="button"
-          disabled={!siteDraft.canRedo()}
-          onClick={() => siteDraft.redo()}
-        >
-          Redo
-        </button>
-        <button
-          type="button"
-          class="button"
-          disabled={isBusy()}
-          onClick={() => void siteDraft.discard()}
-        >
-          {isChanged() ? "Discard" : "Reload"}
-        </button>
-      </div>
-      <p role="status" class="site-verdict">
-        {verdictText(verdict())}
-      </p>
-      <Problem text={general()} />
-      <button
-        type="button"
-        class="button site-save"
-        disabled={!isChanged() || isBusy() || locked() !== null}
-        title={locked() ?? undefined}
-        onClick={() => void siteDraft.save()}
-      >
-        Save, in force at once
-      </button>
-      <NoticeLine about="site" />
-      <Show when={saved()?.undo}>
-        {(change) => (
-          <button
-            type="button"
-            class="button"
-            disabled={isBusy() || isChanged() || locked() !== null}
-            title={isChanged() ? "Save or discard the changes first" : undefined}
-            onClick={() => void siteDraft.undoSaved()}
-          >
-            Undo last save: {change().what}, by {personName(change().by)}
-          </button>
-        )}
-      </Show>
-    </section>
+    <SaveSection
+      title="Save the site"
+      checking="Checking the drawing."
+      draft={siteDraft}
+      needs="operator"
+      isElsewhere={isElsewhere()}
+      edits={siteDraft}
+    />
   );
-}
-
-function verdictText(verdict: ReturnType<ReturnType<typeof useConsole>["siteDraft"]["verdict"]>) {
-  switch (verdict.kind) {
-    case "none":
-      return "No changes.";
-    case "checking":
-      return "Checking the drawing.";
-    case "accepted":
-      return verdict.text || "Nothing changes.";
-    case "refused":
-      return "Cannot be saved as it is:";
-  }
 }
 
 /** Asks before the page is left with changes that are not saved. */

@@ -10,9 +10,9 @@ import {
 } from "solid-js";
 import { useConsole } from "../../console";
 import type { SiteVehicleView } from "../../protocol";
-import { personName } from "../../text/names";
 import { colourOf, lookClasses } from "../../theme/theme";
 import { Empty, Panel, Problem } from "../Panel";
+import { SaveSection } from "./SaveSection";
 import "./vehicles.css";
 
 const REFERENCES = [
@@ -62,7 +62,7 @@ export function VehiclesPanel() {
           <Rows />
         </Show>
         <AddVehicle />
-        <SaveVehicles />
+        <Save />
       </Show>
     </Panel>
   );
@@ -254,73 +254,19 @@ function AddVehicle() {
   );
 }
 
-function SaveVehicles() {
-  const { vehicleTable: table, lacks } = useConsole();
-  const { saved, isBusy, isChanged, verdict, notice } = table;
-  const locked = () => saved()?.locked_reason ?? lacks("admin");
-  const general = () => {
-    const now = verdict();
-    return now.kind === "refused" && now.row === null ? now.text : null;
+function Save() {
+  const { vehicleTable: table } = useConsole();
+  const isElsewhere = () => {
+    const verdict = table.verdict();
+    return verdict.kind === "refused" && verdict.row !== null;
   };
   return (
-    <section class="section" aria-label="Save the vehicles">
-      <p role="status" class="site-verdict">
-        {verdictText()}
-      </p>
-      <Problem text={general()} />
-      <div class="section-buttons">
-        <button
-          type="button"
-          class="button site-save"
-          disabled={!isChanged() || isBusy() || locked() !== null}
-          title={locked() ?? undefined}
-          onClick={() => void table.save()}
-        >
-          Save, in force at once
-        </button>
-        <button
-          type="button"
-          class="button"
-          disabled={isBusy()}
-          onClick={() => void table.discard()}
-        >
-          {isChanged() ? "Discard" : "Reload"}
-        </button>
-      </div>
-      <Show when={notice()}>
-        {(one) => (
-          <Show when={one().isProblem} fallback={<p role="status">{one().text}</p>}>
-            <Problem text={one().text} />
-          </Show>
-        )}
-      </Show>
-      <Show when={saved()?.undo}>
-        {(change) => (
-          <button
-            type="button"
-            class="button"
-            disabled={isBusy() || isChanged() || locked() !== null}
-            title={isChanged() ? "Save or discard the changes first" : undefined}
-            onClick={() => void table.undoSaved()}
-          >
-            Undo last save: {change().what}, by {personName(change().by)}
-          </button>
-        )}
-      </Show>
-    </section>
+    <SaveSection
+      title="Save the vehicles"
+      checking="Checking the vehicles."
+      draft={table}
+      needs="admin"
+      isElsewhere={isElsewhere()}
+    />
   );
-
-  function verdictText(): string {
-    const now = verdict();
-    switch (now.kind) {
-      case "none":
-        return "No changes.";
-      case "checking":
-        return "Checking the vehicles.";
-      case "accepted":
-        return now.text || "Nothing changes.";
-      case "refused":
-        return "Cannot be saved as it is:";
-    }
-  }
 }
