@@ -1,0 +1,74 @@
+import type {
+  FlightFiguresView,
+  FlightView,
+  SurveyCameraView,
+  SurveyEstimateView,
+} from "../protocol";
+import type { FlightRequests } from "../source/flightRequests";
+import type { Outcome } from "../source/stationSource";
+import type { SurveyRequests } from "../source/surveyRequests";
+import { surveyEstimate } from "./fakeState";
+import { answered, failed, noPicture, type PageRequests } from "./pageRequests";
+
+const MINI_3_PRO: SurveyCameraView = {
+  name: "mini3pro",
+  title: "Mini 3 Pro (12 MP)",
+  across_px: 4032,
+  along_px: 3024,
+  across_deg: 69.7,
+  along_deg: 55.2,
+  timer_s: [2, 3, 5],
+  shutter: "rolling",
+  source: "specifications",
+};
+
+/** Flight records, and surveys to fly: what is answered about them. */
+export interface FakeFlights {
+  records: Outcome<FlightView[]>;
+  figures: Outcome<FlightFiguresView>;
+  estimate: SurveyEstimateView;
+}
+
+export function fakeFlights(): FakeFlights {
+  return {
+    records: answered([]),
+    figures: failed("no figures in this test"),
+    estimate: surveyEstimate(),
+  };
+}
+
+export function fakeFlightRequests(flights: FakeFlights, requests: PageRequests): FlightRequests {
+  return {
+    list: async () => flights.records,
+    figures: async (flight) => {
+      requests.sent.push({ flight });
+      return flights.figures;
+    },
+    file: async (flight, file) => {
+      requests.sent.push({ flight, file });
+      return answered({ blob: new Blob(["x"]), frameId: null });
+    },
+    record: async (flight) => {
+      requests.sent.push({ flight, file: "record.mcap" });
+      return failed("no record in this test");
+    },
+  };
+}
+
+export function fakeSurveyRequests(flights: FakeFlights, requests: PageRequests): SurveyRequests {
+  const none = { survey: null };
+  return {
+    plan: (plannedSurvey) => requests.answer({ plannedSurvey }, none),
+    start: (startedSurvey, serials, takeoff) =>
+      requests.answer({ startedSurvey, serials, takeoff }, none),
+    stop: (stoppedSurvey, word) => requests.answer({ stoppedSurvey, word }, none),
+    estimate: async (_id, serials) => {
+      const one = { time_s: 300, flights: 1 };
+      const drones = serials.map((serial) => ({ serial, vehicle_name: serial, ...one }));
+      return answered({ ...flights.estimate, drones });
+    },
+    cameras: async () => answered([MINI_3_PRO]),
+    ways: noPicture,
+    cells: noPicture,
+  };
+}

@@ -1,0 +1,143 @@
+import { createSignal } from "solid-js";
+import type {
+  AccessView,
+  OrderResult,
+  PreflightView,
+  ReplayMarksView,
+  StationState,
+  TimelineEntryView,
+  UpwindView,
+} from "../protocol";
+import type {
+  Connection,
+  NamedOrder,
+  Outcome,
+  StationSource,
+  TimelineFilter,
+} from "../source/stationSource";
+import { fakeFlightRequests, fakeFlights, fakeSurveyRequests } from "./fakeFlights";
+import { fakeSite, fakeSiteRequests } from "./fakeSite";
+import { answered, failed, noPicture, PageRequests } from "./pageRequests";
+
+/** All entries of the timeline, the newest first, and what was asked for. */
+export interface FakeTimeline {
+  entries: TimelineEntryView[];
+  /** Why it cannot be read; null: it can. */
+  problem: string | null;
+  readonly asked: TimelineFilter[];
+}
+
+export type FakeStation = ReturnType<typeof createFakeStation>;
+
+/** A station whose state is `first`: what it answers, and what it was asked, which a test may set and read. */
+export function createFakeStation(first: StationState | null) {
+  const [state, receive] = createSignal<StationState | null>(first, { equals: false });
+  const [connection, connect] = createSignal<Connection>({ kind: "live" });
+  const [person, nameAs] = createSignal<AccessView | null>(null);
+  return {
+    state,
+    receive,
+    connection,
+    connect,
+    person,
+    nameAs,
+    /** The age of the newest state. */
+    behindS: 0,
+    orders: [] as NamedOrder[],
+    checks: [] as NamedOrder[],
+    acknowledged: [] as number[],
+    allStops: 0,
+    /** The answer to every order. */
+    answer: [] as readonly OrderResult[],
+    requests: new PageRequests(),
+    preflight: failed("no checklist in this test") as Outcome<PreflightView>,
+    upwindPlace: answered<UpwindView>({ place: null, reason: "no region in this test" }),
+    marks: { marks: [], read_share: 0 } as ReplayMarksView,
+    fetchFrame: noPicture as StationSource["vehicleFrame"],
+    timeline: { entries: [], problem: null, asked: [] } as FakeTimeline,
+    site: fakeSite(),
+    flights: fakeFlights(),
+  };
+}
+
+export function fakeSource(station: FakeStation): StationSource {
+  const { requests } = station;
+  return {
+    state: station.state,
+    connection: station.connection,
+    person: station.person,
+    sharedAddressCode: noPicture,
+    appAddressCode: noPicture,
+    behindS: () => station.behindS,
+    replay: {
+      marks: async () => answered(station.marks),
+      change: async (transport) => {
+        requests.sent.push({ transport });
+        const replay = station.state()?.replay ?? null;
+        return replay === null
+          ? failed("This station is live: nothing is replayed")
+          : answered(replay);
+      },
+    },
+    order: async (order) => {
+      station.orders.push(order);
+      return answered(station.answer);
+    },
+    check: async (order) => {
+      station.checks.push(order);
+      return answered(station.answer);
+    },
+    allStop: async () => {
+      station.allStops += 1;
+      return answered(station.answer);
+    },
+    fleetReturn: async (serials) => {
+      requests.sent.push({ fleetReturn: serials });
+      return answered(station.answer);
+    },
+    drawZone: (drawnZone) => requests.answer({ drawnZone }, { zone: null }),
+    endZone: (endedZone) => requests.answer({ endedZone }),
+    releaseStop: (releasedStop) => requests.answer({ releasedStop }),
+    admitApp: (admittedLink, serial, lasting) => requests.answer({ admittedLink, serial, lasting }),
+    refuseApp: (refusedLink) => requests.answer({ refusedLink }),
+    lookAside: (serial) => requests.answer({ lookAside: serial }),
+    setAuthority: (serial, authority, takeOver) =>
+      requests.answer({ authority, serial, ...(takeOver && { takeOver }) }),
+    preflight: async () => station.preflight,
+    overridePreflight: (serial, override) => requests.answer({ override, serial }),
+    dismissHazard: async (clearedHazard) => {
+      requests.sent.push({ clearedHazard });
+      return answered(null);
+    },
+    setSeparationHold: async (separationHold) => {
+      requests.sent.push({ separationHold });
+      return answered(null);
+    },
+    acknowledge: async (id) => {
+      station.acknowledged.push(id);
+      return answered(null);
+    },
+    vehicleFrame: (serial, frameId) => station.fetchFrame(serial, frameId),
+    groundImage: noPicture,
+    groundImageFile: noPicture,
+    shadePicture: noPicture,
+    forecastPicture: noPicture,
+    sunAt: noPicture,
+    upwindPlace: async () => station.upwindPlace,
+    timeline: async (filter, atMost) => {
+      const { asked, problem, entries } = station.timeline;
+      asked.push(filter);
+      if (problem !== null) return failed(problem);
+      const found = entries.filter(
+        ({ n, serial }) =>
+          (filter.before === null || n < filter.before) &&
+          (filter.serial === null || serial === filter.serial),
+      );
+      return answered({ entries: found.slice(0, atMost), has_more: found.length > atMost });
+    },
+    site: fakeSiteRequests(station.site),
+    flights: fakeFlightRequests(station.flights, requests),
+    surveys: fakeSurveyRequests(station.flights, requests),
+    close: () => {},
+  };
+}
