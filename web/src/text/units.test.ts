@@ -8,6 +8,7 @@ import {
   keepLengthUnit,
   LENGTH_UNITS,
   type LengthUnit,
+  lengthText,
   lengthUnit,
   metresOf,
 } from "./units";
@@ -52,6 +53,15 @@ describe.each(UNITS)("in %s", (unit) => {
         );
       }
       chooseLengthUnit(unit);
+    }
+  });
+
+  it("a field's exact text read back is the same text", () => {
+    chooseLengthUnit(unit);
+    for (const length_m of LENGTHS_M) {
+      const sent_m = metresOf(Number(lengthText(length_m)));
+      expect(Math.abs(sent_m - length_m)).toBeLessThanOrEqual(0.0025);
+      expect(lengthText(sent_m)).toBe(lengthText(length_m));
     }
   });
 

@@ -53,6 +53,14 @@ export function formatHeight(height_above_takeoff_m: number | null): string {
   return height_above_takeoff_m === null ? height : `${height}\u00a0ATO`;
 }
 
+/**
+ * A length as the text of a field, to a millimetre or a hundredth of a foot: millimetres are sent, so a thousandth of a
+ * foot would not be the one that was typed.
+ */
+export function lengthText(length_m: number): string {
+  return String(Number(inLengthUnit(length_m).toFixed(unit() === "m" ? 3 : 2)));
+}
+
 /** The number in a field, with a decimal point or comma; null when it is not a number. */
 export function numberIn(text: string): number | null {
   const plain = text.trim().replace(",", ".");

@@ -14,6 +14,7 @@ import {
   type Ring,
 } from "../../site/siteFeatures";
 import { plural } from "../../text/names";
+import { lengthText, lengthUnit, metresOf, numberIn } from "../../text/units";
 
 /** Corners listed at once: a surveyed outline has hundreds. */
 const LISTED = 20;
@@ -32,8 +33,8 @@ export function FeatureForm(props: { feature: DraftFeature }) {
         onChange={(text) => set("name", text.trim() || null)}
       />
       <Show when={kind().hasHeights}>
-        <NumberField feature={props.feature} name="floor_m" label="Floor, m" />
-        <NumberField feature={props.feature} name="ceiling_m" label="Ceiling, m" />
+        <LengthInput feature={props.feature} name="floor_m" label="Floor" />
+        <LengthInput feature={props.feature} name="ceiling_m" label="Ceiling" />
         <label class="site-wide">
           Heights count from
           <select
@@ -47,7 +48,7 @@ export function FeatureForm(props: { feature: DraftFeature }) {
         </label>
       </Show>
       <Show when={kind().isPoint}>
-        <NumberField feature={props.feature} name="altitude_m" label="Altitude (WGS84), m" />
+        <LengthInput feature={props.feature} name="altitude_m" label="Altitude (WGS84)" />
         <TextField
           label="Serial of its drone (empty: any)"
           value={props.feature.properties["serial"] ?? ""}
@@ -100,24 +101,24 @@ function TextField(props: { label: string; value: Attribute; onChange: (text: st
   );
 }
 
-/** A number or, empty, nothing. */
-function NumberField(props: { feature: DraftFeature; name: string; label: string }) {
+/** A length in the chosen unit or, empty, nothing. The draft has metres. */
+function LengthInput(props: { feature: DraftFeature; name: string; label: string }) {
   const { siteDraft } = useConsole();
-  const change = (text: string) => {
-    const value = text.trim() === "" ? null : Number(text.replace(",", "."));
-    if (Number.isNaN(value)) return false;
-    siteDraft.setProperty(props.feature.id, props.name, value);
+  const text = () => {
+    const length_m = props.feature.properties[props.name] ?? "";
+    return typeof length_m === "number" ? lengthText(length_m) : String(length_m);
+  };
+  const change = (typed: string) => {
+    const value = numberIn(typed);
+    if (value === null && typed.trim() !== "") return false;
+    siteDraft.setProperty(props.feature.id, props.name, value === null ? null : metresOf(value));
     return true;
   };
   return (
     // biome-ignore lint/a11y/noLabelWithoutControl: its control is the component's
     <label>
-      {props.label}
-      <CheckedField
-        text={String(props.feature.properties[props.name] ?? "")}
-        inputmode="decimal"
-        onChange={change}
-      />
+      {props.label}, {lengthUnit()}
+      <CheckedField text={text()} inputmode="decimal" onChange={change} />
     </label>
   );
 }

@@ -2,10 +2,14 @@ import { afterEach, describe, expect, it } from "vitest";
 import { squareAround } from "../../site/siteFeatures";
 import { station, vehicle } from "../../testing/fakeState";
 import { find, findButton, type RenderedPage, renderPage, settled } from "../../testing/renderPage";
+import { chooseLengthUnit } from "../../text/units";
 import { SitePanel } from "./SitePanel";
 
 let page: RenderedPage;
-afterEach(() => page?.dispose());
+afterEach(() => {
+  page?.dispose();
+  chooseLengthUnit("m");
+});
 
 const HERE = { lon: -93.6, lat: 41.9 };
 
@@ -86,6 +90,26 @@ describe("with the keyboard alone", () => {
     expect([marked(), field("Floor, m").value]).toEqual([1, "low"]);
     siteDraft.undo();
     expect([marked(), field("Floor, m").value]).toEqual([0, ""]);
+  });
+
+  it("heights are shown and typed in feet where these are chosen, and sent in metres", async () => {
+    await open();
+    const { siteDraft } = page.shared;
+    siteDraft.addAt("keep_out", HERE, 100);
+    type("Floor, m", "5,5");
+    type("Ceiling, m", "low");
+    chooseLengthUnit("ft");
+    expect([field("Floor, ft").value, field("Ceiling, ft").value]).toEqual(["18.04", "low"]);
+    type("Ceiling, ft", "83.5");
+    expect(field("Ceiling, ft").value).toBe("83.5");
+    await siteDraft.save();
+    const sent = page.site.asked.at(-1)?.[1].features[0]?.properties;
+    expect(sent).toMatchObject({ floor_m: 5.5, ceiling_m: 25.451, datum: "ground" });
+    siteDraft.addAt("landing_pads", HERE, 100);
+    type("Altitude (WGS84), ft", "1000");
+    expect(siteDraft.selected()?.properties["altitude_m"]).toBe(304.8);
+    chooseLengthUnit("m");
+    expect(field("Altitude (WGS84), m").value).toBe("304.8");
   });
 
   it("drawing on the map is begun and ended by the same button, not by a hole's", async () => {
