@@ -12,6 +12,7 @@ Theory of operation, per forecast:
 """
 
 from dataclasses import dataclass, replace
+from math import exp
 
 import cv2
 import numpy as np
@@ -75,13 +76,14 @@ class _Seen:
     grid: GroundGrid
     transmittance: FloatMap
     confidence: FloatMap
-    nearest: tuple[Cells, Cells]
+    nearest: tuple[FloatMap, FloatMap]
     """Row and column of the seen cell nearest to each."""
 
     @classmethod
     def of(cls, shade: ShadeMap) -> "_Seen":
-        nearest = nearest_seen(shade.valid)
-        return cls(shade.grid, shade.transmittance[nearest], shade.confidence[nearest], nearest)
+        at = nearest_seen(shade.valid)
+        nearest = at[0].astype(np.float32), at[1].astype(np.float32)
+        return cls(shade.grid, shade.transmittance[at], shade.confidence[at], nearest)
 
     def sun_after(
         self, lead_s: float, motion: ShadowMotion | None, prior: float, settings: ForecastSettings
@@ -96,7 +98,7 @@ class _Seen:
         soft = np.minimum(edge + settings.soft_edge_per_m * off_m, settings.most_soft_edge)
         sun = (direct - SUNLIT_TRANSMITTANCE) / (2.0 * soft) + 0.5
         sun = np.clip(sun, 1.0 - settings.surest, settings.surest)
-        weight = confidence * np.exp(-lead_s / settings.shade_memory_s)
+        weight = confidence * exp(-lead_s / settings.shade_memory_s)
         weight = weight / (1.0 + off_m / settings.shade_scale_m)
         found: FloatMap = (prior + weight * (sun - prior)).astype(np.float32)
         return found
@@ -106,22 +108,30 @@ class _Seen:
     ) -> tuple[FloatMap, FloatMap, FloatMap]:
         """Return the row and column that are read for each cell, and how far in metres they are
         from the place upwind: 0 where that is seen itself."""
-        cell_m = self.grid.cell_m
+        grid = self.grid
         moved_mps = (0.0, 0.0) if motion is None else (motion.east_mps, motion.north_mps)
-        rows, cols = np.indices(self.transmittance.shape, dtype=np.float32)
-        rows += np.float32(moved_mps[1] * lead_s / cell_m)
-        cols -= np.float32(moved_mps[0] * lead_s / cell_m)
-        inside = (
-            np.rint(rows).clip(0, self.grid.rows - 1).astype(np.intp),
-            np.rint(cols).clip(0, self.grid.cols - 1).astype(np.intp),
+        # All cells of a row have the same row upwind of them, all of a column the same column.
+        rows = _moved(grid.rows, moved_mps[1] * lead_s / grid.cell_m)
+        cols = _moved(grid.cols, -moved_mps[0] * lead_s / grid.cell_m)
+        near_rows, near_cols = (
+            each.take(_index(rows), axis=0).take(_index(cols), axis=1) for each in self.nearest
         )
-        near_rows, near_cols = (each[inside].astype(np.float32) for each in self.nearest)
-        off_m = np.hypot(rows - near_rows, cols - near_cols) * np.float32(cell_m)
-        is_there = off_m < cell_m
-        off_m = np.where(is_there, np.float32(0.0), off_m)
+        down, right = rows[:, np.newaxis], cols[np.newaxis, :]
+        off_m = np.hypot(down - near_rows, right - near_cols) * np.float32(grid.cell_m)
+        is_there = off_m < grid.cell_m
+        off_m[is_there] = 0.0
         if motion is None:
-            off_m = off_m + np.float32(settings.usual_speed_mps * lead_s)
-        return np.where(is_there, rows, near_rows), np.where(is_there, cols, near_cols), off_m
+            off_m += np.float32(settings.usual_speed_mps * lead_s)
+        return np.where(is_there, down, near_rows), np.where(is_there, right, near_cols), off_m
+
+
+def _moved(count: int, by: float) -> FloatMap:
+    return np.arange(count, dtype=np.float32) + np.float32(by)
+
+
+def _index(places: FloatMap) -> Cells:
+    """Return the nearest row of the grid to each of all its rows, moved; columns likewise."""
+    return np.rint(places).clip(0, places.size - 1).astype(np.intp)
 
 
 ADVECTION = Forecaster(_observed, _forecast)
