@@ -15,8 +15,8 @@ from recon.model.event import SiteRedrawn
 from recon.record import file_set
 from recon.record.codec import Codec
 from recon.site import load_site
-from recon.site.drawing import read_drawing
-from recon.site.reading import HISTORY_FOLDER, site_digest
+from recon.site.drawing import MOST_STAGED_FILES, read_drawing, stage_drawing
+from recon.site.reading import HISTORY_FOLDER, MAPS_FOLDER, site_digest
 
 PLACE = ("--at", "41.9012,-93.6034", "--ground-altitude-m", "275")
 
@@ -162,3 +162,13 @@ def test_a_record_keeps_a_drawing(folder: Path, tmp_path: Path) -> None:
     assert airspace.boundary is not None
     assert again.boundary.outline_m.tolist() == airspace.boundary.outline_m.tolist()
     assert (again.profiles, again.layers, again.by) == (profiles, (SiteLayer.BOUNDARY,), "anna")
+
+
+def test_base_maps_are_no_part_of_what_a_site_is_known_by(folder: Path) -> None:
+    digest = site_digest(folder)
+    (folder / MAPS_FOLDER).mkdir()
+    for number in range(MOST_STAGED_FILES + 1):
+        (folder / MAPS_FOLDER / f"{number}.mbtiles").write_bytes(b"x")
+    assert site_digest(folder) == digest
+    # A map is not copied with a drawing, however many there are.
+    assert stage_drawing(folder, read_drawing(folder)).changed == ()

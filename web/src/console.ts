@@ -9,6 +9,7 @@ import {
 } from "solid-js";
 import { createFleetView, type FleetView } from "./fleet/fleetView";
 import { createSelection, type Selection, selectedVehicles } from "./fleet/selection";
+import { type BaseMaps, createBaseMaps, type Kept } from "./map/baseMaps";
 import type { LonLat } from "./map/localGrid";
 import { createOverlay, type Overlay } from "./map/overlays";
 import { createFlyHere, type FlyHere } from "./orders/flyHere";
@@ -39,6 +40,8 @@ export interface Login {
 
 const NO_LOGIN: Login = { hasToken: false, fingerprint: null, logIn: () => {}, logOut: () => {} };
 
+const NOTHING_KEPT: Kept = { getItem: () => null, setItem: () => {} };
+
 /** State and services shared by all parts of the page. */
 export interface Console {
   readonly source: StationSource;
@@ -56,6 +59,7 @@ export interface Console {
   readonly vehicleTable: VehicleTable;
   readonly calibration: Calibration;
   readonly overlay: Overlay;
+  readonly baseMaps: BaseMaps;
   readonly theme: ThemeSwitch;
   readonly panels: OpenPanels;
   readonly alarmSound: AlarmSound;
@@ -100,6 +104,7 @@ export function createConsole(
   panels: OpenPanels,
   sound: { readonly mutes: Mutes; readonly speaker: Speaker },
   login: Login = NO_LOGIN,
+  kept: Kept = NOTHING_KEPT,
 ): Console {
   const fleet = createFleetView(source);
   const selection = createSelection();
@@ -168,6 +173,7 @@ export function createConsole(
     vehicleTable,
     calibration,
     overlay: createOverlay(() => fleet.surveys.some(({ phase }) => ACTIVE.includes(phase))),
+    baseMaps: createBaseMaps(source, kept),
     theme,
     panels,
     alarmSound: createAlarmSound(source, isReplay, now, sound.mutes, sound.speaker),

@@ -53,6 +53,7 @@ function Page() {
       logIn: reloadWith,
       logOut: () => reloadWith(null),
     },
+    localStorage,
   );
   return (
     <ConsoleProvider value={shared}>

@@ -15,6 +15,7 @@ from recon.api.access_routes import add_access_routes
 from recon.api.addresses import SharedAddress
 from recon.api.console_files import ConsoleFiles
 from recon.api.flight_routes import FlightArchive, NoFlights, add_flight_routes
+from recon.api.map_routes import MapFolder, NoMaps, add_map_routes
 from recon.api.order_routes import add_order_routes
 from recon.api.pairing_routes import add_pairing_routes
 from recon.api.permissions import require_listed_role
@@ -51,12 +52,13 @@ def create_app(
     shared: SharedAddress | None = None,
     flights: FlightArchive | None = None,
     replay: Replaying | None = None,
+    maps: MapFolder | None = None,
 ) -> FastAPI:
     """Return the application around a station, to be put behind an `AccessCheck`.
 
     `console` is the folder with the built console; without one a page describes how to build it.
     `shared` is the address for other computers; `flights` are the station's records;
-    with a `replay` everything is refused that orders or changes anything.
+    `maps` its base maps; with a `replay` everything is refused that orders or changes anything.
     """
     app = FastAPI(
         title="Recon",
@@ -74,6 +76,7 @@ def create_app(
     add_site_routes(app, port)
     add_survey_routes(app, port)
     add_flight_routes(app, flights or NoFlights())
+    add_map_routes(app, maps or NoMaps())
     add_zone_routes(app, port)
     add_replay_routes(app, replay)
     _add_console(app, console)

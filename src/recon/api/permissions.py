@@ -46,6 +46,8 @@ LEAST_ROLE: dict[tuple[str, str], Role] = {
     ("GET", "/api/flights/{name}"): Role.OBSERVER,
     ("GET", "/api/flights/{name}/record.mcap"): Role.OBSERVER,
     ("GET", "/api/flights/{name}/files/{file}"): Role.OBSERVER,
+    ("GET", "/api/maps"): Role.OBSERVER,
+    ("GET", "/api/maps/{name}/{zoom}/{col}/{row}"): Role.OBSERVER,
     ("GET", "/api/surveys/{survey_id}/estimate"): Role.OBSERVER,
     ("GET", "/api/cameras"): Role.OBSERVER,
     ("GET", "/api/zones"): Role.OBSERVER,

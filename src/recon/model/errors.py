@@ -4,6 +4,7 @@
     |- WireError            recon.wire: bytes or values that do not form a packet
     |- CameraError          recon.camera: calibration, control points, pose, frames
     |- SiteError            recon.site: a site's folder
+    |- BaseMapError         recon.basemap: files of base maps, and fetching them
     |- RecordError          recon.record: files of a flight
     |- SimulationError      recon.sim: options and inputs of the simulator
     |- ClientError          recon.client: connecting to a station

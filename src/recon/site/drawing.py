@@ -20,7 +20,13 @@ from recon.model.airspace import SiteLayer
 from recon.model.errors import SiteError
 from recon.site.geojson import read_features
 from recon.site.load import LARGEST_FILE_BYTES, SITE_FILE, load_site
-from recon.site.reading import HISTORY_FOLDER, file_inside, read_bounded, read_toml
+from recon.site.reading import (
+    HISTORY_FOLDER,
+    MAPS_FOLDER,
+    file_inside,
+    read_bounded,
+    read_toml,
+)
 from recon.site.site import Site
 
 FENCES = frozenset(SiteLayer) - {SiteLayer.SURVEY_REGIONS}
@@ -31,7 +37,7 @@ _FEATURE_PLACE = re.compile(
     r"(?P<file>[^:]+): feature (?P<number>\d{1,4})(?: \(.*?\))?(?:\.\w+)?: (?P<rest>.+)", re.DOTALL
 )
 """How an error of a layer's file begins: `Feature.place`."""
-_NOT_STAGED = frozenset({HISTORY_FOLDER, "references"})
+_NOT_STAGED = frozenset({HISTORY_FOLDER, MAPS_FOLDER, "references"})
 
 
 @dataclass(frozen=True, slots=True, eq=False)

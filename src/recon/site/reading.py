@@ -100,6 +100,8 @@ def refuse_non_finite(place: object, value: object, key: str) -> None:
 MAX_DIGESTED_FILES = 200
 HISTORY_FOLDER = "history"
 """Earlier versions of the layers, beside the site's files."""
+MAPS_FOLDER = "maps"
+"""Base maps: large, only shown, and read by `basemap/`."""
 MAX_DIGESTED_BYTES = 256 * 1024 * 1024
 _PIECE_BYTES = 1024 * 1024
 
@@ -110,7 +112,7 @@ def site_digest(folder: Path) -> str:
     The audit records it: which boundary, zones and profiles a flight used.
 
     Files over 256 MiB or beyond the first 200, and unreadable ones, count by name and size. Earlier
-    versions, in `history/`, and hidden files are left out.
+    versions, in `history/`, base maps, in `maps/`, and hidden files are left out.
     """
     total = sha256()
     for number, path in enumerate(sorted(p for p in folder.rglob("*") if _is_in_use(folder, p))):
@@ -122,7 +124,8 @@ def site_digest(folder: Path) -> str:
 
 def _is_in_use(folder: Path, path: Path) -> bool:
     top = path.relative_to(folder).parts[0]
-    return path.is_file() and top != HISTORY_FOLDER and not top.startswith(".")
+    is_other = top in (HISTORY_FOLDER, MAPS_FOLDER) or top.startswith(".")
+    return path.is_file() and not is_other
 
 
 def _content_hash(path: Path) -> bytes:

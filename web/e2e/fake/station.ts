@@ -1,6 +1,7 @@
 import type { Page, WebSocketRoute } from "@playwright/test";
 import type {
   AccessView,
+  BaseMapsView,
   CalibrationView,
   FrozenFrameView,
   OrderRequest,
@@ -72,6 +73,8 @@ export class FakeStation {
   /** What a freeze and a fit answer. */
   frozen: FrozenFrameView | null = null;
   fit: CalibrationView | null = null;
+  /** The base maps of the site's folder. */
+  maps: BaseMapsView = { maps: [], note: "No map in the site's folder maps" };
   /** Answer for any survey's paths. */
   ways: SurveyWays | null = null;
   private sockets: WebSocketRoute[] = [];
@@ -147,6 +150,9 @@ export class FakeStation {
         headers: { "X-Frame-Id": String(this.frozen?.frame_id) },
       };
     if (path.startsWith("/api/site/calibration")) return { json: this.fit };
+    if (path === "/api/maps") return { json: this.maps };
+    if (path.startsWith("/api/maps/") && this.picture !== null)
+      return { body: this.picture, contentType: "image/png" };
     if (path === "/api/cameras") return { json: [MINI_3_PRO] };
     if (path.startsWith("/api/site/drawing")) return { json: this.drawingResult };
     const isControlRequest = /\/(authority|override|release|zones|end)$/.test(path);

@@ -1,6 +1,8 @@
-import { For, Show } from "solid-js";
+import { For, onMount, Show } from "solid-js";
 import { useConsole } from "../console";
 import { Popover } from "../panels/Popover";
+import type { BaseMapView } from "../protocol";
+import { coverageText, isIncomplete } from "../text/baseMaps";
 import type { OverlayKind } from "./overlays";
 
 /** What can lie over the ground image, with the legend of each. */
@@ -30,31 +32,88 @@ const LEGENDS: Readonly<Record<OverlayKind, readonly (readonly [string, string])
   ],
 };
 
-/** Chooses the overlay of the map, and explains its colours. */
+/** Chooses the overlay, with its colours explained, and the base map, with what it covers. */
 export function LayersButton() {
-  const { overlay } = useConsole();
   return (
-    <Popover class="layers" label="Map overlay" title="Map overlay" button={<LayersIcon />}>
+    <Popover class="layers" label="Map and overlay" title="Map and overlay" button={<LayersIcon />}>
       {() => (
-        <fieldset class="card layers-list">
-          <legend class="hidden-but-read">Map overlay</legend>
-          <For each={OVERLAYS}>
-            {([kind, label]) => (
-              <label>
-                <input
-                  type="radio"
-                  name="overlay"
-                  checked={overlay.kind() === kind}
-                  onChange={() => overlay.show(kind)}
-                />
-                {label}
-              </label>
-            )}
-          </For>
-          <Legend kind={overlay.kind()} />
-        </fieldset>
+        <div class="card layers-list">
+          <OverlayChoice />
+          <BaseMapChoice />
+        </div>
       )}
     </Popover>
+  );
+}
+
+function OverlayChoice() {
+  const { overlay } = useConsole();
+  return (
+    <fieldset>
+      <legend class="hidden-but-read">Map overlay</legend>
+      <For each={OVERLAYS}>
+        {([kind, label]) => (
+          <label>
+            <input
+              type="radio"
+              name="overlay"
+              checked={overlay.kind() === kind}
+              onChange={() => overlay.show(kind)}
+            />
+            {label}
+          </label>
+        )}
+      </For>
+      <Legend kind={overlay.kind()} />
+    </fieldset>
+  );
+}
+
+/** The maps of the site's folder; read again whenever the list is opened. */
+function BaseMapChoice() {
+  const { baseMaps } = useConsole();
+  onMount(() => void baseMaps.refresh());
+  return (
+    <fieldset class="base-maps">
+      <legend>Map</legend>
+      <Show when={(baseMaps.maps() ?? []).length > 0}>
+        <label>
+          <input
+            type="radio"
+            name="base-map"
+            checked={baseMaps.shown() === null}
+            onChange={() => baseMaps.choose(null)}
+          />
+          None
+        </label>
+      </Show>
+      <For each={baseMaps.maps() ?? []}>{(base) => <BaseMapLine base={base} />}</For>
+      <Show when={baseMaps.note()}>{(note) => <p class="base-map-note">{note()}</p>}</Show>
+      <Show when={baseMaps.maps() === null && baseMaps.note() === null}>
+        <p class="base-map-note">Looking for maps</p>
+      </Show>
+    </fieldset>
+  );
+}
+
+function BaseMapLine(props: { base: BaseMapView }) {
+  const { baseMaps } = useConsole();
+  return (
+    <label classList={{ "is-unusable": props.base.problem !== null }}>
+      <input
+        type="radio"
+        name="base-map"
+        disabled={props.base.problem !== null}
+        checked={baseMaps.shown()?.name === props.base.name}
+        onChange={() => baseMaps.choose(props.base.name)}
+      />
+      <span class="wire-text">
+        {props.base.title}
+        <small classList={{ "tone-warning": isIncomplete(props.base) }}>
+          {coverageText(props.base)}
+        </small>
+      </span>
+    </label>
   );
 }
 

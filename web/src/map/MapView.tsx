@@ -8,6 +8,7 @@ import { courseText } from "../orders/course";
 import { listNames, vehicleLabel } from "../text/names";
 import { AreaLabelLayer } from "./areaLabelLayer";
 import { BoundaryLayer, HeightZoneLayer, KeepOutLayer, SurveyLayer } from "./areaLayer";
+import { BaseMapLayer } from "./baseMapLayer";
 import { readColours } from "./colours";
 import { hideLayers } from "./features";
 import { GroundImageNote } from "./GroundImageNote";
@@ -38,7 +39,7 @@ const AGE_STEP_S = 0.2;
 export function MapView() {
   const { source, selection, theme, behindS, fitRequests, flyHere, zoneDraft, overlay } =
     useConsole();
-  const { aim, setMapCentre, siteDraft, calibration } = useConsole();
+  const { aim, setMapCentre, siteDraft, calibration, baseMaps } = useConsole();
   const [map, setMap] = createSignal<MapLibre | null>(null);
   const ground = createDisplayedGround(source);
   const sunHere = createSunHere(source, overlay, () => source.state()?.shade?.map?.number ?? null);
@@ -46,10 +47,12 @@ export function MapView() {
   let scaleBar!: HTMLDivElement;
   let free!: HTMLDivElement;
   let layers: readonly Layer[] = [];
+  const baseMap = new BaseMapLayer(source.maps);
 
   onMount(() => {
-    const made = createMap(holder, readColours(document).ground);
+    const made = createMap(holder, readColours(document).ground, source.maps.tileRequest);
     layers = [
+      baseMap,
       new GroundImageLayer((frameId) => source.groundImage(frameId), ground),
       new ShadeLayer(overlay, source),
       new ForecastLayer(overlay, source),
@@ -125,6 +128,11 @@ export function MapView() {
       siteDraft: draftShapes(),
     };
     for (const layer of layers) layer.update(scene);
+  });
+
+  createEffect(() => {
+    const shown = baseMaps.shown();
+    if (map() !== null) baseMap.show(shown);
   });
 
   const controlPoints = new TargetMarkers("target-planned");
@@ -205,6 +213,7 @@ export function MapView() {
           <UnplacedNote />
           <SunHereNote here={sunHere} />
           <GroundImageNote shown={ground.shown()} />
+          <BaseMapNote />
           <div class="map-scale">
             <div class="map-scale-bar" ref={scaleBar} />
             <span title="North is up">N ↑</span>
@@ -212,6 +221,20 @@ export function MapView() {
         </div>
       </div>
     </>
+  );
+}
+
+/** The name and source of the base map, as its licence asks. */
+function BaseMapNote() {
+  const { baseMaps } = useConsole();
+  return (
+    <Show when={baseMaps.shown()}>
+      {(base) => (
+        <p class="map-note wire-text">
+          Map: {[base().title, base().attribution].filter((text) => text !== "").join(", ")}
+        </p>
+      )}
+    </Show>
   );
 }
 
@@ -244,10 +267,15 @@ function middleOf(map: MapLibre, free: HTMLElement): [number, number] {
   return [left - frame.left + width / 2, top - frame.top + height / 2];
 }
 
-function createMap(container: HTMLElement, ground: string): MapLibre {
+function createMap(
+  container: HTMLElement,
+  ground: string,
+  transformRequest: (url: string) => { url: string },
+): MapLibre {
   const map = new MapLibre({
     container,
-    // No sprite, glyphs or tiles: no network requests.
+    transformRequest,
+    // No sprite, glyphs or foreign tiles: only the station is asked.
     style: {
       version: 8,
       sources: {},

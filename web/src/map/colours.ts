@@ -14,6 +14,9 @@ export interface Colours {
   readonly heightZone: string;
   readonly temporaryZone: string;
   readonly survey: string;
+  /** How much of a base map is left by the theme: opacity 0 to 1, saturation -1 to 1. */
+  readonly baseMapOpacity: number;
+  readonly baseMapSaturation: number;
   vehicle(number: number): string;
 }
 
@@ -37,6 +40,8 @@ export function readColours(page: Document): Colours {
     heightZone: read("--height-zone"),
     temporaryZone: read("--temporary-zone"),
     survey: read("--survey"),
+    baseMapOpacity: Number(read("--base-map-opacity")),
+    baseMapSaturation: Number(read("--base-map-saturation")),
     stale,
     vehicle: (number) => vehicles[(number - 1) % VEHICLE_COLOURS] ?? stale,
   };

@@ -18,6 +18,8 @@ const PLAIN: Colours = {
   keepOut: "#000002",
   heightZone: "#000003",
   temporaryZone: "#b3370b",
+  baseMapOpacity: 1,
+  baseMapSaturation: 0,
   survey: "#000004",
   vehicle: (number) => `colour ${number}`,
 };

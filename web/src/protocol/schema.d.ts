@@ -435,6 +435,46 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/maps": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Maps
+         * @description The base maps of the site's folder, with what each covers of the site.
+         */
+        get: operations["maps_api_maps_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/maps/{name}/{zoom}/{col}/{row}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Tile
+         * @description A tile of a map in Web Mercator, rows from the north; 404 where the map has none.
+         */
+        get: operations["tile_api_maps__name___zoom___col___row__get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/orders": {
         parameters: {
             query?: never;
@@ -1435,6 +1475,72 @@ export interface components {
             reason: string;
         };
         /**
+         * BaseMapsView
+         * @description The base maps of the site's folder.
+         */
+        BaseMapsView: {
+            /** Maps */
+            maps: components["schemas"]["BaseMapView"][];
+            /**
+             * Note
+             * @description why there are none, and what to do
+             */
+            note: string | null;
+        };
+        /**
+         * BaseMapView
+         * @description A map file; with a `problem` it has no tiles to show.
+         */
+        BaseMapView: {
+            /** Attribution */
+            attribution: string;
+            /**
+             * Coverage
+             * @description by zoom level, the coarsest first
+             */
+            coverage: components["schemas"]["MapCoverageView"][];
+            /** @description the finest level that shows all of the site, else the most of it */
+            covers: components["schemas"]["MapCoverageView"] | null;
+            /** East Deg */
+            east_deg: number;
+            /**
+             * Kind
+             * @description MBTiles, PMTiles or GeoTIFF; empty with a problem
+             */
+            kind: string;
+            /** Max Zoom */
+            max_zoom: number;
+            /** Min Zoom */
+            min_zoom: number;
+            /**
+             * Name
+             * @description of the file
+             */
+            name: string;
+            /** North Deg */
+            north_deg: number;
+            /**
+             * Problem
+             * @description why it is not shown
+             */
+            problem: string | null;
+            /** Size Bytes */
+            size_bytes: number;
+            /** South Deg */
+            south_deg: number;
+            /** Tile Px */
+            tile_px: number;
+            /** Title */
+            title: string;
+            /**
+             * Version
+             * @description changes with the file; tiles asked for with it are kept
+             */
+            version: string;
+            /** West Deg */
+            west_deg: number;
+        };
+        /**
          * CalibrationRequest
          * @description Control points marked on a kept frame.
          */
@@ -2279,6 +2385,21 @@ export interface components {
             survey_id: number | null;
             /** Vehicle Name */
             vehicle_name: string;
+        };
+        /**
+         * MapCoverageView
+         * @description What a map shows of the site at one zoom level.
+         */
+        MapCoverageView: {
+            /** Metres Per Pixel */
+            metres_per_pixel: number;
+            /**
+             * Share
+             * @description of the boundary with a margin, 0 to 1
+             */
+            share: number;
+            /** Zoom */
+            zoom: number;
         };
         /**
          * MissionOrder
@@ -4596,6 +4717,74 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["ActionResponse"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    maps_api_maps_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BaseMapsView"];
+                };
+            };
+        };
+    };
+    tile_api_maps__name___zoom___col___row__get: {
+        parameters: {
+            query?: {
+                /** @description the map's, as listed */
+                v?: string | null;
+            };
+            header?: never;
+            path: {
+                col: number;
+                name: string;
+                row: number;
+                zoom: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "image/jpeg": unknown;
+                    "image/png": unknown;
+                    "image/webp": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
                 };
             };
             /** @description Validation Error */

@@ -3,6 +3,7 @@ import type { AccessView, AuthorityHolder, StationState } from "../protocol";
 import type { Clock, Instant } from "./clock";
 import { flightRequests } from "./flightRequests";
 import { FramePacer, type NextFrame } from "./framePacer";
+import { mapRequests } from "./mapRequests";
 import { replayRequests } from "./replayRequests";
 import { Requests } from "./requests";
 import { siteRequests } from "./siteRequests";
@@ -51,6 +52,7 @@ export class LiveSource implements StationSource {
   readonly person;
   readonly site;
   readonly flights;
+  readonly maps;
   readonly surveys;
   readonly replay;
   private readonly lag = new StreamLag();
@@ -73,6 +75,7 @@ export class LiveSource implements StationSource {
     this.requests = new Requests(this.http);
     this.site = siteRequests(this.http);
     this.flights = flightRequests(this.http);
+    this.maps = mapRequests(this.http);
     this.replay = replayRequests(this.http);
     this.surveys = surveyRequests(this.http, () => this.stationNowMs());
     const url = `${origin.replace(/^http/, "ws")}/api/stream`;

@@ -41,10 +41,10 @@ export const RECORD: Limit = {
 /** HTTP to the station, with this page's token. */
 export class StationHttp {
   readonly client;
-  private readonly headers: Record<string, string>;
+  readonly headers: Readonly<Record<string, string>>;
 
   constructor(
-    private readonly origin: string,
+    readonly origin: string,
     token: string | null,
     readonly fetch: (request: Request) => Promise<Response>,
   ) {

@@ -15,6 +15,7 @@ import type {
 } from "../protocol";
 import type { Instant } from "./clock";
 import type { FlightRequests } from "./flightRequests";
+import type { MapRequests } from "./mapRequests";
 import type { ReplayRequests } from "./replayRequests";
 import type { SiteRequests } from "./siteRequests";
 import type { SurveyRequests } from "./surveyRequests";
@@ -70,6 +71,7 @@ export interface StationSource {
   readonly person: Accessor<AccessView | null>;
   readonly site: SiteRequests;
   readonly flights: FlightRequests;
+  readonly maps: MapRequests;
   readonly surveys: SurveyRequests;
   /** Moves a replay; a live station refuses it. */
   readonly replay: ReplayRequests;

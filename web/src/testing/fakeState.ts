@@ -2,6 +2,7 @@ import { circle } from "../map/localGrid";
 import type {
   AlarmView,
   AreaView,
+  BaseMapView,
   CommandView,
   GroundImageView,
   HazardView,
@@ -442,4 +443,28 @@ export function shadeLine(changes: Partial<ShadeLineView> = {}): ShadeLineView {
 function fieldGrid() {
   const corners = [at(-80, 80), at(80, 80), at(80, -80), at(-80, -80)];
   return { corners, cell_m: 4, rows: 40, cols: 40 };
+}
+
+/** A base map that covers all of the site to zoom 19. */
+export function baseMap(changes: Partial<BaseMapView> = {}): BaseMapView {
+  const covers = { zoom: 19, share: 1, metres_per_pixel: 0.2222 };
+  return {
+    name: "orthophoto.mbtiles",
+    title: "orthophoto",
+    kind: "MBTiles",
+    size_bytes: 1_000_000,
+    version: "1",
+    attribution: "",
+    min_zoom: 12,
+    max_zoom: 19,
+    tile_px: 256,
+    west_deg: -93.61,
+    south_deg: 41.89,
+    east_deg: -93.59,
+    north_deg: 41.91,
+    covers,
+    coverage: [covers],
+    problem: null,
+    ...changes,
+  };
 }

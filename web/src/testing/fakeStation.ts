@@ -1,6 +1,7 @@
 import { createSignal } from "solid-js";
 import type {
   AccessView,
+  BaseMapsView,
   OrderResult,
   PreflightView,
   ReplayMarksView,
@@ -57,6 +58,10 @@ export function createFakeStation(first: StationState | null) {
     timeline: { entries: [], problem: null, asked: [] } as FakeTimeline,
     site: fakeSite(),
     flights: fakeFlights(),
+    maps: answered<BaseMapsView>({
+      maps: [],
+      note: "No map in this test",
+    }) as Outcome<BaseMapsView>,
   };
 }
 
@@ -137,6 +142,11 @@ export function fakeSource(station: FakeStation): StationSource {
     },
     site: fakeSiteRequests(station.site),
     flights: fakeFlightRequests(station.flights, requests),
+    maps: {
+      list: async () => station.maps,
+      tiles: ({ name }) => `http://station/api/maps/${name}/{z}/{x}/{y}`,
+      tileRequest: (url) => ({ url }),
+    },
     surveys: fakeSurveyRequests(station.flights, requests),
     close: () => {},
   };

@@ -5,6 +5,7 @@ import { createOpenPanels } from "../panels/openPanels";
 import type {
   AccessView,
   ActionResponse,
+  BaseMapsView,
   FlightFiguresView,
   FlightView,
   OrderResult,
@@ -50,6 +51,8 @@ export interface RenderedPage {
   /** Sets the place upwind of further answers. */
   findUpwind(place: UpwindPlaceView): void;
   showPreflight(preflight: PreflightView): void;
+  /** Sets the base maps of the site's folder. */
+  showMaps(maps: BaseMapsView): void;
   /** Sets the marks of a replay. */
   showMarks(marks: ReplayMarksView): void;
   /** Sets the flight records, or why they cannot be read, and the figures of each. */
@@ -135,6 +138,9 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
     showFlights: (records, figures) => {
       flights.records = typeof records === "string" ? failed(records) : answered([...records]);
       flights.figures = typeof figures === "string" ? failed(figures) : answered(figures);
+    },
+    showMaps: (maps) => {
+      station.maps = answered(maps);
     },
     showPreflight: (value) => {
       station.preflight = answered(value);

@@ -7,6 +7,7 @@ otherwise.
 
 from recon.api.schema.access import AccessView
 from recon.api.schema.flights import FlightFiguresView, FlightFileName, FlightView
+from recon.api.schema.maps import BaseMapsView, BaseMapView, MapCoverageView
 from recon.api.schema.message import (
     ActionResponse,
     Message,
@@ -153,6 +154,8 @@ __all__ = [
     "AuditPage",
     "AuthorityRequest",
     "AuthorityView",
+    "BaseMapView",
+    "BaseMapsView",
     "CalibrationRequest",
     "CalibrationView",
     "CheckView",
@@ -186,6 +189,7 @@ __all__ = [
     "LinkView",
     "LookAsideRequest",
     "LookAsideView",
+    "MapCoverageView",
     "Message",
     "MoveUpwindView",
     "OrderRequest",

@@ -40,6 +40,7 @@ from recon.station.audit.start import (
 from recon.station.imaging.references import with_references
 from recon.station.kernel.announcing import announce, require_announceable
 from recon.station.kernel.app_list_writer import AppListWriter
+from recon.station.kernel.base_maps import SiteMaps, maps_of
 from recon.station.kernel.build import first_state
 from recon.station.kernel.driver import AsyncioDriver, freeze_loaded_objects, station_clock
 from recon.station.kernel.flight_archive import RecordedFlights
@@ -320,7 +321,10 @@ def _servers(
     if config.record_folder is not None:
         flights = RecordedFlights(config.record_folder, service.recording)
         stack.callback(flights.close)
-    app = create_app(service, config.console, version(), shared, flights)
+    maps = maps_of(config.site_folder, lambda: service.site)
+    if isinstance(maps, SiteMaps):
+        stack.callback(maps.close)
+    app = create_app(service, config.console, version(), shared, flights, maps=maps)
     servers = [(loopback_server(app, login, config.http_host), doors.loopback)]
     if doors.network is not None and doors.certificate is not None:
         servers.append((network_server(app, login, doors.certificate), doors.network))

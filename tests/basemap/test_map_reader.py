@@ -1,0 +1,244 @@
+"""Map files as the station reads them: by the process, whole ones and hostile ones."""
+
+import sqlite3
+import sys
+from collections.abc import Iterator
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+from tests.basemap.made_maps import (
+    FIELD,
+    colour_in,
+    colour_of,
+    keys_over,
+    picture,
+    write_mbtiles,
+)
+
+from recon.basemap import map_reader
+from recon.basemap.coverage import finest_covered
+from recon.basemap.map_file import LARGEST_TILE_BYTES, BaseMapError
+from recon.basemap.map_reader import MapReader, map_versions
+from recon.basemap.web_mercator import metres_per_pixel
+
+ZOOMS = range(15, 19)
+FACTS = {"name": "orthophoto 2025", "attribution": '© <a href="https://x">survey</a>\n &amp; co'}
+
+
+@pytest.fixture
+def reader(tmp_path: Path) -> Iterator[MapReader]:
+    opened = MapReader(tmp_path)
+    yield opened
+    opened.close()
+
+
+def test_an_mbtiles_file_states_what_it_is_and_covers(tmp_path: Path, reader: MapReader) -> None:
+    write_mbtiles(tmp_path / "a.mbtiles", keys_over(FIELD, ZOOMS), FACTS)
+    facts = reader.facts("a.mbtiles", FIELD)
+    assert facts.problem == ""
+    info = facts.info
+    assert info is not None
+    assert (info.kind, info.title, info.attribution) == (
+        "MBTiles",
+        "orthophoto 2025",
+        "© survey & co",
+    )
+    assert (info.min_zoom, info.max_zoom, info.tile_px) == (15, 18, 256)
+    west, south, east, north = info.bounds_deg
+    assert west <= -93.604 < -93.600 <= east
+    assert south <= 41.900 < 41.903 <= north
+    assert [level.zoom for level in facts.coverage] == list(ZOOMS)
+    covers = finest_covered(facts.coverage)
+    assert covers is not None
+    assert (covers.zoom, covers.share) == (18, pytest.approx(1.0))
+    assert covers.metres_per_pixel == pytest.approx(metres_per_pixel(41.9015, 18))
+
+
+def test_each_tile_is_the_one_of_its_place(tmp_path: Path, reader: MapReader) -> None:
+    keys = keys_over(FIELD, ZOOMS)
+    write_mbtiles(tmp_path / "a.mbtiles", keys)
+    for key in keys:
+        tile, version = reader.tile("a.mbtiles", *key)
+        assert tile is not None
+        assert version == map_versions(tmp_path)["a.mbtiles"][1]
+        assert (tile.media_type, colour_in(tile.data)) == ("image/png", colour_of(*key))
+    zoom, col, row = keys[-1]
+    assert reader.tile("a.mbtiles", zoom, col + 100, row)[0] is None
+    assert reader.tile("a.mbtiles", zoom + 1, 2 * col, 2 * row)[0] is None
+    assert reader.tile("b.mbtiles", *keys[-1])[0] is None
+
+
+def test_a_hole_lowers_the_coverage_of_its_level_only(tmp_path: Path, reader: MapReader) -> None:
+    keys = keys_over(FIELD, ZOOMS)
+    tiles = FIELD.tiles(18)
+    assert tiles is not None
+    lost = int(tiles.shares.argmax())
+    keys.remove((18, int(tiles.cols[lost]), int(tiles.rows[lost])))
+    write_mbtiles(tmp_path / "a.mbtiles", keys)
+    levels = reader.facts("a.mbtiles", FIELD).coverage
+    assert levels[-1].share == pytest.approx(1.0 - tiles.shares[lost])
+    covers = finest_covered(levels)
+    assert covers is not None
+    assert covers.zoom == 17
+
+
+def test_without_full_coverage_the_finest_level_with_most_is_named(
+    tmp_path: Path, reader: MapReader
+) -> None:
+    # The same half at each level: what is covered is a matter of place, not of detail.
+    tiles = FIELD.tiles(16)
+    assert tiles is not None
+    half = [
+        (zoom, col * 2 ** (zoom - 16) + dx, row * 2 ** (zoom - 16) + dy)
+        for col, row in list(zip(tiles.cols.tolist(), tiles.rows.tolist(), strict=True))[:1]
+        for zoom in (16, 17)
+        for dx in range(2 ** (zoom - 16))
+        for dy in range(2 ** (zoom - 16))
+    ]
+    write_mbtiles(tmp_path / "a.mbtiles", half)
+    covers = finest_covered(reader.facts("a.mbtiles", FIELD).coverage)
+    assert covers is not None
+    assert covers.zoom == 17
+    assert covers.share == pytest.approx(tiles.shares[0], abs=1e-6)
+    assert 0.0 < covers.share < 1.0
+
+
+def test_a_changed_file_is_opened_anew(tmp_path: Path, reader: MapReader) -> None:
+    key = keys_over(FIELD, [15])[0]
+    path = write_mbtiles(tmp_path / "a.mbtiles", [key])
+    first = reader.tile("a.mbtiles", *key)
+    path.unlink()
+    write_mbtiles(path, [key, (15, 0, 0)], tile=picture((9, 9, 9)))
+    second = reader.tile("a.mbtiles", *key)
+    assert first[1] != second[1]
+    assert second[0] is not None
+    assert colour_in(second[0].data) == (9, 9, 9)
+
+
+def broken(folder: Path, kind: str) -> Path:
+    path = folder / "bad.mbtiles"
+    key = keys_over(FIELD, [15])[0]
+    match kind:
+        case "empty file":
+            path.write_bytes(b"")
+        case "another kind":
+            path.write_bytes(b"<html>no map</html>" * 100)
+        case "cut short":
+            data = write_mbtiles(path, keys_over(FIELD, range(14, 19))).read_bytes()
+            path.write_bytes(data[: len(data) // 3])
+        case "no tables":
+            with closing(sqlite3.connect(path)) as database, database:
+                database.execute("CREATE TABLE other (x)")
+        case "no tiles":
+            write_mbtiles(path, [])
+        case "vector format":
+            write_mbtiles(path, [key], {"format": "pbf"}, b"\x1a\x00")
+        case "gzipped tiles":
+            write_mbtiles(path, [key], None, b"\x1f\x8b\x08" + bytes(50))
+        case "giant picture":
+            write_mbtiles(path, [key], None, picture((1, 2, 3), 6_000))
+        case "giant blob":
+            write_mbtiles(path, [key], None, bytes(LARGEST_TILE_BYTES + 1))
+        case "text in a tile":
+            write_mbtiles(path, [key])
+            with closing(sqlite3.connect(path)) as database, database:
+                database.execute("UPDATE tiles SET tile_data = 'text'")
+        case "endless view":
+            with closing(sqlite3.connect(path)) as database, database:
+                database.execute("CREATE TABLE metadata (name text, value text)")
+                database.execute(
+                    "CREATE VIEW tiles AS WITH RECURSIVE n(i) AS (SELECT 0 UNION ALL SELECT i + 1"
+                    " FROM n) SELECT -1 - i AS zoom_level, 0 AS tile_column, 0 AS tile_row,"
+                    " x'00' AS tile_data FROM n"
+                )
+    return path
+
+
+@pytest.mark.parametrize(
+    ("kind", "sentence"),
+    [
+        ("empty file", "expected an MBTiles file"),
+        ("another kind", "expected an MBTiles file"),
+        ("cut short", "expected a whole MBTiles file"),
+        ("no tables", "expected a whole MBTiles file, got: no such table"),
+        ("no tiles", "without any"),
+        ("vector format", "got vector tiles; export"),
+        ("gzipped tiles", "got vector tiles; export"),
+        ("giant picture", "got 6000 x 6000"),
+        ("giant blob", "expected a whole MBTiles file"),
+        ("text in a tile", "expected a picture in each tile"),
+    ],
+)
+def test_what_is_no_map_is_refused_with_a_sentence_and_disturbs_no_other(
+    tmp_path: Path, reader: MapReader, kind: str, sentence: str
+) -> None:
+    broken(tmp_path, kind)
+    key = keys_over(FIELD, [15])[0]
+    write_mbtiles(tmp_path / "good.mbtiles", [key])
+    refused = reader.facts("bad.mbtiles", FIELD)
+    assert refused.info is None
+    assert sentence in refused.problem
+    assert str(tmp_path) not in refused.problem
+    with pytest.raises(BaseMapError, match="expected"):
+        reader.tile("bad.mbtiles", *key)
+    assert reader.tile("good.mbtiles", *key)[0] is not None
+    assert reader.facts("good.mbtiles", FIELD).problem == ""
+
+
+def test_a_file_that_never_ends_is_given_up_and_the_next_is_read(
+    tmp_path: Path, reader: MapReader, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    broken(tmp_path, "endless view")
+    key = keys_over(FIELD, [15])[0]
+    write_mbtiles(tmp_path / "good.mbtiles", [key])
+    assert reader.tile("good.mbtiles", *key)[0] is not None
+    monkeypatch.setattr(map_reader, "FACTS_WITHIN_S", 0.5)
+    assert "not read within 0.5 s" in reader.facts("bad.mbtiles", FIELD).problem
+    assert reader.tile("good.mbtiles", *key)[0] is not None
+
+
+@pytest.mark.parametrize(
+    "script",
+    [
+        "import os; input(); os._exit(11)",
+        "input(); print('no json', flush=True); input()",
+        "input(); print('{\"length\": 99999999999}', flush=True); input()",
+        "input(); print('x' * 200000, flush=True); input()",
+    ],
+)
+def test_a_process_that_breaks_costs_one_answer(tmp_path: Path, script: str) -> None:
+    write_mbtiles(tmp_path / "a.mbtiles", keys_over(FIELD, [15]))
+    opened = MapReader(tmp_path, (sys.executable, "-c", script))
+    with closing(opened):
+        for _ in range(2):
+            assert "ends its reader" in opened.facts("a.mbtiles", FIELD).problem
+            with pytest.raises(BaseMapError, match="ends its reader"):
+                opened.tile("a.mbtiles", 15, 0, 0)
+
+
+def test_only_plain_files_of_the_folder_are_maps(tmp_path: Path, reader: MapReader) -> None:
+    folder = tmp_path
+    key = keys_over(FIELD, [15])[0]
+    outside = write_mbtiles(folder.parent / f"{folder.name}-outside.mbtiles", [key])
+    (folder / "link.mbtiles").symlink_to(outside)
+    (folder / "folder.mbtiles").mkdir()
+    write_mbtiles(folder / ".hidden.mbtiles", [key])
+    (folder / "notes.txt").write_text("x")
+    write_mbtiles(folder / "Luftbild Süd 1.MBTILES", [key])
+    assert list(map_versions(folder)) == ["Luftbild Süd 1.MBTILES"]
+    assert reader.tile("Luftbild Süd 1.MBTILES", *key)[0] is not None
+    for name in ("link.mbtiles", f"../{outside.name}", str(outside), "folder.mbtiles", ""):
+        assert reader.tile(name, *key)[0] is None
+    assert map_versions(folder / "missing") == {}
+
+
+def test_a_closed_reader_answers_nothing_and_leaves_no_process(tmp_path: Path) -> None:
+    write_mbtiles(tmp_path / "a.mbtiles", keys_over(FIELD, [15]))
+    opened = MapReader(tmp_path)
+    opened.facts("a.mbtiles", FIELD)
+    process = opened._process
+    assert process is not None
+    opened.close()
+    assert process.poll() is not None
+    assert "closed" in opened.facts("a.mbtiles", FIELD).problem
