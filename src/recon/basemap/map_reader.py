@@ -89,7 +89,7 @@ class MapReader:
             return KnownMap(name, size, version, problem=str(problem))
 
     def tile(self, name: str, zoom: int, col: int, row: int) -> tuple[Tile | None, str]:
-        """Return a tile, and the version of its map; None where there is none.
+        """Return a tile, and the version of its map; None where the map has no such tile.
 
         Raises `BaseMapError`.
         """

@@ -68,6 +68,9 @@ COMMANDS = {
         "Survey a region: create, estimate, start, pause, abort, status.",
     ),
     "site": CommandSource("site:site_app", "Make, check and import into a site's folder."),
+    "maps": CommandSource(
+        "maps:maps_app", "Bring base maps for the console: fetch tiles, check coverage."
+    ),
     "zone": CommandSource(
         "zone:zone_app",
         "Keep drones out of a place at once: add, end and list temporary zones.",

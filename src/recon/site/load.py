@@ -31,6 +31,7 @@ from recon.site.schema import (
     LimitsTable,
     OriginTable,
     SiteTable,
+    TileServerTable,
     VehicleTable,
 )
 from recon.site.site import Imager, Layers, Site
@@ -137,6 +138,7 @@ def load_site(folder: Path) -> Site:
         convert(path, table.limits, LimitsTable, "limits"), f"{path}: limits"
     )
     failsafe = failsafe_from_tables(path, table.failsafe)
+    _tile_server(path, table)
     cameras = read_survey_cameras(folder)
     _refuse_unknown_cameras(path, profiles, cameras)
     site = Site(
@@ -151,6 +153,18 @@ def load_site(folder: Path) -> Site:
         refuse_sunken_pads(path, site)
     refuse_sunken_zones(path, site)
     return site
+
+
+def read_tile_server(folder: Path) -> TileServerTable | None:
+    """Return the tile server of a site's folder; None without one. Raises `SiteError`."""
+    path = folder / SITE_FILE
+    return _tile_server(path, convert(path, _read_site_file(path), SiteTable, ""))
+
+
+def _tile_server(path: Path, table: SiteTable) -> TileServerTable | None:
+    if table.tile_server is None:
+        return None
+    return convert(path, table.tile_server, TileServerTable, "tile_server")
 
 
 def _imagers(

@@ -200,6 +200,13 @@ class FailsafeTable(_Table, frozen=True):
     operator_gone: dict[str, Any] = {}
 
 
+class TileServerTable(_Table, frozen=True):
+    """[tile_server]: where `recon maps fetch` gets tiles from; a station asks no server."""
+
+    url: Annotated[str, Meta(min_length=1, max_length=500)]
+    attribution: Annotated[str, Meta(max_length=200)] = ""
+
+
 class SiteTable(_Table, frozen=True):
     """The whole file. The tables are converted one by one, so that an error names its table."""
 
@@ -211,4 +218,5 @@ class SiteTable(_Table, frozen=True):
     layers: dict[str, Any] = {}
     elevation: dict[str, Any] | None = None
     failsafe: dict[str, Any] = {}
+    tile_server: dict[str, Any] | None = None
     vehicles: list[dict[str, Any]] = []

@@ -13,7 +13,7 @@ const NONE = "";
 export interface BaseMaps {
   /** Those that can be shown and those that cannot; null before the first answer. */
   readonly maps: Accessor<readonly BaseMapView[] | null>;
-  /** Why there are none, or why they are not known; null otherwise. */
+  /** Why there is no map, or why they are not known; null otherwise. */
   readonly note: Accessor<string | null>;
   /** The map that is shown; null for none. */
   readonly shown: Accessor<BaseMapView | null>;

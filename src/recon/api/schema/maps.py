@@ -40,4 +40,4 @@ class BaseMapsView(Message):
     """The base maps of the site's folder."""
 
     maps: list[BaseMapView]
-    note: str | None = Field(description="why there are none, and what to do")
+    note: str | None = Field(description="why there is no map, and what to do")

@@ -94,7 +94,7 @@ class SiteMaps:
 
 
 def maps_of(folder: Path | None, site: Callable[[], Site], missing: str = NO_FOLDER) -> MapFolder:
-    """Return the maps of a site's folder; `missing` is shown where there is none."""
+    """Return the maps of a site's folder; `missing` is shown in place of them."""
     if folder is None or folder.resolve() == demo_site_folder().resolve():
         return NoMaps(missing)
     return SiteMaps(folder / MAPS_FOLDER, site, MapReader)
