@@ -17,7 +17,13 @@ process.env["RECON_E2E_RUN"] ??= String(process.pid);
 const args = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
 
 /** Tests with a whole station and its simulated vehicles. */
-const LIVE = ["replay.spec.ts", "site.spec.ts", "station.spec.ts", "surveys.spec.ts"];
+const LIVE = [
+  "maps.spec.ts",
+  "replay.spec.ts",
+  "site.spec.ts",
+  "station.spec.ts",
+  "surveys.spec.ts",
+];
 
 export default defineConfig({
   testDir: "e2e",

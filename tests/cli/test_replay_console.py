@@ -7,12 +7,14 @@ import urllib.request
 from pathlib import Path
 
 import pytest
+from tests.basemap.made_maps import FIELD, colour_in, colour_of, keys_over, write_mbtiles
 from tests.cli.processes import started
 from tests.replay.flights import FOLDER
 from typer.testing import CliRunner
 
 from recon.cli.commands import app
 from recon.model.errors import RecordError
+from recon.site.reading import MAPS_FOLDER
 
 
 def test_it_prints_its_address_replays_and_writes_nothing() -> None:
@@ -42,3 +44,22 @@ def test_what_cannot_be_replayed_is_refused_with_a_sentence(tmp_path: Path) -> N
     assert "No such file or directory" in missing.output
     two = CliRunner().invoke(app, ["replay", "a.mcap", "b.mcap"])
     assert "expected one FILE, for each is one flight; got 2" in " ".join(two.output.split())
+
+
+def test_a_replay_shows_the_base_maps_of_the_folder_it_is_given(tmp_path: Path) -> None:
+    (tmp_path / MAPS_FOLDER).mkdir()
+    keys = keys_over(FIELD, range(15, 17))
+    write_mbtiles(tmp_path / MAPS_FOLDER / "field.mbtiles", keys)
+    words = ("replay", str(FOLDER / "survey.mcap"), "--http-port", "0", "--site", str(tmp_path))
+    with started(*words) as recon:
+        console = recon.line_with("console: http://127.0.0.1:").partition(": ")[2]
+        with urllib.request.urlopen(f"{console}/api/maps", timeout=120) as response:
+            (listed,) = json.load(response)["maps"]
+        # Coverage is of the record's site, and this flight was flown without one.
+        assert (listed["name"], listed["covers"]) == ("field.mbtiles", None)
+        path = "/".join(str(number) for number in keys[0])
+        tile = f"{console}/api/maps/field.mbtiles/{path}"
+        with urllib.request.urlopen(tile, timeout=120) as response:
+            assert colour_in(response.read()) == colour_of(*keys[0])
+        assert recon.end(signal.SIGINT) == 0
+        assert "Traceback" not in recon.text

@@ -25,9 +25,9 @@ export function startStation(...args: string[]): Promise<RunningStation> {
 }
 
 /** Starts a replay of a flight record; its path may begin at the project's folder. */
-export function startReplay(path: string): Promise<RunningStation> {
+export function startReplay(path: string, ...args: string[]): Promise<RunningStation> {
   const [program = ""] = COMMAND.split(" demo ");
-  return started(`${program} replay ${path} --http-port 0`);
+  return started(`${program} replay ${[path, "--http-port 0", ...args].join(" ")}`);
 }
 
 async function started(command: string): Promise<RunningStation> {

@@ -41,6 +41,9 @@ def replay_command(
         int,
         typer.Option(min=0, max=65535, help="Port of the console; 0: any free port."),
     ] = 0,
+    site: Annotated[
+        Path | None, typer.Option(help="Folder of the site, whose base maps the console shows.")
+    ] = None,
 ) -> None:
     """Show a recorded flight in the console, compare its outputs, or score other methods on it.
 
@@ -51,7 +54,7 @@ def replay_command(
     """
     file, methods = _file_and_methods(words, asks)
     if not (checks or asks):
-        _show(file, http_port)
+        _show(file, http_port, site)
         return
     try:
         found = _asked(file, methods, scenario) if asks else check(file, _report)
@@ -66,7 +69,7 @@ def replay_command(
         raise typer.Exit(CUT_SHORT)
 
 
-def _show(file: Path, http_port: int) -> None:
+def _show(file: Path, http_port: int, site: Path | None) -> None:
     """Serve the console with a recorded flight until Ctrl+C.
 
     By default on any free port: the usual address stays a live station's, where stops go.
@@ -84,7 +87,7 @@ def _show(file: Path, http_port: int) -> None:
         print_now(f"console: {url}")
 
     try:
-        run_in_loop(run_replay(file, http_port, console_folder(), started))
+        run_in_loop(run_replay(file, http_port, console_folder(), started, site))
     except OSError as problem:
         typer.echo(f"recon replay: cannot read {file}: {problem.strerror}", err=True)
         raise typer.Exit(2) from None

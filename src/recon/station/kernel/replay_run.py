@@ -22,6 +22,7 @@ from recon.model.imagery import Frame, GroundImage
 from recon.model.units import ns_to_seconds, seconds_to_ns
 from recon.station.api_views.service import Service
 from recon.station.imaging.mosaic import mosaic, newest_images
+from recon.station.kernel.base_maps import SiteMaps, maps_of
 from recon.station.kernel.driver import freeze_loaded_objects
 from recon.station.kernel.http_servers import (
     listen,
@@ -40,6 +41,9 @@ FASTEST_EXACT = 10.0
 """A computer steps a small fleet twenty times as fast as it flew; faster, keyframes are shown."""
 
 HOST = "127.0.0.1"
+NO_SITE = (
+    "A record has no base maps: start recon replay with --site FOLDER to see those of its site"
+)
 
 
 class ReplayStation:
@@ -169,9 +173,11 @@ async def run_replay(
     http_port: int,
     console: Path | None,
     on_start: Callable[[str, schema.ReplayView], Awaitable[None]],
+    site_folder: Path | None = None,
 ) -> None:
     """Serve a recorded flight until SIGINT or SIGTERM; `on_start` gets the address.
 
+    Of the site's folder only the base maps are shown; the site is the record's.
     Raises OSError, `RecordError` for a file that cannot be replayed, and `StartError`.
     """
     async with AsyncExitStack() as stack:
@@ -183,7 +189,10 @@ async def run_replay(
         stack.callback(sock.close)
         replay.log.start()
         stack.callback(replay.log.close)
-        app = create_app(service, console, version(), replay=replay)
+        maps = maps_of(site_folder, lambda: service.site, NO_SITE)
+        if isinstance(maps, SiteMaps):
+            stack.callback(maps.close)
+        app = create_app(service, console, version(), replay=replay, maps=maps)
         server = loopback_server(app, Login(report=replay.handle), HOST)
         playing = asyncio.create_task(replay.run())
         stack.callback(playing.cancel)
