@@ -43,6 +43,34 @@ def keys_over(area: MapArea, zooms: Iterable[int]) -> list[Key]:
     return keys
 
 
+def write_pmtiles(
+    path: Path,
+    keys: Iterable[Key],
+    facts: dict[str, str] | None = None,
+    tile: bytes | None = None,
+    **header: object,
+) -> Path:
+    """Write a file of these tiles by the format's own library."""
+    from pmtiles.tile import Compression, TileType, zxy_to_tileid
+    from pmtiles.writer import Writer
+
+    west, south, east, north = (round(each * 1e7) for each in FIELD.bounds_deg)
+    with path.open("wb") as file:
+        writer = Writer(file)
+        for key in sorted(keys, key=lambda key: zxy_to_tileid(*key)):
+            writer.write_tile(zxy_to_tileid(*key), tile or picture(colour_of(*key)))
+        stated = {
+            "tile_type": TileType.PNG,
+            "tile_compression": Compression.NONE,
+            "min_lon_e7": west,
+            "min_lat_e7": south,
+            "max_lon_e7": east,
+            "max_lat_e7": north,
+        }
+        writer.finalize({**stated, **header}, facts or {})
+    return path
+
+
 def write_mbtiles(
     path: Path,
     keys: Sequence[Key],

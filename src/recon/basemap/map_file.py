@@ -18,7 +18,7 @@ from recon.model.errors import ReconError
 LARGEST_TILE_BYTES = 2 * 1024 * 1024
 SMALLEST_TILE_PX, LARGEST_TILE_PX = 64, 1024
 MEDIA = {"PNG": "image/png", "JPEG": "image/jpeg", "WEBP": "image/webp"}
-SUFFIXES = frozenset({".mbtiles"})
+SUFFIXES = frozenset({".mbtiles", ".pmtiles"})
 LONGEST_TEXT = 200
 LONGEST_READING_S = 20.0
 

@@ -128,9 +128,16 @@ def _facts(opened: "MapFile", ring: list[list[float]] | None) -> dict[str, Any]:
 
 def opener_of(name: str) -> Callable[[Path], "MapFile"]:
     """Return what opens a file of this name; see `map_file.SUFFIXES`."""
-    from recon.basemap.mbtiles import MBTiles
+    # Each with its libraries only when such a file is there.
+    match Path(name).suffix.lower():
+        case ".pmtiles":
+            from recon.basemap.pmtiles_file import PMTiles
 
-    return MBTiles
+            return PMTiles
+        case _:
+            from recon.basemap.mbtiles import MBTiles
+
+            return MBTiles
 
 
 if __name__ == "__main__":
