@@ -25,10 +25,9 @@ def coverage(opened: MapFile, area: MapArea) -> tuple[ZoomCoverage, ...]:
     """
     found = []
     for zoom in range(opened.info.min_zoom, opened.info.max_zoom + 1):
-        tiles = area.tiles(zoom)
-        if tiles is None:
+        share = opened.share(area, zoom)
+        if share is None:
             break
-        share = float((tiles.shares * opened.shares(zoom, tiles.cols, tiles.rows)).sum())
         pixel_m = metres_per_pixel(area.latitude_deg, zoom, opened.info.tile_px)
         found.append(ZoomCoverage(zoom, min(1.0, share), pixel_m))
     return tuple(found)

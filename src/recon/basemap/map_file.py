@@ -3,22 +3,21 @@
 import os
 import time
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
 from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 
-from recon.basemap.web_mercator import DEEPEST_ZOOM, IntArray
+from recon.basemap.web_mercator import DEEPEST_ZOOM, IntArray, MapArea
 from recon.model.errors import ReconError
 
 LARGEST_TILE_BYTES = 2 * 1024 * 1024
 SMALLEST_TILE_PX, LARGEST_TILE_PX = 64, 1024
 MEDIA = {"PNG": "image/png", "JPEG": "image/jpeg", "WEBP": "image/webp"}
-SUFFIXES = frozenset({".mbtiles", ".pmtiles"})
+SUFFIXES = frozenset({".mbtiles", ".pmtiles", ".tif", ".tiff"})
 LONGEST_TEXT = 200
 LONGEST_READING_S = 20.0
 
@@ -56,8 +55,8 @@ class MapFile(Protocol):
     def tile(self, zoom: int, col: int, row: int) -> Tile | None:
         """Return a tile; None where the map has none."""
 
-    def shares(self, zoom: int, cols: IntArray, rows: IntArray) -> npt.NDArray[np.float64]:
-        """Return which share, 0 to 1, of each of N tiles the map shows, at a zoom level it has."""
+    def share(self, area: MapArea, zoom: int) -> float | None:
+        """Return the share, 0 to 1, of an area that a zoom level shows; None if not countable."""
 
     def close(self) -> None:
         """Close the file."""
@@ -72,6 +71,17 @@ def is_map_name(name: str) -> bool:
 def version_of(stat: os.stat_result) -> str:
     """Return a text that changes with the file."""
     return f"{stat.st_mtime_ns:x}-{stat.st_size:x}"
+
+
+def share_of_tiles(
+    area: MapArea, zoom: int, present: Callable[[int, IntArray, IntArray], Iterable[bool]]
+) -> float | None:
+    """Return the share of an area whose tiles are present; None for too many to count."""
+    tiles = area.tiles(zoom)
+    if tiles is None:
+        return None
+    is_there = np.fromiter(present(zoom, tiles.cols, tiles.rows), bool, len(tiles.cols))
+    return float(tiles.shares[is_there].sum())
 
 
 def within_s(limit_s: float) -> Callable[[], bool]:

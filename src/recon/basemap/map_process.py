@@ -134,6 +134,10 @@ def opener_of(name: str) -> Callable[[Path], "MapFile"]:
             from recon.basemap.pmtiles_file import PMTiles
 
             return PMTiles
+        case ".tif" | ".tiff":
+            from recon.basemap.geotiff_map import GeoTIFFMap
+
+            return GeoTIFFMap
         case _:
             from recon.basemap.mbtiles import MBTiles
 

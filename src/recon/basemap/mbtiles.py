@@ -4,13 +4,12 @@ A hostile file may hold a view that never ends: SQLite asks now and then whether
 """
 
 import sqlite3
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
 import numpy as np
-import numpy.typing as npt
 
 from recon.basemap.map_file import (
     LARGEST_TILE_BYTES,
@@ -23,9 +22,10 @@ from recon.basemap.map_file import (
     one_line,
     picture_of,
     plain_text,
+    share_of_tiles,
     within_s,
 )
-from recon.basemap.web_mercator import DEEPEST_ZOOM, IntArray, tile_bounds_deg
+from recon.basemap.web_mercator import DEEPEST_ZOOM, IntArray, MapArea, tile_bounds_deg
 
 INSTRUCTIONS_BETWEEN_LOOKS = 10_000
 MOST_FACTS = 100
@@ -59,21 +59,21 @@ class MBTiles:
         data = _blob(found[0][0])
         return Tile(picture_of(data)[0], data)
 
-    def shares(self, zoom: int, cols: IntArray, rows: IntArray) -> npt.NDArray[np.float64]:
-        """Return 1 for each of N tiles that the file has, 0 for the others."""
+    def share(self, area: MapArea, zoom: int) -> float | None:
+        """Return the share of an area whose tiles are there; None for too many to count."""
+        return share_of_tiles(area, zoom, self._present)
+
+    def _present(self, zoom: int, cols: IntArray, rows: IntArray) -> Iterator[bool]:
         if cols.size == 0:
-            return np.zeros(0)
+            return iter(())
         tms_rows = 2**zoom - 1 - rows
-        present = {
-            (col, row)
-            for col, row in self._rows(
-                "SELECT tile_column, tile_row FROM tiles WHERE zoom_level=?"
-                " AND tile_column BETWEEN ? AND ? AND tile_row BETWEEN ? AND ?",
-                (zoom, *(int(f(a)) for a in (cols, tms_rows) for f in (np.min, np.max))),
-            )
-        }
-        pairs = zip(cols.tolist(), tms_rows.tolist(), strict=True)
-        return np.array([float(pair in present) for pair in pairs])
+        found = self._rows(
+            "SELECT tile_column, tile_row FROM tiles WHERE zoom_level=?"
+            " AND tile_column BETWEEN ? AND ? AND tile_row BETWEEN ? AND ?",
+            (zoom, *(int(f(a)) for a in (cols, tms_rows) for f in (np.min, np.max))),
+        )
+        present = set(found)
+        return (pair in present for pair in zip(cols.tolist(), tms_rows.tolist(), strict=True))
 
     def _read_info(self, path: Path) -> MapInfo:
         facts = dict(self._rows(f"SELECT name, value FROM metadata LIMIT {MOST_FACTS}", ()))

@@ -5,13 +5,11 @@ Each directory is unpacked within limits first: a few bytes may claim to be giga
 
 import json
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import lru_cache
 from pathlib import Path
 from typing import IO, Any
 
-import numpy as np
-import numpy.typing as npt
 from pmtiles.tile import (
     Compression,
     MagicNumberNotFound,
@@ -35,8 +33,9 @@ from recon.basemap.map_file import (
     one_line,
     picture_of,
     plain_text,
+    share_of_tiles,
 )
-from recon.basemap.web_mercator import IntArray
+from recon.basemap.web_mercator import IntArray, MapArea
 
 HEADER_BYTES = 127
 LARGEST_DIRECTORY_BYTES = 2 * 1024 * 1024
@@ -78,11 +77,13 @@ class PMTiles:
         data = self._tile_data(entry)
         return Tile(picture_of(data)[0], data)
 
-    def shares(self, zoom: int, cols: IntArray, rows: IntArray) -> npt.NDArray[np.float64]:
-        """Return 1 for each of N tiles that the file has, 0 for the others."""
+    def share(self, area: MapArea, zoom: int) -> float | None:
+        """Return the share of an area whose tiles are there; None for too many to count."""
+        return share_of_tiles(area, zoom, self._present)
+
+    def _present(self, zoom: int, cols: IntArray, rows: IntArray) -> Iterator[bool]:
         places = zip(cols.tolist(), rows.tolist(), strict=True)
-        ids = (zxy_to_tileid(zoom, col, row) for col, row in places)
-        return np.array([float(self._entry(tile_id) is not None) for tile_id in ids])
+        return (self._entry(zxy_to_tileid(zoom, col, row)) is not None for col, row in places)
 
     def _read_info(self, path: Path) -> MapInfo:
         header = self._header

@@ -92,6 +92,23 @@ class MapArea:
         _west, south, _east, north = self.bounds_deg
         return (south + north) / 2.0
 
+    def points(self, about: int) -> FloatArray:
+        """Return world coordinates (N, 2) of about so many places all over the area."""
+        west, north, east, south = self._shape.bounds
+        inside = self._shape.area / max((east - west) * (south - north), 1e-300)
+        step = ((east - west) * (south - north) * inside / about) ** 0.5
+        axes = (
+            np.arange(west + step / 2.0, east, step),
+            np.arange(north + step / 2.0, south, step),
+        )
+        places = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 2)
+        return np.vstack([self._corners, places[shapely.contains_xy(self._shape, places)]])
+
+    @property
+    def _corners(self) -> FloatArray:
+        found: FloatArray = shapely.get_coordinates(self._shape)
+        return found
+
     def most_tiles(self, zoom: int) -> int:
         """Return how many tiles the box around the area meets, without listing them."""
         west, south, east, north = np.floor(np.array(self._shape.bounds) * 2.0**zoom).astype(int)
