@@ -143,6 +143,31 @@ def test_a_station_without_maps_states_why(tmp_path: Path) -> None:
     assert application(None).get("/api/maps/a.mbtiles/15/0/0").status_code == 404
 
 
+async def stays() -> bool:
+    return False
+
+
+async def has_gone() -> bool:
+    return True
+
+
+def test_nothing_is_read_for_a_client_that_has_gone(folder: Path) -> None:
+    asked = []
+
+    class Counting(MapReader):
+        def tile(self, *key):
+            asked.append(key)
+            return super().tile(*key)
+
+    maps = SiteMaps(folder, lambda: SITE, Counting)
+    try:
+        assert asyncio.run(maps.tile("ortho 2025.mbtiles", *KEYS[0], has_gone)) is None
+        assert asked == []
+        assert asyncio.run(maps.tile("ortho 2025.mbtiles", *KEYS[0], stays)) is not None
+    finally:
+        maps.close()
+
+
 SLOW = """
 import sys, json
 for line in sys.stdin:
@@ -160,11 +185,11 @@ def test_a_slow_map_holds_up_neither_the_loop_nor_more_than_its_places(
     maps = SiteMaps(tmp_path, lambda: SITE, lambda f: MapReader(f, (sys.executable, "-c", SLOW)))
 
     async def asked() -> None:
-        waiting = [asyncio.create_task(maps.tile("a.mbtiles", 15, 0, 0)) for _ in range(3)]
+        waiting = [asyncio.create_task(maps.tile("a.mbtiles", 15, 0, 0, stays)) for _ in range(3)]
         while not (tmp_path / "asked").exists():
             await asyncio.sleep(0.01)
         with pytest.raises(MapsBusyError, match="try again"):
-            await maps.tile("a.mbtiles", 15, 0, 0)
+            await maps.tile("a.mbtiles", 15, 0, 0, stays)
         # The loop has run all the while; the answers come when the map does.
         assert not any(task.done() for task in waiting)
         (tmp_path / "go").touch()

@@ -3,6 +3,7 @@
 Names are looked up among the files of one folder; no path is made of what a request states.
 """
 
+from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from typing import Annotated, Protocol
 
@@ -21,6 +22,8 @@ FOR_EVER = "private, max-age=31536000, immutable"
 ASK_AGAIN = "private, no-cache"
 NO_MAPS = "The station has no folder for base maps"
 NOT_MODIFIED = 304
+
+IsGone = Callable[[], Awaitable[bool]]
 
 
 class MapsBusyError(Exception):
@@ -46,10 +49,13 @@ class MapFolder(Protocol):
     async def maps(self) -> schema.BaseMapsView:
         """Return the maps with their coverage; takes seconds for a new file."""
 
-    async def tile(self, name: str, zoom: int, col: int, row: int) -> TileRead | None:
+    async def tile(
+        self, name: str, zoom: int, col: int, row: int, is_gone: IsGone
+    ) -> TileRead | None:
         """Return a tile; None where the map has none, or there is no such map.
 
-        Raises `MapsBusyError` and `MapFileError`.
+        Nothing is read once `is_gone` finds that the request was given up: a console does that with
+        what its map has left. Raises `MapsBusyError` and `MapFileError`.
         """
 
 
@@ -64,7 +70,9 @@ class NoMaps:
         """Return none."""
         return schema.BaseMapsView(maps=[], note=self._reason)
 
-    async def tile(self, name: str, zoom: int, col: int, row: int) -> TileRead | None:
+    async def tile(
+        self, name: str, zoom: int, col: int, row: int, is_gone: IsGone
+    ) -> TileRead | None:
         """Return none."""
         return None
 
@@ -87,7 +95,7 @@ def add_map_routes(app: FastAPI, folder: MapFolder) -> None:
     ) -> Response:
         """A tile of a map in Web Mercator, rows from the north; 404 where the map has none."""
         try:
-            read = await folder.tile(name, zoom, col, row)
+            read = await folder.tile(name, zoom, col, row, request.is_disconnected)
         except MapsBusyError as problem:
             raise HTTPException(503, str(problem)) from problem
         except MapFileError as problem:

@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 
 from recon.api import schema
-from recon.api.map_routes import MapFileError, MapFolder, MapsBusyError, NoMaps, TileRead
+from recon.api.map_routes import IsGone, MapFileError, MapFolder, MapsBusyError, NoMaps, TileRead
 from recon.basemap.coverage import ZoomCoverage, finest_covered
 from recon.basemap.map_file import BaseMapError, MapInfo
 from recon.basemap.map_reader import KnownMap, MapReader, map_versions
@@ -44,6 +44,7 @@ class SiteMaps:
         self._tile_thread = ThreadPoolExecutor(1, thread_name_prefix="map-tiles")
         self._facts_thread = ThreadPoolExecutor(1, thread_name_prefix="map-facts")
         self._known: dict[tuple[str, str, MapArea | None], KnownMap] = {}
+        self._turn = asyncio.Lock()
         self._waiting = 0
 
     def close(self) -> None:
@@ -65,19 +66,26 @@ class SiteMaps:
             maps=[base_map_view(each) for each in found], note=None if found else EMPTY
         )
 
-    async def tile(self, name: str, zoom: int, col: int, row: int) -> TileRead | None:
+    async def tile(
+        self, name: str, zoom: int, col: int, row: int, is_gone: IsGone
+    ) -> TileRead | None:
         """Return a tile; raises `MapsBusyError` and `MapFileError`."""
         if self._waiting >= MOST_WAITING:
             raise MapsBusyError("Too many tiles of base maps are asked for; try again in a second")
         self._waiting += 1
+        try:
+            async with self._turn:
+                return None if await is_gone() else await self._read_tile(name, zoom, col, row)
+        finally:
+            self._waiting -= 1
+
+    async def _read_tile(self, name: str, zoom: int, col: int, row: int) -> TileRead | None:
         read = partial(self._tiles.tile, name, zoom, col, row)
         try:
             loop = asyncio.get_running_loop()
             tile, version = await loop.run_in_executor(self._tile_thread, read)
         except BaseMapError as problem:
             raise MapFileError(f"{name}: {problem}") from problem
-        finally:
-            self._waiting -= 1
         return None if tile is None else TileRead(tile.media_type, tile.data, version)
 
     def _read_facts(self, area: MapArea | None) -> list[KnownMap]:
