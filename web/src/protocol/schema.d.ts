@@ -1483,7 +1483,7 @@ export interface components {
             maps: components["schemas"]["BaseMapView"][];
             /**
              * Note
-             * @description why there are none, and what to do
+             * @description why there is no map, and what to do
              */
             note: string | null;
         };
