@@ -4,7 +4,7 @@ import type { MapRequests } from "../source/mapRequests";
 import type { Colours } from "./colours";
 import type { Layer } from "./scene";
 
-const ID = "base-map";
+export const BASE_MAP = "base-map";
 /** Web Mercator ends there. */
 const FARTHEST_LATITUDE_DEG = 85;
 
@@ -28,12 +28,12 @@ export class BaseMapLayer implements Layer {
     const { map, colours } = this;
     if (map === null || colours === null) return;
     if (this.isShown) {
-      map.removeLayer(ID);
-      map.removeSource(ID);
+      map.removeLayer(BASE_MAP);
+      map.removeSource(BASE_MAP);
     }
     this.isShown = base !== null;
     if (base === null) return;
-    map.addSource(ID, {
+    map.addSource(BASE_MAP, {
       type: "raster",
       tiles: [this.requests.tiles(base)],
       tileSize: base.tile_px,
@@ -42,7 +42,10 @@ export class BaseMapLayer implements Layer {
       bounds: boundsOf(base),
     });
     const [, lowest] = map.getStyle().layers;
-    map.addLayer({ id: ID, type: "raster", source: ID, paint: paintOf(colours) }, lowest?.id);
+    map.addLayer(
+      { id: BASE_MAP, type: "raster", source: BASE_MAP, paint: paintOf(colours) },
+      lowest?.id,
+    );
   }
 
   recolour(colours: Colours): void {
@@ -50,8 +53,8 @@ export class BaseMapLayer implements Layer {
     if (!this.isShown) return;
     const { map } = this;
     const paint = paintOf(colours);
-    map?.setPaintProperty(ID, "raster-opacity", paint["raster-opacity"]);
-    map?.setPaintProperty(ID, "raster-saturation", paint["raster-saturation"]);
+    map?.setPaintProperty(BASE_MAP, "raster-opacity", paint["raster-opacity"]);
+    map?.setPaintProperty(BASE_MAP, "raster-saturation", paint["raster-saturation"]);
   }
 }
 

@@ -39,9 +39,16 @@ async function baseMapsOf(maps: BaseMapView[], kept: Kept) {
   return { made, station };
 }
 
-test("until one is chosen, the first that can be shown is", async () => {
-  const { made } = await baseMapsOf([BROKEN, OLD, NEW], storage());
-  expect(made.shown()?.name).toBe("old.tif");
+test("until one is chosen, the one that shows most of the site is, of several the finest", async () => {
+  const half = { zoom: 21, share: 0.5, metres_per_pixel: 0.05 };
+  const coarse = { zoom: 17, share: 1, metres_per_pixel: 0.9 };
+  const unknown = baseMap({ name: "unknown.tif", covers: null });
+  const others = [BROKEN, unknown, { ...OLD, covers: half }];
+  const plain = baseMap({ name: "plain.tif", covers: coarse });
+  expect((await baseMapsOf([...others, plain], storage())).made.shown()?.name).toBe("plain.tif");
+  const all = [...others, plain, NEW];
+  expect((await baseMapsOf(all, storage())).made.shown()?.name).toBe("new.mbtiles");
+  expect((await baseMapsOf([BROKEN, unknown], storage())).made.shown()?.name).toBe("unknown.tif");
 });
 
 test("the choice is kept by the browser, also the choice of none", async () => {

@@ -23,7 +23,14 @@ export interface BaseMaps {
   refresh(): Promise<void>;
 }
 
-/** Until one is chosen in this browser, the first that can be shown is. */
+/** The one that shows most of the site first, of several the finest. */
+function byCoverage({ covers: one }: BaseMapView, { covers: other }: BaseMapView): number {
+  const percent = (share = 0) => Math.round(100 * share);
+  const more = percent(other?.share) - percent(one?.share);
+  return more !== 0 ? more : (other?.zoom ?? 0) - (one?.zoom ?? 0);
+}
+
+/** Until one is chosen in this browser, the one that shows most of the site is. */
 export function createBaseMaps(
   source: Pick<StationSource, "maps" | "connection">,
   kept: Kept,
@@ -45,7 +52,7 @@ export function createBaseMaps(
   const shown = () => {
     const usable = (read()?.maps ?? []).filter((map) => map.problem === null);
     const name = chosen();
-    if (name === null) return usable[0] ?? null;
+    if (name === null) return [...usable].sort(byCoverage)[0] ?? null;
     return usable.find((map) => map.name === name) ?? null;
   };
   return {

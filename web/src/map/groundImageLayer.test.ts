@@ -19,6 +19,7 @@ function fakeMap() {
     getStyle: () => ({
       layers: [
         { id: "ground", type: "background" },
+        { id: "base-map", type: "raster" },
         { id: "trails", type: "line" },
       ],
     }),

@@ -3,6 +3,7 @@ import { type Accessor, createSignal } from "solid-js";
 import { createDisplayedFrame, type FrameInfo } from "../fleet/displayedFrame";
 import type { GroundImageView, StationState } from "../protocol";
 import type { Outcome, Picture, StationSource } from "../source/stationSource";
+import { BASE_MAP } from "./baseMapLayer";
 import { type Corners, cornersOf } from "./features";
 import type { Layer, Scene } from "./scene";
 
@@ -25,7 +26,7 @@ interface Place {
   readonly corners: Corners;
 }
 
-/** The newest frame of the imaging drone, drawn below everything else. */
+/** The newest frame of the imaging drone, drawn below everything but a base map. */
 export class GroundImageLayer implements Layer {
   private map: MapLibre | null = null;
   private readonly places = new Map<number, Place>();
@@ -123,9 +124,12 @@ export class GroundImageLayer implements Layer {
   private addImage(url: string, coordinates: Corners): void {
     if (this.map === null) return;
     this.map.addSource(SOURCE, { type: "image", url, coordinates });
-    const lowest = this.map.getStyle().layers.find((layer) => layer.type !== "background");
+    // A map from a file would hide it.
+    const over = this.map
+      .getStyle()
+      .layers.find(({ id, type }) => type !== "background" && id !== BASE_MAP);
     const paint = { "raster-fade-duration": 0, "raster-resampling": "linear" } as const;
-    this.map.addLayer({ id: LAYER, type: "raster", source: SOURCE, paint }, lowest?.id);
+    this.map.addLayer({ id: LAYER, type: "raster", source: SOURCE, paint }, over?.id);
   }
 }
 
