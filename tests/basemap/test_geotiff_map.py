@@ -305,3 +305,20 @@ def test_outside_the_file_nothing_is_shown(tmp_path: Path, reader: MapReader) ->
     write(tmp_path / "a.tif", ramps(300))
     for key in [(19, 0, 0), (19, *tile_at(-93.59, 41.9, 19)), (2, 3, 3)]:
         assert reader.tile("a.tif", *key)[0] is None
+
+
+def test_no_file_beside_it_is_read(tmp_path: Path, reader: MapReader) -> None:
+    write(tmp_path / "a.tif", ramps(300))
+    other = write(tmp_path / "other.tif", np.full((3, 300, 300), 255, np.uint8), overviews=True)
+    # What GDAL would take for its overviews, its mask and its place.
+    for name in ("a.tif.ovr", "a.tif.msk"):
+        (tmp_path / name).write_bytes(other.read_bytes())
+    aux = "<PAMDataset><GeoTransform>0, 1, 0, 0, 0, -1</GeoTransform></PAMDataset>"
+    (tmp_path / "a.tif.aux.xml").write_text(aux)
+    info = reader.facts("a.tif", FIELD).info
+    assert info is not None
+    assert info.bounds_deg[0] == pytest.approx(-93.6045, abs=1e-5)
+    tile, _ = reader.tile("a.tif", 16, *tile_at(-93.604, 41.903, 16))
+    assert tile is not None
+    shown = pixels_of(tile.data)
+    assert shown[shown[..., 3] > 0][:, 2].max() <= 77 + 4

@@ -10,12 +10,16 @@ from time import monotonic, sleep
 
 import pytest
 from mcap.reader import make_reader
+from tests.basemap.made_maps import FIELD, colour_in, colour_of, keys_over, write_mbtiles
 from tests.cli.processes import PATIENCE_S, started
 
 from recon import wire
 from recon.model.errors import RecordError
+from recon.model.geo import GeoPoint
 from recon.record.link_bytes import LINKS_TOPIC, link_bytes
 from recon.record.mcap_repair import is_finished
+from recon.site.new_site import make_site
+from recon.site.reading import MAPS_FOLDER
 from recon.station.kernel.playback import Playback
 from recon.station.kernel.replay import check
 
@@ -192,3 +196,23 @@ def test_wrong_options_are_one_sentence(options: tuple[str, ...], text: str) -> 
     given = dict.fromkeys(options)
     free = FREE if "--link-port" not in given else FREE[2:]
     assert text in refused(*free, *options)
+
+
+def test_a_station_shows_the_base_maps_of_its_sites_folder(tmp_path: Path) -> None:
+    folder = tmp_path / "field"
+    make_site(folder, "field", GeoPoint(41.9015, -93.602, 275.0), drones=0)
+    (folder / MAPS_FOLDER).mkdir()
+    keys = keys_over(FIELD, range(15, 17))
+    write_mbtiles(folder / MAPS_FOLDER / "a.mbtiles", keys)
+    with started("run", *FREE, "--site", str(folder), "--no-record") as recon:
+        console = recon.line_with("console: http://127.0.0.1:").partition(": ")[2]
+        with urllib.request.urlopen(f"{console}/api/maps", timeout=120) as response:
+            (listed,) = json.load(response)["maps"]
+        # Without a boundary: of what is in reach, of which the file has a part.
+        assert (listed["name"], listed["covers"]["zoom"]) == ("a.mbtiles", 15)
+        assert 0.0 < listed["covers"]["share"] < 1.0
+        path = "/".join(str(number) for number in keys[-1])
+        with urllib.request.urlopen(f"{console}/api/maps/a.mbtiles/{path}", timeout=120) as tile:
+            assert colour_in(tile.read()) == colour_of(*keys[-1])
+        assert recon.end(signal.SIGINT) == 0
+        assert "Traceback" not in recon.text

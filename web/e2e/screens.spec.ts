@@ -1,3 +1,6 @@
+import { cp, mkdtemp, rm } from "node:fs/promises";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
 import { expect, test } from "@playwright/test";
 import type { StationState } from "../src/protocol";
 import { alarm, link, station, vehicle } from "../src/testing/fakeState";
@@ -15,10 +18,17 @@ import {
 import { fleetState } from "./fake/fleetState";
 import { fieldPicture } from "./fake/picture";
 import { FakeStation } from "./fake/station";
+import { startTileServer } from "./fake/tileServer";
 import { drawnShare } from "./mapPicture";
 import { markOnePoint } from "./markedPoints";
 import { openPanel } from "./openPanel";
-import { startReplay } from "./stationProcess";
+import {
+  DEMO_SITE,
+  type RunningStation,
+  runRecon,
+  startReplay,
+  startStation,
+} from "./stationProcess";
 import { applyTheme, THEMES } from "./themes";
 
 /** Screenshots for review: `npm run screens`, then `web/screens/`. */
@@ -92,6 +102,39 @@ for (const theme of THEMES.filter(({ sun }) => !sun)) {
     }
   });
 }
+
+test("a base map for the documents", async ({ page }) => {
+  const folder = await mkdtemp(join(tmpdir(), "recon-screens-"));
+  const server = await startTileServer();
+  let station: RunningStation | null = null;
+  try {
+    await cp(DEMO_SITE, folder, { recursive: true });
+    const words = ["--zoom", "13-18", "--name", "'orthophoto 2025'"];
+    const source = ["--url", `'${server.template}'`, "--attribution", "'© survey office'"];
+    await runRecon("maps", "fetch", folder, ...source, ...words);
+    station = await startStation("--site", folder);
+    for (const theme of THEMES) {
+      await page.emulateMedia({ colorScheme: theme.colorScheme });
+      await page.goto(station.url);
+      await applyTheme(page, theme);
+      await page.getByText(/Ground image: frame .* aligned to/).waitFor();
+      for (const size of [...SIZES].reverse()) {
+        await page.setViewportSize(size);
+        await page.waitForTimeout(1000);
+        await page.keyboard.press("f");
+        await page.getByRole("button", { name: "Map and overlay" }).click();
+        await page.getByRole("radio", { name: /^orthophoto 2025 covers 100 %/ }).waitFor();
+        await page.waitForTimeout(2000);
+        await page.screenshot({ path: `screens/base-map-${theme.name}-${size.width}.png` });
+        await page.keyboard.press("Escape");
+      }
+    }
+  } finally {
+    await server.stop();
+    await station?.stop();
+    await rm(folder, { recursive: true });
+  }
+});
 
 /** A drone that another person operates, and an app that waits to be admitted. */
 function sharedState(): StationState {

@@ -1,14 +1,11 @@
 import { cp, mkdtemp, readFile, rm } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { fileURLToPath } from "node:url";
 import { expect, type Page, test } from "@playwright/test";
 import { openPanel } from "./openPanel";
-import { runRecon, startStation } from "./stationProcess";
+import { DEMO_SITE, runRecon, startStation } from "./stationProcess";
 
 const CONNECT_WITHIN_MS = 60_000;
-
-const DEMO_SITE = fileURLToPath(new URL("../../src/recon/site/demo", import.meta.url));
 
 const RING = [
   [-93.6044, 41.9006],

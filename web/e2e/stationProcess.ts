@@ -4,6 +4,8 @@ import { join } from "node:path";
 import { fileURLToPath } from "node:url";
 
 const PROJECT = fileURLToPath(new URL("../..", import.meta.url));
+/** The folder of the demonstration's site, to be copied. */
+export const DEMO_SITE = join(PROJECT, "src/recon/site/demo");
 /** Where `make` installs uv if the system has none. */
 const OWN_UV = ".tools/bin/uv";
 const UV = existsSync(join(PROJECT, OWN_UV)) ? OWN_UV : "uv";
