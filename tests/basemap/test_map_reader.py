@@ -116,6 +116,33 @@ def test_a_changed_file_is_opened_anew(tmp_path: Path, reader: MapReader) -> Non
     assert colour_in(second[0].data) == (9, 9, 9)
 
 
+def title(reader: MapReader) -> str:
+    info = reader.facts("a.mbtiles", FIELD).info
+    return "" if info is None else info.title
+
+
+def test_a_file_with_a_log_of_writes_is_read_during_and_after_them(
+    tmp_path: Path, reader: MapReader
+) -> None:
+    keys = keys_over(FIELD, [15])
+    path = write_mbtiles(tmp_path / "a.mbtiles", keys)
+    with closing(sqlite3.connect(path)) as writer:
+        writer.execute("PRAGMA journal_mode=WAL")
+        with writer:
+            writer.execute("INSERT INTO metadata VALUES ('name', 'written')")
+        assert title(reader) == "written"
+    assert title(reader) == "written"
+    assert reader.tile("a.mbtiles", *keys[0])[0] is not None
+
+
+def test_nothing_is_written_beside_a_file_that_had_a_log(tmp_path: Path, reader: MapReader) -> None:
+    path = write_mbtiles(tmp_path / "a.mbtiles", keys_over(FIELD, [15]), {"name": "closed"})
+    with closing(sqlite3.connect(path)) as writer:
+        writer.execute("PRAGMA journal_mode=WAL")
+    assert title(reader) == "closed"
+    assert [each.name for each in tmp_path.iterdir()] == ["a.mbtiles"]
+
+
 def broken(folder: Path, kind: str) -> Path:
     path = folder / "bad.mbtiles"
     key = keys_over(FIELD, [15])[0]
@@ -226,9 +253,13 @@ def test_only_plain_files_of_the_folder_are_maps(tmp_path: Path, reader: MapRead
     write_mbtiles(folder / ".hidden.mbtiles", [key])
     (folder / "notes.txt").write_text("x")
     write_mbtiles(folder / "Luftbild Süd 1.MBTILES", [key])
-    assert list(map_versions(folder)) == ["Luftbild Süd 1.MBTILES"]
+    assert list(map_versions(folder)) == ["Luftbild Süd 1.MBTILES", "link.mbtiles"]
     assert reader.tile("Luftbild Süd 1.MBTILES", *key)[0] is not None
-    for name in ("link.mbtiles", f"../{outside.name}", str(outside), "folder.mbtiles", ""):
+    # A link is listed, with why it is not used.
+    assert "got a link; copy the file" in reader.facts("link.mbtiles", FIELD).problem
+    with pytest.raises(BaseMapError, match="got a link"):
+        reader.tile("link.mbtiles", *key)
+    for name in (f"../{outside.name}", str(outside), "folder.mbtiles", ".hidden.mbtiles", ""):
         assert reader.tile(name, *key)[0] is None
     assert map_versions(folder / "missing") == {}
 

@@ -11,7 +11,7 @@ import sys
 from collections import OrderedDict
 from collections.abc import Callable
 from pathlib import Path
-from stat import S_ISREG
+from stat import S_ISLNK, S_ISREG
 from typing import IO, TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -88,11 +88,15 @@ class OpenMaps:
             return {"problem": "expected a whole map file, got a damaged one; export it again"}, b""
 
     def _opened(self, name: str) -> tuple["MapFile", str]:
-        """Return an open map and its version. Raises FileNotFoundError, also for a link."""
-        from recon.basemap.map_file import is_map_name, version_of
+        """Return an open map and its version. Raises FileNotFoundError and `BaseMapError`."""
+        from recon.basemap.map_file import BaseMapError, is_map_name, version_of
 
         path = self._folder / name
         stat = path.lstat()
+        if is_map_name(name) and S_ISLNK(stat.st_mode):
+            raise BaseMapError(
+                "expected a file in the folder maps, got a link; copy the file there"
+            )
         if not is_map_name(name) or not S_ISREG(stat.st_mode):
             raise FileNotFoundError(name)
         key = (name, version_of(stat))

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from stat import S_ISLNK, S_ISREG
 from threading import Lock, Timer
 from typing import Any
 
@@ -50,14 +51,14 @@ class KnownMap:
 def map_versions(folder: Path) -> dict[str, tuple[int, str]]:
     """Return size and version of each map file of a folder, by name in its order.
 
-    No links, no hidden files; none for a folder that is missing.
+    No hidden files; none for a folder that is missing. Links are listed, and refused when asked.
     """
     found = {}
     with suppress(OSError), os.scandir(folder) as entries:
         for entry in entries:
             with suppress(OSError):
-                if is_map_name(entry.name) and entry.is_file(follow_symlinks=False):
-                    stat = entry.stat(follow_symlinks=False)
+                stat = entry.stat(follow_symlinks=False)
+                if is_map_name(entry.name) and (S_ISREG(stat.st_mode) or S_ISLNK(stat.st_mode)):
                     found[entry.name] = (stat.st_size, version_of(stat))
     return dict(sorted(found.items())[:MOST_MAPS])
 

@@ -29,6 +29,8 @@ from recon.basemap.web_mercator import DEEPEST_ZOOM, IntArray, MapArea, tile_bou
 
 INSTRUCTIONS_BETWEEN_LOOKS = 10_000
 MOST_FACTS = 100
+WITH_LOG = b"\x02\x02"
+"""In the header: changes go into a file beside it first (WAL)."""
 
 
 class MBTiles:
@@ -125,10 +127,15 @@ class MBTiles:
 
 def _opened(path: Path) -> sqlite3.Connection:
     with path.open("rb") as file:
-        if not file.read(16).startswith(b"SQLite format 3\0"):
-            raise BaseMapError("expected an MBTiles file (SQLite), got another kind of file")
+        head = file.read(20)
+    if not head.startswith(b"SQLite format 3\0"):
+        raise BaseMapError("expected an MBTiles file (SQLite), got another kind of file")
+    log = path.with_name(f"{path.name}-wal")
+    is_all_there = head[18:20] == WITH_LOG and not (log.exists() and log.stat().st_size > 0)
+    # Else SQLite would make files beside it to read it.
+    mode = "immutable=1" if is_all_there else "mode=ro"
     try:
-        database = sqlite3.connect(f"file:{quote(str(path))}?mode=ro", uri=True, timeout=2.0)
+        database = sqlite3.connect(f"file:{quote(str(path))}?{mode}", uri=True, timeout=2.0)
         database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LARGEST_TILE_BYTES)
         database.execute("PRAGMA trusted_schema=OFF")
         database.execute("PRAGMA query_only=ON")
