@@ -75,6 +75,16 @@ def test_check_fails_until_a_map_shows_all_of_the_site(folder: Path) -> None:
     assert run("check", str(folder)).exit_code == 0
 
 
+def test_without_a_boundary_it_is_what_flights_may_reach(tmp_path: Path) -> None:
+    made = tmp_path / "bare"
+    place = ("--at", "41.9015,-93.603", "--ground-altitude-m", "275")
+    CliRunner().invoke(site_app, ["new", str(made), *place], catch_exceptions=False)
+    assert (
+        "no boundary: 500 m around the origin with margin from 41.89"
+        in run("check", str(made)).output
+    )
+
+
 def test_the_server_may_stand_in_the_sites_file(folder: Path) -> None:
     site_file = folder / "site.toml"
     text = site_file.read_text()

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from recon.basemap.fetch import FetchCount, TileServer
     from recon.basemap.map_reader import KnownMap
     from recon.basemap.web_mercator import MapArea
+    from recon.site import Site
 
 maps_app = new_app(
     help="Bring base maps for the console: fetch tiles, check coverage.", no_args_is_help=True
@@ -33,8 +34,9 @@ def check_command(folder: FolderArgument) -> None:
     from recon.basemap.map_reader import MapReader, map_versions
     from recon.site.reading import MAPS_FOLDER
 
-    area, name = _area(folder)
-    print_line(f"site {name}: {_area_line(area)}")
+    site = opened_site(folder)
+    area = _area(site)
+    print_line(f"site {site.name}: {_area_line(site, area)}")
     reader = MapReader(folder / MAPS_FOLDER)
     try:
         maps = [reader.facts(each, area) for each in map_versions(folder / MAPS_FOLDER)]
@@ -86,7 +88,7 @@ def fetch_command(
     from recon.basemap.fetch import fetch, needed_tiles
     from recon.site.reading import MAPS_FOLDER
 
-    area, _ = _area(folder, margin_m)
+    area = _area(opened_site(folder), margin_m)
     server = _server(folder, url, attribution)
     keys = needed_tiles(area, _zooms(zoom), most_tiles)
     path = folder / MAPS_FOLDER / f"{_file_name(name or server.host)}.mbtiles"
@@ -104,20 +106,21 @@ def fetch_command(
         raise typer.Exit(INCOMPLETE)
 
 
-def _area(folder: Path, margin_m: float | None = None) -> tuple["MapArea", str]:
-    """Return the ground that a map should show, and the site's name."""
+def _area(site: "Site", margin_m: float | None = None) -> "MapArea":
+    """Return the ground that a map should show."""
     from recon.basemap.web_mercator import MARGIN_M, area_around
 
-    site = opened_site(folder)
     assert site.frame is not None, "a folder's site has an origin"
     reach_m = site.limits.max_distance_from_home_m
     margin_m = MARGIN_M if margin_m is None else margin_m
-    return area_around(site.frame, site.layers.boundary, reach_m, margin_m), site.name
+    return area_around(site.frame, site.layers.boundary, reach_m, margin_m)
 
 
-def _area_line(area: "MapArea") -> str:
+def _area_line(site: "Site", area: "MapArea") -> str:
     west, south, east, north = area.bounds_deg
-    return f"boundary with margin from {south:.5f}, {west:.5f} to {north:.5f}, {east:.5f}"
+    reach = f"no boundary: {site.limits.max_distance_from_home_m:g} m around the origin"
+    what = reach if site.layers.boundary is None else "boundary"
+    return f"{what} with margin from {south:.5f}, {west:.5f} to {north:.5f}, {east:.5f}"
 
 
 def _map_lines(known: "KnownMap") -> list[str]:
