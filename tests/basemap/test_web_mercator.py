@@ -22,8 +22,7 @@ from recon.model.geo import GeoPoint, LocalFrame
 FRAME = LocalFrame(GeoPoint(41.9, -93.6, 275.0))
 
 
-def test_places_have_the_tiles_that_openstreetmaps_wiki_states() -> None:
-    # https://wiki.openstreetmap.org/wiki/Slippy_map_tilenames: 50.7790, 7.0 at zoom 9.
+def test_two_cities_have_their_well_known_tiles() -> None:
     world = world_from_globe([-0.1275, 139.7006793], [51.507222, 35.6590699])
     assert np.floor(world[0] * 2**10).tolist() == [511, 340]
     assert np.floor(world[1] * 2**18).tolist() == [232798, 103246]
