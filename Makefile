@@ -68,8 +68,8 @@ web/node_modules/.stamp: web/package.json web/package-lock.json
 test-rust: setup ## Tests of the wire crate
 	cargo test --workspace --quiet
 
-# Each process imports and compiles all tests first; one more than the two cores of CI fills their waiting.
-PYTEST := $(RUN) python -m pytest -n 3 --dist loadfile
+# Each process imports and compiles all tests first; two more than the cores of CI fill their waiting.
+PYTEST := $(RUN) python -m pytest -n 4 --dist loadfile
 
 test-safety: setup ## Tests of the gate and the watchdogs, with full branch coverage
 	$(PYTEST) tests/safety tests/architecture --cov=recon.safety --cov-branch \

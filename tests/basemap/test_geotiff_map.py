@@ -1,8 +1,6 @@
 """GeoTIFF as tiles: each pixel has the colour of its place; a hostile file costs an answer."""
 
 import warnings
-from collections.abc import Iterator
-from contextlib import closing
 from io import BytesIO
 from pathlib import Path
 
@@ -58,12 +56,6 @@ def write(
     return path
 
 
-@pytest.fixture
-def reader(tmp_path: Path) -> Iterator[MapReader]:
-    with closing(MapReader(tmp_path)) as opened:
-        yield opened
-
-
 def pixels_of(data: bytes) -> Colours:
     with Image.open(BytesIO(data)) as image:
         return np.asarray(image.convert("RGBA"))
@@ -88,9 +80,9 @@ def expected(zoom: int, col: int, row: int) -> npt.NDArray[np.float64]:
 @pytest.mark.parametrize("overviews", [False, True])
 @pytest.mark.parametrize("zoom", [15, 17, 19])
 def test_each_pixel_of_a_tile_has_the_colour_of_its_place(
-    tmp_path: Path, reader: MapReader, zoom: int, overviews: bool
+    folder: Path, reader: MapReader, zoom: int, overviews: bool
 ) -> None:
-    write(tmp_path / "a.tif", ramps(), overviews=overviews)
+    write(folder / "a.tif", ramps(), overviews=overviews)
     compared = 0
     for key in keys_over(FIELD, [zoom])[:6]:
         tile, _ = reader.tile("a.tif", *key)
@@ -105,8 +97,8 @@ def test_each_pixel_of_a_tile_has_the_colour_of_its_place(
     assert compared > 10_000
 
 
-def test_a_file_states_what_it_is_and_covers(tmp_path: Path, reader: MapReader) -> None:
-    path = write(tmp_path / "orthophoto 2025.tif", ramps())
+def test_a_file_states_what_it_is_and_covers(folder: Path, reader: MapReader) -> None:
+    path = write(folder / "orthophoto 2025.tif", ramps())
     with rasterio.open(path, "r+") as file:
         file.update_tags(TIFFTAG_COPYRIGHT="© survey")
     known = reader.facts(path.name, FIELD)
@@ -124,12 +116,12 @@ def test_a_file_states_what_it_is_and_covers(tmp_path: Path, reader: MapReader) 
     assert len(known.coverage) == 20
 
 
-def test_half_a_file_covers_half_the_site(tmp_path: Path, reader: MapReader) -> None:
+def test_half_a_file_covers_half_the_site(folder: Path, reader: MapReader) -> None:
     middle_m = pyproj.Transformer.from_crs("EPSG:4326", UTM, always_xy=True).transform(
         -93.602, 41.9015
     )[0]
     cols = round((middle_m - WEST_M) / PIXEL_M)
-    write(tmp_path / "a.tif", ramps()[:, :, :cols])
+    write(folder / "a.tif", ramps()[:, :, :cols])
     shares = {level.share for level in reader.facts("a.tif", FIELD).coverage}
     assert len(shares) == 1
     assert shares.pop() == pytest.approx(0.5, abs=0.01)
@@ -137,7 +129,7 @@ def test_half_a_file_covers_half_the_site(tmp_path: Path, reader: MapReader) -> 
 
 @pytest.mark.parametrize("kind", ["alpha", "nodata"])
 def test_what_the_file_does_not_show_is_transparent_and_not_covered(
-    tmp_path: Path, reader: MapReader, kind: str
+    folder: Path, reader: MapReader, kind: str
 ) -> None:
     bands = ramps() // 2 + 1
     lower = slice(SIDE_PX // 2, None)
@@ -146,12 +138,12 @@ def test_what_the_file_does_not_show_is_transparent_and_not_covered(
         alpha[:, lower] = 0
         bands = np.concatenate([bands, alpha])
         meanings = (ColorInterp.red, ColorInterp.green, ColorInterp.blue, ColorInterp.alpha)
-        path = write(tmp_path / "a.tif", bands, photometric="RGB")
+        path = write(folder / "a.tif", bands, photometric="RGB")
         with rasterio.open(path, "r+") as file:
             file.colorinterp = meanings
     else:
         bands[:, lower] = 0
-        write(tmp_path / "a.tif", bands, nodata=0)
+        write(folder / "a.tif", bands, nodata=0)
     levels = reader.facts("a.tif", FIELD).coverage
     assert 0.4 < levels[-1].share < 0.9
     seen = set()
@@ -167,10 +159,10 @@ def test_what_the_file_does_not_show_is_transparent_and_not_covered(
     assert "image/png" in seen
 
 
-def test_grey_and_palette_pictures_have_their_colours(tmp_path: Path, reader: MapReader) -> None:
+def test_grey_and_palette_pictures_have_their_colours(folder: Path, reader: MapReader) -> None:
     grey = np.full((1, 400, 400), 90, np.uint8)
-    write(tmp_path / "grey.tif", grey)
-    path = write(tmp_path / "palette.tif", np.full((1, 400, 400), 7, np.uint8))
+    write(folder / "grey.tif", grey)
+    path = write(folder / "palette.tif", np.full((1, 400, 400), 7, np.uint8))
     with rasterio.open(path, "r+") as file:
         file.write_colormap(1, {7: (200, 30, 60, 255)})
     key = keys_over(FIELD, [19])[0]
@@ -183,7 +175,7 @@ def test_grey_and_palette_pictures_have_their_colours(tmp_path: Path, reader: Ma
 
 @pytest.mark.parametrize("crs", ["EPSG:4326", "EPSG:3857", "EPSG:32615+5703", "turned"])
 def test_other_projections_and_turned_files_lie_at_the_same_place(
-    tmp_path: Path, reader: MapReader, crs: str
+    folder: Path, reader: MapReader, crs: str
 ) -> None:
     bands = np.zeros((3, 400, 400), np.uint8)
     bands[0, 195:205, 195:205] = 250
@@ -195,7 +187,7 @@ def test_other_projections_and_turned_files_lie_at_the_same_place(
     turn = Affine.rotation(30.0) if crs == "turned" else Affine.identity()
     about = Affine.translation(x, y) @ turn @ Affine.scale(step, -step)
     transform = about @ Affine.translation(-200.0, -200.0)
-    write(tmp_path / "a.tif", bands, transform, UTM if crs == "turned" else crs)
+    write(folder / "a.tif", bands, transform, UTM if crs == "turned" else crs)
     tile, _ = reader.tile("a.tif", 19, *tile_at(-93.602, 41.9015, 19))
     assert tile is not None
     rows, cols = np.nonzero(pixels_of(tile.data)[..., 0] > 120)
@@ -269,22 +261,20 @@ def broken(path: Path, kind: str) -> None:
     ],
 )
 def test_what_is_no_map_is_refused_with_a_sentence_and_disturbs_no_other(
-    tmp_path: Path, reader: MapReader, kind: str, sentence: str
+    folder: Path, reader: MapReader, kind: str, sentence: str
 ) -> None:
-    broken(tmp_path / "bad.tif", kind)
-    write(tmp_path / "good.tif", ramps(300))
+    broken(folder / "bad.tif", kind)
+    write(folder / "good.tif", ramps(300))
     problem = reader.facts("bad.tif", FIELD).problem
     assert sentence in problem
-    assert str(tmp_path) not in problem
+    assert str(folder) not in problem
     with pytest.raises(BaseMapError):
         reader.tile("bad.tif", *keys_over(FIELD, [17])[0])
     assert reader.facts("good.tif", FIELD).problem == ""
 
 
-def test_a_large_file_without_overviews_is_shown_from_near(
-    tmp_path: Path, reader: MapReader
-) -> None:
-    path = tmp_path / "a.tif"
+def test_a_large_file_without_overviews_is_shown_from_near(folder: Path, reader: MapReader) -> None:
+    path = folder / "a.tif"
     size = {"height": 12_000, "width": 12_000, "count": 3, "dtype": "uint8"}
     fine = Affine(0.05, 0.0, WEST_M, 0.0, -0.05, NORTH_M)
     where = {"crs": UTM, "transform": fine, "SPARSE_OK": True, "tiled": True}
@@ -301,20 +291,20 @@ def test_a_large_file_without_overviews_is_shown_from_near(
     assert reader.tile("a.tif", 12, *tile_at(-93.6044, 41.9034, 12))[0] is None
 
 
-def test_outside_the_file_nothing_is_shown(tmp_path: Path, reader: MapReader) -> None:
-    write(tmp_path / "a.tif", ramps(300))
+def test_outside_the_file_nothing_is_shown(folder: Path, reader: MapReader) -> None:
+    write(folder / "a.tif", ramps(300))
     for key in [(19, 0, 0), (19, *tile_at(-93.59, 41.9, 19)), (2, 3, 3)]:
         assert reader.tile("a.tif", *key)[0] is None
 
 
-def test_no_file_beside_it_is_read(tmp_path: Path, reader: MapReader) -> None:
-    write(tmp_path / "a.tif", ramps(300))
-    other = write(tmp_path / "other.tif", np.full((3, 300, 300), 255, np.uint8), overviews=True)
+def test_no_file_beside_it_is_read(folder: Path, reader: MapReader) -> None:
+    write(folder / "a.tif", ramps(300))
+    other = write(folder / "other.tif", np.full((3, 300, 300), 255, np.uint8), overviews=True)
     # What GDAL would take for its overviews, its mask and its place.
     for name in ("a.tif.ovr", "a.tif.msk"):
-        (tmp_path / name).write_bytes(other.read_bytes())
+        (folder / name).write_bytes(other.read_bytes())
     aux = "<PAMDataset><GeoTransform>0, 1, 0, 0, 0, -1</GeoTransform></PAMDataset>"
-    (tmp_path / "a.tif.aux.xml").write_text(aux)
+    (folder / "a.tif.aux.xml").write_text(aux)
     info = reader.facts("a.tif", FIELD).info
     assert info is not None
     assert info.bounds_deg[0] == pytest.approx(-93.6045, abs=1e-5)

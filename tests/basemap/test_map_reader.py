@@ -2,7 +2,6 @@
 
 import sqlite3
 import sys
-from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
 
@@ -26,15 +25,8 @@ ZOOMS = range(15, 19)
 FACTS = {"name": "orthophoto 2025", "attribution": '© <a href="https://x">survey</a>\n &amp; co'}
 
 
-@pytest.fixture
-def reader(tmp_path: Path) -> Iterator[MapReader]:
-    opened = MapReader(tmp_path)
-    yield opened
-    opened.close()
-
-
-def test_an_mbtiles_file_states_what_it_is_and_covers(tmp_path: Path, reader: MapReader) -> None:
-    write_mbtiles(tmp_path / "a.mbtiles", keys_over(FIELD, ZOOMS), FACTS)
+def test_an_mbtiles_file_states_what_it_is_and_covers(folder: Path, reader: MapReader) -> None:
+    write_mbtiles(folder / "a.mbtiles", keys_over(FIELD, ZOOMS), FACTS)
     facts = reader.facts("a.mbtiles", FIELD)
     assert facts.problem == ""
     info = facts.info
@@ -55,13 +47,13 @@ def test_an_mbtiles_file_states_what_it_is_and_covers(tmp_path: Path, reader: Ma
     assert covers.metres_per_pixel == pytest.approx(metres_per_pixel(41.9015, 18))
 
 
-def test_each_tile_is_the_one_of_its_place(tmp_path: Path, reader: MapReader) -> None:
+def test_each_tile_is_the_one_of_its_place(folder: Path, reader: MapReader) -> None:
     keys = keys_over(FIELD, ZOOMS)
-    write_mbtiles(tmp_path / "a.mbtiles", keys)
+    write_mbtiles(folder / "a.mbtiles", keys)
     for key in keys:
         tile, version = reader.tile("a.mbtiles", *key)
         assert tile is not None
-        assert version == map_versions(tmp_path)["a.mbtiles"][1]
+        assert version == map_versions(folder)["a.mbtiles"][1]
         assert (tile.media_type, colour_in(tile.data)) == ("image/png", colour_of(*key))
     zoom, col, row = keys[-1]
     assert reader.tile("a.mbtiles", zoom, col + 100, row)[0] is None
@@ -69,13 +61,13 @@ def test_each_tile_is_the_one_of_its_place(tmp_path: Path, reader: MapReader) ->
     assert reader.tile("b.mbtiles", *keys[-1])[0] is None
 
 
-def test_a_hole_lowers_the_coverage_of_its_level_only(tmp_path: Path, reader: MapReader) -> None:
+def test_a_hole_lowers_the_coverage_of_its_level_only(folder: Path, reader: MapReader) -> None:
     keys = keys_over(FIELD, ZOOMS)
     tiles = FIELD.tiles(18)
     assert tiles is not None
     lost = int(tiles.shares.argmax())
     keys.remove((18, int(tiles.cols[lost]), int(tiles.rows[lost])))
-    write_mbtiles(tmp_path / "a.mbtiles", keys)
+    write_mbtiles(folder / "a.mbtiles", keys)
     levels = reader.facts("a.mbtiles", FIELD).coverage
     assert levels[-1].share == pytest.approx(1.0 - tiles.shares[lost])
     covers = finest_covered(levels)
@@ -84,7 +76,7 @@ def test_a_hole_lowers_the_coverage_of_its_level_only(tmp_path: Path, reader: Ma
 
 
 def test_without_full_coverage_the_finest_level_with_most_is_named(
-    tmp_path: Path, reader: MapReader
+    folder: Path, reader: MapReader
 ) -> None:
     # The same half at each level: what is covered is a matter of place, not of detail.
     tiles = FIELD.tiles(16)
@@ -96,7 +88,7 @@ def test_without_full_coverage_the_finest_level_with_most_is_named(
         for dx in range(2 ** (zoom - 16))
         for dy in range(2 ** (zoom - 16))
     ]
-    write_mbtiles(tmp_path / "a.mbtiles", half)
+    write_mbtiles(folder / "a.mbtiles", half)
     covers = finest_covered(reader.facts("a.mbtiles", FIELD).coverage)
     assert covers is not None
     assert covers.zoom == 17
@@ -104,9 +96,9 @@ def test_without_full_coverage_the_finest_level_with_most_is_named(
     assert 0.0 < covers.share < 1.0
 
 
-def test_a_changed_file_is_opened_anew(tmp_path: Path, reader: MapReader) -> None:
+def test_a_changed_file_is_opened_anew(folder: Path, reader: MapReader) -> None:
     key = keys_over(FIELD, [15])[0]
-    path = write_mbtiles(tmp_path / "a.mbtiles", [key])
+    path = write_mbtiles(folder / "a.mbtiles", [key])
     first = reader.tile("a.mbtiles", *key)
     path.unlink()
     write_mbtiles(path, [key, (15, 0, 0)], tile=picture((9, 9, 9)))
@@ -122,10 +114,10 @@ def title(reader: MapReader) -> str:
 
 
 def test_a_file_with_a_log_of_writes_is_read_during_and_after_them(
-    tmp_path: Path, reader: MapReader
+    folder: Path, reader: MapReader
 ) -> None:
     keys = keys_over(FIELD, [15])
-    path = write_mbtiles(tmp_path / "a.mbtiles", keys)
+    path = write_mbtiles(folder / "a.mbtiles", keys)
     with closing(sqlite3.connect(path)) as writer:
         writer.execute("PRAGMA journal_mode=WAL")
         with writer:
@@ -135,12 +127,12 @@ def test_a_file_with_a_log_of_writes_is_read_during_and_after_them(
     assert reader.tile("a.mbtiles", *keys[0])[0] is not None
 
 
-def test_nothing_is_written_beside_a_file_that_had_a_log(tmp_path: Path, reader: MapReader) -> None:
-    path = write_mbtiles(tmp_path / "a.mbtiles", keys_over(FIELD, [15]), {"name": "closed"})
+def test_nothing_is_written_beside_a_file_that_had_a_log(folder: Path, reader: MapReader) -> None:
+    path = write_mbtiles(folder / "a.mbtiles", keys_over(FIELD, [15]), {"name": "closed"})
     with closing(sqlite3.connect(path)) as writer:
         writer.execute("PRAGMA journal_mode=WAL")
     assert title(reader) == "closed"
-    assert [each.name for each in tmp_path.iterdir()] == ["a.mbtiles"]
+    assert [each.name for each in folder.iterdir()] == ["a.mbtiles"]
 
 
 def broken(folder: Path, kind: str) -> Path:
@@ -198,15 +190,15 @@ def broken(folder: Path, kind: str) -> Path:
     ],
 )
 def test_what_is_no_map_is_refused_with_a_sentence_and_disturbs_no_other(
-    tmp_path: Path, reader: MapReader, kind: str, sentence: str
+    folder: Path, reader: MapReader, kind: str, sentence: str
 ) -> None:
-    broken(tmp_path, kind)
+    broken(folder, kind)
     key = keys_over(FIELD, [15])[0]
-    write_mbtiles(tmp_path / "good.mbtiles", [key])
+    write_mbtiles(folder / "good.mbtiles", [key])
     refused = reader.facts("bad.mbtiles", FIELD)
     assert refused.info is None
     assert sentence in refused.problem
-    assert str(tmp_path) not in refused.problem
+    assert str(folder) not in refused.problem
     with pytest.raises(BaseMapError, match="expected"):
         reader.tile("bad.mbtiles", *key)
     assert reader.tile("good.mbtiles", *key)[0] is not None
@@ -214,11 +206,11 @@ def test_what_is_no_map_is_refused_with_a_sentence_and_disturbs_no_other(
 
 
 def test_a_file_that_never_ends_is_given_up_and_the_next_is_read(
-    tmp_path: Path, reader: MapReader, monkeypatch: pytest.MonkeyPatch
+    folder: Path, reader: MapReader, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    broken(tmp_path, "endless view")
+    broken(folder, "endless view")
     key = keys_over(FIELD, [15])[0]
-    write_mbtiles(tmp_path / "good.mbtiles", [key])
+    write_mbtiles(folder / "good.mbtiles", [key])
     assert reader.tile("good.mbtiles", *key)[0] is not None
     monkeypatch.setattr(map_reader, "FACTS_WITHIN_S", 0.5)
     assert "not read within 0.5 s" in reader.facts("bad.mbtiles", FIELD).problem
@@ -234,9 +226,9 @@ def test_a_file_that_never_ends_is_given_up_and_the_next_is_read(
         "input(); print('x' * 200000, flush=True); input()",
     ],
 )
-def test_a_process_that_breaks_costs_one_answer(tmp_path: Path, script: str) -> None:
-    write_mbtiles(tmp_path / "a.mbtiles", keys_over(FIELD, [15]))
-    opened = MapReader(tmp_path, (sys.executable, "-c", script))
+def test_a_process_that_breaks_costs_one_answer(folder: Path, script: str) -> None:
+    write_mbtiles(folder / "a.mbtiles", keys_over(FIELD, [15]))
+    opened = MapReader(folder, (sys.executable, "-c", script))
     with closing(opened):
         for _ in range(2):
             assert "ends its reader" in opened.facts("a.mbtiles", FIELD).problem
@@ -244,8 +236,7 @@ def test_a_process_that_breaks_costs_one_answer(tmp_path: Path, script: str) -> 
                 opened.tile("a.mbtiles", 15, 0, 0)
 
 
-def test_only_plain_files_of_the_folder_are_maps(tmp_path: Path, reader: MapReader) -> None:
-    folder = tmp_path
+def test_only_plain_files_of_the_folder_are_maps(folder: Path, reader: MapReader) -> None:
     key = keys_over(FIELD, [15])[0]
     outside = write_mbtiles(folder.parent / f"{folder.name}-outside.mbtiles", [key])
     (folder / "link.mbtiles").symlink_to(outside)
@@ -264,9 +255,9 @@ def test_only_plain_files_of_the_folder_are_maps(tmp_path: Path, reader: MapRead
     assert map_versions(folder / "missing") == {}
 
 
-def test_a_closed_reader_answers_nothing_and_leaves_no_process(tmp_path: Path) -> None:
-    write_mbtiles(tmp_path / "a.mbtiles", keys_over(FIELD, [15]))
-    opened = MapReader(tmp_path)
+def test_a_closed_reader_answers_nothing_and_leaves_no_process(folder: Path) -> None:
+    write_mbtiles(folder / "a.mbtiles", keys_over(FIELD, [15]))
+    opened = MapReader(folder)
     opened.facts("a.mbtiles", FIELD)
     process = opened._process
     assert process is not None

@@ -1,8 +1,6 @@
 """PMTiles by the process that reads maps: whole files, and hostile ones."""
 
 import gzip
-from collections.abc import Iterator
-from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -34,17 +32,11 @@ KEYS = keys_over(FIELD, ZOOMS)
 ROOT = 127
 
 
-@pytest.fixture
-def reader(tmp_path: Path) -> Iterator[MapReader]:
-    with closing(MapReader(tmp_path)) as opened:
-        yield opened
-
-
 def test_a_file_states_what_it_is_and_each_tile_is_of_its_place(
-    tmp_path: Path, reader: MapReader
+    folder: Path, reader: MapReader
 ) -> None:
     facts = {"name": "orthophoto", "attribution": "<b>© survey</b>"}
-    write_pmtiles(tmp_path / "a.pmtiles", KEYS, facts)
+    write_pmtiles(folder / "a.pmtiles", KEYS, facts)
     known = reader.facts("a.pmtiles", FIELD)
     info = known.info
     assert info is not None
@@ -61,25 +53,25 @@ def test_a_file_states_what_it_is_and_each_tile_is_of_its_place(
     assert reader.tile("a.pmtiles", zoom, col + 50, row)[0] is None
 
 
-def test_missing_tiles_lower_the_coverage(tmp_path: Path, reader: MapReader) -> None:
+def test_missing_tiles_lower_the_coverage(folder: Path, reader: MapReader) -> None:
     tiles = FIELD.tiles(18)
     assert tiles is not None
     lost = int(tiles.shares.argmax())
     key = (18, int(tiles.cols[lost]), int(tiles.rows[lost]))
-    write_pmtiles(tmp_path / "a.pmtiles", [each for each in KEYS if each != key])
+    write_pmtiles(folder / "a.pmtiles", [each for each in KEYS if each != key])
     levels = reader.facts("a.pmtiles", FIELD).coverage
     assert levels[-1].share == pytest.approx(1.0 - tiles.shares[lost])
     assert levels[-2].share >= FULL
 
 
 def test_a_file_with_leaves_is_read_to_its_last_tile(
-    tmp_path: Path, reader: MapReader, monkeypatch: pytest.MonkeyPatch
+    folder: Path, reader: MapReader, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def in_leaves(entries: list[Entry], _: int) -> tuple[bytes, bytes, int]:
         return writer.build_roots_leaves(entries, 5)
 
     monkeypatch.setattr(writer, "optimize_directories", in_leaves)
-    path = write_pmtiles(tmp_path / "a.pmtiles", KEYS)
+    path = write_pmtiles(folder / "a.pmtiles", KEYS)
     assert deserialize_header(path.read_bytes()[:ROOT])["leaf_directory_length"] > 0
     known = reader.facts("a.pmtiles", FIELD)
     assert min(level.share for level in known.coverage) >= FULL
@@ -175,10 +167,10 @@ def broken(path: Path, kind: str) -> None:
     ],
 )
 def test_what_is_no_map_is_refused_with_a_sentence_and_disturbs_no_other(
-    tmp_path: Path, reader: MapReader, kind: str, sentence: str
+    folder: Path, reader: MapReader, kind: str, sentence: str
 ) -> None:
-    broken(tmp_path / "bad.pmtiles", kind)
-    write_pmtiles(tmp_path / "good.pmtiles", KEYS[:1])
+    broken(folder / "bad.pmtiles", kind)
+    write_pmtiles(folder / "good.pmtiles", KEYS[:1])
     assert sentence in reader.facts("bad.pmtiles", FIELD).problem
     with pytest.raises(BaseMapError):
         reader.tile("bad.pmtiles", 0, 0, 0)

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 from tests.client.running_station import running_station
-from tests.client.test_flights import accepted, leg_north, refused
+from tests.client.test_flights import accepted, flown, leg_north, refused
 from tests.patient_loop import run_patiently
 
 from recon.client import Refusal, RequestRefusedError, Station
@@ -22,7 +22,7 @@ def test_authority_is_taken_and_handed_over() -> None:
             assert await vehicle.give_to_guidance() is None
             assert refused(await vehicle.fly(leg_north(vehicle))).rule == "authority"
             assert await vehicle.take() is None
-            accepted(await vehicle.fly(leg_north(vehicle)))
+            await flown(vehicle, leg_north(vehicle))
             assert await vehicle.give_to_pilot() is None
             async for state in vehicle.telemetry():
                 if state.authority.holder == "pilot":

@@ -1,5 +1,6 @@
 """The client with a real station: orders are flown, refusals are values, states are new."""
 
+import asyncio
 from dataclasses import replace
 
 import pytest
@@ -40,6 +41,13 @@ def accepted(answer: Order | Refusal) -> Order:
     return answer
 
 
+async def flown(vehicle: Vehicle, mission: Mission) -> Order:
+    """Order a mission, again while telemetry is late: on a busy machine it is, and is refused."""
+    while isinstance(answer := await vehicle.fly(mission), Refusal) and answer.rule == "link_age":
+        await asyncio.sleep(0.1)
+    return accepted(answer)
+
+
 def refused(answer: Order | Refusal) -> Refusal:
     assert isinstance(answer, Refusal), answer
     return answer
@@ -49,8 +57,8 @@ def test_orders_are_flown_and_confirmed_by_telemetry() -> None:
     async def main() -> None:
         async with running_station() as url, Station(url) as station:
             vehicle = await station.vehicle("SIM-1")
-            flown = accepted(await vehicle.fly(leg_north(vehicle)))
-            status = await flown.wait()
+            order = await flown(vehicle, leg_north(vehicle))
+            status = await order.wait()
             assert status.phase is Phase.STARTED
             assert [change.phase for change in status.history[:3]] == [
                 Phase.QUEUED,
@@ -177,7 +185,7 @@ def test_waiting_for_an_acknowledged_order_times_out() -> None:
         fault = ("ack-then-nothing:SIM-1",)
         async with running_station(vehicles=1, faults=fault) as url, Station(url) as station:
             vehicle = await station.vehicle("SIM-1")
-            order = accepted(await vehicle.fly(leg_north(vehicle)))
+            order = await flown(vehicle, leg_north(vehicle))
             with pytest.raises(WaitTimeoutError, match="expected confirmed within"):
                 await order.wait(timeout_s=0.5)
 
@@ -189,7 +197,7 @@ def test_a_rejected_order_is_returned_with_its_phase() -> None:
         fault = ("negative-ack:SIM-1",)
         async with running_station(vehicles=1, faults=fault) as url, Station(url) as station:
             vehicle = await station.vehicle("SIM-1")
-            status = await accepted(await vehicle.fly(leg_north(vehicle))).wait()
+            status = await (await flown(vehicle, leg_north(vehicle))).wait()
             assert status.phase is Phase.REFUSED_BY_APP
             assert not status.has_reached(Phase.CONFIRMED)
 

@@ -68,7 +68,7 @@ class MapReader:
 
     def __init__(self, folder: Path, command: Sequence[str] = PROCESS) -> None:
         """Take the folder with the maps."""
-        self._folder = folder
+        self.folder = folder
         self._command = command
         self._one = Lock()
         self._process: subprocess.Popen[bytes] | None = None
@@ -76,7 +76,7 @@ class MapReader:
 
     def facts(self, name: str, area: MapArea | None) -> KnownMap:
         """Return what is known of a map, with its coverage of an area; problems are in it."""
-        size, version = map_versions(self._folder).get(name, (0, ""))
+        size, version = map_versions(self.folder).get(name, (0, ""))
         ring = None if area is None else area.ring_deg
         try:
             answer, _ = self._ask({"name": name, "ring": ring}, FACTS_WITHIN_S)
@@ -138,7 +138,7 @@ class MapReader:
             raise BaseMapError("the reader of maps is closed")
         if self._process is None:
             self._process = subprocess.Popen(
-                [*self._command, str(self._folder)],
+                [*self._command, str(self.folder)],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.DEVNULL,
