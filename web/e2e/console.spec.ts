@@ -1,5 +1,6 @@
 import { expect, test } from "@playwright/test";
-import { station, vehicle } from "../src/testing/fakeState";
+import type { ShadeLineView } from "../src/protocol";
+import { shadeLine, station, vehicle } from "../src/testing/fakeState";
 import { busyState } from "./fake/busyState";
 import { fleetState } from "./fake/fleetState";
 import { fieldPicture } from "./fake/picture";
@@ -7,6 +8,7 @@ import { FakeStation } from "./fake/station";
 import { cornerFaults, overlaps } from "./layoutFaults";
 import { faintTexts, smallTargets, smallTexts } from "./legibility";
 import { drawnShare } from "./mapPicture";
+import { openPanel } from "./openPanel";
 import { applyTheme, THEMES } from "./themes";
 
 /** Widths from a phone to a wall display, pixels. */
@@ -73,6 +75,23 @@ test("gives the whole window to the map at every width, and nothing scrolls", as
     // A middle that nothing covers is left for the map.
     const free = await page.locator(".map-free").boundingBox();
     expect(free?.height ?? 0, `${width} px wide`).toBeGreaterThan(300);
+  }
+});
+
+test("the times under the forecast leave each other free at every width", async ({ page }) => {
+  const lead_s = [0, 15, 30, 45, ...Array.from({ length: 19 }, (_, index) => 60 + 30 * index)];
+  const { forecast, ...light } = shadeLine();
+  const share = lead_s.map(() => 0.5);
+  const tenMinutes = { ...forecast, lead_s, sun_share: share, predicted_share: share };
+  const shown = { ...light, forecast: tenMinutes } as ShadeLineView;
+  await FakeStation.behind(page, station([vehicle(1), vehicle(2)], { shade: shown }));
+  await page.goto("/");
+  await openPanel(page, "Orders");
+  for (const width of WIDTHS) {
+    await page.setViewportSize({ width, height: 900 });
+    const ticks = page.locator(".time-ticks span:visible");
+    expect(await ticks.count(), `${width} px wide`).toBeGreaterThanOrEqual(4);
+    expect(await overlaps(page, ".time-ticks span"), `${width} px wide`).toEqual([]);
   }
 });
 

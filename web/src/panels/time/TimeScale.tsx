@@ -103,7 +103,7 @@ export function gradient({ lead_s, predicted_share }: ForecastView): string {
   return `linear-gradient(to right, ${stops.join(", ")})`;
 }
 
-/** Between labels, as a share of the scale: what a desktop has room for, and what a phone has. */
+/** Between labels, as a share of the scale: what a wide one has room for, and what a narrow one has. */
 const LEAST_GAP = 0.08;
 const COARSE_GAP = 0.19;
 
@@ -111,7 +111,7 @@ interface Tick {
   readonly lead: number;
   /** Place from 0 to 1. */
   readonly at: number;
-  /** Whether it has room on a phone, too. */
+  /** Whether it has room on a narrow scale, too. */
   readonly isCoarse: boolean;
 }
 
