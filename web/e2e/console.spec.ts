@@ -1,6 +1,6 @@
 import { expect, test } from "@playwright/test";
 import type { ShadeLineView } from "../src/protocol";
-import { shadeLine, station, vehicle } from "../src/testing/fakeState";
+import { baseMap, shadeLine, station, vehicle } from "../src/testing/fakeState";
 import { busyState } from "./fake/busyState";
 import { fleetState } from "./fake/fleetState";
 import { fieldPicture } from "./fake/picture";
@@ -93,6 +93,17 @@ test("the times under the forecast leave each other free at every width", async 
     expect(await ticks.count(), `${width} px wide`).toBeGreaterThanOrEqual(4);
     expect(await overlaps(page, ".time-ticks span"), `${width} px wide`).toEqual([]);
   }
+});
+
+test("the tools and notes of a low map leave each other free", async ({ page }) => {
+  await page.setViewportSize({ width: 390, height: 460 });
+  const fake = await FakeStation.behind(page, busyState(0));
+  const source = { title: "orthophoto 2025", attribution: "© State survey office" };
+  fake.maps = { maps: [baseMap(source)], note: "" };
+  await page.goto("/");
+  await openPanel(page, "Survey");
+  await expect(page.getByText("Map: orthophoto 2025, © State")).toBeVisible();
+  expect(await overlaps(page, ".map-notes > *, .map-tools button")).toEqual([]);
 });
 
 test("an answer neither moves nor shrinks the map", async ({ page }) => {
