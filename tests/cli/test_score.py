@@ -1,8 +1,11 @@
 """`recon score` on the command line: repeatable tables, errors in one line."""
 
+import signal
 from pathlib import Path
+from time import sleep
 
 import pytest
+from tests.cli.processes import started
 from tests.score.scenes import SMALL, written
 from typer.testing import CliRunner
 
@@ -48,6 +51,25 @@ def test_tables_go_to_stdout_and_a_stopped_command_goes_on_where_it_was(tmp_path
     # Of another method nothing was flown before.
     options = ["--seeds", "1", "--first-seed", "7", "--forecast", "none"]
     assert "before" not in CliRunner().invoke(app, ["score", path, *options]).stderr
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="the kernel lists processes there")
+def test_its_processes_end_with_a_command_that_is_killed(tmp_path: Path) -> None:
+    path = str(written(tmp_path, SMALL))
+    with started("score", path, *FEW, "--jobs", "2") as command:
+        while len(_flying(command.pid)) < 2:
+            sleep(0.05)
+        command.end(signal.SIGKILL)
+        # All that could print has ended; a run that went on would state its minutes.
+        assert command.text == ""
+
+
+def _flying(pid: int) -> list[str]:
+    """The processes of the command that fly runs."""
+    children = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
+    return [
+        each for each in children if b"spawn_main" in Path(f"/proc/{each}/cmdline").read_bytes()
+    ]
 
 
 def test_all_forecasts_are_compared_with_one(tmp_path: Path) -> None:

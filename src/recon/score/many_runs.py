@@ -5,10 +5,12 @@ back in the order in which they end.
 """
 
 import multiprocessing
+import os
 import socket
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
+from threading import Thread
 from typing import Any
 
 from recon.model.errors import ReconError
@@ -38,7 +40,7 @@ def on_cores(
     """
     # Forked processes would inherit threads of the linear algebra in any state.
     context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(max_workers=jobs, mp_context=context) as pool:
+    with ProcessPoolExecutor(jobs, context, initializer=_end_with_parent) as pool:
         waiting = [pool.submit(run, scenario, seed, report) for seed in seeds]
         try:
             for done in as_completed(waiting):
@@ -51,6 +53,21 @@ def on_cores(
         finally:
             for each in waiting:
                 each.cancel()
+
+
+def _end_with_parent() -> None:
+    """In a process of the pool: end as soon as the command does, also one that was killed.
+
+    Otherwise it would fly its run to the end, minutes later, for nothing.
+    """
+    parent = multiprocessing.parent_process()
+    assert parent is not None
+
+    def watch() -> None:
+        parent.join()
+        os._exit(1)
+
+    Thread(target=watch, daemon=True).start()
 
 
 def on_cluster(scenario: Scenario, seeds: Sequence[int], address: str) -> Iterator[RunScore]:
