@@ -15,7 +15,8 @@ from recon.model.vehicle import AltitudeReference, Failsafe, VehicleProfile
 from recon.sim.fleet import Airborne, SimulationConfig
 from recon.sim.run import run_fleet
 from recon.site import Site
-from recon.station.kernel.run import RunConfig, Started, run
+from recon.station.kernel.run import run
+from recon.station.kernel.run_config import RunConfig, Started
 
 HOME = GeoPoint(41.9012, -93.6034, 275.0)
 

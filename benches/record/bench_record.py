@@ -32,7 +32,8 @@ from recon.sim.app.camera_feed import ImageFormat
 from recon.station.audit.start import AuditPlace
 from recon.station.kernel import run as station_run
 from recon.station.kernel.recording import Recorder
-from recon.station.kernel.run import RunConfig, Started, run
+from recon.station.kernel.run import run
+from recon.station.kernel.run_config import RunConfig, Started
 
 SETTLED_S = 20.0
 HOURS = 8.0

@@ -32,7 +32,7 @@ from recon.sim.app.camera_feed import ImageFormat
 from recon.station.audit.start import AuditPlace
 from recon.station.kernel.playback import Playback
 from recon.station.kernel.replay_run import ReplayStation, replay_service
-from recon.station.kernel.run import RunConfig
+from recon.station.kernel.run_config import RunConfig
 
 RECORDED_S = 60.0
 LIMIT_S = 1.0

@@ -1,11 +1,12 @@
 """How long "all stop" takes, from the operator's request to the last of 64 wires.
 
     python -m benches.station.bench_all_stop [--apps 64] [--streams 4] [--repeats 60] [--record]
+        [--tile-readers 16]
 
 A station as `recon run` starts it, with its audit, its log and, if asked for, its record, in a
 process of its own; apps at 10 Hz core and 2 Hz extended telemetry in another, some with raw
 1280x720 images at 5 fps that the station's worker lays on the ground; and a reader of the stream
-of states, as a console.
+of states, as a console; and, if asked for, readers of a base map.
 Again and again one HTTP request orders an all stop. From just before the request is written, these
 are measured:
 
@@ -21,6 +22,7 @@ import asyncio
 import http.client
 import json
 import random
+import shutil
 import signal
 import subprocess
 import sys
@@ -33,10 +35,12 @@ from datetime import datetime
 from pathlib import Path
 
 import numpy as np
+from benches.station.tile_readers import TileReaders, write_orthophoto
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
-from recon.site import demo_site_folder
+from recon.model.geo import GeoPoint
+from recon.site import demo_site_folder, load_site
 
 P99_LIMIT_MS = 100.0
 STOP_BYTES = 10
@@ -58,15 +62,20 @@ class Measured:
     cpu_share: float = 0.0
     lost: int = 0
     repeated: int = 0
+    tiles_per_s: float = 0.0
+    tile_ms: list[float] = field(default_factory=list)
 
 
-def measure(apps: int, streams: int, repeats: int, seed: int, *, records: bool) -> Measured:
+def measure(
+    apps: int, streams: int, repeats: int, seed: int, *, records: bool, tile_readers: int = 0
+) -> Measured:
     """Run everything once."""
     with ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         plain = PlainServer()
         stack.callback(plain.close)
-        station, link_port, http_port = start_station(folder, records, stack)
+        site = site_with_map(folder) if tile_readers else demo_site_folder()
+        station, link_port, http_port = start_station(folder, records, stack, site)
         flying = start_apps(link_port, plain.port, apps, streams, stack)
         stop_reading = threading.Event()
         reader = threading.Thread(target=read_states, args=(http_port, stop_reading))
@@ -75,14 +84,18 @@ def measure(apps: int, streams: int, repeats: int, seed: int, *, records: bool) 
         plain.wait_for(apps)
         wait_until_flying(http_port, apps)
         time.sleep(SETTLED_S)
+        tiles = TileReaders(http_port, middle_of(site), tile_readers)
+        stack.callback(tiles.end)
         before, began_s = scheduled(station.pid), time.monotonic()
         ordered = order_again_and_again(http_port, plain, repeats, seed)
         after, took_s = scheduled(station.pid), time.monotonic() - began_s
+        tiles_per_s, tile_ms = tiles.end()
         told, _ = flying.communicate("", timeout=PATIENCE_S)
         station.send_signal(signal.SIGTERM)
         station.wait(PATIENCE_S)
         measured = work_out(ordered, json.loads(told), folder / "audit")
         measured.cpu_share = (after[0] - before[0]) / 1e9 / took_s
+        measured.tiles_per_s, measured.tile_ms = tiles_per_s, tile_ms
         measured.waited_share = (after[1] - before[1]) / max(1, after[0] - before[0])
         return measured
 
@@ -99,12 +112,27 @@ class Ordered:
     plain_at_s: float
 
 
+def site_with_map(folder: Path) -> Path:
+    """Return a copy of the demonstration's site with a large base map."""
+    site = folder / "site"
+    shutil.copytree(demo_site_folder(), site)
+    write_orthophoto(site, middle_of(site))
+    return site
+
+
+def middle_of(site: Path) -> GeoPoint:
+    """Return a site's origin."""
+    frame = load_site(site).frame
+    assert frame is not None
+    return frame.origin
+
+
 def start_station(
-    folder: Path, records: bool, stack: ExitStack
+    folder: Path, records: bool, stack: ExitStack, site: Path | None = None
 ) -> tuple[subprocess.Popen[str], int, int]:
     """Start `recon run`; its output goes into a file, as under a service manager."""
     log = stack.enter_context((folder / "log").open("w+", encoding="utf-8"))
-    options = ["--link-port", "0", "--http-port", "0", "--site", str(demo_site_folder())]
+    options = ["--link-port", "0", "--http-port", "0", "--site", str(site or demo_site_folder())]
     options += ["--record", str(folder / "records")] if records else ["--no-record"]
     process = subprocess.Popen(
         [sys.executable, "-m", "recon", "run", *options, "--audit", str(folder / "audit")],
@@ -288,6 +316,8 @@ def report(measured: Measured, apps: int, streams: int) -> bool:
         f"{100 * measured.cpu_share:.0f} % of a core, and waited "
         f"{100 * measured.waited_share:.0f} % as long for one: other programs' share"
     )
+    if measured.tile_ms:
+        show(f"a tile of the base map, {measured.tiles_per_s:.0f} a second", measured.tile_ms)
     p99_ms = float(np.percentile(measured.on_wires_ms, 99))
     return measured.lost == 0 and measured.repeated == 0 and p99_ms < P99_LIMIT_MS
 
@@ -305,8 +335,12 @@ def main() -> int:
     parser.add_argument("--repeats", type=int, default=60)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--record", action="store_true", help="with a flight record")
+    parser.add_argument("--tile-readers", type=int, default=0, help="of a base map, without pause")
     asked = parser.parse_args()
-    measured = measure(asked.apps, asked.streams, asked.repeats, asked.seed, records=asked.record)
+    measured = measure(
+        asked.apps, asked.streams, asked.repeats, asked.seed, records=asked.record,
+        tile_readers=asked.tile_readers,
+    )  # fmt: skip
     is_good = report(measured, asked.apps, asked.streams)
     wanted = f"each app stopped once, and on every wire within {P99_LIMIT_MS:g} ms p99, expected"
     print("good" if is_good else f"FAILED: {wanted}")

@@ -16,10 +16,10 @@ from tests.basemap.made_maps import (
 )
 
 from recon.basemap import map_reader
-from recon.basemap.coverage import finest_covered
-from recon.basemap.map_file import LARGEST_TILE_BYTES, BaseMapError
+from recon.basemap.coverage import coverage, finest_covered
+from recon.basemap.map_file import LARGEST_TILE_BYTES, BaseMapError, MapInfo, Tile
 from recon.basemap.map_reader import MapReader, map_versions
-from recon.basemap.web_mercator import metres_per_pixel
+from recon.basemap.web_mercator import MapArea, metres_per_pixel
 
 ZOOMS = range(15, 19)
 FACTS = {"name": "orthophoto 2025", "attribution": '© <a href="https://x">survey</a>\n &amp; co'}
@@ -94,6 +94,32 @@ def test_without_full_coverage_the_finest_level_with_most_is_named(
     assert covers.zoom == 17
     assert covers.share == pytest.approx(tiles.shares[0], abs=1e-6)
     assert 0.0 < covers.share < 1.0
+
+
+class Shares:
+    """A map of which each level, from 0 on, shows a share of any area."""
+
+    def __init__(self, *shares: float | None) -> None:
+        self._shares = shares
+        last = len(shares) - 1
+        self.info = MapInfo("", "", "", 0, last, 256, (-94.0, 41.0, -93.0, 42.0))
+
+    def tile(self, zoom: int, col: int, row: int) -> Tile | None:
+        return None
+
+    def share(self, area: MapArea, zoom: int) -> float | None:
+        return self._shares[zoom]
+
+    def close(self) -> None:
+        pass
+
+
+def test_all_but_rounding_is_all_and_no_more() -> None:
+    levels = coverage(Shares(0.9996, 1.0000002, 0.9994, None), FIELD)
+    assert [level.share for level in levels] == [1.0, 1.0, 0.9994]
+    covers = finest_covered(levels)
+    assert covers is not None
+    assert covers.zoom == 1
 
 
 def test_a_changed_file_is_opened_anew(folder: Path, reader: MapReader) -> None:

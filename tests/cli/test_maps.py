@@ -106,8 +106,9 @@ def test_the_server_may_stand_in_the_sites_file(folder: Path) -> None:
         ((), "expected the address of a tile server, got none: give --url"),
         (("--url", "http://x/{z}"), "with {z}, {x} and {y} in it"),
         (("--url", "http://x/{z}/{x}/{y}", "--zoom", "12-22", "--most-tiles", "50"), "at most 50"),
-        (("--url", "http://x/{z}/{x}/{y}", "--zoom", "high"), "--zoom: expected levels like 12-19"),
-        (("--url", "http://x/{z}/{x}/{y}", "--zoom", "19-12"), "expected zoom levels"),
+        (("--url", "http://x/{z}/{x}/{y}", "--zoom", "high"), "like 12-19, got 'high'"),
+        (("--url", "http://x/{z}/{x}/{y}", "--zoom", "19-12"), "like 12-19, got '19-12'"),
+        (("--url", "http://x/{z}/{x}/{y}", "--zoom", "12-25"), "levels of 0 to 24"),
         (("--url", "http://x/{z}/{x}/{y}", "--name", "../../etc"), "--name: expected letters"),
     ],
 )

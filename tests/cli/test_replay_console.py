@@ -44,6 +44,10 @@ def test_what_cannot_be_replayed_is_refused_with_a_sentence(tmp_path: Path) -> N
     assert "No such file or directory" in missing.output
     two = CliRunner().invoke(app, ["replay", "a.mcap", "b.mcap"])
     assert "expected one FILE, for each is one flight; got 2" in " ".join(two.output.split())
+    flight = str(FOLDER / "survey.mcap")
+    nowhere = CliRunner().invoke(app, ["replay", flight, "--site", str(tmp_path / "none")])
+    assert nowhere.exit_code == 2
+    assert "does not exist" in " ".join(nowhere.output.split())
 
 
 def test_a_replay_shows_the_base_maps_of_the_folder_it_is_given(tmp_path: Path) -> None:

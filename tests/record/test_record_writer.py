@@ -21,6 +21,7 @@ from recon.record.record_writer import (
     FLUSH_EVERY_S,
     GROUND_FILES_KEPT,
     RecordWriter,
+    Status,
     repair_all,
 )
 from recon.record.topics import Topics
@@ -153,6 +154,29 @@ def test_a_killed_writer_leaves_all_but_the_last_chunk(tmp_path: Path, kill_at_b
     after = messages(path)
     assert [m.data for m in after] == [m.data for m in before]
     assert [m.data[:8] for m in after] == [n.to_bytes(8, "big") for n in range(len(after))]
+
+
+def test_a_file_is_reported_before_anything_is_in_it_and_its_new_name_at_once(
+    tmp_path: Path,
+) -> None:
+    """Else a record that grows is shown as one of an earlier run."""
+    items = iter([BEGIN, ("/step", b"1"), FLOWN, ("/step", b"2"), None])
+    happened: list[str] = []
+
+    class Inbox:
+        def get(self, timeout: float) -> Any:
+            item = next(items)
+            happened.append("taken")
+            return item
+
+    def report(status: Status) -> None:
+        happened.append(Path(status.path or "none").name.partition("-")[0])
+
+    is_begin, is_flown = (lambda item: item == BEGIN), (lambda item: item == FLOWN)
+    writer = RecordWriter(tmp_path, Plain(), Inbox(), "test", is_begin, is_flown, report)
+    writer.run()
+    wanted = ["taken", "ground", "taken", "taken", "flight", "taken", "taken"]
+    assert happened[: len(wanted)] == wanted
 
 
 def test_the_next_start_repairs_and_leaves_what_is_being_written(tmp_path: Path) -> None:

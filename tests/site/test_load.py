@@ -13,7 +13,7 @@ from recon.camera import TelemetryReference
 from recon.model.airspace import FlightLimits
 from recon.model.geo import GeoPoint
 from recon.model.vehicle import AltitudeReference, Failsafe, Mount, VehicleProfile
-from recon.site import SiteError, default_site, demo_site_folder, load_site
+from recon.site import SiteError, default_site, demo_site_folder, load_site, own_folder
 from recon.site.report import site_report
 
 ORIGIN = "[origin]\nlatitude_deg = 41.9012\nlongitude_deg = -93.6034\nground_altitude_m = 275.0\n"
@@ -408,6 +408,13 @@ def test_whatever_keys_say_a_site_is_read_or_refused_in_a_sentence(
     result = outcome(write(tmp_path, text))
     assert result.isprintable()
     assert result == "read" or result.startswith(f"{tmp_path}/site.toml: ")
+
+
+def test_things_are_kept_in_a_folder_of_ones_own_only(tmp_path: Path) -> None:
+    assert own_folder(tmp_path) == tmp_path
+    assert own_folder(None) is None
+    for demo in (demo_site_folder(), demo_site_folder() / ".." / "demo"):
+        assert own_folder(demo) is None
 
 
 def table(head: str, items: dict[str, str]) -> str:

@@ -1,6 +1,7 @@
 import { expect, test } from "@playwright/test";
 import type { ShadeLineView } from "../src/protocol";
-import { baseMap, shadeLine, station, vehicle } from "../src/testing/fakeState";
+import { baseMap, shadeLine } from "../src/testing/fakeField";
+import { station, vehicle } from "../src/testing/fakeState";
 import { busyState } from "./fake/busyState";
 import { fleetState } from "./fake/fleetState";
 import { fieldPicture } from "./fake/picture";

@@ -58,6 +58,9 @@ class MapFolder(Protocol):
         what its map has left. Raises `MapsBusyError` and `MapFileError`.
         """
 
+    def close(self) -> None:
+        """End what reads the maps."""
+
 
 class NoMaps:
     """A station without maps, for a reason."""
@@ -75,6 +78,9 @@ class NoMaps:
     ) -> TileRead | None:
         """Return none."""
         return None
+
+    def close(self) -> None:
+        """Nothing is open."""
 
 
 def add_map_routes(app: FastAPI, folder: MapFolder) -> None:

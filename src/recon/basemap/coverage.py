@@ -15,6 +15,7 @@ class ZoomCoverage:
 
     zoom: int
     share: float
+    """1 for all of it."""
     metres_per_pixel: float
 
 
@@ -29,7 +30,7 @@ def coverage(opened: MapFile, area: MapArea) -> tuple[ZoomCoverage, ...]:
         if share is None:
             break
         pixel_m = metres_per_pixel(area.latitude_deg, zoom, opened.info.tile_px)
-        found.append(ZoomCoverage(zoom, min(1.0, share), pixel_m))
+        found.append(ZoomCoverage(zoom, 1.0 if share >= FULL else share, pixel_m))
     return tuple(found)
 
 
@@ -38,5 +39,5 @@ def finest_covered(levels: tuple[ZoomCoverage, ...]) -> ZoomCoverage | None:
     if not levels:
         return None
     most = max(level.share for level in levels)
-    least = FULL if most >= FULL else most - 0.005
+    least = most if most == 1.0 else most - 0.005
     return [level for level in levels if level.share >= least][-1]

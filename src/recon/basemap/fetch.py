@@ -17,9 +17,16 @@ from urllib.parse import urlsplit
 import httpx
 
 from recon import version
-from recon.basemap.map_file import LARGEST_TILE_BYTES, VECTOR, BaseMapError, one_line, picture_of
+from recon.basemap.map_file import (
+    LARGEST_TILE_BYTES,
+    VECTOR,
+    BaseMapError,
+    checked_zooms,
+    one_line,
+    picture_of,
+)
 from recon.basemap.mbtiles_writer import MBTilesWriter
-from recon.basemap.web_mercator import DEEPEST_ZOOM, MapArea
+from recon.basemap.web_mercator import MapArea
 
 MOST_FETCHED = 20_000
 """Of one run unless allowed: 0.5 GB, and what a public server bears."""
@@ -99,8 +106,7 @@ class FetchCount:
 
 def needed_tiles(area: MapArea, zooms: range, most: int = MOST_FETCHED) -> list[Key]:
     """Return the tiles over an area, coarse ones first; raises `BaseMapError` for too many."""
-    if not zooms or not 0 <= zooms[0] <= zooms[-1] <= DEEPEST_ZOOM:
-        raise BaseMapError(f"expected zoom levels of 0 to {DEEPEST_ZOOM}, like 12-19")
+    checked_zooms(zooms.start, zooms.stop - 1)
     keys: list[Key] = []
     for zoom in zooms:
         tiles = area.tiles(zoom)

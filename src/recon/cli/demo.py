@@ -21,7 +21,8 @@ from recon.score.scenario_sky import sky_of
 from recon.score.truth import world_text
 from recon.site import SiteError
 from recon.station.audit.start import default_place
-from recon.station.kernel.run import RunConfig, Started, run
+from recon.station.kernel.run import run
+from recon.station.kernel.run_config import RunConfig, Started
 
 SIMULATOR_ENDS_WITHIN_S = 3.0
 FPS_HZ = 2

@@ -30,7 +30,7 @@ def check_command(folder: FolderArgument) -> None:
 
     Exit code 0: a map shows all of the boundary with its margin; 1: no map does.
     """
-    from recon.basemap.coverage import FULL, finest_covered
+    from recon.basemap.coverage import finest_covered
     from recon.basemap.map_reader import MapReader, map_versions
     from recon.site.reading import MAPS_FOLDER
 
@@ -48,7 +48,7 @@ def check_command(folder: FolderArgument) -> None:
     if not maps:
         print_line(f"no map in {folder / MAPS_FOLDER}: put MBTiles, PMTiles or GeoTIFF files there")
     finest = [covers for each in maps if (covers := finest_covered(each.coverage))]
-    if not any(covers.share >= FULL for covers in finest):
+    if not any(covers.share == 1.0 for covers in finest):
         print_line("no map shows all of the site")
         raise typer.Exit(INCOMPLETE)
 
@@ -124,7 +124,7 @@ def _area_line(site: "Site", area: "MapArea") -> str:
 
 
 def _map_lines(known: "KnownMap") -> list[str]:
-    from recon.basemap.coverage import FULL, finest_covered
+    from recon.basemap.coverage import finest_covered
 
     if known.info is None:
         return [f"{known.name}: not used: {known.problem}"]
@@ -133,21 +133,18 @@ def _map_lines(known: "KnownMap") -> list[str]:
     if covers is None:
         return [f"{head}: too many tiles over the site to count"]
     lines = [
-        f"{head}: covers {_percent(covers.share, FULL)} of the site to zoom {covers.zoom} "
+        f"{head}: covers {_percent(covers.share)} of the site to zoom {covers.zoom} "
         f"({covers.metres_per_pixel:.2f} m a pixel)"
     ]
     lines += [
-        f"  zoom {level.zoom:2}: {_percent(level.share, FULL):>6}  "
-        f"{level.metres_per_pixel:.2f} m a pixel"
+        f"  zoom {level.zoom:2}: {_percent(level.share):>6}  {level.metres_per_pixel:.2f} m a pixel"
         for level in known.coverage
     ]
     return lines
 
 
-def _percent(share: float, full: float) -> str:
+def _percent(share: float) -> str:
     """Never 100 % for less, never 0 % for more."""
-    if share >= full:
-        return "100 %"
     return "< 1 %" if 0.0 < share < 0.01 else f"{int(100.0 * share)} %"
 
 
@@ -169,12 +166,16 @@ def _server(folder: Path, url: str | None, attribution: str | None) -> "TileServ
 
 
 def _zooms(text: str) -> range:
+    from recon.basemap.web_mercator import DEEPEST_ZOOM
     from recon.model.errors import SiteError
 
     match = re.fullmatch(r"(\d{1,2})(?:-(\d{1,2}))?", text)
-    if match is None:
-        raise SiteError(f"--zoom: expected levels like 12-19, got {text!a}")
-    first, last = int(match[1]), int(match[2] or match[1])
+    first, last = (int(match[1]), int(match[2] or match[1])) if match else (1, 0)
+    if not first <= last <= DEEPEST_ZOOM:
+        raise SiteError(
+            f"--zoom: expected levels of 0 to {DEEPEST_ZOOM}, coarse to fine like 12-19, got "
+            f"{text!a}"
+        )
     return range(first, last + 1)
 
 

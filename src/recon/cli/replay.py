@@ -42,7 +42,12 @@ def replay_command(
         typer.Option(min=0, max=65535, help="Port of the console; 0: any free port."),
     ] = 0,
     site: Annotated[
-        Path | None, typer.Option(help="Folder of the site, whose base maps the console shows.")
+        Path | None,
+        typer.Option(
+            exists=True,
+            file_okay=False,
+            help="Folder of the site, whose base maps the console shows.",
+        ),
     ] = None,
 ) -> None:
     """Show a recorded flight in the console, compare its outputs, or score other methods on it.

@@ -16,13 +16,14 @@ from recon.cli.users import UsersOption
 from recon.link.settings import LinkSettings
 from recon.record.audit import shown
 from recon.record.users_file import state_folder
-from recon.site import Site, default_site, demo_site_folder, site_report
+from recon.site import Site, default_site, own_folder, site_report
 from recon.site.app_list import APPS_FILE, read_app_list
 from recon.station.api_views.service import Service
 from recon.station.audit.start import AuditPlace
 from recon.station.kernel.build import first_state
 from recon.station.kernel.driver import AsyncioDriver
-from recon.station.kernel.run import RunConfig, Started, run
+from recon.station.kernel.run import run
+from recon.station.kernel.run_config import RunConfig, Started
 
 HAS_GUARD = hasattr(socket, "send_fds")
 """Windows hands no sockets to other processes."""
@@ -145,9 +146,7 @@ def apps_file_of(site: Path | None) -> Path | None:
 
 def records_of(site: Path | None) -> Path:
     """Return the folder of the flight records of a site: its own, or one of this user."""
-    if site is None or site.resolve() == demo_site_folder().resolve():
-        return state_folder() / "records"
-    return site / "records"
+    return (own_folder(site) or state_folder()) / "records"
 
 
 def describe(site: Site) -> None:

@@ -156,6 +156,8 @@ class RecordWriter:
             self._end_file()
             self._faults = None
             self._retry(self._open)
+            # A list of the folder states which file grows.
+            self._report_status()
             self._guarded(lambda topics: self._messages.begin(item, topics))
         elif self._has_flown(item):
             self._name_flight()
@@ -234,6 +236,7 @@ class RecordWriter:
             )
             return
         self.path = self._topics.file.path = flight
+        self._report_status()
 
     def _report_status(self) -> None:
         path = None if self.path is None else str(self.path)

@@ -58,7 +58,7 @@ def on_cores(
 def _end_with_parent() -> None:
     """In a process of the pool: end as soon as the command does, also one that was killed.
 
-    Otherwise it would fly its run to the end, minutes later, for nothing.
+    Otherwise it would fly its run to the end, and then wait for the next one indefinitely.
     """
     parent = multiprocessing.parent_process()
     assert parent is not None

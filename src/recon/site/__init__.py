@@ -1,7 +1,7 @@
 """A site's folder: origin, imaging drone, vehicles, layers, elevation; read and checked."""
 
 from recon.model.errors import SiteError
-from recon.site.load import demo_site_folder, load_site
+from recon.site.load import demo_site_folder, load_site, own_folder
 from recon.site.report import pose_report, site_report
 from recon.site.site import Imager, Layers, Site, default_site
 
@@ -13,6 +13,7 @@ __all__ = [
     "default_site",
     "demo_site_folder",
     "load_site",
+    "own_folder",
     "pose_report",
     "site_report",
 ]

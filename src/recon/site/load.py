@@ -300,3 +300,10 @@ def _give_pads(path: Path, layers: Layers, profiles: dict[str, VehicleProfile]) 
 def demo_site_folder() -> Path:
     """Return the folder of the demonstration's site, inside the package."""
     return Path(__file__).parent / "demo"
+
+
+def own_folder(folder: Path | None) -> Path | None:
+    """Return a site's folder if files can be kept in it; None for the demonstration's, a part of the
+    package."""
+    is_own = folder is not None and folder.resolve() != demo_site_folder().resolve()
+    return folder if is_own else None

@@ -18,7 +18,8 @@ from recon.site import Site, demo_site_folder
 from recon.station.alarms.conditions import conditions
 from recon.station.api_views.imaging_views import shade_view
 from recon.station.imaging.references import WRITE_EVERY_S, with_references, written
-from recon.station.kernel.run import RunConfig, first_station
+from recon.station.kernel.run import first_station
+from recon.station.kernel.run_config import RunConfig
 from recon.station.kernel.step import step
 from recon.station.kernel.worker import JobRunner
 from recon.station.state.station import Station

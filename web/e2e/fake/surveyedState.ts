@@ -1,5 +1,6 @@
 import type { StationState, SurveyWays } from "../../src/protocol";
-import { area, at, shadeLine, station, survey, vehicle } from "../../src/testing/fakeState";
+import { shadeLine, survey } from "../../src/testing/fakeField";
+import { area, at, station, vehicle } from "../../src/testing/fakeState";
 
 const ID = 4;
 const ROWS = [-60, -30, 0, 30, 60].map((east_m): [number, number][] => [

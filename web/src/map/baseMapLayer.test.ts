@@ -2,7 +2,7 @@ import type { Map as MapLibre, RasterSourceSpecification } from "maplibre-gl";
 import { expect, test } from "vitest";
 import { mapRequests } from "../source/mapRequests";
 import { StationHttp } from "../source/stationHttp";
-import { baseMap } from "../testing/fakeState";
+import { baseMap } from "../testing/fakeField";
 import { BaseMapLayer } from "./baseMapLayer";
 import type { Colours } from "./colours";
 

@@ -1,7 +1,7 @@
 import { createRoot } from "solid-js";
 import { afterEach, expect, test } from "vitest";
 import type { BaseMapView } from "../protocol";
-import { baseMap } from "../testing/fakeState";
+import { baseMap } from "../testing/fakeField";
 import { createFakeStation, fakeSource } from "../testing/fakeStation";
 import { answered, failed } from "../testing/pageRequests";
 import { find, type RenderedPage, renderPage, settled } from "../testing/renderPage";

@@ -2,7 +2,8 @@ import type { Map as MapLibre } from "maplibre-gl";
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import type { GroundImageView } from "../protocol";
 import type { Outcome, Picture } from "../source/stationSource";
-import { at, groundImage, station } from "../testing/fakeState";
+import { groundImage } from "../testing/fakeField";
+import { at, station } from "../testing/fakeState";
 import { GroundImageLayer } from "./groundImageLayer";
 
 type Shown = { readonly url: string; readonly coordinates: [number, number][] };

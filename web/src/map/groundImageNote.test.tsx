@@ -1,7 +1,8 @@
 import { afterEach, describe, expect, it } from "vitest";
 import { useConsole } from "../console";
 import type { StationState } from "../protocol";
-import { groundImage, station, vehicle } from "../testing/fakeState";
+import { groundImage } from "../testing/fakeField";
+import { station, vehicle } from "../testing/fakeState";
 import { find, type RenderedPage, renderPage } from "../testing/renderPage";
 import { GroundImageNote } from "./GroundImageNote";
 import { createDisplayedGround, type DisplayedGround } from "./groundImageLayer";

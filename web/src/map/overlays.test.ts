@@ -1,7 +1,8 @@
 import type { Map as MapLibre } from "maplibre-gl";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import type { Outcome, Picture } from "../source/stationSource";
-import { shadeLine, station, survey } from "../testing/fakeState";
+import { shadeLine, survey } from "../testing/fakeField";
+import { station } from "../testing/fakeState";
 import { settled } from "../testing/renderPage";
 import { createOverlay, ForecastLayer, ShadeLayer, SurveyCellsLayer } from "./overlays";
 import { wayFeatures } from "./surveyRowsLayer";

@@ -7,7 +7,7 @@ import type {
 import type { FlightRequests } from "../source/flightRequests";
 import type { Outcome } from "../source/stationSource";
 import type { SurveyRequests } from "../source/surveyRequests";
-import { surveyEstimate } from "./fakeState";
+import { surveyEstimate } from "./fakeField";
 import { answered, failed, noPicture, type PageRequests } from "./pageRequests";
 
 const MINI_3_PRO: SurveyCameraView = {

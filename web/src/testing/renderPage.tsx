@@ -21,8 +21,8 @@ import type { SoundProblem } from "../sound/speaker";
 import type { Connection, NamedOrder, StationSource } from "../source/stationSource";
 import type { ThemeSwitch } from "../theme/theme";
 import { FakeClock } from "./fakeClock";
+import { surveyEstimate } from "./fakeField";
 import type { FakeSite } from "./fakeSite";
-import { surveyEstimate } from "./fakeState";
 import { createFakeStation, type FakeTimeline, fakeSource } from "./fakeStation";
 import { answered, failed, type PageRequest } from "./pageRequests";
 

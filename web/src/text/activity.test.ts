@@ -1,5 +1,6 @@
 import { describe, expect, it } from "vitest";
-import { survey, vehicle } from "../testing/fakeState";
+import { survey } from "../testing/fakeField";
+import { vehicle } from "../testing/fakeState";
 import { doing, surveyPart } from "./activity";
 
 const still = { north_mps: 0.2, east_mps: 0.1, down_mps: 0, age_s: 0.1 };

@@ -1,5 +1,5 @@
 import { afterEach, expect, test } from "vitest";
-import { baseMap } from "../testing/fakeState";
+import { baseMap } from "../testing/fakeField";
 import { coverageText, isIncomplete } from "./baseMaps";
 import { chooseLengthUnit } from "./units";
 
@@ -9,13 +9,12 @@ const at = (share: number) => baseMap({ covers: { zoom: 19, share, metres_per_pi
 
 test.each([
   [1, "covers 100 % of the site to zoom 19 (0.22\u00a0m a pixel)"],
-  [0.9996, "covers 100 % of the site to zoom 19 (0.22\u00a0m a pixel)"],
   [0.9994, "covers 99 % of the site to zoom 19 (0.22\u00a0m a pixel)"],
   [0.005, "covers less than 1 % of the site to zoom 19 (0.22\u00a0m a pixel)"],
   [0, "covers nothing of the site"],
 ])("a share of %d is never rounded up to all or down to nothing", (share, text) => {
   expect(coverageText(at(share))).toBe(text);
-  expect(isIncomplete(at(share))).toBe(share < 0.9995);
+  expect(isIncomplete(at(share))).toBe(share < 1);
 });
 
 test("pixels have the chosen unit", () => {

@@ -1,9 +1,6 @@
 import type { BaseMapView } from "../protocol";
 import { formatLength } from "./units";
 
-/** Of the site's area: a sliver less is rounding. */
-const FULL = 0.9995;
-
 /** What a map shows of the site, for before leaving: `covers 100 % of the site to zoom 19 (0.22 m a pixel)`. */
 export function coverageText({ covers, min_zoom, max_zoom, problem }: BaseMapView): string {
   if (problem !== null) return problem;
@@ -16,11 +13,11 @@ export function coverageText({ covers, min_zoom, max_zoom, problem }: BaseMapVie
 
 /** Never 100 % for less, never 0 % for more. */
 function percent(share: number): string {
-  if (share >= FULL) return "100 %";
+  if (share === 1) return "100 %";
   return share < 0.01 ? "less than 1 %" : `${Math.floor(share * 100)} %`;
 }
 
 /** Whether an operator should bring another map. */
 export function isIncomplete({ covers, problem }: BaseMapView): boolean {
-  return problem !== null || (covers !== null && covers.share < FULL);
+  return problem !== null || (covers !== null && covers.share < 1);
 }

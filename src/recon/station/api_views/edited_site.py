@@ -22,7 +22,7 @@ from recon.model.errors import ReconError, SiteError
 from recon.model.event import ImagerMarked, SiteRedrawn
 from recon.model.person import Person, Role
 from recon.record import file_set
-from recon.site import Imager, Site, demo_site_folder
+from recon.site import Imager, Site, own_folder
 from recon.site.drawing import (
     FENCES,
     DrawnFeatureError,
@@ -96,8 +96,7 @@ class EditedSite:
         """Why nothing can be saved; None if it can."""
         if self.folder is None:
             return NO_FOLDER
-        is_demo = self.folder.resolve() == demo_site_folder().resolve()
-        return IS_DEMO if is_demo else None
+        return IS_DEMO if own_folder(self.folder) is None else None
 
     async def read(self, read: Callable[[Path], tuple[T, ...]]) -> FolderRead[T]:
         """Return what is read of the folder; nothing where it cannot be read."""

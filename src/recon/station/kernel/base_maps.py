@@ -15,7 +15,7 @@ from recon.basemap.coverage import ZoomCoverage, finest_covered
 from recon.basemap.map_file import BaseMapError, MapInfo
 from recon.basemap.map_reader import KnownMap, MapReader, map_versions
 from recon.basemap.web_mercator import MapArea, area_around
-from recon.site import Site, demo_site_folder
+from recon.site import Site, own_folder
 from recon.site.reading import MAPS_FOLDER
 
 MOST_WAITING = 256
@@ -103,9 +103,8 @@ class SiteMaps:
 
 def maps_of(folder: Path | None, site: Callable[[], Site], missing: str = NO_FOLDER) -> MapFolder:
     """Return the maps of a site's folder; `missing` is shown in place of them."""
-    if folder is None or folder.resolve() == demo_site_folder().resolve():
-        return NoMaps(missing)
-    return SiteMaps(folder / MAPS_FOLDER, site, MapReader)
+    own = own_folder(folder)
+    return NoMaps(missing) if own is None else SiteMaps(own / MAPS_FOLDER, site, MapReader)
 
 
 def site_area(site: Site) -> MapArea | None:

@@ -22,7 +22,7 @@ from recon.model.imagery import Frame, GroundImage
 from recon.model.units import ns_to_seconds, seconds_to_ns
 from recon.station.api_views.service import Service
 from recon.station.imaging.mosaic import mosaic, newest_images
-from recon.station.kernel.base_maps import SiteMaps, maps_of
+from recon.station.kernel.base_maps import maps_of
 from recon.station.kernel.driver import freeze_loaded_objects
 from recon.station.kernel.http_servers import (
     listen,
@@ -190,8 +190,7 @@ async def run_replay(
         replay.log.start()
         stack.callback(replay.log.close)
         maps = maps_of(site_folder, lambda: service.site, NO_SITE)
-        if isinstance(maps, SiteMaps):
-            stack.callback(maps.close)
+        stack.callback(maps.close)
         app = create_app(service, console, version(), replay=replay, maps=maps)
         server = loopback_server(app, Login(report=replay.handle), HOST)
         playing = asyncio.create_task(replay.run())

@@ -1,6 +1,7 @@
 import { afterEach, describe, expect, it } from "vitest";
 import type { LookAsideView, UpwindPlaceView } from "../../protocol";
-import { groundImage, shadeLine, station, vehicle } from "../../testing/fakeState";
+import { groundImage, shadeLine } from "../../testing/fakeField";
+import { station, vehicle } from "../../testing/fakeState";
 import { find, type RenderedPage, renderPage, settled } from "../../testing/renderPage";
 import { lightPercents } from "../../text/light";
 import { vehicleLabel } from "../../text/names";

@@ -1,6 +1,7 @@
 import { afterEach, describe, expect, it } from "vitest";
 import type { SurveyView, VehicleView } from "../../protocol";
-import { area, station, survey, vehicle } from "../../testing/fakeState";
+import { survey } from "../../testing/fakeField";
+import { area, station, vehicle } from "../../testing/fakeState";
 import { find, type RenderedPage, renderPage, settled } from "../../testing/renderPage";
 import { sharePercent, shownSurvey } from "../../text/survey";
 import { SurveyPanel } from "./SurveyPanel";

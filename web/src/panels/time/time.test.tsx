@@ -1,5 +1,6 @@
 import { afterEach, describe, expect, it } from "vitest";
-import { shadeLine, station, survey, vehicle } from "../../testing/fakeState";
+import { shadeLine, survey } from "../../testing/fakeField";
+import { station, vehicle } from "../../testing/fakeState";
 import { find, type RenderedPage, renderPage } from "../../testing/renderPage";
 import { gradient, nearestRight, TimeScale, ticksOf } from "./TimeScale";
 
