@@ -303,7 +303,7 @@ def demo_site_folder() -> Path:
 
 
 def own_folder(folder: Path | None) -> Path | None:
-    """Return a site's folder if files can be kept in it; None for the demonstration's, a part of the
-    package."""
+    """Return a site's folder, in which files may be kept; None for the demonstration's, which is a
+    part of the package."""
     is_own = folder is not None and folder.resolve() != demo_site_folder().resolve()
     return folder if is_own else None

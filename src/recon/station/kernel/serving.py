@@ -30,7 +30,7 @@ from recon.station.kernel.users_watch import UsersWatch
 
 @dataclass(frozen=True, slots=True)
 class Doors:
-    """The listening sockets of the HTTP servers, and the addresses that people use."""
+    """The listening sockets of the HTTP servers, and the addresses they answer at."""
 
     loopback: socket.socket
     network: socket.socket | None
