@@ -8,7 +8,11 @@ export default defineConfig({
   plugins: [solid()],
   // Relative addresses, so that the built page works under any folder it is served from.
   base: "./",
-  build: { target: "es2022", chunkSizeWarningLimit: 1500 },
+  build: {
+    target: "es2022",
+    chunkSizeWarningLimit: 1500,
+    rolldownOptions: { input: ["index.html", "new-site.html"] },
+  },
   server: { host: "127.0.0.1", proxy: { "/api": { target: station, ws: true } } },
   preview: { host: "127.0.0.1", proxy: { "/api": { target: station, ws: true } } },
   test: {

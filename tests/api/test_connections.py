@@ -3,6 +3,7 @@
 import asyncio
 import socket
 from collections.abc import Awaitable, Callable
+from typing import cast
 from urllib.parse import urlsplit
 
 import pytest
@@ -189,3 +190,40 @@ def test_a_slow_reader_that_reads_keeps_its_place() -> None:
             peer.close()
 
     run(main)
+
+
+class StillLoop:
+    """A loop whose timers run when the test calls them."""
+
+    def __init__(self) -> None:
+        self.timers: list[Callable[[], None]] = []
+
+    def call_later(self, _delay_s: float, timer: Callable[[], None]) -> asyncio.TimerHandle:
+        self.timers.append(timer)
+        return cast(asyncio.TimerHandle, None)
+
+
+class FakeTransport(asyncio.Transport):
+    """Notes that it was aborted."""
+
+    is_aborted = False
+
+    def abort(self) -> None:
+        self.is_aborted = True
+
+
+def test_a_wait_ends_by_checks_not_by_the_clock(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A process that stood still for a minute runs one late check: its peers keep their places."""
+    loop, transport, states = StillLoop(), FakeTransport(), ["request"]
+    monkeypatch.setattr(asyncio, "get_running_loop", lambda: loop)
+    connections.Deadline(transport, lambda: states[-1])
+    for _ in range(connections.CHECKS):
+        loop.timers.pop()()
+    assert not transport.is_aborted
+    states.append("answer read in part")
+    for _ in range(connections.CHECKS):
+        loop.timers.pop()()
+    assert not transport.is_aborted
+    loop.timers.pop()()
+    assert transport.is_aborted
+    assert loop.timers == []

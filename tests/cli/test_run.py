@@ -202,13 +202,14 @@ def test_a_station_shows_the_base_maps_of_its_sites_folder(tmp_path: Path) -> No
     folder = tmp_path / "field"
     make_site(folder, "field", GeoPoint(41.9015, -93.602, 275.0), drones=0)
     (folder / MAPS_FOLDER).mkdir()
-    keys = keys_over(FIELD, range(15, 17))
+    first, *keys = keys_over(FIELD, range(15, 17))
+    assert keys[0][0] == first[0] == 15
     write_mbtiles(folder / MAPS_FOLDER / "a.mbtiles", keys)
     with started("run", *FREE, "--site", str(folder), "--no-record") as recon:
         console = recon.line_with("console: http://127.0.0.1:").partition(": ")[2]
         with urllib.request.urlopen(f"{console}/api/maps", timeout=120) as response:
             (listed,) = json.load(response)["maps"]
-        # Without a boundary: of what is in reach, of which the file has a part.
+        # Without a boundary: of what is in reach, of which the file lacks one tile.
         assert (listed["name"], listed["covers"]["zoom"]) == ("a.mbtiles", 15)
         assert 0.0 < listed["covers"]["share"] < 1.0
         path = "/".join(str(number) for number in keys[-1])

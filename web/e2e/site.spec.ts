@@ -2,8 +2,11 @@ import { cp, mkdtemp, readFile, rm } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { expect, type Page, test } from "@playwright/test";
+import { axeFaults } from "./axe";
+import { smallTargets } from "./legibility";
 import { openPanel } from "./openPanel";
-import { DEMO_SITE, runRecon, startStation } from "./stationProcess";
+import { DEMO_SITE, startStation } from "./stationProcess";
+import { THEMES } from "./themes";
 
 const CONNECT_WITHIN_MS = 60_000;
 
@@ -29,14 +32,31 @@ test("a site is drawn and imported, flown, and its fences keep while it is flown
   page,
 }) => {
   test.setTimeout(240_000);
+  // As docs/how-to/draw-a-site.md begins: a folder with nothing in it.
   const folder = await mkdtemp(join(tmpdir(), "recon-site-"));
-  // As docs/how-to/draw-a-site.md begins.
-  const place = ["--at", "41.9012,-93.6034", "--ground-altitude-m", "275"];
-  await runRecon("site", "new", folder, ...place, "--drones", "2");
   const station = await startStation("--site", folder);
   try {
     await page.goto(station.url);
+    await test.step("a site is made where the field is", async () => {
+      await expect(page.getByRole("heading", { name: "Where is your field?" })).toBeVisible();
+      expect(await smallTargets(page)).toEqual([]);
+      for (const { name } of THEMES) {
+        await page.evaluate((theme) => {
+          document.documentElement.dataset["theme"] = theme;
+        }, name);
+        expect(await axeFaults(page)).toEqual([]);
+      }
+      await page.getByLabel("Name").fill("North field");
+      await page
+        .getByLabel("Read it from a file")
+        .setInputFiles({ name: "fields.kml", mimeType: "text/xml", buffer: Buffer.from(KML) });
+      await expect(page.getByLabel("latitude, longitude")).toHaveValue("41.9012000, -93.6034000");
+      await page.getByLabel(/^Ground altitude/).fill("275");
+      await page.getByLabel("Simulated drones").fill("2");
+      await page.getByRole("button", { name: "Make the site" }).click();
+    });
     await expect(page.locator("button.craft")).toHaveCount(2, { timeout: CONNECT_WITHIN_MS });
+    await expect(page.getByRole("banner").getByText("North field")).toBeVisible();
     await openPanel(page, "Edit site");
     const panel = page.getByRole("region", { name: "Edit site", exact: true });
     const save = panel.getByRole("button", { name: /^Save/ });

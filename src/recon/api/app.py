@@ -80,7 +80,7 @@ def create_app(
     add_zone_routes(app, port)
     add_replay_routes(app, replay)
     _add_console(app, console)
-    _add_errors_and_headers(app)
+    add_errors_and_headers(app)
     return app
 
 
@@ -161,7 +161,7 @@ def _add_console(app: FastAPI, console: Path | None) -> None:
         return HTMLResponse(CONSOLE_MISSING)
 
 
-def _add_errors_and_headers(app: FastAPI) -> None:
+def add_errors_and_headers(app: FastAPI) -> None:
     """Errors as one sentence, and headers that block foreign content."""
 
     @app.exception_handler(RequestValidationError)

@@ -23,7 +23,8 @@ PATIENCE_S = 10.0
 """A request of 1 MiB takes this long at 0.8 Mbit/s."""
 
 CHECKS = 10
-"""A wait is ended after a tenth of the patience more at the latest."""
+"""The patience is over when so many checks in a row find the same. Counted, not timed: a
+computer that stood still for a while has taken nothing from its peers either."""
 
 MAX_WAITING = 128
 """Connections without a request; the oldest gives way. A browser opens six."""
@@ -45,7 +46,7 @@ class Deadline:
         self._state = state
         self._loop = asyncio.get_running_loop()
         self._last: Hashable = None
-        self._since_s = self._loop.time()
+        self._found_same = 0
         self._timer = self._loop.call_later(PATIENCE_S / CHECKS, self._check)
 
     def cancel(self) -> None:
@@ -53,12 +54,14 @@ class Deadline:
         self._timer.cancel()
 
     def _check(self) -> None:
-        now_s, state = self._loop.time(), self._state()
+        state = self._state()
         if state is None or state != self._last:
-            self._last, self._since_s = state, now_s
-        elif now_s - self._since_s >= PATIENCE_S:
-            self._transport.abort()
-            return
+            self._last, self._found_same = state, 0
+        else:
+            self._found_same += 1
+            if self._found_same >= CHECKS:
+                self._transport.abort()
+                return
         self._timer = self._loop.call_later(PATIENCE_S / CHECKS, self._check)
 
 

@@ -21,6 +21,7 @@ from recon.score.scenario_sky import sky_of
 from recon.score.truth import world_text
 from recon.site import SiteError
 from recon.station.audit.start import default_place
+from recon.station.kernel.new_site import awaits_site, make_in_browser
 from recon.station.kernel.run import run
 from recon.station.kernel.run_config import RunConfig, Started
 
@@ -39,7 +40,10 @@ def demo_command(
     ] = None,
     site: Annotated[
         Path | None,
-        typer.Option(help="Your own site: its simulated drones wait there for your orders."),
+        typer.Option(
+            help="Your own site: its simulated drones wait there for your orders. An empty or "
+            "missing folder: a page of the console asks where the field is, and makes the site."
+        ),
     ] = None,
     survey: Annotated[
         bool, typer.Option("--survey/--no-survey", help="Fly surveys with a scripted operator.")
@@ -103,6 +107,8 @@ def _rehearse(
     try:
         if scenario is not None:
             raise ScenarioError("expected --site or --scenario, got both: a scenario has a site")
+        if awaits_site(folder):
+            http_port = _made_in_browser(folder, http_port)
         own = opened_site(folder)
         simulated = [serial for serial in own.profiles if serial.startswith(SIMULATED)]
         if not simulated:
@@ -126,6 +132,25 @@ def _rehearse(
     imager = ("--imager", "--fps", str(FPS_HZ)) if own.imagers else ("--no-imager",)
     words = ("--site", str(folder), "--vehicles", str(len(simulated)), "--seed", str(seed))
     run_in_loop(_Demo(config, (*words, *imager), None).run())
+
+
+def _made_in_browser(folder: Path, http_port: int) -> int:
+    """Let a site be made in the browser; return the port for its console."""
+    console = console_folder()
+    if console is None:
+        raise SiteError(
+            f"{folder} holds no site, and the console, which would make one, is not built; make "
+            f"the site with recon site new {folder} --at LAT,LON --ground-altitude-m METRES"
+        )
+    port = run_in_loop(make_in_browser(folder, http_port, console, _print_page))
+    if port is None:
+        raise typer.Exit(0)
+    return port
+
+
+def _print_page(url: str) -> None:
+    print_now(f"console: {url}")
+    print_now("Open it in a browser: it asks where the field is. Ctrl+C ends the demo.")
 
 
 def demo_scenario_file() -> Path:

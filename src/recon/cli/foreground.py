@@ -6,15 +6,17 @@ import signal
 from collections.abc import Coroutine
 from importlib import import_module
 from importlib.util import find_spec
-from typing import Any
+from typing import Any, TypeVar
+
+T = TypeVar("T")
 
 
-def run_in_loop(work: Coroutine[Any, Any, None]) -> None:
+def run_in_loop(work: Coroutine[Any, Any, T]) -> T:
     """Run to the end in a new event loop: uvloop's, or asyncio's where it is missing (Windows)."""
     if find_spec("uvloop") is None:
-        asyncio.run(work)
-    else:
-        import_module("uvloop").run(work)
+        return asyncio.run(work)
+    result: T = import_module("uvloop").run(work)
+    return result
 
 
 async def until_stopped(work: Coroutine[Any, Any, None], last_line: str) -> None:

@@ -16,6 +16,7 @@ from recon.api.schema.message import (
     Problem,
     StrictMessage,
 )
+from recon.api.schema.new_site import NewSiteRequest, NewSiteView
 from recon.api.schema.orders import (
     AlarmView,
     AuditEntryView,
@@ -192,6 +193,8 @@ __all__ = [
     "MapCoverageView",
     "Message",
     "MoveUpwindView",
+    "NewSiteRequest",
+    "NewSiteView",
     "OrderRequest",
     "OrderResponse",
     "OrderResult",

@@ -23,12 +23,35 @@ IMPORT_IS_BUSY = "Another file is being read; try again when it is done"
 
 
 @dataclass(slots=True)
+class FileImports:
+    """Files to import, one at a time: each takes a process with memory of its own."""
+
+    _reading: asyncio.Lock = field(default_factory=asyncio.Lock)
+
+    async def read(self, name: str, data: bytes) -> schema.ImportedView:
+        """Return the polygons and points of a file, or why it is refused."""
+        if self._reading.locked():
+            return schema.ImportedView(features=[], left_out=0, reason=IMPORT_IS_BUSY)
+        try:
+            async with self._reading:
+                found = await asyncio.to_thread(read_import, name, data)
+        except ReconError as problem:
+            return schema.ImportedView(features=[], left_out=0, reason=str(problem))
+        features = [
+            schema.ImportedFeatureView(
+                name=each.name, geometry=schema.DrawnGeometry.model_validate(each.geometry)
+            )
+            for each in found.features
+        ]
+        return schema.ImportedView(features=features, left_out=found.left_out, reason=None)
+
+
+@dataclass(slots=True)
 class SiteService:
     """The drawing of a site; an undo takes back the newest change of any kind."""
 
     edited: EditedSite
-    _reading: asyncio.Lock = field(default_factory=asyncio.Lock)
-    """Held while a file is imported: each takes a process with memory of its own."""
+    _imports: FileImports = field(default_factory=FileImports)
 
     async def drawing(self) -> schema.SiteDrawingView:
         """Return the layers in the folder."""
@@ -62,20 +85,7 @@ class SiteService:
 
     async def import_features(self, name: str, data: bytes) -> schema.ImportedView:
         """Return the polygons and points of a file, or why it is refused."""
-        if self._reading.locked():
-            return schema.ImportedView(features=[], left_out=0, reason=IMPORT_IS_BUSY)
-        try:
-            async with self._reading:
-                found = await asyncio.to_thread(read_import, name, data)
-        except ReconError as problem:
-            return schema.ImportedView(features=[], left_out=0, reason=str(problem))
-        features = [
-            schema.ImportedFeatureView(
-                name=each.name, geometry=schema.DrawnGeometry.model_validate(each.geometry)
-            )
-            for each in found.features
-        ]
-        return schema.ImportedView(features=features, left_out=found.left_out, reason=None)
+        return await self._imports.read(name, data)
 
     async def _view(self) -> schema.SiteDrawingView:
         read = await self.edited.read(read_drawing)

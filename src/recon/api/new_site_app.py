@@ -1,0 +1,70 @@
+"""The application of a folder without a site: one page that asks where the field is.
+
+It answers at the console's address before there is a station, and ends when the site is made.
+"""
+
+from pathlib import Path
+from typing import Annotated, Protocol
+
+from fastapi import Depends, FastAPI, Query, Request
+from fastapi.responses import RedirectResponse
+
+from recon.api import schema
+from recon.api.app import add_errors_and_headers
+from recon.api.console_files import ConsoleFiles
+from recon.api.permissions import require_listed_role
+
+PAGE = "new-site.html"
+
+
+class NewSitePort(Protocol):
+    """What the page needs."""
+
+    def about(self) -> schema.NewSiteView:
+        """Return the folder, and a name for the site."""
+        ...
+
+    async def import_features(self, name: str, data: bytes) -> schema.ImportedView:
+        """Return the polygons and points of a file, or why it is refused."""
+        ...
+
+    async def make(self, asked: schema.NewSiteRequest) -> schema.ActionResponse:
+        """Make the site, or return why not."""
+        ...
+
+
+def create_new_site_app(port: NewSitePort, console: Path, version: str) -> FastAPI:
+    """Return the application, to be put behind an `AccessCheck`."""
+    app = FastAPI(
+        title="Recon: a new site",
+        version=version,
+        openapi_url=None,
+        docs_url=None,
+        redoc_url=None,
+        dependencies=[Depends(require_listed_role)],
+    )
+
+    @app.get("/api/site/new")
+    async def about() -> schema.NewSiteView:
+        """The folder that waits for a site."""
+        return port.about()
+
+    @app.post("/api/site/import")
+    async def import_file(
+        request: Request, name: Annotated[str, Query(max_length=200)]
+    ) -> schema.ImportedView:
+        """Read polygons and points of a file, to find the field by. Nothing is saved."""
+        return await port.import_features(name, await request.body())
+
+    @app.post("/api/site/new")
+    async def make(asked: schema.NewSiteRequest) -> schema.ActionResponse:
+        """Make the site; the station begins then, at the same address."""
+        return await port.make(asked)
+
+    @app.get("/")
+    async def page() -> RedirectResponse:
+        return RedirectResponse(PAGE)
+
+    app.mount("/", ConsoleFiles(directory=console, html=True), name="console")
+    add_errors_and_headers(app)
+    return app
