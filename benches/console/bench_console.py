@@ -11,6 +11,8 @@ Prints a table beside the limits:
     first load         bytes of page, scripts and styles as sent
     stream             bytes a second of one reader, with changes and permessage-deflate
     heap               growth after collections; a track of ten minutes fills meanwhile
+    videos             the demonstration, which surveys under cloud with its shade maps, and two
+                       cameras in view: the imaging drone's and one of another drone
 
 The machine must be idle: its load is printed. Skips itself without a Chromium or a built console.
 """
@@ -32,7 +34,7 @@ from pathlib import Path
 
 import numpy as np
 from benches.console.browser import Browser, Page, find_chromium, running_browser
-from benches.station.bench_all_stop import PATIENCE_S, start_station, wait_until_flying
+from benches.station.bench_all_stop import PATIENCE_S, start_recon, start_station, wait_until_flying
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
@@ -49,6 +51,13 @@ P95_MS = {8: 150.0, 20: 200.0, 64: 400.0}
 FIRST_SCREEN_S = {8: 1.5, 64: 2.5}
 STREAM_KB_S = {10: 32.0, 64: 200.0}
 FIRST_LOAD_KB = 600.0
+VIDEOS_BUSY = 50.0
+"""Per cent of a core, of the main thread."""
+CAMERAS_OPEN = "localStorage.setItem('recon.panels', 'survey,cameras');"
+ALL_SHOWN = (
+    "document.querySelectorAll('.cameras img').length === 2 && document.querySelector('.time')"
+    " !== null"
+)
 HEAP_KB_MIN = 100.0
 """A third of it is the tracks of eight drones, which end with ten minutes."""
 TCP_INFO_BYTES = 192
@@ -116,37 +125,61 @@ def first_screens(browser: Browser, http_port: int, drones: int) -> tuple[float,
     return statistics.median(times_s), load_kb / 1e3
 
 
+PARTS = {"scripts": "ScriptDuration", "styles": "RecalcStyleDuration", "layout": "LayoutDuration"}
+
+
+def main_thread(page: Page, seconds: float) -> tuple[float, str]:
+    """Return for how much of some time the main thread is busy, per cent, and with what."""
+    before, began_s = page.metrics(), time.monotonic()
+    time.sleep(seconds)
+    after, took_s = page.metrics(), time.monotonic() - began_s
+
+    def busy(name: str) -> float:
+        return 100.0 * (after[name] - before[name]) / took_s
+
+    return busy("TaskDuration"), ", ".join(f"{part} {busy(PARTS[part]):.0f}" for part in PARTS)
+
+
 def frames(page: Page, drones: int, seconds: float) -> list[Row]:
     """Watch the states arrive and be shown for some time."""
     time.sleep(SETTLED_S)
     page.evaluate("reconProbe.received.length = reconProbe.painted.length = 0")
-    before, began_s = page.metrics(), time.monotonic()
-    time.sleep(seconds)
-    after, took_s = page.metrics(), time.monotonic() - began_s
+    began_s = time.monotonic()
+    busy, parts = main_thread(page, seconds)
+    took_s = time.monotonic() - began_s
     received, painted = page.evaluate("[reconProbe.received, reconProbe.painted]")
     receipt_ms = [at - stamp for stamp, at in received]
     shown_ms = [at - stamp for stamp, at in painted]
     p50, p95 = np.percentile(shown_ms, (50, 95))
-    busy = {
-        name: (after[name] - before[name]) / took_s
-        for name in ("TaskDuration", "ScriptDuration", "LayoutDuration", "RecalcStyleDuration")
-    }
-    parts = ", ".join(
-        f"{part} {100 * busy[name]:.0f}"
-        for part, name in (
-            ("scripts", "ScriptDuration"),
-            ("styles", "RecalcStyleDuration"),
-            ("layout", "LayoutDuration"),
-        )
-    )
     label = f"{drones} drones: "
     return [
         most(label + "stamp to frame, p50", p50, "ms", None),
         most(label + "stamp to frame, p95", p95, "ms", P95_MS.get(drones)),
         most(label + "stamp to receipt, p95", float(np.percentile(receipt_ms, 95)), "ms", None),
         most(label + "states shown a second", len(painted) / took_s, "", None),
-        Row(label + "main thread busy", f"{100 * busy['TaskDuration']:.0f} % ({parts})", "", True),
+        Row(label + "main thread busy", f"{busy:.0f} % ({parts})", "", True),
     ]
+
+
+def videos(program: str, seconds: float) -> Row:
+    """Return how busy the main thread is with the demonstration and two cameras in view."""
+    with ExitStack() as stack:
+        folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        station, link_port, http_port = start_recon(("demo", "--no-record"), folder, stack)
+        command = [sys.executable, "-m", "benches.console.moving_apps", str(link_port)]
+        words = ["--apps", "1", "--videos", "1"]
+        apps = subprocess.Popen([*command, *words], stdin=subprocess.PIPE)
+        stack.callback(apps.kill)
+        browser = stack.enter_context(running_browser(program))
+        page = browser.open(f"http://127.0.0.1:{http_port}/", CAMERAS_OPEN)
+        page.wait_for(ALL_SHOWN)
+        time.sleep(SETTLED_S)
+        busy, parts = main_thread(page, seconds)
+        station.terminate()
+        station.wait(PATIENCE_S)
+    limit = VIDEOS_BUSY
+    value = f"{busy:.0f} % ({parts})"
+    return Row("shade map and two videos: main thread busy", value, f"< {limit:g} %", busy < limit)
 
 
 def stream_kb_s(http_port: int) -> float:
@@ -196,6 +229,7 @@ def measure(program: str, drones: list[int], seconds: float, heap_minutes: float
                 rows.append(most("first load, compressed", load_kb, "kB", FIRST_LOAD_KB))
             if count == HEAP_DRONES and heap_minutes > 0:
                 rows.append(heap(page, heap_minutes))
+    rows.append(videos(program, seconds))
     for count in STREAM_DRONES:
         with flying(count) as http_port:
             rows.append(

@@ -2,8 +2,8 @@
 
     python -m benches.console.moving_apps LINK_PORT --apps 64
 
-Telemetry at its rates, with velocity and heading along the circle, so that the station believes it.
-Ends with its input.
+Telemetry at its rates, with velocity and heading along the circle, so that the station believes it;
+with `--videos N` the first N send pictures, five a second. Ends with its input.
 """
 
 import argparse
@@ -12,8 +12,9 @@ import math
 import sys
 import time
 
+import numpy as np
 import uvloop
-from benches.station.app_load import CONNECTING_S
+from benches.station.app_load import CONNECTING_S, IMAGE_COLS, IMAGE_PERIOD_S, IMAGE_ROWS
 from benches.station.stop_apps import StoppedApp
 
 from recon import wire
@@ -29,8 +30,8 @@ SPEED_MPS = 5.0
 class MovingApp(StoppedApp):
     """Flies a circle of its own in a square of so many drones."""
 
-    def __init__(self, number: int, apps: int) -> None:
-        super().__init__(number, None)
+    def __init__(self, number: int, apps: int, image: bytes | None) -> None:
+        super().__init__(number, image)
         self.serial = f"MOVE-{number:03d}".encode()
         side = math.ceil(math.sqrt(apps))
         row, col = divmod(number, side)
@@ -58,11 +59,21 @@ class MovingApp(StoppedApp):
         )
 
 
-async def fly_until_input_ends(link_port: int, apps: int) -> None:
+def field_packet() -> bytes:
+    """Return a raw picture with the smooth colours and the texture of a field."""
+    rows, cols = np.mgrid[0:IMAGE_ROWS, 0:IMAGE_COLS]
+    texture = np.random.default_rng(1).normal(0.0, 4.0, rows.shape)
+    green = 120.0 + 60.0 * np.sin(rows / 90.0) * np.cos(cols / 140.0) + texture
+    pixels = np.stack([0.7 * green, green, 0.5 * green], axis=-1).clip(0, 255).astype(np.uint8)
+    return wire.encode(wire.Image(target_fps_hz=1.0 / IMAGE_PERIOD_S, pixels=pixels))
+
+
+async def fly_until_input_ends(link_port: int, apps: int, videos: int) -> None:
     """Connect every app, then fly."""
     loop, flying = asyncio.get_running_loop(), list[MovingApp]()
+    image = field_packet() if videos else None
     for number in range(apps):
-        app = MovingApp(number, apps)
+        app = MovingApp(number, apps, image if number < videos else None)
         async with asyncio.timeout(CONNECTING_S):
             await loop.create_connection(lambda app=app: app, "127.0.0.1", link_port)
         flying.append(app)
@@ -76,8 +87,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("link_port", type=int)
     parser.add_argument("--apps", type=int, default=64)
+    parser.add_argument("--videos", type=int, default=0)
     asked = parser.parse_args()
-    uvloop.run(fly_until_input_ends(asked.link_port, asked.apps))
+    uvloop.run(fly_until_input_ends(asked.link_port, asked.apps, asked.videos))
 
 
 if __name__ == "__main__":

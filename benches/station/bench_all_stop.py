@@ -29,6 +29,7 @@ import sys
 import tempfile
 import threading
 import time
+from collections.abc import Sequence
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass, field
 from datetime import datetime
@@ -130,12 +131,19 @@ def middle_of(site: Path) -> GeoPoint:
 def start_station(
     folder: Path, records: bool, stack: ExitStack, site: Path | None = None
 ) -> tuple[subprocess.Popen[str], int, int]:
-    """Start `recon run`; its output goes into a file, as under a service manager."""
-    log = stack.enter_context((folder / "log").open("w+", encoding="utf-8"))
-    options = ["--link-port", "0", "--http-port", "0", "--site", str(site or demo_site_folder())]
+    """Start `recon run`; return its process, and its ports for apps and for the console."""
+    options = ["--site", str(site or demo_site_folder()), "--audit", str(folder / "audit")]
     options += ["--record", str(folder / "records")] if records else ["--no-record"]
+    return start_recon(("run", *options), folder, stack)
+
+
+def start_recon(
+    words: Sequence[str], folder: Path, stack: ExitStack
+) -> tuple[subprocess.Popen[str], int, int]:
+    """Start a station on free ports; its output goes into a file, as under a service manager."""
+    log = stack.enter_context((folder / "log").open("w+", encoding="utf-8"))
     process = subprocess.Popen(
-        [sys.executable, "-m", "recon", "run", *options, "--audit", str(folder / "audit")],
+        [sys.executable, "-m", "recon", *words, "--link-port", "0", "--http-port", "0"],
         stdout=log,
         stderr=subprocess.STDOUT,
         text=True,
@@ -146,9 +154,9 @@ def start_station(
         if process.poll() is not None or time.monotonic() > end_s:
             raise RuntimeError(f"expected a station, got: {said}")
         time.sleep(0.05)
-    words = dict(line.split(": ", 1) for line in said.splitlines() if ": " in line)
-    link_port = int(words["companion apps"].rpartition(":")[2])
-    return process, link_port, int(words["console"].rpartition(":")[2])
+    facts = dict(line.split(": ", 1) for line in said.splitlines() if ": " in line)
+    link_port = int(facts["companion apps"].rpartition(":")[2])
+    return process, link_port, int(facts["console"].rpartition(":")[2])
 
 
 def start_apps(

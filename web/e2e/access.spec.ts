@@ -22,6 +22,7 @@ const SIZES = [
 const PANELS = [
   "Alarms",
   "Survey",
+  "Cameras",
   "Imaging drone",
   "Temporary zones",
   "Edit site",
@@ -62,7 +63,13 @@ function fullState(): StationState {
     vehicles: [
       ...surveyed.vehicles,
       vehicle(5, { ...busy.vehicles[4], number: 5 }),
-      vehicle(6, { ...fenced.vehicles[2], number: 6, serial: "SN-006", name: "Fir" }),
+      vehicle(6, {
+        ...fenced.vehicles[2],
+        number: 6,
+        serial: "SN-006",
+        name: "Fir",
+        frame: busy.vehicles[0]?.frame ?? null,
+      }),
     ],
     links: [...busy.links, WAITING],
     alarms: busy.alarms,
@@ -168,6 +175,16 @@ for (const size of SIZES) {
       }
       if (panel === "Calibrate camera") await markOnePoint(page);
       await check(panel);
+      if (panel === "Cameras") {
+        await page
+          .getByRole("button", { name: /^Enlarge the picture/ })
+          .first()
+          .click();
+        await expect(page.getByRole("region", { name: /^Camera of/ })).toBeVisible();
+        await check("A large picture");
+        await page.keyboard.press("Escape");
+        await expect(page.getByRole("region", { name: /^Camera of/ })).toHaveCount(0);
+      }
       await panels.getByRole("button", { name: /^Close ./ }).click();
     }
     await page.getByRole("button", { name: "Menu", exact: true }).click();

@@ -8,6 +8,7 @@ import { AlarmList } from "./panels/alarms/AlarmList";
 import { SilenceBanner } from "./panels/alarms/SoundControls";
 import { ConnectionBanner } from "./panels/bar/ConnectionBanner";
 import { TopBar } from "./panels/bar/TopBar";
+import { CamerasPanel, LargeCamera } from "./panels/cameras/CamerasPanel";
 import { CommandList } from "./panels/commands/CommandList";
 import { VehicleDetail } from "./panels/detail/VehicleDetail";
 import { FlightsPanel } from "./panels/flights/FlightsPanel";
@@ -39,6 +40,7 @@ const PANELS: readonly (readonly [PanelName, () => ReturnType<typeof AlarmList>]
   ["vehicle", VehicleDetail],
   ["alarms", AlarmList],
   ["survey", SurveyPanel],
+  ["cameras", CamerasPanel],
   ["sun", SunPanel],
   ["zones", ZonesPanel],
   ["site", SitePanel],
@@ -56,7 +58,7 @@ const PANELS: readonly (readonly [PanelName, () => ReturnType<typeof AlarmList>]
 export function App() {
   const { source, fleet, selection, orderApi, theme, fit, flyHere, zoneDraft, panels } =
     useConsole();
-  const { siteDraft, isReplay } = useConsole();
+  const { siteDraft, isReplay, largeCamera } = useConsole();
   const [isHelpOpen, setHelpOpen] = createSignal(false);
   const keys = () => fleet.vehicles.map(vehicleKey);
   const select = (key: number, action: (key: number) => void) => {
@@ -65,7 +67,8 @@ export function App() {
 
   const clear = () => {
     if (isHelpOpen()) setHelpOpen(false);
-    else if (!siteDraft.clear() && !zoneDraft.clear() && !flyHere.clear()) selection.clear();
+    else if (!siteDraft.clear() && !zoneDraft.clear() && !flyHere.clear() && !largeCamera.clear())
+      selection.clear();
   };
 
   onMount(() => {
@@ -140,6 +143,7 @@ export function App() {
           <SurveySummary />
         </Show>
       </aside>
+      <LargeCamera />
       <TimeScale />
       <ReplayBar />
       <LoginDialog />

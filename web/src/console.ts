@@ -16,6 +16,7 @@ import { createFlyHere, type FlyHere } from "./orders/flyHere";
 import { createOrderApi, type OrderApi } from "./orders/orderApi";
 import { type Targets, targetsOf } from "./orders/targets";
 import { createZoneDraft, type ZoneDraft } from "./orders/zoneDraft";
+import { createLargeCamera, type LargeCamera } from "./panels/cameras/largeCamera";
 import type { OpenPanels } from "./panels/openPanels";
 import type { ReplayView, SurveyView } from "./protocol";
 import { type Calibration, createCalibration } from "./site/calibration";
@@ -62,6 +63,7 @@ export interface Console {
   readonly baseMaps: BaseMaps;
   readonly theme: ThemeSwitch;
   readonly panels: OpenPanels;
+  readonly largeCamera: LargeCamera;
   readonly alarmSound: AlarmSound;
   readonly login: Login;
   /** Where a replay stands; null on a live station. */
@@ -176,6 +178,7 @@ export function createConsole(
     baseMaps: createBaseMaps(source, kept),
     theme,
     panels,
+    largeCamera: createLargeCamera(),
     alarmSound: createAlarmSound(source, isReplay, now, sound.mutes, sound.speaker),
     login,
     replay,

@@ -5,6 +5,7 @@ export const PANEL_NAMES = {
   vehicle: "Vehicle details",
   alarms: "Alarms",
   survey: "Survey",
+  cameras: "Cameras",
   sun: "Imaging drone",
   zones: "Temporary zones",
   site: "Edit site",
