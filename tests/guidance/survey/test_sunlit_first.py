@@ -220,7 +220,8 @@ class TestDecisions:
         state, missions = decided(sun, on_ground)
         assert missions == ()
         assert "waits on the ground: sun is expected" in state.decisions["S-1"].text
-        later = forecast(lambda _east, _north, lead: lead >= 80.0, now_s=120.0)
+        # The north stays in shade, so that no round is flown.
+        later = forecast(lambda _east, north, lead: (lead >= 80.0) & (north < 120.0), now_s=120.0)
         _, (mission,) = decided(later, on_ground, state=state, now_s=120.0)
         assert mission.stands_by
 
@@ -282,6 +283,20 @@ class TestDecisions:
         assert all(np.hypot(a[0] - b[0], a[1] - b[1]) > 40.0 for a, b in combinations(begins_m, 2))
         flown = [flown_rows(state, each.serial) for each in fleet]
         assert len({rows[-1] > rows[0] for rows in flown}) == 1
+
+    @pytest.mark.parametrize(("lit_from_s", "is_round"), [(100.0, True), (600.0, False)])
+    def test_a_round_is_flown_that_passes_most_ground_in_sun(
+        self, lit_from_s: float, is_round: bool
+    ) -> None:
+        """The north lies in shade at first: for good, or until two vehicles from the south come."""
+        sun = forecast(lambda _east, north, lead: (north < 100.0) | (lead >= lit_from_s))
+        places = Surveyor("S-1", (0.0, -40.0)), Surveyor("S-2", (0.0, -60.0))
+        state, missions = decided(sun, *places)
+        rows = {row for each in places for row in flown_rows(state, each.serial)}
+        assert (rows == {piece.row for piece in PLAN.pieces}) == is_round
+        assert len(missions) == 2
+        texts = [each.text for each in state.decisions.values()]
+        assert all(text.endswith("expected in sun") for text in texts) == is_round
 
     @pytest.mark.parametrize(("height_m", "steps_aside"), [(61.0, True), (68.0, False)])
     def test_one_that_waits_leaves_the_height_of_the_rows(

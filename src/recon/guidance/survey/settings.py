@@ -138,8 +138,9 @@ class SurveySettings:
     """With this mean probability of sun for as long as is planned, nothing is gained by choosing:
     a share is flown row by row."""
 
-    clear_now_from: float = 0.9
-    """With this one now on each segment that is missing, too, rows are shared as in a round."""
+    round_from: float = 0.6
+    """With this share of the missing ground expected in sun when a round would pass it, the round is
+    flown: choosing takes longer than it gains."""
 
     share_worth: float = 0.15
     """Of a share's missing ground that must be expected in sun; else its vehicle helps others."""

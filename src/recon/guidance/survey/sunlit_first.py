@@ -15,7 +15,8 @@ once. One call of `sunlit_first`:
    there until it is time to take off. If nothing is expected in sun, it waits where it is.
 6. One that would wait returns to home instead if a change of battery costs less sun now than later.
    One that waits at the rows' height climbs or sinks to its layer first, out of others' rows.
-7. If no vehicle is busy and all is in sun throughout, rows are shared as in a round.
+7. If no vehicle is busy and a round of the lawnmower would image most of what is missing in sun, by
+   the forecast at the moments at which it would pass, that round is flown: choosing takes longer.
 
 Each decision leaves a sentence. What a forecast does not know is its prior, so flights over ground
 whose light is unknown are worth something, and rows in shade are flown when nothing else is left:
@@ -89,27 +90,31 @@ def sunlit_first(
     if expected is None:
         return _in_any_light(state, positions, now_ns)
     state = replace(state, waiting=NO_ROUTES, round=max(1, state.round), reason="under way")
-    rows = _clear_rows(state, segments, expected, idle) if len(idle) == len(able) else {}
+    choices = [
+        _Choice(state, segments, expected, tuple(able.values()), each, now_ns) for each in idle
+    ]
+    rows = _round_in_sun(choices) if len(idle) == len(able) else {}
     missions: list[MissionAssignment] = []
-    for surveyor in idle:
-        choice = _Choice(state, segments, expected, tuple(able.values()), surveyor, now_ns)
-        own = rows.get(surveyor.serial)
+    for each in choices:
+        choice = replace(each, state=state)
+        own = rows.get(choice.surveyor.serial)
         state, mission = choice.made() if own is None else choice.flies_all(own)
         missions += mission
     return state, tuple(missions)
 
 
-def _clear_rows(
-    state: SurveyState, segments: Segments, expected: ExpectedSun, idle: Sequence[Surveyor]
-) -> Mapping[str, Route]:
-    """Return each vehicle's rows of all that is missing if it is in sun throughout, else none."""
+def _round_in_sun(choices: Sequence["_Choice"]) -> Mapping[str, Route]:
+    """Return each vehicle's rows in a round over all that is missing, none if too little of it is
+    expected in sun when they pass."""
+    state, segments, expected = choices[0].state, choices[0].segments, choices[0].expected
     is_free = (expected.missing_m2 > 0.0) & ~segments.under(_just_flown(state))
-    settings = state.plan.settings
-    if not is_free.any() or not expected.is_clear(is_free, settings.clear_from):
+    if not is_free.any():
         return {}
-    if expected.probability[is_free, 0].min() < settings.clear_now_from:
-        return {}
-    return shares(state.plan, _pieces(state, segments, is_free), idle)
+    surveyors = [each.surveyor for each in choices]
+    rows = shares(state.plan, _pieces(state, segments, is_free), surveyors)
+    lit_m2 = sum(each.lit_m2(rows.get(each.surveyor.serial, ())) for each in choices)
+    missing_m2 = float(expected.missing_m2[is_free].sum())
+    return rows if lit_m2 >= state.plan.settings.round_from * missing_m2 else {}
 
 
 def _just_flown(state: SurveyState) -> list[RowLeg]:
@@ -243,15 +248,46 @@ class _Choice:
         return reversed_route(route) if is_against else route
 
     def flies_all(self, route: Route) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
-        """Fly these rows, which are in sun throughout."""
+        """Fly these rows one after the other: most of their ground is in sun by then."""
         rows = sorted({leg.piece.row + 1 for leg in route})
-        return self._flies(route, f"flies rows {rows[0]} to {rows[-1]}: in sun throughout")
+        missing_m2 = self.expected.missing_m2[self.segments.under(route)].sum()
+        sun = min(1.0, self.lit_m2(route) / max(float(missing_m2), 1.0))
+        return self._flies(route, f"flies rows {rows[0]} to {rows[-1]}: {sun:.0%} expected in sun")
 
     def _best(self, share: BoolArray) -> Flight:
         search = Search(
             self.segments, self.expected, share, self.plan.lattice, self._pace, self.settings
         )
         return search.best(self._along_across_m(self.surveyor.place_m), self._starts_s)
+
+    def lit_m2(self, route: Route) -> float:
+        """The missing ground of a route's rows that is expected in sun when it is flown."""
+        pace, lattice = self._pace, self.plan.lattice
+        at_s, place_m = self._starts_s, self._along_across_m(self.surveyor.place_m)
+        lit_m2 = 0.0
+        for leg in route:
+            start_m, end_m = leg.ends_m(lattice, 0.0)
+            at_s += hypot(start_m[0] - place_m[0], start_m[1] - place_m[1]) / pace.speed_mps
+            at_s += pace.stop_s
+            lit_m2 += self._lit_on_m2(leg, at_s)
+            at_s += leg.piece.length_m / pace.speed_mps + pace.stop_s
+            place_m = end_m
+        return lit_m2
+
+    def _lit_on_m2(self, leg: RowLeg, from_s: float) -> float:
+        """What `lit_m2` counts on one leg that begins then."""
+        expected, moment_s = self.expected, self.settings.moment_s
+        piece, lit_m2 = leg.piece, 0.0
+        for number in np.flatnonzero(self.segments.under([leg])).tolist():
+            part = self.segments.parts[number]
+            start_m, end_m = max(piece.start_m, part.start_m), min(piece.end_m, part.end_m)
+            middle_m = (start_m + end_m) / 2.0
+            on_m = piece.end_m - middle_m if leg.is_reversed else middle_m - piece.start_m
+            moment = round((from_s + on_m / self._pace.speed_mps) / moment_s)
+            sun = expected.probability[number, min(moment, len(expected.moments_s) - 1)]
+            on_it_m2 = expected.missing_m2[number] * (end_m - start_m) / part.length_m
+            lit_m2 += float(on_it_m2 * sun)
+        return lit_m2
 
     @property
     def _pace(self) -> Pace:

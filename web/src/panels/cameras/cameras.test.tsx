@@ -48,7 +48,7 @@ async function receive(...vehicles: VehicleView[]) {
 }
 
 describe("the cameras", () => {
-  it("are none, with what to do", () => {
+  it("are missing at first, and the panel states what to do", () => {
     expect(page.root.textContent).toContain("No camera sends pictures. Select a vehicle");
   });
 
