@@ -94,6 +94,12 @@ class ExpectedSun:
     probability: FloatArray
     moments_s: FloatArray
 
+    def at(self, segment: int, at_s: float) -> float:
+        """Return the probability at the nearest moment; beyond the last one it stays."""
+        step_s = float(self.moments_s[1] - self.moments_s[0])
+        moment = min(len(self.moments_s) - 1, round(at_s / step_s))
+        return float(self.probability[segment, moment])
+
     def is_clear(self, chosen: BoolArray, least: float) -> bool:
         """Return whether the mean probability over the chosen (S,) missing ground reaches it."""
         missing_m2 = np.where(chosen, self.missing_m2, 0.0)

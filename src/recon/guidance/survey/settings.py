@@ -139,8 +139,8 @@ class SurveySettings:
     a share is flown row by row."""
 
     round_from: float = 0.6
-    """With this share of the missing ground expected in sun when a round would pass it, the round is
-    flown: choosing takes longer than it gains."""
+    """With this share of the missing ground expected in sun when a round would pass it, the round
+    is flown: choosing takes longer than it gains."""
 
     share_worth: float = 0.15
     """Of a share's missing ground that must be expected in sun; else its vehicle helps others."""

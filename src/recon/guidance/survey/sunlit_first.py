@@ -32,6 +32,7 @@ from types import MappingProxyType
 import numpy as np
 
 from recon.guidance.survey.cells import BoolArray
+from recon.guidance.survey.passing import Passing, passing
 from recon.guidance.survey.plan import SurveyPlan
 from recon.guidance.survey.rounds import (
     Step,
@@ -104,17 +105,24 @@ def sunlit_first(
 
 
 def _round_in_sun(choices: Sequence["_Choice"]) -> Mapping[str, Route]:
-    """Return each vehicle's rows in a round over all that is missing, none if too little of it is
-    expected in sun when they pass."""
+    """Return each vehicle's rows in a round over all that is missing, if most of it is expected in
+    sun when they pass, and waiting does not bring more into sun than is flown meanwhile."""
     state, segments, expected = choices[0].state, choices[0].segments, choices[0].expected
     is_free = (expected.missing_m2 > 0.0) & ~segments.under(_just_flown(state))
     if not is_free.any():
         return {}
-    surveyors = [each.surveyor for each in choices]
+    settings, surveyors = state.plan.settings, [each.surveyor for each in choices]
     rows = shares(state.plan, _pieces(state, segments, is_free), surveyors)
-    lit_m2 = sum(each.lit_m2(rows.get(each.surveyor.serial, ())) for each in choices)
+    passed = [each.passing(rows.get(each.surveyor.serial, ())) for each in choices]
+    lit_m2 = sum(each.lit_m2(expected) for each in passed)
     missing_m2 = float(expected.missing_m2[is_free].sum())
-    return rows if lit_m2 >= state.plan.settings.round_from * missing_m2 else {}
+    flown_m2ps = settings.expected_rate * missing_m2 / max(each.ends_s for each in passed)
+    gained_by_waiting = any(
+        sum(each.lit_m2(expected, wait_s) for each in passed) - lit_m2 > wait_s * flown_m2ps
+        for wait_s in expected.moments_s.tolist()
+    )
+    is_worth = lit_m2 >= settings.round_from * missing_m2 and not gained_by_waiting
+    return rows if is_worth else {}
 
 
 def _just_flown(state: SurveyState) -> list[RowLeg]:
@@ -250,8 +258,9 @@ class _Choice:
     def flies_all(self, route: Route) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
         """Fly these rows one after the other: most of their ground is in sun by then."""
         rows = sorted({leg.piece.row + 1 for leg in route})
-        missing_m2 = self.expected.missing_m2[self.segments.under(route)].sum()
-        sun = min(1.0, self.lit_m2(route) / max(float(missing_m2), 1.0))
+        passed = self.passing(route)
+        missing_m2 = sum(each.missing_m2 for each in passed.passes)
+        sun = passed.lit_m2(self.expected) / max(missing_m2, 1.0)
         return self._flies(route, f"flies rows {rows[0]} to {rows[-1]}: {sun:.0%} expected in sun")
 
     def _best(self, share: BoolArray) -> Flight:
@@ -260,34 +269,11 @@ class _Choice:
         )
         return search.best(self._along_across_m(self.surveyor.place_m), self._starts_s)
 
-    def lit_m2(self, route: Route) -> float:
-        """The missing ground of a route's rows that is expected in sun when it is flown."""
-        pace, lattice = self._pace, self.plan.lattice
-        at_s, place_m = self._starts_s, self._along_across_m(self.surveyor.place_m)
-        lit_m2 = 0.0
-        for leg in route:
-            start_m, end_m = leg.ends_m(lattice, 0.0)
-            at_s += hypot(start_m[0] - place_m[0], start_m[1] - place_m[1]) / pace.speed_mps
-            at_s += pace.stop_s
-            lit_m2 += self._lit_on_m2(leg, at_s)
-            at_s += leg.piece.length_m / pace.speed_mps + pace.stop_s
-            place_m = end_m
-        return lit_m2
-
-    def _lit_on_m2(self, leg: RowLeg, from_s: float) -> float:
-        """What `lit_m2` counts on one leg that begins then."""
-        expected, moment_s = self.expected, self.settings.moment_s
-        piece, lit_m2 = leg.piece, 0.0
-        for number in np.flatnonzero(self.segments.under([leg])).tolist():
-            part = self.segments.parts[number]
-            start_m, end_m = max(piece.start_m, part.start_m), min(piece.end_m, part.end_m)
-            middle_m = (start_m + end_m) / 2.0
-            on_m = piece.end_m - middle_m if leg.is_reversed else middle_m - piece.start_m
-            moment = round((from_s + on_m / self._pace.speed_mps) / moment_s)
-            sun = expected.probability[number, min(moment, len(expected.moments_s) - 1)]
-            on_it_m2 = expected.missing_m2[number] * (end_m - start_m) / part.length_m
-            lit_m2 += float(on_it_m2 * sun)
-        return lit_m2
+    def passing(self, route: Route) -> Passing:
+        """When it passes the rows of a route."""
+        start_m = self._along_across_m(self.surveyor.place_m)
+        segments, lattice = self.segments, self.plan.lattice
+        return passing(route, segments, self.expected, lattice, self._pace, start_m, self._starts_s)
 
     @property
     def _pace(self) -> Pace:
