@@ -30,8 +30,8 @@ from recon.guidance.survey import (
     start,
     step,
 )
+from recon.guidance.survey.own_share import finished_together_s
 from recon.guidance.survey.segments import NONE, expected_sun, segments_of
-from recon.guidance.survey.sunlit_first import finished_together_s
 from recon.model.geo import GroundGrid
 from recon.model.shade import ShadeMap, SunForecast
 from recon.model.survey import CellState, MissionAssignment, SurveyBudget, SurveyPhase, WhenDone

@@ -32,6 +32,7 @@ from types import MappingProxyType
 import numpy as np
 
 from recon.guidance.survey.cells import BoolArray
+from recon.guidance.survey.own_share import own_share
 from recon.guidance.survey.passing import Passing, passing
 from recon.guidance.survey.plan import SurveyPlan
 from recon.guidance.survey.rounds import (
@@ -68,7 +69,7 @@ from recon.guidance.survey.state import (
 )
 from recon.model.shade import SunForecast
 from recon.model.survey import CellState, MissionAssignment, SurveyPhase, WhenDone
-from recon.model.units import ns_to_seconds, seconds_to_ns
+from recon.model.units import seconds_to_ns
 
 WANTED = CellState.IN_SUN
 
@@ -213,7 +214,10 @@ class _Choice:
 
     def _share(self, free: BoolArray) -> BoolArray:
         """(S,): the free segments of its own share; all free ones where its share has no sun."""
-        share = free & self._own_share(free)
+        state = self.state
+        share = own_share(
+            self.surveyor, self.able, state.flights, free, self.expected, self.plan, self.now_ns
+        )
         missing_m2 = np.where(share, self.expected.missing_m2, 0.0)
         lit_m2 = float(missing_m2 @ self.expected.probability.max(axis=1))
         is_worth = lit_m2 > self.settings.share_worth * missing_m2.sum()
@@ -287,32 +291,6 @@ class _Choice:
             return self.settings.start_s
         climb_s = self.plan.survey.height_above_takeoff_m / self.settings.climb_mps
         return self.settings.start_s + self.settings.takeoff_s + climb_s
-
-    def _own_share(self, free: BoolArray) -> BoolArray:
-        """(S,): the vehicle's part of the free segments, by row and along, so that all vehicles
-        would finish together; in the order in which they, or their missions' ends, lie across."""
-        across_m = {each.serial: self._next_across_m(each) for each in self.able}
-        order = sorted(across_m, key=lambda serial: (across_m[serial], serial))
-        rate = self._pace.speed_mps * self.plan.lattice.spacing_m
-        lit = np.maximum(self.settings.least_worth, self.expected.probability.max(axis=1))
-        work_s = np.where(free, self.expected.missing_m2 * lit, 0.0) / rate
-        done_s = np.cumsum(work_s)
-        busy_s = np.array([self._busy_s(serial) for serial in order])
-        share_s = np.maximum(0.0, finished_together_s(busy_s, float(done_s[-1])) - busy_s)
-        until_s = np.cumsum(share_s)
-        own = order.index(self.surveyor.serial)
-        middle_s = done_s - work_s / 2.0
-        is_own: BoolArray = (middle_s <= until_s[own]) & (middle_s >= until_s[own] - share_s[own])
-        return is_own
-
-    def _next_across_m(self, surveyor: Surveyor) -> float:
-        flight = self.state.flights.get(surveyor.serial)
-        place_m = surveyor.place_m if flight is None else flight.corners_m[-1]
-        return self._along_across_m(place_m)[1]
-
-    def _busy_s(self, serial: str) -> float:
-        flight = self.state.flights.get(serial)
-        return 0.0 if flight is None else max(0.0, ns_to_seconds(flight.ends_at_ns - self.now_ns))
 
     def _along_across_m(self, place_m: Place) -> Place:
         ((along_m, across_m),) = self.plan.lattice.along_across_m([place_m]).tolist()
@@ -405,17 +383,6 @@ def _direction(route: Route) -> int:
     """1 if it leads to higher rows, -1 to lower ones, 0 neither."""
     rows = (route[-1].piece.row - route[0].piece.row) if route else 0
     return (rows > 0) - (rows < 0)
-
-
-def finished_together_s(busy_s: np.ndarray, work_s: float) -> float:
-    """Return when vehicles that are busy for (N,) seconds finish so much work together, if each
-    takes its part as soon as it can."""
-    ordered = np.sort(busy_s)
-    for count in range(1, len(ordered)):
-        together_s = (work_s + float(ordered[:count].sum())) / count
-        if together_s <= ordered[count]:
-            return together_s
-    return (work_s + float(ordered.sum())) / len(ordered)
 
 
 def flown_text(legs: Sequence[PlannedLeg]) -> str:
