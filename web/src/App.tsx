@@ -34,6 +34,7 @@ import { TimeScale } from "./panels/time/TimeScale";
 import { TimelinePanel } from "./panels/timeline/TimelinePanel";
 import { VehicleList } from "./panels/vehicles/VehicleList";
 import { ZonesPanel } from "./panels/zones/ZonesPanel";
+import { text } from "./text/catalogue";
 import "./layout.css";
 
 const PANELS: readonly (readonly [PanelName, () => ReturnType<typeof AlarmList>])[] = [
@@ -124,14 +125,14 @@ export function App() {
         <SeparationBanner />
         <AnswerNotice />
       </div>
-      <aside class="dock dock-left" aria-label="Vehicles">
+      <aside class="dock dock-left" aria-label={text.page.vehicles}>
         <VehicleList />
         <Show when={!isReplay()}>
           <FlyHereCard />
           <OrderBar />
         </Show>
       </aside>
-      <aside class="dock dock-right" aria-label="Panels">
+      <aside class="dock dock-right" aria-label={text.page.panels}>
         <For each={PANELS}>
           {([name, panel]) => (
             <Show when={panels.isOpen(name)}>

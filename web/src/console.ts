@@ -28,6 +28,7 @@ import type { Speaker } from "./sound/speaker";
 import type { Clock, Instant } from "./source/clock";
 import { lacking, type Role } from "./source/roles";
 import type { StationSource } from "./source/stationSource";
+import { text } from "./text/catalogue";
 import type { ThemeSwitch } from "./theme/theme";
 
 /** The login of this page. */
@@ -91,9 +92,6 @@ export interface Console {
 export interface MapCentre extends LonLat {
   readonly width_m: number;
 }
-
-/** Why nothing can be ordered in a replay. */
-const NO_ORDERS = "This is a replay: no orders are possible";
 
 const ACTIVE: readonly SurveyView["phase"][] = ["running", "paused"];
 
@@ -183,7 +181,7 @@ export function createConsole(
     login,
     replay,
     isReplay,
-    lacks: (needed) => (isReplay() ? NO_ORDERS : lacking(source.person(), needed)),
+    lacks: (needed) => (isReplay() ? text.page.noOrdersInReplay : lacking(source.person(), needed)),
     behindS,
     fitRequests,
     fit: () => setFitRequests((count) => count + 1),

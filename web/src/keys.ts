@@ -1,30 +1,5 @@
 import { isEditingNumber, isTyping } from "./panels/orders/shortcuts";
 
-/** Keyboard shortcuts as listed in the help. */
-export const SHORTCUTS: readonly { readonly keys: string; readonly action: string }[] = [
-  { keys: "Shift + S", action: "ALL STOP: all flying vehicles hold position" },
-  { keys: "Alt + Shift + S", action: "ALL STOP from everywhere, also while typing text" },
-  { keys: "Shift + H", action: "Hover the selected vehicles" },
-  { keys: "Hold Shift + R", action: "Return the selected vehicles home (1.5 s)" },
-  { keys: "Hold Shift + L", action: "Land the selected vehicles (1.5 s)" },
-  { keys: "1 to 9", action: "Select only that vehicle" },
-  { keys: "Shift + 1 to 9", action: "Add that vehicle to the selection, or remove it" },
-  { keys: "Ctrl + A", action: "Select all vehicles" },
-  { keys: "G", action: "Fly here: set a target on the map for the selected vehicle" },
-  { keys: "D", action: "Details of the selected vehicle" },
-  { keys: "Z", action: "Draw a temporary zone on the map: a person, a tractor, a crewed aircraft" },
-  {
-    keys: "Esc",
-    action:
-      "Clear the target or the drawn zone, leave the mode, clear the selection; cancels a held order",
-  },
-  { keys: "Ctrl + Z, Ctrl + Y", action: "Undo or redo an edit of the site" },
-  { keys: "F", action: "Show everything on the map" },
-  { keys: "T", action: "High contrast for bright sun, on or off" },
-  { keys: "Space", action: "Play or pause a replay" },
-  { keys: "?", action: "Show this help" },
-];
-
 /** Actions bound to keys. */
 export interface KeyActions {
   selectOnly(number: number): void;

@@ -11,6 +11,7 @@ import { browserClock } from "./source/clock";
 import { browserFrame } from "./source/framePacer";
 import { LiveSource } from "./source/liveSource";
 import { keepToken, takeLogin } from "./source/login";
+import { language } from "./text/catalogue";
 import { keepLengthUnit } from "./text/units";
 import { createThemeSwitch } from "./theme/theme";
 
@@ -62,6 +63,7 @@ function Page() {
   );
 }
 
+document.documentElement.lang = language;
 const root = document.getElementById("app");
 if (root === null) throw new Error("index.html has no element with id app.");
 render(() => <Page />, root);

@@ -1,4 +1,5 @@
 import { createUniqueId, type JSX, Show } from "solid-js";
+import { text } from "../text/catalogue";
 import "./panel.css";
 import { useConsole } from "../console";
 import type { PanelName } from "./openPanels";
@@ -31,7 +32,7 @@ export function Panel(props: {
             <button
               type="button"
               class="button button-quiet"
-              aria-label={`Close ${props.title}`}
+              aria-label={text.panels.close(props.title)}
               onClick={() => panels.close(name())}
             >
               ✕
@@ -49,7 +50,7 @@ export function Empty(props: { children: JSX.Element }) {
   const { fleet } = useConsole();
   return (
     <p class="panel-empty">
-      <Show when={fleet.hasState} fallback="No data from the station yet.">
+      <Show when={fleet.hasState} fallback={text.panels.noData}>
         {props.children}
       </Show>
     </p>
@@ -60,12 +61,12 @@ export function Empty(props: { children: JSX.Element }) {
 export function Problem(props: { text: string | null }) {
   return (
     <Show when={props.text}>
-      {(text) => (
+      {(problem) => (
         <p class="problem wire-text" role="status">
           <span class="tone-error">
             <SeverityMark severity="error" />
           </span>
-          <span>{text()}</span>
+          <span>{problem()}</span>
         </p>
       )}
     </Show>

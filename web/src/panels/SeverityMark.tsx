@@ -1,11 +1,12 @@
 import { Match, Switch } from "solid-js";
 import type { Severity } from "../protocol";
-import { SEVERITY_NAMES } from "../text/names";
+import { text } from "../text/catalogue";
 
 /** A severity as a shape: octagon, diamond, triangle, disc; a tick for none. */
 export function SeverityMark(props: { severity: Severity | null; size?: number }) {
   const size = () => props.size ?? 22;
-  const name = () => (props.severity === null ? "OK" : SEVERITY_NAMES[props.severity]);
+  const name = () =>
+    props.severity === null ? text.severity.ok : text.severity.names[props.severity];
   return (
     <svg
       class="mark"

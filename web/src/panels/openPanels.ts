@@ -1,27 +1,26 @@
 import { type Accessor, createSignal } from "solid-js";
 
 /** The panels that open over the map, in the order in which they stand. */
-export const PANEL_NAMES = {
-  vehicle: "Vehicle details",
-  alarms: "Alarms",
-  survey: "Survey",
-  cameras: "Cameras",
-  sun: "Imaging drone",
-  zones: "Temporary zones",
-  site: "Edit site",
-  vehicles: "Site vehicles",
-  calibration: "Calibrate camera",
-  return: "Return in layers",
-  orders: "Orders",
-  timeline: "Timeline",
-  links: "Links",
-  flights: "After the flight",
-  station: "Station and site",
-} as const;
+export const PANEL_NAMES = [
+  "vehicle",
+  "alarms",
+  "survey",
+  "cameras",
+  "sun",
+  "zones",
+  "site",
+  "vehicles",
+  "calibration",
+  "return",
+  "orders",
+  "timeline",
+  "links",
+  "flights",
+  "station",
+] as const;
 
-export type PanelName = keyof typeof PANEL_NAMES;
+export type PanelName = (typeof PANEL_NAMES)[number];
 
-const ALL = Object.keys(PANEL_NAMES) as readonly PanelName[];
 const STORED_AS = "recon.panels";
 const FIRST: readonly PanelName[] = ["survey"];
 
@@ -40,7 +39,7 @@ export function createOpenPanels(
   isNarrow: () => boolean,
 ): OpenPanels {
   const stored = storage.getItem(STORED_AS)?.split(",") ?? FIRST;
-  const known = isNarrow() ? [] : ALL.filter((name) => stored.includes(name));
+  const known = isNarrow() ? [] : PANEL_NAMES.filter((name) => stored.includes(name));
   const [names, setNames] = createSignal<readonly PanelName[]>(known);
   const isOpen = (name: PanelName) => names().includes(name);
   const set = (next: readonly PanelName[]) => {

@@ -1,4 +1,5 @@
 import type { AccessView } from "../protocol";
+import { text } from "../text/catalogue";
 
 export type Role = AccessView["role"];
 
@@ -10,5 +11,5 @@ const ROLES: readonly Role[] = ["observer", "pilot", "operator", "admin"];
  */
 export function lacking(person: AccessView | null, needed: Role): string | null {
   if (person === null || ROLES.indexOf(person.role) >= ROLES.indexOf(needed)) return null;
-  return `Needs the role ${needed}; ${person.name} has ${person.role}`;
+  return text.guard.lacksRole(text.roles[needed], person.name, text.roles[person.role]);
 }

@@ -1,4 +1,5 @@
 import { type Accessor, createSignal } from "solid-js";
+import { text } from "./catalogue";
 import { formatQuantity } from "./quantities";
 
 /**
@@ -7,7 +8,7 @@ import { formatQuantity } from "./quantities";
  */
 export type LengthUnit = "m" | "ft";
 
-export const LENGTH_UNITS: Readonly<Record<LengthUnit, string>> = { m: "Metres", ft: "Feet" };
+export const LENGTH_UNITS: Readonly<Record<LengthUnit, string>> = text.menu.lengthUnits;
 
 /** The international foot, exact. */
 const METRES: Readonly<Record<LengthUnit, number>> = { m: 1, ft: 0.3048 };

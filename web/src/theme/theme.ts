@@ -3,14 +3,7 @@ import { type Accessor, createSignal } from "solid-js";
 /** The selected theme: `auto` follows the computer, `sun` has high contrast for bright sun. */
 export type Theme = "auto" | "light" | "dark" | "sun";
 
-export const THEME_NAMES: Readonly<Record<Theme, string>> = {
-  auto: "As the computer",
-  light: "Light",
-  dark: "Dark",
-  sun: "Bright sun",
-};
-
-const THEMES = Object.keys(THEME_NAMES) as readonly Theme[];
+const THEMES: readonly Theme[] = ["auto", "light", "dark", "sun"];
 const STORED_AS = "recon.theme";
 
 export interface ThemeSwitch {

@@ -2,6 +2,7 @@ import { createMemo, Show } from "solid-js";
 import { useConsole } from "../../console";
 import { causeName, groupAlarms } from "../../fleet/alarmGroups";
 import { worstSeverity } from "../../fleet/severity";
+import { text } from "../../text/catalogue";
 import { capitalised } from "../../text/names";
 import { SpeakerIcon } from "../alarms/SoundControls";
 
@@ -13,20 +14,20 @@ export function AlarmsButton() {
   const open = createMemo(() => groupAlarms(fleet.alarms).filter((group) => group.needsLook));
   const fresh = () => open().filter(({ isAcknowledged }) => !isAcknowledged);
   const worst = () => worstSeverity(fresh().map(({ severity }) => severity));
-  const text = () => `${open().length} ${open().length === 1 ? "alarm" : "alarms"}`;
+  const count = () => text.bar.alarms(open().length);
   const muted = () =>
-    mutes.isAllMuted() ? "all muted" : `muted: ${mutes.kinds().map(causeName).join(", ")}`;
+    mutes.isAllMuted() ? text.bar.allMuted : text.bar.muted(mutes.kinds().map(causeName));
   return (
     <button
       type="button"
       class={`button bar-alarms ${worst() === null ? "" : `tone-ground-${worst()}`}`}
       aria-expanded={panels.isOpen("alarms")}
-      aria-label={isMuted() ? `${text()}, ${muted()}` : text()}
+      aria-label={isMuted() ? `${count()}, ${muted()}` : count()}
       title={isMuted() ? capitalised(muted()) : undefined}
       onClick={() => panels.toggle("alarms")}
     >
       <span aria-hidden="true">▲</span> {open().length}
-      <span class="bar-word"> {open().length === 1 ? "alarm" : "alarms"}</span>
+      <span class="bar-word"> {text.bar.alarmsWord(open().length)}</span>
       <Show when={isMuted()}>
         {" "}
         <SpeakerIcon isMuted={true} />

@@ -1,5 +1,6 @@
 import { Show } from "solid-js";
 import { useConsole } from "../../console";
+import { text } from "../../text/catalogue";
 import { formatAge } from "../../text/quantities";
 
 /** Shown while the connection is lost, with the age of the displayed data. */
@@ -13,17 +14,14 @@ export function ConnectionBanner() {
     <Show when={lost()}>
       {(connection) => (
         <div class="card notice banner" role="alert">
-          <strong>No connection to the station.</strong>{" "}
-          <Show when={fleet.hasState} fallback="No data received yet.">
-            All data below is <span aria-hidden="true">{formatAge(behindS())}</span> old.
+          <strong>{text.connection.lost}</strong>{" "}
+          <Show when={fleet.hasState} fallback={text.connection.noData}>
+            {text.connection.dataIsOld(<span aria-hidden="true">{formatAge(behindS())}</span>)}
           </Show>{" "}
-          {connection().reason}
-          <Show when={connection().needsLogin !== true} fallback=". Log in again.">
-            ; reconnecting (attempt {connection().attempt}).
-          </Show>{" "}
-          {isReplay()
-            ? "This is a replay: start recon replay again."
-            : "Watch the aircraft and use the remote controllers."}
+          {connection().needsLogin === true
+            ? text.connection.loginAgain(connection().reason)
+            : text.connection.reconnecting(connection().reason, connection().attempt)}{" "}
+          {isReplay() ? text.connection.startReplay : text.connection.watchAircraft}
         </div>
       )}
     </Show>

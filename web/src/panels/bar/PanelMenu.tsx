@@ -1,20 +1,21 @@
 import { For } from "solid-js";
 import { useConsole } from "../../console";
+import { text } from "../../text/catalogue";
 import { chooseLengthUnit, LENGTH_UNITS, type LengthUnit, lengthUnit } from "../../text/units";
-import { THEME_NAMES, type Theme } from "../../theme/theme";
+import type { Theme } from "../../theme/theme";
 import { PersonTag } from "../login/PersonTag";
-import { PANEL_NAMES, type PanelName } from "../openPanels";
+import { PANEL_NAMES } from "../openPanels";
 import { Popover } from "../Popover";
 
-const LISTED = (Object.keys(PANEL_NAMES) as PanelName[]).filter((name) => name !== "vehicle");
+const LISTED = PANEL_NAMES.filter((name) => name !== "vehicle");
 
 /** Opens and closes panels; also the colours, the help and the person, for screens without room in the bar. */
 export function PanelMenu(props: { onHelp: () => void }) {
   const { panels } = useConsole();
   return (
-    <Popover class="menu" label="Menu" title="Panels, colours, help" button="☰">
+    <Popover class="menu" label={text.menu.name} title={text.menu.hint} button="☰">
       {(close) => (
-        <section class="card menu-list" aria-label="Menu">
+        <section class="card menu-list" aria-label={text.menu.name}>
           <For each={LISTED}>
             {(name) => (
               <button
@@ -26,7 +27,7 @@ export function PanelMenu(props: { onHelp: () => void }) {
                   close();
                 }}
               >
-                {PANEL_NAMES[name]}
+                {text.panels.titles[name]}
               </button>
             )}
           </For>
@@ -40,7 +41,7 @@ export function PanelMenu(props: { onHelp: () => void }) {
               props.onHelp();
             }}
           >
-            Keys and orders
+            {text.menu.help}
           </button>
           <PersonTag />
         </section>
@@ -52,14 +53,14 @@ export function PanelMenu(props: { onHelp: () => void }) {
 function Units() {
   return (
     <label class="menu-colours">
-      Units
+      {text.menu.units}
       <select
         class="field"
         value={lengthUnit()}
         onChange={(event) => chooseLengthUnit(event.currentTarget.value as LengthUnit)}
       >
         <For each={Object.entries(LENGTH_UNITS)}>
-          {([name, text]) => <option value={name}>{text}</option>}
+          {([unit, name]) => <option value={unit}>{name}</option>}
         </For>
       </select>
     </label>
@@ -70,14 +71,14 @@ function Colours() {
   const { theme } = useConsole();
   return (
     <label class="menu-colours">
-      Colours
+      {text.menu.colours}
       <select
         class="field"
         value={theme.theme()}
         onChange={(event) => theme.choose(event.currentTarget.value as Theme)}
       >
-        <For each={Object.entries(THEME_NAMES)}>
-          {([name, text]) => <option value={name}>{text}</option>}
+        <For each={Object.entries(text.menu.themes)}>
+          {([theme, name]) => <option value={theme}>{name}</option>}
         </For>
       </select>
     </label>

@@ -2,6 +2,7 @@ import { createMemo, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import { type Readiness, readiness } from "../../fleet/readiness";
 import { simulation } from "../../fleet/vehicleStatus";
+import { text } from "../../text/catalogue";
 import { Popover } from "../Popover";
 import { SeverityMark } from "../SeverityMark";
 
@@ -13,19 +14,19 @@ export function StatusButton() {
     <Popover
       class="state"
       buttonClass={`button-quiet status-button tone-${now().severity ?? "good"}`}
-      title="Why"
+      title={text.readiness.why}
       button={
         <>
           <SeverityMark severity={now().severity} size={20} />
           <span class="status-words">
             <span class="status-text" data-testid="status-label">
-              {now().label}
+              {text.readiness.labels[now().label]}
             </span>{" "}
             <span class="status-count" data-testid="status-count">
               {now().count}
             </span>
             <Show when={SIMULATION[simulation(fleet.vehicles)]}>
-              {(text) => <span class="status-simulation">{text()}</span>}
+              {(words) => <span class="status-simulation">{words()}</span>}
             </Show>
           </span>
         </>
@@ -37,15 +38,12 @@ export function StatusButton() {
 }
 
 /** Shown here on screens without room for it in the bar. */
-const SIMULATION = { none: "", all: "Simulation", mixed: "Real and simulated" } as const;
+const SIMULATION = { none: "", all: text.readiness.simulation, mixed: text.readiness.mixed };
 
 function Reasons(props: { readiness: Readiness }) {
   return (
-    <section class="card status-reasons" aria-label="Reasons">
-      <Show
-        when={props.readiness.reasons.length > 0}
-        fallback={<p>All vehicles connected, no problems</p>}
-      >
+    <section class="card status-reasons" aria-label={text.readiness.reasons}>
+      <Show when={props.readiness.reasons.length > 0} fallback={<p>{text.readiness.noProblems}</p>}>
         <ul>
           <For each={props.readiness.reasons}>
             {(reason) => (

@@ -1,8 +1,9 @@
 import { createMemo, Show } from "solid-js";
 import { useConsole } from "../../console";
 import { simulation } from "../../fleet/vehicleStatus";
+import { text } from "../../text/catalogue";
 import { formatAge, formatHeading, formatQuantity } from "../../text/quantities";
-import { THEME_NAMES, type Theme } from "../../theme/theme";
+import type { Theme } from "../../theme/theme";
 import { buttonName } from "../guard/GuardButton";
 import { ReplayMark } from "../replay/ReplayBar";
 import { AlarmsButton } from "./AlarmsButton";
@@ -21,10 +22,10 @@ export function TopBar(props: { onHelp: () => void }) {
       <p class="bar-place">
         <span class="wire-text">{fleet.site?.name ?? ""}</span>
         <Show when={kind() === "all"}>
-          <span class="bar-simulation">Simulation</span>
+          <span class="bar-simulation">{text.bar.simulation}</span>
         </Show>
         <Show when={kind() === "mixed"}>
-          <strong class="tag tag-simulated">Real and simulated mixed</strong>
+          <strong class="tag tag-simulated">{text.bar.mixed}</strong>
         </Show>
       </p>
       <div class="bar-space" />
@@ -36,8 +37,8 @@ export function TopBar(props: { onHelp: () => void }) {
         type="button"
         class="button bar-wide"
         onClick={() => props.onHelp()}
-        aria-label="Help"
-        title="Keys and orders (?)"
+        aria-label={text.bar.help}
+        title={text.bar.helpHint}
       >
         ?
       </button>
@@ -51,13 +52,13 @@ export function TopBar(props: { onHelp: () => void }) {
 /** How the shadows move, by the newest forecast. */
 function Shadows() {
   const { fleet } = useConsole();
-  const text = () => {
+  const shown = () => {
     const { shadows_east_mps: east, shadows_north_mps: north } = fleet.shade?.forecast ?? {};
     if (typeof east !== "number" || typeof north !== "number") return null;
     const from = (Math.atan2(-east, -north) * 180) / Math.PI;
-    return `Shadows ${formatQuantity(Math.hypot(east, north), "m/s")} from ${formatHeading(from)}`;
+    return text.bar.shadows(formatQuantity(Math.hypot(east, north), "m/s"), formatHeading(from));
   };
-  return <Show when={text()}>{(shown) => <p class="bar-shadows">{shown()}</p>}</Show>;
+  return <Show when={shown()}>{(words) => <p class="bar-shadows">{words()}</p>}</Show>;
 }
 
 const NEXT: Readonly<Record<Theme, Theme>> = {
@@ -71,13 +72,13 @@ const SIGNS: Readonly<Record<Theme, string>> = { auto: "◐", light: "☼", dark
 /** The next theme at each press; the menu has them by name. */
 function ThemeButton() {
   const { theme } = useConsole();
-  const name = () => THEME_NAMES[theme.theme()].toLowerCase();
+  const name = () => text.menu.themes[theme.theme()];
   return (
     <button
       type="button"
       class="button bar-wide"
-      aria-label={`Colours: ${name()}. Change`}
-      title={`Colours: ${name()} (T: bright sun)`}
+      aria-label={text.bar.changeColours(name())}
+      title={text.bar.coloursHint(name())}
       onClick={() => theme.choose(NEXT[theme.theme()])}
     >
       {SIGNS[theme.theme()]}
@@ -93,20 +94,21 @@ export function AllStop() {
   const { orderApi, fleet, behindS } = useConsole();
   const inForce = () => {
     const latch = fleet.stopLatch;
-    return latch === null ? null : `in force ${formatAge(latch.age_s + behindS())}`;
+    return latch === null ? null : text.stop.inForceFor(formatAge(latch.age_s + behindS()));
   };
   return (
     <button
       type="button"
       class="all-stop"
       classList={{ "is-latched": fleet.stopLatch !== null }}
-      aria-label={buttonName("All stop", inForce(), "all flying vehicles hold position")}
+      aria-label={buttonName(text.stop.section, inForce(), text.stop.allStopOf)}
       aria-pressed={fleet.stopLatch !== null}
       aria-keyshortcuts="Shift+S"
-      title="All flying vehicles hold position. Motors stay on. (Shift+S)"
+      title={text.stop.allStopHint}
       onClick={() => void orderApi.allStop()}
     >
-      <strong>ALL STOP</strong> <Show when={inForce()}>{(text) => <span>{text()}</span>}</Show>
+      <strong>{text.stop.allStop}</strong>{" "}
+      <Show when={inForce()}>{(since) => <span>{since()}</span>}</Show>
     </button>
   );
 }

@@ -2,6 +2,7 @@ import { createEffect } from "solid-js";
 import { useConsole } from "../../console";
 import { createHoldTimer, type HoldTimer } from "../../orders/holdToConfirm";
 import type { Role } from "../../source/roles";
+import { text } from "../../text/catalogue";
 import "./guard.css";
 
 /** Hold time for actions that cannot be reversed at once. */
@@ -36,7 +37,10 @@ export function GuardButton(props: {
     if (isDisabled()) timer.cancel();
   });
   const hint = () => {
-    if (lack() !== null) return isReplay() ? "replay" : `needs ${props.needs ?? "operator"}`;
+    if (lack() !== null)
+      return isReplay()
+        ? text.guard.replay
+        : text.guard.needs(text.roles[props.needs ?? "operator"]);
     return holdHint(props.hold_ms);
   };
   return (
@@ -59,7 +63,7 @@ export function GuardButton(props: {
 /** How a button is confirmed: `hold 1.5 s`; null when a press is enough. */
 export function holdHint(hold_ms: number): string | null {
   if (hold_ms === 0) return null;
-  return hold_ms < 1000 ? "hold briefly" : `hold ${hold_ms / 1000} s`;
+  return hold_ms < 1000 ? text.guard.holdBriefly : text.guard.hold(`${hold_ms / 1000} s`);
 }
 
 /**

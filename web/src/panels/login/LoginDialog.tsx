@@ -1,7 +1,11 @@
 import { createSignal, Show } from "solid-js";
 import { useConsole } from "../../console";
 import { inPairs, pastedToken } from "../../source/login";
+import { text } from "../../text/catalogue";
 import "./login.css";
+
+/** The command at the station's computer. */
+const ADD_USER = "recon user add";
 
 /** Asks for a token while the station refuses this page for want of one. */
 export function LoginDialog() {
@@ -15,7 +19,7 @@ export function LoginDialog() {
       {(connection) => (
         <div class="login-page">
           <section class="login" role="dialog" aria-modal="true" aria-labelledby="login-title">
-            <h2 id="login-title">Log in to Recon</h2>
+            <h2 id="login-title">{text.login.title}</h2>
             <p class="login-reason">{connection().reason}.</p>
             <LoginForm />
             <Fingerprint />
@@ -28,17 +32,17 @@ export function LoginDialog() {
 
 function LoginForm() {
   const { login } = useConsole();
-  const [text, setText] = createSignal("");
+  const [typed, setTyped] = createSignal("");
   const [isWrong, setWrong] = createSignal(false);
   const submit = (event: Event) => {
     event.preventDefault();
-    const token = pastedToken(text());
+    const token = pastedToken(typed());
     setWrong(token === null);
     if (token !== null) login.logIn(token);
   };
   return (
     <form class="login-form" onSubmit={submit}>
-      <label for="login-token">Token, or the whole address with it</label>
+      <label for="login-token">{text.login.token}</label>
       <input
         id="login-token"
         type="password"
@@ -46,25 +50,22 @@ function LoginForm() {
         autocapitalize="off"
         spellcheck={false}
         ref={(input) => queueMicrotask(() => input.focus())}
-        onInput={(event) => setText(event.currentTarget.value)}
+        onInput={(event) => setTyped(event.currentTarget.value)}
       />
       <Show when={isWrong()}>
         <p class="tone-error" role="alert">
-          This is not a token: paste what <code>recon user add</code> printed.
+          {text.login.notAToken(<code>{ADD_USER}</code>)}
         </p>
       </Show>
       <button type="submit" class="button login-go">
-        Log in
+        {text.login.logIn}
       </button>
       <Show when={login.hasToken}>
         <button type="button" class="button" onClick={() => login.logOut()}>
-          Forget the token of this tab
+          {text.login.forget}
         </button>
       </Show>
-      <p class="muted">
-        An administrator runs <code>recon user add NAME --role ROLE</code> at the station's
-        computer; scan the code it shows, or paste the token. The tab forgets it when it is closed.
-      </p>
+      <p class="muted">{text.login.howTo(<code>{`${ADD_USER} NAME --role ROLE`}</code>)}</p>
     </form>
   );
 }
@@ -76,10 +77,7 @@ function Fingerprint() {
     <Show when={login.fingerprint}>
       {(digits) => (
         <div class="login-fingerprint">
-          <p>
-            The code you scanned names this certificate. Compare it with the one your browser shows;
-            if they differ, another computer answers here.
-          </p>
+          <p>{text.login.fingerprint}</p>
           <code>{inPairs(digits())}</code>
         </div>
       )}

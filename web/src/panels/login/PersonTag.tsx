@@ -1,5 +1,6 @@
 import { Show } from "solid-js";
 import { useConsole } from "../../console";
+import { text } from "../../text/catalogue";
 
 /** The person that the station takes this page's requests for, and log out. */
 export function PersonTag() {
@@ -9,11 +10,11 @@ export function PersonTag() {
       {(person) => (
         <p class="person">
           <span class="wire-text">
-            <strong>{person().name}</strong> {person().role}
+            <strong>{person().name}</strong> {text.roles[person().role]}
           </span>
           <Show when={person().is_logged_in}>
             <button type="button" class="button" onClick={() => login.logOut()}>
-              Log out
+              {text.login.logOut}
             </button>
           </Show>
         </p>

@@ -1,5 +1,6 @@
 import { For, Show } from "solid-js";
 import { useConsole } from "../../console";
+import { text } from "../../text/catalogue";
 import { QrCode } from "../QrCode";
 import "./login.css";
 
@@ -13,12 +14,12 @@ export function SharedAddress() {
   return (
     <Show when={shared()}>
       {(access) => (
-        <section class="section" aria-label="Console for other computers">
-          <h3>Console for other computers</h3>
+        <section class="section" aria-label={text.login.otherComputers}>
+          <h3>{text.login.otherComputers}</h3>
           <For each={access().urls}>{(url) => <p class="wire-text">{url}</p>}</For>
-          <p class="muted">Certificate SHA-256</p>
+          <p class="muted">{text.login.certificate}</p>
           <code class="login-digits">{access().fingerprint}</code>
-          <QrCode load={() => source.sharedAddressCode()} alt="The first address as a QR code" />
+          <QrCode load={() => source.sharedAddressCode()} alt={text.login.addressCode} />
         </section>
       )}
     </Show>

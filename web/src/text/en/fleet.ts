@@ -1,0 +1,166 @@
+import type { JSX } from "solid-js";
+import type { ReadinessLabel } from "../../fleet/readiness";
+import type { FilterName, GroupName, SortName } from "../../fleet/vehicleOrder";
+import type { VehicleActivity } from "../../fleet/vehicleStatus";
+import type { SoundProblem } from "../../sound/speaker";
+import { plural } from "./grammar";
+
+/** What vehicles do. */
+export const activity = {
+  names: {
+    "Contact lost": "Contact lost",
+    Unidentified: "Unidentified",
+    Landing: "Landing",
+    Returning: "Returning",
+    Flying: "Flying",
+    "On the ground": "On the ground",
+    Unknown: "Unknown",
+  } satisfies Record<VehicleActivity, string>,
+  waitingForSerial: "Waiting for serial number",
+  onGroundStopped: "On the ground · all stop",
+  unknown: "Flight state unknown",
+  allStop: "All stop",
+  surveying: "Surveying",
+  toTarget: "Flying to target",
+  holding: "Holding",
+};
+
+/** The state of station and fleet, with its reasons. */
+export const readiness = {
+  labels: {
+    "Station lost": "Station lost",
+    "Contact lost": "Contact lost",
+    Landing: "Landing",
+    Flying: "Flying",
+    "Not ready": "Not ready",
+    Warnings: "Warnings",
+    Ready: "Ready",
+  } satisfies Record<ReadinessLabel, string>,
+  why: "Why",
+  reasons: "Reasons",
+  noProblems: "All vehicles connected, no problems",
+  simulation: "Simulation",
+  mixed: "Real and simulated",
+  countOf: (count: number, all: number) => `${count} of ${all}`,
+  waiting: "Waiting for data from the station.",
+  lastData: (reason: string, age: string) => `${reason}. Last data ${age} ago.`,
+  noTelemetryYet: "No telemetry yet.",
+  noTelemetry: (age: string) => `No telemetry for ${age}.`,
+  noSerial: "Waiting for serial number.",
+  serialConflict: "A second link reports the same serial number.",
+  noPosition: "Position unknown.",
+  battery: (warning: string, left: string) => `Aircraft battery warning: ${warning}, ${left} left.`,
+  isMixed: "Real and simulated vehicles are connected together.",
+  noVehicle: "No vehicle connected. Start a companion app and enter the station's address.",
+};
+
+/** The list of vehicles. */
+export const vehicles = {
+  tools: "Search, sort and filter",
+  all: "All",
+  none: "None",
+  show: "Show the vehicles",
+  fold: "Fold the vehicles away",
+  noneMatches: "None matches.",
+  search: "Search",
+  searchName: "Search by number, name or serial",
+  filter: "Show",
+  filters: {
+    all: "All",
+    flying: "Flying",
+    trouble: "With a problem",
+    selected: "Selected",
+  } satisfies Record<FilterName, string>,
+  sort: "Sort by",
+  sorts: {
+    number: "Number",
+    name: "Name",
+    battery: "Battery",
+    trouble: "Trouble",
+  } satisfies Record<SortName, string>,
+  group: "Group by",
+  groups: {
+    none: "No groups",
+    activity: "What they do",
+    role: "Kind",
+  } satisfies Record<GroupName, string>,
+  imagers: "Imaging drones",
+  surveyors: "Survey drones",
+  noApp: "No companion app connected.",
+  appAddress: "App address:",
+  selectHint: "Add to the selection, or remove",
+  select: (vehicle: string) => `Add ${vehicle} to the selection`,
+  simulated: "SIM",
+  serialConflict: "serial conflict",
+  telemetryAge: (age: string) => `Telemetry is ${age} old`,
+  battery: "Battery",
+  operatedBy: (person: string) => `Operated by ${person}`,
+};
+
+export const alarms = {
+  none: "No alarms.",
+  acknowledge: (alarm: string) => `OK: acknowledge ${alarm}`,
+  acknowledgeHint: "Seen: the colour goes, the alarm stays while its cause lasts",
+  ok: "OK",
+  since: (age: string, isActive: boolean, isAcknowledged: boolean) =>
+    `${age} ago${isActive ? "" : ", ended"}${isAcknowledged ? ", acknowledged" : ""}`,
+  showEach: "Show each",
+  noConnection: "No connection",
+  /** Causes by the station's rule, as operators name them; any other is read from its rule. */
+  causes: {
+    separation: "Separation",
+    link_lost: "Telemetry lost",
+    connection: "Connection to the station",
+    stop_waits: "Stop not confirmed",
+    serial_conflict: "Serial conflict",
+    unidentified: "Serial number missing",
+    battery: "Battery",
+    geofence: "Geofence",
+    gnss: "GNSS",
+    look_aside: "Look aside",
+    move_upwind: "Move upwind",
+  } as Readonly<Record<string, string>>,
+  pairs: (cause: string, count: number) => `${cause}: ${count} pairs`,
+  drones: (cause: string, count: number) => `${cause}: ${plural(count, "drone")}`,
+  alarms: (cause: string, count: number) => `${cause}: ${plural(count, "alarm")}`,
+};
+
+export const sound = {
+  name: "Sound of alarms",
+  replay: "A replay makes no sound.",
+  allMuted: "All alarms are muted in this browser.",
+  problems: {
+    blocked: "Press anywhere on this page to allow sound.",
+    absent: "This browser plays no sound: watch the screen.",
+  } satisfies Record<SoundProblem, string>,
+  full: "Tone and speech.",
+  toneOnly: "Tone only: no English voice is installed.",
+  muteAll: "Mute all",
+  test: "Test sound",
+  testSentence: "This is a test",
+  mute: (cause: string) => `Mute ${cause}`,
+  unmute: (cause: string) => `Unmute ${cause}`,
+  unmuteAll: "Unmute",
+  isMuted: "Muted in this browser",
+  muteHint: "Mute this kind of alarm in this browser",
+  silent: "No sound for:",
+  /** How units are spoken. */
+  units: {
+    s: "seconds",
+    m: "metres",
+    ft: "feet",
+    "m/s": "metres per second",
+    "%": "per cent",
+  } as Readonly<Record<string, string>>,
+};
+
+export const separation = {
+  isOff: "Separation hold is OFF.",
+  offText: "Vehicles that come too close raise an alarm but are not stopped.",
+  switchOn: "Switch separation hold on",
+  switchOff: "Switch separation hold off",
+  name: "Separation hold",
+  state: (state: JSX.Element): JSX.Element => ["Separation hold: ", state],
+  on: "on",
+  off: "OFF",
+};

@@ -1,0 +1,20 @@
+import * as detail from "./detail";
+import * as fleet from "./fleet";
+import * as light from "./light";
+import * as map from "./map";
+import * as orders from "./orders";
+import * as page from "./page";
+import * as site from "./site";
+import * as station from "./station";
+
+/** The console's words in English, by room. */
+export const english = {
+  ...page,
+  ...fleet,
+  ...orders,
+  ...detail,
+  ...map,
+  ...light,
+  ...site,
+  ...station,
+};

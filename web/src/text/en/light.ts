@@ -1,0 +1,141 @@
+import type { LookAsideView, MoveUpwindView, SurveyView } from "../../protocol";
+import type { LightPercents } from "../light";
+
+const exposures = { locked: "locked", notLocked: "not locked", automatic: "automatic" };
+
+/** What the imaging drone sees of sun and shade. */
+export const sun = {
+  none: "No imaging drone at this site.",
+  noMap: "No shade map yet.",
+  noGround: "No ground in view.",
+  shares: "Light on the ground in view",
+  lights: {
+    sun: (share: string) => `Sun ${share}`,
+    shade: (share: string) => `Shade ${share}`,
+    unknown: (share: string) => `Light unknown ${share}`,
+  } satisfies Record<keyof LightPercents, (share: string) => string>,
+  inView: (age: string, exposure: keyof typeof exposures | null) =>
+    exposure === null
+      ? `of the ground in view, ${age} ago`
+      : `of the ground in view, ${age} ago; exposure ${exposures[exposure]}`,
+  reference: (what: string) => `Land in full sun: ${what}.`,
+  motionUnknown: "Motion of the shadows unknown.",
+  motion: (speed: string, bearing: string) => `Shadows move at ${speed}, bearing ${bearing}.`,
+  ordered: (age: string, person: string) => `since ${age}, ordered by ${person}`,
+};
+
+/** What an imaging drone does, after its name, with a bearing or a distance. */
+type Stages<View extends { readonly stage: string }> = Readonly<
+  Partial<Record<View["stage"], (detail: string) => string>>
+>;
+
+export const lookAside = {
+  name: "Look aside",
+  how: (distance: string) =>
+    `Under an even sky, an imaging drone flies ${distance} aside and back, to tell sun from shade.`,
+  button: "Look aside",
+  buttonFor: (vehicle: string) => `Look aside: ${vehicle}`,
+  buttonOf: (vehicle: string, distance: string) => `fly ${vehicle} ${distance} aside and back`,
+  imager: "the imaging drone",
+  stages: {
+    aside: (bearing: string) => `flies aside, bearing ${bearing}`,
+    waiting: (bearing: string) => `waits beside its place, bearing ${bearing}`,
+    back: (bearing: string) => `flies back, bearing ${bearing}`,
+    done: (bearing: string) => `looked aside and is back, bearing ${bearing}`,
+    stopped: (bearing: string) => `stopped its look aside, bearing ${bearing}`,
+  } as Stages<LookAsideView>,
+};
+
+export const upwind = {
+  name: "View upwind",
+  noPlace: (vehicle: string, reason: string) => `No place upwind for ${vehicle}: ${reason}.`,
+  fly: "Fly upwind",
+  stages: {
+    upwind: (distance: string) => `flies upwind by itself, ${distance}`,
+    done: (distance: string) => `flew upwind by itself, ${distance}`,
+    stopped: (distance: string) => `stopped its flight upwind, ${distance}`,
+  } as Stages<MoveUpwindView>,
+};
+
+/** The scale of the next minutes. */
+export const forecast = {
+  name: "Sun forecast",
+  sunNow: "Sun now",
+  sunIn: (time: string) => `Sun in ${time}`,
+  ofField: (share: string) => `${share} of the field`,
+  rightHint: "How often forecasts of this flight were right",
+  right: (share: string) => `${share} right lately`,
+  show: "Show the forecast scale",
+  fold: "Fold the forecast scale away",
+  time: "Time of the forecast",
+  now: "now",
+};
+
+export const surveys = {
+  name: (survey: string) => `survey ${survey}`,
+  noReason: "Refused without a reason.",
+  phases: {
+    planning: "Planning",
+    refused: "Not feasible",
+    created: "Planned, not started",
+    running: "Running",
+    paused: "Paused",
+    aborted: "Aborted",
+    done: "Complete",
+  } satisfies Record<SurveyView["phase"], string>,
+  stopped: "Stopped: no drone is flying rows",
+  underMinute: "under 1 min left",
+  minutesLeft: (minutes: number) => `≈ ${minutes} min left`,
+  returnsHome: "returns home",
+  fliesRows: "flies rows",
+  noRows: "does not fly rows",
+  start: "Start with selected",
+  add: "Add selected drones",
+  resume: "Resume with selected",
+  allowTakeoff: "Allow takeoff for this start",
+  stops: { pause: "Pause", abort: "Abort", hold: "Hold returning drones" },
+  open: "Open the survey",
+  title: "Survey",
+  inSun: (percent: number) => `${percent} % in sun`,
+  inShade: (percent: number) => `${percent} % in shade`,
+  lightUnknown: (percent: number) => `${percent} % light unknown`,
+  toFly: (percent: number) => `${percent} % to fly`,
+  fewer: "Fewer",
+  allDrones: (count: number) => `All ${count} drones`,
+};
+
+/** What a planned survey will take. */
+export const estimate = {
+  unknown: (dash: string) => `Estimate: ${dash}`,
+  withOne: "With one drone, each row once:",
+  withSelected: "With the selected drones, each row once:",
+  time: "Time",
+  inAir: "In the air",
+  photosOnRows: "Photos on rows",
+  photos: "Photos in all",
+  batteries: "Batteries",
+  pixel: "Pixel on the ground",
+  fastest: "Fastest",
+};
+
+export const newSurvey = {
+  noRegions: "The site has no survey regions.",
+  title: "New survey",
+  region: "Region",
+  height: (unit: string) => `Height above takeoff, ${unit}`,
+  speed: "Speed, m/s",
+  camera: "Camera",
+  otherCamera: "Other, 66° × 52°",
+  interval: "Photo every, s",
+  rows: "Rows",
+  planners: {
+    lawnmower_once: "All rows once",
+    lawnmower_again: "Repeat until all is in sun",
+    sunlit_first: "What is in sun first",
+  },
+  whenDone: "When complete",
+  thenDo: { return_home: "Return home", hover: "Hover" },
+  lookAside: "Imaging drone may look aside by itself",
+  upwind: "Imaging drone may move upwind by itself",
+  plan: "Plan survey",
+};
