@@ -1,6 +1,7 @@
 import { Match, Show, Switch } from "solid-js";
 import { useConsole } from "../console";
 import { frameCaption, isSuperseded } from "../fleet/displayedFrame";
+import { text } from "../text/catalogue";
 import { formatLength } from "../text/units";
 import type { GroundImageInfo } from "./groundImageLayer";
 
@@ -11,10 +12,10 @@ const OLD_AFTER_S = 5;
 export function GroundImageNote(props: { shown: GroundImageInfo | null }) {
   const { fleet } = useConsole();
   return (
-    <Switch fallback={<p class="map-note">No ground image yet</p>}>
+    <Switch fallback={<p class="map-note">{text.groundImage.none}</p>}>
       <Match when={props.shown}>{(shown) => <ShownNote shown={shown()} />}</Match>
       <Match when={fleet.groundImage}>
-        <p class="map-note">Loading ground image</p>
+        <p class="map-note">{text.groundImage.loading}</p>
       </Match>
     </Switch>
   );
@@ -22,9 +23,10 @@ export function GroundImageNote(props: { shown: GroundImageInfo | null }) {
 
 /** How the frame was aligned: the median distance of its features from their places. */
 function alignment({ registration, registration_residual_m: residualM }: GroundImageInfo): string {
-  if (registration === "unregistered") return "not aligned";
-  if (registration === "lost") return "alignment lost: positions may be off by metres";
-  return residualM === null ? "aligned" : `aligned to ${formatLength(residualM, 1)}`;
+  if (registration === "unregistered") return text.groundImage.notAligned;
+  if (registration === "lost") return text.groundImage.lost;
+  if (residualM === null) return text.groundImage.aligned;
+  return text.groundImage.alignedTo(formatLength(residualM, 1));
 }
 
 function ShownNote(props: { shown: GroundImageInfo }) {
@@ -36,14 +38,14 @@ function ShownNote(props: { shown: GroundImageInfo }) {
   return (
     <p class="map-note" classList={{ "is-old": isOld() }}>
       <Show when={isOld()}>
-        <strong class="map-note-old">old</strong>{" "}
+        <strong class="map-note-old">{text.groundImage.old}</strong>{" "}
       </Show>
-      Ground image: {frameCaption(props.shown, behindS())},{" "}
+      {text.groundImage.image(frameCaption(props.shown, behindS()))},{" "}
       <span classList={{ "tone-warning": props.shown.registration === "lost" }}>
         {alignment(props.shown)}
       </span>
       <Show when={isSuperseded(props.shown, behindS())}>
-        <span class="tone-warning">; a newer frame exists</span>
+        <span class="tone-warning">{text.frames.newerExists}</span>
       </Show>
     </p>
   );

@@ -3,39 +3,40 @@ import { useConsole } from "../console";
 import { Popover } from "../panels/Popover";
 import type { BaseMapView } from "../protocol";
 import { coverageText, isIncomplete } from "../text/baseMaps";
+import { text } from "../text/catalogue";
 import type { OverlayKind } from "./overlays";
 
 /** What can lie over the ground image, with the legend of each. */
-const OVERLAYS: readonly (readonly [OverlayKind, string])[] = [
-  ["none", "No overlay"],
-  ["shade", "Shade now"],
-  ["forecast", "Sun forecast"],
-  ["cells", "Coverage"],
-];
+const OVERLAYS: readonly OverlayKind[] = ["none", "shade", "forecast", "cells"];
 
 const LEGENDS: Readonly<Record<OverlayKind, readonly (readonly [string, string])[]>> = {
   none: [],
   shade: [
-    ["is-sun", "sun"],
-    ["is-shade", "shade"],
-    ["is-unknown", "not known"],
+    ["is-sun", text.layers.sun],
+    ["is-shade", text.layers.shade],
+    ["is-unknown", text.layers.unknown],
   ],
   forecast: [
-    ["is-sun", "sun"],
-    ["is-shade", "shade"],
-    ["is-unknown", "not known: an estimate"],
+    ["is-sun", text.layers.sun],
+    ["is-shade", text.layers.shade],
+    ["is-unknown", text.layers.estimated],
   ],
   cells: [
-    ["is-sun", "photographed in sun"],
-    ["is-shade-lines", "photographed in shade"],
-    ["is-unknown", "photographed, light unknown"],
+    ["is-sun", text.layers.inSun],
+    ["is-shade-lines", text.layers.inShade],
+    ["is-unknown", text.layers.lightUnknown],
   ],
 };
 
 /** Chooses the overlay, with its colours explained, and the base map, with what it covers. */
 export function LayersButton() {
   return (
-    <Popover class="layers" label="Map and overlay" title="Map and overlay" button={<LayersIcon />}>
+    <Popover
+      class="layers"
+      label={text.layers.name}
+      title={text.layers.name}
+      button={<LayersIcon />}
+    >
       {() => (
         <div class="card layers-list">
           <OverlayChoice />
@@ -50,9 +51,9 @@ function OverlayChoice() {
   const { overlay } = useConsole();
   return (
     <fieldset>
-      <legend class="hidden-but-read">Map overlay</legend>
+      <legend class="hidden-but-read">{text.layers.overlay}</legend>
       <For each={OVERLAYS}>
-        {([kind, label]) => (
+        {(kind) => (
           <label>
             <input
               type="radio"
@@ -60,7 +61,7 @@ function OverlayChoice() {
               checked={overlay.kind() === kind}
               onChange={() => overlay.show(kind)}
             />
-            {label}
+            {text.layers.overlays[kind]}
           </label>
         )}
       </For>
@@ -75,7 +76,7 @@ function BaseMapChoice() {
   onMount(() => void baseMaps.refresh());
   return (
     <fieldset class="base-maps">
-      <legend>Map</legend>
+      <legend>{text.layers.map}</legend>
       <Show when={(baseMaps.maps() ?? []).length > 0}>
         <label>
           <input
@@ -84,13 +85,13 @@ function BaseMapChoice() {
             checked={baseMaps.shown() === null}
             onChange={() => baseMaps.choose(null)}
           />
-          None
+          {text.layers.none}
         </label>
       </Show>
       <For each={baseMaps.maps() ?? []}>{(base) => <BaseMapLine base={base} />}</For>
       <Show when={baseMaps.note()}>{(note) => <p class="base-map-note">{note()}</p>}</Show>
       <Show when={baseMaps.maps() === null && baseMaps.note() === null}>
-        <p class="base-map-note">Looking for maps</p>
+        <p class="base-map-note">{text.layers.looking}</p>
       </Show>
     </fieldset>
   );
@@ -120,12 +121,12 @@ function BaseMapLine(props: { base: BaseMapView }) {
 export function Legend(props: { kind: OverlayKind }) {
   return (
     <Show when={LEGENDS[props.kind].length > 0}>
-      <ul class="legend" aria-label="Legend">
+      <ul class="legend" aria-label={text.layers.legend}>
         <For each={LEGENDS[props.kind]}>
-          {([look, text]) => (
+          {([look, light]) => (
             <li>
               <span class={`light-swatch ${look}`} aria-hidden="true" />
-              {text}
+              {light}
             </li>
           )}
         </For>

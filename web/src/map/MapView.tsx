@@ -1,6 +1,7 @@
 import { Map as MapLibre, setWorkerUrl } from "maplibre-gl";
 import workerUrl from "maplibre-gl/dist/maplibre-gl-worker.mjs?worker&url";
 import { createEffect, createMemo, createSignal, on, onCleanup, onMount, Show } from "solid-js";
+import { text } from "../text/catalogue";
 import "maplibre-gl/dist/maplibre-gl.css";
 import "./map.css";
 import { useConsole } from "../console";
@@ -102,8 +103,8 @@ export function MapView() {
   const plannedTarget = createMemo<PlannedTarget | null>(() => {
     const [vehicle, at, course] = [flyHere.vehicle(), flyHere.target(), flyHere.course()];
     if (vehicle === null || at === null) return null;
-    const text = course === null ? vehicleLabel(vehicle) : courseText(course);
-    return { from: positionOf(vehicle), at, text };
+    const label = course === null ? vehicleLabel(vehicle) : courseText(course);
+    return { from: positionOf(vehicle), at, text: label };
   });
   const draftShapes = createMemo<DraftShapes | null>(() => {
     const { isOn, features, imported, selected } = siteDraft;
@@ -181,7 +182,7 @@ export function MapView() {
           "is-aiming":
             flyHere.isOn() || zoneDraft.isOn() || calibration.isOn() || siteDraft.tool() !== null,
         }}
-        aria-label="Map"
+        aria-label={text.map.name}
       >
         <div class="map-canvas" ref={holder} />
       </section>
@@ -192,19 +193,24 @@ export function MapView() {
             type="button"
             class="button"
             onClick={() => fit(false)}
-            title="Show everything (F)"
-            aria-label="Fit"
+            title={text.map.fitHint}
+            aria-label={text.map.fit}
           >
             <FitIcon />
           </button>
-          <button type="button" class="button" onClick={() => map()?.zoomIn()} aria-label="Zoom in">
+          <button
+            type="button"
+            class="button"
+            onClick={() => map()?.zoomIn()}
+            aria-label={text.map.zoomIn}
+          >
             +
           </button>
           <button
             type="button"
             class="button"
             onClick={() => map()?.zoomOut()}
-            aria-label="Zoom out"
+            aria-label={text.map.zoomOut}
           >
             −
           </button>
@@ -216,7 +222,7 @@ export function MapView() {
           <BaseMapNote />
           <div class="map-scale">
             <div class="map-scale-bar" ref={scaleBar} />
-            <span title="North is up">N ↑</span>
+            <span title={text.map.northHint}>{text.map.northArrow}</span>
           </div>
         </div>
       </div>
@@ -231,7 +237,9 @@ function BaseMapNote() {
     <Show when={baseMaps.shown()}>
       {(base) => (
         <p class="map-note wire-text">
-          Map: {[base().title, base().attribution].filter((text) => text !== "").join(", ")}
+          {text.map.base(
+            [base().title, base().attribution].filter((part) => part !== "").join(", "),
+          )}
         </p>
       )}
     </Show>
@@ -308,9 +316,7 @@ function UnplacedNote() {
     (source.state()?.vehicles ?? []).filter((vehicle) => positionOf(vehicle) === null);
   return (
     <Show when={unplaced().length > 0}>
-      <p class="map-note wire-text">
-        Position unknown, not on the map: {listNames(unplaced().map(vehicleLabel))}
-      </p>
+      <p class="map-note wire-text">{text.map.unplaced(listNames(unplaced().map(vehicleLabel)))}</p>
     </Show>
   );
 }

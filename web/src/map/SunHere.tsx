@@ -1,6 +1,7 @@
 import { type Accessor, createEffect, createSignal, on, Show } from "solid-js";
 import type { SunAtView } from "../protocol";
 import type { StationSource } from "../source/stationSource";
+import { text } from "../text/catalogue";
 import { formatAge, formatFraction } from "../text/quantities";
 import type { LonLat } from "./localGrid";
 import type { Overlay } from "./overlays";
@@ -52,23 +53,24 @@ function isOverLight(overlay: Overlay): boolean {
 
 /** As `in sun; shade in about 40 s (30 s to 55 s)`. */
 export function sunHereText(view: SunAtView): string {
-  if (view.light === "unknown") return "light unknown";
-  const now = view.light === "sun" ? "in sun" : "in shade";
-  const next = view.light === "sun" ? "shade" : "sun";
+  const { unknown, inSun, inShade, shadeIn, sunIn, noShade, noSun, maybeShade, maybeSun } =
+    text.sunHere;
+  if (view.light === "unknown") return unknown;
+  const isSunny = view.light === "sun";
   const { change_after_s, change_early_s, change_late_s, change_chance, known_ahead_s } = view;
   if (change_after_s !== null) {
-    const range = `${formatSeconds(change_early_s)} to ${formatSeconds(change_late_s)}`;
-    return `${now}; ${next} in about ${formatSeconds(change_after_s)} (${range})`;
+    const [early, late] = [formatSeconds(change_early_s), formatSeconds(change_late_s)];
+    return (isSunny ? shadeIn : sunIn)(formatSeconds(change_after_s), early, late);
   }
-  if (known_ahead_s <= 0) return now;
-  const chance =
-    change_chance < LEAST_CHANCE ? `no ${next}` : `${next} with ${formatFraction(change_chance)}`;
-  return `${now}; ${chance} within ${formatSeconds(known_ahead_s)}`;
+  if (known_ahead_s <= 0) return isSunny ? inSun : inShade;
+  const ahead = formatSeconds(known_ahead_s);
+  if (change_chance < LEAST_CHANCE) return (isSunny ? noShade : noSun)(ahead);
+  return (isSunny ? maybeShade : maybeSun)(formatFraction(change_chance), ahead);
 }
 
 /** Forecasts are no finer than seconds. */
 function formatSeconds(seconds: number | null): string {
-  return seconds === null || seconds >= 10 ? formatAge(seconds) : "less than 10 s";
+  return seconds === null || seconds >= 10 ? formatAge(seconds) : text.sunHere.soon;
 }
 
 /** The answer in words, beside the ground image's note. */
@@ -77,7 +79,7 @@ export function SunHereNote(props: { readonly here: SunHere }) {
     <Show when={props.here.answer()}>
       {(view) => (
         <p class="map-note" role="status">
-          Here: {sunHereText(view())}
+          {text.sunHere.here(sunHereText(view()))}
         </p>
       )}
     </Show>

@@ -1,5 +1,6 @@
 import type { Feature } from "geojson";
 import type { AreaView, SiteView } from "../protocol";
+import { text } from "../text/catalogue";
 import { formatLength } from "../text/units";
 import type { LonLat } from "./localGrid";
 
@@ -21,16 +22,9 @@ export function areasOf(site: SiteView | null, kind: AreaView["kind"]): AreaView
 
 /** An area's label on the map; heights include their datum. */
 export function areaText(area: AreaView): string {
-  switch (area.kind) {
-    case "boundary":
-      return named("Boundary", area.name);
-    case "keep_out":
-      return joined(named("Keep out", area.name), areaHeights(area));
-    case "height":
-      return joined(named("Height limit", area.name), areaHeights(area));
-    case "survey":
-      return named("Survey", area.name);
-  }
+  const label = named(text.map.areas[area.kind], area.name);
+  const hasHeights = area.kind === "keep_out" || area.kind === "height";
+  return hasHeights ? joined(label, areaHeights(area)) : label;
 }
 
 function named(what: string, name: string): string {
@@ -38,17 +32,18 @@ function named(what: string, name: string): string {
   return isRepeated ? what : `${what}: ${name}`;
 }
 
-function joined(text: string, heights: string): string {
-  return heights === "" ? text : `${text}, ${heights}`;
+function joined(label: string, heights: string): string {
+  return heights === "" ? label : `${label}, ${heights}`;
 }
 
 /** An area's height range as text; empty without limits, which for a keep-out zone means all heights. */
 export function areaHeights({ floor_m, ceiling_m, datum }: AreaView): string {
   if (floor_m === null && ceiling_m === null) return "";
-  const from = datum === "wgs84" ? "WGS84" : "above ground";
-  if (floor_m === null) return `up to ${formatLength(ceiling_m ?? 0)} ${from}`;
-  if (ceiling_m === null) return `from ${formatLength(floor_m)} ${from}`;
-  return `${formatLength(floor_m)} to ${formatLength(ceiling_m)} ${from}`;
+  const { wgs84, aboveGround, upTo, from, fromTo } = text.map;
+  const above = datum === "wgs84" ? wgs84 : aboveGround;
+  if (floor_m === null) return upTo(formatLength(ceiling_m ?? 0), above);
+  if (ceiling_m === null) return from(formatLength(floor_m), above);
+  return fromTo(formatLength(floor_m), formatLength(ceiling_m), above);
 }
 
 /** A place for a label: in the middle over a point, or with an edge at it. */

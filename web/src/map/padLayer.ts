@@ -1,5 +1,6 @@
 import { type Map as MapLibre, Marker } from "maplibre-gl";
 import type { PadView, StationState } from "../protocol";
+import { text } from "../text/catalogue";
 import type { Layer, Scene } from "./scene";
 
 /** Landing pads: an H in a square, with the name of the vehicle it is reserved for, if any. */
@@ -33,19 +34,19 @@ export class PadLayer implements Layer {
 
 /** A pad's name and the vehicle it is reserved for, by name once that vehicle has connected. */
 export function padText(pad: PadView, state: StationState): string {
-  if (pad.serial === null) return `${pad.name}: any vehicle`;
+  if (pad.serial === null) return text.map.padOfAny(pad.name);
   const owner = state.vehicles.find((vehicle) => vehicle.serial === pad.serial);
-  return `${pad.name}: reserved for ${owner?.name ?? pad.serial}`;
+  return text.map.padOf(pad.name, owner?.name ?? pad.serial);
 }
 
-function padElement(text: string): HTMLElement {
+function padElement(pad: string): HTMLElement {
   const element = document.createElement("span");
   element.className = "pad";
-  element.title = `Landing pad ${text}`;
+  element.title = text.map.pad(pad);
   element.textContent = "H";
   const read = document.createElement("span");
   read.className = "hidden-but-read";
-  read.textContent = `: landing pad ${text}`;
+  read.textContent = text.map.padRead(pad);
   element.append(read);
   return element;
 }

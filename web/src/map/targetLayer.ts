@@ -1,6 +1,7 @@
 import type { Map as MapLibre } from "maplibre-gl";
 import { vehicleKey } from "../fleet/vehicleStatus";
 import type { VehicleView } from "../protocol";
+import { text } from "../text/catalogue";
 import { vehicleLabel } from "../text/names";
 import { formatHeight } from "../text/units";
 import { colourOf } from "../theme/theme";
@@ -35,13 +36,13 @@ export function targetOf(vehicle: VehicleView): Target[] {
   const { steering } = vehicle;
   if (steering === null) return [];
   const height = formatHeight(steering.height_above_takeoff_m);
-  const action = steering.has_arrived ? "holding here" : "flying here";
+  const action = steering.has_arrived ? text.map.holdingHere : text.map.flyingHere;
   return [
     {
       key: vehicleKey(vehicle),
       at: { lon: steering.longitude_deg, lat: steering.latitude_deg },
       colour: colourOf(vehicleKey(vehicle)),
-      text: `${vehicleLabel(vehicle)} ${action}, ↥ ${height}`,
+      text: action(vehicleLabel(vehicle), height),
     },
   ];
 }

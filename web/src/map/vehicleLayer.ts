@@ -1,6 +1,7 @@
 import { type Map as MapLibre, Marker } from "maplibre-gl";
 import { simulation, stalenessNow, vehicleKey, vehicleStatus } from "../fleet/vehicleStatus";
 import type { VehicleView } from "../protocol";
+import { text } from "../text/catalogue";
 import { agedBy, formatAge } from "../text/quantities";
 import { formatHeight } from "../text/units";
 import { clustersOf, type Spot } from "./clusters";
@@ -76,10 +77,10 @@ export class VehicleLayer implements Layer {
     const isNear = map.getZoom() >= HEIGHTS_FROM_ZOOM;
     // On the ground a height means nothing, and a cluster has its own number.
     const wanted = alone.filter((spot) => spot.isMarked || (isNear && !spot.isOnGround));
-    const fixed = this.targets.map(({ at, text }) => ({ text, ...onScreen(map, at) }));
+    const fixed = this.targets.map((one) => ({ text: one.text, ...onScreen(map, one.at) }));
     this.sides = placeLabels(wanted, alone, this.sides, fixed);
-    for (const { key, text, isStale } of spots)
-      this.markers.get(key)?.setLabel(text, this.sides.get(key), isStale);
+    for (const { key, text: label, isStale } of spots)
+      this.markers.get(key)?.setLabel(label, this.sides.get(key), isStale);
   }
 
   /** Puts a count where many symbols would hide each other, and returns the others; a press zooms in on them. */
@@ -94,7 +95,7 @@ export class VehicleLayer implements Layer {
       this.bubbles[index] = bubble;
       const element = bubble.getElement();
       element.textContent = String(keys.length);
-      element.setAttribute("aria-label", `${keys.length} vehicles: zoom in`);
+      element.setAttribute("aria-label", text.map.cluster(keys.length));
       bubble.setLngLat(at);
       if (!element.isConnected) bubble.addTo(map);
     }
@@ -123,11 +124,14 @@ function placedOf(vehicle: VehicleView, scene: Scene): Placed | null {
   if (at === null) return null;
   const isSelected = scene.selected.includes(vehicleKey(vehicle));
   const isStale = stalenessNow(vehicle, scene.behindS) !== "live";
-  const text = labelText(vehicle, isSelected, isStale, scene.behindS);
-  return { vehicle, at, isSelected, isStale, text };
+  const label = labelText(vehicle, isSelected, isStale, scene.behindS);
+  return { vehicle, at, isSelected, isStale, text: label };
 }
 
-function spotOf(map: MapLibre, { vehicle, at, isSelected, isStale, text }: Placed): PlacedSpot {
+function spotOf(
+  map: MapLibre,
+  { vehicle, at, isSelected, isStale, text: label }: Placed,
+): PlacedSpot {
   const isTrouble = isStale || vehicleStatus(vehicle, 0).severity !== null;
   return {
     key: vehicleKey(vehicle),
@@ -136,7 +140,7 @@ function spotOf(map: MapLibre, { vehicle, at, isSelected, isStale, text }: Place
     isMarked: isSelected || isStale,
     isStale,
     isOnGround: vehicle.is_flying.value === false,
-    text,
+    text: label,
     // The selected first, then those in trouble, then by number.
     rank: (isSelected ? 0 : isStale ? 1000 : 2000) + Math.max(0, vehicle.number),
   };
@@ -157,12 +161,12 @@ function labelText(
   behindS: number,
 ): string {
   const age = formatAge(agedBy(vehicle.telemetry_age_s, behindS));
-  const state = isStale ? `${age} old` : heightText(vehicle);
+  const state = isStale ? text.map.old(age) : heightText(vehicle);
   return isSelected ? `${vehicle.name} · ${state}` : state;
 }
 
 function heightText(vehicle: VehicleView): string {
-  if (vehicle.is_flying.value !== true) return "on ground";
+  if (vehicle.is_flying.value !== true) return text.map.onGround;
   return formatHeight(vehicle.height_above_takeoff_m.value);
 }
 

@@ -1,5 +1,6 @@
 import { badgeText, stalenessNow, vehicleStatus } from "../fleet/vehicleStatus";
 import type { VehicleView } from "../protocol";
+import { text } from "../text/catalogue";
 import { vehicleLabel } from "../text/names";
 import { colourOf, lookClasses } from "../theme/theme";
 import type { Side } from "./labels";
@@ -65,9 +66,9 @@ export class VehicleMarker {
     classes.toggle("is-grounded", vehicle.is_flying.value === false);
     classes.toggle("is-selected", isSelected);
     setAttribute(this.button, "aria-pressed", String(isSelected));
-    const text = describe(vehicle, behindS);
-    setAttribute(this.button, "aria-label", text);
-    setAttribute(this.button, "title", text);
+    const description = describe(vehicle, behindS);
+    setAttribute(this.button, "aria-label", description);
+    setAttribute(this.button, "title", description);
     if (this.badge.textContent !== badgeText(vehicle)) this.badge.textContent = badgeText(vehicle);
   }
 
@@ -80,11 +81,11 @@ export class VehicleMarker {
   }
 
   /** Shows a text beside the symbol; without a side it has no room. */
-  setLabel(text: string, side: Side | undefined, isStale: boolean): void {
+  setLabel(label: string, side: Side | undefined, isStale: boolean): void {
     const isHidden = side === undefined;
     if (this.label.hidden !== isHidden) this.label.hidden = isHidden;
     if (isHidden) return;
-    if (this.label.textContent !== text) this.label.textContent = text;
+    if (this.label.textContent !== label) this.label.textContent = label;
     const look = `craft-label is-${side}${isStale ? " is-stale" : ""}`;
     if (this.label.className !== look) this.label.className = look;
   }
@@ -110,6 +111,7 @@ function setStyle(element: SVGElement | HTMLElement, name: "transform", value: s
 }
 
 function describe(vehicle: VehicleView, behindS: number): string {
-  const kind = vehicle.is_simulated ? "simulated vehicle" : "vehicle";
-  return `${kind} ${vehicleLabel(vehicle)}, ${vehicleStatus(vehicle, behindS).activity}`;
+  const named = vehicle.is_simulated ? text.map.simulatedVehicle : text.map.vehicle;
+  const { activity } = vehicleStatus(vehicle, behindS);
+  return named(vehicleLabel(vehicle), text.activity.names[activity]);
 }

@@ -1,21 +1,11 @@
 import type { SurveyEstimateView, SurveyView } from "../protocol";
+import { text } from "./catalogue";
 import { formatQuantity, UNKNOWN } from "./quantities";
-
-/** Survey phases for display. */
-const PHASE_LABELS: Readonly<Record<SurveyView["phase"], string>> = {
-  planning: "Planning",
-  refused: "Not feasible",
-  created: "Planned, not started",
-  running: "Running",
-  paused: "Paused",
-  aborted: "Aborted",
-  done: "Complete",
-};
 
 /** A survey's status as text; one whose drones have all stopped is not running. */
 export function surveyStatus({ phase, vehicles }: SurveyView): string {
   const isStopped = phase === "running" && !vehicles.some((vehicle) => vehicle.is_flying_rows);
-  return isStopped ? "Stopped: no drone is flying rows" : PHASE_LABELS[phase];
+  return isStopped ? text.surveys.stopped : text.surveys.phases[phase];
 }
 
 /** About how long a running survey still takes, from how fast it has imaged so far; null if unknown. */
@@ -25,7 +15,7 @@ export function timeLeft({ phase, figures, age_s, vehicles }: SurveyView): strin
   const imaged_m2 = figures.region_m2 - figures.not_yet_m2;
   if (imaged_m2 < LEAST_SHARE * figures.region_m2 || figures.not_yet_m2 <= 0) return null;
   const left_s = (figures.not_yet_m2 / imaged_m2) * age_s;
-  return left_s < 60 ? "under 1 min left" : `≈ ${Math.round(left_s / 60)} min left`;
+  return left_s < 60 ? text.surveys.underMinute : text.surveys.minutesLeft(Math.round(left_s / 60));
 }
 
 /** Before that a rate means nothing. */
@@ -55,13 +45,13 @@ export function estimateFacts(found: SurveyEstimateView): (readonly [string, str
   const cm = found.gsd_m === null ? null : 100 * found.gsd_m;
   const speed = `${formatQuantity(found.speed_limit_mps, "m/s")}: ${found.speed_limited_by}`;
   return [
-    ["Time", minutes(found.time_s)],
-    ["In the air", minutes(found.flown_s)],
-    ["Photos on rows", count(found.photos)],
-    ["Photos in all", count(found.photos_in_all)],
-    ["Batteries", count(found.batteries)],
-    ["Pixel on the ground", formatQuantity(cm, "cm")],
-    ["Fastest", speed],
+    [text.estimate.time, minutes(found.time_s)],
+    [text.estimate.inAir, minutes(found.flown_s)],
+    [text.estimate.photosOnRows, count(found.photos)],
+    [text.estimate.photos, count(found.photos_in_all)],
+    [text.estimate.batteries, count(found.batteries)],
+    [text.estimate.pixel, formatQuantity(cm, "cm")],
+    [text.estimate.fastest, speed],
   ];
 }
 

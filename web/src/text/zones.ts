@@ -1,15 +1,12 @@
 import type { TemporaryZoneView } from "../protocol";
+import { text } from "./catalogue";
 import { formatAge } from "./quantities";
 import { formatLength } from "./units";
 
 export type ZoneKind = TemporaryZoneView["kind"];
 
 /** Each kind's name, and the reason that is sent when none is typed. */
-export const ZONE_KINDS: Readonly<Record<ZoneKind, { name: string; reason: string }>> = {
-  person: { name: "Person", reason: "Person in the field" },
-  tractor: { name: "Tractor", reason: "Tractor in the field" },
-  crewed_aircraft: { name: "Crewed aircraft", reason: "Crewed aircraft nearby" },
-};
+export const ZONE_KINDS = text.zones.kinds;
 
 /** A zone's name, such as "Person 3". */
 export function zoneName({ kind, id }: Pick<TemporaryZoneView, "kind" | "id">): string {
@@ -22,19 +19,20 @@ export function zoneHeights({
   ceiling_m,
 }: Pick<TemporaryZoneView, "floor_m" | "ceiling_m">): string {
   if (ceiling_m === null)
-    return floor_m ? `from ${formatLength(floor_m)} above ground up` : "all heights";
-  const from = floor_m ? `${formatLength(floor_m)} to ` : "up to ";
-  return `${from}${formatLength(ceiling_m)} above ground`;
+    return floor_m ? text.zones.upFrom(formatLength(floor_m)) : text.zones.allHeights;
+  const ceiling = formatLength(ceiling_m);
+  return floor_m ? text.zones.between(formatLength(floor_m), ceiling) : text.zones.upTo(ceiling);
 }
 
 /** When it ends, `behindS` seconds after the state. */
 export function zoneEnd(ends_in_s: number | null, behindS: number): string {
-  return ends_in_s === null ? "until ended" : `ends in ${formatAge(ends_in_s - behindS)}`;
+  if (ends_in_s === null) return text.zones.untilEnded;
+  return text.zones.endsIn(formatAge(ends_in_s - behindS));
 }
 
 /** Its label on the map: what, how old in whole minutes, which heights. */
 export function zoneLabel(zone: TemporaryZoneView, behindS: number): string {
   const minutes = Math.floor((zone.age_s + behindS) / 60);
-  const age = minutes < 1 ? "new" : `${minutes} min`;
-  return `${zoneName(zone)}, ${age}: keep out, ${zoneHeights(zone)}`;
+  const age = minutes < 1 ? text.zones.new : `${minutes} min`;
+  return text.zones.label(zoneName(zone), age, zoneHeights(zone));
 }

@@ -1,12 +1,9 @@
 import { For } from "solid-js";
 import type { LightSharesView } from "../../protocol";
+import { text } from "../../text/catalogue";
 import { type LightPercents, lightPercents } from "../../text/light";
 
-const LIGHTS: readonly (readonly [keyof LightPercents, string])[] = [
-  ["sun", "Sun"],
-  ["shade", "Shade"],
-  ["unknown", "Light unknown"],
-];
+const LIGHTS: readonly (keyof LightPercents)[] = ["sun", "shade", "unknown"];
 
 /** Shares of the ground in view as a bar, with the colours and patterns that the map uses. */
 export function LightShares(props: { inView: LightSharesView }) {
@@ -15,15 +12,15 @@ export function LightShares(props: { inView: LightSharesView }) {
     <>
       <div class="light-bar" aria-hidden="true">
         <For each={LIGHTS}>
-          {([light]) => <span class={`is-${light}`} style={{ width: `${percents()[light]}%` }} />}
+          {(light) => <span class={`is-${light}`} style={{ width: `${percents()[light]}%` }} />}
         </For>
       </div>
-      <ul class="light-legend" aria-label="Light on the ground in view">
+      <ul class="light-legend" aria-label={text.sun.shares}>
         <For each={LIGHTS}>
-          {([light, label]) => (
+          {(light) => (
             <li>
               <span class={`light-swatch is-${light}`} aria-hidden="true" />
-              {label} {percents()[light]}&nbsp;%
+              {text.sun.lights[light](`${percents()[light]}\u00a0%`)}
             </li>
           )}
         </For>

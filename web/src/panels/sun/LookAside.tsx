@@ -1,6 +1,7 @@
 import { createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { LookAsideView } from "../../protocol";
+import { text } from "../../text/catalogue";
 import { responseProblem, vehicleLabel } from "../../text/names";
 import { formatHeading } from "../../text/quantities";
 import { formatLength } from "../../text/units";
@@ -23,43 +24,31 @@ export function LookAside() {
   const button = (label: string, name: string, serial: string) => (
     <GuardButton
       label={label}
-      of={`fly ${name} ${formatLength(ASIDE_M)} aside and back`}
+      of={text.lookAside.buttonOf(name, formatLength(ASIDE_M))}
       hold_ms={GUARD_MS}
       subject={isUnderWay() ? "" : serial}
       onConfirm={() => void order(serial)}
     />
   );
-  const labelFor = (name: string) => (imagers().length > 1 ? `Look aside: ${name}` : "Look aside");
+  const labelFor = (name: string) =>
+    imagers().length > 1 ? text.lookAside.buttonFor(name) : text.lookAside.button;
   return (
-    <section class="section" aria-label="Look aside">
-      <p class="muted">
-        Under an even sky, an imaging drone flies {formatLength(ASIDE_M)} aside and back, to tell
-        sun from shade.
-      </p>
-      <For each={imagers()} fallback={button("Look aside", "the imaging drone", "")}>
+    <section class="section" aria-label={text.lookAside.name}>
+      <p class="muted">{text.lookAside.how(formatLength(ASIDE_M))}</p>
+      <For each={imagers()} fallback={button(text.lookAside.button, text.lookAside.imager, "")}>
         {(vehicle) =>
           button(labelFor(vehicleLabel(vehicle)), vehicleLabel(vehicle), vehicle.serial ?? "")
         }
       </For>
       <Problem text={problem()} />
       <Show when={fleet.lookAside}>
-        {(view) => (
-          <MotionProgress
-            view={view()}
-            stage={`${STAGES[view().stage] ?? view().stage}, bearing ${formatHeading(view().bearing_deg)}`}
-            testId="look-aside"
-          />
-        )}
+        {(view) => <MotionProgress view={view()} stage={stageText(view())} testId="look-aside" />}
       </Show>
     </section>
   );
 }
 
-/** Stages as shown after the vehicle's name. */
-const STAGES: Readonly<Partial<Record<LookAsideView["stage"], string>>> = {
-  aside: "flies aside",
-  waiting: "waits beside its place",
-  back: "flies back",
-  done: "looked aside and is back",
-  stopped: "stopped its look aside",
-};
+/** A stage as shown after the vehicle's name. */
+function stageText({ stage, bearing_deg }: LookAsideView): string {
+  return text.lookAside.stages[stage]?.(formatHeading(bearing_deg)) ?? stage;
+}

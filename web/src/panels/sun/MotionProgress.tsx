@@ -1,6 +1,7 @@
 import { type JSX, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { ImagerMotionView } from "../../protocol";
+import { text } from "../../text/catalogue";
 import { personName } from "../../text/names";
 import { formatAge } from "../../text/quantities";
 
@@ -17,8 +18,10 @@ export function MotionProgress(props: {
       <strong>{props.view.vehicle_name}</strong> {props.stage}
       {props.children}{" "}
       <span class="muted">
-        since {formatAge(props.view.since_age_s + behindS())}, ordered by{" "}
-        {personName(props.view.begun_by)}
+        {text.sun.ordered(
+          formatAge(props.view.since_age_s + behindS()),
+          personName(props.view.begun_by),
+        )}
       </span>
       <Show when={props.view.reason}>
         {(reason) => <span class="muted motion-reason">{reason()}</span>}

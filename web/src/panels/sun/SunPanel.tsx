@@ -1,6 +1,7 @@
 import { Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { ForecastView, GroundImageView, ShadeLineView } from "../../protocol";
+import { text } from "../../text/catalogue";
 import { formatAge, formatHeading, formatQuantity } from "../../text/quantities";
 import { Panel } from "../Panel";
 import { SeverityMark } from "../SeverityMark";
@@ -13,8 +14,8 @@ import "./sun.css";
 export function SunPanel() {
   const { fleet } = useConsole();
   return (
-    <Panel title="Imaging drone" name="sun">
-      <Show when={fleet.shade} fallback={<p class="panel-empty">No imaging drone at this site.</p>}>
+    <Panel title={text.panels.titles.sun} name="sun">
+      <Show when={fleet.shade} fallback={<p class="panel-empty">{text.sun.none}</p>}>
         {(line) => (
           <>
             <ShadeStatus line={line()} />
@@ -32,34 +33,34 @@ function ShadeStatus(props: { line: ShadeLineView }) {
   const problem = () => props.line.rejected ?? props.line.error;
   return (
     <div class="section">
-      <Show when={props.line.map} fallback={<p class="muted">No shade map yet.</p>}>
+      <Show when={props.line.map} fallback={<p class="muted">{text.sun.noMap}</p>}>
         {(map) => (
           <>
-            <Show when={map().in_view} fallback={<p class="muted">No ground in view.</p>}>
+            <Show when={map().in_view} fallback={<p class="muted">{text.sun.noGround}</p>}>
               {(inView) => <LightShares inView={inView()} />}
             </Show>
             <p class="muted">
-              of the ground in view, {formatAge(map().captured_age_s + behindS())} ago
-              <Show when={fleet.groundImage}>
-                {(image) => <>; exposure {exposure(image(), props.line)}</>}
-              </Show>
+              {text.sun.inView(
+                formatAge(map().captured_age_s + behindS()),
+                exposure(fleet.groundImage, props.line),
+              )}
             </p>
           </>
         )}
       </Show>
       <Show when={props.line.reference}>
-        {(text) => <p class="muted wire-text">Land in full sun: {text()}.</p>}
+        {(what) => <p class="muted wire-text">{text.sun.reference(what())}</p>}
       </Show>
       <Show when={props.line.forecast}>
         {(forecast) => <p class="muted">{motion(forecast())}</p>}
       </Show>
       <Show when={problem()}>
-        {(text) => (
+        {(why) => (
           <p class="problem wire-text">
             <span class="tone-warning">
               <SeverityMark severity="warning" />
             </span>
-            <span>{text()}</span>
+            <span>{why()}</span>
           </p>
         )}
       </Show>
@@ -67,16 +68,18 @@ function ShadeStatus(props: { line: ShadeLineView }) {
   );
 }
 
-function exposure(image: GroundImageView, line: ShadeLineView): string {
-  if (line.lock_problem) return "not locked";
+/** How the newest ground image was exposed; null without one. */
+function exposure(image: GroundImageView | null, line: ShadeLineView) {
+  if (image === null) return null;
+  if (line.lock_problem) return "notLocked";
   return image.exposure_locked ? "locked" : "automatic";
 }
 
 /** The shadows' motion in words. */
 function motion(forecast: ForecastView): string {
   const { shadows_east_mps: east, shadows_north_mps: north } = forecast;
-  if (east === null || north === null) return "Motion of the shadows unknown.";
+  if (east === null || north === null) return text.sun.motionUnknown;
   const towards = ((Math.atan2(east, north) * 180) / Math.PI + 360) % 360;
   const speed = formatQuantity(Math.hypot(east, north), "m/s");
-  return `Shadows move at ${speed}, bearing ${formatHeading(towards)}.`;
+  return text.sun.motion(speed, formatHeading(towards));
 }

@@ -8,6 +8,7 @@ import type {
   VehicleView,
 } from "../../protocol";
 import type { Outcome } from "../../source/stationSource";
+import { text } from "../../text/catalogue";
 import { vehicleLabel } from "../../text/names";
 import { formatLength } from "../../text/units";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
@@ -21,16 +22,10 @@ export function UpwindPlace() {
   const { fleet } = useConsole();
   const imagers = () => fleet.vehicles.filter(({ is_imager: isImager }) => isImager);
   return (
-    <section class="section" aria-label="View upwind">
+    <section class="section" aria-label={text.upwind.name}>
       <For each={imagers()}>{(vehicle) => <Place vehicle={vehicle} />}</For>
       <Show when={fleet.moveUpwind}>
-        {(view) => (
-          <MotionProgress
-            view={view()}
-            stage={`${STAGES[view().stage] ?? view().stage}, ${distance(view().place)}`}
-            testId="move-upwind"
-          />
-        )}
+        {(view) => <MotionProgress view={view()} stage={stageText(view())} testId="move-upwind" />}
       </Show>
     </section>
   );
@@ -72,7 +67,7 @@ function Place(props: { vehicle: VehicleView }) {
     void orderApi.order({ serials: [serial()], order: gotoOf(to) }, [vehicleLabel(props.vehicle)]);
   };
   const name = () => vehicleLabel(props.vehicle);
-  const missing = () => (problem() === null ? "" : `No place upwind for ${name()}: ${problem()}.`);
+  const missing = () => (problem() === null ? "" : text.upwind.noPlace(name(), problem() ?? ""));
   return (
     <>
       <p class="muted wire-text" data-testid="upwind-place">
@@ -83,7 +78,7 @@ function Place(props: { vehicle: VehicleView }) {
       <Show when={target()}>
         {(to) => (
           <GuardButton
-            label="Fly upwind"
+            label={text.upwind.fly}
             of={`${name()}, ${distance(to())}`}
             hold_ms={GUARD_MS}
             subject={JSON.stringify([to().latitude_deg, to().longitude_deg])}
@@ -95,12 +90,10 @@ function Place(props: { vehicle: VehicleView }) {
   );
 }
 
-/** Stages as shown after the vehicle's name. */
-const STAGES: Readonly<Partial<Record<MoveUpwindView["stage"], string>>> = {
-  upwind: "flies upwind by itself",
-  done: "flew upwind by itself",
-  stopped: "stopped its flight upwind",
-};
+/** A stage as shown after the vehicle's name. */
+function stageText({ stage, place }: MoveUpwindView): string {
+  return text.upwind.stages[stage]?.(distance(place)) ?? stage;
+}
 
 function distance({ distance_m }: UpwindPlaceView): string {
   return formatLength(distance_m);

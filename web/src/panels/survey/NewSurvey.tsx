@@ -2,18 +2,12 @@ import { createResource, createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { SurveyResponse } from "../../protocol";
 import type { Outcome } from "../../source/stationSource";
+import { text } from "../../text/catalogue";
 import { createLengthField, inLengthUnit, lengthUnit } from "../../text/units";
 
-const PLANNERS = [
-  ["lawnmower_once", "All rows once"],
-  ["lawnmower_again", "Repeat until all is in sun"],
-  ["sunlit_first", "What is in sun first"],
-] as const;
+const PLANNERS = ["lawnmower_once", "lawnmower_again", "sunlit_first"] as const;
 
-const WHEN_DONE = [
-  ["return_home", "Return home"],
-  ["hover", "Hover"],
-] as const;
+const WHEN_DONE = ["return_home", "hover"] as const;
 
 /** Heights above takeoff that can be planned, and the one offered. */
 const [LOWEST_M, HIGHEST_M, USUAL_HEIGHT_M] = [10, 120, 50];
@@ -64,26 +58,26 @@ export function NewSurvey(props: {
   return (
     <Show
       when={regions().length > 0}
-      fallback={<p class="panel-empty">The site has no survey regions.</p>}
+      fallback={<p class="panel-empty">{text.newSurvey.noRegions}</p>}
     >
       <details class="section survey-new" open={props.isFirst}>
-        <summary>New survey</summary>
+        <summary>{text.newSurvey.title}</summary>
         <form
           class="survey-form"
-          aria-label="New survey"
+          aria-label={text.newSurvey.title}
           onSubmit={(event) => {
             event.preventDefault();
             void plan(event.currentTarget);
           }}
         >
           <label class="survey-wide">
-            Region
+            {text.newSurvey.region}
             <select name="region">
               <For each={regions()}>{({ name }) => <option value={name}>{name}</option>}</For>
             </select>
           </label>
           <label>
-            Height above takeoff, {lengthUnit()}
+            {text.newSurvey.height(lengthUnit())}
             <input
               type="number"
               min={Math.ceil(inLengthUnit(LOWEST_M))}
@@ -95,13 +89,13 @@ export function NewSurvey(props: {
             />
           </label>
           <label>
-            Speed, m/s
+            {text.newSurvey.speed}
             <input name="speed" type="number" min={1} max={15} step={0.5} value={5} required />
           </label>
           <label>
-            Camera
+            {text.newSurvey.camera}
             <select name="camera">
-              <option value="">Other, 66° × 52°</option>
+              <option value="">{text.newSurvey.otherCamera}</option>
               <For each={cameras()}>
                 {({ name, title }) => (
                   <option value={name} selected={name === usual()}>
@@ -112,28 +106,32 @@ export function NewSurvey(props: {
             </select>
           </label>
           <label>
-            Photo every, s
+            {text.newSurvey.interval}
             <input name="interval" type="number" min={0.5} max={60} step={0.1} value={2} required />
           </label>
           <label class="survey-wide">
-            Rows
+            {text.newSurvey.rows}
             <select name="planner">
-              <For each={PLANNERS}>{([name, label]) => <option value={name}>{label}</option>}</For>
+              <For each={PLANNERS}>
+                {(name) => <option value={name}>{text.newSurvey.planners[name]}</option>}
+              </For>
             </select>
           </label>
           <label class="survey-wide">
-            When complete
+            {text.newSurvey.whenDone}
             <select name="when_done">
-              <For each={WHEN_DONE}>{([name, label]) => <option value={name}>{label}</option>}</For>
+              <For each={WHEN_DONE}>
+                {(name) => <option value={name}>{text.newSurvey.thenDo[name]}</option>}
+              </For>
             </select>
           </label>
           <label class="survey-wide survey-check">
             <input name="look_aside" type="checkbox" />
-            Imaging drone may look aside by itself
+            {text.newSurvey.lookAside}
           </label>
           <label class="survey-wide survey-check">
             <input name="upwind" type="checkbox" />
-            Imaging drone may move upwind by itself
+            {text.newSurvey.upwind}
           </label>
           <button
             type="submit"
@@ -141,7 +139,7 @@ export function NewSurvey(props: {
             disabled={isPlanning() || lacks("operator") !== null}
             title={lacks("operator") ?? undefined}
           >
-            Plan survey
+            {text.newSurvey.plan}
           </button>
         </form>
       </details>

@@ -3,6 +3,7 @@ import { useConsole } from "../../console";
 import { targetsKey } from "../../orders/targets";
 import type { SurveyingView, SurveyResponse, SurveyView } from "../../protocol";
 import type { Outcome } from "../../source/stationSource";
+import { text } from "../../text/catalogue";
 import { surveyStatus, timeLeft } from "../../text/survey";
 import { BRIEF_MS, GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Panel, Problem } from "../Panel";
@@ -17,7 +18,7 @@ export function SurveyPanel() {
   const [problem, setProblem] = createSignal<string | null>(null);
   const showProblem = (outcome: Outcome<SurveyResponse>) => setProblem(problemOf(outcome));
   return (
-    <Panel title="Survey" name="survey">
+    <Panel title={text.panels.titles.survey} name="survey">
       <For each={fleet.surveys}>
         {(survey) => <SurveySection survey={survey} onResult={showProblem} />}
       </For>
@@ -30,7 +31,7 @@ export function SurveyPanel() {
 /** Why a survey request failed; null if it was accepted. */
 export function problemOf(outcome: Outcome<SurveyResponse>): string | null {
   if (outcome.kind === "failed") return outcome.problem;
-  return outcome.value.accepted ? null : (outcome.value.reason ?? "Refused without a reason.");
+  return outcome.value.accepted ? null : (outcome.value.reason ?? text.surveys.noReason);
 }
 
 interface SurveyProps {
@@ -47,8 +48,8 @@ function SurveySection(props: SurveyProps) {
     );
   /** The number of a round means nothing to an operator beyond that rows are flown again. */
   const reason = () => {
-    const text = props.survey.reason.replace(`${surveyStatus(props.survey)}: `, "");
-    return /^round \d+$/.test(text) ? "" : text;
+    const shown = props.survey.reason.replace(`${surveyStatus(props.survey)}: `, "");
+    return /^round \d+$/.test(shown) ? "" : shown;
   };
   return (
     <section class="section" data-testid={`survey-${props.survey.id}`}>
@@ -58,7 +59,7 @@ function SurveySection(props: SurveyProps) {
       </p>
       <p class="wire-text">
         {surveyStatus(props.survey)}
-        <Show when={reason()}>{(text) => <span class="muted">: {text()}</span>}</Show>
+        <Show when={reason()}>{(why) => <span class="muted">: {why()}</span>}</Show>
       </p>
       <Coverage survey={props.survey} />
       <Decisions lines={active().map((vehicle) => lineOf(vehicle, is("done")))} />
@@ -85,8 +86,8 @@ function SurveySection(props: SurveyProps) {
 
 /** A drone and what it does for the survey, with the reason. */
 function lineOf(vehicle: SurveyingView, isDone: boolean): readonly [string, string] {
-  const idle = isDone ? "returns home" : "does not fly rows";
-  const activity = vehicle.is_flying_rows ? "flies rows" : idle;
+  const idle = isDone ? text.surveys.returnsHome : text.surveys.noRows;
+  const activity = vehicle.is_flying_rows ? text.surveys.fliesRows : idle;
   const why = vehicle.not_flying_reason ?? vehicle.refused ?? vehicle.decision;
   if (why === null) return [vehicle.vehicle_name, activity];
   // A decision begins with what is flown; a reason stands beside it.
@@ -94,15 +95,15 @@ function lineOf(vehicle: SurveyingView, isDone: boolean): readonly [string, stri
 }
 
 const START_LABELS: Partial<Record<SurveyView["phase"], string>> = {
-  running: "Add selected drones",
-  paused: "Resume with selected",
+  running: text.surveys.add,
+  paused: text.surveys.resume,
 };
 
 /** Starts a survey with the selected vehicles, or adds them to it. */
 function Start(props: SurveyProps) {
   const { source, targets } = useConsole();
   const [allowTakeoff, setAllowTakeoff] = createSignal(false);
-  const label = () => START_LABELS[props.survey.phase] ?? "Start with selected";
+  const label = () => START_LABELS[props.survey.phase] ?? text.surveys.start;
   const start = async () => {
     const { serials } = targets();
     props.onResult(await source.surveys.start(props.survey.id, serials, allowTakeoff()));
@@ -118,11 +119,11 @@ function Start(props: SurveyProps) {
           checked={allowTakeoff()}
           onChange={(event) => setAllowTakeoff(event.currentTarget.checked)}
         />
-        Allow takeoff for this start
+        {text.surveys.allowTakeoff}
       </label>
       <GuardButton
         label={label()}
-        of={[...targets().labels, `survey ${props.survey.name}`].join(", ")}
+        of={[...targets().labels, text.surveys.name(props.survey.name)].join(", ")}
         hold_ms={GUARD_MS}
         subject={subject()}
         onConfirm={() => void start()}
@@ -131,18 +132,16 @@ function Start(props: SurveyProps) {
   );
 }
 
-const STOPS = { pause: "Pause", abort: "Abort", hold: "Hold returning drones" } as const;
-
 /** Pauses or aborts; aborting a finished survey holds its vehicles on their way home. */
-function Stop(props: SurveyProps & { word: keyof typeof STOPS }) {
+function Stop(props: SurveyProps & { word: keyof typeof text.surveys.stops }) {
   const { source } = useConsole();
   const word = () => (props.word === "hold" ? "abort" : props.word);
   const stop = async () => props.onResult(await source.surveys.stop(props.survey.id, word()));
-  const label = () => STOPS[props.word];
+  const label = () => text.surveys.stops[props.word];
   return (
     <GuardButton
       label={label()}
-      of={`survey ${props.survey.name}`}
+      of={text.surveys.name(props.survey.name)}
       needs="pilot"
       class={props.word === "abort" ? "guard-grave" : ""}
       // A pause is safe and reversible; an abort is final.

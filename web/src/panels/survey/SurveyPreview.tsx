@@ -2,6 +2,7 @@ import { createResource, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import { targetsKey } from "../../orders/targets";
 import type { SurveyEstimateView, SurveyView } from "../../protocol";
+import { text } from "../../text/catalogue";
 import { UNKNOWN } from "../../text/quantities";
 import { estimateFacts } from "../../text/survey";
 
@@ -23,13 +24,17 @@ export function SurveyPreview(props: { survey: SurveyView }) {
     return latest?.kind === "answered" ? latest.value : null;
   };
   const failed = () => (outcome.latest?.kind === "failed" ? outcome.latest.problem : null);
-  const assumed = () => (targets().serials.length === 0 ? "one drone" : "the selected drones");
+  const assumed = () =>
+    targets().serials.length === 0 ? text.estimate.withOne : text.estimate.withSelected;
   return (
     <div class="survey-preview" data-testid={`estimate-${props.survey.id}`}>
-      <Show when={estimate()} fallback={<p class="muted">{failed() ?? `Estimate: ${UNKNOWN}`}</p>}>
+      <Show
+        when={estimate()}
+        fallback={<p class="muted">{failed() ?? text.estimate.unknown(UNKNOWN)}</p>}
+      >
         {(found) => (
           <>
-            <p class="muted">With {assumed()}, each row once:</p>
+            <p class="muted">{assumed()}</p>
             <dl class="survey-facts">
               <For each={estimateFacts(found())}>
                 {([name, value]) => (
@@ -40,8 +45,8 @@ export function SurveyPreview(props: { survey: SurveyView }) {
                 )}
               </For>
             </dl>
-            <For each={[found().refusal, ...found().warnings].filter((text) => text !== null)}>
-              {(text) => <p class="survey-warning wire-text">{text}</p>}
+            <For each={[found().refusal, ...found().warnings].filter((one) => one !== null)}>
+              {(warning) => <p class="survey-warning wire-text">{warning}</p>}
             </For>
           </>
         )}

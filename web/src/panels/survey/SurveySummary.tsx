@@ -1,6 +1,7 @@
 import { createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { SurveyView } from "../../protocol";
+import { text } from "../../text/catalogue";
 import { formatArea, sharePercent, shownSurvey, surveyStatus, timeLeft } from "../../text/survey";
 import "./survey.css";
 
@@ -13,11 +14,11 @@ export function SurveySummary() {
         <button
           type="button"
           class="card survey-summary"
-          title="Open the survey"
+          title={text.surveys.open}
           onClick={() => panels.open("survey")}
         >
           <span class="survey-head">
-            <strong>Survey</strong>
+            <strong>{text.surveys.title}</strong>
             <span class="muted">{timeLeft(survey()) ?? surveyStatus(survey())}</span>
           </span>
           <Coverage survey={survey()} />
@@ -35,14 +36,14 @@ export function Coverage(props: { survey: SurveyView }) {
         const percent = (area_m2: number) => sharePercent(area_m2, figures().region_m2);
         const parts = () =>
           [
-            ["in shade", percent(figures().in_shade_m2)],
-            ["light unknown", percent(figures().sun_unknown_m2)],
-            ["to fly", percent(figures().not_yet_m2)],
+            [text.surveys.inShade, percent(figures().in_shade_m2)],
+            [text.surveys.lightUnknown, percent(figures().sun_unknown_m2)],
+            [text.surveys.toFly, percent(figures().not_yet_m2)],
           ] as const;
         const others = () =>
           parts()
             .filter(([, share]) => share > 0)
-            .map(([name, share]) => ` · ${share} % ${name}`)
+            .map(([shareText, share]) => ` · ${shareText(share)}`)
             .join("");
         return (
           <>
@@ -52,7 +53,7 @@ export function Coverage(props: { survey: SurveyView }) {
               <span class="is-unknown" style={{ width: `${percent(figures().sun_unknown_m2)}%` }} />
             </span>
             <span class="survey-figures">
-              <strong>{percent(figures().in_sun_m2)} % in sun</strong>
+              <strong>{text.surveys.inSun(percent(figures().in_sun_m2))}</strong>
               <span class="muted">
                 {others()} · {formatArea(figures().region_m2)}
               </span>
@@ -81,7 +82,7 @@ export function Decisions(props: { lines: readonly (readonly [string, string])[]
       </ul>
       <Show when={props.lines.length > DECISIONS_SHOWN}>
         <button type="button" class="button button-quiet" onClick={() => setOpen(!isOpen())}>
-          {isOpen() ? "Fewer" : `All ${props.lines.length} drones`}
+          {isOpen() ? text.surveys.fewer : text.surveys.allDrones(props.lines.length)}
         </button>
       </Show>
     </Show>

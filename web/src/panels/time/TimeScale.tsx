@@ -2,6 +2,7 @@ import { createMemo, createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import { Legend } from "../../map/LayersButton";
 import type { ForecastView } from "../../protocol";
+import { text } from "../../text/catalogue";
 import { formatAge, formatFraction } from "../../text/quantities";
 import "./time.css";
 
@@ -17,21 +18,22 @@ function Scale(props: { forecast: ForecastView }) {
   const leads = () => props.forecast.lead_s;
   const index = () => Math.max(0, leads().indexOf(overlay.lead_s()));
   const lead_s = () => leads()[index()] ?? 0;
-  const when = () => (lead_s() === 0 ? "Sun now" : `Sun in ${leadText(lead_s())}`);
+  const when = () =>
+    lead_s() === 0 ? text.forecast.sunNow : text.forecast.sunIn(leadText(lead_s()));
   const share = () => formatFraction(props.forecast.sun_share[index()] ?? null);
   const right = () => nearestRight(props.forecast, lead_s());
   const fill = createMemo(() => gradient(props.forecast));
   return (
-    <section class="card time" aria-label="Sun forecast">
+    <section class="card time" aria-label={text.forecast.name}>
       <p class="time-head">
         <span>
           <strong>{when()}</strong>
-          <span class="muted"> · {share()} of the field</span>
+          <span class="muted"> · {text.forecast.ofField(share())}</span>
           <Show when={right()}>
             {(found) => (
-              <span class="muted time-right" title="How often forecasts of this flight were right">
+              <span class="muted time-right" title={text.forecast.rightHint}>
                 {" "}
-                · {formatFraction(found())} right lately
+                · {text.forecast.right(formatFraction(found()))}
               </span>
             )}
           </Show>
@@ -41,7 +43,7 @@ function Scale(props: { forecast: ForecastView }) {
           type="button"
           class="button button-quiet"
           aria-expanded={!isFolded()}
-          aria-label={isFolded() ? "Show the forecast scale" : "Fold the forecast scale away"}
+          aria-label={isFolded() ? text.forecast.show : text.forecast.fold}
           onClick={() => setFolded(!isFolded())}
         >
           {isFolded() ? "▴" : "▾"}
@@ -56,7 +58,7 @@ function Scale(props: { forecast: ForecastView }) {
           step={1}
           value={index()}
           style={{ "--fill": fill() }}
-          aria-label="Time of the forecast"
+          aria-label={text.forecast.time}
           aria-valuetext={when()}
           onInput={(event) => {
             overlay.setLead(leads()[Number(event.currentTarget.value)] ?? 0);
@@ -70,7 +72,7 @@ function Scale(props: { forecast: ForecastView }) {
                 classList={{ fine: !isCoarse }}
                 style={{ left: `${100 * at}%`, transform: `translateX(${-100 * at}%)` }}
               >
-                {lead === 0 ? "now" : leadText(lead)}
+                {lead === 0 ? text.forecast.now : leadText(lead)}
               </span>
             )}
           </For>

@@ -2,6 +2,7 @@ import { createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { ZoneShape } from "../../orders/zoneDraft";
 import type { TemporaryZoneView } from "../../protocol";
+import { text } from "../../text/catalogue";
 import { personName, responseProblem } from "../../text/names";
 import { formatAge } from "../../text/quantities";
 import { lengthUnit } from "../../text/units";
@@ -15,17 +16,17 @@ export function ZonesPanel() {
   const { fleet, zoneDraft } = useConsole();
   return (
     <Panel
-      title="Temporary zones"
+      title={text.panels.titles.zones}
       name="zones"
       count={fleet.temporaryZones.length}
       actions={
         <button
           type="button"
           class="button"
-          title="Keep drones out of a place at once (Z)"
+          title={text.zones.drawHint}
           onClick={() => zoneDraft.toggle()}
         >
-          {zoneDraft.isOn() ? "Cancel" : "Draw a zone"}
+          {zoneDraft.isOn() ? text.zones.cancel : text.zones.draw}
         </button>
       }
     >
@@ -36,7 +37,7 @@ export function ZonesPanel() {
         when={fleet.temporaryZones.length > 0}
         fallback={
           <Show when={!zoneDraft.isOn()}>
-            <Empty>No temporary zone is in force.</Empty>
+            <Empty>{text.zones.none}</Empty>
           </Show>
         }
       >
@@ -60,12 +61,15 @@ function ZoneRow(props: { zone: TemporaryZoneView }) {
       </div>
       <p class="wire-text">{props.zone.reason}</p>
       <p class="muted wire-text">
-        {formatAge(props.zone.age_s + behindS())} ago by {personName(props.zone.by)},{" "}
-        {zoneEnd(props.zone.ends_in_s, behindS())}
+        {text.zones.drawn(
+          formatAge(props.zone.age_s + behindS()),
+          personName(props.zone.by),
+          zoneEnd(props.zone.ends_in_s, behindS()),
+        )}
       </p>
       <GuardButton
-        label="End zone"
-        of={`${zoneName(props.zone)}, flights may enter it again`}
+        label={text.zones.end}
+        of={text.zones.endOf(zoneName(props.zone))}
         class="guard-grave"
         hold_ms={GUARD_MS}
         subject={String(props.zone.id)}
@@ -90,7 +94,7 @@ function DrawForm() {
   return (
     <form
       class="section zone-form"
-      aria-label="Draw a temporary zone"
+      aria-label={text.zones.form}
       onSubmit={(event) => {
         event.preventDefault();
         void draw();
@@ -101,16 +105,16 @@ function DrawForm() {
       </p>
       <div class="section-buttons zone-wide">
         <button type="button" class="button" onClick={() => aimAtCentre()}>
-          Use map centre
+          {text.zones.useCentre}
         </button>
         <Show when={zoneDraft.shape() === "outline" && zoneDraft.points().length > 0}>
           <button type="button" class="button" onClick={() => zoneDraft.undo()}>
-            Undo corner
+            {text.zones.undoCorner}
           </button>
         </Show>
       </div>
       <label>
-        Kept clear for
+        {text.zones.kind}
         <select
           class="field"
           value={zoneDraft.kind()}
@@ -122,19 +126,19 @@ function DrawForm() {
         </select>
       </label>
       <label>
-        Shape
+        {text.zones.shape}
         <select
           class="field"
           value={zoneDraft.shape()}
           onChange={(event) => zoneDraft.setShape(event.currentTarget.value as ZoneShape)}
         >
-          <option value="circle">Circle</option>
-          <option value="outline">Outline</option>
+          <option value="circle">{text.zones.circle}</option>
+          <option value="outline">{text.zones.outline}</option>
         </select>
       </label>
       <Show when={zoneDraft.shape() === "circle"}>
         <label>
-          Radius, {lengthUnit()}
+          {text.zones.radius(lengthUnit())}
           <input
             class="field"
             type="text"
@@ -145,7 +149,7 @@ function DrawForm() {
         </label>
       </Show>
       <label>
-        Minutes (empty: until ended)
+        {text.zones.minutes}
         <input
           class="field"
           type="text"
@@ -155,7 +159,7 @@ function DrawForm() {
         />
       </label>
       <label class="zone-wide">
-        Reason
+        {text.zones.reason}
         <input
           class="field"
           type="text"
@@ -171,7 +175,7 @@ function DrawForm() {
         disabled={zoneDraft.zone() === null || lacks("pilot") !== null}
         title={lacks("pilot") ?? undefined}
       >
-        Keep clear now
+        {text.zones.go}
       </button>
       <Problem text={problem()} />
     </form>
@@ -180,9 +184,9 @@ function DrawForm() {
 
 function hint(shape: ZoneShape, points: number): string {
   if (shape === "circle") {
-    return points === 0 ? "Press the centre on the map." : "Press again to move the centre.";
+    return points === 0 ? text.zones.pressCentre : text.zones.moveCentre;
   }
   const left = 3 - points;
-  if (left > 0) return `Press the corners on the map: ${left} more at least.`;
-  return `${points} corners. Press the map for more.`;
+  if (left > 0) return text.zones.pressCorners(left);
+  return text.zones.corners(points);
 }
