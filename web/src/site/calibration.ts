@@ -3,6 +3,7 @@ import type { LonLat } from "../map/localGrid";
 import type { CalibrationView, ControlPointView } from "../protocol";
 import type { Clock } from "../source/clock";
 import type { SiteRequests } from "../source/siteRequests";
+import { text } from "../text/catalogue";
 import type { Notice } from "./savedDraft";
 
 /*
@@ -184,12 +185,12 @@ export function createCalibration(site: SiteRequests, clock: Clock): Calibration
       setBusy(false);
       const reason = outcome.kind === "failed" ? outcome.problem : outcome.value.reason;
       if (reason !== null) {
-        setNotice({ text: `Not saved: ${reason}`, isProblem: true });
+        setNotice({ text: text.draft.notSaved(reason), isProblem: true });
         return;
       }
       leave();
       setSaves(saves() + 1);
-      setNotice({ text: "Saved. The next frames are placed by these points", isProblem: false });
+      setNotice({ text: text.calibration.saved, isProblem: false });
     },
   };
 }
@@ -199,10 +200,10 @@ async function frozenFrame(site: SiteRequests, serial: string): Promise<FrozenFr
   const outcome = await site.freeze(serial);
   if (outcome.kind === "failed") return outcome.problem;
   const { frame_id, reason, cols, rows, surveyed } = outcome.value;
-  if (frame_id === null) return reason ?? "no reason given";
+  if (frame_id === null) return reason ?? text.requests.noReason;
   const picture = await site.frozenPicture(serial);
   if (picture.kind === "failed") return picture.problem;
-  if (picture.value.frameId !== frame_id) return "Another frame was frozen meanwhile; try again";
+  if (picture.value.frameId !== frame_id) return text.calibration.frozeMeanwhile;
   return { serial, id: frame_id, cols, rows, picture: picture.value.blob, surveyed };
 }
 

@@ -2,7 +2,7 @@ import { type Accessor, createMemo, createSignal } from "solid-js";
 import type { SiteVehiclesView } from "../protocol";
 import type { Clock } from "../source/clock";
 import type { Outcome } from "../source/stationSource";
-import { capitalised } from "../text/names";
+import { text } from "../text/catalogue";
 
 /*
  * Theory of operation. A list of the site is loaded from the station with its revision, edited here, and saved as a
@@ -20,7 +20,7 @@ import { capitalised } from "../text/names";
  */
 
 const CHECK_AFTER_MS = 500;
-export const NO_REASON = "no reason given";
+export const NO_REASON = text.requests.noReason;
 
 /** What the station's check has found. `Place`: the item a refusal is about. */
 export type Verdict<Place> =
@@ -144,8 +144,8 @@ export function createSavedDraft<View extends Loaded, Saved, Item, Place, Reques
     list.onLoad?.();
     put(list.savedIn(view).map((one) => list.itemOf(one)));
   };
-  const note = (text: string, isProblem: boolean, about: Notice["about"] = "site") => {
-    setNotice({ about, text, isProblem });
+  const note = (words: string, isProblem: boolean, about: Notice["about"] = "site") => {
+    setNotice({ about, text: words, isProblem });
   };
   /** One request at a time; `done` gets its answer, and the items when it was sent. */
   const ask = async <T>(
@@ -163,12 +163,15 @@ export function createSavedDraft<View extends Loaded, Saved, Item, Place, Reques
     else note(outcome.problem, true, about);
   };
   const take =
-    (verb: string, ifEdited = "") =>
+    (
+      refused: (reason: string) => string,
+      done: (changed: string | null, isEdited: boolean) => string,
+    ) =>
     (answer: Response, asked: readonly Item[]) => {
       const { accepted, reason, view, changed } = list.answerOf(answer, asked);
       if (!accepted || view === null) {
         setVerdict(() => verdictOf({ kind: "answered", value: answer }, asked));
-        note(`Not ${verb}: ${reason ?? NO_REASON}`, true);
+        note(refused(reason ?? NO_REASON), true);
         return;
       }
       setSaves(saves() + 1);
@@ -177,7 +180,7 @@ export function createSavedDraft<View extends Loaded, Saved, Item, Place, Reques
         setSaved(() => view);
         checkSoon();
       } else load(view);
-      note(`${capitalised(verb)}${changedText(changed)}${isEdited ? ifEdited : ""}`, false);
+      note(done(changed, isEdited), false);
     };
 
   return {
@@ -200,7 +203,7 @@ export function createSavedDraft<View extends Loaded, Saved, Item, Place, Reques
     discard: () =>
       ask(list.load, (view, asked) => {
         if (isEditedSince(asked)) {
-          note("Not loaded again: the draft was edited meanwhile", true);
+          note(text.draft.editedMeanwhile, true);
         } else load(view);
       }),
     refresh: async () => {
@@ -219,19 +222,16 @@ export function createSavedDraft<View extends Loaded, Saved, Item, Place, Reques
     recheck: () => {
       if (verdict().kind !== "none") checkSoon();
     },
-    save: () => ask(() => list.save(request()), take("saved")),
+    save: () => ask(() => list.save(request()), take(text.draft.notSaved, text.draft.saved)),
     undoSaved: async () => {
       const before = saved();
       if (before === null) return;
       await ask(
         () => list.undoSaved(before),
-        take("undone", ". This draft was edited meanwhile and still has what was undone"),
+        take(text.draft.notUndone, (changed, isEdited) =>
+          isEdited ? text.draft.undoneButEdited(changed) : text.draft.undone(changed),
+        ),
       );
     },
   };
-}
-
-function changedText(changed: string | null): string {
-  if (changed === "") return ": nothing changes";
-  return `${changed === null ? "" : `: ${changed}`}. In force now`;
 }

@@ -8,6 +8,7 @@ import type {
 } from "../protocol";
 import type { Clock } from "../source/clock";
 import type { SiteRequests } from "../source/siteRequests";
+import { text } from "../text/catalogue";
 import { listNames } from "../text/names";
 import { type Answer, createSavedDraft, type SavedDraft } from "./savedDraft";
 import {
@@ -233,8 +234,12 @@ export function createSiteDraft(
         () => site.readFile(file),
         ({ features: found, left_out, reason }) => {
           if (reason !== null) return draft.note(reason, true, "import");
-          const left = left_out === 0 ? "" : `; ${left_out} neither polygon nor point, left out`;
-          draft.note(`${file.name}: ${found.length} read${left}`, false, "import");
+          const { read, readSome } = text.imports;
+          const note =
+            left_out === 0
+              ? read(file.name, found.length)
+              : readSome(file.name, found.length, left_out);
+          draft.note(note, false, "import");
           setImported(choicesOf(found));
         },
         "import",
@@ -269,7 +274,7 @@ function answerOf(
     accepted,
     reason,
     place: { featureId: feature === null ? null : (asked[feature]?.id ?? null) },
-    changes: changes === "" ? "" : `Ready to save. Changes: ${changes}.`,
+    changes: changes === "" ? "" : text.site.willChange(changes),
     changed: [changes, ...also].filter((part) => part !== "").join(", "),
     view: drawing,
   };
@@ -277,15 +282,14 @@ function answerOf(
 
 /** The layers that change, in words. */
 function layersText(layers: readonly LayerName[]): string {
-  const many = (name: string) => (name === LAYERS.boundary.name ? name : `${name}s`);
-  return listNames(layers.map((layer) => many(LAYERS[layer].name).toLowerCase()));
+  return listNames(layers.map((layer) => text.siteLayers[layer].many));
 }
 
 /** A name that no other feature of the layer has; the boundary needs none. */
 function freeName(layer: LayerName, features: readonly DraftFeature[]): string {
-  if (layer === "boundary") return "boundary";
+  const kind = text.siteLayers[layer].one;
+  if (layer === "boundary") return kind;
   const known = new Set(features.map(({ properties }) => properties["name"]));
-  const kind = LAYERS[layer].name.toLowerCase();
   let number = 1;
   while (known.has(`${kind} ${number}`)) number += 1;
   return `${kind} ${number}`;

@@ -1,19 +1,19 @@
 import { type LonLat, metresPerDegree } from "../map/localGrid";
 import type { DrawnFeatureView, LayerName } from "../protocol";
+import { text } from "../text/catalogue";
 
-/** What a layer's features are called, and which attributes they have. */
+/** What a layer's features are, and which attributes they have. */
 export interface LayerKind {
-  readonly name: string;
   readonly isPoint: boolean;
   readonly hasHeights: boolean;
 }
 
 export const LAYERS: Readonly<Record<LayerName, LayerKind>> = {
-  boundary: { name: "Boundary", isPoint: false, hasHeights: false },
-  survey_regions: { name: "Survey region", isPoint: false, hasHeights: false },
-  keep_out: { name: "Keep-out zone", isPoint: false, hasHeights: true },
-  height_zones: { name: "Height zone", isPoint: false, hasHeights: true },
-  landing_pads: { name: "Landing pad", isPoint: true, hasHeights: false },
+  boundary: { isPoint: false, hasHeights: false },
+  survey_regions: { isPoint: false, hasHeights: false },
+  keep_out: { isPoint: false, hasHeights: true },
+  height_zones: { isPoint: false, hasHeights: true },
+  landing_pads: { isPoint: true, hasHeights: false },
 };
 
 export const LAYER_NAMES = Object.keys(LAYERS) as readonly LayerName[];
@@ -76,7 +76,7 @@ export function closed(ring: Ring): Ring {
 export function featureName({ layer, properties }: DraftFeature): string {
   const { name, serial } = properties;
   const own = typeof name === "string" && name !== "" ? name : serial;
-  return typeof own === "string" && own !== "" ? own : LAYERS[layer].name;
+  return typeof own === "string" && own !== "" ? own : text.siteLayers[layer].name;
 }
 
 /** The area of a feature without its holes, hectares. */
@@ -120,8 +120,8 @@ export function cornerText({ lon, lat }: LonLat): string {
 }
 
 /** The corner that a text gives; null for anything but a latitude and a longitude. */
-export function cornerOf(text: string): LonLat | null {
-  const parts = text.trim().split(/\s*[,;]\s*|\s+/);
+export function cornerOf(typed: string): LonLat | null {
+  const parts = typed.trim().split(/\s*[,;]\s*|\s+/);
   if (parts.length !== 2 || parts.some((part) => part === "")) return null;
   const [lat = Number.NaN, lon = Number.NaN] = parts.map(Number);
   return Math.abs(lat) <= 90 && Math.abs(lon) <= 180 ? { lon, lat } : null;

@@ -3,7 +3,7 @@ import type { SiteVehiclesResponse, SiteVehiclesView, SiteVehicleView } from "..
 import type { Clock } from "../source/clock";
 import type { SiteRequests } from "../source/siteRequests";
 import type { Outcome } from "../source/stationSource";
-import { plural } from "../text/names";
+import { text } from "../text/catalogue";
 import { type Answer, createSavedDraft, NO_REASON, type SavedDraft } from "./savedDraft";
 
 /** `changes` is null after an undo, whose answer does not list them. */
@@ -68,7 +68,7 @@ async function undone(
   const outcome = await site.undo(before.revision);
   if (outcome.kind === "failed") return outcome;
   const { accepted, reason } = outcome.value;
-  if (!accepted) return { kind: "failed", problem: `Not undone: ${reason ?? NO_REASON}` };
+  if (!accepted) return { kind: "failed", problem: text.draft.notUndone(reason ?? NO_REASON) };
   const found = await site.vehicles();
   const vehicles = found.kind === "answered" ? found.value : before;
   return { kind: "answered", value: { accepted, reason, row: null, changes: null, vehicles } };
@@ -82,8 +82,8 @@ function answerOf(answer: VehiclesAnswer): Answer<SiteVehiclesView, RowPlace> {
     accepted,
     reason,
     place: { row },
-    changes: isNone ? "" : `Ready to save: ${changes.join("; ")}.`,
-    changed: answer.changes && (isNone ? "" : plural(changes.length, "vehicle")),
+    changes: isNone ? "" : text.siteVehicles.willChange(changes.join("; ")),
+    changed: answer.changes && (isNone ? "" : text.siteVehicles.changed(changes.length)),
     view: vehicles,
   };
 }

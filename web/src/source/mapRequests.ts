@@ -1,8 +1,9 @@
 import type { BaseMapView } from "../protocol";
+import { text } from "../text/catalogue";
 import { answered, type Limit, type StationHttp } from "./stationHttp";
 
 /** What a new map covers is counted in seconds, or in a minute for a large one. */
-const MAPS: Limit = { ms: 180_000, ifLate: "Try again." };
+const MAPS: Limit = { ms: 180_000, ifLate: text.requests.tryAgain };
 
 export type MapRequests = ReturnType<typeof mapRequests>;
 

@@ -10,6 +10,7 @@ import type {
   TimelineView,
   UpwindView,
 } from "../protocol";
+import { text } from "../text/catalogue";
 import {
   answered,
   attempt,
@@ -142,9 +143,9 @@ export class Requests {
     return attempt(ORDER, async (signal) => {
       const body = JSON.stringify(by === null ? {} : { by });
       const response = await this.http.fetch(new Request(url, { method: "POST", body, signal }));
-      if (!response.ok) return failed(`The guard refused: ${response.status}`);
+      if (!response.ok) return failed(text.requests.guardRefused(response.status));
       const { held, missed } = (await response.json()) as { held: string[]; missed: string[] };
-      const reason = "nothing recent shows it in flight; use its controller";
+      const reason = text.requests.notSeenFlying;
       return done([
         ...held.map((name) => guardResult(name, null)),
         ...missed.map((name) => guardResult(name, reason)),

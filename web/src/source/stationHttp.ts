@@ -1,5 +1,6 @@
 import createClient from "openapi-fetch";
 import type { paths } from "../protocol/schema";
+import { text } from "../text/catalogue";
 import type { Outcome, Picture } from "./stationSource";
 
 /** How long a request may take, and what the operator does when it took longer. */
@@ -11,31 +12,31 @@ export interface Limit {
 /** An order must not arrive long after the operator sent it. */
 export const ORDER: Limit = {
   ms: 3_000,
-  ifLate: "The order may still have arrived: check the command list.",
+  ifLate: text.requests.orderLate,
 };
 /** What changes the station, but is in no command list. */
 export const CHANGE: Limit = {
   ms: 3_000,
-  ifLate: "It may still have taken effect: look at what this page shows before trying again.",
+  ifLate: text.requests.changeLate,
 };
-export const READ: Limit = { ms: 3_000, ifLate: "Try again." };
-export const PICTURE: Limit = { ms: 12_000, ifLate: "Try again." };
+export const READ: Limit = { ms: 3_000, ifLate: text.requests.tryAgain };
+export const PICTURE: Limit = { ms: 12_000, ifLate: text.requests.tryAgain };
 /** Planning waits for image processing and moves nothing. */
 export const PLANNING: Limit = {
   ms: 12_000,
-  ifLate: "No drone moves. Look for the survey in the list before planning it again.",
+  ifLate: text.requests.planningLate,
 };
 /** The site's files are read or written, or an imported file is read. */
 const SITE_MS = 25_000;
-export const SITE_READ: Limit = { ms: SITE_MS, ifLate: "Nothing was saved. Try again." };
+export const SITE_READ: Limit = { ms: SITE_MS, ifLate: text.requests.siteReadLate };
 export const SITE_SAVE: Limit = {
   ms: SITE_MS,
-  ifLate: "Load the site again to see whether it was saved.",
+  ifLate: text.requests.siteSaveLate,
 };
 /** A file made of a long flight record takes minutes, and nothing waits for it. */
 export const RECORD: Limit = {
   ms: 600_000,
-  ifLate: "Try again, or use recon export on the station's computer.",
+  ifLate: text.requests.recordLate,
 };
 
 /** HTTP to the station, with this page's token. */
@@ -77,8 +78,8 @@ export class StationHttp {
 }
 
 function frameIdOf(response: Response): number | null {
-  const text = response.headers.get("X-Frame-Id");
-  return text !== null && /^\d+$/.test(text) ? Number(text) : null;
+  const id = response.headers.get("X-Frame-Id");
+  return id !== null && /^\d+$/.test(id) ? Number(id) : null;
 }
 
 interface ApiResponse<D> {
@@ -125,8 +126,8 @@ export async function attempt<T>(
     return await ask(AbortSignal.timeout(ms));
   } catch (error) {
     const isLate = error instanceof DOMException && error.name === "TimeoutError";
-    if (isLate) return failed(`The station did not answer within ${ms / 1000} s. ${ifLate}`);
-    return failed("Station unreachable. Use the remote controllers.");
+    if (isLate) return failed(text.requests.late(ms / 1000, ifLate));
+    return failed(text.requests.unreachable);
   }
 }
 
@@ -142,10 +143,10 @@ const UNAUTHORISED = 401;
 
 export function refusal(response: Response, body: unknown): string {
   if (response.status === UNAUTHORISED) {
-    return "Not logged in: the token is missing, wrong or ended.";
+    return text.requests.badToken;
   }
   const message =
     typeof body === "object" && body !== null ? (body as { error?: unknown }).error : null;
   if (typeof message === "string") return message;
-  return `Station error ${response.status} ${response.statusText}`.trim();
+  return text.requests.stationError(`${response.status} ${response.statusText}`.trim());
 }

@@ -1,4 +1,6 @@
 import type { StationState, VehicleView } from "../protocol";
+import { text } from "../text/catalogue";
+import { capitalised } from "../text/names";
 import type { Clock } from "./clock";
 import type { Connection } from "./stationSource";
 
@@ -81,8 +83,8 @@ export class Stream {
     this.isFirst = true;
     this.base = null;
     this.keepaliveAtMs = Number.NEGATIVE_INFINITY;
-    this.expectMessageWithin(OPENING_MS, "No answer from the station");
-    socket.onopen = () => this.expectMessageWithin(SILENCE_MS, "No data from the station");
+    this.expectMessageWithin(OPENING_MS, text.connection.noAnswer);
+    socket.onopen = () => this.expectMessageWithin(SILENCE_MS, text.connection.silent);
     socket.onmessage = (event) => this.receive(event.data);
     socket.onclose = (event) => {
       if (event.code === LOGIN_NEEDED) this.awaitLogin(event.reason);
@@ -95,9 +97,8 @@ export class Stream {
     try {
       return this.openSocket();
     } catch (error) {
-      this.loseConnection(
-        `Cannot open the stream: ${error instanceof Error ? error.message : error}`,
-      );
+      const problem = error instanceof Error ? error.message : String(error);
+      this.loseConnection(text.connection.cannotOpen(problem));
       return null;
     }
   }
@@ -106,11 +107,11 @@ export class Stream {
     const state = readState(data, this.base);
     this.base = state;
     if (state === null) {
-      this.loseConnection("Unreadable data from the station: reload the page");
+      this.loseConnection(text.connection.unreadable);
       return;
     }
     this.attempt = 0;
-    this.expectMessageWithin(SILENCE_MS, "No data from the station");
+    this.expectMessageWithin(SILENCE_MS, text.connection.silent);
     const isFirst = this.isFirst;
     this.isFirst = false;
     if (isFirst) this.listener.onConnection({ kind: "live" });
@@ -148,7 +149,7 @@ export class Stream {
     this.attempt += 1;
     this.listener.onConnection({
       kind: "lost",
-      reason: reason === "" ? "Not logged in" : capitalised(reason),
+      reason: reason === "" ? text.connection.notLoggedIn : capitalised(reason),
       attempt: this.attempt,
       needsLogin: true,
     });
@@ -173,15 +174,11 @@ const OWNER_SILENT = 4008;
 /** The station wants a token, or ended the one of this page. */
 const LOGIN_NEEDED = 4401;
 
-function capitalised(text: string): string {
-  return text.charAt(0).toUpperCase() + text.slice(1);
-}
-
 function closingReason(code: number, reason: string): string {
-  if (code === OWNER_SILENT) return "This page stopped responding";
-  if (reason !== "") return `Stream closed by the station: ${reason}`;
-  if (code === POLICY_VIOLATION) return "Access denied: open the console with its token";
-  return "Station unreachable";
+  if (code === OWNER_SILENT) return text.connection.pageHung;
+  if (reason !== "") return text.connection.closed(reason);
+  if (code === POLICY_VIOLATION) return text.connection.denied;
+  return text.connection.unreachable;
 }
 
 const LISTS = ["vehicles", "links", "commands", "alarms"] as const;

@@ -1,3 +1,5 @@
+import { text } from "./catalogue";
+
 /** When a record was begun, by its name: `2025-06-20 16:00`, UTC; any other name as it is.
  * A record without a flight is marked. */
 export function flightTime(name: string): string {
@@ -7,5 +9,5 @@ export function flightTime(name: string): string {
   const [, kind, year, month, day, hour, minute, number] = found;
   const time = `${year}-${month}-${day} ${hour}:${minute}`;
   const numbered = number === undefined ? time : `${time} (${number})`;
-  return kind === "ground" ? `${numbered}, on the ground` : numbered;
+  return kind === "ground" ? text.flights.onGround(numbered) : numbered;
 }

@@ -4,20 +4,21 @@ import type { FlightFiguresView, FlightView } from "../../protocol";
 import type { FlightFile } from "../../source/flightRequests";
 import { saveAs } from "../../source/saveAs";
 import type { Outcome, Picture } from "../../source/stationSource";
+import { text } from "../../text/catalogue";
 import { flightTime } from "../../text/flights";
 import { formatAge, formatBytes, formatFraction } from "../../text/quantities";
 import { formatArea } from "../../text/survey";
 import { Empty, Panel, Problem } from "../Panel";
 import "./flights.css";
 
-const FILES: readonly (readonly [FlightFile, string])[] = [
-  ["report.html", "Report"],
-  ["sun.tif", "Sun GeoTIFF"],
-  ["surveys.kml", "Surveys KML"],
-  ["tracks.gpx", "Tracks GPX"],
-  ["tracks.geojson", "Tracks GeoJSON"],
-  ["tracks.csv", "Tracks CSV"],
-];
+const FILES = [
+  "report.html",
+  "sun.tif",
+  "surveys.kml",
+  "tracks.gpx",
+  "tracks.geojson",
+  "tracks.csv",
+] as const satisfies readonly FlightFile[];
 
 /** A browser holds a file in memory before it saves it. */
 const LARGEST_RECORD_BYTES = 500e6;
@@ -38,14 +39,14 @@ export function FlightsPanel() {
   const flight = () => flights()?.find(({ name }) => name === chosen());
   return (
     <Panel
-      title="After the flight"
+      title={text.panels.titles.flights}
       name="flights"
       actions={
         <button
           type="button"
           class="button button-quiet"
-          aria-label="Refresh"
-          title="Read the folder again"
+          aria-label={text.flights.refresh}
+          title={text.flights.refreshHint}
           onClick={() => void list()}
         >
           ↻
@@ -57,11 +58,7 @@ export function FlightsPanel() {
         when={flights()?.length}
         fallback={
           <Show when={problem() === null}>
-            <Empty>
-              {flights() === null
-                ? "Loading the flight records."
-                : "No flight records in the station's folder."}
-            </Empty>
+            <Empty>{flights() === null ? text.flights.loading : text.flights.none}</Empty>
           </Show>
         }
       >
@@ -78,7 +75,7 @@ export function FlightsPanel() {
                 >
                   <span>{flightTime(each.name)}</span>
                   <span class="muted push">
-                    {each.is_recording ? "recording" : formatBytes(each.size_bytes)}
+                    {each.is_recording ? text.flights.recording : formatBytes(each.size_bytes)}
                   </span>
                 </button>
               </li>
@@ -95,9 +92,9 @@ export function FlightsPanel() {
 
 /** Why the record itself cannot be downloaded; null: it can. */
 function whyNoRecord(flight: FlightView | undefined): string | null {
-  if (flight?.is_recording) return "Record MCAP: this flight is still being recorded.";
+  if (flight?.is_recording) return text.flights.stillRecorded;
   if ((flight?.size_bytes ?? 0) <= LARGEST_RECORD_BYTES) return null;
-  return "Record MCAP: too large for a browser; copy it from the station's folder.";
+  return text.flights.tooLarge;
 }
 
 /** Figures and coverage of one flight, and what can be downloaded. */
@@ -130,7 +127,7 @@ function Flight(props: { name: string; whyNoRecord: string | null }) {
     <div class="section" data-testid="flight">
       <Show when={isReading()}>
         <p class="muted" role="status">
-          Reading the record…
+          {text.flights.reading}
         </p>
       </Show>
       <Problem text={problemOf(found())} />
@@ -138,12 +135,12 @@ function Flight(props: { name: string; whyNoRecord: string | null }) {
       <Show when={coverage()}>
         {(url) => (
           <figure class="flights-coverage">
-            <img src={url()} alt="Ground photographed in sun" />
+            <img src={url()} alt={text.flights.coverage} />
             <figcaption>
-              <span class="flights-well">in sun on enough photos</span>
-              <span class="flights-sunlit">on fewer</span>
-              <span class="flights-shade">not surely in sun</span>
-              <span class="flights-gap">not photographed</span>
+              <span class="flights-well">{text.flights.well}</span>
+              <span class="flights-sunlit">{text.flights.sunlit}</span>
+              <span class="flights-shade">{text.flights.shade}</span>
+              <span class="flights-gap">{text.flights.gap}</span>
             </figcaption>
           </figure>
         )}
@@ -151,7 +148,7 @@ function Flight(props: { name: string; whyNoRecord: string | null }) {
       <Show when={figures()}>{(found) => <Figures figures={found()} />}</Show>
       <div class="section-buttons flights-files">
         <For each={FILES}>
-          {([file, title]) => (
+          {(file) => (
             <button
               type="button"
               class="button"
@@ -160,7 +157,7 @@ function Flight(props: { name: string; whyNoRecord: string | null }) {
                 void save(source.flights.file(props.name, file), `${props.name}-${file}`)
               }
             >
-              {title}
+              {text.flights.files[file]}
             </button>
           )}
         </For>
@@ -168,10 +165,10 @@ function Flight(props: { name: string; whyNoRecord: string | null }) {
           type="button"
           class="button"
           disabled={isReading() || props.whyNoRecord !== null}
-          title="The whole record, for replays and bug reports"
+          title={text.flights.recordHint}
           onClick={() => void save(source.flights.record(props.name), `${props.name}.mcap`)}
         >
-          Record MCAP
+          {text.flights.record}
         </button>
       </div>
       <Show when={props.whyNoRecord}>{(reason) => <p class="muted">{reason()}</p>}</Show>
@@ -187,27 +184,35 @@ function problemOf(outcome: Outcome<unknown> | null | undefined): string | null 
   return outcome?.kind === "failed" ? outcome.problem : null;
 }
 
+/** Hour and minute of a time in UTC. */
+function clockTime(utc: string): string {
+  return utc.slice(11, 16);
+}
+
 function Figures(props: { figures: FlightFiguresView }) {
   const rows = () => {
     const { figures } = props;
     const region = figures.region_m2;
     return [
-      ["Site", figures.site || "unnamed"],
-      ["Time", `${figures.begin_utc.slice(11, 16)} to ${figures.end_utc.slice(11, 16)} UTC`],
-      ["Vehicles", figures.vehicles.join(", ")],
-      ["In the air, together", formatAge(figures.airborne_s)],
-      ["Region", region === null ? "no survey" : formatArea(region)],
-      ["Photographed", formatFraction(figures.photographed_share)],
-      ["In sun on a photo", formatFraction(figures.sunlit_share)],
-      ["In sun on enough photos", formatFraction(figures.well_sunlit_share)],
-      ["Mean sun on the region", formatFraction(figures.mean_sun_share)],
-      ["Alarms", String(figures.alarms)],
+      [text.flights.site, figures.site || text.flights.unnamed],
+      [
+        text.flights.time,
+        text.flights.fromTo(clockTime(figures.begin_utc), clockTime(figures.end_utc)),
+      ],
+      [text.flights.vehicles, figures.vehicles.join(", ")],
+      [text.flights.airborne, formatAge(figures.airborne_s)],
+      [text.flights.region, region === null ? text.flights.noSurvey : formatArea(region)],
+      [text.flights.photographed, formatFraction(figures.photographed_share)],
+      [text.flights.inSun, formatFraction(figures.sunlit_share)],
+      [text.flights.wellInSun, formatFraction(figures.well_sunlit_share)],
+      [text.flights.meanSun, formatFraction(figures.mean_sun_share)],
+      [text.flights.alarms, String(figures.alarms)],
     ] as const;
   };
   return (
     <>
       <Show when={props.figures.trouble}>
-        {(trouble) => <p class="tone-warning wire-text">The record ends early: {trouble()}</p>}
+        {(trouble) => <p class="tone-warning wire-text">{text.flights.endsEarly(trouble())}</p>}
       </Show>
       <dl class="flights-figures">
         <For each={rows()}>
@@ -219,7 +224,7 @@ function Figures(props: { figures: FlightFiguresView }) {
           )}
         </For>
       </dl>
-      <p class="muted">Estimated from tracks and camera timer; recon tag reads the photos.</p>
+      <p class="muted">{text.flights.estimated}</p>
     </>
   );
 }

@@ -1,6 +1,7 @@
 import { createSignal, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { WaitingAppView } from "../../protocol";
+import { text } from "../../text/catalogue";
 import { responseProblem } from "../../text/names";
 import { formatAge } from "../../text/quantities";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
@@ -18,36 +19,42 @@ export function WaitingApp(props: { linkId: number; address: string; waiting: Wa
   const refuse = async () => setProblem(responseProblem(await source.refuseApp(props.linkId)));
   // Another serial than the operator compared cancels a hold; without one nothing can be admitted.
   const subject = () => props.waiting.serial ?? "";
-  const name = () => props.waiting.serial ?? `link ${props.linkId}`;
+  const name = () => props.waiting.serial ?? text.names.link(props.linkId);
   return (
-    <section class="waiting-app" aria-label={`Admit ${name()}`}>
+    <section class="waiting-app" aria-label={text.waitingApp.name(name())}>
       <p class="wire-text">
-        <strong>{props.waiting.serial ?? "No serial number yet"}</strong> from {props.address}{" "}
-        <span class="muted">
-          waits for {formatAge(props.waiting.age_s + behindS())}: {props.waiting.reason}
-        </span>
+        {text.waitingApp.from(
+          <strong>{props.waiting.serial ?? text.waitingApp.noSerial}</strong>,
+          props.address,
+          <span class="muted">
+            {text.waitingApp.waits(
+              formatAge(props.waiting.age_s + behindS()),
+              props.waiting.reason,
+            )}
+          </span>,
+        )}
       </p>
       <Show when={props.waiting.is_flying === true}>
-        <p class="tone-error">Reports flight: others keep clear of it, and stops reach it.</p>
+        <p class="tone-error">{text.waitingApp.flies}</p>
       </Show>
-      <p class="muted">An app's serial is not authenticated: compare it with the aircraft.</p>
+      <p class="muted">{text.waitingApp.compare}</p>
       <div class="section-buttons">
         <GuardButton
-          label="Admit"
-          of={`${name()} for good, from its present address`}
+          label={text.waitingApp.admit}
+          of={text.waitingApp.admitOf(name())}
           hold_ms={GUARD_MS}
           subject={subject()}
           onConfirm={() => void admit("always")}
         />
         <GuardButton
-          label="Admit for this run"
-          of={`${name()} until the station stops`}
+          label={text.waitingApp.admitOnce}
+          of={text.waitingApp.admitOnceOf(name())}
           hold_ms={GUARD_MS}
           subject={subject()}
           onConfirm={() => void admit("session")}
         />
         <GuardButton
-          label="Refuse for 5 min"
+          label={text.waitingApp.refuse}
           of={name()}
           hold_ms={GUARD_MS}
           subject={`${props.linkId} ${subject()}`}

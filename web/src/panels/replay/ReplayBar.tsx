@@ -1,6 +1,7 @@
 import { createEffect, createMemo, createSignal, For, onCleanup, onMount, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { ReplayMark as Mark, ReplayTransport, ReplayView } from "../../protocol";
+import { text } from "../../text/catalogue";
 import { formatDay, formatPosition, formatTimeOfDay } from "../../text/replay";
 import { isTyping } from "../orders/shortcuts";
 import { Problem } from "../Panel";
@@ -17,8 +18,8 @@ const SCALE = 1000;
 /** In place of all stop: nothing on this page flies. */
 export function ReplayMark() {
   return (
-    <strong class="replay-mark" title="A recorded flight: no orders are possible">
-      REPLAY
+    <strong class="replay-mark" title={text.replay.markHint}>
+      {text.replay.mark}
     </strong>
   );
 }
@@ -27,7 +28,7 @@ export function ReplayMark() {
 export function ReplayBar() {
   const { isReplay, replay } = useConsole();
   createEffect(() => {
-    document.title = isReplay() ? `REPLAY · ${TITLE}` : TITLE;
+    document.title = isReplay() ? text.page.replayTitle(TITLE) : TITLE;
   });
   return <Show when={isReplay() && replay()}>{(view) => <Transport view={view()} />}</Show>;
 }
@@ -99,23 +100,23 @@ function Transport(props: { view: ReplayView }) {
   const previous = () => marks().findLast(({ at_s }) => at_s < position() - 0.5) ?? null;
   const toMark = (mark: Mark) => void seek(mark.at_s);
   return (
-    <section class="card replay" aria-label="Replay">
+    <section class="card replay" aria-label={text.replay.name}>
       <div class="replay-row">
-        <strong class="replay-word">REPLAY</strong>
+        <strong class="replay-word">{text.replay.mark}</strong>
         <button
           type="button"
           class="button replay-play"
-          aria-label={props.view.is_playing ? "Pause the replay" : "Play the replay"}
+          aria-label={props.view.is_playing ? text.replay.pause : text.replay.play}
           aria-keyshortcuts="Space"
-          title={`${props.view.is_playing ? "Pause" : "Play"} (Space)`}
+          title={props.view.is_playing ? text.replay.pauseHint : text.replay.playHint}
           onClick={togglePlay}
         >
           <span aria-hidden="true">{props.view.is_playing ? "❚❚" : "▶"}</span>
         </button>
         <label class="replay-speed">
-          <span class="replay-wide">Speed</span>
+          <span class="replay-wide">{text.replay.speed}</span>
           <select
-            aria-label="Replay speed"
+            aria-label={text.replay.speedName}
             onChange={(event) => void change({ speed: Number(event.currentTarget.value) })}
           >
             <For each={SPEEDS}>
@@ -127,14 +128,14 @@ function Transport(props: { view: ReplayView }) {
             </For>
           </select>
         </label>
-        <StepButton name="Previous alarm or order" icon="|◂" mark={previous()} onPress={toMark} />
-        <StepButton name="Next alarm or order" icon="▸|" mark={next()} onPress={toMark} />
+        <StepButton name={text.replay.previous} icon="|◂" mark={previous()} onPress={toMark} />
+        <StepButton name={text.replay.next} icon="▸|" mark={next()} onPress={toMark} />
         <p class="replay-mark-text wire-text muted" aria-live="polite">
           {current()?.text ?? props.view.file}
         </p>
         <p class="replay-time">
           <span class="replay-wide muted">{formatDay(unixMs(position()))}</span>{" "}
-          <strong title="Local time of the record">{formatTimeOfDay(unixMs(position()))}</strong>{" "}
+          <strong title={text.replay.localTime}>{formatTimeOfDay(unixMs(position()))}</strong>{" "}
           <span class="replay-position muted" data-testid="replay-position">
             {formatPosition(position())} / {formatPosition(duration())}
           </span>
@@ -148,13 +149,17 @@ function Transport(props: { view: ReplayView }) {
           max={duration()}
           step={Math.min(1, duration() / 100) || 1}
           value={position()}
-          aria-label="Position in the record"
-          aria-valuetext={`${formatPosition(position())} of ${formatPosition(duration())}, local time ${formatTimeOfDay(unixMs(position()))}`}
+          aria-label={text.replay.position}
+          aria-valuetext={text.replay.positionOf(
+            formatPosition(position()),
+            formatPosition(duration()),
+            formatTimeOfDay(unixMs(position())),
+          )}
           onInput={(event) => void seek(Number(event.currentTarget.value))}
         />
       </div>
       <Show when={props.view.trouble}>
-        {(trouble) => <p class="tone-warning wire-text">The record ends early: {trouble()}</p>}
+        {(trouble) => <p class="tone-warning wire-text">{text.replay.endsEarly(trouble())}</p>}
       </Show>
       <Problem text={problem()} />
     </section>

@@ -2,7 +2,7 @@ import { createMemo, createSignal, For, onCleanup, Show } from "solid-js";
 import { useConsole } from "../../console";
 import { type FrozenFrame, isComplete, type MarkedPoint } from "../../site/calibration";
 import { cornerOf, cornerText } from "../../site/siteFeatures";
-import { plural } from "../../text/names";
+import { text } from "../../text/catalogue";
 import { formatQuantity } from "../../text/quantities";
 import { Empty, Panel, Problem } from "../Panel";
 import { NoticeLine } from "./NoticeLine";
@@ -25,11 +25,8 @@ export function CalibrationPanel() {
   onCleanup(() => calibration.leave());
   const imagers = () => fleet.site?.imager_serials ?? [];
   return (
-    <Panel title="Calibrate camera" name="calibration" class="site calibration">
-      <Show
-        when={imagers().length > 0}
-        fallback={<Empty>The site has no imaging drone: give it an [imager] first.</Empty>}
-      >
+    <Panel title={text.panels.titles.calibration} name="calibration" class="site calibration">
+      <Show when={imagers().length > 0} fallback={<Empty>{text.calibration.noImager}</Empty>}>
         <div class="section">
           <div class="section-buttons">
             <For each={imagers()}>
@@ -41,8 +38,7 @@ export function CalibrationPanel() {
                   title={lacks("operator") ?? undefined}
                   onClick={() => void calibration.freeze(serial)}
                 >
-                  {calibration.isOn() ? "Freeze another frame" : "Freeze a frame"}
-                  <Show when={imagers().length > 1}> of {serial}</Show>
+                  {freezeLabel(calibration.isOn(), imagers().length > 1 ? serial : null)}
                 </button>
               )}
             </For>
@@ -62,6 +58,13 @@ export function CalibrationPanel() {
       </Show>
     </Panel>
   );
+}
+
+/** With the serial where there are several. */
+function freezeLabel(isOn: boolean, serial: string | null): string {
+  const { freeze, freezeOf, freezeAnother, freezeAnotherOf } = text.calibration;
+  if (serial === null) return isOn ? freezeAnother : freeze;
+  return (isOn ? freezeAnotherOf : freezeOf)(serial);
 }
 
 /** The frozen frame: a press marks the selected point, arrow keys move a point by a pixel. */
@@ -93,12 +96,12 @@ function Frame(props: { frame: FrozenFrame }) {
   };
   const middle = () => ({ col: (props.frame.cols - 1) / 2, row: (props.frame.rows - 1) / 2 });
   return (
-    <section class="section" aria-label="Frozen frame">
+    <section class="section" aria-label={text.calibration.frame}>
       <p role="status">{hint(calibration.selected())}</p>
-      <section class="frame-view" tabindex="0" aria-label="Frame, scrolls when enlarged">
+      <section class="frame-view" tabindex="0" aria-label={text.calibration.frameView}>
         <div class="frame-picture" style={{ width: `${100 * (ZOOMS[zoom()] ?? 1)}%` }}>
           {/* biome-ignore lint/a11y/useKeyWithClickEvents: the button below marks without a pointer */}
-          <img src={url} alt="The frozen frame of the imaging drone" onClick={mark} />
+          <img src={url} alt={text.calibration.picture} onClick={mark} />
           <Residuals frame={props.frame} />
           <For each={calibration.points().filter(({ pixel }) => pixel !== null)}>
             {(point) => (
@@ -107,7 +110,7 @@ function Frame(props: { frame: FrozenFrame }) {
                 class="frame-point"
                 classList={{ "is-selected": calibration.selected()?.id === point.id }}
                 style={share(point.pixel ?? middle())}
-                aria-label={`${point.name} on the frame`}
+                aria-label={text.calibration.point(point.name)}
                 aria-pressed={calibration.selected()?.id === point.id}
                 onClick={() => calibration.select(point.id)}
                 onKeyDown={(event) => press(event, point)}
@@ -122,7 +125,7 @@ function Frame(props: { frame: FrozenFrame }) {
         <button
           type="button"
           class="button"
-          aria-label="Enlarge the frame"
+          aria-label={text.calibration.enlarge}
           disabled={zoom() === ZOOMS.length - 1}
           onClick={() => setZoom(zoom() + 1)}
         >
@@ -131,14 +134,14 @@ function Frame(props: { frame: FrozenFrame }) {
         <button
           type="button"
           class="button"
-          aria-label="Reduce the frame"
+          aria-label={text.calibration.reduce}
           disabled={zoom() === 0}
           onClick={() => setZoom(zoom() - 1)}
         >
           −
         </button>
         <button type="button" class="button" onClick={() => calibration.markFrame(middle())}>
-          Mark frame centre
+          {text.calibration.markCentre}
         </button>
         <MapCentreButton />
       </div>
@@ -154,16 +157,16 @@ function MapCentreButton() {
   };
   return (
     <button type="button" class="button" onClick={place}>
-      Place at map centre
+      {text.calibration.placeAtCentre}
     </button>
   );
 }
 
 function hint(point: MarkedPoint | null): string {
-  if (point === null) return "Press a thing on the frame that can be found on the map.";
-  if (point.pixel === null) return `Press ${point.name} on the frame.`;
-  if (point.place === null) return `Press ${point.name} on the map.`;
-  return `${point.name}: press the next point on the frame; a press on the map moves ${point.name}.`;
+  if (point === null) return text.calibration.pressThing;
+  if (point.pixel === null) return text.calibration.pressFrame(point.name);
+  if (point.place === null) return text.calibration.pressMap(point.name);
+  return text.calibration.pressNext(point.name);
 }
 
 /** From each marked point towards where the solved camera sees it. */
@@ -192,14 +195,14 @@ function Residuals(props: { frame: FrozenFrame }) {
 function Points(props: { surveyed: number }) {
   const { calibration } = useConsole();
   return (
-    <section class="section" aria-label="Control points">
+    <section class="section" aria-label={text.calibration.points}>
       <Show when={props.surveyed > 0}>
         <button type="button" class="button" onClick={() => calibration.useSurveyed()}>
-          Use the site's {plural(props.surveyed, "surveyed point")}
+          {text.calibration.useSurveyed(props.surveyed)}
         </button>
       </Show>
       <Show when={calibration.points().length > 0}>
-        <ul class="point-list" aria-label="Control points">
+        <ul class="point-list" aria-label={text.calibration.points}>
           <For each={calibration.points()}>{(point) => <PointRow point={point} />}</For>
         </ul>
       </Show>
@@ -212,9 +215,9 @@ function PointRow(props: { point: MarkedPoint }) {
   const { calibration } = useConsole();
   const residual = () =>
     calibration.fit()?.residuals.find(({ name }) => name === props.point.name) ?? null;
-  const text = () => {
-    if (props.point.pixel === null) return "not on the frame yet";
-    if (props.point.place === null) return "not on the map yet";
+  const state = () => {
+    if (props.point.pixel === null) return text.calibration.notOnFrame;
+    if (props.point.place === null) return text.calibration.notOnMap;
     const found = residual();
     if (found === null) return "";
     const size = formatQuantity(Math.hypot(found.col_px, found.row_px), "px", 1);
@@ -229,12 +232,12 @@ function PointRow(props: { point: MarkedPoint }) {
         onClick={() => calibration.select(props.point.id)}
       >
         <span class="wire-text">{props.point.name}</span>
-        <span class="push">{text()}</span>
+        <span class="push">{state()}</span>
       </button>
       <button
         type="button"
         class="button button-quiet"
-        aria-label={`Delete ${props.point.name}`}
+        aria-label={text.calibration.remove(props.point.name)}
         onClick={() => calibration.remove(props.point.id)}
       >
         ✕
@@ -251,7 +254,7 @@ function PointForm(props: { point: MarkedPoint }) {
   return (
     <div class="point-form">
       <label>
-        Latitude, longitude
+        {text.calibration.place}
         <input
           class="field"
           value={props.point.place === null ? "" : cornerText(props.point.place)}
@@ -263,16 +266,16 @@ function PointForm(props: { point: MarkedPoint }) {
         />
       </label>
       <label>
-        Altitude (WGS84), m
+        {text.calibration.altitude}
         <input
           class="field"
           inputmode="decimal"
-          placeholder="ground"
+          placeholder={text.calibration.onGround}
           value={props.point.altitude_m ?? ""}
           onChange={(event) => {
-            const text = event.currentTarget.value.trim();
-            const value = Number(text);
-            set({ altitude_m: text === "" || !Number.isFinite(value) ? null : value });
+            const typed = event.currentTarget.value.trim();
+            const value = Number(typed);
+            set({ altitude_m: typed === "" || !Number.isFinite(value) ? null : value });
           }}
         />
       </label>
@@ -287,11 +290,11 @@ function Result() {
   const why = () => {
     const [first] = missing();
     if (lacks("operator") !== null) return lacks("operator");
-    if (first !== undefined) return `Mark or delete ${first.name} first`;
-    return calibration.fit()?.accepted === true ? null : "There is no camera by these points yet";
+    if (first !== undefined) return text.calibration.completeFirst(first.name);
+    return calibration.fit()?.accepted === true ? null : text.calibration.noCamera;
   };
   return (
-    <section class="section" aria-label="Result">
+    <section class="section" aria-label={text.calibration.result}>
       <p role="status" class="calibration-result">
         {summary(calibration.fit())}
       </p>
@@ -303,7 +306,7 @@ function Result() {
         title={why() ?? undefined}
         onClick={() => void calibration.accept()}
       >
-        Accept and save
+        {text.calibration.accept}
       </button>
     </section>
   );
@@ -313,5 +316,5 @@ function summary(fit: ReturnType<ReturnType<typeof useConsole>["calibration"]["f
   if (fit === null || fit.rms_px === null) return "";
   const height = formatQuantity(fit.height_above_ground_m ?? 0, "m", 1);
   const tilt = formatQuantity(fit.tilt_deg ?? 0, "°", 1);
-  return `RMS ${formatQuantity(fit.rms_px, "px", 2)} · ${height} above ground · ${tilt} off straight down`;
+  return text.calibration.summary(formatQuantity(fit.rms_px, "px", 2), height, tilt);
 }

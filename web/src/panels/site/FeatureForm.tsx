@@ -13,7 +13,7 @@ import {
   MOST_DRAGGED,
   type Ring,
 } from "../../site/siteFeatures";
-import { plural } from "../../text/names";
+import { text } from "../../text/catalogue";
 import { lengthText, lengthUnit, metresOf, numberIn } from "../../text/units";
 
 /** Corners listed at once: a surveyed outline has hundreds. */
@@ -26,40 +26,40 @@ export function FeatureForm(props: { feature: DraftFeature }) {
   const set = (key: string, value: Attribute) =>
     siteDraft.setProperty(props.feature.id, key, value);
   return (
-    <section class="section site-form" aria-label={`Selected: ${featureName(props.feature)}`}>
+    <section
+      class="section site-form"
+      aria-label={text.feature.selected(featureName(props.feature))}
+    >
       <TextField
-        label="Name"
+        label={text.feature.name}
         value={props.feature.properties["name"] ?? ""}
-        onChange={(text) => set("name", text.trim() || null)}
+        onChange={(typed) => set("name", typed.trim() || null)}
       />
       <Show when={kind().hasHeights}>
-        <LengthInput feature={props.feature} name="floor_m" label="Floor" />
-        <LengthInput feature={props.feature} name="ceiling_m" label="Ceiling" />
+        <LengthInput feature={props.feature} name="floor_m" label={text.feature.floor} />
+        <LengthInput feature={props.feature} name="ceiling_m" label={text.feature.ceiling} />
         <label class="site-wide">
-          Heights count from
+          {text.feature.datum}
           <select
             class="field"
             value={String(props.feature.properties["datum"] ?? "ground")}
             onChange={(event) => set("datum", event.currentTarget.value)}
           >
-            <option value="ground">ground</option>
-            <option value="wgs84">WGS84 ellipsoid</option>
+            <option value="ground">{text.feature.ground}</option>
+            <option value="wgs84">{text.feature.wgs84}</option>
           </select>
         </label>
       </Show>
       <Show when={kind().isPoint}>
-        <LengthInput feature={props.feature} name="altitude_m" label="Altitude (WGS84)" />
+        <LengthInput feature={props.feature} name="altitude_m" label={text.feature.altitude} />
         <TextField
-          label="Serial of its drone (empty: any)"
+          label={text.feature.serial}
           value={props.feature.properties["serial"] ?? ""}
-          onChange={(text) => set("serial", text.trim() || null)}
+          onChange={(typed) => set("serial", typed.trim() || null)}
         />
       </Show>
       <Show when={!isDraggable(props.feature)}>
-        <p class="site-wide">
-          More than {MOST_DRAGGED} corners: they are changed in the list, not on the map. Simplify
-          the shape in the program it comes from to drag them.
-        </p>
+        <p class="site-wide">{text.feature.tooManyCorners(MOST_DRAGGED)}</p>
       </Show>
       <Index each={props.feature.rings}>
         {(ring, index) => <Corners feature={props.feature} ring={ring()} index={index} />}
@@ -71,7 +71,7 @@ export function FeatureForm(props: { feature: DraftFeature }) {
             class="button"
             onClick={() => siteDraft.draw({ layer: props.feature.layer, hole: true })}
           >
-            Draw a hole
+            {text.feature.drawHole}
           </button>
         </Show>
         <button
@@ -79,7 +79,7 @@ export function FeatureForm(props: { feature: DraftFeature }) {
           class="button"
           onClick={() => siteDraft.removeRing(props.feature.id, 0)}
         >
-          Remove {featureName(props.feature)}
+          {text.feature.remove(featureName(props.feature))}
         </button>
       </div>
     </section>
@@ -104,7 +104,7 @@ function TextField(props: { label: string; value: Attribute; onChange: (text: st
 /** A length in the chosen unit or, empty, nothing. The draft has metres. */
 function LengthInput(props: { feature: DraftFeature; name: string; label: string }) {
   const { siteDraft } = useConsole();
-  const text = () => {
+  const shown = () => {
     const length_m = props.feature.properties[props.name] ?? "";
     return typeof length_m === "number" ? lengthText(length_m) : String(length_m);
   };
@@ -118,7 +118,7 @@ function LengthInput(props: { feature: DraftFeature; name: string; label: string
     // biome-ignore lint/a11y/noLabelWithoutControl: its control is the component's
     <label>
       {props.label}, {lengthUnit()}
-      <CheckedField text={text()} inputmode="decimal" onChange={change} />
+      <CheckedField text={shown()} inputmode="decimal" onChange={change} />
     </label>
   );
 }
@@ -131,8 +131,8 @@ function CheckedField(props: {
   onChange: (text: string) => boolean;
 }) {
   const [isBad, setBad] = createSignal(false);
-  const text = createMemo(() => props.text);
-  createEffect(on(text, () => setBad(false)));
+  const shown = createMemo(() => props.text);
+  createEffect(on(shown, () => setBad(false)));
   return (
     <input
       class="field"
@@ -140,7 +140,7 @@ function CheckedField(props: {
       inputmode={props.inputmode}
       aria-label={props.label}
       aria-invalid={isBad()}
-      value={text()}
+      value={shown()}
       onChange={(event) => setBad(!props.onChange(event.currentTarget.value))}
     />
   );
@@ -152,9 +152,11 @@ function Corners(props: { feature: DraftFeature; ring: Ring; index: number }) {
   const [first, setFirst] = createSignal(0);
   const isPoint = () => LAYERS[props.feature.layer].isPoint;
   const title = () => {
-    if (isPoint()) return "Place";
-    const what = props.index === 0 ? "Outline" : `Hole ${props.index}`;
-    return `${what}: ${plural(props.ring.length, "corner")}`;
+    if (isPoint()) return text.feature.place;
+    const corners = props.ring.length;
+    return props.index === 0
+      ? text.feature.outline(corners)
+      : text.feature.hole(props.index, corners);
   };
   const start = () => Math.min(first(), Math.max(0, props.ring.length - 1));
   const shown = () => props.ring.slice(start(), start() + LISTED);
@@ -175,10 +177,10 @@ function Corners(props: { feature: DraftFeature; ring: Ring; index: number }) {
           class="button"
           onClick={() => siteDraft.removeRing(props.feature.id, props.index)}
         >
-          Remove hole {props.index}
+          {text.feature.removeHole(props.index)}
         </button>
       </Show>
-      <p class="muted">Latitude, longitude, degrees</p>
+      <p class="muted">{text.feature.cornersAre}</p>
       <ol>
         <Index each={shown()}>
           {(corner, offset) => (
@@ -199,8 +201,8 @@ function Corners(props: { feature: DraftFeature; ring: Ring; index: number }) {
           <For
             each={
               [
-                ["Earlier corners", -LISTED],
-                ["Later corners", LISTED],
+                [text.feature.earlier, -LISTED],
+                [text.feature.later, LISTED],
               ] as const
             }
           >
@@ -230,26 +232,27 @@ function Corner(props: {
   onInsert: () => void;
   onRemove: () => void;
 }) {
-  const change = (text: string) => {
-    const to = cornerOf(text);
+  const change = (typed: string) => {
+    const to = cornerOf(typed);
     if (to !== null) props.onMove(to);
     return to !== null;
   };
-  const name = () => (props.isAlone ? "Place" : `Corner ${props.number}`);
+  const name = () =>
+    props.isAlone ? text.feature.placeField : text.feature.cornerField(props.number);
   return (
     <li class="site-corner">
       <CheckedField
         text={cornerText(props.corner)}
         inputmode="text"
-        label={`${name()}: latitude, longitude`}
+        label={name()}
         onChange={change}
       />
       <Show when={!props.isAlone}>
         <button
           type="button"
           class="button"
-          aria-label={`Add a corner after corner ${props.number}`}
-          title="Add a corner after this one"
+          aria-label={text.feature.addCorner(props.number)}
+          title={text.feature.addCornerHint}
           onClick={() => props.onInsert()}
         >
           +
@@ -257,8 +260,8 @@ function Corner(props: {
         <button
           type="button"
           class="button"
-          aria-label={`Remove corner ${props.number}`}
-          title="Remove this corner"
+          aria-label={text.feature.removeCorner(props.number)}
+          title={text.feature.removeCornerHint}
           disabled={!props.canGo}
           onClick={() => props.onRemove()}
         >

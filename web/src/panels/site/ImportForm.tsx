@@ -3,7 +3,7 @@ import { useConsole } from "../../console";
 import type { LayerName } from "../../protocol";
 import type { ImportChoice } from "../../site/siteDraft";
 import { areaHa, LAYER_NAMES, LAYERS } from "../../site/siteFeatures";
-import { plural } from "../../text/names";
+import { text } from "../../text/catalogue";
 import { formatQuantity } from "../../text/quantities";
 import { NoticeLine } from "./NoticeLine";
 
@@ -24,7 +24,7 @@ export function ImportForm() {
     <section
       class="section site-import"
       classList={{ "is-over": isOver() }}
-      aria-label="Import"
+      aria-label={text.imports.name}
       onDragOver={(event) => {
         event.preventDefault();
         setOver(true);
@@ -37,7 +37,7 @@ export function ImportForm() {
       }}
     >
       <label class="button site-file">
-        Import a file
+        {text.imports.file}
         <input
           class="hidden-but-read"
           type="file"
@@ -50,13 +50,11 @@ export function ImportForm() {
           }}
         />
       </label>
-      <p class="muted">KML, KMZ, Shapefile (zip), GeoPackage or GeoJSON; or drop it here.</p>
+      <p class="muted">{text.imports.formats}</p>
       <NoticeLine notice={notice()?.about === "import" ? notice() : null} />
       <Show when={imported().length > 0}>
-        <p class="muted">
-          Choose what each becomes. A press on its shape takes it or leaves it out.
-        </p>
-        <ul aria-label="Imported features">
+        <p class="muted">{text.imports.choose}</p>
+        <ul aria-label={text.imports.list}>
           <For each={imported()}>{(one, index) => <Choice choice={one} index={index()} />}</For>
         </ul>
         <div class="section-buttons">
@@ -66,10 +64,10 @@ export function ImportForm() {
             disabled={added() === 0}
             onClick={() => siteDraft.addImported()}
           >
-            Add {plural(added(), "feature")}
+            {text.imports.add(added())}
           </button>
           <button type="button" class="button" onClick={() => siteDraft.dropImported()}>
-            Leave out all
+            {text.imports.leaveAll}
           </button>
         </div>
       </Show>
@@ -81,7 +79,7 @@ function Choice(props: { choice: ImportChoice; index: number }) {
   const { siteDraft } = useConsole();
   const fitting = () =>
     LAYER_NAMES.filter((layer) => LAYERS[layer].isPoint === props.choice.isPoint);
-  const name = () => props.choice.name || `Feature ${props.index + 1}`;
+  const name = () => props.choice.name || text.imports.unnamed(props.index + 1);
   return (
     <li>
       <label class="site-choice">
@@ -104,9 +102,9 @@ function Choice(props: { choice: ImportChoice; index: number }) {
           }
         >
           <For each={fitting()}>
-            {(layer) => <option value={layer}>{LAYERS[layer].name}</option>}
+            {(layer) => <option value={layer}>{text.siteLayers[layer].name}</option>}
           </For>
-          <option value={LEFT_OUT}>Leave out</option>
+          <option value={LEFT_OUT}>{text.imports.leave}</option>
         </select>
       </label>
     </li>

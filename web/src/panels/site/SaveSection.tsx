@@ -4,6 +4,7 @@ import type { SiteVehiclesView } from "../../protocol";
 import type { SavedDraft } from "../../site/savedDraft";
 import type { SiteDraft } from "../../site/siteDraft";
 import type { Role } from "../../source/roles";
+import { text } from "../../text/catalogue";
 import { personName } from "../../text/names";
 import { Problem } from "../Panel";
 import { NoticeLine } from "./NoticeLine";
@@ -35,7 +36,7 @@ export function SaveSection(props: {
       title={locked() ?? undefined}
       onClick={() => void props.draft.save()}
     >
-      Save, in force at once
+      {text.draft.save}
     </button>
   );
   const Discard = () => (
@@ -45,7 +46,7 @@ export function SaveSection(props: {
       disabled={isBusy()}
       onClick={() => void props.draft.discard()}
     >
-      {isChanged() ? "Discard" : "Reload"}
+      {isChanged() ? text.draft.discard : text.draft.reload}
     </button>
   );
   return (
@@ -59,7 +60,7 @@ export function SaveSection(props: {
               disabled={!edits().canUndo()}
               onClick={() => edits().undo()}
             >
-              Undo
+              {text.draft.undo}
             </button>
             <button
               type="button"
@@ -67,7 +68,7 @@ export function SaveSection(props: {
               disabled={!edits().canRedo()}
               onClick={() => edits().redo()}
             >
-              Redo
+              {text.draft.redo}
             </button>
             <Discard />
           </div>
@@ -90,10 +91,10 @@ export function SaveSection(props: {
             type="button"
             class="button"
             disabled={isBusy() || isChanged() || locked() !== null}
-            title={isChanged() ? "Save or discard the changes first" : undefined}
+            title={isChanged() ? text.draft.saveFirst : undefined}
             onClick={() => void props.draft.undoSaved()}
           >
-            Undo last save: {change().what}, by {personName(change().by)}
+            {text.draft.undoSave(change().what, personName(change().by))}
           </button>
         )}
       </Show>
@@ -104,13 +105,13 @@ export function SaveSection(props: {
     const now = verdict();
     switch (now.kind) {
       case "none":
-        return "No changes.";
+        return text.draft.noChanges;
       case "checking":
         return props.checking;
       case "accepted":
-        return now.text || "Nothing changes.";
+        return now.text || text.draft.changesNothing;
       case "refused":
-        return "Cannot be saved as it is:";
+        return text.draft.cannotSave;
     }
   }
 }

@@ -8,7 +8,7 @@ import {
   LAYER_NAMES,
   LAYERS,
 } from "../../site/siteFeatures";
-import { plural } from "../../text/names";
+import { text } from "../../text/catalogue";
 import { formatQuantity } from "../../text/quantities";
 import { Empty, Panel, Problem } from "../Panel";
 import { FeatureForm } from "./FeatureForm";
@@ -30,24 +30,18 @@ export function SitePanel() {
   };
   return (
     <Panel
-      title="Edit site"
+      title={text.panels.titles.site}
       name="site"
       class="site"
       actions={
         <button type="button" class="button" onClick={() => void toggle()}>
-          {siteDraft.isOn() ? "Close" : "Edit"}
+          {siteDraft.isOn() ? text.site.close : text.site.edit}
         </button>
       }
     >
       <Show
         when={siteDraft.isOn()}
-        fallback={
-          <Empty>
-            {siteDraft.isChanged()
-              ? "There are changes that are not saved."
-              : "Boundary, zones, regions and pads are drawn here, or imported."}
-          </Empty>
-        }
+        fallback={<Empty>{siteDraft.isChanged() ? text.site.unsaved : text.site.what}</Empty>}
       >
         <Editor />
       </Show>
@@ -69,13 +63,13 @@ function Editor() {
         )}
       </Show>
       <Show when={saved() === null}>
-        <Empty>Loading the site.</Empty>
+        <Empty>{text.site.loading}</Empty>
       </Show>
       {/* What cannot be saved is not begun; what was begun before stays to be read. */}
       <Show when={saved()?.locked_reason === null || siteDraft.isChanged()}>
         <AddForm />
-        <Show when={features().length > 0} fallback={<Empty>Nothing is drawn yet.</Empty>}>
-          <ul class="list" aria-label="Features of the site">
+        <Show when={features().length > 0} fallback={<Empty>{text.site.empty}</Empty>}>
+          <ul class="list" aria-label={text.site.features}>
             <For each={LAYER_NAMES}>
               {(layer) => (
                 <For each={features().filter((one) => one.layer === layer)}>
@@ -109,29 +103,29 @@ function AddForm() {
   return (
     <form
       class="section site-form"
-      aria-label="New feature"
+      aria-label={text.site.newFeature}
       onSubmit={(event) => {
         event.preventDefault();
         siteDraft.draw(isDrawing() ? null : { layer: layer(), hole: false });
       }}
     >
       <label class="site-wide">
-        Add
+        {text.site.add}
         <select
           class="field"
           value={layer()}
           onChange={(event) => setLayer(event.currentTarget.value as LayerName)}
         >
           <For each={LAYER_NAMES}>
-            {(name) => <option value={name}>{LAYERS[name].name}</option>}
+            {(name) => <option value={name}>{text.siteLayers[name].name}</option>}
           </For>
         </select>
       </label>
       <button type="submit" class="button" aria-pressed={isDrawing()}>
-        Draw on map
+        {text.site.draw}
       </button>
       <button type="button" class="button" onClick={add}>
-        At map centre
+        {text.site.atCentre}
       </button>
       <Show when={tool()}>
         {(inHand) => (
@@ -145,9 +139,8 @@ function AddForm() {
 }
 
 function hint({ layer, hole }: { layer: LayerName; hole: boolean }): string {
-  if (LAYERS[layer].isPoint) return "Press the place on the map. Esc cancels.";
-  const what = hole ? "hole" : LAYERS[layer].name.toLowerCase();
-  return `Press the corners of the ${what} on the map; press the first one again to finish. Esc cancels.`;
+  if (LAYERS[layer].isPoint) return text.site.pressPlace;
+  return hole ? text.site.pressHoleCorners : text.site.pressCorners(text.siteLayers[layer].one);
 }
 
 function FeatureRow(props: { feature: DraftFeature }) {
@@ -179,13 +172,14 @@ function FeatureRow(props: { feature: DraftFeature }) {
 
 /** What it is, unless it is named so, and how large: `Survey region, 4.2 ha, 1 hole`. */
 function facts(feature: DraftFeature): string {
-  const { name, isPoint } = LAYERS[feature.layer];
+  const { isPoint } = LAYERS[feature.layer];
+  const { name } = text.siteLayers[feature.layer];
   const isNamedSo = featureName(feature).toLowerCase().startsWith(name.toLowerCase());
   const holes = feature.rings.length - 1;
   return [
     ...(isNamedSo ? [] : [name]),
     ...(isPoint ? [] : [formatQuantity(areaHa(feature), "ha", 2)]),
-    ...(holes > 0 ? [plural(holes, "hole")] : []),
+    ...(holes > 0 ? [text.site.holes(holes)] : []),
   ].join(", ");
 }
 
@@ -197,8 +191,8 @@ function Save() {
   };
   return (
     <SaveSection
-      title="Save the site"
-      checking="Checking the drawing."
+      title={text.site.save}
+      checking={text.site.checking}
       draft={siteDraft}
       needs="operator"
       isElsewhere={isElsewhere()}

@@ -10,19 +10,22 @@ import {
 } from "solid-js";
 import { useConsole } from "../../console";
 import type { SiteVehicleView } from "../../protocol";
+import { text } from "../../text/catalogue";
 import { colourOf, lookClasses } from "../../theme/theme";
 import { Empty, Panel, Problem } from "../Panel";
 import { SaveSection } from "./SaveSection";
 import "./vehicles.css";
 
+const columns = text.siteVehicles;
+
 const REFERENCES = [
-  ["", "Not set: missions are refused"],
-  ["takeoff", "Above takeoff"],
-  ["wgs84", "WGS84 ellipsoid"],
+  ["", text.siteVehicles.references.unset],
+  ["takeoff", text.siteVehicles.references.takeoff],
+  ["wgs84", text.siteVehicles.references.wgs84],
 ] as const;
 
-function referenceOf(text: string): "wgs84" | "takeoff" | null {
-  return text === "wgs84" || text === "takeoff" ? text : null;
+function referenceOf(value: string): "wgs84" | "takeoff" | null {
+  return value === "wgs84" || value === "takeoff" ? value : null;
 }
 
 /** The site's vehicles as a table: connected or not, edited, checked, saved, and in force without a restart. */
@@ -40,7 +43,7 @@ export function VehiclesPanel() {
   const reason = () => table.saved()?.locked_reason ?? null;
   return (
     <Panel
-      title="Site vehicles"
+      title={text.panels.titles.vehicles}
       name="vehicles"
       class="site site-vehicles"
       count={table.rows().length}
@@ -51,14 +54,14 @@ export function VehiclesPanel() {
         </div>
       </Show>
       <Show when={reason()}>
-        {(text) => (
+        {(why) => (
           <div class="section">
-            <Problem text={text()} />
+            <Problem text={why()} />
           </div>
         )}
       </Show>
-      <Show when={table.saved()} fallback={<Empty>Loading the vehicles.</Empty>}>
-        <Show when={table.rows().length > 0} fallback={<Empty>No vehicles are listed.</Empty>}>
+      <Show when={table.saved()} fallback={<Empty>{text.siteVehicles.loading}</Empty>}>
+        <Show when={table.rows().length > 0} fallback={<Empty>{text.siteVehicles.none}</Empty>}>
           <Rows />
         </Show>
         <AddVehicle />
@@ -75,14 +78,22 @@ function Rows() {
     return outcome.kind === "answered" ? outcome.value : [];
   });
   return (
-    <table class="vehicle-table" aria-label="Vehicles of the site">
+    <table class="vehicle-table" aria-label={text.siteVehicles.table}>
       <thead>
         <tr>
-          <For each={["Vehicle", "Number", "Name", "Altitude reference", "Camera"]}>
+          <For
+            each={[
+              columns.vehicle,
+              columns.number,
+              columns.name,
+              columns.reference,
+              columns.camera,
+            ]}
+          >
             {(title) => <th scope="col">{title}</th>}
           </For>
           <th scope="col">
-            <span class="hidden-but-read">Remove</span>
+            <span class="hidden-but-read">{columns.remove}</span>
           </th>
         </tr>
       </thead>
@@ -105,8 +116,8 @@ function Row(props: {
   const set = (change: Partial<SiteVehicleView>) => table.edit(props.index, change);
   const state = () => {
     const known = fleet.vehicles.find((vehicle) => vehicle.serial === serial());
-    if (known === undefined) return "not connected";
-    return known.is_imager ? "imaging drone" : "connected";
+    if (known === undefined) return text.siteVehicles.notConnected;
+    return known.is_imager ? text.siteVehicles.imager : text.siteVehicles.connected;
   };
   const problem = () => {
     const verdict = table.verdict();
@@ -123,7 +134,7 @@ function Row(props: {
         <div class="muted">{state()}</div>
         <Problem text={problem()} />
       </th>
-      <td data-label="Number">
+      <td data-label={columns.number}>
         <div class="vehicle-number own-colour" style={{ "--own": colourOf(number()) }}>
           <span class={`badge ${lookClasses(number())}`} aria-hidden="true">
             {number() || "?"}
@@ -131,48 +142,48 @@ function Row(props: {
           <input
             class="field"
             inputmode="numeric"
-            aria-label={`Number of ${serial()}`}
-            placeholder="auto"
+            aria-label={text.siteVehicles.numberOf(serial())}
+            placeholder={text.siteVehicles.automatic}
             value={props.row.number ?? ""}
             onChange={(event) => {
-              const text = event.currentTarget.value.trim();
-              const value = Number(text);
-              if (text !== "" && !Number.isInteger(value)) {
+              const typed = event.currentTarget.value.trim();
+              const value = Number(typed);
+              if (typed !== "" && !Number.isInteger(value)) {
                 // The browser keeps the text: the value in force is shown again.
                 event.currentTarget.value = String(props.row.number ?? "");
                 return;
               }
-              set({ number: text === "" ? null : value });
+              set({ number: typed === "" ? null : value });
             }}
           />
         </div>
       </td>
-      <td data-label="Name">
+      <td data-label={columns.name}>
         <input
           class="field"
-          aria-label={`Name of ${serial()}`}
+          aria-label={text.siteVehicles.nameOf(serial())}
           placeholder={serial()}
           value={props.row.name ?? ""}
           onChange={(event) => set({ name: event.currentTarget.value.trim() || null })}
         />
       </td>
-      <td data-label="Altitude reference">
+      <td data-label={columns.reference}>
         <select
           class="field"
-          aria-label={`Altitude reference of ${serial()}`}
+          aria-label={text.siteVehicles.referenceOf(serial())}
           value={props.row.waypoint_altitude ?? ""}
           onChange={(event) => set({ waypoint_altitude: referenceOf(event.currentTarget.value) })}
         >
           <For each={REFERENCES}>{([value, label]) => <option value={value}>{label}</option>}</For>
         </select>
       </td>
-      <td data-label="Camera">
+      <td data-label={columns.camera}>
         <select
           class="field"
-          aria-label={`Camera of ${serial()}`}
+          aria-label={text.siteVehicles.cameraOf(serial())}
           onChange={(event) => set({ camera: event.currentTarget.value || null })}
         >
-          <option value="">No survey camera</option>
+          <option value="">{text.siteVehicles.noCamera}</option>
           <Show when={isUnknownCamera()}>
             <option value={props.row.camera ?? ""} selected>
               {props.row.camera}
@@ -191,8 +202,8 @@ function Row(props: {
         <button
           type="button"
           class="button button-quiet"
-          aria-label={`Remove ${serial()}`}
-          title="Remove from the site"
+          aria-label={text.siteVehicles.removeOf(serial())}
+          title={text.siteVehicles.removeHint}
           onClick={() => table.remove(props.index)}
         >
           ✕
@@ -211,14 +222,14 @@ function AddVehicle() {
     fleet.vehicles.filter((vehicle) => vehicle.serial !== null && !listed().has(vehicle.serial));
   const isListed = () => listed().has(serial().trim());
   return (
-    <section class="section" aria-label="Add a vehicle">
+    <section class="section" aria-label={text.siteVehicles.add}>
       <Show when={unlisted().length > 0}>
-        <p class="muted">Connected and not listed: missions are refused for them.</p>
+        <p class="muted">{text.siteVehicles.notListed}</p>
         <div class="section-buttons">
           <For each={unlisted()}>
             {(vehicle) => (
               <button type="button" class="button" onClick={() => table.add(vehicle.serial ?? "")}>
-                Add <span class="wire-text">{vehicle.serial}</span>
+                {text.siteVehicles.addOf(<span class="wire-text">{vehicle.serial}</span>)}
               </button>
             )}
           </For>
@@ -226,7 +237,7 @@ function AddVehicle() {
       </Show>
       <form
         class="vehicle-add"
-        aria-label="Vehicle by serial"
+        aria-label={text.siteVehicles.bySerial}
         onSubmit={(event) => {
           event.preventDefault();
           table.add(serial().trim());
@@ -234,7 +245,7 @@ function AddVehicle() {
         }}
       >
         <label>
-          Serial, as the app shows it
+          {text.siteVehicles.serial}
           <input
             class="field"
             value={serial()}
@@ -245,9 +256,9 @@ function AddVehicle() {
           type="submit"
           class="button"
           disabled={serial().trim() === "" || isListed()}
-          title={isListed() ? "It is listed already" : undefined}
+          title={isListed() ? text.siteVehicles.isListed : undefined}
         >
-          Add vehicle
+          {text.siteVehicles.addButton}
         </button>
       </form>
     </section>
@@ -262,8 +273,8 @@ function Save() {
   };
   return (
     <SaveSection
-      title="Save the vehicles"
-      checking="Checking the vehicles."
+      title={text.siteVehicles.save}
+      checking={text.siteVehicles.checking}
       draft={table}
       needs="admin"
       isElsewhere={isElsewhere()}

@@ -2,6 +2,7 @@ import { createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { SiteView, StationView } from "../../protocol";
 import { saveAs } from "../../source/saveAs";
+import { text } from "../../text/catalogue";
 import { formatAge, formatBytes, formatQuantity, UNKNOWN } from "../../text/quantities";
 import { formatLength } from "../../text/units";
 import { AppAddress } from "../links/AppAddress";
@@ -13,15 +14,19 @@ import { SeparationSwitch } from "../separation/SeparationHold";
 export function StationPanel() {
   const { fleet } = useConsole();
   return (
-    <Panel title="Station" name="station">
-      <Show when={fleet.station} fallback={<p class="panel-empty">No data yet.</p>}>
+    <Panel title={text.station.title} name="station">
+      <Show when={fleet.station} fallback={<p class="panel-empty">{text.station.noData}</p>}>
         {(station) => <StationFacts station={station()} />}
       </Show>
       <Show when={fleet.station}>
         {(station) => (
-          <section class="section" aria-label="Separation hold">
+          <section class="section" aria-label={text.separation.name}>
             <p>
-              Separation hold: <strong>{station().separation_hold_on ? "on" : "OFF"}</strong>
+              {text.separation.state(
+                <strong>
+                  {station().separation_hold_on ? text.separation.on : text.separation.off}
+                </strong>,
+              )}
             </p>
             <SeparationSwitch />
           </section>
@@ -41,10 +46,10 @@ function Facts(props: { facts: readonly (readonly [string, string])[] }) {
   return (
     <dl class="facts">
       <For each={props.facts}>
-        {([name, text]) => (
+        {([name, value]) => (
           <div class="fact fact-wide">
             <dt>{name}</dt>
-            <dd class="wire-text">{text}</dd>
+            <dd class="wire-text">{value}</dd>
           </div>
         )}
       </For>
@@ -57,11 +62,11 @@ function StationFacts(props: { station: StationView }) {
   return (
     <Facts
       facts={[
-        ["Version", props.station.version],
-        ["Uptime", formatAge(props.station.uptime_s + behindS())],
-        ["App address", props.station.link_addresses.join(", ") || UNKNOWN],
-        ["Frames dropped", String(props.station.frames_dropped)],
-        ["Raw capture", props.station.capture_folder ?? "off"],
+        [text.station.version, props.station.version],
+        [text.station.uptime, formatAge(props.station.uptime_s + behindS())],
+        [text.station.appAddress, props.station.link_addresses.join(", ") || UNKNOWN],
+        [text.station.framesDropped, String(props.station.frames_dropped)],
+        [text.station.rawCapture, props.station.capture_folder ?? text.station.captureOff],
         ...losses(props.station),
       ]}
     />
@@ -72,10 +77,10 @@ function StationFacts(props: { station: StationView }) {
 function losses(station: StationView): (readonly [string, string])[] {
   const facts: (readonly [string, string])[] = [];
   if (station.connections_refused > 0) {
-    facts.push(["Connections refused", String(station.connections_refused)]);
+    facts.push([text.station.refused, String(station.connections_refused)]);
   }
   if (station.capture_dropped_bytes > 0) {
-    facts.push(["Lost from raw capture", formatBytes(station.capture_dropped_bytes)]);
+    facts.push([text.station.captureLost, formatBytes(station.capture_dropped_bytes)]);
   }
   return facts;
 }
@@ -84,14 +89,17 @@ function SiteFacts(props: { site: SiteView }) {
   return (
     <Facts
       facts={[
-        ["Site", props.site.name],
-        ["Ground altitude, WGS84", formatLength(props.site.ground_altitude_m, 1)],
-        ["Terrain", props.site.terrain === "model" ? "elevation model" : "assumed flat"],
-        ["Max. height above ground", formatLength(props.site.limits.max_height_above_ground_m, 1)],
-        ["Max. distance from home", formatLength(props.site.limits.max_distance_from_home_m, 1)],
-        ["Imaging drones", props.site.imager_serials.join(", ") || UNKNOWN],
-        ["Camera pose error, RMS", formatQuantity(props.site.pose_rms_px, "px", 2)],
-        ["Camera pose height above ground", formatLength(props.site.pose_height_m, 1)],
+        [text.station.site, props.site.name],
+        [text.station.groundAltitude, formatLength(props.site.ground_altitude_m, 1)],
+        [
+          text.station.terrain,
+          props.site.terrain === "model" ? text.station.elevationModel : text.station.flat,
+        ],
+        [text.station.maxHeight, formatLength(props.site.limits.max_height_above_ground_m, 1)],
+        [text.station.maxDistance, formatLength(props.site.limits.max_distance_from_home_m, 1)],
+        [text.station.imagers, props.site.imager_serials.join(", ") || UNKNOWN],
+        [text.station.poseError, formatQuantity(props.site.pose_rms_px, "px", 2)],
+        [text.station.poseHeight, formatLength(props.site.pose_height_m, 1)],
       ]}
     />
   );
@@ -109,9 +117,9 @@ function Download() {
   return (
     <div class="row">
       <button type="button" class="button" onClick={() => void save()}>
-        Save ground image (GeoTIFF)
+        {text.station.saveGroundImage}
       </button>
-      <Show when={problem()}>{(text) => <p class="tone-error">{text()}</p>}</Show>
+      <Show when={problem()}>{(why) => <p class="tone-error">{why()}</p>}</Show>
     </div>
   );
 }

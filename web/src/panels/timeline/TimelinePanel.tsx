@@ -2,6 +2,7 @@ import { createEffect, createSignal, For, on, onCleanup, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { TimelineEntryView } from "../../protocol";
 import type { TimelineSubject } from "../../source/stationSource";
+import { text } from "../../text/catalogue";
 import { capitalised, personName, vehicleLabel, withoutNumbers } from "../../text/names";
 import { Empty, Panel, Problem } from "../Panel";
 import "./timeline.css";
@@ -12,12 +13,12 @@ const PAGE = 50;
 const MOST = 500;
 const ALL = "";
 
-const SUBJECTS: readonly (readonly [TimelineSubject, string])[] = [
-  ["orders", "Orders"],
-  ["alarms", "Alarms"],
-  ["flights", "Flights and links"],
-  ["operations", "Surveys, zones, site"],
-  ["station", "Station and users"],
+const SUBJECTS: readonly TimelineSubject[] = [
+  "orders",
+  "alarms",
+  "flights",
+  "operations",
+  "station",
 ];
 
 /** What happened in this run, the newest first: of all drones or one, by subject. */
@@ -82,23 +83,23 @@ export function TimelinePanel() {
   });
 
   return (
-    <Panel title="Timeline" name="timeline">
+    <Panel title={text.panels.titles.timeline} name="timeline">
       <div class="section timeline-filters">
         <label>
-          Drone
+          {text.timeline.drone}
           <select
             class="field"
             value={serial() ?? ALL}
             onChange={(event) => setSerial(event.currentTarget.value || null)}
           >
-            <option value={ALL}>All</option>
+            <option value={ALL}>{text.timeline.allDrones}</option>
             <For each={fleet.vehicles.filter((one) => one.serial !== null)}>
               {(vehicle) => <option value={vehicle.serial ?? ALL}>{vehicleLabel(vehicle)}</option>}
             </For>
           </select>
         </label>
         <label>
-          About
+          {text.timeline.about}
           <select
             class="field"
             value={about() ?? ALL}
@@ -106,8 +107,10 @@ export function TimelinePanel() {
               setAbout((event.currentTarget.value || null) as TimelineSubject | null)
             }
           >
-            <option value={ALL}>Everything</option>
-            <For each={SUBJECTS}>{([value, text]) => <option value={value}>{text}</option>}</For>
+            <option value={ALL}>{text.timeline.everything}</option>
+            <For each={SUBJECTS}>
+              {(subject) => <option value={subject}>{text.timeline.subjects[subject]}</option>}
+            </For>
           </select>
         </label>
       </div>
@@ -116,31 +119,27 @@ export function TimelinePanel() {
         when={shown().length > 0}
         fallback={
           <Show when={problem() === null}>
-            <Empty>{entries() === null ? "Loading the timeline." : "Nothing has happened."}</Empty>
+            <Empty>{entries() === null ? text.timeline.loading : text.timeline.empty}</Empty>
           </Show>
         }
       >
         {/* Scrollable lists are reached by keyboard too. */}
         {/* biome-ignore lint/a11y/noNoninteractiveTabindex: it scrolls */}
-        <ol class="timeline" tabIndex={0} aria-label="What happened, the newest first">
+        <ol class="timeline" tabIndex={0} aria-label={text.timeline.name}>
           <For each={shown()}>{(entry) => <Line entry={entry} />}</For>
         </ol>
         <Show when={hasMore()}>
           <div class="section">
             <Show
               when={shown().length < MOST}
-              fallback={
-                <p class="muted">
-                  The newest {MOST} are shown. Choose a drone or a subject to see earlier ones.
-                </p>
-              }
+              fallback={<p class="muted">{text.timeline.onlyNewest(MOST)}</p>}
             >
               <button
                 type="button"
                 class="button"
                 onClick={() => void load(shown().at(-1)?.n ?? null)}
               >
-                Earlier
+                {text.timeline.earlier}
               </button>
             </Show>
           </div>
