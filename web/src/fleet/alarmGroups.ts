@@ -1,4 +1,5 @@
 import type { AlarmView, Severity } from "../protocol";
+import { text } from "../text/catalogue";
 import { alarmText, capitalised, plainWords } from "../text/names";
 import { severityRank, worstSeverity } from "./severity";
 
@@ -15,21 +16,6 @@ export interface AlarmGroup {
   /** Whether it asks for something: more than a note that lasts, or one not acknowledged yet. */
   readonly needsLook: boolean;
 }
-
-/** Names of the causes that concern pairs or many vehicles; others are read from the station's rule. */
-const CAUSES: Readonly<Record<string, string>> = {
-  separation: "Separation",
-  link_lost: "Telemetry lost",
-  connection: "Connection to the station",
-  stop_waits: "Stop not confirmed",
-  serial_conflict: "Serial conflict",
-  unidentified: "Serial number missing",
-  battery: "Battery",
-  geofence: "Geofence",
-  gnss: "GNSS",
-  look_aside: "Look aside",
-  move_upwind: "Move upwind",
-};
 
 /** Causes whose every alarm is about two vehicles. */
 const PAIRED = ["separation"];
@@ -64,20 +50,21 @@ function groupOf(key: string, members: readonly AlarmView[]): AlarmGroup {
 function titleOf(alarms: readonly AlarmView[]): string {
   const [only, ...others] = alarms;
   if (only === undefined) return "";
-  const subject = only.vehicle_name || "Station";
+  const subject = only.vehicle_name || text.names.station;
   if (others.length === 0) return `${subject}: ${alarmText(only)}`;
   const names = new Set(alarms.map(({ vehicle_name }) => vehicle_name));
-  return `${causeName(only.rule)}: ${counted(only.rule, alarms.length, names.size)}`;
+  return counted(only.rule, alarms.length, names.size);
 }
 
 function counted(rule: string, alarms: number, vehicles: number): string {
-  if (PAIRED.includes(rule)) return `${alarms} pairs`;
-  return vehicles > 1 ? `${vehicles} drones` : `${alarms} alarms`;
+  const cause = causeName(rule);
+  if (PAIRED.includes(rule)) return text.alarms.pairs(cause, alarms);
+  return vehicles > 1 ? text.alarms.drones(cause, vehicles) : text.alarms.alarms(cause, alarms);
 }
 
 /** A cause by the station's rule, as a person names it. */
 export function causeName(rule: string): string {
-  return CAUSES[rule] ?? capitalised(plainWords(rule));
+  return text.alarms.causes[rule] ?? capitalised(plainWords(rule));
 }
 
 /** Those that ask for something first, then by severity, then the newest. */

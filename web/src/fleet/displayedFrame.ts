@@ -1,6 +1,7 @@
 import { type Accessor, createComputed, createSignal } from "solid-js";
 import type { StationState } from "../protocol";
 import type { StationSource } from "../source/stationSource";
+import { text } from "../text/catalogue";
 import { formatAge } from "../text/quantities";
 
 /** A frame announced in a state; ages count to the moment the state was created. */
@@ -181,10 +182,13 @@ const LOADING_S = 2;
 
 /** Caption of the displayed picture: `frame 12, taken 0.8 s ago ± 0.2 s`. */
 export function frameCaption(frame: FrameInfo, behindS: number): string {
-  const name = frame.id === null ? "unnumbered frame" : `frame ${frame.id}`;
-  const { capture } = frame;
-  if (capture === null) return `${name}, capture time unknown`;
-  return `${name}, taken ${formatAge(capture.age_s + behindS)} ago ± ${capture.sigma_s.toFixed(1)} s`;
+  const { id, capture } = frame;
+  const { frames } = text;
+  if (capture === null)
+    return id === null ? frames.unnumberedOfUnknownTime : frames.frameOfUnknownTime(id);
+  const age = formatAge(capture.age_s + behindS);
+  const sigma = `${capture.sigma_s.toFixed(1)} s`;
+  return id === null ? frames.unnumbered(age, sigma) : frames.frame(id, age, sigma);
 }
 
 /** Whether a newer frame was announced a while ago but its picture is not displayed. */

@@ -1,5 +1,6 @@
 import type { AlarmView, Severity, StationState, VehicleView } from "../protocol";
 import type { Connection } from "../source/stationSource";
+import { text } from "../text/catalogue";
 import { alarmText, plainWords } from "../text/names";
 import { formatAge, formatFraction } from "../text/quantities";
 import { severityRank, worstSeverity } from "./severity";
@@ -50,17 +51,17 @@ export function readiness(
 }
 
 function withoutState(connection: Connection): Readiness {
-  const text =
-    connection.kind === "lost" ? `${connection.reason}.` : "Waiting for data from the station.";
+  const why = connection.kind === "lost" ? `${connection.reason}.` : text.readiness.waiting;
   const label = connection.kind === "lost" ? "Station lost" : "Not ready";
   const severity = connection.kind === "lost" ? "critical" : "info";
-  return { label, count: "", severity, reasons: [{ severity, vehicleName: null, text }] };
+  return { label, count: "", severity, reasons: [{ severity, vehicleName: null, text: why }] };
 }
 
 function countOf(label: ReadinessLabel, { vehicles }: StationState, behindS: number): string {
   if (vehicles.length === 0 || label === "Station lost") return "";
   const isCounted = COUNTED[label] ?? ((one) => isFlyingNow(one, behindS));
-  return `${vehicles.filter((one) => isCounted(one, behindS)).length} of ${vehicles.length}`;
+  const counted = vehicles.filter((one) => isCounted(one, behindS));
+  return text.readiness.countOf(counted.length, vehicles.length);
 }
 
 /** What the count beside a label counts, where it is not the flying vehicles. */
@@ -92,8 +93,8 @@ function readinessLabel(
 
 function streamReasons(connection: Connection, behindS: number): Reason[] {
   if (connection.kind !== "lost") return [];
-  const text = `${connection.reason}. Last data ${formatAge(behindS)} ago.`;
-  return [{ severity: "critical", vehicleName: null, text }];
+  const lastData = text.readiness.lastData(connection.reason, formatAge(behindS));
+  return [{ severity: "critical", vehicleName: null, text: lastData }];
 }
 
 function alarmReasons(state: StationState): Reason[] {
@@ -134,26 +135,27 @@ interface Condition {
 
 function conditionsOf(vehicle: VehicleView, behindS: number): Condition[] {
   const found: Condition[] = [];
-  const add = (rule: string, severity: Severity, text: string) =>
-    found.push({ rule, severity, text });
+  const add = (rule: string, severity: Severity, words: string) =>
+    found.push({ rule, severity, text: words });
   const { activity, severity } = vehicleStatus(vehicle, behindS);
   if (activity === "Contact lost") {
     const ageS = vehicle.telemetry_age_s;
-    const since = ageS === null ? "yet" : `for ${formatAge(ageS + behindS)}`;
-    add("link_lost", severity ?? "warning", `No telemetry ${since}.`);
+    const { noTelemetry, noTelemetryYet } = text.readiness;
+    const lost = ageS === null ? noTelemetryYet : noTelemetry(formatAge(ageS + behindS));
+    add("link_lost", severity ?? "warning", lost);
     return found;
   }
   if (vehicle.serial === null) {
-    add("unidentified", "warning", "Waiting for serial number.");
+    add("unidentified", "warning", text.readiness.noSerial);
   }
   if (vehicle.conflict_link_ids.length > 0) {
-    add("serial_conflict", "error", "A second link reports the same serial number.");
+    add("serial_conflict", "error", text.readiness.serialConflict);
   }
   if (vehicle.position.latitude_deg === null) {
-    add("position", "warning", "Position unknown.");
+    add("position", "warning", text.readiness.noPosition);
   }
   if (hasBatteryWarning(vehicle)) {
-    add("battery", "warning", `Aircraft battery warning: ${batteryText(vehicle)}.`);
+    add("battery", "warning", batteryText(vehicle));
   }
   return found;
 }
@@ -166,18 +168,17 @@ export function hasBatteryWarning(vehicle: Pick<VehicleView, "battery_warning">)
 
 function batteryText(vehicle: VehicleView): string {
   const left = formatFraction(vehicle.battery_fraction.value);
-  return `${plainWords(vehicle.battery_warning.value ?? "")}, ${left} left`;
+  return text.readiness.battery(plainWords(vehicle.battery_warning.value ?? ""), left);
 }
 
 function fleetReasons(state: StationState): Reason[] {
   if (simulation(state.vehicles) === "mixed") {
-    const text = "Real and simulated vehicles are connected together.";
-    return [{ severity: "warning", vehicleName: null, text }];
+    return [{ severity: "warning", vehicleName: null, text: text.readiness.isMixed }];
   }
   const none: Reason = {
     severity: "warning",
     vehicleName: null,
-    text: "No vehicle connected. Start a companion app and enter the station's address.",
+    text: text.readiness.noVehicle,
   };
   return state.vehicles.length === 0 ? [none] : [];
 }

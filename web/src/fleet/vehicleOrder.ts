@@ -1,28 +1,15 @@
 import { type Accessor, createSignal } from "solid-js";
 import type { VehicleView } from "../protocol";
+import { text } from "../text/catalogue";
 import { vehicleLabel } from "../text/names";
 import { hasBatteryWarning } from "./readiness";
 import { severityRank } from "./severity";
-import { type VehicleActivity, vehicleKey, vehicleStatus } from "./vehicleStatus";
+import { vehicleKey, vehicleStatus } from "./vehicleStatus";
 
 /** How the list of vehicles is sorted and grouped, and which are shown. */
-export const SORTS = {
-  number: "Number",
-  name: "Name",
-  battery: "Battery",
-  trouble: "Trouble",
-} as const;
-export const GROUPS = { none: "No groups", activity: "What they do", role: "Kind" } as const;
-export const FILTERS = {
-  all: "All",
-  flying: "Flying",
-  trouble: "With a problem",
-  selected: "Selected",
-} as const;
-
-export type SortName = keyof typeof SORTS;
-export type GroupName = keyof typeof GROUPS;
-export type FilterName = keyof typeof FILTERS;
+export type SortName = "number" | "name" | "battery" | "trouble";
+export type GroupName = "none" | "activity" | "role";
+export type FilterName = "all" | "flying" | "trouble" | "selected";
 
 /** What the operator chose for the list. */
 export interface ListChoice {
@@ -65,8 +52,8 @@ export function listVehicles<T extends VehicleView>(
 
 function isFound(vehicle: VehicleView, search: string): boolean {
   const words = search.trim().toLowerCase();
-  const text = `${vehicleLabel(vehicle)} ${vehicle.serial ?? ""} ${vehicle.model}`.toLowerCase();
-  return words === "" || String(vehicle.number) === words || text.includes(words);
+  const all = `${vehicleLabel(vehicle)} ${vehicle.serial ?? ""} ${vehicle.model}`.toLowerCase();
+  return words === "" || String(vehicle.number) === words || all.includes(words);
 }
 
 function passes(
@@ -117,9 +104,8 @@ function rank(vehicle: VehicleView): number {
 
 function groupTitle(vehicle: VehicleView, group: GroupName, behindS: number): string {
   if (group === "none") return "";
-  if (group === "activity")
-    return vehicleStatus(vehicle, behindS).activity satisfies VehicleActivity;
-  return vehicle.is_imager ? "Imaging drones" : "Survey drones";
+  if (group === "activity") return text.activity.names[vehicleStatus(vehicle, behindS).activity];
+  return vehicle.is_imager ? text.vehicles.imagers : text.vehicles.surveyors;
 }
 
 /** Whether two lists show the same vehicles in the same places. */

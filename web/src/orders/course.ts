@@ -1,4 +1,5 @@
 import { type LonLat, metresPerDegree } from "../map/localGrid";
+import { text } from "../text/catalogue";
 import { formatAge, formatHeading } from "../text/quantities";
 import { formatLength } from "../text/units";
 
@@ -24,5 +25,5 @@ export function courseOf(from: LonLat, to: LonLat, climb_m: number, speed_mps: n
 /** `120 m, bearing 045°, about 24 s`. */
 export function courseText({ distance_m, bearing_deg, time_s }: Course): string {
   const distance = formatLength(distance_m, distance_m < 10 ? 1 : 0);
-  return `${distance}, bearing ${formatHeading(bearing_deg)}, about ${formatAge(Math.ceil(time_s))}`;
+  return text.fly.course(distance, formatHeading(bearing_deg), formatAge(Math.ceil(time_s)));
 }

@@ -2,6 +2,7 @@ import { type Accessor, createSignal } from "solid-js";
 import type { OrderResult } from "../protocol";
 import type { Clock } from "../source/clock";
 import type { NamedOrder, Outcome, StationSource } from "../source/stationSource";
+import { text } from "../text/catalogue";
 import { commandName } from "../text/names";
 
 /** The last order sent and the station's answer. */
@@ -56,9 +57,9 @@ export function createOrderApi(source: OrderSource, clock: Clock): OrderApi {
       if (order.serials.length === 0) return;
       await run(commandName(order.order.kind), labels, () => source.order(order));
     },
-    allStop: () => run("All stop", ["all flying vehicles"], () => source.allStop()),
+    allStop: () => run(text.orders.allStop, [text.orders.allFlying], () => source.allStop()),
     fleetReturn: (serials, labels) =>
-      run("Return in layers (hold first)", labels, () => source.fleetReturn(serials)),
+      run(text.orders.fleetReturn, labels, () => source.fleetReturn(serials)),
     dismiss: () => setLastAnswer(null),
   };
 }

@@ -2,6 +2,7 @@ import { type Accessor, createEffect, createMemo, createSignal, onCleanup } from
 import type { OrderResult } from "../protocol";
 import type { Clock } from "../source/clock";
 import type { NamedOrder, Outcome, StationSource } from "../source/stationSource";
+import { text } from "../text/catalogue";
 import { refusalText } from "../text/names";
 
 /** The safety gate's result for an order that has not been sent. */
@@ -52,5 +53,5 @@ function checkOf(outcome: Outcome<readonly OrderResult[]>): OrderCheck {
     return { kind: "refused", text: refusalText(refused.reason) };
   }
   if (outcome.value.length > 0) return { kind: "allowed" };
-  return { kind: "refused", text: "No check result from the station. Try again." };
+  return { kind: "refused", text: text.orders.noCheck };
 }

@@ -4,11 +4,6 @@ import { vehicleLabel } from "../text/names";
 /** An order with its own button, and how it is confirmed. */
 export interface OrderKind {
   readonly kind: "hover" | "land" | "return_home";
-  readonly label: string;
-  /** Completes "Keep holding to ...", before the vehicles' names. */
-  readonly verb: string;
-  /** Explanation shown with the button. */
-  readonly note: string;
   /** How long the button must be held, milliseconds; 0 for one press. */
   readonly hold_ms: number;
   /** Key to hold together with Shift, for as long as the button. */
@@ -20,30 +15,9 @@ export interface OrderKind {
  * Landing and return move it where it cannot stop at once: 1.5 s, longer than an accidental touch.
  */
 export const ORDER_KINDS: readonly OrderKind[] = [
-  {
-    kind: "hover",
-    label: "Hover",
-    verb: "hover",
-    note: "Stop and hold position.",
-    hold_ms: 0,
-    key: "H",
-  },
-  {
-    kind: "return_home",
-    label: "Return",
-    verb: "climb to the go-home height and return home",
-    note: "Climbs to the aircraft's go-home height first.",
-    hold_ms: 1500,
-    key: "R",
-  },
-  {
-    kind: "land",
-    label: "Land",
-    verb: "land",
-    note: "Land at the current position.",
-    hold_ms: 1500,
-    key: "L",
-  },
+  { kind: "hover", hold_ms: 0, key: "H" },
+  { kind: "return_home", hold_ms: 1500, key: "R" },
+  { kind: "land", hold_ms: 1500, key: "L" },
 ];
 
 /** The selected vehicles an order can be sent to, and those it cannot. */

@@ -3,6 +3,7 @@ import { type AlarmGroup, groupAlarms } from "../fleet/alarmGroups";
 import type { AlarmView } from "../protocol";
 import type { Instant } from "../source/clock";
 import type { StationSource } from "../source/stationSource";
+import { text } from "../text/catalogue";
 import { announce, SILENT } from "./announcements";
 import type { Mutes } from "./mutes";
 import type { SoundProblem, Speaker } from "./speaker";
@@ -29,7 +30,7 @@ const CONNECTION_LOST: AlarmView = {
   id: 0,
   rule: "connection",
   severity: "critical",
-  text: "No connection",
+  text: text.alarms.noConnection,
   vehicle_name: "",
   serial: null,
   link_id: null,
@@ -81,7 +82,7 @@ export function createAlarmSound(
     causes,
     silenced,
     test: () =>
-      speaker.announce({ severity: "warning", text: "This is a test", interrupts: false }),
+      speaker.announce({ severity: "warning", text: text.sound.testSentence, interrupts: false }),
   };
 }
 

@@ -1,6 +1,7 @@
 import type { AlarmGroup } from "../fleet/alarmGroups";
 import { severityRank } from "../fleet/severity";
 import type { Severity } from "../protocol";
+import { text } from "../text/catalogue";
 
 /**
  * Which alarm is announced when, by tone and speech.
@@ -103,21 +104,12 @@ function mayBegin(
 /** So much is spoken of a text that may come from a vehicle. */
 const LONGEST_TEXT = 160;
 
-/** How units are spoken. */
-const UNITS: Readonly<Record<string, string>> = {
-  s: "seconds",
-  m: "metres",
-  ft: "feet",
-  "m/s": "metres per second",
-  "%": "per cent",
-};
-
 /** A title as it is spoken: units as words, nothing that a voice could take for markup. */
 export function spokenText(title: string): string {
   return title
     .replace(/[<>&]/g, " ")
     .replace(/(\d)[ \u00a0](m\/s|ft|[ms%])(?![\w/])/g, (_, digit, unit) => {
-      return `${digit} ${UNITS[unit] ?? unit}`;
+      return `${digit} ${text.sound.units[unit] ?? unit}`;
     })
     .replace(/\s+/g, " ")
     .trim()

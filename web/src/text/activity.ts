@@ -1,8 +1,11 @@
 import type { FleetView } from "../fleet/fleetView";
 import { vehicleStatus } from "../fleet/vehicleStatus";
 import type { SurveyingView, SurveyView, VehicleView } from "../protocol";
+import { text } from "./catalogue";
 import { agedBy, formatAge, formatQuantity, groundSpeedMps } from "./quantities";
 import { formatHeight } from "./units";
+
+const { names } = text.activity;
 
 const ACTIVE: readonly SurveyView["phase"][] = ["running", "paused"];
 
@@ -21,26 +24,26 @@ export function doing(vehicle: VehicleView, part: SurveyingView | null, behindS:
   const { activity } = vehicleStatus(vehicle, behindS);
   switch (activity) {
     case "Contact lost":
-      return `Contact lost · ${formatAge(agedBy(vehicle.telemetry_age_s, behindS))}`;
+      return `${names[activity]} · ${formatAge(agedBy(vehicle.telemetry_age_s, behindS))}`;
     case "Unidentified":
-      return "Waiting for serial number";
+      return text.activity.waitingForSerial;
     case "On the ground":
-      return vehicle.is_stopped ? "On the ground · all stop" : "On the ground";
+      return vehicle.is_stopped ? text.activity.onGroundStopped : names[activity];
     case "Unknown":
-      return "Flight state unknown";
+      return text.activity.unknown;
     case "Landing":
     case "Returning":
-      return [activity, ...figures(vehicle)].join(" · ");
+      return [names[activity], ...figures(vehicle)].join(" · ");
     case "Flying":
       return [flight(vehicle, part), ...figures(vehicle)].join(" · ");
   }
 }
 
 function flight(vehicle: VehicleView, part: SurveyingView | null): string {
-  if (vehicle.is_stopped) return "All stop";
-  if (part?.is_flying_rows === true) return "Surveying";
-  if (vehicle.steering !== null && !vehicle.steering.has_arrived) return "Flying to target";
-  return isStill(vehicle) ? "Holding" : "Flying";
+  if (vehicle.is_stopped) return text.activity.allStop;
+  if (part?.is_flying_rows === true) return text.activity.surveying;
+  if (vehicle.steering !== null && !vehicle.steering.has_arrived) return text.activity.toTarget;
+  return isStill(vehicle) ? text.activity.holding : names.Flying;
 }
 
 /** Slower than this a vehicle holds its place in wind. */

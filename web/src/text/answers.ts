@@ -1,6 +1,7 @@
 import type { OrderAnswer } from "../orders/orderApi";
 import type { CommandView, OrderResult, Phase, Severity, VehicleView } from "../protocol";
-import { listSome, plural } from "./names";
+import { text } from "./catalogue";
+import { commandName, listNames, refusalText } from "./names";
 
 /** An answer to an order in one line, and the vehicles behind its counts. */
 export interface AnswerSummary {
@@ -31,12 +32,12 @@ const FAILED: readonly Phase[] = [
 ];
 
 /** Orders whose confirmed vehicles are counted by a word: the others are accepted or not. */
-const REACHED_WORDS: Readonly<Record<string, string>> = {
-  "All stop": "holding",
-  Hover: "holding",
-  Land: "landing",
-  "Return home": "returning",
-};
+const REACHED_WORDS = new Map([
+  [text.orders.allStop, text.answers.reached.holding],
+  [commandName("hover"), text.answers.reached.holding],
+  [commandName("land"), text.answers.reached.landing],
+  [commandName("return_home"), text.answers.reached.returning],
+]);
 
 /** What became of an order: counts, with what telemetry has confirmed since. */
 export function summarise(
@@ -45,11 +46,15 @@ export function summarise(
   vehicles: readonly VehicleView[],
 ): AnswerSummary {
   if (outcome.kind === "waiting") {
-    const to = labels.length > 3 ? plural(labels.length, "drone") : listSome(labels, 3);
-    return { severity: null, text: `${order}: sent to ${to}, waiting for the station`, lines: [] };
+    const to = labels.length > 3 ? text.answers.drones(labels.length) : listNames(labels);
+    return { severity: null, text: text.answers.sent(order, to), lines: [] };
   }
   if (outcome.kind === "failed") {
-    return { severity: "critical", text: `${order}: not confirmed. ${outcome.problem}`, lines: [] };
+    return {
+      severity: "critical",
+      text: text.answers.notConfirmed(order, outcome.problem),
+      lines: [],
+    };
   }
   const landed = vehicles.filter(
     (one) => one.staleness === "live" && one.is_flying.value === false,
@@ -64,18 +69,17 @@ function summariseResults(
   commands: readonly Pick<CommandView, "id" | "phase">[],
   onGround: ReadonlySet<string | null>,
 ): AnswerSummary {
-  const isStop = order === "All stop";
+  const isStop = order === text.orders.allStop;
   const isGrounded = ({ accepted, rule, serial }: OrderResult) =>
     !accepted && isStop && rule === ON_GROUND_RULE && onGround.has(serial);
   const grounded = results.filter(isGrounded);
   const accepted = results.filter((result) => result.accepted);
   const refused = results.filter((result) => !result.accepted && !isGrounded(result));
   if (accepted.length + refused.length === 0) {
-    const none = isStop ? "in force; no drone is flying" : "no drone was addressed";
     return {
       severity: null,
-      text: `${order}: ${none}`,
-      lines: linesOf([["On the ground", null, grounded]]),
+      text: isStop ? text.answers.stopInForce(order) : text.answers.noneAddressed(order),
+      lines: linesOf([[text.answers.onGround, null, grounded]]),
     };
   }
   const phases = new Map(commands.map(({ id, phase }) => [id, phase]));
@@ -86,32 +90,32 @@ function summariseResults(
   const underway = accepted.filter(
     (result) => !reached.includes(result) && !failed.includes(result),
   );
-  const word = REACHED_WORDS[order];
+  const word = REACHED_WORDS.get(order);
   const total = accepted.length + refused.length;
   const [one] = accepted;
   if (total === 1 && one !== undefined && failed.length === 0 && grounded.length === 0) {
-    const state = reached.length > 0 ? (word ?? "confirmed") : "accepted";
-    return { severity: null, text: `${order} ${nameWithRemark(one)}: ${state}`, lines: [] };
+    const state =
+      reached.length > 0 ? (word ?? text.answers.confirmedOne) : text.answers.acceptedOne;
+    return { severity: null, text: text.answers.one(order, nameWithRemark(one), state), lines: [] };
   }
   const counted = word === undefined ? accepted : reached;
   const problems = [
-    ...(failed.length > 0 ? [`${failed.length} failed`] : []),
+    ...(failed.length > 0 ? [text.answers.failedCount(failed.length)] : []),
     ...(refused.length > 0 ? [refusedText(refused)] : []),
   ];
-  const text = [`${order}: ${counted.length} of ${total} ${word ?? "accepted"}`, ...problems].join(
-    ". ",
-  );
+  const state = word ?? text.answers.acceptedOne;
+  const count = text.answers.counted(order, counted.length, total, state);
   return {
     severity: problems.length > 0 ? "error" : null,
-    text,
+    text: [count, ...problems].join(". "),
     lines: linesOf([
-      ["Failed", "error", failed],
-      [word === undefined ? "Accepted" : `Not ${word} yet`, null, underway],
-      [word === undefined ? "Confirmed" : word, null, reached],
-      ["On the ground", null, grounded],
+      [text.answers.failed, "error", failed],
+      [word === undefined ? text.answers.accepted : text.answers.notYet(word), null, underway],
+      [word === undefined ? text.answers.confirmed : word, null, reached],
+      [text.answers.onGround, null, grounded],
     ]).concat(
       refused.map((result) => ({
-        title: `Refused: ${result.reason ?? "no reason given"}`,
+        title: refusalText(result.reason),
         severity: "error",
         names: [nameOf(result)],
       })),
@@ -122,8 +126,8 @@ function summariseResults(
 /** One refusal with its reason; more by their number. */
 function refusedText(refused: readonly OrderResult[]): string {
   const [only, ...others] = refused;
-  if (only === undefined || others.length > 0) return `${refused.length} refused`;
-  return `Refused: ${nameOf(only)}: ${only.reason ?? "no reason given"}`;
+  if (only === undefined || others.length > 0) return text.answers.refusedCount(refused.length);
+  return text.answers.refusedOne(nameOf(only), only.reason ?? text.requests.noReason);
 }
 
 function linesOf(
@@ -141,5 +145,5 @@ function nameWithRemark(result: OrderResult): string {
 }
 
 function nameOf(result: OrderResult): string {
-  return result.vehicle_name || `link ${result.link_id ?? "unknown"}`;
+  return result.vehicle_name || text.names.link(result.link_id ?? text.names.unknownLink);
 }

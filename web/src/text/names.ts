@@ -1,29 +1,10 @@
-import type {
-  ActionResponse,
-  AlarmView,
-  CommandView,
-  Phase,
-  Severity,
-  VehicleView,
-} from "../protocol";
+import type { ActionResponse, AlarmView, CommandView, Phase, VehicleView } from "../protocol";
 import type { Outcome } from "../source/stationSource";
-
-const COMMANDS: Readonly<Record<string, string>> = {
-  hover: "Hover",
-  land: "Land",
-  return_home: "Return home",
-  camera_start: "Camera on",
-  camera_stop: "Camera off",
-  mission: "Mission",
-  stick: "Stick",
-  goto: "Fly here",
-  nudge: "Nudge",
-  hold_position: "Hold position",
-};
+import { text } from "./catalogue";
 
 /** A command kind for display; an unknown kind is shown as received. */
 export function commandName(kind: string): string {
-  return COMMANDS[kind] ?? plainWords(kind);
+  return text.orders.kinds[kind] ?? plainWords(kind);
 }
 
 /**
@@ -33,7 +14,7 @@ export function commandName(kind: string): string {
 export function personName(label: string): string {
   return label
     .replace(/ \([^)]*\)/, "")
-    .replace(/^api \S+/, "a program")
+    .replace(/^api \S+/, text.names.program)
     .replace(": ", ", ");
 }
 
@@ -44,24 +25,9 @@ export function withoutNumbers(note: string): string {
     .replace(/\border -?\d+\b/g, "an order");
 }
 
-export const PHASE_NAMES: Readonly<Record<Phase, string>> = {
-  queued: "Queued",
-  sent: "Sent",
-  acknowledged: "Acknowledged",
-  confirmed: "Confirmed",
-  started: "Started",
-  done: "Done",
-  refused_by_station: "Refused by station",
-  refused_by_app: "Rejected by app",
-  timed_out: "Timed out",
-  superseded: "Replaced",
-  expired: "Expired",
-  failed: "Failed",
-};
-
 /** Tooltip of a refusal: the safety rule behind its sentence; undefined without one. */
 export function ruleTitle(rule: string | null): string | undefined {
-  return rule === null ? undefined : `Safety rule: ${plainWords(rule)}`;
+  return rule === null ? undefined : text.commands.safetyRule(plainWords(rule));
 }
 
 export type Tone = "good" | "bad" | "over" | "underway";
@@ -86,13 +52,6 @@ export function phaseTone(command: Pick<CommandView, "phase">): Tone {
   return TONES[command.phase] ?? "underway";
 }
 
-export const SEVERITY_NAMES: Readonly<Record<Severity, string>> = {
-  critical: "Critical",
-  error: "Error",
-  warning: "Warning",
-  info: "Note",
-};
-
 /** An enum value (`AUTO_LANDING`, `auto_landing`) as text (`auto landing`). */
 export function plainWords(word: string): string {
   return word.toLowerCase().replaceAll("_", " ");
@@ -103,38 +62,31 @@ export function vehicleLabel(vehicle: Pick<VehicleView, "number" | "name">): str
   return vehicle.number > 0 ? `${vehicle.number} ${vehicle.name}` : `? ${vehicle.name}`;
 }
 
-/** The text with its first letter in upper case. */
-export function capitalised(text: string): string {
-  return text.charAt(0).toUpperCase() + text.slice(1);
+/** The words with their first letter in upper case. */
+export function capitalised(words: string): string {
+  return words.charAt(0).toUpperCase() + words.slice(1);
 }
 
 /** Names as a list in a sentence: `a`, `a and b`, `a, b and c`. */
 export function listNames(names: readonly string[]): string {
-  if (names.length <= 1) return names.join("");
-  return `${names.slice(0, -1).join(", ")} and ${names.at(-1)}`;
+  return text.names.list(names);
 }
 
 /** At most `most` names, then how many more. */
 export function listSome(names: readonly string[], most: number): string {
-  if (names.length <= most) return listNames(names);
-  return `${names.slice(0, most).join(", ")} and ${names.length - most} more`;
-}
-
-/** A count with its noun: `1 drone`, `20 drones`. */
-export function plural(count: number, noun: string): string {
-  return `${count} ${noun}${count === 1 ? "" : "s"}`;
+  return text.names.some(names, most);
 }
 
 /** An alarm's text without the leading vehicle name, which is shown separately. */
 export function alarmText(alarm: Pick<AlarmView, "text" | "vehicle_name">): string {
   const name = `${alarm.vehicle_name}: `;
-  const text = alarm.text.startsWith(name) ? alarm.text.slice(name.length) : alarm.text;
-  return capitalised(text);
+  const own = alarm.text.startsWith(name) ? alarm.text.slice(name.length) : alarm.text;
+  return capitalised(own);
 }
 
 /** A refusal as text. */
 export function refusalText(reason: string | null): string {
-  return `Refused: ${reason ?? "no reason given"}`;
+  return text.requests.refused(reason ?? text.requests.noReason);
 }
 
 /** Why a request failed or was refused; null when the station accepted it. */

@@ -1,3 +1,5 @@
+import { text } from "./catalogue";
+
 /** Shown for an unknown value; never a zero. */
 export const UNKNOWN = "—";
 
@@ -50,7 +52,7 @@ export function groundSpeedMps(north: number | null, east: number | null): numbe
 
 /** Why a value is unknown, given the age in seconds of the message that carries it. */
 export function unknownReason(ageS: number | null): string {
-  return ageS === null ? "not received yet" : "no valid value in telemetry";
+  return ageS === null ? text.facts.notReceived : text.facts.notValid;
 }
 
 /** A byte count in B, kB, MB or GB. */

@@ -3,6 +3,7 @@ import { useConsole } from "../../console";
 import { type AlarmGroup, groupAlarms } from "../../fleet/alarmGroups";
 import type { AlarmView } from "../../protocol";
 import { kindOf } from "../../sound/alarmSound";
+import { text } from "../../text/catalogue";
 import { alarmText } from "../../text/names";
 import { formatAge } from "../../text/quantities";
 import { Empty, Panel } from "../Panel";
@@ -17,9 +18,9 @@ export function AlarmList() {
   // Rows by key: a button stays the same element while alarms come and go.
   const keys = createMemo(() => groups().map(({ key }) => key), [], { equals: sameKeys });
   return (
-    <Panel title="Alarms" name="alarms" count={groups().length}>
+    <Panel title={text.panels.titles.alarms} name="alarms" count={groups().length}>
       <SoundControls />
-      <Show when={keys().length > 0} fallback={<Empty>No alarms.</Empty>}>
+      <Show when={keys().length > 0} fallback={<Empty>{text.alarms.none}</Empty>}>
         <ul aria-live="assertive" aria-relevant="additions">
           <For each={keys()}>
             {(key) => (
@@ -66,7 +67,7 @@ function GroupRow(props: { group: AlarmGroup }) {
         <Show when={props.group.alarms.length > 1}>
           <Members alarms={props.group.alarms} />
         </Show>
-        <Show when={problem()}>{(text) => <p class="tone-error">{text()}</p>}</Show>
+        <Show when={problem()}>{(why) => <p class="tone-error">{why()}</p>}</Show>
       </div>
       <Show when={props.group.needsLook}>
         <MuteButton kind={kindOf(props.group)} />
@@ -75,14 +76,12 @@ function GroupRow(props: { group: AlarmGroup }) {
         <button
           type="button"
           class="button alarm-ack"
-          aria-label={`OK: acknowledge ${props.group.title}`}
+          aria-label={text.alarms.acknowledge(props.group.title)}
           disabled={lacks("operator") !== null}
-          title={
-            lacks("operator") ?? "Seen: the colour goes, the alarm stays while its cause lasts"
-          }
+          title={lacks("operator") ?? text.alarms.acknowledgeHint}
           onClick={() => void acknowledge()}
         >
-          OK
+          {text.alarms.ok}
         </button>
       </Show>
     </li>
@@ -94,9 +93,7 @@ function Since(props: { group: AlarmGroup }) {
   const newest = () => (props.group.alarms[0]?.raised_age_s ?? 0) + behindS();
   return (
     <p class="muted" aria-live="off">
-      {formatAge(newest())} ago
-      {props.group.isActive ? "" : ", ended"}
-      {props.group.isAcknowledged ? ", acknowledged" : ""}
+      {text.alarms.since(formatAge(newest()), props.group.isActive, props.group.isAcknowledged)}
     </p>
   );
 }
@@ -104,12 +101,12 @@ function Since(props: { group: AlarmGroup }) {
 function Members(props: { alarms: readonly AlarmView[] }) {
   return (
     <details class="alarm-members">
-      <summary>Show each</summary>
+      <summary>{text.alarms.showEach}</summary>
       <ul>
         <For each={props.alarms}>
           {(alarm) => (
             <li>
-              {alarm.vehicle_name || "Station"}: {alarmText(alarm)}
+              {alarm.vehicle_name || text.names.station}: {alarmText(alarm)}
             </li>
           )}
         </For>

@@ -2,6 +2,7 @@ import { For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import { causeName } from "../../fleet/alarmGroups";
 import { kindOf } from "../../sound/alarmSound";
+import { text } from "../../text/catalogue";
 import { SeverityMark } from "../SeverityMark";
 
 /** A loudspeaker, crossed out while muted. */
@@ -21,13 +22,13 @@ export function SoundControls() {
   const { alarmSound, isReplay } = useConsole();
   const { mutes } = alarmSound;
   const state = () => {
-    if (isReplay()) return "A replay makes no sound.";
-    if (mutes.isAllMuted()) return "All alarms are muted in this browser.";
-    if (alarmSound.problem() !== null) return PROBLEMS[alarmSound.problem() ?? "absent"];
-    return alarmSound.hasVoice() ? "Tone and speech." : "Tone only: no English voice is installed.";
+    if (isReplay()) return text.sound.replay;
+    if (mutes.isAllMuted()) return text.sound.allMuted;
+    if (alarmSound.problem() !== null) return text.sound.problems[alarmSound.problem() ?? "absent"];
+    return alarmSound.hasVoice() ? text.sound.full : text.sound.toneOnly;
   };
   return (
-    <section class="sound" aria-label="Sound of alarms">
+    <section class="sound" aria-label={text.sound.name}>
       <p>
         <SpeakerIcon isMuted={mutes.isAllMuted()} /> {state()}
       </p>
@@ -38,15 +39,15 @@ export function SoundControls() {
           aria-pressed={mutes.isAllMuted()}
           onClick={() => mutes.muteAll(!mutes.isAllMuted())}
         >
-          Mute all
+          {text.sound.muteAll}
         </button>
         <button type="button" class="button" onClick={() => alarmSound.test()}>
-          Test sound
+          {text.sound.test}
         </button>
         <For each={mutes.kinds()}>
           {(kind) => (
             <button type="button" class="button" onClick={() => mutes.mute(kind, false)}>
-              Unmute {causeName(kind)}
+              {text.sound.unmute(causeName(kind))}
             </button>
           )}
         </For>
@@ -54,11 +55,6 @@ export function SoundControls() {
     </section>
   );
 }
-
-const PROBLEMS = {
-  blocked: "Press anywhere on this page to allow sound.",
-  absent: "This browser plays no sound: watch the screen.",
-} as const;
 
 /** Mutes one kind of alarm, or makes it sound again. */
 export function MuteButton(props: { kind: string }) {
@@ -69,8 +65,8 @@ export function MuteButton(props: { kind: string }) {
       type="button"
       class="button button-quiet"
       aria-pressed={isMuted()}
-      aria-label={`Mute ${causeName(props.kind)}`}
-      title={isMuted() ? "Muted in this browser" : "Mute this kind of alarm in this browser"}
+      aria-label={text.sound.mute(causeName(props.kind))}
+      title={isMuted() ? text.sound.isMuted : text.sound.muteHint}
       onClick={() => mutes.mute(props.kind, !isMuted())}
     >
       <SpeakerIcon isMuted={isMuted() || mutes.isAllMuted()} />
@@ -94,12 +90,12 @@ export function SilenceBanner() {
       <div class="card notice silence" role="alert">
         <SeverityMark severity="critical" size={22} />
         <p class="wire-text">
-          <strong>No sound for:</strong> {titles().join("; ")}.{" "}
-          {isMuted() ? "" : PROBLEMS[alarmSound.problem() ?? "absent"]}
+          <strong>{text.sound.silent}</strong> {titles().join("; ")}.{" "}
+          {isMuted() ? "" : text.sound.problems[alarmSound.problem() ?? "absent"]}
         </p>
         <Show when={isMuted()}>
           <button type="button" class="button" onClick={unmute}>
-            Unmute
+            {text.sound.unmuteAll}
           </button>
         </Show>
       </div>

@@ -2,18 +2,13 @@ import { createSignal, Show } from "solid-js";
 import { useConsole } from "../../console";
 import { anothersLease } from "../../fleet/operatorLease";
 import type { AuthorityHolder, AuthorityView, LeaseView } from "../../protocol";
+import { text } from "../../text/catalogue";
 import { personName, responseProblem } from "../../text/names";
 import { formatAge } from "../../text/quantities";
 import { BRIEF_MS, GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Problem } from "../Panel";
 import "./authority.css";
 import { OperatorLease } from "./OperatorLease";
-
-const HOLDERS: Readonly<Record<AuthorityHolder, string>> = {
-  pilot: "Pilot",
-  operator: "Operator",
-  guidance: "Guidance",
-};
 
 /** Who controls a vehicle, since when and why; take over, or hand over to the pilot. */
 export function AuthoritySection(props: {
@@ -30,14 +25,14 @@ export function AuthoritySection(props: {
   const others = () => anothersLease(props.lease, source.person());
   const subject = () => JSON.stringify([props.serial, props.authority.holder, others()?.person]);
   return (
-    <section class="section" aria-label="Control authority">
+    <section class="section" aria-label={text.authority.name}>
       <AuthorityText authority={props.authority} />
       <Show when={props.lease}>{(lease) => <OperatorLease lease={lease()} />}</Show>
       <div class="section-buttons">
         <Show when={others()}>
           {(lease) => (
             <GuardButton
-              label={`Take over from ${lease().person}`}
+              label={text.authority.takeOverFrom(lease().person)}
               of={props.name}
               class="guard-grave"
               hold_ms={GUARD_MS}
@@ -48,7 +43,7 @@ export function AuthoritySection(props: {
         </Show>
         <Show when={props.authority.holder !== "operator" && others() === null}>
           <GuardButton
-            label="Take over"
+            label={text.authority.takeOver}
             of={props.name}
             hold_ms={BRIEF_MS}
             subject={subject()}
@@ -57,7 +52,7 @@ export function AuthoritySection(props: {
         </Show>
         <Show when={props.authority.holder !== "pilot"}>
           <GuardButton
-            label="Hand over to pilot"
+            label={text.authority.handOver}
             needs="pilot"
             of={props.name}
             hold_ms={BRIEF_MS}
@@ -75,12 +70,14 @@ function AuthorityText(props: { authority: AuthorityView }) {
   const { behindS } = useConsole();
   const since = () => {
     const { age_s } = props.authority;
-    return age_s === null ? "since station start" : `for ${formatAge(age_s + behindS())}`;
+    return age_s === null
+      ? text.authority.sinceStart
+      : text.authority.since(formatAge(age_s + behindS()));
   };
   return (
     <p class="wire-text">
       <strong class={`authority authority-${props.authority.holder}`}>
-        {HOLDERS[props.authority.holder]} control
+        {text.authority.control[props.authority.holder]}
       </strong>
       <Show when={props.authority.holder_name !== ""}>
         {" "}

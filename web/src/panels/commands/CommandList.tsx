@@ -1,10 +1,10 @@
 import { For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { CommandView } from "../../protocol";
+import { text } from "../../text/catalogue";
 import {
   capitalised,
   commandName,
-  PHASE_NAMES,
   personName,
   phaseTone,
   ruleTitle,
@@ -21,8 +21,8 @@ import "./commands.css";
 export function CommandList() {
   const { fleet } = useConsole();
   return (
-    <Panel title="Orders" name="orders" count={fleet.commands.length}>
-      <Show when={fleet.commands.length > 0} fallback={<Empty>No orders yet.</Empty>}>
+    <Panel title={text.panels.titles.orders} name="orders" count={fleet.commands.length}>
+      <Show when={fleet.commands.length > 0} fallback={<Empty>{text.commands.none}</Empty>}>
         <ol>
           <For each={fleet.commands}>{(command) => <CommandRow command={command} />}</For>
         </ol>
@@ -40,23 +40,21 @@ function CommandRow(props: { command: CommandView }) {
           {commandName(props.command.kind)} {props.command.vehicle_name}
         </strong>
         <span class={`phase phase-${phaseTone(props.command)} push`} data-testid="phase">
-          {PHASE_NAMES[props.command.phase]}
+          {text.commands.phases[props.command.phase]}
         </span>
       </div>
       <PhaseHistory command={props.command} />
       <p class="muted wire-text">
-        {capitalised(personName(props.command.issued_by))},{" "}
-        {formatAge(props.command.age_s + behindS())} ago
-        <Show when={props.command.times_sent > 1}>, sent {props.command.times_sent} times</Show>
-        <Show when={props.command.takeoff}>; takeoff allowed</Show>
-        <Show when={props.command.sent_altitudes}>{(text) => <>; waypoints {text()}</>}</Show>
+        {text.commands.issued({
+          person: capitalised(personName(props.command.issued_by)),
+          age: formatAge(props.command.age_s + behindS()),
+          timesSent: props.command.times_sent,
+          takeoff: props.command.takeoff,
+          altitudes: props.command.sent_altitudes,
+        })}
       </p>
       <Show when={props.command.part}>
-        {(part) => (
-          <p>
-            Mission: <strong>{part()}</strong>
-          </p>
-        )}
+        {(part) => <p>{text.commands.mission(<strong>{part()}</strong>)}</p>}
       </Show>
       <Show when={props.command.repairs.length > 0}>
         <Repairs repairs={props.command.repairs} />
@@ -74,10 +72,7 @@ function CommandRow(props: { command: CommandView }) {
 function Repairs(props: { repairs: readonly string[] }) {
   return (
     <details class="repairs wire-text">
-      <summary>
-        Adjusted before sending: {props.repairs.length}{" "}
-        {props.repairs.length === 1 ? "change" : "changes"}
-      </summary>
+      <summary>{text.commands.adjusted(props.repairs.length)}</summary>
       <ul>
         <For each={props.repairs}>{(repair) => <li>{repair}</li>}</For>
       </ul>
@@ -92,7 +87,7 @@ function isNoteInHistory(command: CommandView): boolean {
 
 /** A phase's note without the phase's own name before it: "by order 5" of "Replaced by order 5". */
 function noteBesideName(shown: CommandView["history"][number]): string {
-  const name = `${PHASE_NAMES[shown.phase]} `;
+  const name = `${text.commands.phases[shown.phase]} `;
   const note = shown.note.startsWith(name) ? shown.note.slice(name.length) : shown.note;
   return withoutNumbers(note);
 }
@@ -102,13 +97,13 @@ function PhaseHistory(props: { command: CommandView }) {
   return (
     <ol
       class="command-history wire-text"
-      aria-label="Command history"
+      aria-label={text.commands.history}
       title={ruleTitle(props.command.rule)}
     >
       <For each={props.command.history}>
         {(phase) => (
           <li>
-            {PHASE_NAMES[phase.phase].toLowerCase()}{" "}
+            {text.commands.phaseInHistory(phase.phase)}{" "}
             <span class="muted">+{formatAge(props.command.age_s - phase.age_s)}</span>
             <Show when={phase.note !== ""}> ({noteBesideName(phase)})</Show>
           </li>

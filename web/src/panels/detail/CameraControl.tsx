@@ -1,7 +1,7 @@
 import { createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { OrderApi } from "../../orders/orderApi";
-import { PHASE_NAMES } from "../../text/names";
+import { text } from "../../text/catalogue";
 import { Answer } from "../orders/AnswerNotice";
 
 /** Selectable frame rates. */
@@ -21,8 +21,8 @@ export function CameraControl(props: { orderApi: OrderApi }) {
     void props.orderApi.order({ serials, order }, labels);
   };
   return (
-    <section class="camera-control" aria-label="Camera">
-      <fieldset class="camera-rates" aria-label="Pictures per second">
+    <section class="camera-control" aria-label={text.camera.name}>
+      <fieldset class="camera-rates" aria-label={text.camera.rates}>
         <For each={RATES_HZ}>
           {(rate) => (
             <button
@@ -30,14 +30,14 @@ export function CameraControl(props: { orderApi: OrderApi }) {
               class="button"
               disabled={!isOne()}
               aria-pressed={fps_hz() === rate}
-              aria-label={`${rate} per second`}
+              aria-label={text.camera.rate(rate)}
               onClick={() => setFps_hz(rate)}
             >
               {rate}
             </button>
           )}
         </For>
-        <span class="muted">pictures per second</span>
+        <span class="muted">{text.camera.perSecond}</span>
       </fieldset>
       <div class="camera-buttons">
         <button
@@ -47,7 +47,7 @@ export function CameraControl(props: { orderApi: OrderApi }) {
           title={lacks("operator") ?? undefined}
           onClick={() => order({ kind: "camera_start", fps_hz: fps_hz() })}
         >
-          Start camera
+          {text.camera.start}
         </button>
         <button
           type="button"
@@ -56,7 +56,7 @@ export function CameraControl(props: { orderApi: OrderApi }) {
           title={lacks("operator") ?? undefined}
           onClick={() => order({ kind: "camera_stop" })}
         >
-          Stop camera
+          {text.camera.stop}
         </button>
       </div>
       <Show when={!isOne()}>
@@ -68,9 +68,9 @@ export function CameraControl(props: { orderApi: OrderApi }) {
 }
 
 function disabledReason(selected: number): string {
-  if (selected === 0) return "Camera: select a vehicle first.";
-  if (selected > 1) return "Camera: select only one vehicle.";
-  return "Camera: waiting for serial number.";
+  if (selected === 0) return text.camera.selectFirst;
+  if (selected > 1) return text.camera.selectOne;
+  return text.camera.noSerial;
 }
 
 /** The station's answer and the command's current phase. */
@@ -86,7 +86,9 @@ function CameraAnswer(props: { orderApi: OrderApi }) {
       {(answer) => (
         <div class="camera-answer wire-text" role="status">
           <Answer answer={answer()} />
-          <Show when={phase()}>{(current) => <p class="muted">{PHASE_NAMES[current()]}</p>}</Show>
+          <Show when={phase()}>
+            {(current) => <p class="muted">{text.commands.phases[current()]}</p>}
+          </Show>
         </div>
       )}
     </Show>

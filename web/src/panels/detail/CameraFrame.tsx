@@ -2,6 +2,7 @@ import { createEffect, createSignal, on, onCleanup, Show } from "solid-js";
 import { useConsole } from "../../console";
 import { createDisplayedFrame, frameCaption, isSuperseded } from "../../fleet/displayedFrame";
 import type { VehicleView } from "../../protocol";
+import { text } from "../../text/catalogue";
 import { capitalised } from "../../text/names";
 import { LatestPicture, type ShownPicture } from "./latestPicture";
 
@@ -37,8 +38,8 @@ export function CameraFrame(props: { serial: string; vehicle: VehicleView }) {
   onCleanup(() => latest.close());
   return (
     <figure class="camera">
-      <Show when={shown()} fallback={<p class="camera-empty">Loading picture</p>}>
-        {(picture) => <img src={picture().url} alt={`Camera of ${props.vehicle.name}`} />}
+      <Show when={shown()} fallback={<p class="camera-empty">{text.camera.loading}</p>}>
+        {(picture) => <img src={picture().url} alt={text.camera.of(props.vehicle.name)} />}
       </Show>
       <Caption of={displayed.info()} />
     </figure>
@@ -53,7 +54,7 @@ function Caption(props: { of: ReturnType<ReturnType<typeof createDisplayedFrame>
         <figcaption class="muted">
           {capitalised(frameCaption(frame(), behindS()))}
           <Show when={isSuperseded(frame(), behindS())}>
-            <span class="tone-warning">; a newer frame exists</span>
+            <span class="tone-warning">{text.frames.newerExists}</span>
           </Show>
         </figcaption>
       )}

@@ -3,6 +3,7 @@ import { useConsole } from "../../console";
 import { badgeText, vehicleKey } from "../../fleet/vehicleStatus";
 import { createOrderApi } from "../../orders/orderApi";
 import type { VehicleView } from "../../protocol";
+import { text } from "../../text/catalogue";
 import { vehicleLabel } from "../../text/names";
 import { agedBy, formatAge } from "../../text/quantities";
 import { colourOf, lookClasses } from "../../theme/theme";
@@ -29,8 +30,8 @@ export function VehicleDetail() {
       when={shown()}
       keyed={false}
       fallback={
-        <Panel title="Vehicle details" name="vehicle">
-          <p class="panel-empty">Select a vehicle to see its telemetry.</p>
+        <Panel title={text.panels.titles.vehicle} name="vehicle">
+          <p class="panel-empty">{text.detail.none}</p>
           <CameraControl orderApi={cameraOrders} />
         </Panel>
       }
@@ -99,15 +100,12 @@ function Identity(props: { vehicle: VehicleView }) {
           {" · "}
         </Show>
         {props.vehicle.serial === null
-          ? "waiting for serial number: only ALL STOP reaches this vehicle"
-          : `serial ${props.vehicle.serial}`}
-        <Show when={props.vehicle.is_simulated}> · simulated</Show>
+          ? text.detail.noSerial
+          : text.detail.serial(props.vehicle.serial)}
+        <Show when={props.vehicle.is_simulated}> · {text.detail.simulated}</Show>
       </p>
       <Show when={conflicts().length > 0}>
-        <p class="tone-error">
-          Serial conflict: link {conflicts().join(", ")} reports the same serial number. Hover, land
-          and return are sent to all of these links.
-        </p>
+        <p class="tone-error">{text.detail.conflict(conflicts().join(", "))}</p>
       </Show>
     </div>
   );
@@ -125,7 +123,7 @@ function FactRow(props: { fact: Fact }) {
       </dd>
       <dd class="fact-age">
         <Show when={props.fact.ageS !== null}>
-          <span class="hidden-but-read">age </span>
+          <span class="hidden-but-read">{text.detail.age} </span>
           {formatAge(agedBy(props.fact.ageS, behindS()))}
         </Show>
       </dd>

@@ -1,4 +1,5 @@
 import type { VehicleView } from "../../protocol";
+import { text } from "../../text/catalogue";
 import { plainWords } from "../../text/names";
 import {
   formatFraction,
@@ -24,25 +25,27 @@ export interface Fact {
 export function factsOf(vehicle: VehicleView): Fact[] {
   const { position, attitude, velocity_ned: velocity } = vehicle;
   return [
-    aged("Height above takeoff", vehicle.height_above_takeoff_m, (m) => formatLength(m, 1)),
-    aged("Altitude (WGS84, as reported)", vehicle.reported_altitude_m, (m) => formatLength(m, 1)),
-    fact("Speed over ground", groundSpeed(vehicle), velocity.age_s),
-    fact("Climb rate", climb(velocity.down_mps), velocity.age_s),
-    fact("Heading", formatHeading(attitude.yaw_deg), attitude.age_s),
-    fact("Pitch (nose up)", formatQuantity(attitude.pitch_deg, "°"), attitude.age_s),
-    fact("Roll (right down)", formatQuantity(attitude.roll_deg, "°"), attitude.age_s),
-    fact("Latitude", formatQuantity(position.latitude_deg, "°", 6), position.age_s),
-    fact("Longitude", formatQuantity(position.longitude_deg, "°", 6), position.age_s),
-    aged("Battery", vehicle.battery_fraction, formatFraction),
-    aged("Battery warning", vehicle.battery_warning, plainWords),
-    aged("Flight mode", vehicle.flight_mode, plainWords),
+    aged(text.facts.height, vehicle.height_above_takeoff_m, (m) => formatLength(m, 1)),
+    aged(text.facts.altitude, vehicle.reported_altitude_m, (m) => formatLength(m, 1)),
+    fact(text.facts.groundSpeed, groundSpeed(vehicle), velocity.age_s),
+    fact(text.facts.climbRate, climb(velocity.down_mps), velocity.age_s),
+    fact(text.facts.heading, formatHeading(attitude.yaw_deg), attitude.age_s),
+    fact(text.facts.pitch, formatQuantity(attitude.pitch_deg, "°"), attitude.age_s),
+    fact(text.facts.roll, formatQuantity(attitude.roll_deg, "°"), attitude.age_s),
+    fact(text.facts.latitude, formatQuantity(position.latitude_deg, "°", 6), position.age_s),
+    fact(text.facts.longitude, formatQuantity(position.longitude_deg, "°", 6), position.age_s),
+    aged(text.facts.battery, vehicle.battery_fraction, formatFraction),
+    aged(text.facts.batteryWarning, vehicle.battery_warning, plainWords),
+    aged(text.facts.flightMode, vehicle.flight_mode, plainWords),
     flying(vehicle),
-    ...vehicle.doubts.map((doubt) => fact("Telemetry doubted", doubt.text, doubt.age_s)),
-    aged("Satellites", vehicle.gnss_satellite_count, String),
-    aged("GNSS signal (0 to 10)", vehicle.gnss_signal_level, String),
-    aged("Wind level", vehicle.wind_level, String),
-    aged("Mission id", vehicle.mission_id, (id) => (id === 0 ? "none" : String(id))),
-    aged("Camera", vehicle.camera_state, plainWords),
+    ...vehicle.doubts.map((doubt) => fact(text.facts.doubted, doubt.text, doubt.age_s)),
+    aged(text.facts.satellites, vehicle.gnss_satellite_count, String),
+    aged(text.facts.gnssSignal, vehicle.gnss_signal_level, String),
+    aged(text.facts.windLevel, vehicle.wind_level, String),
+    aged(text.facts.missionId, vehicle.mission_id, (id) =>
+      id === 0 ? text.facts.noMission : String(id),
+    ),
+    aged(text.facts.camera, vehicle.camera_state, plainWords),
     waypointAltitude(vehicle),
   ];
 }
@@ -52,11 +55,15 @@ function flying(vehicle: VehicleView): Fact {
   const { value, age_s } = vehicle.is_flying;
   const reported = vehicle.reported_is_flying.value;
   if (value === reported || reported === null) {
-    return aged("Flying", vehicle.is_flying, (isFlying) => (isFlying ? "yes" : "no"));
+    return aged(text.facts.flying, vehicle.is_flying, yesOrNo);
   }
-  const believed = value === null ? "uncertain" : value ? "yes" : "no";
-  const reports = reported ? "reports in flight" : "reports on the ground";
-  return fact("Flying", `${believed} (${reports})`, age_s);
+  const believed = value === null ? text.facts.uncertain : yesOrNo(value);
+  const { reportsFlight, reportsGround } = text.facts;
+  return fact(text.facts.flying, (reported ? reportsFlight : reportsGround)(believed), age_s);
+}
+
+function yesOrNo(is: boolean): string {
+  return is ? text.facts.yes : text.facts.no;
 }
 
 function aged<T>(
@@ -64,12 +71,12 @@ function aged<T>(
   value: { readonly value: T | null; readonly age_s: number | null },
   format: (value: T) => string,
 ): Fact {
-  const text = value.value === null ? UNKNOWN : format(value.value);
-  return fact(name, text, value.age_s);
+  const known = value.value === null ? UNKNOWN : format(value.value);
+  return fact(name, known, value.age_s);
 }
 
-function fact(name: string, text: string, ageS: number | null): Fact {
-  return { name, text, ageS, why: text === UNKNOWN ? unknownReason(ageS) : null };
+function fact(name: string, value: string, ageS: number | null): Fact {
+  return { name, text: value, ageS, why: value === UNKNOWN ? unknownReason(ageS) : null };
 }
 
 function groundSpeed(vehicle: VehicleView): string {
@@ -81,18 +88,8 @@ function climb(down_mps: number | null): string {
   return formatQuantity(down_mps === null ? null : -down_mps, "m/s");
 }
 
-const WAYPOINT_ALTITUDES: Readonly<Record<VehicleView["waypoint_altitude"], string>> = {
-  takeoff: "above takeoff",
-  wgs84: "WGS84",
-  unset: UNKNOWN,
-};
-
-function waypointAltitude(vehicle: VehicleView): Fact {
-  const isUnset = vehicle.waypoint_altitude === "unset";
-  return {
-    name: "Waypoint altitude",
-    text: WAYPOINT_ALTITUDES[vehicle.waypoint_altitude],
-    ageS: null,
-    why: isUnset ? "not set in the site file: missions are refused" : null,
-  };
+function waypointAltitude({ waypoint_altitude: datum }: VehicleView): Fact {
+  const { waypointAltitude: name, waypointAltitudes, waypointAltitudeUnset } = text.facts;
+  if (datum === "unset") return { name, text: UNKNOWN, ageS: null, why: waypointAltitudeUnset };
+  return { name, text: waypointAltitudes[datum], ageS: null, why: null };
 }

@@ -1,6 +1,7 @@
 import { Match, Show, Switch } from "solid-js";
 import { useConsole } from "../../console";
 import { courseText } from "../../orders/course";
+import { text } from "../../text/catalogue";
 import { vehicleLabel } from "../../text/names";
 import { lengthUnit } from "../../text/units";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
@@ -22,13 +23,13 @@ export function FlyHereCard() {
   };
   return (
     <Show when={flyHere.isOn()}>
-      <section class="card fly" aria-label={`Fly ${name()} here`} onKeyDown={onKeyDown}>
+      <section class="card fly" aria-label={text.fly.name(name())} onKeyDown={onKeyDown}>
         <header class="fly-head">
-          <h2 class="wire-text">Fly here: {name()}</h2>
+          <h2 class="wire-text">{text.fly.title(name())}</h2>
           <button
             type="button"
             class="button"
-            aria-label="Leave fly here"
+            aria-label={text.fly.leave}
             onClick={() => flyHere.toggle()}
           >
             ✕
@@ -36,14 +37,14 @@ export function FlyHereCard() {
         </header>
         <Show when={flyHere.target()} fallback={<Aim />}>
           <p class="fly-course">
-            <Show when={flyHere.course()} fallback="Distance unknown">
+            <Show when={flyHere.course()} fallback={text.fly.noDistance}>
               {(course) => <strong>{courseText(course())}</strong>}
             </Show>
           </p>
         </Show>
         <div class="fly-fields">
           <label>
-            Above takeoff, {lengthUnit()}
+            {text.fly.height(lengthUnit())}
             <input
               class="field"
               type="text"
@@ -53,7 +54,7 @@ export function FlyHereCard() {
             />
           </label>
           <label>
-            Speed, m/s
+            {text.fly.speed}
             <input
               class="field"
               type="text"
@@ -65,7 +66,7 @@ export function FlyHereCard() {
         </div>
         <CheckResult />
         <GuardButton
-          label="Fly there and hold"
+          label={text.fly.go}
           of={name()}
           class="fly-go"
           hold_ms={GUARD_MS}
@@ -82,9 +83,9 @@ function Aim() {
   const { aimAtCentre } = useConsole();
   return (
     <div class="fly-aim">
-      <p>Press the target position on the map.</p>
+      <p>{text.fly.aim}</p>
       <button type="button" class="button" onClick={() => aimAtCentre()}>
-        Use map centre
+        {text.fly.useCentre}
       </button>
     </div>
   );
@@ -101,12 +102,12 @@ function CheckResult() {
     <div class="fly-check wire-text" role="status">
       <Switch>
         <Match when={refusal()}>
-          {(text) => (
+          {(why) => (
             <p class="check">
               <span class="tone-error">
                 <SeverityMark severity="error" />
               </span>
-              <span>{text()}</span>
+              <span>{why()}</span>
             </p>
           )}
         </Match>
@@ -115,14 +116,14 @@ function CheckResult() {
             <span class="tone-good">
               <SeverityMark severity={null} />
             </span>
-            <span>Allowed by the safety gate.</span>
+            <span>{text.fly.allowed}</span>
           </p>
         </Match>
         <Match when={flyHere.check().kind === "pending"}>
-          <p class="muted">Checking with the safety gate</p>
+          <p class="muted">{text.fly.checking}</p>
         </Match>
         <Match when={flyHere.target() !== null}>
-          <p class="muted">Height and speed must be numbers; speed above 0.</p>
+          <p class="muted">{text.fly.notNumbers}</p>
         </Match>
       </Switch>
     </div>

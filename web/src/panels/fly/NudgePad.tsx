@@ -1,6 +1,7 @@
 import { createSignal, For } from "solid-js";
 import { useConsole } from "../../console";
 import type { NudgeBy } from "../../orders/flyHere";
+import { text } from "../../text/catalogue";
 import { type LengthUnit, lengthUnit, metresOf } from "../../text/units";
 import { BRIEF_MS, GuardButton } from "../guard/GuardButton";
 
@@ -10,19 +11,19 @@ const TURN_DEG = 15;
 
 interface Nudge {
   readonly icon: string;
-  readonly name: string;
+  readonly name: keyof typeof text.fly.nudges;
   by(step_m: number): NudgeBy;
 }
 
 /** In display order: north on top, opposites around the centre. */
 const NUDGES: readonly Nudge[] = [
-  { icon: "↺", name: `turn left by ${TURN_DEG}°`, by: () => ({ turn_deg: -TURN_DEG }) },
-  { icon: "N", name: "north", by: (north_m) => ({ north_m }) },
-  { icon: "↻", name: `turn right by ${TURN_DEG}°`, by: () => ({ turn_deg: TURN_DEG }) },
+  { icon: "↺", name: "left", by: () => ({ turn_deg: -TURN_DEG }) },
+  { icon: text.fly.north, name: "north", by: (north_m) => ({ north_m }) },
+  { icon: "↻", name: "right", by: () => ({ turn_deg: TURN_DEG }) },
   { icon: "↥", name: "up", by: (up_m) => ({ up_m }) },
-  { icon: "W", name: "west", by: (step_m) => ({ east_m: -step_m }) },
-  { icon: "S", name: "south", by: (step_m) => ({ north_m: -step_m }) },
-  { icon: "E", name: "east", by: (east_m) => ({ east_m }) },
+  { icon: text.fly.west, name: "west", by: (step_m) => ({ east_m: -step_m }) },
+  { icon: text.fly.south, name: "south", by: (step_m) => ({ north_m: -step_m }) },
+  { icon: text.fly.east, name: "east", by: (east_m) => ({ east_m }) },
   { icon: "↧", name: "down", by: (step_m) => ({ up_m: -step_m }) },
 ];
 
@@ -35,8 +36,8 @@ export function NudgePad(props: { name: string }) {
   const subject = () => JSON.stringify([flyHere.vehicle()?.serial, step_m()]);
   return (
     <details class="nudges">
-      <summary>Nudge in small steps</summary>
-      <fieldset class="nudge-steps" aria-label="Step size">
+      <summary>{text.fly.nudge}</summary>
+      <fieldset class="nudge-steps" aria-label={text.fly.stepSize}>
         <For each={steps()}>
           {(step, index) => (
             <button
@@ -55,7 +56,7 @@ export function NudgePad(props: { name: string }) {
           {(nudge) => (
             <GuardButton
               label={nudge.icon}
-              of={`nudge ${props.name} ${nudge.name}`}
+              of={text.fly.nudges[nudge.name](props.name, `${TURN_DEG}°`)}
               class="guard-small"
               hold_ms={BRIEF_MS}
               subject={subject()}
@@ -64,7 +65,7 @@ export function NudgePad(props: { name: string }) {
           )}
         </For>
       </div>
-      <p class="muted">Hold a button briefly.</p>
+      <p class="muted">{text.fly.nudgeHow}</p>
     </details>
   );
 }

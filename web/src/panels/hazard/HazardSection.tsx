@@ -1,6 +1,7 @@
 import { createSignal } from "solid-js";
 import { useConsole } from "../../console";
 import type { HazardView } from "../../protocol";
+import { text } from "../../text/catalogue";
 import { responseProblem } from "../../text/names";
 import { formatAge } from "../../text/quantities";
 import { formatLength } from "../../text/units";
@@ -15,23 +16,22 @@ export function HazardSection(props: { hazard: HazardView; name: string }) {
     setProblem(responseProblem(await source.dismissHazard(props.hazard.dismissal_name)));
   };
   return (
-    <section class="section" aria-label="Hazard area">
+    <section class="section" aria-label={text.hazard.name}>
       <p>
         <strong class="tone-critical">
-          No telemetry for {formatAge(props.hazard.age_s + behindS())}.
+          {text.hazard.noTelemetry(formatAge(props.hazard.age_s + behindS()))}
         </strong>{" "}
-        The vehicle may be anywhere within {formatLength(props.hazard.radius_m)} of its last
-        position, or on its way home. Other vehicles keep clear until telemetry returns.
+        {text.hazard.where(formatLength(props.hazard.radius_m))}
       </p>
       <GuardButton
-        label="Clear hazard area"
+        label={text.hazard.clear}
         of={props.name}
         class="guard-grave"
         hold_ms={GUARD_MS}
         subject={props.hazard.dismissal_name}
         onConfirm={() => void clear()}
       />
-      <p class="muted">Only if the aircraft is confirmed on the ground or under manual control.</p>
+      <p class="muted">{text.hazard.clearWhen}</p>
       <Problem text={problem()} />
     </section>
   );

@@ -2,6 +2,7 @@ import { createEffect, createMemo, createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { OrderAnswer } from "../../orders/orderApi";
 import { summarise } from "../../text/answers";
+import { text } from "../../text/catalogue";
 import { listNames } from "../../text/names";
 import { SeverityMark } from "../SeverityMark";
 
@@ -16,7 +17,7 @@ export function AnswerNotice() {
           <button
             type="button"
             class="button button-quiet"
-            aria-label="Dismiss"
+            aria-label={text.answers.dismiss}
             onClick={() => orderApi.dismiss()}
           >
             ✕
@@ -53,7 +54,7 @@ export function Answer(props: { answer: OrderAnswer }) {
             aria-expanded={isOpen()}
             onClick={() => setOpen(!isOpen())}
           >
-            Names
+            {text.answers.names}
           </button>
         </Show>
       </p>

@@ -2,6 +2,7 @@ import { For, Match, onCleanup, onMount, Show, Switch } from "solid-js";
 import { useConsole } from "../../console";
 import { createHoldTimer, type HoldTimer } from "../../orders/holdToConfirm";
 import { ORDER_KINDS, type OrderKind, targetsKey } from "../../orders/targets";
+import { text } from "../../text/catalogue";
 import { listSome } from "../../text/names";
 import { OrderButton } from "./OrderButton";
 import { holdByKey } from "./shortcuts";
@@ -40,7 +41,7 @@ export function OrderBar() {
     <section
       class="card orders"
       classList={{ "is-idle": !hasTargets() }}
-      aria-label="Orders to the selected vehicles"
+      aria-label={text.orders.name}
     >
       <p class="orders-to wire-text" aria-live="polite">
         <Recipients holding={holding()} />
@@ -56,24 +57,20 @@ export function OrderBar() {
           class="button orders-goto"
           aria-pressed={flyHere.isOn()}
           disabled={flyHere.vehicle() === null}
-          aria-label="Fly here"
-          title={
-            flyHere.vehicle() === null
-              ? "Select one vehicle to send it to a place"
-              : "Fly the selected vehicle to a position on the map (G)"
-          }
+          aria-label={text.orders.flyHere}
+          title={flyHere.vehicle() === null ? text.orders.flyHereOff : text.orders.flyHereHint}
           onClick={() => flyHere.toggle()}
         >
-          Fly here
+          {text.orders.flyHere}
         </button>
         <button
           type="button"
           class="button button-quiet orders-details"
           aria-expanded={panels.isOpen("vehicle")}
-          title="Telemetry, camera, control and checklist (D)"
+          title={text.orders.detailsHint}
           onClick={() => panels.toggle("vehicle")}
         >
-          Details
+          {text.orders.details}
         </button>
       </div>
     </section>
@@ -88,18 +85,23 @@ function Recipients(props: { holding: OrderKind | null }) {
   const names = () => listSome(targets().labels, NAMES_SHOWN);
   return (
     <>
-      <Switch fallback={<>Select one or more vehicles to command.</>}>
-        <Match when={props.holding !== null && targets().labels.length > 0}>
-          Keep holding to <strong>{props.holding?.verb}</strong>: <strong>{names()}</strong>
+      <Switch fallback={text.orders.none}>
+        <Match when={targets().labels.length > 0 ? props.holding : null}>
+          {(holding) =>
+            text.orders.keepHolding(
+              <strong>{text.orders.verbs[holding().kind]}</strong>,
+              <strong>{names()}</strong>,
+            )
+          }
         </Match>
         <Match when={targets().labels.length > 0}>
-          <strong>{names()}</strong> selected
+          {text.orders.selected(<strong>{names()}</strong>)}
         </Match>
       </Switch>
       <Show when={targets().unreachable.length > 0}>
         <span class="tone-warning">
           {" "}
-          Not sent to {listSome(targets().unreachable, NAMES_SHOWN)}: unidentified, ALL STOP only.
+          {text.orders.notSentTo(listSome(targets().unreachable, NAMES_SHOWN))}
         </span>
       </Show>
     </>

@@ -2,6 +2,7 @@ import { createEffect, Match, Show, Switch } from "solid-js";
 import { useConsole } from "../../console";
 import type { HoldTimer } from "../../orders/holdToConfirm";
 import type { OrderKind } from "../../orders/targets";
+import { text } from "../../text/catalogue";
 import { listNames } from "../../text/names";
 import { buttonName, holdHandlers, holdHint } from "../guard/GuardButton";
 
@@ -13,13 +14,14 @@ export function OrderButton(props: {
 }) {
   const { lacks } = useConsole();
   const lack = () => lacks("pilot");
+  const label = () => text.orders.labels[props.order.kind];
   const isDisabled = () => props.labels.length === 0 || lack() !== null;
   const hint = () => {
-    if (lack() !== null) return "needs pilot";
+    if (lack() !== null) return text.guard.needs(text.roles.pilot);
     return holdHint(props.order.hold_ms);
   };
   const recipients = () =>
-    props.labels.length === 0 ? "select vehicles first" : listNames(props.labels);
+    props.labels.length === 0 ? text.orders.selectFirst : listNames(props.labels);
   createEffect(() => {
     if (isDisabled()) props.timer.cancel();
   });
@@ -29,16 +31,16 @@ export function OrderButton(props: {
       class={`button order order-${props.order.kind}`}
       classList={{ "is-holding": props.timer.kind() === "holding" }}
       aria-disabled={isDisabled()}
-      aria-label={buttonName(props.order.label, hint(), recipients())}
-      title={lack() ?? props.order.note}
-      aria-description={lack() ?? props.order.note}
+      aria-label={buttonName(label(), hint(), recipients())}
+      title={lack() ?? text.orders.notes[props.order.kind]}
+      aria-description={lack() ?? text.orders.notes[props.order.kind]}
       aria-keyshortcuts={`Shift+${props.order.key}`}
       style={{ "--held": props.timer.progress() }}
       {...handlers(props.order, props.timer, isDisabled)}
     >
       <OrderIcon kind={props.order.kind} />
       <span class="order-text">
-        {props.order.label} <Show when={hint()}>{(text) => <small>{text()}</small>}</Show>
+        {label()} <Show when={hint()}>{(how) => <small>{how()}</small>}</Show>
       </span>
     </button>
   );

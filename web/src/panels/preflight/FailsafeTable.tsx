@@ -1,5 +1,6 @@
 import { For } from "solid-js";
 import type { FailsafeCellView, FailsafeRowView } from "../../protocol";
+import { text } from "../../text/catalogue";
 
 /** The site's failsafe matrix: what the station does when something fails, by what a vehicle does. */
 export function FailsafeTable(props: { rows: readonly FailsafeRowView[] }) {
@@ -10,11 +11,11 @@ export function FailsafeTable(props: { rows: readonly FailsafeRowView[] }) {
         <table class="failsafe">
           <thead>
             <tr>
-              <th scope="col">When</th>
-              <th scope="col">Mission</th>
-              <th scope="col">Steered</th>
-              <th scope="col">Holding</th>
-              <th scope="col">Way home</th>
+              <th scope="col">{text.failsafe.when}</th>
+              <th scope="col">{text.failsafe.mission}</th>
+              <th scope="col">{text.failsafe.steered}</th>
+              <th scope="col">{text.failsafe.holding}</th>
+              <th scope="col">{text.failsafe.wayHome}</th>
             </tr>
           </thead>
           <tbody>
@@ -38,8 +39,9 @@ export function FailsafeTable(props: { rows: readonly FailsafeRowView[] }) {
 function Cell(props: { cell: FailsafeCellView }) {
   return (
     <td classList={{ "tone-warning": props.cell.is_weaker }}>
-      {props.cell.text}
-      {props.cell.default === null ? "" : ` (default: ${props.cell.default})`}
+      {props.cell.default === null
+        ? props.cell.text
+        : text.failsafe.cell(props.cell.text, props.cell.default)}
     </td>
   );
 }
@@ -48,6 +50,6 @@ function summary(rows: readonly FailsafeRowView[]): string {
   const cells = rows.flatMap((row) => row.cells);
   const changed = cells.filter((cell) => cell.default !== null).length;
   const weaker = cells.filter((cell) => cell.is_weaker).length;
-  if (changed === 0) return "When something fails: default";
-  return `When something fails: ${changed} of ${cells.length} changed, ${weaker} weaker`;
+  if (changed === 0) return text.failsafe.byDefault;
+  return text.failsafe.changed(changed, cells.length, weaker);
 }

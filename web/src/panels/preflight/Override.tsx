@@ -1,5 +1,6 @@
 import { createSignal, createUniqueId, Show } from "solid-js";
 import { useConsole } from "../../console";
+import { text } from "../../text/catalogue";
 import { responseProblem } from "../../text/names";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Problem } from "../Panel";
@@ -24,7 +25,7 @@ export function Override(props: { serial: string; name: string; onAccepted: () =
   };
   return (
     <div class="override">
-      <label for={field}>Reason for flying missions anyway</label>
+      <label for={field}>{text.preflight.reason}</label>
       <input
         id={field}
         class="field"
@@ -36,7 +37,7 @@ export function Override(props: { serial: string; name: string; onAccepted: () =
       />
       <GuardButton
         needs="admin"
-        label="Override the checklist"
+        label={text.preflight.override}
         of={props.name}
         class="guard-grave"
         hold_ms={GUARD_MS}
@@ -44,10 +45,7 @@ export function Override(props: { serial: string; name: string; onAccepted: () =
         onConfirm={() => void override()}
       />
       <Show when={!isEnough()}>
-        <p class="muted">
-          Enter a reason of at least {MIN_REASON_LENGTH} characters. It is recorded in the audit
-          log.
-        </p>
+        <p class="muted">{text.preflight.enterReason(MIN_REASON_LENGTH)}</p>
       </Show>
       <Problem text={problem()} />
     </div>

@@ -10,6 +10,7 @@ import {
 } from "solid-js";
 import { useConsole } from "../../console";
 import type { CheckView, PreflightView, Severity } from "../../protocol";
+import { text } from "../../text/catalogue";
 import { personName } from "../../text/names";
 import { formatAge } from "../../text/quantities";
 import { SeverityMark } from "../SeverityMark";
@@ -33,12 +34,15 @@ export function PreflightSection(props: { serial: string; name: string }) {
     return answer?.kind === "failed" ? answer.problem : null;
   };
   return (
-    <section class="section" aria-label="Preflight checklist">
-      <Show when={shown()} fallback={<p class="muted">Preflight: {problem() ?? "loading"}</p>}>
+    <section class="section" aria-label={text.preflight.name}>
+      <Show
+        when={shown()}
+        fallback={<p class="muted">{text.preflight.state(problem() ?? text.preflight.loading)}</p>}
+      >
         {(list) => (
           <div classList={{ "is-old-list": problem() !== null }}>
             <Show when={problem()}>
-              {(text) => <p class="tone-error">Checklist not updated: {text()}</p>}
+              {(why) => <p class="tone-error">{text.preflight.notUpdated(why())}</p>}
             </Show>
             <Checklist list={list()} />
             <Show when={!list().is_passed}>
@@ -72,8 +76,12 @@ function OverrideState(props: { list: PreflightView; name: string; onAccepted: (
         <p class="check tone-warning">
           <SeverityMark severity="warning" />
           <span class="wire-text">
-            <strong>Overridden</strong> by {personName(override().by)},{" "}
-            {formatAge(override().age_s)} ago: {override().reason}. Ends at landing.
+            {text.preflight.overriddenBy(
+              <strong>{text.preflight.overridden}</strong>,
+              personName(override().by),
+              formatAge(override().age_s),
+              override().reason,
+            )}
           </span>
         </p>
       )}
@@ -97,9 +105,7 @@ function Checklist(props: { list: PreflightView }) {
       </ul>
       <Show when={passed().length > 0}>
         <details>
-          <summary class="check-fine">
-            {passed().length} {passed().length === 1 ? "item" : "items"} OK
-          </summary>
+          <summary class="check-fine">{text.preflight.itemsOk(passed().length)}</summary>
           <ul>
             <For each={passed()}>{(point) => <ChecklistItem point={point} />}</For>
           </ul>
@@ -110,9 +116,9 @@ function Checklist(props: { list: PreflightView }) {
 }
 
 function summary(list: PreflightView): string {
-  if (list.is_passed) return "Preflight: passed";
+  if (list.is_passed) return text.preflight.passed;
   const count = list.points.filter((point) => point.holds_back).length;
-  return `Preflight: ${count} ${count === 1 ? "item blocks" : "items block"} missions`;
+  return text.preflight.blocked(count);
 }
 
 const SEVERITIES: Readonly<Record<CheckView["state"], Severity | null>> = {

@@ -2,6 +2,7 @@ import { For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import { targetsKey } from "../../orders/targets";
 import type { FleetReturnView, ReturningView } from "../../protocol";
+import { text } from "../../text/catalogue";
 import { listNames, personName } from "../../text/names";
 import { formatAge } from "../../text/quantities";
 import { formatLength } from "../../text/units";
@@ -16,24 +17,21 @@ export function FleetReturn() {
   const hasTargets = () => targets().serials.length > 0;
   const all = () => (fleet.vehicles.some(({ serial }) => serial !== null) ? "all" : "");
   return (
-    <Panel title="Return in layers" name="return">
+    <Panel title={text.panels.titles.return} name="return">
       <div class="section">
-        <p class="muted">
-          Each vehicle holds first, then flies home at its own height and lands; one vehicle at a
-          time per pad.
-        </p>
+        <p class="muted">{text.fleetReturn.how}</p>
         <div class="section-buttons">
           <GuardButton
-            label="Return all"
-            of="every vehicle, in layers"
+            label={text.fleetReturn.all}
+            of={text.fleetReturn.allOf}
             hold_ms={GUARD_MS}
             subject={all()}
-            onConfirm={() => void orderApi.fleetReturn(null, ["all vehicles in reach"])}
+            onConfirm={() => void orderApi.fleetReturn(null, [text.fleetReturn.inReach])}
           />
           <Show when={hasTargets()}>
             <GuardButton
-              label="Return selected"
-              of={`${listNames(targets().labels)}, in layers`}
+              label={text.fleetReturn.selected}
+              of={text.fleetReturn.selectedOf(listNames(targets().labels))}
               hold_ms={GUARD_MS}
               subject={targetsKey(targets())}
               onConfirm={() => void orderApi.fleetReturn(targets().serials, targets().labels)}
@@ -50,22 +48,25 @@ function Progress(props: { view: FleetReturnView }) {
   const { behindS } = useConsole();
   const count = () => props.view.vehicles.length;
   return (
-    <section class="section" aria-label="Progress of the return">
+    <section class="section" aria-label={text.fleetReturn.progress}>
       <p>
         <strong>
-          {props.view.is_over ? "Finished" : "In progress"}: {landedCount(props.view)} of {count()}{" "}
-          landed
+          {props.view.is_over
+            ? text.fleetReturn.finished(landedCount(props.view), count())
+            : text.fleetReturn.inProgress(landedCount(props.view), count())}
         </strong>{" "}
         <span class="muted wire-text">
-          Started {formatAge(props.view.age_s + behindS())} ago by{" "}
-          {personName(props.view.called_by)}
+          {text.fleetReturn.started(
+            formatAge(props.view.age_s + behindS()),
+            personName(props.view.called_by),
+          )}
         </span>
       </p>
       <progress
         class="return-bar"
         max={Math.max(1, count())}
         value={landedCount(props.view)}
-        aria-label="Vehicles landed"
+        aria-label={text.fleetReturn.landed}
       />
       <For each={groupByWave(props.view)}>
         {(group) => (
@@ -83,6 +84,10 @@ function Progress(props: { view: FleetReturnView }) {
 
 function Returning(props: { vehicle: ReturningView }) {
   const { behindS } = useConsole();
+  const height = () => {
+    const height_m = props.vehicle.layer_height_above_takeoff_m;
+    return height_m === null ? null : formatLength(height_m);
+  };
   return (
     <li class="check" data-testid={`returning-${props.vehicle.serial}`}>
       <Show
@@ -94,10 +99,13 @@ function Returning(props: { vehicle: ReturningView }) {
         </span>
       </Show>
       <span class="wire-text">
-        <strong>{props.vehicle.vehicle_name}</strong> {STAGES[props.vehicle.stage]}{" "}
+        <strong>{props.vehicle.vehicle_name}</strong> {text.fleetReturn.stages[props.vehicle.stage]}{" "}
         <span class="muted">
-          for {formatAge(props.vehicle.since_age_s + behindS())}
-          <Where vehicle={props.vehicle} />
+          {text.fleetReturn.since(
+            formatAge(props.vehicle.since_age_s + behindS()),
+            height(),
+            props.vehicle.pad || null,
+          )}
         </span>
         <Show when={props.vehicle.reason}>
           {(reason) => <span class="return-reason">{reason()}</span>}
@@ -106,27 +114,6 @@ function Returning(props: { vehicle: ReturningView }) {
     </li>
   );
 }
-
-function Where(props: { vehicle: ReturningView }) {
-  const height = () => props.vehicle.layer_height_above_takeoff_m;
-  return (
-    <>
-      <Show when={height() !== null}>, {formatLength(height())} above takeoff</Show>
-      <Show when={props.vehicle.pad}>{(pad) => <>, pad {pad()}</>}</Show>
-    </>
-  );
-}
-
-/** Stages as shown after the vehicle's name. */
-export const STAGES: Readonly<Record<ReturningView["stage"], string>> = {
-  stopping: "stopping",
-  waiting: "waiting",
-  ordered: "return ordered",
-  flying: "flying home",
-  landed: "landed",
-  released: "under other control",
-  left_out: "not included",
-};
 
 /** Whether an operator must act: the station does not fly this vehicle home. */
 export function needsOperator({ stage }: ReturningView): boolean {
@@ -149,12 +136,12 @@ export function groupByWave({ vehicles }: FleetReturnView): readonly ReturnGroup
   const others = vehicles.filter((vehicle) => !needsOperator(vehicle));
   const waves = [...new Set(others.flatMap(({ wave }) => wave ?? []))].sort((a, b) => a - b);
   const groups = [
-    { title: "Not included: operator action needed", vehicles: excluded },
+    { title: text.fleetReturn.notIncluded, vehicles: excluded },
     ...waves.map((wave) => ({
-      title: `Wave ${wave}`,
+      title: text.fleetReturn.wave(wave),
       vehicles: others.filter((vehicle) => vehicle.wave === wave),
     })),
-    { title: "Not scheduled yet", vehicles: others.filter(({ wave }) => wave === null) },
+    { title: text.fleetReturn.notScheduled, vehicles: others.filter(({ wave }) => wave === null) },
   ];
   return groups.filter((group) => group.vehicles.length > 0);
 }

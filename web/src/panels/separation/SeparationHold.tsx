@@ -1,5 +1,6 @@
 import { createSignal, Show } from "solid-js";
 import { useConsole } from "../../console";
+import { text } from "../../text/catalogue";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Problem } from "../Panel";
 import { SeverityMark } from "../SeverityMark";
@@ -12,8 +13,7 @@ export function SeparationBanner() {
       <div class="card notice separation-off" role="alert">
         <SeverityMark severity="warning" size={22} />
         <p>
-          <strong>Separation hold is OFF.</strong> Vehicles that come too close raise an alarm but
-          are not stopped.
+          <strong>{text.separation.isOff}</strong> {text.separation.offText}
         </p>
         <SeparationSwitch />
       </div>
@@ -42,12 +42,12 @@ export function SeparationSwitch() {
             title={lacks("operator") ?? undefined}
             onClick={() => void turn(true)}
           >
-            Switch separation hold on
+            {text.separation.switchOn}
           </button>
         }
       >
         <GuardButton
-          label="Switch separation hold off"
+          label={text.separation.switchOff}
           needs="admin"
           class="guard-grave"
           hold_ms={GUARD_MS}

@@ -1,6 +1,7 @@
 import { createSignal, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { StopLatchView } from "../../protocol";
+import { text } from "../../text/catalogue";
 import { listNames, personName, responseProblem, vehicleLabel } from "../../text/names";
 import { formatAge } from "../../text/quantities";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
@@ -18,19 +19,22 @@ function StopInForce(props: { latch: StopLatchView }) {
   const { fleet, source, behindS } = useConsole();
   const [problem, setProblem] = createSignal<string | null>(null);
   const held = () => fleet.vehicles.filter((vehicle) => vehicle.is_stopped).map(vehicleLabel);
-  const names = () => (held().length > 0 ? listNames(held()) : "vehicles that connect later");
+  const names = () => (held().length > 0 ? listNames(held()) : text.stop.later);
   const release = async () => setProblem(responseProblem(await source.releaseStop(null)));
   return (
     <div class="card notice stop-latch" role="alert">
       <SeverityMark severity="critical" size={22} />
       <p>
-        <strong>All stop in force</strong> by {personName(props.latch.by)},{" "}
-        {formatAge(props.latch.age_s + behindS())} ago. {heldText(held().length)}: only hover,
-        return and land are sent. An operator or an administrator can release it.
+        <strong>{text.stop.inForce}</strong>{" "}
+        {text.stop.inForceText(
+          personName(props.latch.by),
+          formatAge(props.latch.age_s + behindS()),
+          held().length,
+        )}
       </p>
       <GuardButton
-        label="Release all"
-        of={`the all stop of ${names()}`}
+        label={text.stop.releaseAll}
+        of={text.stop.releaseAllOf(names())}
         class="guard-grave"
         hold_ms={GUARD_MS}
         subject={`${props.latch.by} ${names()}`}
@@ -41,24 +45,18 @@ function StopInForce(props: { latch: StopLatchView }) {
   );
 }
 
-function heldText(count: number): string {
-  if (count === 0) return "Vehicles that connect later";
-  return count === 1 ? "1 drone" : `${count} drones`;
-}
-
 /** The release of one vehicle from the all stop. */
 export function StopSection(props: { serial: string; name: string }) {
   const { source } = useConsole();
   const [problem, setProblem] = createSignal<string | null>(null);
   const release = async () => setProblem(responseProblem(await source.releaseStop([props.serial])));
   return (
-    <section class="section" aria-label="All stop">
+    <section class="section" aria-label={text.stop.section}>
       <p>
-        <strong class="tone-critical">Stopped.</strong> An all stop holds this vehicle. A release
-        sends nothing, and nothing resumes.
+        <strong class="tone-critical">{text.stop.stopped}</strong> {text.stop.stoppedText}
       </p>
       <GuardButton
-        label="Release this vehicle"
+        label={text.stop.release}
         of={props.name}
         class="guard-grave"
         hold_ms={GUARD_MS}

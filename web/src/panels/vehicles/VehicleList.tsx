@@ -2,14 +2,12 @@ import { createMemo, createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import {
   createListChoice,
-  FILTERS,
-  GROUPS,
   isSameList,
   type ListChoice,
   listVehicles,
-  SORTS,
 } from "../../fleet/vehicleOrder";
 import { vehicleKey } from "../../fleet/vehicleStatus";
+import { text } from "../../text/catalogue";
 import { AppAddress } from "../links/AppAddress";
 import { Empty, Panel } from "../Panel";
 import { VehicleRow } from "./VehicleRow";
@@ -35,7 +33,7 @@ export function VehicleList() {
   const isAll = () => shown().length > 0 && shown().every(selection.has);
   return (
     <Panel
-      title="Vehicles"
+      title={text.page.vehicles}
       class="vehicles"
       count={fleet.vehicles.length}
       actions={
@@ -44,8 +42,8 @@ export function VehicleList() {
             type="button"
             class="button button-quiet"
             aria-expanded={hasTools()}
-            aria-label="Search, sort and filter"
-            title="Search, sort and filter"
+            aria-label={text.vehicles.tools}
+            title={text.vehicles.tools}
             onClick={() => setTools(!hasTools())}
           >
             ⌕
@@ -56,13 +54,13 @@ export function VehicleList() {
             disabled={fleet.vehicles.length === 0}
             onClick={() => (isAll() ? selection.clear() : selection.all(shown()))}
           >
-            {isAll() ? "None" : "All"}
+            {isAll() ? text.vehicles.none : text.vehicles.all}
           </button>
           <button
             type="button"
             class="button button-quiet"
             aria-expanded={!isFolded()}
-            aria-label={isFolded() ? "Show the vehicles" : "Fold the vehicles away"}
+            aria-label={isFolded() ? text.vehicles.show : text.vehicles.fold}
             onClick={() => setFolded(!isFolded())}
           >
             {isFolded() ? "▾" : "▴"}
@@ -76,9 +74,9 @@ export function VehicleList() {
         </Show>
         <Show when={fleet.vehicles.length > 0} fallback={<NoVehicles />}>
           <div class="vehicle-scroll">
-            <For each={groups()} fallback={<p class="panel-empty">None matches.</p>}>
+            <For each={groups()} fallback={<p class="panel-empty">{text.vehicles.noneMatches}</p>}>
               {(group) => (
-                <section aria-label={group.title || "Vehicles"}>
+                <section aria-label={group.title || text.page.vehicles}>
                   <Show when={group.title}>
                     {(title) => (
                       <h3 class="vehicle-group">
@@ -105,26 +103,26 @@ function Tools(props: { choice: ListChoice; onChoose: (next: Partial<ListChoice>
       <input
         class="field vehicle-search"
         type="search"
-        aria-label="Search by number, name or serial"
-        placeholder="Search"
+        aria-label={text.vehicles.searchName}
+        placeholder={text.vehicles.search}
         value={props.choice.search}
         onInput={(event) => props.onChoose({ search: event.currentTarget.value })}
       />
       <Choice
-        label="Show"
-        names={FILTERS}
+        label={text.vehicles.filter}
+        names={text.vehicles.filters}
         value={props.choice.filter}
         onChoose={(filter) => props.onChoose({ filter })}
       />
       <Choice
-        label="Sort by"
-        names={SORTS}
+        label={text.vehicles.sort}
+        names={text.vehicles.sorts}
         value={props.choice.sort}
         onChoose={(sort) => props.onChoose({ sort })}
       />
       <Choice
-        label="Group by"
-        names={GROUPS}
+        label={text.vehicles.group}
+        names={text.vehicles.groups}
         value={props.choice.group}
         onChoose={(group) => props.onChoose({ group })}
       />
@@ -147,7 +145,7 @@ function Choice<T extends string>(props: {
       onChange={(event) => props.onChoose(event.currentTarget.value as T)}
     >
       <For each={Object.entries<string>(props.names)}>
-        {([name, text]) => <option value={name}>{text}</option>}
+        {([value, name]) => <option value={value}>{name}</option>}
       </For>
     </select>
   );
@@ -160,10 +158,10 @@ function NoVehicles() {
   return (
     <>
       <Empty>
-        No companion app connected.
+        {text.vehicles.noApp}
         <Show when={addresses().length > 0}>
           {" "}
-          App address: <span class="wire-text">{addresses().join(", ")}</span>
+          {text.vehicles.appAddress} <span class="wire-text">{addresses().join(", ")}</span>
         </Show>
       </Empty>
       <AppAddress />

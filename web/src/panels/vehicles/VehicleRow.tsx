@@ -11,6 +11,7 @@ import {
 } from "../../fleet/vehicleStatus";
 import type { VehicleView } from "../../protocol";
 import { doing, surveyPart } from "../../text/activity";
+import { text } from "../../text/catalogue";
 import { vehicleLabel } from "../../text/names";
 import { agedBy, formatAge, formatFraction } from "../../text/quantities";
 import { colourOf, lookClasses } from "../../theme/theme";
@@ -31,12 +32,12 @@ export function VehicleRow(props: { vehicle: VehicleView }) {
       classList={{ "is-stale": isStale(), "is-selected": isSelected() }}
       style={{ "--own": colourOf(key()) }}
     >
-      <label class="vehicle-box" title="Add to the selection, or remove">
+      <label class="vehicle-box" title={text.vehicles.selectHint}>
         <input
           type="checkbox"
           class="hidden-but-read"
           checked={isSelected()}
-          aria-label={`Add ${vehicleLabel(vehicle())} to the selection`}
+          aria-label={text.vehicles.select(vehicleLabel(vehicle()))}
           onChange={() => selection.toggle(key())}
         />
         <span class="badge">{badgeText(vehicle())}</span>
@@ -51,18 +52,21 @@ export function VehicleRow(props: { vehicle: VehicleView }) {
           {vehicle().name}
           <Show when={isMixed() && vehicle().is_simulated}>
             {" "}
-            <span class="tag tag-simulated">SIM</span>
+            <span class="tag tag-simulated">{text.vehicles.simulated}</span>
           </Show>
         </span>
         <Battery vehicle={vehicle()} />
         <span class={`vehicle-doing tone-${status().severity ?? "none"}`}>
           {doing(vehicle(), part(), behindS())}
-          <Show when={vehicle().conflict_link_ids.length > 0}> · serial conflict</Show>
+          <Show when={vehicle().conflict_link_ids.length > 0}>
+            {" "}
+            · {text.vehicles.serialConflict}
+          </Show>
           <Operator vehicle={vehicle()} />
         </span>
         <Show when={isStale()}>
           <span class="hidden-but-read">
-            Telemetry is {formatAge(agedBy(vehicle().telemetry_age_s, behindS()))} old
+            {text.vehicles.telemetryAge(formatAge(agedBy(vehicle().telemetry_age_s, behindS())))}
           </span>
         </Show>
       </button>
@@ -76,7 +80,7 @@ function Battery(props: { vehicle: VehicleView }) {
     <span
       class="vehicle-battery"
       classList={{ "is-low": hasBatteryWarning(props.vehicle) }}
-      title="Battery"
+      title={text.vehicles.battery}
     >
       {formatFraction(fraction())}
       <span class="vehicle-meter" aria-hidden="true">
@@ -92,7 +96,7 @@ function Operator(props: { vehicle: VehicleView }) {
   return (
     <Show when={anothersLease(props.vehicle.lease, source.person())}>
       {(lease) => (
-        <span class="vehicle-operator" title={`Operated by ${lease().person}`}>
+        <span class="vehicle-operator" title={text.vehicles.operatedBy(lease().person)}>
           {" "}
           · {lease().person}
         </span>
