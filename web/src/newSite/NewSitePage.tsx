@@ -1,4 +1,5 @@
 import { Show } from "solid-js";
+import { text } from "../text/catalogue";
 import { formatLength, lengthUnit } from "../text/units";
 import type { Fields, NewSite } from "./newSite";
 import "./newSite.css";
@@ -15,21 +16,18 @@ export function NewSitePage(props: { newSite: NewSite }) {
   return (
     <main class="new-site">
       <form class="new-site-card" onSubmit={submit} aria-labelledby="new-site-title">
-        <h1 id="new-site-title">Where is your field?</h1>
-        <p class="muted wire-text">
-          Recon makes a site in <code>{folder()}</code>, with simulated drones to rehearse with.
-          Boundary, zones and fields are drawn next, on the map.
-        </p>
-        <Field newSite={props.newSite} name="name" label="Name" />
+        <h1 id="new-site-title">{text.newSite.title}</h1>
+        <p class="muted wire-text">{text.newSite.what(<code>{folder()}</code>)}</p>
+        <Field newSite={props.newSite} name="name" label={text.newSite.name} />
         <Field
           newSite={props.newSite}
           name="place"
-          label="A place in the field: latitude, longitude"
+          label={text.newSite.place}
           placeholder="41.9012, -93.6034"
         />
         <div class="new-site-ways">
           <label class="button new-site-file">
-            Read it from a file
+            {text.newSite.readFile}
             <input
               class="hidden-but-read"
               type="file"
@@ -49,21 +47,23 @@ export function NewSitePage(props: { newSite: NewSite }) {
             disabled={isBusy()}
             onClick={() => void props.newSite.locate()}
           >
-            Where this device is
+            {text.newSite.locate}
           </button>
         </div>
-        <p class="muted">A file is KML, KMZ, Shapefile (zip), GeoPackage or GeoJSON.</p>
+        <p class="muted">{text.newSite.formats}</p>
         <Field
           newSite={props.newSite}
           name="groundAltitude"
-          label={`Ground altitude there, above the WGS84 ellipsoid, ${lengthUnit()}`}
+          label={text.newSite.altitude(lengthUnit())}
           inputmode="text"
         />
-        <p class="muted">
-          A rough value is enough to rehearse. It is the height above sea level plus the height of
-          the geoid there, which is between {formatLength(-107)} and {formatLength(86)}.
-        </p>
-        <Field newSite={props.newSite} name="drones" label="Simulated drones" inputmode="numeric" />
+        <p class="muted">{text.newSite.altitudeHow(formatLength(-107), formatLength(86))}</p>
+        <Field
+          newSite={props.newSite}
+          name="drones"
+          label={text.newSite.drones}
+          inputmode="numeric"
+        />
         <Show when={notice()}>
           {(shown) => (
             <p
@@ -76,7 +76,7 @@ export function NewSitePage(props: { newSite: NewSite }) {
           )}
         </Show>
         <button type="submit" class="button new-site-make" disabled={isBusy()}>
-          Make the site
+          {text.newSite.make}
         </button>
       </form>
     </main>

@@ -1,6 +1,7 @@
 import { render } from "solid-js/web";
 import "../theme/theme.css";
 import "../theme/page.css";
+import { language, text } from "../text/catalogue";
 import { keepLengthUnit } from "../text/units";
 import { createThemeSwitch } from "../theme/theme";
 import { NewSitePage } from "./NewSitePage";
@@ -8,6 +9,8 @@ import { createNewSite } from "./newSite";
 
 const root = document.getElementById("app");
 if (root === null) throw new Error("new-site.html has no element with id app.");
+document.documentElement.lang = language;
+document.title = text.newSite.page("Recon");
 createThemeSwitch(document, localStorage);
 keepLengthUnit(localStorage);
 const newSite = createNewSite({

@@ -1,5 +1,6 @@
 import { createSignal } from "solid-js";
 import { cornerOf, cornerText } from "../site/siteFeatures";
+import { text } from "../text/catalogue";
 import { lengthText, metresOf, numberIn } from "../text/units";
 
 /** What the page needs of its browser; the station answers at `api/` paths. */
@@ -48,7 +49,7 @@ export function createNewSite(browser: Browser) {
   const [notice, setNotice] = createSignal<Notice | null>(null);
   const [isBusy, setBusy] = createSignal(false);
   const change = (changed: Partial<Fields>) => setFields((before) => ({ ...before, ...changed }));
-  const refuse = (text: string) => setNotice({ kind: "error", text });
+  const refuse = (why: string) => setNotice({ kind: "error", text: why });
 
   /** Runs one piece of work at a time; a problem becomes the notice. */
   const working = async (work: () => Promise<void>) => {
@@ -65,7 +66,7 @@ export function createNewSite(browser: Browser) {
 
   const answer = async (path: string, init?: RequestInit): Promise<Record<string, unknown>> => {
     const response = await browser.fetch(path, init).catch(() => {
-      throw new Error("The station does not answer: start it again, and reload this page.");
+      throw new Error(text.newSite.noAnswer);
     });
     const body = (await response.json()) as Record<string, unknown>;
     if (!response.ok) throw new Error(String(body["error"] ?? response.statusText));
@@ -91,14 +92,14 @@ export function createNewSite(browser: Browser) {
       change({ place: cornerText(place) });
       setNotice({
         kind: "done",
-        text: `The place is the middle of ${file.name}. Import its shapes later, under Edit site.`,
+        text: text.newSite.middleOf(file.name),
       });
     });
 
   const locate = () =>
     working(async () => {
       const found = await browser.locate().catch(() => {
-        throw new Error("This device does not know its place: type it, or read it from a file.");
+        throw new Error(text.newSite.unknownPlace);
       });
       const { latitude, longitude, altitude } = found.coords;
       change({ place: cornerText({ lat: latitude, lon: longitude }) });
@@ -113,7 +114,7 @@ export function createNewSite(browser: Browser) {
         body: JSON.stringify(asked(fields())),
       });
       if (made["accepted"] !== true) throw new Error(String(made["reason"]));
-      setNotice({ kind: "done", text: "The site is made; the station is starting." });
+      setNotice({ kind: "done", text: text.newSite.made });
       await untilStarted();
       browser.openConsole();
     });
@@ -124,7 +125,7 @@ export function createNewSite(browser: Browser) {
       if (response?.ok === true) return;
       await browser.wait(ASK_AGAIN_MS);
     }
-    throw new Error("The site is made, but the station did not start: see its terminal.");
+    throw new Error(text.newSite.notStarted);
   };
 
   return { folder, fields, change, notice, isBusy, begin, readFile, locate, make };
@@ -133,15 +134,12 @@ export function createNewSite(browser: Browser) {
 /** The request for a site; throws a sentence for what is no number. */
 function asked(fields: Fields) {
   const place = cornerOf(fields.place);
-  if (place === null)
-    throw new Error(
-      "Place: expected latitude and longitude in degrees, such as 41.9012, -93.6034.",
-    );
+  if (place === null) throw new Error(text.newSite.badPlace);
   const altitude = numberIn(fields.groundAltitude);
-  if (typeof altitude !== "number") throw new Error("Ground altitude: expected a number.");
+  if (typeof altitude !== "number") throw new Error(text.newSite.badAltitude);
   const drones = numberIn(fields.drones);
   if (typeof drones !== "number" || !Number.isInteger(drones))
-    throw new Error("Simulated drones: expected a whole number.");
+    throw new Error(text.newSite.badDrones);
   return {
     name: fields.name,
     latitude_deg: place.lat,

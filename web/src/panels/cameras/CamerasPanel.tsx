@@ -1,6 +1,7 @@
 import { For, type JSX, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { VehicleView } from "../../protocol";
+import { text } from "../../text/catalogue";
 import { vehicleLabel } from "../../text/names";
 import { CameraFrame } from "../detail/CameraFrame";
 import { Empty, Panel } from "../Panel";
@@ -11,15 +12,8 @@ export function CamerasPanel() {
   const { fleet, largeCamera } = useConsole();
   const sending = () => fleet.vehicles.filter(isSending);
   return (
-    <Panel title="Cameras" name="cameras" count={sending().length}>
-      <Show
-        when={sending().length > 0}
-        fallback={
-          <Empty>
-            No camera sends pictures. Select a vehicle, and start its camera under Vehicle details.
-          </Empty>
-        }
-      >
+    <Panel title={text.panels.titles.cameras} name="cameras" count={sending().length}>
+      <Show when={sending().length > 0} fallback={<Empty>{text.cameras.none}</Empty>}>
         <ul class="cameras">
           <For each={sending()}>
             {(vehicle) => (
@@ -29,7 +23,7 @@ export function CamerasPanel() {
                     type="button"
                     class="button button-quiet"
                     aria-pressed={largeCamera.serial() === vehicle.serial}
-                    aria-label={`Enlarge the picture of ${vehicleLabel(vehicle)}`}
+                    aria-label={text.cameras.enlarge(vehicleLabel(vehicle))}
                     onClick={() => largeCamera.toggle(vehicle.serial)}
                   >
                     ⤢
@@ -55,12 +49,12 @@ export function LargeCamera() {
   return (
     <Show when={shown()}>
       {(vehicle) => (
-        <section class="card camera-large" aria-label={`Camera of ${vehicleLabel(vehicle())}`}>
+        <section class="card camera-large" aria-label={text.camera.of(vehicleLabel(vehicle()))}>
           <Head vehicle={vehicle()}>
             <button
               type="button"
               class="button button-quiet"
-              aria-label="Close the large picture"
+              aria-label={text.cameras.close}
               onClick={() => largeCamera.toggle(null)}
             >
               ✕

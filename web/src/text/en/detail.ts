@@ -64,6 +64,13 @@ export const camera = {
   of: (vehicle: string) => `Camera of ${vehicle}`,
 };
 
+/** All cameras that send pictures. */
+export const cameras = {
+  none: "No camera sends pictures. Select a vehicle, and start its camera under Vehicle details.",
+  enlarge: (vehicle: string) => `Enlarge the picture of ${vehicle}`,
+  close: "Close the large picture",
+};
+
 /** Captions of pictures. */
 export const frames = {
   frame: (id: number, age: string, sigma: string) => `frame ${id}, taken ${age} ago ± ${sigma}`,

@@ -2,6 +2,7 @@ import * as detail from "./detail";
 import * as fleet from "./fleet";
 import * as light from "./light";
 import * as map from "./map";
+import * as newSite from "./newSite";
 import * as orders from "./orders";
 import * as page from "./page";
 import * as site from "./site";
@@ -16,5 +17,6 @@ export const english = {
   ...map,
   ...light,
   ...site,
+  ...newSite,
   ...station,
 };
