@@ -43,7 +43,7 @@ function padElement(pad: string): HTMLElement {
   const element = document.createElement("span");
   element.className = "pad";
   element.title = text.map.pad(pad);
-  element.textContent = "H";
+  element.textContent = text.map.padSign;
   const read = document.createElement("span");
   read.className = "hidden-but-read";
   read.textContent = text.map.padRead(pad);

@@ -4,8 +4,9 @@ import { inPairs, pastedToken } from "../../source/login";
 import { text } from "../../text/catalogue";
 import "./login.css";
 
-/** The command at the station's computer. */
+/** Commands at the station's computer. */
 const ADD_USER = "recon user add";
+const ADD_A_USER = "recon user add NAME --role ROLE";
 
 /** Asks for a token while the station refuses this page for want of one. */
 export function LoginDialog() {
@@ -65,7 +66,7 @@ function LoginForm() {
           {text.login.forget}
         </button>
       </Show>
-      <p class="muted">{text.login.howTo(<code>{`${ADD_USER} NAME --role ROLE`}</code>)}</p>
+      <p class="muted">{text.login.howTo(<code>{ADD_A_USER}</code>)}</p>
     </form>
   );
 }

@@ -21,6 +21,7 @@ export const map = {
   onGround: "on ground",
   holdingHere: (vehicle: string, height: string) => `${vehicle} holding here, ↥ ${height}`,
   flyingHere: (vehicle: string, height: string) => `${vehicle} flying here, ↥ ${height}`,
+  padSign: "H",
   padOfAny: (pad: string) => `${pad}: any vehicle`,
   padOf: (pad: string, vehicle: string) => `${pad}: reserved for ${vehicle}`,
   pad: (pad: string) => `Landing pad ${pad}`,
