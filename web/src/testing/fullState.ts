@@ -1,0 +1,308 @@
+import type {
+  FlightFiguresView,
+  FlightView,
+  PreflightView,
+  ReplayView,
+  SiteDrawingView,
+  StationState,
+  SurveyView,
+  TimelineEntryView,
+  UpwindPlaceView,
+  VehicleView,
+} from "../protocol";
+import { groundImage, shadeLine, survey } from "./fakeField";
+import { alarm, area, at, command, hazard, link, station, vehicle, zone } from "./fakeState";
+
+/*
+ * A station with everything at once that the page can show. Values that the page shows as they come, such as flight
+ * modes, are in letters that no language of the page has.
+ */
+
+const aged = <T>(value: T) => ({ value, age_s: 0.4 });
+const REPORTED = {
+  flight_mode: aged("ＭＯＤＥ"),
+  battery_warning: aged("ＬＯＷ"),
+  camera_state: aged("ＯＮ"),
+};
+const [LON, LAT] = at(20, 30);
+const BY = "Anna (10.0.0.2): Survey west";
+
+function vehicles(): VehicleView[] {
+  const steering = {
+    command_id: 3,
+    has_arrived: false,
+    height_above_takeoff_m: 40,
+    is_ending: false,
+    latitude_deg: LAT,
+    longitude_deg: LON,
+    speed_mps: 5,
+  };
+  const lease = { person: "Bert", age_s: 30, absent_s: 4 };
+  return [
+    vehicle(1, {
+      ...REPORTED,
+      is_imager: true,
+      lease,
+      authority: { holder: "guidance", holder_name: BY, age_s: 64, reason: "Survey running" },
+      frame: { id: 12, received_age_s: 0.3, captured_age_s: 0.8, captured_sigma_s: 0.2 },
+    }),
+    vehicle(2, { ...REPORTED, flight_mode: aged("auto_landing"), is_simulated: true, steering }),
+    vehicle(3, {
+      ...REPORTED,
+      staleness: "lost",
+      telemetry_age_s: 4.2,
+      hazard: hazard([40, 40]),
+      doubts: [{ kind: "position_jump", text: "Moved 900 m in 1 s", age_s: 2, packets: 3 }],
+    }),
+    vehicle(4, {
+      ...REPORTED,
+      is_stopped: true,
+      reported_is_flying: aged(false),
+      waypoint_altitude: "unset",
+      lease: { ...lease, absent_s: null },
+    }),
+    vehicle(5, {
+      ...REPORTED,
+      is_flying: aged(false),
+      conflict_link_ids: [9],
+      mission_id: aged(0),
+    }),
+    vehicle(6, {
+      ...REPORTED,
+      number: 0,
+      serial: null,
+      name: "Link 6",
+      position: { latitude_deg: null, longitude_deg: null, age_s: null },
+    }),
+  ];
+}
+
+function surveys(): SurveyView[] {
+  const phases = ["running", "paused", "created", "done", "planning", "refused"] as const;
+  return phases.map((phase, index) =>
+    survey(index + 1, { phase, reason: "Wind above 9 m/s", started_by: BY }),
+  );
+}
+
+const returning = {
+  since_age_s: 4,
+  layer_height_m: 48,
+  layer_height_above_takeoff_m: 48,
+  pad: "Pad 1",
+  hold_command_id: 3,
+  mission_command_id: 9,
+};
+
+/** The newest motions of an imaging drone. */
+const motion = {
+  begun_age_s: 9,
+  begun_by: BY,
+  reason: "Wind above 9 m/s",
+  serial: "SN-001",
+  since_age_s: 3,
+  survey_id: null,
+  vehicle_name: "Alder",
+};
+
+const seen = { now: 0.5, in_30_s: 0.5, in_60_s: 0.4, in_90_s: 0.3 };
+
+export const UPWIND: UpwindPlaceView = {
+  distance_m: 30,
+  height_above_takeoff_m: 100,
+  here: seen,
+  there: seen,
+  latitude_deg: LAT,
+  longitude_deg: LON,
+  sentence: "Would see 9 s more",
+  serial: "SN-001",
+  speed_mps: 3,
+  takes_s: 10,
+  yaw_deg: 0,
+};
+
+export function fullState(changes: Partial<StationState> = {}): StationState {
+  const fleet = vehicles();
+  const plain = station(fleet);
+  return {
+    ...plain,
+    station: {
+      ...plain.station,
+      app_url: "http://10.0.0.2:8080/app",
+      link_addresses: ["10.0.0.2:3001", "10.0.0.3:3001"],
+      separation_hold_on: false,
+      connections_refused: 2,
+      capture_dropped_bytes: 2048,
+    },
+    site: plain.site && {
+      ...plain.site,
+      areas: [
+        area("boundary", [0, 0], 190),
+        area("survey", [0, 0], 75),
+        area("keep_out", [60, 60], 20, { ceiling_m: 30 }),
+        area("height", [90, 60], 20, { floor_m: 10, ceiling_m: 30, datum: "wgs84" }),
+      ],
+    },
+    links: [
+      ...fleet.map((one) => link(one.number, { claimed_serial: one.serial })),
+      link(8, {
+        status: "waiting",
+        waiting: { age_s: 4, is_flying: true, reason: "Not on the list", serial: "SN-008" },
+      }),
+      link(9, { status: "conflict", bad_hash: 3, bytes_skipped: 812, ignored_answers: 2 }),
+      link(10, { status: "closed", closed_reason: "Reset by peer", claimed_serial: null }),
+    ],
+    alarms: [
+      alarm(1),
+      alarm(2, { severity: "critical", rule: "link_lost", vehicle_name: "Cedar" }),
+      alarm(3, { severity: "critical", rule: "link_lost", vehicle_name: "Elm" }),
+      alarm(4, { severity: "error", rule: "separation", is_acknowledged: true }),
+      alarm(5, { severity: "error", rule: "separation", is_acknowledged: true }),
+      alarm(6, { severity: "info", vehicle_name: "", is_active: false }),
+    ],
+    commands: [
+      command(14, { part: "Rows 3 to 5", repairs: ["Left out 2 points"], takeoff: true }),
+      command(15, { kind: "land", phase: "acknowledged", times_sent: 3, sent_altitudes: "WGS84" }),
+      command(16, { kind: "mission", phase: "refused_by_station", rule: "flying", note: "No way" }),
+    ],
+    stop_latch: { age_s: 12, by: BY, released: [] },
+    temporary_zones: [zone(1), zone(2, [9, 9], { kind: "tractor", ends_in_s: 90, floor_m: 5 })],
+    ground_image: groundImage({ frame_id: 12 }),
+    fleet_return: {
+      called_by: BY,
+      age_s: 30,
+      is_over: false,
+      vehicles: (["landed", "waiting", "left_out", "flying"] as const).map((stage, index) => ({
+        ...returning,
+        serial: `SN-00${index + 1}`,
+        vehicle_name: "Alder",
+        stage,
+        wave: index < 2 ? 1 : null,
+        reason: "Pad in use",
+      })),
+    },
+    look_aside: { ...motion, bearing_deg: 90, stage: "aside" },
+    move_upwind: { ...motion, place: UPWIND, stage: "upwind" },
+    shade: shadeLine({ reference: "Of an earlier flight", rejected: "Too dark" }),
+    surveys: surveys(),
+    ...changes,
+  };
+}
+
+export const REPLAY: ReplayView = {
+  file: "Flight A",
+  duration_s: 7200,
+  position_s: 600,
+  speed: 1,
+  is_playing: false,
+  trouble: "The file was cut",
+};
+
+export const PREFLIGHT: PreflightView = {
+  serial: "SN-001",
+  name: "Alder",
+  is_passed: false,
+  override: null,
+  points: (["ok", "attention", "unknown", "fails"] as const).map((state) => ({
+    key: state,
+    name: `Point ${state}`,
+    state,
+    text: "As it is",
+    to_do: "Look again",
+    holds_back: state === "fails",
+  })),
+  failsafe: [
+    {
+      condition: "telemetry_lost",
+      name: "Telemetry lost",
+      begins: "After 1 s",
+      cells: (["mission", "steered", "holding", "returning"] as const).map((activity) => ({
+        activity,
+        reaction: "hold",
+        after_s: 3,
+        text: "Hold after 3 s",
+        default: activity === "mission" ? "Land after 3 s" : null,
+        is_weaker: activity === "mission",
+      })),
+    },
+  ],
+};
+
+const RECORD = "flight-20250620T160412Z";
+
+export const FLIGHTS: readonly FlightView[] = [
+  { name: RECORD, size_bytes: 55_204_853, changed_at_unix_ms: 0, is_recording: true },
+  { name: "ground-20250620T150412Z", size_bytes: 900, changed_at_unix_ms: 0, is_recording: false },
+];
+
+export const FIGURES: FlightFiguresView = {
+  record: `${RECORD}.mcap`,
+  site: "",
+  begin_utc: "2025-06-20T16:04:12.000Z",
+  end_utc: "2025-06-20T16:20:08.000Z",
+  vehicles: ["Alder", "Birch"],
+  surveys: ["North"],
+  airborne_s: 1899,
+  region_m2: null,
+  photographed_share: 1,
+  sunlit_share: 0.9999,
+  well_sunlit_share: 0.87,
+  mean_sun_share: null,
+  shade_maps: 97,
+  alarms: 2,
+  trouble: "The file was cut",
+};
+
+export const TIMELINE: TimelineEntryView[] = Array.from({ length: 60 }, (_, index) => ({
+  n: 60 - index,
+  utc: "2026-05-01T12:00:00.5Z",
+  kind: "order.sent",
+  by: BY,
+  serial: "SN-001",
+  vehicle: "Alder",
+  text: "Hover 2: sent",
+}));
+
+function square(half_deg: number): number[][] {
+  const [west, east, south, north] = [
+    LON - half_deg,
+    LON + half_deg,
+    LAT - half_deg,
+    LAT + half_deg,
+  ];
+  return [
+    [west, north],
+    [east, north],
+    [east, south],
+    [west, south],
+    [west, north],
+  ];
+}
+
+/** A feature of each kind: with and without a name, and with a hole. */
+export const DRAWING: SiteDrawingView = {
+  revision: "r1",
+  locked_reason: null,
+  undo: { what: "Boundary and pads", by: BY, utc: "2026-05-01T12:00:00+00:00" },
+  features: [
+    {
+      layer: "boundary",
+      geometry: { type: "Polygon", coordinates: [square(0.0012)] },
+      properties: {},
+    },
+    {
+      layer: "survey_regions",
+      geometry: { type: "Polygon", coordinates: [square(0.0008), square(0.0002)] },
+      properties: { name: "North field" },
+    },
+    {
+      layer: "keep_out",
+      geometry: { type: "Polygon", coordinates: [square(0.0001)] },
+      properties: { ceiling_m: 30, datum: "ground" },
+    },
+    {
+      layer: "landing_pads",
+      geometry: { type: "Point", coordinates: [LON, LAT] },
+      properties: { name: "Home" },
+    },
+  ],
+};
