@@ -2,6 +2,7 @@ import { expect, test } from "@playwright/test";
 import type { ShadeLineView } from "../src/protocol";
 import { baseMap, shadeLine } from "../src/testing/fakeField";
 import { station, vehicle } from "../src/testing/fakeState";
+import { fullState } from "../src/testing/fullState";
 import { busyState } from "./fake/busyState";
 import { fleetState } from "./fake/fleetState";
 import { fieldPicture } from "./fake/picture";
@@ -93,6 +94,20 @@ test("the times under the forecast leave each other free at every width", async 
     const ticks = page.locator(".time-ticks span:visible");
     expect(await ticks.count(), `${width} px wide`).toBeGreaterThanOrEqual(4);
     expect(await overlaps(page, ".time-ticks span"), `${width} px wide`).toEqual([]);
+  }
+});
+
+test("the parts of the bar leave each other free at every width", async ({ page }) => {
+  const fake = await FakeStation.behind(page, fullState());
+  await page.goto("/");
+  await page.keyboard.press("t");
+  for (const width of [...WIDTHS, 1200, 1399, 1400]) {
+    await page.setViewportSize({ width, height: 800 });
+    fake.send(fullState());
+    await expect(page.getByTestId("status-count")).toHaveText("1 of 6");
+    const parts = ".bar-title, .bar-place > *, .bar-shadows, .bar button";
+    const wrong = await overlaps(page, parts);
+    expect(wrong, `${width} px`).toEqual([]);
   }
 });
 
