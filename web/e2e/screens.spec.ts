@@ -30,6 +30,7 @@ import {
   startStation,
 } from "./stationProcess";
 import { applyTheme, THEMES } from "./themes";
+import { visitViews } from "./views";
 
 /** Screenshots for review: `npm run screens`, then `web/screens/`. */
 const SIZES = [
@@ -59,6 +60,35 @@ for (const theme of THEMES) {
       await expect.poll(() => drawnShare(page)).toBeGreaterThan(0.1);
       await page.screenshot({ path: `screens/${theme.name}-${size.width}.png` });
       clearInterval(timer);
+    });
+  }
+}
+
+/** All views of a theme and size on one sheet, `screens/views-*.jpg`; they are kept in `docs/images/`. */
+const TILE_HEIGHT = 300;
+const SHEET_WIDTH = 2000;
+
+for (const theme of THEMES) {
+  for (const size of SIZES) {
+    test(`sheet of all views, ${theme.name} at ${size.width}`, async ({ page, context }) => {
+      await page.setViewportSize(size);
+      await page.emulateMedia({ colorScheme: theme.colorScheme });
+      await page.addInitScript((chosen) => localStorage.setItem("recon.theme", chosen), theme.name);
+      const tiles: string[] = [];
+      await visitViews(page, async (view) => {
+        await page.waitForTimeout(400);
+        const picture = (await page.screenshot({ type: "jpeg", quality: 90 })).toString("base64");
+        const image = `<img height="${TILE_HEIGHT}" src="data:image/jpeg;base64,${picture}">`;
+        tiles.push(`<figure>${image}<figcaption>${view}</figcaption></figure>`);
+      });
+      const sheet = await context.newPage();
+      await sheet.setViewportSize({ width: SHEET_WIDTH, height: 600 });
+      const style =
+        "body{margin:8px;display:flex;flex-wrap:wrap;gap:8px;font:18px system-ui}" +
+        "figure{margin:0}img{display:block;border:1px solid #888}";
+      await sheet.setContent(`<style>${style}</style>${tiles.join("")}`);
+      const path = `screens/views-${theme.name}-${size.width}.jpg`;
+      await sheet.screenshot({ path, type: "jpeg", quality: 70, fullPage: true });
     });
   }
 }
