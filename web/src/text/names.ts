@@ -1,6 +1,7 @@
 import type { ActionResponse, AlarmView, CommandView, Phase, VehicleView } from "../protocol";
 import type { Outcome } from "../source/stationSource";
 import { text } from "./catalogue";
+import { withLengthUnit } from "./units";
 
 /** A command kind for display; an unknown kind is shown as received. */
 export function commandName(kind: string): string {
@@ -20,7 +21,7 @@ export function personName(label: string): string {
 
 /** A note without the station's order numbers, which no operator knows: `by order 5` is `by a newer order`. */
 export function withoutNumbers(note: string): string {
-  return note
+  return withLengthUnit(note)
     .replace(/\bby order -?\d+\b/g, "by a newer order")
     .replace(/\border -?\d+\b/g, "an order");
 }
@@ -81,12 +82,12 @@ export function listSome(names: readonly string[], most: number): string {
 export function alarmText(alarm: Pick<AlarmView, "text" | "vehicle_name">): string {
   const name = `${alarm.vehicle_name}: `;
   const own = alarm.text.startsWith(name) ? alarm.text.slice(name.length) : alarm.text;
-  return capitalised(own);
+  return capitalised(withLengthUnit(own));
 }
 
 /** A refusal as text. */
 export function refusalText(reason: string | null): string {
-  return text.requests.refused(reason ?? text.requests.noReason);
+  return text.requests.refused(withLengthUnit(reason ?? text.requests.noReason));
 }
 
 /** Why a request failed or was refused; null when the station accepted it. */

@@ -11,6 +11,7 @@ import {
   lengthText,
   lengthUnit,
   metresOf,
+  withLengthUnit,
 } from "./units";
 
 afterEach(() => chooseLengthUnit("m"));
@@ -113,4 +114,20 @@ it("the unit is kept in this browser; an unknown one is metres", () => {
   stored.set("recon.lengthUnit", "furlongs");
   keepLengthUnit(storage);
   expect(lengthUnit()).toBe("m");
+});
+
+describe("a sentence of the station", () => {
+  it.each([
+    ["expected 10 to 120 m, got 150", "expected 10 to 120 m (394 ft), got 150"],
+    [
+      "Alder is 12.5 m above Birch, at 45\u00a0m",
+      "Alder is 12.5 m (41 ft) above Birch, at 45\u00a0m (148 ft)",
+    ],
+    ["sinks below -3 m", "sinks below -3 m (−10 ft)"],
+    ["at 8 m/s over 20 m2, 5 min, 3 missions", "at 8 m/s over 20 m2, 5 min, 3 missions"],
+  ])("has feet behind its metres, and nothing replaced: %s", (written, shown) => {
+    expect(withLengthUnit(written)).toBe(written);
+    chooseLengthUnit("ft");
+    expect(withLengthUnit(written).replaceAll("\u00a0ft", " ft")).toBe(shown);
+  });
 });

@@ -48,6 +48,21 @@ export function formatLength(length_m: number | null, digits = 0): string {
   return formatQuantity(length_m === null ? null : inLengthUnit(length_m), unit(), digits);
 }
 
+/** A number of metres in a sentence of the station: `30 m`, `-2.5 m`; no speed, no area. */
+const METRES_IN_SENTENCE = /(-?\d+(?:\.\d+)?)[ \u00a0]m(?![\w/²³])/g;
+
+/**
+ * A sentence of the station, which is in metres; each length is followed by feet if these are chosen. Nothing of the
+ * sentence is replaced: what the station wrote stays true, also `10 to 120 m`.
+ */
+export function withLengthUnit(sentence: string): string {
+  if (unit() === "m") return sentence;
+  return sentence.replace(
+    METRES_IN_SENTENCE,
+    (metres, number: string) => `${metres} (${formatLength(Number(number))})`,
+  );
+}
+
 /** A vehicle's height with its datum, short: `40 m ATO`, above takeoff. */
 export function formatHeight(height_above_takeoff_m: number | null): string {
   const height = formatLength(height_above_takeoff_m);

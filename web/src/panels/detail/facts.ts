@@ -9,7 +9,7 @@ import {
   UNKNOWN,
   unknownReason,
 } from "../../text/quantities";
-import { formatLength } from "../../text/units";
+import { formatLength, withLengthUnit } from "../../text/units";
 
 /** One line of a vehicle's telemetry. */
 export interface Fact {
@@ -38,7 +38,9 @@ export function factsOf(vehicle: VehicleView): Fact[] {
     aged(text.facts.batteryWarning, vehicle.battery_warning, plainWords),
     aged(text.facts.flightMode, vehicle.flight_mode, plainWords),
     flying(vehicle),
-    ...vehicle.doubts.map((doubt) => fact(text.facts.doubted, doubt.text, doubt.age_s)),
+    ...vehicle.doubts.map((doubt) =>
+      fact(text.facts.doubted, withLengthUnit(doubt.text), doubt.age_s),
+    ),
     aged(text.facts.satellites, vehicle.gnss_satellite_count, String),
     aged(text.facts.gnssSignal, vehicle.gnss_signal_level, String),
     aged(text.facts.windLevel, vehicle.wind_level, String),

@@ -13,6 +13,7 @@ import type { CheckView, PreflightView, Severity } from "../../protocol";
 import { text } from "../../text/catalogue";
 import { personName } from "../../text/names";
 import { formatAge } from "../../text/quantities";
+import { withLengthUnit } from "../../text/units";
 import { SeverityMark } from "../SeverityMark";
 import { FailsafeTable } from "./FailsafeTable";
 import { Override } from "./Override";
@@ -136,7 +137,7 @@ function ChecklistItem(props: { point: CheckView }) {
         <SeverityMark severity={severity()} />
       </span>
       <span class="wire-text">
-        <strong>{props.point.name}</strong>: {props.point.text}
+        <strong>{props.point.name}</strong>: {withLengthUnit(props.point.text)}
         <Switch>
           <Match when={props.point.to_do !== ""}>
             <span class="check-to-do">→ {props.point.to_do}</span>

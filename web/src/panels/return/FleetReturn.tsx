@@ -5,7 +5,7 @@ import type { FleetReturnView, ReturningView } from "../../protocol";
 import { text } from "../../text/catalogue";
 import { listNames, personName } from "../../text/names";
 import { formatAge } from "../../text/quantities";
-import { formatLength } from "../../text/units";
+import { formatLength, withLengthUnit } from "../../text/units";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Panel } from "../Panel";
 import { SeverityMark } from "../SeverityMark";
@@ -108,7 +108,7 @@ function Returning(props: { vehicle: ReturningView }) {
           )}
         </span>
         <Show when={props.vehicle.reason}>
-          {(reason) => <span class="return-reason">{reason()}</span>}
+          {(reason) => <span class="return-reason">{withLengthUnit(reason())}</span>}
         </Show>
       </span>
     </li>

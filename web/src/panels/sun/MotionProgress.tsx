@@ -4,6 +4,7 @@ import type { ImagerMotionView } from "../../protocol";
 import { text } from "../../text/catalogue";
 import { personName } from "../../text/names";
 import { formatAge } from "../../text/quantities";
+import { withLengthUnit } from "../../text/units";
 
 /** The newest motion of a kind: its vehicle and stage, since when and for whom, and why it ended. */
 export function MotionProgress(props: {
@@ -24,7 +25,7 @@ export function MotionProgress(props: {
         )}
       </span>
       <Show when={props.view.reason}>
-        {(reason) => <span class="muted motion-reason">{reason()}</span>}
+        {(reason) => <span class="muted motion-reason">{withLengthUnit(reason())}</span>}
       </Show>
     </p>
   );

@@ -10,7 +10,7 @@ import type {
 import type { Outcome } from "../../source/stationSource";
 import { text } from "../../text/catalogue";
 import { vehicleLabel } from "../../text/names";
-import { formatLength } from "../../text/units";
+import { formatLength, withLengthUnit } from "../../text/units";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { MotionProgress } from "./MotionProgress";
 
@@ -72,7 +72,7 @@ function Place(props: { vehicle: VehicleView }) {
     <>
       <p class="muted wire-text" data-testid="upwind-place">
         <Show when={place()} fallback={missing()}>
-          {(found) => `${name()} ${found().sentence}.`}
+          {(found) => `${name()} ${withLengthUnit(found().sentence)}.`}
         </Show>
       </p>
       <Show when={target()}>

@@ -5,6 +5,7 @@ import type { SurveyingView, SurveyResponse, SurveyView } from "../../protocol";
 import type { Outcome } from "../../source/stationSource";
 import { text } from "../../text/catalogue";
 import { surveyStatus, timeLeft } from "../../text/survey";
+import { withLengthUnit } from "../../text/units";
 import { BRIEF_MS, GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Panel, Problem } from "../Panel";
 import { NewSurvey } from "./NewSurvey";
@@ -31,7 +32,9 @@ export function SurveyPanel() {
 /** Why a survey request failed; null if it was accepted. */
 export function problemOf(outcome: Outcome<SurveyResponse>): string | null {
   if (outcome.kind === "failed") return outcome.problem;
-  return outcome.value.accepted ? null : (outcome.value.reason ?? text.surveys.noReason);
+  return outcome.value.accepted
+    ? null
+    : withLengthUnit(outcome.value.reason ?? text.surveys.noReason);
 }
 
 interface SurveyProps {
@@ -59,7 +62,7 @@ function SurveySection(props: SurveyProps) {
       </p>
       <p class="wire-text">
         {surveyStatus(props.survey)}
-        <Show when={reason()}>{(why) => <span class="muted">: {why()}</span>}</Show>
+        <Show when={reason()}>{(why) => <span class="muted">: {withLengthUnit(why())}</span>}</Show>
       </p>
       <Coverage survey={props.survey} />
       <Decisions lines={active().map((vehicle) => lineOf(vehicle, is("done")))} />

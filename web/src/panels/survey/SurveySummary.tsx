@@ -3,6 +3,7 @@ import { useConsole } from "../../console";
 import type { SurveyView } from "../../protocol";
 import { text } from "../../text/catalogue";
 import { formatArea, sharePercent, shownSurvey, surveyStatus, timeLeft } from "../../text/survey";
+import { withLengthUnit } from "../../text/units";
 import "./survey.css";
 
 /** The shown survey in three lines, for a screen without room for its panel; a press opens the panel. */
@@ -75,7 +76,7 @@ export function Decisions(props: { lines: readonly (readonly [string, string])[]
         <For each={shown()}>
           {([name, why]) => (
             <li>
-              <strong>{name}</strong> <span class="muted">{why}</span>
+              <strong>{name}</strong> <span class="muted">{withLengthUnit(why)}</span>
             </li>
           )}
         </For>

@@ -138,6 +138,6 @@ export const help = {
   ],
   heights: "Heights",
   heightsText:
-    "ATO is above the vehicle's own takeoff point. Other heights name their datum in full. The menu has metres or feet for heights and distances; sentences of the station and the site's editor are in metres.",
+    "ATO is above the vehicle's own takeoff point. Other heights name their datum in full. The menu has metres or feet for heights and distances. The station writes metres, with feet behind them if these are chosen; the site's editor is in metres.",
   close: "Close",
 };
