@@ -20,6 +20,7 @@ const args = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swifts
 const LIVE = [
   "maps.spec.ts",
   "replay.spec.ts",
+  "restart.spec.ts",
   "site.spec.ts",
   "station.spec.ts",
   "surveys.spec.ts",
