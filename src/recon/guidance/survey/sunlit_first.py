@@ -265,7 +265,9 @@ class _Choice:
         passed = self.passing(route)
         missing_m2 = sum(each.missing_m2 for each in passed.passes)
         sun = passed.lit_m2(self.expected) / max(missing_m2, 1.0)
-        return self._flies(route, f"flies rows {rows[0]} to {rows[-1]}: {sun:.0%} expected in sun")
+        return self._flies(
+            route, f"flies rows {rows[0]} to {rows[-1]}: probability of sun {sun:.1f}"
+        )
 
     def _best(self, share: BoolArray) -> Flight:
         search = Search(
