@@ -5,6 +5,7 @@ import os
 import queue
 import signal
 from collections import defaultdict
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 from unittest.mock import MagicMock
@@ -467,7 +468,10 @@ def test_a_dead_process_is_an_alarm_and_another_one_goes_on(tmp_path: Path) -> N
 
         def is_written() -> bool:
             scene.run_for(0.05)
-            return first.path is not None and first.path.stat().st_size > 20_000
+            # By the takeoff it has another name, reported a moment later.
+            with suppress(FileNotFoundError):
+                return first.path is not None and first.path.stat().st_size > 20_000
+            return False
 
         until(is_written)
         assert first.pid is not None
