@@ -85,6 +85,14 @@ def test_a_bad_scenario_is_an_error_and_nothing_is_started(tmp_path: Path) -> No
         assert f"{scenario}:14: fleet.survey_drones: expected a whole number" in demo.text
 
 
+def test_a_folder_of_something_else_is_refused_and_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "photo.jpg").touch()
+    with started("demo", "--site", str(tmp_path)) as demo:
+        assert demo.wait() == 2
+        assert "expected a site's folder, or an empty one to make a site in" in demo.text
+    assert [each.name for each in tmp_path.iterdir()] == ["photo.jpg"]
+
+
 def await_vehicles(console: str, count: int) -> list[dict[str, object]]:
     give_up_at_s = time.monotonic() + PATIENCE_S
     while time.monotonic() < give_up_at_s:

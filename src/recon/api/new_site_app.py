@@ -4,28 +4,25 @@ It answers at the console's address before there is a station, and ends when the
 """
 
 from pathlib import Path
-from typing import Annotated, Protocol
+from typing import Protocol
 
-from fastapi import Depends, FastAPI, Query, Request
+from fastapi import Depends, FastAPI
 from fastapi.responses import RedirectResponse
 
 from recon.api import schema
 from recon.api.app import add_errors_and_headers
 from recon.api.console_files import ConsoleFiles
 from recon.api.permissions import require_listed_role
+from recon.api.site_routes import Importing, add_import
 
 PAGE = "new-site.html"
 
 
-class NewSitePort(Protocol):
+class NewSitePort(Importing, Protocol):
     """What the page needs."""
 
     def about(self) -> schema.NewSiteView:
         """Return the folder, and a name for the site."""
-        ...
-
-    async def import_features(self, name: str, data: bytes) -> schema.ImportedView:
-        """Return the polygons and points of a file, or why it is refused."""
         ...
 
     async def make(self, asked: schema.NewSiteRequest) -> schema.ActionResponse:
@@ -49,12 +46,7 @@ def create_new_site_app(port: NewSitePort, console: Path, version: str) -> FastA
         """The folder that waits for a site."""
         return port.about()
 
-    @app.post("/api/site/import")
-    async def import_file(
-        request: Request, name: Annotated[str, Query(max_length=200)]
-    ) -> schema.ImportedView:
-        """Read polygons and points of a file, to find the field by. Nothing is saved."""
-        return await port.import_features(name, await request.body())
+    add_import(app, lambda: port)
 
     @app.post("/api/site/new")
     async def make(asked: schema.NewSiteRequest) -> schema.ActionResponse:

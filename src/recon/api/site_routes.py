@@ -1,7 +1,8 @@
 """Routes for the site's folder: layers, vehicles and the imaging drones' cameras."""
 
 import asyncio
-from typing import Annotated
+from collections.abc import Callable
+from typing import Annotated, Protocol
 
 from fastapi import FastAPI, Query, Request, Response
 
@@ -48,6 +49,20 @@ def _add_drawing(app: FastAPI, port: StationPort) -> None:
         """Take back the newest change of the site."""
         return await port.site_folder().undo(asked.revision, person_of(request))
 
+    add_import(app, port.site_folder)
+
+
+class Importing(Protocol):
+    """What reads files with shapes."""
+
+    async def import_features(self, name: str, data: bytes) -> schema.ImportedView:
+        """Return the polygons and points of a file, or why it is refused."""
+        ...
+
+
+def add_import(app: FastAPI, importing: Callable[[], Importing]) -> None:
+    """Add the route that reads a file."""
+
     @app.post("/api/site/import")
     async def import_file(
         request: Request, name: Annotated[str, Query(max_length=200)]
@@ -56,7 +71,7 @@ def _add_drawing(app: FastAPI, port: StationPort) -> None:
 
         The body is the file. Nothing is saved.
         """
-        return await port.site_folder().import_features(name, await request.body())
+        return await importing().import_features(name, await request.body())
 
 
 def _add_vehicles(app: FastAPI, port: StationPort) -> None:

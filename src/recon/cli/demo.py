@@ -20,6 +20,7 @@ from recon.score import Scenario, ScenarioError, load_scenario
 from recon.score.scenario_sky import sky_of
 from recon.score.truth import world_text
 from recon.site import SiteError
+from recon.site.load import SITE_FILE
 from recon.station.audit.start import default_place
 from recon.station.kernel.new_site import awaits_site, make_in_browser
 from recon.station.kernel.run import run
@@ -109,6 +110,11 @@ def _rehearse(
             raise ScenarioError("expected --site or --scenario, got both: a scenario has a site")
         if awaits_site(folder):
             http_port = _made_in_browser(folder, http_port)
+        if not (folder / SITE_FILE).is_file():
+            raise SiteError(
+                f"{folder}: expected a site's folder, or an empty one to make a site in, got one "
+                f"without {SITE_FILE} that is not empty"
+            )
         own = opened_site(folder)
         simulated = [serial for serial in own.profiles if serial.startswith(SIMULATED)]
         if not simulated:

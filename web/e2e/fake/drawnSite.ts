@@ -7,23 +7,12 @@ import type {
   SiteVehiclesResponse,
   SiteVehiclesView,
 } from "../../src/protocol";
-import { station, vehicle } from "../../src/testing/fakeState";
+import { square, station, vehicle } from "../../src/testing/fakeState";
 import type { FakeStation } from "./station";
 
 export const HERE = station([vehicle(1)]);
-const [LON, LAT] = [HERE.site?.longitude_deg ?? 0, HERE.site?.latitude_deg ?? 0];
-
-function square(half_deg: number): number[][] {
-  const [west, east] = [LON - half_deg, LON + half_deg];
-  const [south, north] = [LAT - half_deg, LAT + half_deg];
-  return [
-    [west, north],
-    [east, north],
-    [east, south],
-    [west, south],
-    [west, north],
-  ];
-}
+const CENTRE = [HERE.site?.longitude_deg ?? 0, HERE.site?.latitude_deg ?? 0] as const;
+const [LON, LAT] = CENTRE;
 
 export const DRAWING: SiteDrawingView = {
   revision: "r1",
@@ -32,17 +21,17 @@ export const DRAWING: SiteDrawingView = {
   features: [
     {
       layer: "boundary",
-      geometry: { type: "Polygon", coordinates: [square(0.0012)] },
+      geometry: { type: "Polygon", coordinates: [square(CENTRE, 0.0012)] },
       properties: { name: "boundary" },
     },
     {
       layer: "survey_regions",
-      geometry: { type: "Polygon", coordinates: [square(0.0008), square(0.0002)] },
+      geometry: { type: "Polygon", coordinates: [square(CENTRE, 0.0008), square(CENTRE, 0.0002)] },
       properties: { name: "north field" },
     },
     {
       layer: "keep_out",
-      geometry: { type: "Polygon", coordinates: [square(0.0001)] },
+      geometry: { type: "Polygon", coordinates: [square(CENTRE, 0.0001)] },
       properties: { name: "farmyard", ceiling_m: 30, datum: "ground" },
     },
     {

@@ -1,10 +1,9 @@
 import { Show } from "solid-js";
+import { FileButton } from "../panels/FileButton";
 import { text } from "../text/catalogue";
 import { formatLength, lengthUnit } from "../text/units";
 import type { Fields, NewSite } from "./newSite";
 import "./newSite.css";
-
-const ACCEPTED = ".kml,.kmz,.zip,.gpkg,.geojson,.json";
 
 /** Asks where the field is, and makes the site there. */
 export function NewSitePage(props: { newSite: NewSite }) {
@@ -26,21 +25,11 @@ export function NewSitePage(props: { newSite: NewSite }) {
           placeholder="41.9012, -93.6034"
         />
         <div class="new-site-ways">
-          <label class="button new-site-file">
-            {text.newSite.readFile}
-            <input
-              class="hidden-but-read"
-              type="file"
-              accept={ACCEPTED}
-              disabled={isBusy()}
-              onChange={(event) => {
-                const file = event.currentTarget.files?.[0];
-                if (file !== undefined) void props.newSite.readFile(file);
-                // The same file may be chosen again after a change.
-                event.currentTarget.value = "";
-              }}
-            />
-          </label>
+          <FileButton
+            label={text.newSite.readFile}
+            disabled={isBusy()}
+            onFile={(file) => void props.newSite.readFile(file)}
+          />
           <button
             type="button"
             class="button"
@@ -94,6 +83,7 @@ function Field(props: {
     <label class="new-site-field">
       {props.label}
       <input
+        class="page-field"
         type="text"
         autocomplete="off"
         spellcheck={false}

@@ -229,6 +229,19 @@ export function station(
   };
 }
 
+/** The closed ring of a square around a place, `half_deg` to each side. */
+export function square([lon, lat]: readonly [number, number], half_deg: number): number[][] {
+  const [west, east] = [lon - half_deg, lon + half_deg];
+  const [south, north] = [lat - half_deg, lat + half_deg];
+  return [
+    [west, north],
+    [east, north],
+    [east, south],
+    [west, south],
+    [west, north],
+  ];
+}
+
 /** A square area around a point of the field, `half_m` to each side. */
 export function area(
   kind: AreaView["kind"],

@@ -11,7 +11,18 @@ import type {
   VehicleView,
 } from "../protocol";
 import { groundImage, shadeLine, survey } from "./fakeField";
-import { alarm, area, at, command, hazard, link, station, vehicle, zone } from "./fakeState";
+import {
+  alarm,
+  area,
+  at,
+  command,
+  hazard,
+  link,
+  square,
+  station,
+  vehicle,
+  zone,
+} from "./fakeState";
 
 /*
  * A station with everything at once that the page can show. Values that the page shows as they come, such as flight
@@ -24,7 +35,8 @@ const REPORTED = {
   battery_warning: aged("ＬＯＷ"),
   camera_state: aged("ＯＮ"),
 };
-const [LON, LAT] = at(20, 30);
+const HERE = at(20, 30);
+const [LON, LAT] = HERE;
 const BY = "Anna (10.0.0.2): Survey west";
 
 function vehicles(): VehicleView[] {
@@ -262,22 +274,6 @@ export const TIMELINE: TimelineEntryView[] = Array.from({ length: 60 }, (_, inde
   text: "Hover 2: sent",
 }));
 
-function square(half_deg: number): number[][] {
-  const [west, east, south, north] = [
-    LON - half_deg,
-    LON + half_deg,
-    LAT - half_deg,
-    LAT + half_deg,
-  ];
-  return [
-    [west, north],
-    [east, north],
-    [east, south],
-    [west, south],
-    [west, north],
-  ];
-}
-
 /** A feature of each kind: with and without a name, and with a hole. */
 export const DRAWING: SiteDrawingView = {
   revision: "r1",
@@ -286,17 +282,17 @@ export const DRAWING: SiteDrawingView = {
   features: [
     {
       layer: "boundary",
-      geometry: { type: "Polygon", coordinates: [square(0.0012)] },
+      geometry: { type: "Polygon", coordinates: [square(HERE, 0.0012)] },
       properties: {},
     },
     {
       layer: "survey_regions",
-      geometry: { type: "Polygon", coordinates: [square(0.0008), square(0.0002)] },
+      geometry: { type: "Polygon", coordinates: [square(HERE, 0.0008), square(HERE, 0.0002)] },
       properties: { name: "North field" },
     },
     {
       layer: "keep_out",
-      geometry: { type: "Polygon", coordinates: [square(0.0001)] },
+      geometry: { type: "Polygon", coordinates: [square(HERE, 0.0001)] },
       properties: { ceiling_m: 30, datum: "ground" },
     },
     {

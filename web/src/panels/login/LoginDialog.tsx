@@ -46,6 +46,7 @@ function LoginForm() {
       <label for="login-token">{text.login.token}</label>
       <input
         id="login-token"
+        class="page-field"
         type="password"
         autocomplete="off"
         autocapitalize="off"

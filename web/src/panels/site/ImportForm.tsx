@@ -5,9 +5,9 @@ import type { ImportChoice } from "../../site/siteDraft";
 import { areaHa, LAYER_NAMES, LAYERS } from "../../site/siteFeatures";
 import { text } from "../../text/catalogue";
 import { formatQuantity } from "../../text/quantities";
+import { FileButton } from "../FileButton";
 import { NoticeLine } from "./NoticeLine";
 
-const ACCEPTED = ".kml,.kmz,.zip,.gpkg,.geojson,.json";
 const LEFT_OUT = "";
 
 /** A file of another program: read by the station, shown dotted on the map, and added as it is chosen here. */
@@ -15,10 +15,6 @@ export function ImportForm() {
   const { siteDraft } = useConsole();
   const [isOver, setOver] = createSignal(false);
   const { imported, isBusy, notice } = siteDraft;
-  const read = (files: FileList | null) => {
-    const file = files?.[0];
-    if (file !== undefined) void siteDraft.readFile(file);
-  };
   const added = () => imported().filter(({ layer }) => layer !== null).length;
   return (
     <section
@@ -33,23 +29,15 @@ export function ImportForm() {
       onDrop={(event) => {
         event.preventDefault();
         setOver(false);
-        read(event.dataTransfer?.files ?? null);
+        const file = event.dataTransfer?.files[0];
+        if (file !== undefined) void siteDraft.readFile(file);
       }}
     >
-      <label class="button site-file">
-        {text.imports.file}
-        <input
-          class="hidden-but-read"
-          type="file"
-          accept={ACCEPTED}
-          disabled={isBusy()}
-          onChange={(event) => {
-            read(event.currentTarget.files);
-            // The same file may be chosen again after a change.
-            event.currentTarget.value = "";
-          }}
-        />
-      </label>
+      <FileButton
+        label={text.imports.file}
+        disabled={isBusy()}
+        onFile={(file) => void siteDraft.readFile(file)}
+      />
       <p class="muted">{text.imports.formats}</p>
       <NoticeLine notice={notice()?.about === "import" ? notice() : null} />
       <Show when={imported().length > 0}>
