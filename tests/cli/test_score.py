@@ -65,10 +65,13 @@ def test_its_processes_end_with_a_command_that_is_killed(tmp_path: Path) -> None
 
 
 def _flying(pid: int) -> list[str]:
-    """The processes of the command that fly runs."""
+    """The processes of the command that have Recon's code loaded, to fly runs."""
     children = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
     return [
-        each for each in children if b"spawn_main" in Path(f"/proc/{each}/cmdline").read_bytes()
+        each
+        for each in children
+        if b"spawn_main" in Path(f"/proc/{each}/cmdline").read_bytes()
+        and "recon/wire" in Path(f"/proc/{each}/maps").read_text()
     ]
 
 
