@@ -59,13 +59,16 @@ class MBTilesWriter:
         problem: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        """Save what was added, also after an error, and close the file."""
+        """Save what was added, also after an error; a file without any tile is removed."""
         try:
             self._database.commit()
+            is_empty = self._database.execute("SELECT 1 FROM tiles LIMIT 1").fetchone() is None
         except sqlite3.Error as unsaved:
             raise self._unwritable(unsaved) from problem
         finally:
             self._database.close()
+        if is_empty:
+            self._path.unlink(missing_ok=True)
 
     def present(self) -> set[tuple[int, int, int]]:
         """Return zoom level, column and row, from the north, of every tile in the file."""
