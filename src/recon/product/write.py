@@ -172,8 +172,10 @@ def fly_again(flight: FlightData, selection: Selection) -> str:
             "area_m2": round(polygon.area),
         }
         if flight.surveys:
-            properties["height_above_takeoff_m"] = flight.surveys[-1].height_above_takeoff_m
-            properties["speed_mps"] = flight.surveys[-1].speed_mps
+            newest = flight.surveys[-1]
+            reference = "ground" if newest.request().is_above_ground else "takeoff"
+            properties[f"height_above_{reference}_m"] = newest.request().height_m
+            properties["speed_mps"] = newest.speed_mps
         geometry = {"type": "Polygon", "coordinates": _rings(polygon, flight)}
         features.append({"type": "Feature", "properties": properties, "geometry": geometry})
     return json.dumps({"type": "FeatureCollection", "features": features}) + "\n"

@@ -138,6 +138,9 @@ class PlanFigures:
     region_m2: float
     reached_m2: float
     """Imaged by the rows with certainty."""
+    least_height_above_ground_m: float | None
+    most_height_above_ground_m: float | None
+    """Of rows over the region, for any of the drones; None: the ground is not known."""
     rows: int
     gsd_m: float | None
     blur_px: float
@@ -152,14 +155,22 @@ class PlanFigures:
 
 
 def plan_figures(
-    plan: SurveyPlan, needs: SurveyEstimate | None, limit: SpeedLimit, exposure_s: float
+    plan: SurveyPlan,
+    surveyors: Sequence[Surveyor],
+    needs: SurveyEstimate | None,
+    limit: SpeedLimit,
+    exposure_s: float,
 ) -> PlanFigures:
     """Return the figures of a plan. `limit`: the lowest of its speed limits."""
+    takeoffs_m = [each.takeoff_up_m for each in surveyors if each.takeoff_up_m is not None]
+    above_m = [range_m for up_m in takeoffs_m if (range_m := plan.above_ground_m(up_m))]
     survey, cells = plan.survey, plan.cells
-    height_m, region_m2 = survey.height_above_takeoff_m, shape_of(survey.region).area
+    height_m, region_m2 = survey.height_m, shape_of(survey.region).area
     return PlanFigures(
         region_m2=region_m2,
         reached_m2=min(float(cells.is_reached.sum()) * cells.cell_m2, region_m2),
+        least_height_above_ground_m=min((low for low, _ in above_m), default=None),
+        most_height_above_ground_m=max((high for _, high in above_m), default=None),
         rows=len({piece.row for piece in plan.pieces}),
         gsd_m=survey.camera.gsd_m(height_m),
         blur_px=blur_px(survey.camera, height_m, survey.speed_mps, exposure_s),
@@ -247,7 +258,9 @@ def _flight(
     legs = route[:flown]
     end_m = tracks[-1].corners_m[-1]
     return_m = hypot(end_m[0] - home_m[0], end_m[1] - home_m[1])
-    up_s = settings.takeoff_s + plan.survey.height_above_takeoff_m / settings.climb_mps
+    first_m = plan.height_above_takeoff_m(tracks[0].corners_m[0], vehicle.takeoff_up_m)
+    climb_m = plan.survey.height_m if first_m is None else max(first_m, 0.0)
+    up_s = settings.takeoff_s + climb_m / settings.climb_mps
     flight = PlannedFlight(
         legs,
         tuple(track.corners_m for track in tracks),
