@@ -53,6 +53,12 @@ ENDURANCE_MIN = 25.0
 SPEED_STEP_MPS = 0.1
 
 
+NO_ELEVATION = (
+    "--above-ground needs the ground's heights: name a site by --site whose site.toml has an "
+    "elevation model under [elevation], or leave --above-ground out for heights above takeoff"
+)
+
+
 class PlanError(ReconError):
     """Options that make no plan; one sentence."""
 
@@ -143,6 +149,8 @@ def plan_command(
         height_m = _height_m(model, gsd, height)
         draft = Survey(1, name, area, height_m, SLOWEST_MPS, lens, front, side, bearing)
         if above_ground:
+            if home.airspace.elevation is None:
+                raise PlanError(NO_ELEVATION)
             draft = replace(draft, height_above_takeoff_m=None, height_above_ground_m=height_m)
         imaging = _imaging(draft, model, interval, _exposure_s(exposure), home)
         plan = _plan(draft, imaging, speed, frame, home)

@@ -117,7 +117,9 @@ def _above_ground(figures: dict[str, Any]) -> list[tuple[str, str]]:
     least_m, most_m = (figures[f"{which}_height_above_ground_m"] for which in ("least", "most"))
     if least_m is None or most_m is None:
         return []
-    return [("height above ground", f"{least_m:.0f} to {most_m:.0f} m over the region")]
+    least, most = f"{least_m:.0f}", f"{most_m:.0f}"
+    range_m = least if least == most else f"{least} to {most}"
+    return [("height above ground", f"{range_m} m over the region")]
 
 
 def plan_rows_of(figures: dict[str, Any]) -> list[tuple[str, str]]:

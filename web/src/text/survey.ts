@@ -61,7 +61,8 @@ export function estimateFacts(found: SurveyEstimateView): (readonly [string, str
 function aboveGround(found: SurveyEstimateView): (readonly [string, string])[] {
   const { least_height_above_ground_m: least_m, most_height_above_ground_m: most_m } = found;
   if (least_m === null || most_m === null) return [];
-  const range = text.estimate.range(formatLength(least_m), formatLength(most_m));
+  const [least, most] = [formatLength(least_m), formatLength(most_m)];
+  const range = least === most ? least : text.estimate.range(least, most);
   return [[text.estimate.aboveGround, range]];
 }
 
