@@ -164,6 +164,16 @@ class FlightData:
             )
         ]
 
+    def survey_at(self, track: RecordedTrack, at_ns: int) -> FlownSurvey | None:
+        """Return the survey that a track's vehicle was last started for by then."""
+        before = [
+            (start_ns, number)
+            for number, each in enumerate(self.surveys)
+            for start_ns, serials in each.starts
+            if track.serial in serials and start_ns <= at_ns
+        ]
+        return self.surveys[max(before)[1]] if before else None
+
     @property
     def survey_tracks(self) -> dict[str, RecordedTrack]:
         """The tracks of all vehicles but the imaging drones."""

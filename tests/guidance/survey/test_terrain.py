@@ -13,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.guidance.survey.fields import FRAME, planned, rectangle, region, survey_of
 from tests.guidance.survey.grounds import Ground, flat, hills, model, ridge, slope
+from tests.guidance.survey.test_sunlit_first import forecast
 
 from recon.guidance.survey import (
     PositionSample,
@@ -134,6 +135,13 @@ class TestWantedHeights:
 
 
 class TestWaypoints:
+    def test_they_are_the_same_to_and_fro(self) -> None:
+        terrain = over(hills(1, 0.5)).terrain
+        assert terrain is not None
+        way = terrain.between((10.0, 50.0), (290.0, 70.0))
+        assert len(way) > 1
+        assert terrain.between((290.0, 70.0), (10.0, 50.0)) == way[::-1]
+
     def test_along_a_plane_none_is_added(self) -> None:
         plan = over(slope)
         assert len(whole(plan).corners_m) == 2 * len(plan.pieces)
@@ -242,6 +250,34 @@ class TestTime:
             for track in (steep, level)
         )
         assert slow_s - fast_s == pytest.approx(100.0 / DEFAULT.climb_mps - 10.0)
+
+
+class TestSunlitFirst:
+    @pytest.mark.parametrize(("height_m", "steps_aside"), [(61.0, True), (40.0, False)])
+    def test_one_that_waits_among_rows_leaves_the_height_wanted_where_it_is(
+        self, height_m: float, steps_aside: bool
+    ) -> None:
+        """At 200 m east the ground is 20 m higher than its takeoff point."""
+        plan = over(slope, asked(planner="sunlit_first"))
+        waiting = Surveyor("S-1", (200.0, 100.0), height_above_takeoff_m=height_m, takeoff_up_m=0.0)
+        other = Surveyor("S-2", (0.0, -40.0), is_flying=False, takeoff_up_m=0.0)
+        created = create(plan)
+        assert isinstance(created, SurveyState)
+        started = start(created, ["S-1", "S-2"], 0)
+        assert isinstance(started, SurveyState)
+        sun = forecast(lambda _east, _north, _lead: False)
+        _, given_out = step(started, (waiting, other), 0, sun)
+        assert [each.stands_by for each in given_out] == [True] * steps_aside
+        if steps_aside:
+            (aside,) = given_out[0].mission.waypoints
+            assert aside.height_above_takeoff_m == pytest.approx(60.0, abs=0.1)
+
+    def test_stops_within_rows_make_it_expect_rows_to_take_longer(self) -> None:
+        level, rough = over(flat), over(hills(3, 0.5))
+        assert level.stops_per_m == 0.0
+        stops = len(whole(rough).corners_m) - 2 * len(rough.pieces)
+        rows_m = sum(np.hypot(b[0] - a[0], b[1] - a[1]) for a, b in rough.rows_m)
+        assert rough.stops_per_m == pytest.approx(stops / rows_m, rel=0.1)
 
 
 class TestProgress:

@@ -6,6 +6,7 @@ from math import hypot
 import numpy as np
 import pytest
 from tests.guidance.survey.grounds import model, slope
+from tests.station.operations.test_survey_zones import person
 from tests.station.returning_world import FRAME
 from tests.station.surveyed_world import (
     SURVEY_ID,
@@ -21,7 +22,7 @@ from recon.guidance.survey.settings import DEFAULT
 from recon.model.command import Phase
 from recon.model.event import SurveyRequested
 from recon.model.replacing import replace
-from recon.model.survey import Survey, SurveyPhase
+from recon.model.survey import Survey, SurveyPhase, WhenDone
 from recon.record.digest import digest
 from recon.safety import PreparedAirspace
 from recon.sim.flight.mission import MissionFlight
@@ -125,9 +126,26 @@ class TestOnASlope:
         world.asks(asked(field_of(240.0, 60.0), height_above_takeoff_m=HEIGHT_M))
         world.starts("SIM-1", takeoff=True)
         level = Flown(world)
-        level.run(120)
+        level.run(85)
         assert level.range_m[0] < HEIGHT_M - 20.0
         assert flown.range_m[0] > HEIGHT_M - 3.0
+
+
+class TestZones:
+    def test_rows_planned_anew_round_a_zone_follow_the_ground_too(self) -> None:
+        world = on_the_slope(1)
+        world.asks(above_ground(when_done=WhenDone.HOVER))
+        world.starts("SIM-1", takeoff=True)
+        flown = Flown(world)
+        flown.run(30)
+        world.driver.handle(person(world, (120.0, 30.0), 10.0))
+        missions = len(world.missions())
+        flown.above_ground_m.clear()
+        flown.run(60)
+        assert len(world.missions()) > missions
+        assert len(flown.above_ground_m) > 100
+        assert flown.range_m[0] >= HEIGHT_M - DEFAULT.terrain_below_m - ARRIVED_WITHIN_M
+        assert flown.range_m[1] <= HEIGHT_M + DEFAULT.terrain_above_m + ARRIVED_WITHIN_M
 
 
 class TestShown:

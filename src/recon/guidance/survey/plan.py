@@ -160,6 +160,8 @@ class SurveyPlan:
     """The wanted heights of a survey above ground; None: it is above takeoff."""
     ground_range_m: tuple[float, float] | None = None
     """The region's lowest and highest ground, up of the frame; None: not known."""
+    stops_per_m: float = 0.0
+    """Waypoints within rows that follow the ground, on average."""
 
     def track(self, route: Route) -> Track | None:
         """Return where a route leads; None where no way leads from a row to the next."""
@@ -259,9 +261,16 @@ def plan_survey(
     cells = cells_over(area, frame, survey.cell_m, lattice, pieces, swath)
     counted = _counted(survey, swath, lattice, settings)
     ground_m = ground_range_m(area, air.elevation, settings.terrain_cell_m)
-    return SurveyPlan(
+    plan = SurveyPlan(
         survey, frame, settings, lattice, swath, counted, pieces, ways, cells, terrain, ground_m
     )
+    return plan if terrain is None else replace(plan, stops_per_m=_stops_per_m(plan, terrain))
+
+
+def _stops_per_m(plan: SurveyPlan, terrain: Terrain) -> float:
+    stops = sum(len(terrain.between(*ends)) for ends in plan.rows_m)
+    rows_m = sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in plan.rows_m)
+    return stops / max(rows_m, 1.0)
 
 
 def row_bearing_deg(survey: Survey, settings: SurveySettings = DEFAULT) -> float:

@@ -79,7 +79,12 @@ class Terrain:
         return float((wanted_m - STEEPEST * np.hypot(*self._disc_m.T)).max())
 
     def between(self, start_m: Place, end_m: Place) -> tuple[Vertex, ...]:
-        """Return the waypoints needed along a straight leg, without its ends: the fewest."""
+        """Return the waypoints needed along a straight leg, without its ends: the fewest.
+
+        They are the same to and fro.
+        """
+        if end_m < start_m:
+            return self.between(end_m, start_m)[::-1]
         if len(self._profiles) > MOST_LEGS_KEPT:
             self._profiles.clear()
         leg = start_m, end_m
