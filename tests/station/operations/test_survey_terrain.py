@@ -23,6 +23,7 @@ from recon.model.command import Phase
 from recon.model.event import SurveyRequested
 from recon.model.replacing import replace
 from recon.model.survey import Survey, SurveyPhase, WhenDone
+from recon.record.codec import CodecError
 from recon.record.digest import digest
 from recon.safety import PreparedAirspace
 from recon.sim.flight.mission import MissionFlight
@@ -224,5 +225,9 @@ class TestRecorded:
         assert plan.terrain is not None
         leg = (10.0, 30.0), (230.0, 30.0)
         assert again.terrain.between(*leg) == plan.terrain.between(*leg)
+        damaged = codec.to_builtins(plan, SurveyPlan)
+        damaged["terrain"]["grid"]["rows"] += 1
+        with pytest.raises(CodecError, match="finite heights"):
+            codec.from_builtins(damaged, SurveyPlan)
         # The waypoints that it remembers of its legs are no part of the value.
         assert digest(plan) == before == digest(again)

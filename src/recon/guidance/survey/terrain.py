@@ -50,7 +50,10 @@ CLIMB_SPARE_M = 1.0
 
 @dataclass(frozen=True, eq=False)
 class Terrain:
-    """The wanted heights of one survey, (rows, cols) at the centres of `grid`'s cells."""
+    """The wanted heights of one survey, (rows, cols) at the centres of `grid`'s cells.
+
+    Raises `ValueError` for other heights than one finite number for each cell.
+    """
 
     grid: GroundGrid
     wanted_up_m: FloatArray
@@ -58,6 +61,13 @@ class Terrain:
     lowest_above_ground_m: float
     highest_above_ground_m: float
     """Of the wanted height over the region."""
+
+    def __post_init__(self) -> None:
+        shape = self.grid.rows, self.grid.cols
+        if self.wanted_up_m.shape != shape or not np.isfinite(self.wanted_up_m).all():
+            raise ValueError(
+                f"expected {shape} finite heights, got an array of {self.wanted_up_m.shape}"
+            )
 
     def up_m(self, places_m: npt.ArrayLike) -> FloatArray:
         """Return the wanted heights (N,) at (N, 2) east-north places; beyond the lattice, that of
@@ -85,13 +95,16 @@ class Terrain:
         """
         if end_m < start_m:
             return self.between(end_m, start_m)[::-1]
-        if len(self._profiles) > MOST_LEGS_KEPT:
-            self._profiles.clear()
         leg = start_m, end_m
-        if leg not in self._profiles:
+        found = self._profiles.get(leg)
+        if found is None:
             ends_up_m = self.corner_up_m(start_m), self.corner_up_m(end_m)
-            self._profiles[leg] = leg_profile(start_m, end_m, ends_up_m, self.up_m, self.limits)
-        return self._profiles[leg]
+            found = leg_profile(start_m, end_m, ends_up_m, self.up_m, self.limits)
+            # Previews ask on other threads: what they look up may be gone a moment later.
+            if len(self._profiles) >= MOST_LEGS_KEPT:
+                self._profiles.clear()
+            self._profiles[leg] = found
+        return found
 
     @cached_property
     def _profiles(self) -> dict[tuple[Place, Place], tuple[Vertex, ...]]:
