@@ -28,7 +28,8 @@ from recon.guidance.survey import (
     start,
     step,
 )
-from recon.guidance.survey.estimate import Batteries, SurveyEstimate, estimate
+from recon.guidance.survey.estimate import Batteries, SurveyEstimate, estimate, plan_figures
+from recon.guidance.survey.imaging import SpeedLimit
 from recon.guidance.survey.missions import Track, flight_time_s
 from recon.guidance.survey.plan import HEIGHT_FAULT, survey_fault
 from recon.guidance.survey.route import route_of
@@ -37,7 +38,7 @@ from recon.model.airspace import ElevationModel, FlightLimits, Region
 from recon.model.command import Refusal
 from recon.model.geo import GroundGrid
 from recon.model.mission import Mission
-from recon.model.survey import Survey
+from recon.model.survey import Survey, SurveyCamera
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleProfile
 from recon.vehicles.mission_repair import joined, repair
@@ -320,6 +321,20 @@ def refused(survey: Survey, elevation: ElevationModel | None) -> str:
     found = plan_survey(survey, FRAME, SurveySurroundings(elevation=elevation))
     assert isinstance(found, Refusal), found
     return found.reason
+
+
+class TestWarnings:
+    @pytest.mark.parametrize(
+        ("ground", "height_m", "is_warned"),
+        [(slope, 115.0, True), (slope, 9.0, True), (slope, 60.0, False), (flat, 115.0, False)],
+    )
+    def test_a_height_near_the_sites_limits_is_warned_of_over_uneven_ground(
+        self, ground: Ground, height_m: float, is_warned: bool
+    ) -> None:
+        camera = SurveyCamera(across_deg=100.0, along_deg=90.0)
+        plan = over(ground, asked(height_m=height_m, speed_mps=1.0, camera=camera))
+        found = plan_figures(plan, [], None, SpeedLimit(10.0, "fastest allowed"), 0.001)
+        assert [("height limits" in each) for each in found.warnings] == [True] * is_warned
 
 
 class TestRefusals:

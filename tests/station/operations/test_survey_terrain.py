@@ -21,7 +21,9 @@ from recon.guidance.survey.route import route_of
 from recon.guidance.survey.settings import DEFAULT
 from recon.model.command import Phase
 from recon.model.event import SurveyRequested
+from recon.model.geo import GroundGrid
 from recon.model.replacing import replace
+from recon.model.shade import ShadeMap
 from recon.model.survey import Survey, SurveyPhase, WhenDone
 from recon.record.codec import CodecError
 from recon.record.digest import digest
@@ -31,6 +33,7 @@ from recon.station.api_views.operation_views import survey_view
 from recon.station.api_views.survey_preview import survey_preview
 from recon.station.kernel.recorded_values import values_codec
 from recon.station.operations.survey.availability import NO_TAKEOFF_HEIGHT
+from recon.station.operations.survey.execution import on_shade
 
 HEIGHT_M = 40.0
 APART = ((0.0, -40.0), (240.0, -40.0))
@@ -130,6 +133,48 @@ class TestOnASlope:
         level.run(85)
         assert level.range_m[0] < HEIGHT_M - 20.0
         assert flown.range_m[0] > HEIGHT_M - 3.0
+
+
+class TestSunlitFirst:
+    def test_what_is_in_sun_first_is_flown_at_its_height_and_straight_from_row_to_row(
+        self,
+    ) -> None:
+        """Bands of shade move over the slope: vehicles get short missions, and some wait."""
+        world = on_the_slope()
+        world.asks(above_ground(planner="sunlit_first"))
+        world.starts("SIM-1", "SIM-2", takeoff=True)
+        flown = Flown(world)
+        for second in range(160):
+            shade = shade_map(second, world.driver.now_ns)
+            world.driver.station = on_shade(world.driver.station, shade)
+            flown.run(1)
+        assert flown.range_m[0] >= HEIGHT_M - DEFAULT.terrain_below_m - ARRIVED_WITHIN_M
+        assert flown.range_m[1] <= HEIGHT_M + DEFAULT.terrain_above_m + ARRIVED_WITHIN_M
+        orders = world.driver.station.orders.records.values()
+        assert [each.refusal for each in orders if each.refusal is not None] == []
+        assert world.fleet.nearest.level_m > 15.0
+        bodies = [each.command.body for each in world.missions()]
+        straight = [b for b in bodies if b.mission.waypoints[0].gimbal_pitch_deg is not None]
+        assert len(straight) >= 2
+        assert world.figures().in_sun_m2 > 0.3 * world.figures().region_m2
+
+
+def shade_map(second: int, at_ns: int) -> ShadeMap:
+    """Bands of sun 110 m wide that move east at 2 m/s, with 90 m of shade between."""
+    grid = GroundGrid(FRAME, -20.0, 100.0, 5.0, 28, 56)
+    east_m = grid.west_m + grid.cell_m * (np.arange(grid.cols) + 0.5)
+    shape = grid.rows, grid.cols
+    lit = np.broadcast_to(np.mod(east_m - 2.0 * second, 200.0) < 110.0, shape)
+    known = np.ones(shape, np.bool_)
+    return ShadeMap(
+        grid,
+        at_ns,
+        ("IMAGER",),
+        lit.astype(np.float32),
+        known,
+        np.ones(shape, np.float32),
+        np.ones(shape, np.float32),
+    )
 
 
 class TestZones:

@@ -15,6 +15,7 @@ from recon.guidance.survey.plan import RULE, SurveyPlan
 from recon.guidance.survey.rounds import shares, sortie
 from recon.guidance.survey.route import Place, Route
 from recon.guidance.survey.state import Surveyor
+from recon.guidance.survey.terrain import LEAST_CLIMB_M
 from recon.model.command import Refusal
 
 SWAP_S = 180.0
@@ -190,11 +191,18 @@ MOST_SKIPPED = 0.005
 
 
 def _warnings(plan: SurveyPlan, limit: SpeedLimit) -> list[str]:
-    """Return a sentence for a speed above its lowest limit, and for ground that is not reached."""
+    """Return sentences: a speed above its lowest limit, a height near the site's limits, ground
+    that is not reached."""
     found: list[str] = []
     speed_mps, cells = plan.survey.speed_mps, plan.cells
     if speed_mps > limit.speed_mps * (1.0 + 1e-9):
         found.append(f"{speed_mps:g} m/s is more than {limit.speed_mps:.1f} m/s: {limit.reason}")
+    if plan.terrain is not None and plan.terrain.is_near_height_limits:
+        found.append(
+            f"{plan.survey.height_m:g} m above ground leaves rows over this ground less than "
+            f"{LEAST_CLIMB_M:g} m to climb or sink within the site's height limits: the gate may "
+            "refuse them; choose a height farther from the limits"
+        )
     inside = int(cells.is_inside.sum())
     skipped = inside - int(cells.is_reached.sum())
     if skipped > MOST_SKIPPED * inside:

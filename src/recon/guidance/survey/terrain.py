@@ -116,6 +116,12 @@ class Terrain:
         """The highest of all wanted heights."""
         return float(self.wanted_up_m.max())
 
+    @property
+    def is_near_height_limits(self) -> bool:
+        """Whether legs would have to climb or sink more than the site's height limits leave."""
+        relief_m = self.highest_up_m - float(self.wanted_up_m.min())
+        return self.limits.climb_m <= LEAST_CLIMB_M < relief_m
+
     @cached_property
     def _disc_m(self) -> FloatArray:
         """Places up to a step of a leg away, (N, 2), the middle among them."""
