@@ -143,6 +143,7 @@ study: setup ## Long runs: the sky against measurements, random fences, fleets a
 	$(RUN) python -m studies.session --seconds 100000
 	$(RUN) python -m studies.closed_loop --runs 100 --first-seed 1000 --jobs 2
 	$(RUN) python -m studies.same_again --seconds 600
+	$(RUN) python -m studies.guidance --seeds 3 --only wide
 	RECON_THOROUGH=1 $(PYTEST) -m "hypothesis or drawn"
 	@$(MAKE) mutants
 

@@ -188,3 +188,14 @@ def test_any_bytes_end_in_a_sentence_before_a_process_is_started(tail: bytes, he
 
 def _refused(shown: str, _path: Path) -> object:
     raise SiteError(f"{shown}: reached the process")
+
+
+def test_a_file_that_takes_too_long_is_refused_with_what_to_do(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    spins = "import resource\nresource.setrlimit(resource.RLIMIT_CPU, (1, 2))\nwhile True: pass\n"
+    endless = tmp_path / "endless.py"
+    endless.write_text(spins)
+    monkeypatch.setattr(imports, "_PROCESS", endless)
+    with pytest.raises(SiteError, match=r"a few seconds, got a slower one; simplify its shapes"):
+        read_import("field.kml", KML.encode())

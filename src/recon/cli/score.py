@@ -86,11 +86,11 @@ def score_command(
     """Fly a scenario by the whole station in virtual time and score its methods."""
     try:
         _check_numbers(seeds, first_seed, jobs)
-        chosen = _Chosen(planner, detection, forecast, exposure, surveys_only)
+        chosen = Chosen(planner, detection, forecast, exposure, surveys_only)
         loaded, other = chosen.scenario(scenario), chosen.other(scenario, against)
         if against is not None and other is None:
             loaded = _compared(loaded, against)
-        flying = _Flying(range(first_seed, first_seed + seeds), jobs, cluster, fresh)
+        flying = Flying(range(first_seed, first_seed + seeds), jobs, cluster, fresh)
         runs = flying.runs_of(scenario, loaded)
         others = [] if other is None else flying.runs_of(*other)
     except ReconError as problem:
@@ -103,7 +103,7 @@ def score_command(
 
 
 @dataclass(frozen=True, slots=True)
-class _Chosen:
+class Chosen:
     """The options that change a scenario."""
 
     planner: str | None
@@ -136,7 +136,7 @@ class _Chosen:
 
 
 @dataclass(frozen=True, slots=True)
-class _Flying:
+class Flying:
     """Which runs of scenarios are wanted, and where they are flown."""
 
     seeds: range

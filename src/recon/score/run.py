@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from recon.model.command import Phase
+from recon.model.command import Hover, Phase
 from recon.model.survey import CellState
 from recon.model.units import NS_PER_S
 from recon.score.connected_apps import ConnectedApps
@@ -86,6 +86,7 @@ class StationRun:
         self._operator = StationOperator(scenario.survey, operator, scenario.imager.is_upwind)
         self._shade = ShadeScoring(scenario, self._sky, frames)
         self._refused: set[int] = set()
+        self._held: set[int] = set()
 
     @property
     def now_s(self) -> float:
@@ -114,7 +115,7 @@ class StationRun:
         station, now_ns = self.driver.station, self.driver.now_ns
         if self.scenario.methods.scores_maps:
             self._shade.update(station, now_ns)
-        self._record_refusals()
+        self._record_orders()
         for event in self._operator.events(station, now_ns):
             self.driver.handle(event)
 
@@ -143,11 +144,13 @@ class StationRun:
         imagers = self.scenario.site.imagers
         return [path for serial, path in self._paths.items() if serial not in imagers]
 
-    def _record_refusals(self) -> None:
-        """Remember refused orders: the station drops old records."""
+    def _record_orders(self) -> None:
+        """Remember refused orders and watchdogs' holds: the station drops old records."""
         for number, order in self.driver.station.orders.records.items():
             if order.phase is Phase.REFUSED_BY_STATION:
                 self._refused.add(number)
+            elif order.command.is_own and isinstance(order.command.body, Hover):
+                self._held.add(number)
 
     def _is_over(self) -> bool:
         if self.now_s >= self.scenario.limit_s + SCORE.longest_return_s:
@@ -192,6 +195,7 @@ class StationRun:
             simulated_s=self.now_s,
             breaches=breaches(self.drones, scenario.site),
             refusals=len(self._refused),
+            holds=len(self._held),
         )
 
     def _imaged(self, record: SurveyRecord) -> Imaged:

@@ -86,6 +86,8 @@ class RunScore:
     """Times that a drone in the air left the boundary or entered a keep-out zone."""
     refusals: int = 0
     """Orders that the gate refused."""
+    holds: int = 0
+    """Times that a watchdog stopped a vehicle."""
 
     @property
     def shaded_share(self) -> float | None:

@@ -74,6 +74,7 @@ def _survey(scenario: Scenario, runs: Sequence[RunScore]) -> str:
             ratio([(each.refusals, each.missions) for each in runs]),
             fine,
         ),
+        row("stopped by the station's watchdogs", _of(runs, "holds"), plain),
     ]
     return table(("survey", "mean", "95 %", "runs"), rows)
 

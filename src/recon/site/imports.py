@@ -8,6 +8,7 @@ with limits of memory and time: whatever a file does to a parser, the station fl
 
 import io
 import json
+import signal
 import subprocess
 import sys
 import zipfile
@@ -27,7 +28,8 @@ LARGEST_UNPACKED_BYTES = 32 * 1024 * 1024
 MOST_MEMBERS = 200
 MOST_IMPORTED_CORNERS = 20_000
 """Of all features: about what one save may send."""
-LONGEST_READING_S = 20.0
+LONGEST_WAIT_S = 120.0
+"""For a file's process, on a computer that is busy with a flight: it ends itself far sooner."""
 FORMATS = "KML, KMZ, Shapefile (zip), GeoPackage or GeoJSON"
 
 _SHAPEFILE_PARTS = (".shp", ".shx", ".dbf", ".prj", ".cpg")
@@ -211,17 +213,23 @@ def _read_in_process(shown: str, path: Path) -> Any:
             env={"PATH": ""},
             stdin=subprocess.DEVNULL,
             capture_output=True,
-            timeout=LONGEST_READING_S,
+            timeout=LONGEST_WAIT_S,
             check=False,
         )
     except subprocess.TimeoutExpired:
-        raise SiteError(
-            f"{shown}: expected a file that is read in {LONGEST_READING_S:g} s, got a slower one; "
-            "simplify its shapes"
-        ) from None
+        raise _slow(shown) from None
+    if sys.platform != "win32" and ended.returncode == -signal.SIGXCPU:
+        raise _slow(shown)
     if ended.returncode != 0:
         raise SiteError(f"{shown}: expected {FORMATS}, got a file that cannot be read")
     answer = json.loads(ended.stdout)
     if "problem" in answer:
         raise SiteError(f"{shown}: {answer['problem']}")
     return answer
+
+
+def _slow(shown: str) -> SiteError:
+    return SiteError(
+        f"{shown}: expected a file that is read in a few seconds, got a slower one; "
+        "simplify its shapes"
+    )

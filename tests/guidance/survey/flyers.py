@@ -14,6 +14,7 @@ from tests.guidance.survey.fields import planned
 
 from recon.geo import enu_from_geo
 from recon.guidance.survey import (
+    ClosedArea,
     PositionSample,
     Surveyor,
     SurveyPlan,
@@ -134,6 +135,7 @@ class Flights:
     tells_shade: bool = True
     foresees: bool = False
     """Whether the planner gets the sky of the next five minutes, as a forecast that is right."""
+    closed: tuple[ClosedArea, ...] = ()
     shown: BoolArray | None = None
     shown_in_sun: BoolArray | None = None
     given: list[MissionAssignment] = field(default_factory=list)
@@ -164,7 +166,9 @@ class Flights:
                     self._tell(flyer)
         positions = [flyer.surveyor() for flyer in self.flyers]
         sun = self.forecast() if self.foresees else None
-        self.state, missions = step(self.state, positions, seconds_to_ns(self.time_s), sun)
+        self.state, missions = step(
+            self.state, positions, seconds_to_ns(self.time_s), sun, self.closed
+        )
         self.given += missions
         for mission in missions:
             next(f for f in self.flyers if f.serial == mission.serial).take(mission, self.plan)

@@ -1,10 +1,12 @@
 """The planner that flies what is in sun first: whole surveys, and single decisions."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import combinations, pairwise
 
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 from tests.guidance.survey.fields import FRAME, planned, rectangle, survey_of
@@ -15,10 +17,13 @@ from tests.guidance.survey.flyers import (
     Flyer,
     begun,
     clear,
+    east_north,
     fleet,
+    middles_m,
 )
 
 from recon.guidance.survey import (
+    ClosedArea,
     Surveyor,
     SurveyPlan,
     SurveyState,
@@ -30,6 +35,7 @@ from recon.guidance.survey import (
     start,
     step,
 )
+from recon.guidance.survey.closed_areas import closed_ground
 from recon.guidance.survey.own_share import finished_together_s
 from recon.guidance.survey.segments import NONE, expected_sun, segments_of
 from recon.model.geo import GroundGrid
@@ -133,6 +139,74 @@ class TestSurveys:
         )
         assert 0.0 < figures(flights.state).in_sun_m2 < figures(flights.state).region_m2
 
+    def test_when_all_missions_are_refused_it_pauses_with_the_reason(self) -> None:
+        def refuse(flights: Flights) -> None:
+            for serial, flight in flights.state.flights.items():
+                next(each for each in flights.flyers if each.serial == serial).stop()
+                now_ns = seconds_to_ns(flights.time_s)
+                why = "it crosses the pond"
+                flights.state = refused(flights.state, serial, flight.number, why, now_ns)
+
+        flyers = fleet(2)
+        end = Flights(started(flyers), flyers).run(most_s=60.0, each_second=refuse)
+        assert end.phase is SurveyPhase.PAUSED
+        assert "it crosses the pond" in end.reason
+
+    def test_ground_where_a_lost_vehicle_may_be_waits_and_all_other_is_flown(self) -> None:
+        """It is lost over the middle of the field for as long as all the rest takes."""
+        flyers = fleet(2)
+        lost = ClosedArea("Drone 3", "S-3", (180.0, 120.0), 60.0, (180.0, -100.0), 20.0)
+        ground = closed_ground([lost])
+        flights = Flights(started(flyers), flyers, closed=(lost,))
+        flights.run(most_s=400.0)
+        state, plan = flights.state, flights.plan
+        assert state.phase is SurveyPhase.RUNNING
+        assert {each.text for each in state.decisions.values()} == {
+            "waits: Drone 3 may be where rows are left, without telemetry"
+        }
+        ways = [shapely.linestrings(east_north(m.mission, plan)) for m in flights.given]
+        assert not shapely.intersects(ground, ways).any()
+        far = shapely.buffer(ground, 90.0)
+        middles = shapely.points(middles_m(plan.cells.grid)).reshape(state.progress.state.shape)
+        is_far = plan.cells.is_reached & ~shapely.covers(far, middles)
+        assert is_far.sum() > 0.2 * plan.cells.is_reached.sum()
+        assert (state.progress.state[is_far] == CellState.IN_SUN).all()
+        flights.closed = ()
+        assert flights.run().phase is SurveyPhase.DONE
+
+    def test_rows_that_a_lost_vehicle_may_still_fly_are_left_to_it(self) -> None:
+        sun = forecast(lambda _east, _north, _lead: True)
+        here = Surveyor("S-1", (0.0, 60.0)), Surveyor("S-2", (0.0, 180.0))
+        state, _missions = decided(sun, *here)
+        rows = set(flown_rows(state, "S-2"))
+        lost = ClosedArea("Drone 2", "S-2", (-500.0, 180.0), 60.0, None, 20.0)
+        gone = replace(here[0], ended_mission=1), replace(here[1], is_able=False)
+
+        def after(
+            state: SurveyState, now_s: float, ended: int, *closed: ClosedArea
+        ) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
+            lit = forecast(lambda _east, _north, _lead: True, now_s)
+            vehicles = replace(gone[0], ended_mission=ended), gone[1]
+            return decided(lit, *vehicles, state=state, now_s=now_s, closed=closed)
+
+        state, _none = after(state, 60.0, 1, lost)
+        state, missions = after(state, 300.0, 1, lost)
+        assert [mission.serial for mission in missions] == ["S-1"]
+        assert not rows & set(flown_rows(state, "S-1"))
+        state, _none = after(state, 400.0, missions[0].number)
+        state, _missions = after(state, 410.0, missions[0].number)
+        assert rows <= set(flown_rows(state, "S-1"))
+
+    def test_another_vehicle_in_the_way_bars_none(self) -> None:
+        sun = forecast(lambda _east, _north, _lead: True)
+        here = Surveyor("S-1", (0.0, 60.0))
+        state, (first,) = decided(sun, here)
+        now_ns = seconds_to_ns(1.0)
+        barred = refused(state, "S-1", first.number, "it crosses the pond", now_ns)
+        assert decided(sun, here, state=barred, now_s=60.0)[0].phase is SurveyPhase.PAUSED
+        asked = refused(state, "S-1", first.number, "near Drone 2", now_ns, in_the_way=True)
+        assert [m.serial for m in decided(sun, here, state=asked, now_s=5.0)[1]] == ["S-1"]
+
     def test_the_same_survey_is_flown_again_to_the_last_waypoint(self) -> None:
         given = []
         for _ in range(2):
@@ -164,7 +238,11 @@ def forecast(sunlit: object, now_s: float = 0.0) -> SunForecast:
 
 
 def decided(
-    sun: SunForecast, *surveyors: Surveyor, state: SurveyState | None = None, now_s: float = 0.0
+    sun: SunForecast,
+    *surveyors: Surveyor,
+    state: SurveyState | None = None,
+    now_s: float = 0.0,
+    closed: Sequence[ClosedArea] = (),
 ) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
     if state is None:
         made = create(PLAN)
@@ -172,7 +250,7 @@ def decided(
         running = start(made, [each.serial for each in surveyors], 0)
         assert isinstance(running, SurveyState)
         state = running
-    return step(state, surveyors, seconds_to_ns(now_s), sun)
+    return step(state, surveyors, seconds_to_ns(now_s), sun, closed)
 
 
 def flown_rows(state: SurveyState, serial: str) -> list[int]:

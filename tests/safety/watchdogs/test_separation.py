@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from tests.safety.traffic import at, flies, route
+from tests.safety.traffic import at, flies, judged, route
 from tests.safety.watchdogs.looks import (
     NOW,
     AuthorityHolder,
@@ -288,6 +288,18 @@ class TestHazards:
         ):
             inside = aircraft("A", (0.0, 80.0), velocity=velocity)
             assert only(looks(separation, self.hazard, inside)).holds == holds
+
+    @pytest.mark.parametrize("up_mps", [0.0, -3.0])
+    def test_one_that_the_gate_lets_out_of_the_circle_is_not_held(self, up_mps: float) -> None:
+        """Also one that sinks at first: the circle reaches down to the ground."""
+        inside = aircraft("A", (0.0, 80.0), 40.0, velocity=(0.0, 0.0, up_mps))
+        out = route((0.0, 80.0, 30.0), (0.0, 300.0, 30.0))
+        assert judged(out, inside, self.hazard) is None
+        leaving = in_context(inside, intent=flies(out))
+        assert only(looks(separation, self.hazard, leaving)).holds is None
+        deeper = aircraft("A", (0.0, 80.0), 40.0, velocity=(0.0, -8.0, up_mps))
+        sinks_in = in_context(deeper, intent=flies(route((0.0, 80.0, 30.0), (0.0, 0.0, 30.0))))
+        assert only(looks(separation, self.hazard, sinks_in)).holds == "A"
 
     def test_the_circle_grows(self) -> None:
         """At 10 m/s: 40 m after 4 s, 140 m ten seconds later."""

@@ -4,6 +4,7 @@
 `observe` and `observe_shade` add positions and shade maps. Everything is pure.
 """
 
+from recon.guidance.survey.closed_areas import ClosedArea
 from recon.guidance.survey.life import (
     NO_BATTERY,
     abort,
@@ -32,6 +33,7 @@ __all__ = [
     "NO_BATTERY",
     "PLANNERS",
     "AssignedMission",
+    "ClosedArea",
     "CoverageFigures",
     "CoverageProgress",
     "Planner",

@@ -15,7 +15,8 @@ while PAUSED too, since a vehicle may still be flying its row.
 - Timeouts: a refused mission is requested again after `retry_s` if other vehicles fly. If none
   flies, the vehicle is barred until the next start, as nothing will change by itself. When all
   are barred the survey pauses. A refusal that may end by itself bars none, and is requested again
-  after `retry_soon_s`; for how long, the caller decides.
+  after `retry_soon_s`; for how long, the caller decides. One for another vehicle in the way bars
+  none either where the planner decides vehicle by vehicle: that vehicle, or the decision, changes.
 - A vehicle drops out by not being able in `step`; its unimaged rows belong to the next round.
 - A pause discards the round under way, since its shares fit the vehicles of that moment only.
 
@@ -26,6 +27,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 
+from recon.guidance.survey.closed_areas import ClosedArea
 from recon.guidance.survey.missions import apart_m
 from recon.guidance.survey.plan import RULE, SurveyPlan
 from recon.guidance.survey.planners import PLANNERS
@@ -95,12 +97,14 @@ def refused(
     now_ns: int,
     *,
     may_end: bool = False,
+    in_the_way: bool = False,
 ) -> SurveyState:
     """Return the survey after the gate refused a mission; its rows stay with the vehicle.
 
     While others fly, the mission is requested again after `retry_s`; otherwise the vehicle is
     barred and its rows go to others. Without a vehicle left the survey pauses. If the refusal may
-    end by itself, the mission is requested again after `retry_soon_s`, whether others fly or not.
+    end by itself, the mission is requested again after `retry_soon_s`, whether others fly or not;
+    so it is if another vehicle is `in_the_way` and the planner decides vehicle by vehicle.
     """
     flight = state.flights.get(serial)
     if flight is None or flight.number != number:
@@ -109,10 +113,11 @@ def refused(
     route = (*flight.route, *state.waiting.get(serial, ()))
     settings = state.plan.settings
     # A planner that decides vehicle by vehicle may find other rows at once.
-    is_soon = may_end or serial in state.decisions
+    is_decided_anew = serial in state.decisions
+    is_soon = may_end or is_decided_anew
     decisions = {key: each for key, each in state.decisions.items() if key != serial}
     again_ns = now_ns + seconds_to_ns(settings.retry_soon_s if is_soon else settings.retry_s)
-    is_barred = not flights and not may_end
+    is_barred = not flights and not may_end and not (in_the_way and is_decided_anew)
     return replace(
         state,
         flights=MappingProxyType(flights),
@@ -146,14 +151,17 @@ def step(
     positions: Sequence[Surveyor],
     now_ns: int,
     sun: SunForecast | None = None,
+    closed: Sequence[ClosedArea] = (),
 ) -> Step:
     """Return the next state and the missions to give; called about once a second.
 
     Vehicles of other surveys are ignored; vehicles without a position count as dropped out.
+    `closed` is where vehicles without telemetry may be now.
     """
     if state.phase not in (SurveyPhase.RUNNING, SurveyPhase.PAUSED):
         return state, ()
-    state = replace(state, progress=settled(state.progress, state.plan, now_ns))
+    progress = settled(state.progress, state.plan, now_ns)
+    state = replace(state, progress=progress, closed=tuple(closed))
     if state.phase is SurveyPhase.PAUSED:
         return state, ()
     own = [_as_able(each, state.plan) for each in positions if each.serial in state.serials]

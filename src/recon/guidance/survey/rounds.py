@@ -21,7 +21,7 @@ sum of distances to their starts (linear assignment; Kuhn 1955, as in `scipy.opt
 """
 
 from bisect import bisect_left
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 
@@ -64,7 +64,7 @@ def fly_rounds(
         return ended(state, SurveyPhase.DONE, spent, now_ns), ()
     free = {serial: each for serial, each in able.items() if serial not in state.barred}
     if not free:
-        return _without_able(state, able, now_ns), ()
+        return without_able(state, able, now_ns), ()
     if state.waiting:
         return _shared_anew(state, free, now_ns)
     if now_ns < state.quiet_since_ns + seconds_to_ns(state.plan.settings.settle_s):
@@ -101,7 +101,7 @@ def without_ended(state: SurveyState, able: Mapping[str, Surveyor], now_ns: int)
     return replace(state, flights=MappingProxyType(flights), quiet_since_ns=quiet_ns)
 
 
-def _without_able(state: SurveyState, able: Mapping[str, Surveyor], now_ns: int) -> SurveyState:
+def without_able(state: SurveyState, able: Mapping[str, Surveyor], now_ns: int) -> SurveyState:
     """Wait for an able vehicle, or pause when the missions of all were refused."""
     if not able:
         return replace(state, reason="waiting: no vehicle can fly now")
@@ -205,18 +205,29 @@ def flying(
     return state, MissionAssignment(serial, flight.number, mission, flight.length_m, approach)
 
 
-def sortie(plan: SurveyPlan, route: Route, surveyor: Surveyor) -> tuple[Track | None, int]:
+def sortie(
+    plan: SurveyPlan,
+    route: Route,
+    surveyor: Surveyor,
+    may_fly: Callable[[Track], bool] | None = None,
+) -> tuple[Track | None, int]:
     """Return the longest beginning of a route that the battery lasts for, and how many legs it has.
 
     It ends where there is no way on to the next row: what comes then is a mission of its own, and
-    the gate judges the way there.
+    the gate judges the way there. It also ends before what `may_fly` rules out.
     """
 
     def track(count: int) -> Track | None:
         return plan.track(route[:count])
 
     too_many = range(1, len(route) + 1)
-    count = bisect_left(too_many, True, key=lambda n: not lasts(plan, track(n), surveyor))
+
+    def is_too_many(count: int) -> bool:
+        found = track(count)
+        is_flown = found is not None and (may_fly is None or may_fly(found))
+        return not (is_flown and lasts(plan, found, surveyor))
+
+    count = bisect_left(too_many, True, key=is_too_many)
     return (track(count) if count else None), count
 
 

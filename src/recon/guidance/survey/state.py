@@ -6,6 +6,7 @@ from types import MappingProxyType
 
 import numpy as np
 
+from recon.guidance.survey.closed_areas import ClosedArea
 from recon.guidance.survey.plan import SurveyPlan
 from recon.guidance.survey.progress import CoverageProgress
 from recon.guidance.survey.route import Place, Route
@@ -105,6 +106,8 @@ class SurveyState:
     decisions: Mapping[str, Decision] = field(default_factory=lambda: MappingProxyType({}))
     """The newest of each vehicle, of planners that explain themselves."""
     just_flown: Mapping[str, JustFlown] = field(default_factory=lambda: MappingProxyType({}))
+    closed: tuple[ClosedArea, ...] = ()
+    """Where vehicles without telemetry may be, as of the newest step."""
     missions: int = 0
     flown_m: float = 0.0
     """Planned metres of all missions given and not refused."""

@@ -15,7 +15,9 @@ once. One call of `sunlit_first`:
    there until it is time to take off. If nothing is expected in sun, it waits where it is.
 6. One that would wait returns to home instead if a change of battery costs less sun now than later.
    One that waits at the rows' height climbs or sinks to its layer first, out of others' rows.
-7. If no vehicle is busy and a round of the lawnmower would image most of what is missing in sun, by
+7. Rows where a vehicle without telemetry may be are left out, and its own rows: the gate would
+   refuse them. They are flown once it is in contact again, or dismissed by an operator.
+8. If no vehicle is busy and a round of the lawnmower would image most of what is missing in sun, by
    the forecast at the moments at which it would pass, that round is flown: choosing takes longer.
 
 Each decision leaves a sentence. What a forecast does not know is its prior, so flights over ground
@@ -25,6 +27,7 @@ under broken cloud it costs battery alone, and sometimes sun comes.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import takewhile
 from math import hypot
 from types import MappingProxyType
@@ -32,6 +35,7 @@ from types import MappingProxyType
 import numpy as np
 
 from recon.guidance.survey.cells import BoolArray
+from recon.guidance.survey.closed_areas import closed_ground, closed_segments, is_open
 from recon.guidance.survey.own_share import own_share
 from recon.guidance.survey.passing import Passing, passing
 from recon.guidance.survey.plan import SurveyPlan
@@ -43,6 +47,7 @@ from recon.guidance.survey.rounds import (
     may_ask,
     shares,
     sortie,
+    without_able,
     without_ended,
 )
 from recon.guidance.survey.route import Place, Route, RowLeg, reversed_route, route_of
@@ -84,6 +89,8 @@ def sunlit_first(
     end = end_between_rounds(state, WANTED) if is_enough(state, WANTED) else spent
     if end is not None:
         return (state if state.flights else ended(state, SurveyPhase.DONE, end, now_ns)), ()
+    if able and not state.flights and able.keys() <= state.barred:
+        return without_able(state, able, now_ns), ()
     idle = [each for serial, each in able.items() if _is_asked(state, serial, able, now_ns)]
     if not idle:
         return state, ()
@@ -91,6 +98,9 @@ def sunlit_first(
     expected = expected_sun(segments, state.plan, state.progress, sun, now_ns)
     if expected is None:
         return _in_any_light(state, positions, now_ns)
+    if state.closed:
+        is_closed = closed_segments(closed_ground(state.closed), segments, state.plan)
+        expected = replace(expected, missing_m2=np.where(is_closed, 0.0, expected.missing_m2))
     state = replace(state, waiting=NO_ROUTES, round=max(1, state.round), reason="under way")
     choices = [
         _Choice(state, segments, expected, tuple(able.values()), each, now_ns) for each in idle
@@ -154,6 +164,9 @@ def _with_just_flown(before: SurveyState, state: SurveyState, now_ns: int) -> Su
     """Keep the rows of missions that have just ended until their photos have counted."""
     until_ns = now_ns + seconds_to_ns(state.plan.settings.settle_s + 2.0)
     kept = {key: each for key, each in state.just_flown.items() if now_ns < each.until_ns}
+    # One without telemetry may still fly them.
+    lost = {each.serial for each in state.closed}
+    kept |= {key: each for key, each in state.just_flown.items() if key in lost}
     for serial, flight in before.flights.items():
         if serial not in state.flights and flight.route:
             kept[serial] = JustFlown(flight.route, until_ns)
@@ -190,7 +203,7 @@ class _Choice:
         """Return the survey with the decision, and the vehicle's mission if it gets one."""
         free = self._free()
         if not free.any():
-            return self._waits("waits: others are on what is left")
+            return self._waits(self._why_none_is_free())
         share = self._share(free)
         if self.expected.is_clear(share, self.settings.clear_from):
             return self.flies_all(self._rows(share))
@@ -211,6 +224,12 @@ class _Choice:
         flown += _just_flown(self.state)
         free: BoolArray = (self.expected.missing_m2 > 0.0) & ~self.segments.under(flown)
         return free
+
+    def _why_none_is_free(self) -> str:
+        if not self.state.closed:
+            return "waits: others are on what is left"
+        names = ", ".join(each.name for each in self.state.closed)
+        return f"waits: {names} may be where rows are left, without telemetry"
 
     def _share(self, free: BoolArray) -> BoolArray:
         """(S,): the free segments of its own share; all free ones where its share has no sun."""
@@ -311,7 +330,8 @@ class _Choice:
 
     def _flies(self, route: Route, text: str) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
         state = self.state
-        track, count = sortie(self.plan, route, self.surveyor)
+        may_fly = partial(is_open, closed_ground(state.closed)) if state.closed else None
+        track, count = sortie(self.plan, route, self.surveyor, may_fly)
         if track is None:
             text = "waits: its battery lasts for no row, the way there and the return"
             return self._waits(text, self.settings.retry_s)

@@ -117,7 +117,8 @@ def hazard_closeness(
         rows = unknown[:, np.newaxis]
         over_m = np.where(rows, np.minimum(over_m, 0.0), over_m)
         under_m = np.where(rows, np.minimum(under_m, 0.0), under_m)
-    vertical_m = np.maximum(over_m, hazard.low_m - ahead.high_m)
+    # In the circle's heights, which reach to the ground, no height is nearer than another.
+    vertical_m = np.maximum(np.maximum(over_m, hazard.low_m - ahead.high_m), 0.0)
     least, horizontal_m = _shares(circle_m, vertical_m, need), circle_m
     if hazard.home_m is not None:
         landing_m = np.hypot(ahead.east_m - hazard.home_m[0], ahead.north_m - hazard.home_m[1])

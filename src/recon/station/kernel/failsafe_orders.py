@@ -2,7 +2,7 @@
 
 from functools import partial
 
-from recon.model.command import Phase
+from recon.model.command import Phase, issued_by_station
 from recon.model.event import OperatorOrder
 from recon.model.failsafe_matrix import FailsafeCondition, Reaction
 from recon.safety.rules.separation import in_way_of_climb_home
@@ -53,7 +53,7 @@ def _advance(serial: str, run: RunFacts, station: Station, now_ns: int) -> Stepp
 def _order(station: Station, request: ReactionRequest, now_ns: int) -> Stepped:
     """Place one reaction; a hold that waits for telemetry counts as ordered."""
     station, number = take_id(station)
-    issued_by = f"station: {request.condition.words}"
+    issued_by = issued_by_station(request.condition.words)
     body = ORDERED_BODIES[request.reaction]
     order = OperatorOrder(number, body, issued_by, request.serial)
     if request.reaction is Reaction.RETURN and request.condition is not _WITHOUT_TIME:

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import partial
 
-from recon.model.command import Hover
+from recon.model.command import Hover, issued_by_station
 from recon.model.errors import describe_fault
 from recon.model.event import Event, OperatorOrder, SetpointsDue, StationFaulted, Tick
 from recon.safety.watchdogs import WATCHDOGS, Finding, TrafficPicture, Watchdog
@@ -26,7 +26,7 @@ from recon.station.state.steps import Output, Stepped
 
 Part = Callable[[Station, int], Stepped]
 
-ISSUER = "station: a fault in its own code"
+ISSUER = issued_by_station("a fault in its own code")
 
 
 @dataclass(frozen=True, slots=True)

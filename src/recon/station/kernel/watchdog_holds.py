@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from recon.model.command import Hover
+from recon.model.command import Hover, issued_by_station
 from recon.model.event import OperatorOrder
 from recon.safety.watchdogs import WATCHDOGS, Watchdog
 from recon.station.control import order_gateway
@@ -23,7 +23,7 @@ def run_watchdogs(
     outputs: tuple[Output, ...] = ()
     for request in requests:
         station, number = take_id(station)
-        issued_by = f"station: {request.finding.rule}"
+        issued_by = issued_by_station(request.finding.rule)
         order = OperatorOrder(number, Hover(), issued_by, request.serial)
         station, sent = order_gateway.submit(station, order, now_ns)
         outputs += sent

@@ -1,20 +1,25 @@
-"""Which vehicles of a survey can fly for it now, and for how long."""
+"""Which vehicles of a survey can fly for it now, for how long, and where none can."""
 
 from collections.abc import Iterator
 from dataclasses import replace
 
 from recon.fleet.state import staleness
-from recon.guidance.survey import Surveyor
+from recon.guidance.survey import ClosedArea, Surveyor
 from recon.model.command import Phase
 from recon.model.control import AuthorityHolder
 from recon.model.vehicle import Staleness, VehicleState
 from recon.safety.airspace import PreparedAirspace
 from recon.safety.datum import frame_for, home_enu_m, takeoff_up_m, vehicle_enu_m
 from recon.safety.energy import consumption
+from recon.safety.separation_minima import gate_minima
 from recon.safety.settings import EnergySettings
 from recon.station.state.orders import OrderRecord, mission_end_text
 from recon.station.state.station import Station
 from recon.station.state.survey_record import SurveyMember, SurveyRecord
+from recon.station.traffic.known_traffic import hazard
+
+CLOSED_SLACK_M = 5.0
+"""The gate's trajectories are wider than a row: GNSS, and drift since the last position."""
 
 NO_TAKEOFF_HEIGHT = (
     "the height of its takeoff point is unknown: its takeoff was not observed, or was outside the "
@@ -48,6 +53,23 @@ def available_vehicles(station: Station, record: SurveyRecord, now_ns: int) -> I
             height_above_takeoff_m=vehicle.height_above_takeoff_m.value,
             takeoff_up_m=takeoff_up_m(station.airspace, vehicle),
         )
+
+
+def closed_areas(station: Station, now_ns: int) -> Iterator[ClosedArea]:
+    """Yield where vehicles without telemetry may be, as large as the gate will take it to be."""
+    limits, settings = station.airspace.airspace.limits, station.settings.safety
+    room_m = gate_minima(limits, settings).horizontal_m + CLOSED_SLACK_M
+    for vehicle in (*station.fleet.vehicles.values(), *station.watchdog_state.lost.values()):
+        found = hazard(station, vehicle, now_ns)
+        if found is not None:
+            yield ClosedArea(
+                name=found.name,
+                serial=vehicle.serial,
+                place_m=(found.east_m, found.north_m),
+                radius_m=found.largest_m + room_m,
+                home_m=found.home_m,
+                corridor_half_m=found.corridor_half_m + room_m,
+            )
 
 
 def hindrance(station: Station, member: SurveyMember, now_ns: int) -> str | None:

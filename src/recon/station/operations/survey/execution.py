@@ -32,9 +32,15 @@ from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleState
 from recon.safety.datum import places_m, takeoff_up_m
 from recon.safety.rules.battery import RULE as BATTERY
+from recon.safety.rules.separation import RULE as SEPARATION
 from recon.station.control import authority, order_gateway
 from recon.station.operations.settings import SURVEY_TIMES, SurveyTimes
-from recon.station.operations.survey.availability import after_mission, available_vehicles, is_flown
+from recon.station.operations.survey.availability import (
+    after_mission,
+    available_vehicles,
+    closed_areas,
+    is_flown,
+)
 from recon.station.operations.survey.mission_dispatch import dispatch
 from recon.station.operations.survey.planning import StepSurvey, SurveyStepped, step_survey
 from recon.station.operations.survey.return_to_home import (
@@ -235,9 +241,10 @@ def _start_step(station: Station, survey_id: int, settings: SurveyTimes, now_ns:
     record = surveys.records[survey_id]
     assert record.state is not None  # or it would not be due
     vehicles = tuple(available_vehicles(station, record, now_ns))
+    closed = tuple(closed_areas(station, now_ns))
     positions, shade_maps = record.positions, record.shade_maps
     work = StepSurvey(
-        record.state, positions.items, shade_maps.items, vehicles, now_ns, station.shade.sun
+        record.state, positions.items, shade_maps.items, vehicles, now_ns, station.shade.sun, closed
     )
     job = Job(surveys.next_job_id, STEP_SURVEY, work)
     pending = PendingStep(job.id, survey_id, now_ns, positions.end, shade_maps.end)
@@ -260,7 +267,9 @@ def _order_mission(
         why = f"{ready.in_the_way.reason}{ready.tried}"
         # Without a place to wait at a vehicle waits where it is; that must not bar it from rows.
         waits = given.stands_by
-        state = refused(state, given.serial, given.number, why, now_ns, may_end=waits)
+        state = refused(
+            state, given.serial, given.number, why, now_ns, may_end=waits, in_the_way=True
+        )
         return replace(station, surveys=station.surveys.put(replace(record, state=state))), ()
     station, number = take_id(station)
     station, sent = order_gateway.submit(station, replace(ready.order, command_id=number), now_ns)
@@ -274,7 +283,10 @@ def _order_mission(
         return replace(station, surveys=station.surveys.put(record)), sent
     record = record.put(replace(member, unsent_since_ns=None))
     waits = given.stands_by
-    state = refused(state, given.serial, given.number, why, now_ns, may_end=waits)
+    in_the_way = refusal.rule == SEPARATION
+    state = refused(
+        state, given.serial, given.number, why, now_ns, may_end=waits, in_the_way=in_the_way
+    )
     record = replace(record, state=state)
     station = replace(station, surveys=station.surveys.put(record))
     if returns_home(record) and refusal.rule == BATTERY:

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from recon.guidance.survey import (
+    ClosedArea,
     PositionSample,
     Surveyor,
     SurveyPlan,
@@ -55,6 +56,7 @@ class StepSurvey:
     now_ns: int
     sun: SunForecast | None = None
     """The newest forecast."""
+    closed: tuple[ClosedArea, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -79,7 +81,7 @@ def step_survey(work: StepSurvey) -> SurveyStepped:
         state = observe_shade(state, shade)
     for serial, samples in _by_vehicle(work.positions).items():
         state = observe(state, serial, samples)
-    state, missions = step(state, work.vehicles, work.now_ns, work.sun)
+    state, missions = step(state, work.vehicles, work.now_ns, work.sun, work.closed)
     return SurveyStepped(state, missions, returning(state, work.vehicles))
 
 

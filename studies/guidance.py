@@ -1,0 +1,250 @@
+"""What guidance must reach, flown by the whole station and compared seed by seed.
+
+    python -m studies.guidance --list
+    python -m studies.guidance --only wide --seeds 10 --picture docs/images/guidance.png
+
+Each claim is a scenario flown by `sunlit_first` and, under the same skies, by `lawnmower_again` or
+in another scenario. Its figure is the geometric mean of the ratios by seed, of the time to 95 % in
+sun or of the flight time, with a 95 % interval. All claims take days on one computer; `--cluster`
+shares the runs with others. Finished runs are kept, as by `recon score`: a stopped study goes on
+where it was, and what `recon score` has flown is not flown again.
+"""
+
+import argparse
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import isfinite
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from recon.cli.score import Chosen, Flying
+from recon.score import RunScore
+from recon.score.interval import Interval
+from recon.score.survey_table import SurveyRatios, survey_ratios
+from recon.score.table_rows import NOTHING, bounds, fine, percent, table
+
+FOLDER = Path(__file__).parents[1] / "scenarios"
+FIRST_SEED = 1000
+"""Nothing is tuned on seeds from here on."""
+PLANNER, BASELINE = "sunlit_first", "lawnmower_again"
+LOST_MOST = 0.15
+PLAIN = (
+    "cumulus-20",
+    "cumulus-40",
+    "cumulus-60",
+    "two-layers",
+    "thin-cirrus",
+    "low-sun",
+    "one-big-gap",
+    "starts-in-shade",
+    "wind-shift",
+    "holed-11ha",
+    "l-shaped-5ha",
+    "one-drone",
+    "eight-drones",
+)
+"""Scenarios whose imaging drone sees the field and little around it."""
+HEAD = (
+    "claim",
+    "over",
+    "seeds",
+    "ratio",
+    "95 %",
+    "must",
+    "lost, %",
+    "violations",
+    "refusals a mission",
+    "stopped by watchdogs",
+    "reached",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Claim:
+    """A ratio that guidance must reach: at most `most`, with an upper bound below `bound`."""
+
+    name: str
+    scenario: str
+    most: float
+    bound: float = float("inf")
+    seeds: int = 10
+    over: str | None = None
+    """The scenario that it is compared with; None: the same one, by the baseline."""
+    forecast: str | None = None
+    detection: str | None = None
+    of_flight_time: bool = False
+    lost_most: float = 1.0
+    refusals_most: float = 1.0
+
+    @property
+    def against(self) -> str:
+        """Name what it is compared with."""
+        return self.over or BASELINE
+
+    def flown(
+        self, seeds: range, jobs: int | None, cluster: str | None
+    ) -> tuple[list[RunScore], list[RunScore], float]:
+        """Return its runs, the runs they are compared with, and the shorter limit, seconds."""
+        chosen = Chosen(PLANNER, self.detection, self.forecast, None, surveys_only=True)
+        flying = Flying(seeds, jobs, cluster, fresh=False)
+        path = _file(self.scenario)
+        other_path = path if self.over is None else _file(self.over)
+        one = chosen.scenario(path)
+        other = chosen.scenario(other_path, planner=BASELINE if self.over is None else None)
+        limit_s = min(one.limit_s, other.limit_s)
+        return flying.runs_of(path, one), flying.runs_of(other_path, other), limit_s
+
+
+CLAIMS = (
+    *(
+        Claim(f"{cover} %, wide view", f"cumulus-{cover}-wide", 0.9, 1.0, 30, lost_most=LOST_MOST)
+        for cover in (40, 60)
+    ),
+    Claim("two layers, true motion", "two-layers-wide", 0.9, forecast="true_motion"),
+    Claim("clear sky", "clear-sky", 1.05, seeds=6),
+    Claim("overcast, flight time", "overcast", 0.2, of_flight_time=True),
+    *(Claim(f"plain view, {name}", name, 1.03, 1.08) for name in PLAIN),
+    Claim(
+        "rendered frames",
+        "cumulus-40",
+        1.0,
+        detection="sunlit_reference",
+        refusals_most=0.02,
+    ),
+    Claim("faults under cloud", "faults-wide", 1.5, over="cumulus-40-wide"),
+    Claim("faults, clear sky", "clear-sky-faults", 1.5, over="clear-sky"),
+    Claim("8 drones over 3", "clear-60ha-eight", 1.0 / 2.2, seeds=3, over="clear-60ha-three"),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """A claim's runs, summed up."""
+
+    claim: Claim
+    ratios: SurveyRatios
+    violations: int
+    """Encounters, landings below the reserve, and flights outside the fence."""
+    refusals: float
+    """For each mission."""
+    holds: int
+
+    @classmethod
+    def of(cls, claim: Claim, runs: Sequence[RunScore], ratios: SurveyRatios) -> "Measured":
+        """Sum up the runs of a claim."""
+        violations = sum(run.encounters + run.low_landings + run.breaches for run in runs)
+        missions = max(1, sum(run.missions for run in runs))
+        refusals = sum(run.refusals for run in runs) / missions
+        return cls(claim, ratios, violations, refusals, sum(run.holds for run in runs))
+
+    @property
+    def ratio(self) -> Interval | None:
+        """The claim's figure."""
+        return self.ratios.flight_time if self.claim.of_flight_time else self.ratios.time
+
+    @property
+    def is_reached(self) -> bool:
+        """Whether every part of the claim holds."""
+        ratio, lost, claim = self.ratio, self.ratios.lost_share, self.claim
+        if ratio is None or lost is None:
+            return False
+        is_fast = ratio.mean <= claim.most and ratio.high < claim.bound
+        is_safe = self.violations == 0 and self.refusals <= claim.refusals_most
+        return is_fast and is_safe and lost.mean <= claim.lost_most
+
+    @property
+    def row(self) -> tuple[str, ...]:
+        """Its line of the table."""
+        claim, ratio, lost = self.claim, self.ratio, self.ratios.lost_share
+        bound = f", below {claim.bound:g}" if isfinite(claim.bound) else ""
+        return (
+            claim.name,
+            claim.against,
+            f"{0 if ratio is None else ratio.count}",
+            NOTHING if ratio is None else fine(ratio.mean),
+            NOTHING if ratio is None else bounds(ratio, fine, float("inf")),
+            f"{fine(claim.most)}{bound}",
+            NOTHING if lost is None else percent(lost.mean),
+            f"{self.violations}",
+            fine(self.refusals),
+            f"{self.holds}",
+            "yes" if self.is_reached else "no",
+        )
+
+
+def measured(
+    claims: Sequence[Claim], most_seeds: int | None, jobs: int | None, cluster: str | None
+) -> Iterator[Measured]:
+    """Fly the claims, one after the other."""
+    for claim in claims:
+        count = min(claim.seeds, most_seeds or claim.seeds)
+        seeds = range(FIRST_SEED, FIRST_SEED + count)
+        runs, others, limit_s = claim.flown(seeds, jobs, cluster)
+        yield Measured.of(claim, runs, survey_ratios(runs, others, limit_s))
+
+
+def _file(scenario: str) -> Path:
+    return FOLDER / f"{scenario}.toml"
+
+
+LINE_PX, LEFT_PX, WIDTH_PX, TOP_PX = 34, 330, 1000, 44
+LOWEST, HIGHEST = 0.4, 1.6
+INK, GREY, GOOD, SHORT = (40, 40, 40), (190, 190, 190), (60, 120, 20), (40, 60, 190)
+
+
+def drawn(path: Path, found: Sequence[Measured]) -> None:
+    """Draw each ratio with its interval, and the claim's limit as a tick."""
+    height_px = TOP_PX + LINE_PX * len(found) + 16
+    image = np.full((height_px, WIDTH_PX, 3), 255, np.uint8)
+
+    def across(ratio: float) -> int:
+        share = (min(max(ratio, LOWEST), HIGHEST) - LOWEST) / (HIGHEST - LOWEST)
+        return round(LEFT_PX + share * (WIDTH_PX - LEFT_PX - 30))
+
+    def text(words: str, x: int, y: int) -> None:
+        cv2.putText(image, words, (x, y), cv2.FONT_HERSHEY_SIMPLEX, 0.5, INK, 1, cv2.LINE_AA)
+
+    for ratio in np.arange(LOWEST, HIGHEST + 0.01, 0.2).tolist():
+        cv2.line(image, (across(ratio), TOP_PX - 12), (across(ratio), height_px), GREY, 1)
+        text(f"{ratio:.1f}", across(ratio) - 12, TOP_PX - 18)
+    for number, each in enumerate(found):
+        y = TOP_PX + LINE_PX * number + LINE_PX // 2
+        text(each.claim.name, 12, y + 5)
+        limit = across(each.claim.most)
+        cv2.line(image, (limit, y - 12), (limit, y + 12), INK, 2)
+        if each.ratio is not None:
+            colour = GOOD if each.is_reached else SHORT
+            ends = [across(end) for end in (each.ratio.low, each.ratio.high) if isfinite(end)]
+            cv2.line(image, (min(ends, default=0), y), (max(ends, default=0), y), colour, 2)
+            cv2.circle(image, (across(each.ratio.mean), y), 6, colour, -1, cv2.LINE_AA)
+    cv2.imwrite(str(path), image)
+
+
+def main() -> None:
+    """Fly the claims and print the table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--list", action="store_true", help="print the claims, fly nothing")
+    parser.add_argument("--only", default="", help="claims whose name or scenario contains this")
+    parser.add_argument("--seeds", type=int, help="at most so many of each claim")
+    parser.add_argument("--jobs", type=int, help="runs at once; default: one for each core")
+    parser.add_argument("--cluster", help="address of a Dask scheduler")
+    parser.add_argument("--picture", type=Path, help="PNG file to draw")
+    asked = parser.parse_args()
+    claims = [each for each in CLAIMS if asked.only in f"{each.name} {each.scenario}"]
+    if asked.list:
+        rows = [(e.name, e.scenario, e.against, f"{e.seeds}", fine(e.most)) for e in claims]
+        print(table(("claim", "scenario", "over", "seeds", "must"), rows))
+        return
+    found: list[Measured] = []
+    print(table(HEAD, ()), flush=True)
+    for each in measured(claims, asked.seeds, asked.jobs, asked.cluster):
+        found.append(each)
+        print(f"| {' | '.join(each.row)} |", flush=True)
+    if asked.picture is not None:
+        drawn(asked.picture, found)
+
+
+if __name__ == "__main__":
+    main()

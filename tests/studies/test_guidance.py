@@ -1,0 +1,81 @@
+"""A claim about guidance is reached only if each part of it holds, and its table states which."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import cv2
+import pytest
+from studies.guidance import CLAIMS, Claim, Measured, drawn
+from tests.score.test_survey_table import run_score
+
+from recon.score import RunScore, load_scenario
+from recon.score.survey_table import survey_ratios
+
+CLAIM = Claim("40 %, wide view", "cumulus-40-wide", 0.9, 1.0, 30, lost_most=0.15)
+SEEDS = range(10)
+SAFE = replace(run_score(0, None), missions=20)
+
+
+def found(ratio: float, claim: Claim = CLAIM, like: RunScore = SAFE) -> Measured:
+    runs = [replace(like, seed=seed, to_95_in_sun_s=ratio * 1000.0) for seed in SEEDS]
+    others = [run_score(seed, 1000.0) for seed in SEEDS]
+    return Measured.of(claim, runs, survey_ratios(runs, others, 3600.0))
+
+
+def test_what_is_fast_and_safe_is_reached() -> None:
+    measured = found(0.8)
+    assert measured.is_reached
+    assert measured.row[:6] == (
+        "40 %, wide view",
+        "lawnmower_again",
+        "10",
+        "0.80",
+        "0.80 to 0.80",
+        "0.90, below 1",
+    )
+
+
+@pytest.mark.parametrize(
+    "short",
+    [
+        found(0.95),
+        found(0.8, like=replace(SAFE, encounters=1)),
+        found(0.8, like=replace(SAFE, low_landings=1)),
+        found(0.8, like=replace(SAFE, breaches=1)),
+        found(0.8, replace(CLAIM, refusals_most=0.02), replace(SAFE, refusals=1)),
+        found(1.06, replace(CLAIM, most=1.1, bound=2.0)),
+        found(0.8, replace(CLAIM, of_flight_time=True, most=0.5)),
+    ],
+)
+def test_what_falls_short_in_one_part_is_not(short: Measured) -> None:
+    assert not short.is_reached
+    assert short.row[-1] == "no"
+
+
+def test_a_wide_interval_is_not_reached_whatever_its_mean() -> None:
+    runs = [run_score(seed, 1600.0 if seed == 3 else 700.0 + seed) for seed in range(4)]
+    others = [run_score(seed, 1000.0) for seed in range(4)]
+    measured = Measured.of(
+        replace(CLAIM, most=1.0, lost_most=1.0), runs, survey_ratios(runs, others, 3600.0)
+    )
+    assert measured.ratio is not None
+    assert measured.ratio.mean < 1.0 < measured.ratio.high
+    assert not measured.is_reached
+
+
+def test_every_claim_is_about_scenarios_that_exist() -> None:
+    for claim in CLAIMS:
+        names = [claim.scenario, *([] if claim.over is None else [claim.over])]
+        for name in names:
+            path = Path(__file__).parents[2] / "scenarios" / f"{name}.toml"
+            assert load_scenario(path).name == name
+
+
+def test_the_picture_has_a_line_for_each_claim(tmp_path: Path) -> None:
+    drawn(tmp_path / "two.png", [found(0.8), found(0.95)])
+    drawn(tmp_path / "one.png", [found(0.8)])
+    two, one = (cv2.imread(str(tmp_path / name)) for name in ("two.png", "one.png"))
+    assert two is not None
+    assert one is not None
+    assert two.shape[0] > one.shape[0]
+    assert (two[: one.shape[0] - 16] == one[:-16]).all()
