@@ -112,6 +112,12 @@ class TestAsked:
             ({"region": "north"}, "either a region of the site or a polygon"),
             ({"speed_mps": 14.0}, "fly at"),
             ({"height_above_takeoff_m": 9_000.0}, "height"),
+            ({"height_above_takeoff_m": None}, "give one height: either"),
+            ({"height_above_ground_m": 40.0}, "give one height: either"),
+            (
+                {"height_above_takeoff_m": None, "height_above_ground_m": 40.0},
+                "needs the site's elevation model",
+            ),
             ({"planner": "best"}, "Unknown planner best"),
         ],
     )

@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from shapely.geometry import shape  # type: ignore[import-untyped, unused-ignore]
+from tests.site.terrain import geotiff, load, plane
 from typer.testing import CliRunner
 
 from recon.cli.commands import app
@@ -71,6 +72,44 @@ def test_a_field_is_planned_by_pixel_size(field: Path) -> None:
     assert found["front_overlap"] >= 0.7
     assert found["side_overlap"] >= 0.6
     assert found["warnings"] == []
+
+
+NEAR_THE_SLOPE = ((-280, 100), (-130, 100), (-130, 200), (-280, 200))
+"""150 x 100 m at the origin of the site with the slope."""
+
+
+@pytest.fixture
+def sloping(tmp_path: Path) -> Path:
+    """A site whose ground rises by 2 % eastwards and falls by 3 % northwards."""
+    folder = tmp_path / "sloping"
+    folder.mkdir()
+    load(folder, geotiff(plane))
+    return folder
+
+
+def test_above_ground_follows_the_sites_elevation_model(tmp_path: Path, sloping: Path) -> None:
+    field = written(tmp_path, *NEAR_THE_SLOPE)
+    code, out = recon(field, "--site", sloping, "--height", 40, "--above-ground")
+    assert code == 0, out
+    assert "height  40 m above ground" in out
+    assert "height above ground  40 m over the region" in out
+    found = figures(field, "--site", sloping, "--height", 40, "--above-ground")
+    assert (found["height_above_takeoff_m"], found["height_above_ground_m"]) == (None, 40.0)
+
+
+def test_above_takeoff_it_states_the_range_above_ground(tmp_path: Path, sloping: Path) -> None:
+    """Without pads the takeoff is at the south-west corner."""
+    field = written(tmp_path, *NEAR_THE_SLOPE)
+    _, out = recon(field, "--site", sloping, "--height", 40)
+    assert "height  40 m above takeoff" in out
+    assert "height above ground  37 to 43 m over the region" in out
+
+
+def test_above_ground_without_an_elevation_model_is_one_sentence(field: Path) -> None:
+    code, out = recon(field, "--height", 40, "--above-ground")
+    assert code == 2
+    assert "--above-ground needs the ground's heights" in out
+    assert "height above ground" not in recon(field, "--height", 40)[1]
 
 
 def test_more_drones_take_less_time_and_as_many_photos_but_for_cut_rows(field: Path) -> None:

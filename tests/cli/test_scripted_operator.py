@@ -83,7 +83,8 @@ class FakeStation:
 
 def _status(number: int) -> SurveyStatus:
     return SurveyStatus(
-        number, "small", "created", "", "", "hover", False, False, 0, 0, 0.0, 1, (), None
+        *(number, "small", "created", "", "", "hover", False, False, 40.0, None),
+        *(0, 0, 0.0, 1, (), None),
     )
 
 

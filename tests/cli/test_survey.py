@@ -55,6 +55,15 @@ class TestCreate:
         assert f"recon survey start {number} VEHICLE" in result.out
         assert not any(v["is_flying"]["value"] for v in station.get("/api/vehicles"))
 
+    def test_a_height_above_ground_is_planned_and_shown(self, station: StationProcess) -> None:
+        result = station.recon("survey", "create", "west field", *FLOWN, "--above-ground")
+        assert result.code == 0, result.out
+        assert "40 m above ground" in result.out
+        newest = station.recon("survey", "status", "--json").json[0]
+        assert (newest["height_above_takeoff_m"], newest["height_above_ground_m"]) == (None, 40.0)
+        estimate = station.recon("survey", "estimate", newest["id"]).out
+        assert "height above ground  40 m over the region" in estimate
+
     def test_what_it_takes_is_printed_before_a_start(self, station: StationProcess) -> None:
         created = station.recon("survey", "create", "west field", *FLOWN, "--camera", "mini3pro")
         number = created.out.split(":")[0].split()[1]

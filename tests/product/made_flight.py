@@ -172,6 +172,7 @@ def write_record(
             each.speed_mps,
             each.camera,
             row_bearing_deg=each.row_bearing_deg,
+            height_above_ground_m=each.height_above_ground_m,
         )
         step(SurveyRequested(survey, "test"), START_NS)
         for at_ns, serials in each.starts:

@@ -5,11 +5,13 @@ from dataclasses import dataclass, field, replace
 from itertools import combinations
 from math import hypot
 
+import numpy as np
 from tests.ready import ready_airspace, ready_profile, ready_site
 from tests.station.station_world import HOME, World
 
 from recon.geo import point_from_enu
-from recon.model.airspace import FlightLimits, LandingPad, Zone
+from recon.guidance.survey.terrain import ground_up_m
+from recon.model.airspace import ElevationModel, FlightLimits, LandingPad, Zone
 from recon.model.command import Phase
 from recon.model.event import FleetReturnOrdered
 from recon.model.geo import GeoPoint, LocalFrame
@@ -42,6 +44,7 @@ class ReturningWorld:
 
     world: World
     pads_m: dict[str, tuple[float, float]]
+    pads_up_m: dict[str, float]
     nearest: Nearest = field(default_factory=Nearest)
     heights_m: dict[str, list[tuple[float, float, float]]] = field(default_factory=dict)
     """Of each vehicle: time, height over the site, distance to its pad."""
@@ -74,7 +77,8 @@ class ReturningWorld:
     def place_m(self, serial: str) -> tuple[float, float, float]:
         """Where it truly is, east, north, up of the site."""
         motion, pad = self.world.app(serial).aircraft.motion, self.pads_m[serial]
-        return pad[0] + motion.east_m, pad[1] + motion.north_m, motion.height_m
+        up_m = self.pads_up_m[serial] + motion.height_m
+        return pad[0] + motion.east_m, pad[1] + motion.north_m, up_m
 
     def put(self, serial: str, place_m: tuple[float, float, float]) -> None:
         """Have it hover somewhere else, as if its pilot had flown it there meanwhile."""
@@ -82,7 +86,7 @@ class ReturningWorld:
         aircraft.motion = aircraft.motion._replace(
             east_m=place_m[0] - pad[0],
             north_m=place_m[1] - pad[1],
-            height_m=place_m[2],
+            height_m=place_m[2] - self.pads_up_m[serial],
         )
 
     def flies(self, serial: str) -> bool:
@@ -132,11 +136,13 @@ def returning_world(
     knows_pads: bool = True,
     plans: bool = True,
     plan_takes_s: float = 0.05,
+    elevation: ElevationModel | None = None,
     **profile: object,
 ) -> ReturningWorld:
-    """Return a fleet that hovers at (east, north, up) places, each with its pad.
+    """Return a fleet that hovers at (east, north, height above its pad), each with its pad.
 
-    Pads may be the same place for several vehicles. `go_home_height_m` is set in all aircraft.
+    With an elevation model pads lie on its ground. Pads may be the same place for several vehicles.
+    `go_home_height_m` is set in all aircraft.
     `profile` changes the profile of every vehicle.
     """
     serials = [f"SIM-{number}" for number in range(1, len(places_m) + 1)]
@@ -144,8 +150,10 @@ def returning_world(
         serial: point_from_enu(FRAME, (*pad, 0.0))
         for serial, pad in zip(serials, pads_m, strict=True)
     }
+    grounds_m = np.zeros(len(serials)) if elevation is None else ground_up_m(elevation, pads_m)
+    pads_up_m = dict(zip(serials, grounds_m.tolist(), strict=True))
     points = {
-        s: GeoPoint(p.latitude_deg, p.longitude_deg, HOME.ellipsoid_height_m)
+        s: GeoPoint(p.latitude_deg, p.longitude_deg, HOME.ellipsoid_height_m + pads_up_m[s])
         for s, p in points.items()
     }
     config = SimulationConfig(
@@ -183,6 +191,7 @@ def returning_world(
         HOME,
         limits=FlightLimits(max_height_above_ground_m=max_height_m),
         zones=zones,
+        elevation=elevation,
         landing_pads=tuple(
             LandingPad(f"pad {s[-1]}", s, p) for s, p in points.items() if knows_pads
         ),
@@ -195,6 +204,6 @@ def returning_world(
     world = World(driver)
     for app in apps:
         world.connect(app)
-    made = ReturningWorld(world, dict(zip(serials, map(tuple, pads_m), strict=True)))
+    made = ReturningWorld(world, dict(zip(serials, map(tuple, pads_m), strict=True)), pads_up_m)
     made.runs(3.0)
     return made

@@ -2,8 +2,9 @@
 
 import re
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from math import isfinite, nan
 from pathlib import Path
 from typing import Annotated
 
@@ -15,7 +16,13 @@ from recon.cli.plan_output import ImagingFigures, figures_of, geojson_of, plan_r
 from recon.cli.plan_picture import Theme, picture_png
 from recon.cli.region_file import file_origin, region_in
 from recon.cli.site import opened_site
-from recon.cli.survey import BearingOption, FeatureOption, FrontOption, SideOption
+from recon.cli.survey import (
+    AboveGroundOption,
+    BearingOption,
+    FeatureOption,
+    FrontOption,
+    SideOption,
+)
 from recon.geo import enu_from_points
 from recon.guidance.survey import Surveyor, SurveyPlan, plan_survey, surroundings_of
 from recon.guidance.survey.estimate import Batteries, SurveyEstimate, corner_of, estimate
@@ -26,6 +33,7 @@ from recon.guidance.survey.imaging import (
     speed_limits,
 )
 from recon.guidance.survey.plan import SLOWEST_MPS, survey_fault
+from recon.guidance.survey.terrain import ground_up_m
 from recon.model.airspace import Region
 from recon.model.command import Refusal
 from recon.model.errors import ReconError
@@ -43,6 +51,12 @@ from recon.site.survey_cameras import read_cameras_file
 MOST_DRONES = 16
 ENDURANCE_MIN = 25.0
 SPEED_STEP_MPS = 0.1
+
+
+NO_ELEVATION = (
+    "--above-ground needs the ground's heights: name a site by --site whose site.toml has an "
+    "elevation model under [elevation], or leave --above-ground out for heights above takeoff"
+)
 
 
 class PlanError(ReconError):
@@ -65,6 +79,7 @@ def plan_command(
     height: Annotated[
         float | None, typer.Option("--height", help="Metres above takeoff, instead of --gsd.")
     ] = None,
+    above_ground: AboveGroundOption = False,
     feature: FeatureOption = None,
     drones: Annotated[
         int, typer.Option("--drones", min=1, max=MOST_DRONES, help="How many fly.")
@@ -133,10 +148,15 @@ def plan_command(
         lens = model.at_interval(model.timer_s[0] if interval is None else interval)
         height_m = _height_m(model, gsd, height)
         draft = Survey(1, name, area, height_m, SLOWEST_MPS, lens, front, side, bearing)
+        if above_ground:
+            if home.airspace.elevation is None:
+                raise PlanError(NO_ELEVATION)
+            draft = replace(draft, height_above_takeoff_m=None, height_above_ground_m=height_m)
         imaging = _imaging(draft, model, interval, _exposure_s(exposure), home)
         plan = _plan(draft, imaging, speed, frame, home)
-        needs, uses = _needs(plan, home, drones, endurance)
-        figures = figures_of(plan, needs, imaging, uses.endurance_s, hourly)
+        fleet = _fleet(plan, home, drones)
+        needs, uses = _needs(plan, home, fleet, endurance)
+        figures = figures_of(plan, fleet, needs, imaging, uses.endurance_s, hourly)
         figures["warnings"] += _too_few(needs.batteries, batteries)
         if as_json:
             print_json(figures)
@@ -180,12 +200,13 @@ def _imaging(
     fault = survey_fault(draft)
     if fault is not None:
         raise RefusedPlanError(f"refused: {fault}")
-    known = (draft.height_above_takeoff_m, draft.front_overlap, exposure_s)
-    fastest_mps = site.limits.max_speed_mps
+    known = (draft.height_m, draft.front_overlap, exposure_s)
+    fastest_mps, stops = site.limits.max_speed_mps, draft.is_above_ground
     if interval_s is None:
-        interval_s = best_interval_s(model, *known, fastest_mps)
+        interval_s = best_interval_s(model, *known, fastest_mps, stops_in_rows=stops)
     lens = model.at_interval(interval_s)
-    return ImagingFigures(model, lens, speed_limits(lens, *known, fastest_mps), exposure_s)
+    limits = speed_limits(lens, *known, fastest_mps, stops_in_rows=stops)
+    return ImagingFigures(model, lens, limits, exposure_s)
 
 
 def _plan(
@@ -249,22 +270,32 @@ def _exposure_s(text: str) -> float:
     return value
 
 
-def _needs(
-    plan: SurveyPlan, site: Site, drones: int, endurance_min: float | None
-) -> tuple[SurveyEstimate, Consumption]:
-    """Return the estimate of drones that begin with full batteries on their pads.
+def _fleet(plan: SurveyPlan, site: Site, drones: int) -> list[Surveyor]:
+    """Return drones on their pads; without pads all take off at the region's south-west corner."""
+    pads_m = takeoff_points_m(site)[:drones]
+    east_m, north_m = corner_of(plan)
+    elevation = site.airspace.elevation
+    ground_m = nan if elevation is None else ground_up_m(elevation, [(east_m, north_m)])[0]
+    points_m = (*pads_m, *([(east_m, north_m, float(ground_m))] * (drones - len(pads_m))))
+    return [
+        Surveyor(
+            f"drone {number}",
+            (east_m, north_m),
+            home_m=(east_m, north_m),
+            takeoff_up_m=up_m if isfinite(up_m) else None,
+        )
+        for number, (east_m, north_m, up_m) in enumerate(points_m, start=1)
+    ]
 
-    Without pads all take off at the region's south-west corner.
-    """
-    pads_m = takeoff_places_m(site)[:drones]
-    places_m = (*pads_m, *([corner_of(plan)] * (drones - len(pads_m))))
-    height_m = plan.survey.height_above_takeoff_m
+
+def _needs(
+    plan: SurveyPlan, site: Site, drones: Sequence[Surveyor], endurance_min: float | None
+) -> tuple[SurveyEstimate, Consumption]:
+    """Return the estimate of drones that begin with full batteries where they stand."""
+    height_m = plan.survey.height_m
     uses = least_enduring(site, endurance_min, height_m)
     level_s = uses.level_flight_s(1.0, height_m, site.limits.battery_reserve_fraction)
-    fleet = [
-        Surveyor(f"drone {number}", place_m, time_left_s=level_s, home_m=place_m)
-        for number, place_m in enumerate(places_m, start=1)
-    ]
+    fleet = [replace(drone, time_left_s=level_s) for drone in drones]
     made = estimate(plan, fleet, Batteries(level_s, landing_s=uses.settings.landing_s(height_m)))
     if isinstance(made, Refusal):
         raise RefusedPlanError(f"refused: {made.reason}")
@@ -280,8 +311,8 @@ def _too_few(needed: int | None, there: int | None) -> list[str]:
     ]
 
 
-def takeoff_places_m(site: Site) -> tuple[tuple[float, float], ...]:
-    """Return the pads of a site's drones but the imaging ones, east-north metres."""
+def takeoff_points_m(site: Site) -> tuple[tuple[float, float, float], ...]:
+    """Return the pads of a site's drones but the imaging ones, east, north and up in metres."""
     if site.frame is None:
         return ()
     pads = [
@@ -289,7 +320,12 @@ def takeoff_places_m(site: Site) -> tuple[tuple[float, float], ...]:
         for serial, profile in site.profiles.items()
         if profile.pad is not None and serial not in site.imagers
     ]
-    return tuple((float(e), float(n)) for e, n, _ in enu_from_points(site.frame, pads))
+    origin_m = site.frame.origin.ellipsoid_height_m
+    enu_m = enu_from_points(site.frame, pads).tolist()
+    return tuple(
+        (east_m, north_m, pad.ellipsoid_height_m - origin_m)
+        for (east_m, north_m, _), pad in zip(enu_m, pads, strict=True)
+    )
 
 
 def least_enduring(site: Site, endurance_min: float | None, height_m: float) -> Consumption:

@@ -8,12 +8,12 @@ from typing import Any
 import shapely  # type: ignore[import-untyped, unused-ignore]
 
 from recon.geo import geojson_geometry, shape_of
-from recon.guidance.survey import SurveyPlan
+from recon.guidance.survey import Surveyor, SurveyPlan
 from recon.guidance.survey.estimate import PlannedFlight, SurveyEstimate, plan_figures
 from recon.guidance.survey.imaging import SpeedLimit, exposure_text
 from recon.guidance.survey.missions import NADIR_DEG
 from recon.guidance.survey.route import Place
-from recon.model.survey import SurveyCamera
+from recon.model.survey import SurveyCamera, height_text
 from recon.model.survey_camera import CameraModel
 
 HECTARE_M2 = 10_000.0
@@ -32,6 +32,7 @@ class ImagingFigures:
 
 def figures_of(
     plan: SurveyPlan,
+    fleet: Sequence[Surveyor],
     needs: SurveyEstimate,
     imaging: ImagingFigures,
     endurance_s: float,
@@ -39,14 +40,15 @@ def figures_of(
 ) -> dict[str, Any]:
     """Return everything that a plan states, in SI units; `warnings` are sentences."""
     survey, lens = plan.survey, plan.survey.camera
-    height_m = survey.height_above_takeoff_m
+    height_m = survey.height_m
     return {
-        **asdict(plan_figures(plan, needs, imaging.limits[0], imaging.exposure_s)),
+        **asdict(plan_figures(plan, fleet, needs, imaging.limits[0], imaging.exposure_s)),
         "title": survey.name,
         "camera": imaging.model.title,
         "camera_source": imaging.model.source,
         "shutter": imaging.model.shutter,
-        "height_above_takeoff_m": height_m,
+        "height_above_takeoff_m": survey.height_above_takeoff_m,
+        "height_above_ground_m": survey.height_above_ground_m,
         "footprint_m": [lens.across_m(height_m), lens.along_m(height_m)],
         "front_overlap": 1.0 - plan.swath.photo_m / lens.along_m(height_m),
         "side_overlap": 1.0 - plan.lattice.spacing_m / lens.across_m(height_m),
@@ -93,6 +95,7 @@ def rows_of(
         ("speed limit", f"{figures['speed_limit_mps']:.1f} m/s: {figures['speed_limited_by']}"),
         ("rows", f"{figures['rows']}"),
         *flown,
+        *_above_ground(figures),
         ("photos", f"{figures['photos']} on rows, {figures['photos_in_all']} by the timer in all"),
         ("time", minutes(figures["time_s"])),
         ("in the air", f"{minutes(figures['flown_s'])}, all drones together"),
@@ -109,6 +112,16 @@ def rows_of(
     ]
 
 
+def _above_ground(figures: dict[str, Any]) -> list[tuple[str, str]]:
+    """How high rows are above the ground over the region, where that is known."""
+    least_m, most_m = (figures[f"{which}_height_above_ground_m"] for which in ("least", "most"))
+    if least_m is None or most_m is None:
+        return []
+    least, most = f"{least_m:.0f}", f"{most_m:.0f}"
+    range_m = least if least == most else f"{least} to {most}"
+    return [("height above ground", f"{range_m} m over the region")]
+
+
 def plan_rows_of(figures: dict[str, Any]) -> list[tuple[str, str]]:
     """Return everything that a plan states as rows of a table."""
     across_m, along_m = figures["footprint_m"]
@@ -120,7 +133,10 @@ def plan_rows_of(figures: dict[str, Any]) -> list[tuple[str, str]]:
         ),
         ("length of rows", f"{figures['rows_m'] / 1000.0:.2f} km"),
         ("camera", f"{figures['camera']}, {figures['shutter']} shutter"),
-        ("height", f"{figures['height_above_takeoff_m']:g} m above takeoff"),
+        (
+            "height",
+            height_text(figures["height_above_takeoff_m"], figures["height_above_ground_m"]),
+        ),
         ("speed", f"{figures['speed_mps']:.1f} m/s"),
         ("photo", f"{across_m:.1f} x {along_m:.1f} m, straight down"),
         ("photo every", f"{figures['interval_s']:g} s (set the camera's timer)"),
@@ -169,7 +185,7 @@ def row_ends_m(plan: SurveyPlan, flight: PlannedFlight) -> list[tuple[Place, ...
 def footprints_m(plan: SurveyPlan) -> shapely.Geometry:
     """Return the ground that is on photos of the rows, at the least."""
     lattice, lens = plan.lattice, plan.survey.camera
-    height_m = plan.survey.height_above_takeoff_m
+    height_m = plan.survey.height_m
     half_across_m, half_along_m = lens.across_m(height_m) / 2.0, lens.along_m(height_m) / 2.0
     # The first and the last photo may lie a whole photo distance inside a row's ends.
     beyond_m = plan.swath.lead_m - plan.swath.photo_m + half_along_m

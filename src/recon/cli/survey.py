@@ -23,7 +23,7 @@ from recon.cli.connection import (
 from recon.cli.output import print_json, print_line, print_table
 from recon.client import ClientError, Refusal, Station, SurveyCommands, SurveyStatus
 from recon.model.geo import GeoPoint
-from recon.model.survey import PLANNER_GOALS, WhenDone, unknown_survey
+from recon.model.survey import PLANNER_GOALS, WhenDone, height_text, unknown_survey
 
 HECTARE_M2 = 10_000.0
 PHASES = {"created": "planned"}
@@ -47,6 +47,13 @@ BearingOption = Annotated[
     float | None,
     typer.Option("--bearing", help="Of the rows, degrees; default: the fewest turns."),
 ]
+AboveGroundOption = Annotated[
+    bool,
+    typer.Option(
+        "--above-ground",
+        help="The height is above the ground of the site's elevation model, not above takeoff.",
+    ),
+]
 
 
 class SurveyNumberError(ClientError):
@@ -61,7 +68,10 @@ def create_command(
             metavar="REGION", help="Name of a survey region of the site, or a GeoJSON file."
         ),
     ],
-    height: Annotated[float, typer.Option("--height", help="Metres above takeoff.")],
+    height: Annotated[
+        float, typer.Option("--height", help="Metres above takeoff, or above ground.")
+    ],
+    above_ground: AboveGroundOption = False,
     speed: Annotated[float, typer.Option("--speed", help="Metres per second.")] = 5.0,
     feature: FeatureOption = None,
     name: Annotated[str | None, typer.Option("--name", help="Name of the survey.")] = None,
@@ -112,7 +122,7 @@ def create_command(
     Nothing flies yet: `recon survey start` starts it.
     """
     settings: dict[str, Any] = {
-        "height_above_takeoff_m": height,
+        "height_above_ground_m" if above_ground else "height_above_takeoff_m": height,
         "speed_mps": speed,
         "planner": planner,
         "front_overlap": front,
@@ -301,13 +311,14 @@ def _print_surveys(surveys: list[SurveyStatus]) -> None:
             s.name,
             PHASES.get(s.phase, s.phase),
             f"{s.rows} rows",
+            height_text(s.height_above_takeoff_m, s.height_above_ground_m),
             *_areas(s),
             s.reason,
         )
         for s in surveys
     ]
     columns = (
-        *("number", "name", "phase", "rows", "region"),
+        *("number", "name", "phase", "rows", "height", "region"),
         *("not yet", "light unknown", "in shade", "in sun", "reason"),
     )
     print_table("surveys", columns, rows)

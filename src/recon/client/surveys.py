@@ -52,6 +52,8 @@ class SurveyStatus(msgspec.Struct, frozen=True):
     when_done: WhenDoneName
     look_aside_allowed: bool
     upwind_allowed: bool
+    height_above_takeoff_m: float | None
+    height_above_ground_m: float | None
     round: int
     missions: int
     flown_m: float
@@ -80,6 +82,8 @@ class SurveyPreview(msgspec.Struct, frozen=True):
     refusal: str | None
     region_m2: float
     reached_m2: float
+    least_height_above_ground_m: float | None
+    most_height_above_ground_m: float | None
     rows: int
     gsd_m: float | None
     blur_px: float
@@ -124,18 +128,20 @@ class SurveyCommands:
         *,
         region: str | None = None,
         polygon: Sequence[Sequence[Sequence[float]]] | None = None,
-        height_above_takeoff_m: float,
+        height_above_takeoff_m: float | None = None,
+        height_above_ground_m: float | None = None,
         speed_mps: float,
         **more: Any,
     ) -> SurveyStatus | Refusal:
         """Plan a survey of a site region, or of a GeoJSON polygon's rings. Nothing moves.
 
-        `more` are further fields of the API's `SurveyRequest`.
+        Exactly one height is given. `more` are further fields of the API's `SurveyRequest`.
         """
         request = {
             "region": region,
             "polygon": polygon,
             "height_above_takeoff_m": height_above_takeoff_m,
+            "height_above_ground_m": height_above_ground_m,
             "speed_mps": speed_mps,
             **more,
         }

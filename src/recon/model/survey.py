@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import Enum, IntEnum
-from math import radians, tan
+from math import nan, radians, tan
 from types import MappingProxyType
 
 from recon.model.airspace import Region
@@ -65,14 +65,15 @@ class WhenDone(Enum):
 class Survey:
     """A survey request; `region` is in east-north metres of the site's local frame.
 
-    The height is above each vehicle's own takeoff point; footprints are worked out as if the
-    ground lay as low as that point everywhere.
+    Exactly one height is given. Above each vehicle's own takeoff point, footprints are worked out
+    as if the ground lay as low as that point everywhere; above the ground, rows follow the site's
+    elevation model.
     """
 
     id: int
     name: str
     region: Region
-    height_above_takeoff_m: float
+    height_above_takeoff_m: float | None
     speed_mps: float
     camera: SurveyCamera = SurveyCamera()
     front_overlap: float = 0.7
@@ -93,6 +94,35 @@ class Survey:
     """Whether the imaging drone may look aside by itself while light is mostly unknown."""
     upwind_allowed: bool = False
     """Whether the imaging drone may fly by itself to where it sees more of the shade to come."""
+    height_above_ground_m: float | None = None
+
+    @property
+    def height_m(self) -> float:
+        """The height that is given, above the ground or above takeoff; NaN without any."""
+        above_takeoff_m, above_ground_m = self.height_above_takeoff_m, self.height_above_ground_m
+        given_m = above_takeoff_m if above_ground_m is None else above_ground_m
+        return nan if given_m is None else given_m
+
+    @property
+    def is_above_ground(self) -> bool:
+        """Whether its height is above the ground under the aircraft, not above takeoff."""
+        return self.height_above_ground_m is not None
+
+    @property
+    def height_text(self) -> str:
+        """Its height with its reference, for operators."""
+        return height_text(self.height_above_takeoff_m, self.height_above_ground_m)
+
+
+def height_text(height_above_takeoff_m: float | None, height_above_ground_m: float | None) -> str:
+    """Return a survey's height with its reference, for operators; one of them is given."""
+    if height_above_ground_m is not None:
+        return f"{height_above_ground_m:g} m above ground"
+    return (
+        "no height"
+        if height_above_takeoff_m is None
+        else f"{height_above_takeoff_m:g} m above takeoff"
+    )
 
 
 class SurveyPhase(Enum):

@@ -39,7 +39,7 @@ def kml(flight: FlightData) -> bytes:
 
 
 def _survey_placemark(flight: FlightData, survey: FlownSurvey) -> str:
-    about = f"{survey.height_above_takeoff_m:g} m above takeoff, {survey.speed_mps:g} m/s"
+    about = f"{survey.request().height_text}, {survey.speed_mps:g} m/s"
     outer, *holes = (
         _coordinates(flight, np.array([*ring, ring[0]]))
         for ring in (survey.outline_m, *survey.holes_m)

@@ -86,7 +86,8 @@ class FlownSurvey:
 
     outline_m: tuple[tuple[float, float], ...]
     holes_m: tuple[tuple[tuple[float, float], ...], ...]
-    height_above_takeoff_m: float
+    height_above_takeoff_m: float | None
+    """None: it was above ground."""
     speed_mps: float
     name: str = ""
     camera: SurveyCamera = field(default_factory=SurveyCamera)
@@ -94,6 +95,7 @@ class FlownSurvey:
     row_bearing_deg: float | None = None
     starts: tuple[tuple[int, frozenset[str]], ...] = ()
     """Each start in this record, in order: its time, and the serials it names."""
+    height_above_ground_m: float | None = None
 
     def request(self) -> Survey:
         """Return it as guidance plans it."""
@@ -106,6 +108,7 @@ class FlownSurvey:
             self.camera,
             side_overlap=self.side_overlap,
             row_bearing_deg=self.row_bearing_deg,
+            height_above_ground_m=self.height_above_ground_m,
         )
 
 
@@ -160,6 +163,16 @@ class FlightData:
                 starts, pairwise([*cuts, len(track.at_ns)]), strict=True
             )
         ]
+
+    def survey_at(self, track: RecordedTrack, at_ns: int) -> FlownSurvey | None:
+        """Return the survey that a track's vehicle was last started for by then."""
+        before = [
+            (start_ns, number)
+            for number, each in enumerate(self.surveys)
+            for start_ns, serials in each.starts
+            if track.serial in serials and start_ns <= at_ns
+        ]
+        return self.surveys[max(before)[1]] if before else None
 
     @property
     def survey_tracks(self) -> dict[str, RecordedTrack]:
@@ -404,13 +417,18 @@ def _survey(value: Mapping[str, Any]) -> FlownSurvey:
     return FlownSurvey(
         _ring(region["outline_m"]),
         tuple(_ring(hole) for hole in region["holes_m"]),
-        float(value["height_above_takeoff_m"]),
+        _number(value["height_above_takeoff_m"]),
         float(value["speed_mps"]),
         str(value.get("name", "")),
         _camera(value.get("camera")),
         float(value.get("side_overlap", 0.6)),
-        None if value.get("row_bearing_deg") is None else float(value["row_bearing_deg"]),
+        _number(value.get("row_bearing_deg")),
+        height_above_ground_m=_number(value.get("height_above_ground_m")),
     )
+
+
+def _number(value: Any) -> float | None:
+    return None if value is None else float(value)
 
 
 def _camera(value: Mapping[str, Any] | None) -> SurveyCamera:

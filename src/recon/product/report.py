@@ -19,12 +19,13 @@ import shapely  # type: ignore[import-untyped, unused-ignore]
 from shapely import affinity
 
 from recon.geo import cell_centres_m
-from recon.guidance.survey import PositionSample, SurveySettings
+from recon.guidance.survey import SurveySettings
 from recon.guidance.survey.lattice import axes
 from recon.guidance.survey.plan import row_bearing_deg, survey_fault
 from recon.guidance.survey.progress import is_photographed
 from recon.model.errors import RecordError
 from recon.model.severity import Severity
+from recon.model.survey import Survey
 from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.product.coverage import ENOUGH_VIEWS, region_of
 from recon.product.flight import UNKNOWN, FlightData, FlownSurvey, IntArray, RecordedTrack
@@ -201,18 +202,21 @@ def _estimated_part(
     for a, b in pairwise(_thinned(track.at_ns, part, seconds_to_ns(settings.least_step_s))):
         begin_ns, end_ns = int(track.at_ns[a]), int(track.at_ns[b])
         along_m, across_m = ((values[b, :2] - values[a, :2]) @ turn).tolist()
-        ends = (
-            PositionSample(begin_ns, *values[a].tolist()),
-            PositionSample(end_ns, *values[b].tolist()),
-        )
-        if not is_photographed(request, settings, ends, (along_m, across_m)):
+        # What the height above ground was is not known here: such a survey's is taken as flown.
+        off_m = 0.0 if request.is_above_ground else _off_height_m(request, values[[a, b], 2])
+        if not is_photographed(request, settings, (begin_ns, end_ns), (along_m, across_m), off_m):
             continue
         yaw_deg = float(track.yaw_deg[b])
         for at_ns in range(-(-begin_ns // every_ns) * every_ns, end_ns, every_ns):
             share = (at_ns - begin_ns) / (end_ns - begin_ns)
             east_m, north_m, height_m = (values[a] + share * (values[b] - values[a])).tolist()
+            height_m = request.height_m if request.is_above_ground else height_m
             if isfinite(yaw_deg):
                 yield at_ns, _footprint(survey, east_m, north_m, height_m, yaw_deg)
+
+
+def _off_height_m(request: Survey, heights_m: npt.NDArray[np.float64]) -> float:
+    return float(np.abs(heights_m - request.height_m).max())
 
 
 def _thinned(at_ns: IntArray, part: slice, least_ns: int) -> Iterator[int]:

@@ -131,7 +131,7 @@ def _alarm(flight: FlightData, each: AlarmSpan) -> dict[str, str]:
 def _facts(report: FlightReport, settings: dict[str, str]) -> Sequence[tuple[str, str]]:
     about, flight, rows = report.log.about, report.flight, list[tuple[str, str]]()
     for each in flight.surveys:
-        text = f"{each.height_above_takeoff_m:g} m above takeoff, {each.speed_mps:g} m/s"
+        text = f"{each.request().height_text}, {each.speed_mps:g} m/s"
         rows.append((f"Survey {each.name}".rstrip(), text))
     if report.photo_states:
         counts = (f"{report.photo_states.get(s, 0)} {s}" for s in STATES)

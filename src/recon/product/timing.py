@@ -56,6 +56,7 @@ class TimedPhoto:
     """Station time."""
     sigma_s: float
     view: PhotoView
+    height_above_takeoff_m: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,7 +155,10 @@ def _add_fit(
     ):
         photo = group[index]
         place = (float(shots.east_m[index]), float(shots.north_m[index]))
-        timed = _timed(photo, fit, int(moment), place, (height_m, yaw_deg), stated)
+        flown = flight.survey_at(track, int(moment))
+        above_ground_m = None if flown is None else flown.height_above_ground_m
+        pose = height_m, above_ground_m, yaw_deg
+        timed = _timed(photo, fit, int(moment), place, pose, stated)
         if isinstance(timed, str):
             found.refused[photo.name] = timed
         else:
@@ -185,11 +189,15 @@ def _timed(
     fit: ClockFit,
     at_ns: int,
     place_m: tuple[float, float],
-    recorded: tuple[float, float],
+    recorded: tuple[float, float | None, float],
     stated: StatedCamera,
 ) -> TimedPhoto | str:
-    """Return a photo's time and pose, or why it has none."""
-    height_m, yaw_deg = recorded
+    """Return a photo's time and pose, or why it has none.
+
+    `recorded` is its height above takeoff, that above the ground of a survey that followed it, and
+    its heading.
+    """
+    height_m, above_ground_m, yaw_deg = recorded
     if photo.height_above_takeoff_m is not None:
         height_m = photo.height_above_takeoff_m
     pitch_deg = -90.0
@@ -200,15 +208,17 @@ def _timed(
         return "EXIF states no focal length: give the camera's field of view with --field"
     if not np.isfinite(height_m):
         return "neither the photo nor the record states its height above takeoff"
-    if height_m < LOWEST_M:
+    # In a survey above ground a drone may fly below its takeoff point.
+    if (height_m if above_ground_m is None else abs(height_m)) < LOWEST_M:
         return f"taken {height_m:.1f} m above takeoff, below {LOWEST_M:g} m: a photo on the ground"
     if not np.isfinite(yaw_deg):
         return "neither the photo nor the record states its heading"
     if pitch_deg > LOWEST_PITCH_DEG:
         return f"the camera looked {pitch_deg:.0f} degrees up or down: not at the ground below"
-    aim = Aim(*place_m, height_m, yaw_deg, pitch_deg)
+    over_m = height_m if above_ground_m is None else above_ground_m
+    aim = Aim(*place_m, over_m, yaw_deg, pitch_deg)
     view = PhotoView(aim, across_deg, photo.cols, photo.rows)
-    return TimedPhoto(photo, fit.serial, at_ns, fit.sigma_s, view)
+    return TimedPhoto(photo, fit.serial, at_ns, fit.sigma_s, view, height_m)
 
 
 def _warn_about_clocks(found: Timed, flight: FlightData, stated: StatedCamera) -> None:

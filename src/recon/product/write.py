@@ -86,7 +86,7 @@ def xmp(flight: FlightData, timed: TimedPhoto, tag: PhotoTag, share: float) -> s
         "recon:SunlitConfidence": _share(tag.confidence),
         "recon:KnownFraction": _share(tag.known),
         "recon:State": state,
-        "recon:HeightAboveTakeoff": f"{timed.view.aim.height_m:.1f}",
+        "recon:HeightAboveTakeoff": f"{timed.height_above_takeoff_m:.1f}",
         "recon:FlightRecord": flight.path.name,
     }
     lines = "\n".join(f"   {name}={quoteattr(value)}" for name, value in values.items() if value)
@@ -142,7 +142,8 @@ def table(
             (
                 *(_cell(name), _cell(str(timed.photo.path)), _cell(timed.serial)),
                 *(flight.utc(timed.at_ns), f"{timed.sigma_s:.2f}"),
-                *(f"{latitude_deg:.8f}", f"{longitude_deg:.8f}", f"{aim.height_m:.1f}"),
+                *(f"{latitude_deg:.8f}", f"{longitude_deg:.8f}"),
+                f"{timed.height_above_takeoff_m:.1f}",
                 *(f"{aim.yaw_deg:.1f}", f"{aim.pitch_deg:.1f}"),
                 *(_share(tag.sunlit), _share(tag.confidence), _share(tag.known)),
                 *(tag.state(share), "yes" if name in kept else "no", _wkt(flight, timed), ""),
@@ -172,8 +173,10 @@ def fly_again(flight: FlightData, selection: Selection) -> str:
             "area_m2": round(polygon.area),
         }
         if flight.surveys:
-            properties["height_above_takeoff_m"] = flight.surveys[-1].height_above_takeoff_m
-            properties["speed_mps"] = flight.surveys[-1].speed_mps
+            newest = flight.surveys[-1]
+            reference = "ground" if newest.request().is_above_ground else "takeoff"
+            properties[f"height_above_{reference}_m"] = newest.request().height_m
+            properties["speed_mps"] = newest.speed_mps
         geometry = {"type": "Polygon", "coordinates": _rings(polygon, flight)}
         features.append({"type": "Feature", "properties": properties, "geometry": geometry})
     return json.dumps({"type": "FeatureCollection", "features": features}) + "\n"

@@ -86,7 +86,7 @@ def imaged(photos: Sequence[Photos], plan: SurveyPlan, sky: Sky) -> Imaged:
 def _shown(photos: Photos, plan: SurveyPlan) -> tuple[IntArray, IntArray]:
     """Return pairs (N,): a photo's index, and the flat index of a cell of the region on it."""
     survey, cells = plan.survey, plan.cells
-    half_along_m = survey.camera.along_m(survey.height_above_takeoff_m) / 2.0
+    half_along_m = survey.camera.along_m(survey.height_m) / 2.0
     half_across_m = plan.counted_swath.half_across_m
     lying = plan.lattice.along_across_m(photos.places_m)
     reach = ceil(np.hypot(half_along_m, half_across_m) / cells.grid.cell_m) + 1
@@ -180,10 +180,16 @@ def photos_on_rows(path: TruePath, phase_s: float, plan: SurveyPlan) -> Photos:
     )
     along_m, across_m = np.abs(lying).T
     is_fast = np.hypot(*moved.T) >= 2.0 * COURSE_OVER_S * SLOWEST_ON_ROW_MPS
-    height_m = places[:, 2] - path.home_m[2]
-    is_level = np.abs(height_m - plan.survey.height_above_takeoff_m) <= AT_HEIGHT_WITHIN_M
+    is_level = np.abs(places[:, 2] - _wanted_up_m(path, places, plan)) <= AT_HEIGHT_WITHIN_M
     chosen = is_fast & is_level & (across_m <= STEEPEST_COURSE * along_m)
     return Photos(at_s[chosen], places[chosen, :2])
+
+
+def _wanted_up_m(path: TruePath, places_m: FloatArray, plan: SurveyPlan) -> FloatArray:
+    """Return the survey's height at (N, 3) places, up of the frame, (N,)."""
+    if plan.terrain is not None:
+        return plan.terrain.up_m(places_m[:, :2])
+    return np.full(len(places_m), path.home_m[2] + plan.survey.height_m)
 
 
 def encounters(paths: Sequence[TruePath]) -> int:

@@ -3436,6 +3436,13 @@ export interface components {
              */
             gsd_m: number | null;
             /**
+             * Least Height Above Ground M
+             * @description of rows over the region; null: the ground or a takeoff point is not known
+             */
+            least_height_above_ground_m: number | null;
+            /** Most Height Above Ground M */
+            most_height_above_ground_m: number | null;
+            /**
              * Photos
              * @description on rows
              */
@@ -3537,7 +3544,8 @@ export interface components {
         };
         /**
          * SurveyRequest
-         * @description A survey to plan. Either `region`, a survey region of the site by name, or `polygon`.
+         * @description A survey to plan. Either `region`, a survey region of the site by name, or `polygon`; and
+         *     exactly one height.
          *
          *     Nothing flies yet: see `/api/surveys/{id}/start`.
          */
@@ -3571,8 +3579,16 @@ export interface components {
              * @default 0.7
              */
             front_overlap: number;
-            /** Height Above Takeoff M */
-            height_above_takeoff_m: number;
+            /**
+             * Height Above Ground M
+             * @description above the ground of the site's elevation model, instead of height_above_takeoff_m
+             */
+            height_above_ground_m?: number | null;
+            /**
+             * Height Above Takeoff M
+             * @description above each vehicle's own takeoff point
+             */
+            height_above_takeoff_m?: number | null;
             /**
              * Look Aside Allowed
              * @description the imaging drone may look aside by itself while light is mostly unknown
@@ -3665,8 +3681,16 @@ export interface components {
             figures: components["schemas"]["SurveyFiguresView"] | null;
             /** Flown M */
             flown_m: number;
-            /** Height Above Takeoff M */
-            height_above_takeoff_m: number;
+            /**
+             * Height Above Ground M
+             * @description null: it is above takeoff
+             */
+            height_above_ground_m: number | null;
+            /**
+             * Height Above Takeoff M
+             * @description null: it is above ground
+             */
+            height_above_takeoff_m: number | null;
             /** Id */
             id: number;
             /** Look Aside Allowed */

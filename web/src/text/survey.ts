@@ -1,6 +1,7 @@
 import type { SurveyEstimateView, SurveyView } from "../protocol";
 import { text } from "./catalogue";
 import { formatQuantity, UNKNOWN } from "./quantities";
+import { formatLength } from "./units";
 
 /** A survey's status as text; one whose drones have all stopped is not running. */
 export function surveyStatus({ phase, vehicles }: SurveyView): string {
@@ -50,9 +51,27 @@ export function estimateFacts(found: SurveyEstimateView): (readonly [string, str
     [text.estimate.photosOnRows, count(found.photos)],
     [text.estimate.photos, count(found.photos_in_all)],
     [text.estimate.batteries, count(found.batteries)],
+    ...aboveGround(found),
     [text.estimate.pixel, formatQuantity(cm, "cm")],
     [text.estimate.fastest, speed],
   ];
+}
+
+/** How high rows are above the ground over the region, where the ground is known. */
+function aboveGround(found: SurveyEstimateView): (readonly [string, string])[] {
+  const { least_height_above_ground_m: least_m, most_height_above_ground_m: most_m } = found;
+  if (least_m === null || most_m === null) return [];
+  const [least, most] = [formatLength(least_m), formatLength(most_m)];
+  const range = least === most ? least : text.estimate.range(least, most);
+  return [[text.estimate.aboveGround, range]];
+}
+
+/** A survey's height with its reference. */
+export function surveyHeight(survey: SurveyView): string {
+  const { height_above_ground_m: ground_m, height_above_takeoff_m: takeoff_m } = survey;
+  return ground_m === null
+    ? text.surveys.aboveTakeoff(formatLength(takeoff_m))
+    : text.surveys.aboveGround(formatLength(ground_m));
 }
 
 /** Whole minutes, rounded up: a battery never lasts longer than it reads. */

@@ -36,7 +36,8 @@ class SurveyBudgetRequest(StrictMessage):
 
 
 class SurveyRequest(StrictMessage):
-    """A survey to plan. Either `region`, a survey region of the site by name, or `polygon`.
+    """A survey to plan. Either `region`, a survey region of the site by name, or `polygon`; and
+    exactly one height.
 
     Nothing flies yet: see `/api/surveys/{id}/start`.
     """
@@ -50,7 +51,14 @@ class SurveyRequest(StrictMessage):
         max_length=200,
         description="the rings of a GeoJSON polygon, longitude first: the outline, then its holes",
     )
-    height_above_takeoff_m: float
+    height_above_takeoff_m: float | None = Field(
+        default=None, description="above each vehicle's own takeoff point"
+    )
+    height_above_ground_m: float | None = Field(
+        default=None,
+        description="above the ground of the site's elevation model, instead of "
+        "height_above_takeoff_m",
+    )
     speed_mps: float
     front_overlap: float = 0.7
     side_overlap: float = 0.6
@@ -138,7 +146,8 @@ class SurveyView(Message):
     when_done: WhenDoneName
     look_aside_allowed: bool
     upwind_allowed: bool
-    height_above_takeoff_m: float
+    height_above_takeoff_m: float | None = Field(description="null: it is above ground")
+    height_above_ground_m: float | None = Field(description="null: it is above takeoff")
     speed_mps: float
     round: int
     missions: int
@@ -184,6 +193,10 @@ class SurveyEstimateView(Message):
     refusal: str | None
     region_m2: float
     reached_m2: float
+    least_height_above_ground_m: float | None = Field(
+        description="of rows over the region; null: the ground or a takeoff point is not known"
+    )
+    most_height_above_ground_m: float | None
     rows: int = Field(description="whole rows, however many parts they are cut into")
     gsd_m: float | None = Field(description="pixel on the ground; null: pixels are not known")
     blur_px: float = Field(description="of motion during an exposure of 1/1000 s")

@@ -15,6 +15,7 @@ from recon.guidance.survey.plan import RULE, SurveyPlan
 from recon.guidance.survey.rounds import shares, sortie
 from recon.guidance.survey.route import Place, Route
 from recon.guidance.survey.state import Surveyor
+from recon.guidance.survey.terrain import LEAST_CLIMB_M
 from recon.model.command import Refusal
 
 SWAP_S = 180.0
@@ -138,6 +139,9 @@ class PlanFigures:
     region_m2: float
     reached_m2: float
     """Imaged by the rows with certainty."""
+    least_height_above_ground_m: float | None
+    most_height_above_ground_m: float | None
+    """Of rows over the region, for any of the drones; None: the ground is not known."""
     rows: int
     gsd_m: float | None
     blur_px: float
@@ -152,14 +156,22 @@ class PlanFigures:
 
 
 def plan_figures(
-    plan: SurveyPlan, needs: SurveyEstimate | None, limit: SpeedLimit, exposure_s: float
+    plan: SurveyPlan,
+    surveyors: Sequence[Surveyor],
+    needs: SurveyEstimate | None,
+    limit: SpeedLimit,
+    exposure_s: float,
 ) -> PlanFigures:
     """Return the figures of a plan. `limit`: the lowest of its speed limits."""
+    takeoffs_m = [each.takeoff_up_m for each in surveyors if each.takeoff_up_m is not None]
+    above_m = [range_m for up_m in takeoffs_m if (range_m := plan.above_ground_m(up_m))]
     survey, cells = plan.survey, plan.cells
-    height_m, region_m2 = survey.height_above_takeoff_m, shape_of(survey.region).area
+    height_m, region_m2 = survey.height_m, shape_of(survey.region).area
     return PlanFigures(
         region_m2=region_m2,
         reached_m2=min(float(cells.is_reached.sum()) * cells.cell_m2, region_m2),
+        least_height_above_ground_m=min((low for low, _ in above_m), default=None),
+        most_height_above_ground_m=max((high for _, high in above_m), default=None),
         rows=len({piece.row for piece in plan.pieces}),
         gsd_m=survey.camera.gsd_m(height_m),
         blur_px=blur_px(survey.camera, height_m, survey.speed_mps, exposure_s),
@@ -179,11 +191,18 @@ MOST_SKIPPED = 0.005
 
 
 def _warnings(plan: SurveyPlan, limit: SpeedLimit) -> list[str]:
-    """Return a sentence for a speed above its lowest limit, and for ground that is not reached."""
+    """Return sentences: a speed above its lowest limit, a height near the site's limits, ground
+    that is not reached."""
     found: list[str] = []
     speed_mps, cells = plan.survey.speed_mps, plan.cells
     if speed_mps > limit.speed_mps * (1.0 + 1e-9):
         found.append(f"{speed_mps:g} m/s is more than {limit.speed_mps:.1f} m/s: {limit.reason}")
+    if plan.terrain is not None and plan.terrain.is_near_height_limits:
+        found.append(
+            f"{plan.survey.height_m:g} m above ground leaves rows over this ground less than "
+            f"{LEAST_CLIMB_M:g} m to climb or sink within the site's height limits: the gate may "
+            "refuse them; choose a height farther from the limits"
+        )
     inside = int(cells.is_inside.sum())
     skipped = inside - int(cells.is_reached.sum())
     if skipped > MOST_SKIPPED * inside:
@@ -247,7 +266,9 @@ def _flight(
     legs = route[:flown]
     end_m = tracks[-1].corners_m[-1]
     return_m = hypot(end_m[0] - home_m[0], end_m[1] - home_m[1])
-    up_s = settings.takeoff_s + plan.survey.height_above_takeoff_m / settings.climb_mps
+    first_m = plan.height_above_takeoff_m(tracks[0].corners_m[0], vehicle.takeoff_up_m)
+    climb_m = plan.survey.height_m if first_m is None else max(first_m, 0.0)
+    up_s = settings.takeoff_s + climb_m / settings.climb_mps
     flight = PlannedFlight(
         legs,
         tuple(track.corners_m for track in tracks),

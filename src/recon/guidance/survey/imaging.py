@@ -1,6 +1,6 @@
 """Ground sampling distance, and how fast a camera may be flown.
 
-All of it for a camera that looks straight down, over ground as high as the takeoff point.
+All of it for a camera that looks straight down, over ground that lies `height_m` below it.
 """
 
 from dataclasses import dataclass
@@ -32,11 +32,21 @@ def height_for_gsd_m(camera: SurveyCamera, gsd_m: float) -> float | None:
 
 
 def longest_photo_m(
-    camera: SurveyCamera, height_m: float, front_overlap: float, settings: SurveySettings = DEFAULT
+    camera: SurveyCamera,
+    height_m: float,
+    front_overlap: float,
+    settings: SurveySettings = DEFAULT,
+    *,
+    stops_in_rows: bool = False,
 ) -> float:
-    """Return how far apart two photos of a row may be for its front overlap."""
+    """Return how far apart two photos of a row may be for its front overlap.
+
+    Where rows have waypoints within, a photo must show what lies beside a stop before the aircraft
+    gets there, or after it has left: what it sees standing does not count.
+    """
     along_m = camera.along_m(height_m)
-    return min(along_m * (1.0 - front_overlap), along_m - 2.0 * settings.place_slack_m)
+    seen_m = along_m - 2.0 * settings.place_slack_m
+    return min(along_m * (1.0 - front_overlap), seen_m / 2.0 if stops_in_rows else seen_m)
 
 
 def speed_limits(
@@ -45,12 +55,14 @@ def speed_limits(
     front_overlap: float,
     exposure_s: float = EXPOSURE_S,
     fastest_mps: float = DJI.max_speed_mps,
+    *,
+    stops_in_rows: bool = False,
 ) -> tuple[SpeedLimit, ...]:
     """Return every limit of the speed along rows, the lowest first.
 
     `fastest_mps` is the site's limit, or the aircraft's. The blur counts where pixels are known.
     """
-    photo_m = longest_photo_m(camera, height_m, front_overlap)
+    photo_m = longest_photo_m(camera, height_m, front_overlap, stops_in_rows=stops_in_rows)
     limits = [
         SpeedLimit(
             photo_m / camera.interval_s,
@@ -75,6 +87,8 @@ def best_interval_s(
     front_overlap: float,
     exposure_s: float = EXPOSURE_S,
     fastest_mps: float = DJI.max_speed_mps,
+    *,
+    stops_in_rows: bool = False,
 ) -> float:
     """Return the timer setting that allows the highest speed, and of those the longest.
 
@@ -83,7 +97,8 @@ def best_interval_s(
 
     def fastest(interval_s: float) -> float:
         camera = model.at_interval(interval_s)
-        return speed_limits(camera, height_m, front_overlap, exposure_s, fastest_mps)[0].speed_mps
+        known = height_m, front_overlap, exposure_s, fastest_mps
+        return speed_limits(camera, *known, stops_in_rows=stops_in_rows)[0].speed_mps
 
     return max(model.timer_s, key=lambda interval_s: (round(fastest(interval_s), 9), interval_s))
 

@@ -47,7 +47,7 @@ class Swath:
 
 def swath_of(survey: Survey, settings: SurveySettings) -> Swath:
     """Return a survey's swath at its height and speed."""
-    camera, height_m = survey.camera, survey.height_above_takeoff_m
+    camera, height_m = survey.camera, survey.height_m
     across_m, along_m = camera.across_m(height_m), camera.along_m(height_m)
     half_across_m = across_m / 2.0 - settings.place_slack_m
     return Swath(

@@ -28,7 +28,7 @@ from dataclasses import replace
 from types import MappingProxyType
 
 from recon.guidance.survey.closed_areas import ClosedArea
-from recon.guidance.survey.missions import apart_m, track_of
+from recon.guidance.survey.missions import apart_m
 from recon.guidance.survey.plan import RULE, SurveyPlan
 from recon.guidance.survey.planners import PLANNERS
 from recon.guidance.survey.progress import (
@@ -164,8 +164,14 @@ def step(
     state = replace(state, progress=progress, closed=tuple(closed))
     if state.phase is SurveyPhase.PAUSED:
         return state, ()
-    own = [each for each in positions if each.serial in state.serials]
+    own = [_as_able(each, state.plan) for each in positions if each.serial in state.serials]
     return PLANNERS[state.plan.survey.planner](state, own, sun, now_ns)
+
+
+def _as_able(surveyor: Surveyor, plan: SurveyPlan) -> Surveyor:
+    """A vehicle whose takeoff height is not known cannot fly above ground."""
+    is_lost = plan.terrain is not None and surveyor.takeoff_up_m is None
+    return replace(surveyor, is_able=False) if is_lost else surveyor
 
 
 def _wrong_phase(state: SurveyState, asked: str) -> Refusal:
@@ -226,5 +232,5 @@ def _left(state: SurveyState, surveyor: Surveyor) -> Route:
 
 def _lasts_for_any(state: SurveyState, legs: Route, surveyor: Surveyor) -> bool:
     plan = state.plan
-    tracks = (track_of((leg,), plan.lattice, plan.swath.lead_m, plan.ways) for leg in legs)
+    tracks = (plan.track((leg,)) for leg in legs)
     return any(lasts(plan, track, surveyor) for track in tracks)

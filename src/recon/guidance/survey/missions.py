@@ -17,6 +17,7 @@ from recon.geo import geo_from_enu
 from recon.guidance.survey.lattice import RowLattice
 from recon.guidance.survey.route import Place, Route
 from recon.guidance.survey.settings import SurveySettings
+from recon.guidance.survey.terrain import Terrain, vertices_of
 from recon.model.geo import LatLon, LocalFrame
 from recon.model.mission import Mission, Waypoint
 from recon.model.survey import Survey
@@ -136,18 +137,40 @@ LEAST_LEG_M = 1.0
 
 @dataclass(frozen=True, slots=True)
 class Track:
-    """A route with its ways between rows: the corners in east-north metres of the site."""
+    """A route with its ways between rows: the corners in east-north metres of the site.
+
+    Of a survey above ground, waypoints that follow the ground are among them, and `up_m` is the
+    height at each, up of the frame; empty: all are at the survey's height above takeoff.
+    """
 
     corners_m: tuple[Place, ...]
+    up_m: tuple[float, ...] = ()
 
     @property
     def length_m(self) -> float:
         """From the first corner to the last."""
         return sum(apart_m(a, b) for a, b in pairwise(self.corners_m))
 
+    def climbing_s(self, speed_mps: float, climb_mps: float) -> float:
+        """Return how much longer its legs take than on the level: steep ones are flown slower."""
+        legs = zip(pairwise(self.corners_m), pairwise(self.up_m), strict=False)
+        return sum(
+            max(0.0, abs(up_b - up_a) / climb_mps - apart_m(a, b) / speed_mps)
+            for (a, b), (up_a, up_b) in legs
+        )
 
-def track_of(route: Route, lattice: RowLattice, lead_m: float, ways: RegionPaths) -> Track | None:
-    """Return where a route leads; between rows inside the ways' area, None where it has no way."""
+
+def track_of(
+    route: Route,
+    lattice: RowLattice,
+    lead_m: float,
+    ways: RegionPaths,
+    terrain: Terrain | None = None,
+) -> Track | None:
+    """Return where a route leads; between rows inside the ways' area, None where it has no way.
+
+    With a terrain it follows that.
+    """
     corners: list[Place] = []
     for leg in route:
         start_m, end_m = _east_north(leg.ends_m(lattice, lead_m), lattice)
@@ -157,7 +180,8 @@ def track_of(route: Route, lattice: RowLattice, lead_m: float, ways: RegionPaths
                 return None
             corners += between
         corners += [start_m, end_m]
-    return Track(_thinned(corners))
+    thinned = _thinned(corners)
+    return Track(thinned) if terrain is None else Track(*vertices_of(thinned, terrain))
 
 
 def flight_time_s(
@@ -166,7 +190,9 @@ def flight_time_s(
     """Return how long a track takes with the way to it and the way home, stops included."""
     stops = len(track.corners_m) + 1
     way_m = apart_m(start_m, track.corners_m[0]) + apart_m(track.corners_m[-1], home_m)
-    return (track.length_m + way_m) / speed_mps + stops * speed_mps / settings.turning_mps2
+    climbing_s = track.climbing_s(speed_mps, settings.climb_mps)
+    moving_s = (track.length_m + way_m) / speed_mps + climbing_s
+    return moving_s + stops * speed_mps / settings.turning_mps2
 
 
 def approach_of(
@@ -182,8 +208,18 @@ def approach_of(
     return tuple(LatLon(float(latitude), float(longitude)) for latitude, longitude in places)
 
 
-def mission_of(track: Track, survey: Survey, frame: LocalFrame, purpose: str) -> Mission:
-    """Return the mission that flies a track. It hovers at its end."""
+def mission_of(
+    track: Track,
+    survey: Survey,
+    frame: LocalFrame,
+    purpose: str,
+    takeoff_up_m: float | None = None,
+) -> Mission:
+    """Return the mission that flies a track. It hovers at its end.
+
+    `takeoff_up_m` is the height of the vehicle's takeoff point, known for a survey above ground.
+    """
+    heights_m = _heights_above_takeoff_m(track, survey, takeoff_up_m)
     flat_m = np.column_stack([np.array(track.corners_m), np.zeros(len(track.corners_m))])
     latitude_deg, longitude_deg, _ = geo_from_enu(frame, flat_m)
     return Mission(
@@ -191,16 +227,25 @@ def mission_of(track: Track, survey: Survey, frame: LocalFrame, purpose: str) ->
             Waypoint(
                 float(latitude),
                 float(longitude),
-                survey.height_above_takeoff_m,
+                height_m,
                 survey.speed_mps,
                 gimbal_pitch_deg=NADIR_DEG if index == 0 else None,
             )
-            for index, (latitude, longitude) in enumerate(
-                zip(latitude_deg, longitude_deg, strict=True)
+            for index, (latitude, longitude, height_m) in enumerate(
+                zip(latitude_deg, longitude_deg, heights_m, strict=True)
             )
         ),
         purpose=purpose,
     )
+
+
+def _heights_above_takeoff_m(
+    track: Track, survey: Survey, takeoff_up_m: float | None
+) -> Sequence[float]:
+    if not track.up_m:
+        return [survey.height_m] * len(track.corners_m)
+    assert takeoff_up_m is not None, "a vehicle without a takeoff height is not able"
+    return [round(up_m - takeoff_up_m, 2) for up_m in track.up_m]
 
 
 def apart_m(a: Place, b: Place) -> float:

@@ -1,7 +1,7 @@
 """Survey feasibility checks with operator-readable reasons, and the plan: rows and cells."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import hypot
 
 import numpy as np
@@ -11,11 +11,12 @@ from recon.geo import region_fault, shape_of
 from recon.guidance.survey.cells import BoolArray, CoverageCells, cells_over
 from recon.guidance.survey.imaging import longest_photo_m
 from recon.guidance.survey.lattice import RowLattice, Swath, swath_of
-from recon.guidance.survey.missions import RegionPaths
-from recon.guidance.survey.route import Place, RowLeg
+from recon.guidance.survey.missions import RegionPaths, Track, track_of
+from recon.guidance.survey.route import Place, Route, RowLeg
 from recon.guidance.survey.rows import Piece, best_bearing_deg, lattice_over, row_pieces
 from recon.guidance.survey.settings import DEFAULT, SurveySettings
-from recon.model.airspace import Airspace, Region, ZoneKind
+from recon.guidance.survey.terrain import Terrain, ground_range_m, terrain_over
+from recon.model.airspace import Airspace, ElevationModel, FlightLimits, Region, ZoneKind
 from recon.model.command import Refusal
 from recon.model.geo import LocalFrame
 from recon.model.mission import DJI
@@ -30,6 +31,12 @@ SLOWEST_MPS = 0.5
 
 MOST_ROWS = 2_000
 """More rows than this come from a wrong height or region."""
+
+
+HEIGHT_FAULT = (
+    "give one height: either height_above_takeoff_m, above each vehicle's takeoff point, or "
+    "height_above_ground_m, above the ground of the site's elevation model"
+)
 
 
 def survey_fault(survey: Survey, settings: SurveySettings = DEFAULT) -> str | None:
@@ -49,8 +56,11 @@ def _faults(survey: Survey, settings: SurveySettings) -> Iterator[str]:
 
 def _number_faults(survey: Survey) -> Iterator[str]:
     camera = survey.camera
+    if (survey.height_above_takeoff_m is None) == (survey.height_above_ground_m is None):
+        yield HEIGHT_FAULT
+        return
     numbers = (
-        ("height", survey.height_above_takeoff_m, 1.0, 500.0, " m"),
+        ("height", survey.height_m, 1.0, 500.0, " m"),
         ("speed", survey.speed_mps, SLOWEST_MPS, DJI.max_speed_mps, " m/s"),
         ("camera's field of view across", camera.across_deg, 5.0, 150.0, " degrees"),
         ("camera's field of view along", camera.along_deg, 5.0, 150.0, " degrees"),
@@ -68,7 +78,7 @@ def _number_faults(survey: Survey) -> Iterator[str]:
 
 
 def _overlap_faults(survey: Survey, settings: SurveySettings) -> Iterator[str]:
-    camera, height_m = survey.camera, survey.height_above_takeoff_m
+    camera, height_m = survey.camera, survey.height_m
     slack_m = 2.0 * settings.place_slack_m
     across_m, along_m = camera.across_m(height_m), camera.along_m(height_m)
     if min(across_m, along_m) < 2.0 * slack_m:
@@ -78,7 +88,9 @@ def _overlap_faults(survey: Survey, settings: SurveySettings) -> Iterator[str]:
         )
         return
     photo_m = survey.speed_mps * camera.interval_s
-    longest_m = longest_photo_m(camera, height_m, survey.front_overlap, settings)
+    longest_m = longest_photo_m(
+        camera, height_m, survey.front_overlap, settings, stops_in_rows=survey.is_above_ground
+    )
     if photo_m > longest_m * (1.0 + 1e-9):
         yield (
             f"at {survey.speed_mps:g} m/s a photo every {camera.interval_s:g} s comes every "
@@ -119,12 +131,15 @@ class SurveySurroundings:
     boundary: Region | None = None
     keep_out: tuple[Region, ...] = ()
     margin_m: float = 5.0
+    elevation: ElevationModel | None = None
+    limits: FlightLimits = field(default_factory=FlightLimits)
 
 
 def surroundings_of(air: Airspace) -> SurveySurroundings:
-    """Return a site's boundary and all its keep-out zones, whatever their heights."""
+    """Return a site's boundary, all its keep-out zones, whatever their heights, and its ground."""
     keep_out = tuple(zone.region for zone in air.zones if zone.kind is ZoneKind.KEEP_OUT)
-    return SurveySurroundings(air.boundary, keep_out, air.limits.boundary_margin_m)
+    margin_m = air.limits.boundary_margin_m
+    return SurveySurroundings(air.boundary, keep_out, margin_m, air.elevation, air.limits)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -141,6 +156,40 @@ class SurveyPlan:
     pieces: tuple[Piece, ...]
     ways: RegionPaths
     cells: CoverageCells
+    terrain: Terrain | None = None
+    """The wanted heights of a survey above ground; None: it is above takeoff."""
+    ground_range_m: tuple[float, float] | None = None
+    """The region's lowest and highest ground, up of the frame; None: not known."""
+    stops_per_m: float = 0.0
+    """Waypoints within rows that follow the ground, on average."""
+
+    def track(self, route: Route) -> Track | None:
+        """Return where a route leads; None where no way leads from a row to the next."""
+        return track_of(route, self.lattice, self.swath.lead_m, self.ways, self.terrain)
+
+    def height_above_takeoff_m(self, place_m: Place, takeoff_up_m: float | None) -> float | None:
+        """Return the wanted height at a place above a takeoff point; None: where that is, counts
+        and is not known."""
+        if self.terrain is None:
+            return self.survey.height_m
+        return None if takeoff_up_m is None else self.terrain.up_at_m(place_m) - takeoff_up_m
+
+    def height_off_m(
+        self, place_m: Place, height_above_takeoff_m: float, takeoff_up_m: float | None
+    ) -> float | None:
+        """Return how far a height is above the wanted one; negative: below it."""
+        wanted_m = self.height_above_takeoff_m(place_m, takeoff_up_m)
+        return None if wanted_m is None else height_above_takeoff_m - wanted_m
+
+    def above_ground_m(self, takeoff_up_m: float) -> tuple[float, float] | None:
+        """Return the least and the largest height above the region's ground that a vehicle of this
+        takeoff point has on its rows; None: the ground is not known."""
+        if self.terrain is not None:
+            return self.terrain.lowest_above_ground_m, self.terrain.highest_above_ground_m
+        if self.ground_range_m is None:
+            return None
+        up_m = takeoff_up_m + self.survey.height_m
+        return up_m - self.ground_range_m[1], up_m - self.ground_range_m[0]
 
     @property
     def rows_m(self) -> tuple[tuple[Place, Place], ...]:
@@ -202,10 +251,26 @@ def plan_survey(
     pieces = row_pieces(area, lattice, swath, settings, limits)
     if not pieces:
         return Refusal(RULE, _no_rows(survey, surroundings))
+    air = surroundings or SurveySurroundings()
+    terrain: Terrain | str | None = None
+    if survey.is_above_ground:
+        terrain = terrain_over(survey, flyable, air.elevation, air.limits, settings)
+    if isinstance(terrain, str):
+        return Refusal(RULE, terrain)
     ways = RegionPaths(flyable)
     cells = cells_over(area, frame, survey.cell_m, lattice, pieces, swath)
     counted = _counted(survey, swath, lattice, settings)
-    return SurveyPlan(survey, frame, settings, lattice, swath, counted, pieces, ways, cells)
+    ground_m = ground_range_m(area, air.elevation, settings.terrain_cell_m)
+    plan = SurveyPlan(
+        survey, frame, settings, lattice, swath, counted, pieces, ways, cells, terrain, ground_m
+    )
+    return plan if terrain is None else replace(plan, stops_per_m=_stops_per_m(plan, terrain))
+
+
+def _stops_per_m(plan: SurveyPlan, terrain: Terrain) -> float:
+    stops = sum(len(terrain.between(*ends)) for ends in plan.rows_m)
+    rows_m = sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in plan.rows_m)
+    return stops / max(rows_m, 1.0)
 
 
 def row_bearing_deg(survey: Survey, settings: SurveySettings = DEFAULT) -> float:

@@ -40,6 +40,8 @@ class PositionSample:
     east_m: float
     north_m: float
     height_above_takeoff_m: float
+    takeoff_up_m: float | None = None
+    """The height of its takeoff point, up of the site's frame; None: not known."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -168,7 +170,10 @@ class _Count:
         lying = plan.lattice.along_across_m([(a.east_m, a.north_m), (b.east_m, b.north_m)])
         start, end = ((float(along), float(across)) for along, across in lying)
         moved_m = end[0] - start[0], end[1] - start[1]
-        if not is_photographed(plan.survey, plan.settings, (a, b), moved_m):
+        off_m = _off_height_m(plan, (a, b))
+        if off_m is None or not is_photographed(
+            plan.survey, plan.settings, (a.at_ns, b.at_ns), moved_m, off_m
+        ):
             return
         times_ns = (a.at_ns, b.at_ns)
         cross = crossing(plan.cells, plan.lattice, plan.counted_swath, (start, end), times_ns)
@@ -206,25 +211,41 @@ class _Count:
         )
 
 
+def _off_height_m(plan: SurveyPlan, ends: Sequence[PositionSample]) -> float | None:
+    """How far a way's ends are at most off the heights that its mission may have there; None: it is
+    not known."""
+    below_m, above_m = 0.0, 0.0
+    if plan.terrain is not None:
+        below_m, above_m = plan.settings.terrain_below_m, plan.settings.terrain_above_m
+    farthest_m = 0.0
+    for end in ends:
+        place_m, height_m = (end.east_m, end.north_m), end.height_above_takeoff_m
+        off_m = plan.height_off_m(place_m, height_m, end.takeoff_up_m)
+        if off_m is None:
+            return None
+        farthest_m = max(farthest_m, off_m - above_m, -off_m - below_m)
+    return farthest_m
+
+
 def is_photographed(
     survey: Survey,
     settings: SurveySettings,
-    ends: tuple[PositionSample, PositionSample],
+    times_ns: tuple[int, int],
     moved_m: tuple[float, float],
+    off_m: float,
 ) -> bool:
     """Whether a way is flown as the rows are: height, course, speed, and no gap in time.
 
-    `moved_m` is the way along and across the rows.
+    `moved_m` is the way along and across the rows, `off_m` how far it is off the planned height.
     """
-    took_s = ns_to_seconds(ends[1].at_ns - ends[0].at_ns)
+    took_s = ns_to_seconds(times_ns[1] - times_ns[0])
     if not 0.0 < took_s <= settings.longest_gap_s:
         return False
-    off_m = [abs(e.height_above_takeoff_m - survey.height_above_takeoff_m) for e in ends]
     along_m, across_m = abs(moved_m[0]), abs(moved_m[1])
     is_along = across_m <= settings.steepest_course * along_m + settings.course_slack_m
     is_moving = settings.least_move_m <= along_m
     is_slow = along_m <= survey.speed_mps * settings.fastest_share * took_s
-    return max(off_m) <= settings.height_slack_m and is_along and is_moving and is_slow
+    return off_m <= settings.height_slack_m and is_along and is_moving and is_slow
 
 
 def _carried(before: InView | None, window: Window) -> tuple[IntArray, IntArray]:

@@ -28,7 +28,7 @@ from types import MappingProxyType
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from recon.guidance.survey.missions import Track, approach_of, flight_time_s, mission_of, track_of
+from recon.guidance.survey.missions import Track, approach_of, flight_time_s, mission_of
 from recon.guidance.survey.plan import SurveyPlan
 from recon.guidance.survey.route import Cost, Place, Route, between_m, route_of, shared
 from recon.guidance.survey.rows import Piece
@@ -167,7 +167,9 @@ def _given(state: SurveyState, able: Mapping[str, Surveyor], now_ns: int) -> Ste
         if track is None:
             continue
         number = state.missions + 1
-        flight = AssignedMission(number, route[:count], track.corners_m, track.length_m)
+        flight = AssignedMission(
+            number, route[:count], track.corners_m, track.length_m, up_m=track.up_m
+        )
         state, mission = flying(state, able[serial], flight, route[count:])
         missions.append(mission)
     return state, tuple(missions)
@@ -187,8 +189,8 @@ def flying(
     """Return the survey with a vehicle on a mission, and that mission; `rest` waits for it."""
     survey, serial, frame = state.plan.survey, surveyor.serial, state.plan.frame
     purpose = f"survey {survey.name}: round {state.round}"
-    track = Track(flight.corners_m)
-    mission = mission_of(track, survey, frame, purpose)
+    track = Track(flight.corners_m, flight.up_m)
+    mission = mission_of(track, survey, frame, purpose, surveyor.takeoff_up_m)
     approach = approach_of(track, surveyor.place_m, state.plan.ways, frame)
     waiting = {**state.waiting, serial: rest}
     if not rest:
@@ -216,7 +218,7 @@ def sortie(
     """
 
     def track(count: int) -> Track | None:
-        return track_of(route[:count], plan.lattice, plan.swath.lead_m, plan.ways)
+        return plan.track(route[:count])
 
     too_many = range(1, len(route) + 1)
 

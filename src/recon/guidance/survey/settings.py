@@ -70,6 +70,28 @@ class SurveySettings:
     """In a shade map, for a cell to count in sun: half of the beam is sun, and maps err by up to
     0.1. A photo taken home with shade in it costs more than a row flown again."""
 
+    terrain_below_m: float = 1.5
+    """Below the height wanted above ground, between two waypoints: rows are this much narrower for
+    each 100 m of footprint per 60 m of height, and clearance comes first."""
+
+    terrain_above_m: float = 3.0
+    """Above it: pixels are then a twentieth larger from 60 m. Each waypoint less saves a stop."""
+
+    terrain_step_m: float = 10.0
+    """Between waypoints that follow the ground, at most twice as near: braking from 5 m/s and
+    starting again take as much."""
+
+    terrain_cell_m: float = 5.0
+    """Wanted heights are kept on a lattice this fine: ground is smoother than that."""
+
+    terrain_mean_m: float = 10.0
+    """The ground's mean is taken this far to each side: the middle of a footprint from 20 m. Plants
+    and single cells of a model disappear in it."""
+
+    least_clearance: float = 0.75
+    """Of the survey's height, kept above the highest ground near: over a row of trees the aircraft
+    climbs, over plants it does not."""
+
     shade_maps_kept: int = 16
     positions_kept: int = 1_000
     """Of each vehicle, waiting to count: at 10 Hz, far more than settling takes."""

@@ -39,6 +39,8 @@ class Surveyor:
     """Where it lands; None: at its present place."""
     is_flying: bool = True
     height_above_takeoff_m: float | None = None
+    takeoff_up_m: float | None = None
+    """The height of its takeoff point, up of the site's frame; a survey above ground needs it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +54,8 @@ class AssignedMission:
     length_m: float
     ends_at_ns: int = 0
     """As planned, for planners that share rows by it."""
+    up_m: tuple[float, ...] = ()
+    """The height at each corner, up of the site's frame, of a survey above ground."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -304,13 +304,18 @@ class _Choice:
     def _pace(self) -> Pace:
         speed_mps, settings = self.plan.survey.speed_mps, self.settings
         stop_s = speed_mps / settings.turning_mps2 + settings.corner_s
-        return Pace(speed_mps, stop_s, settings.layer_s)
+        # Stops within rows make them slower, on average.
+        rows_mps = speed_mps / (1.0 + speed_mps * self.plan.stops_per_m * stop_s)
+        return Pace(rows_mps, stop_s, settings.layer_s)
 
     @property
     def _starts_s(self) -> float:
         if self.surveyor.is_flying:
             return self.settings.start_s
-        climb_s = self.plan.survey.height_above_takeoff_m / self.settings.climb_mps
+        surveyor = self.surveyor
+        wanted_m = self.plan.height_above_takeoff_m(surveyor.place_m, surveyor.takeoff_up_m)
+        assert wanted_m is not None, "a vehicle without a takeoff height is not asked"
+        climb_s = max(wanted_m, 0.0) / self.settings.climb_mps
         return self.settings.start_s + self.settings.takeoff_s + climb_s
 
     def _along_across_m(self, place_m: Place) -> Place:
@@ -330,14 +335,16 @@ class _Choice:
         if track is None:
             text = "waits: its battery lasts for no row, the way there and the return"
             return self._waits(text, self.settings.retry_s)
-        stops_s = self._pace.stop_s * len(track.corners_m)
-        ends_s = self._starts_s + track.length_m / self._pace.speed_mps + stops_s
+        speed_mps, stops_s = self.plan.survey.speed_mps, self._pace.stop_s * len(track.corners_m)
+        climbing_s = track.climbing_s(speed_mps, self.settings.climb_mps)
+        ends_s = self._starts_s + track.length_m / speed_mps + stops_s + climbing_s
         mission = AssignedMission(
             state.missions + 1,
             route[:count],
             track.corners_m,
             track.length_m,
             self.now_ns + seconds_to_ns(ends_s),
+            track.up_m,
         )
         state, given = flying(self._decided(text), self.surveyor, mission, ())
         return state, (replace(given, straight_within_m=self.settings.near_m),)
@@ -377,11 +384,17 @@ class _Choice:
         wait_ns = seconds_to_ns(self.settings.retry_s)
         if refused is not None and self.now_ns < refused.again_ns + wait_ns:
             return False
-        height_m = self.surveyor.height_above_takeoff_m
-        if height_m is None or not self.surveyor.is_flying or len(self.able) == 1:
+        surveyor, height_m = self.surveyor, self.surveyor.height_above_takeoff_m
+        if height_m is None or not surveyor.is_flying or len(self.able) == 1:
             return False
-        off_m = abs(height_m - self.plan.survey.height_above_takeoff_m)
-        return off_m < self.settings.level_m
+        off_m = self.plan.height_off_m(surveyor.place_m, height_m, surveyor.takeoff_up_m)
+        return off_m is not None and abs(off_m) < self._level_m
+
+    @property
+    def _level_m(self) -> float:
+        """Waypoints that follow the ground may be off the wanted height."""
+        is_above_ground = self.plan.terrain is not None
+        return self.settings.level_m + self.settings.terrain_above_m * is_above_ground
 
     def _steps_aside(self, text: str) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
         aside_ns = self.now_ns + seconds_to_ns(self._starts_s + self.settings.layer_s / 2.0)
@@ -391,7 +404,9 @@ class _Choice:
         self, place_m: Place, there_ns: int, text: str
     ) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
         """Stand by in its layer over a place, without rows."""
-        mission = AssignedMission(self.state.missions + 1, (), (place_m,), 0.0, there_ns)
+        terrain = self.plan.terrain
+        up_m = () if terrain is None else (terrain.up_at_m(place_m),)
+        mission = AssignedMission(self.state.missions + 1, (), (place_m,), 0.0, there_ns, up_m)
         state, given = flying(self._decided(text), self.surveyor, mission, ())
         return state, (replace(given, stands_by=True),)
 

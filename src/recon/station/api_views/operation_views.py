@@ -47,6 +47,7 @@ def survey_view(station: Station, record: SurveyRecord, now_ns: int) -> schema.S
         look_aside_allowed=survey.look_aside_allowed,
         upwind_allowed=survey.upwind_allowed,
         height_above_takeoff_m=survey.height_above_takeoff_m,
+        height_above_ground_m=survey.height_above_ground_m,
         speed_mps=survey.speed_mps,
         round=0 if state is None else state.round,
         missions=0 if state is None else state.missions,

@@ -3,6 +3,8 @@
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, replace
 
+import numpy as np
+
 from recon.api import schema
 from recon.guidance.survey import Surveyor, SurveyPlan
 from recon.guidance.survey.estimate import (
@@ -16,7 +18,7 @@ from recon.guidance.survey.imaging import EXPOSURE_S, speed_limits
 from recon.model.command import Refusal
 from recon.model.units import Stamped
 from recon.model.vehicle import VehicleState
-from recon.safety.datum import home_enu_m, vehicle_enu_m
+from recon.safety.datum import home_enu_m, takeoff_up_m, vehicle_enu_m
 from recon.station.operations.survey.availability import time_left_s
 from recon.station.state.station import Station
 from recon.station.state.survey_record import SurveyRecord
@@ -34,20 +36,25 @@ def survey_preview(
     state = record.state
     if state is None:
         return None
-    plan, found = state.plan, [station.fleet.vehicles.get(serial) for serial in serials]
+    plan, air = state.plan, station.airspace
+    found = [station.fleet.vehicles.get(serial) for serial in serials]
     vehicles = [vehicle for vehicle in found if vehicle is not None]
     problem = _problem(station, serials, vehicles)
-    fleet = [_surveyor(station, vehicle) for vehicle in vehicles] or [Surveyor("", corner_of(plan))]
+    fleet = [_surveyor(station, vehicle) for vehicle in vehicles]
+    if not fleet:
+        ground_m = float(air.ground_up_m(np.array([corner_of(plan)]))[0])
+        known_m = None if np.isnan(ground_m) else ground_m
+        fleet = [Surveyor("", corner_of(plan), takeoff_up_m=known_m)]
     energy = station.settings.safety.energy
-    landing_s = energy.landing_s(plan.survey.height_above_takeoff_m)
+    landing_s = energy.landing_s(plan.survey.height_m)
     batteries = Batteries(_full_s(station, plan, vehicles), landing_s=landing_s)
-    fastest_mps = station.airspace.airspace.limits.max_speed_mps
+    fastest_mps = air.airspace.limits.max_speed_mps
     names = {vehicle.serial or "": vehicle.display_name for vehicle in vehicles}
 
     def preview() -> schema.SurveyEstimateView:
         if problem is not None:
-            return _view(plan, Refusal("survey", problem), names, fastest_mps)
-        return _view(plan, estimate(plan, fleet, batteries), names, fastest_mps)
+            return _view(plan, fleet, Refusal("survey", problem), names, fastest_mps)
+        return _view(plan, fleet, estimate(plan, fleet, batteries), names, fastest_mps)
 
     return preview
 
@@ -61,7 +68,9 @@ def _problem(
             return f"Vehicle {serial!a} not found"
     for vehicle in vehicles:
         if vehicle_enu_m(station.airspace, vehicle) is None:
-            return f"{vehicle.display_name} has no known position"
+            is_placed = vehicle.position.value is not None
+            why = "height of its takeoff point" if is_placed else "position"
+            return f"{vehicle.display_name} has no known {why}"
         if vehicle.serial in station.imaging.imagers:
             return f"{vehicle.display_name} is an imaging drone and cannot join a survey"
     return None
@@ -75,6 +84,7 @@ def _surveyor(station: Station, vehicle: VehicleState) -> Surveyor:
         here,
         time_left_s=time_left_s(vehicle, station.airspace, station.settings.safety.energy),
         home_m=None if home_m is None else (float(home_m[0]), float(home_m[1])),
+        takeoff_up_m=takeoff_up_m(station.airspace, vehicle),
     )
 
 
@@ -85,7 +95,7 @@ def _full_s(station: Station, plan: SurveyPlan, vehicles: Sequence[VehicleState]
         full = replace(
             vehicle,
             battery_fraction=Stamped(1.0, 0),
-            height_above_takeoff_m=Stamped(plan.survey.height_above_takeoff_m, 0),
+            height_above_takeoff_m=Stamped(plan.survey.height_m, 0),
         )
         full_s = time_left_s(full, station.airspace, station.settings.safety.energy)
         if full_s is None:
@@ -96,6 +106,7 @@ def _full_s(station: Station, plan: SurveyPlan, vehicles: Sequence[VehicleState]
 
 def _view(
     plan: SurveyPlan,
+    fleet: Sequence[Surveyor],
     made: SurveyEstimate | Refusal,
     names: dict[str, str],
     fastest_mps: float,
@@ -103,10 +114,11 @@ def _view(
     survey, needs = plan.survey, made if isinstance(made, SurveyEstimate) else None
     limit, *_others = speed_limits(
         survey.camera,
-        survey.height_above_takeoff_m,
+        survey.height_m,
         survey.front_overlap,
         EXPOSURE_S,
         fastest_mps,
+        stops_in_rows=survey.is_above_ground,
     )
     return schema.SurveyEstimateView(
         survey_id=survey.id,
@@ -120,5 +132,5 @@ def _view(
             )
             for drone in (() if needs is None else needs.drones)
         ],
-        **asdict(plan_figures(plan, needs, limit, EXPOSURE_S)),
+        **asdict(plan_figures(plan, fleet, needs, limit, EXPOSURE_S)),
     )

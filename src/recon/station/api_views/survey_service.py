@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from recon.api import schema
 from recon.api.port import SurveyCellStates
-from recon.guidance.survey.plan import RULE
+from recon.guidance.survey.plan import HEIGHT_FAULT, RULE
 from recon.model.airspace import Region
 from recon.model.command import Refusal
 from recon.model.errors import SiteError
@@ -32,6 +32,8 @@ class SurveyService:
 
     def ask(self, asked: schema.SurveyRequest, by: Person) -> schema.SurveyResponse:
         """Request a survey; an invalid region is refused at once."""
+        if (asked.height_above_takeoff_m is None) == (asked.height_above_ground_m is None):
+            return _refused(Refusal(RULE, HEIGHT_FAULT))
         region = self._region(asked)
         if isinstance(region, Refusal):
             return _refused(region)
@@ -156,6 +158,7 @@ def _survey(
         name=asked.name or asked.region or f"survey {number}",
         region=region,
         height_above_takeoff_m=asked.height_above_takeoff_m,
+        height_above_ground_m=asked.height_above_ground_m,
         speed_mps=asked.speed_mps,
         camera=camera,
         front_overlap=asked.front_overlap,

@@ -9,7 +9,7 @@ const PLANNERS = ["lawnmower_once", "lawnmower_again", "sunlit_first"] as const;
 
 const WHEN_DONE = ["return_home", "hover"] as const;
 
-/** Heights above takeoff that can be planned, and the one offered. */
+/** Heights that can be planned, above takeoff or above ground, and the one offered. */
 const [LOWEST_M, HIGHEST_M, USUAL_HEIGHT_M] = [10, 120, 50];
 
 /**
@@ -35,16 +35,19 @@ export function NewSurvey(props: {
     const [camera, ...others] = own;
     return others.length === 0 ? (camera ?? "") : "";
   };
+  const isGroundKnown = () => fleet.site?.terrain === "model";
   const regions = () => (fleet.site?.areas ?? []).filter(({ kind }) => kind === "survey");
   const plan = async (form: HTMLFormElement) => {
-    const height_above_takeoff_m = height.metres();
-    if (height_above_takeoff_m === null) return;
+    const height_m = height.metres();
+    if (height_m === null) return;
     const data = new FormData(form);
     setPlanning(true);
     const model = String(data.get("camera") ?? "");
     const outcome = await source.surveys.plan({
       region: String(data.get("region")),
-      height_above_takeoff_m,
+      ...(data.get("above") === "ground"
+        ? { height_above_ground_m: height_m }
+        : { height_above_takeoff_m: height_m }),
       speed_mps: Number(data.get("speed")),
       planner: String(data.get("planner")),
       camera: { model: model === "" ? null : model, interval_s: Number(data.get("interval")) },
@@ -89,10 +92,23 @@ export function NewSurvey(props: {
             />
           </label>
           <label>
+            {text.newSurvey.above}
+            <select name="above">
+              <option value="takeoff">{text.newSurvey.references.takeoff}</option>
+              <option value="ground" disabled={!isGroundKnown()}>
+                {text.newSurvey.references[isGroundKnown() ? "ground" : "noGround"]}
+              </option>
+            </select>
+          </label>
+          <label>
             {text.newSurvey.speed}
             <input name="speed" type="number" min={1} max={15} step={0.5} value={5} required />
           </label>
           <label>
+            {text.newSurvey.interval}
+            <input name="interval" type="number" min={0.5} max={60} step={0.1} value={2} required />
+          </label>
+          <label class="survey-wide">
             {text.newSurvey.camera}
             <select name="camera">
               <option value="">{text.newSurvey.otherCamera}</option>
@@ -104,10 +120,6 @@ export function NewSurvey(props: {
                 )}
               </For>
             </select>
-          </label>
-          <label>
-            {text.newSurvey.interval}
-            <input name="interval" type="number" min={0.5} max={60} step={0.1} value={2} required />
           </label>
           <label class="survey-wide">
             {text.newSurvey.rows}

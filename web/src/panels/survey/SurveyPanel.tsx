@@ -4,7 +4,7 @@ import { targetsKey } from "../../orders/targets";
 import type { SurveyingView, SurveyResponse, SurveyView } from "../../protocol";
 import type { Outcome } from "../../source/stationSource";
 import { text } from "../../text/catalogue";
-import { surveyStatus, timeLeft } from "../../text/survey";
+import { surveyHeight, surveyStatus, timeLeft } from "../../text/survey";
 import { withLengthUnit } from "../../text/units";
 import { BRIEF_MS, GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Panel, Problem } from "../Panel";
@@ -64,6 +64,7 @@ function SurveySection(props: SurveyProps) {
         {surveyStatus(props.survey)}
         <Show when={reason()}>{(why) => <span class="muted">: {withLengthUnit(why())}</span>}</Show>
       </p>
+      <p class="muted">{surveyHeight(props.survey)}</p>
       <Coverage survey={props.survey} />
       <Decisions lines={active().map((vehicle) => lineOf(vehicle, is("done")))} />
       <Show when={is("created")}>

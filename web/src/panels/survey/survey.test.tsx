@@ -69,6 +69,19 @@ describe("a survey in the list", () => {
     expect(text()).toContain("9 m/s is too fast");
   });
 
+  it("shows its height with the reference, and the range above the ground before its start", async () => {
+    show(survey(7, { phase: "created", vehicles: [] }));
+    page.estimateWith({ least_height_above_ground_m: 21.6, most_height_above_ground_m: 71.2 });
+    page.shared.selection.only(2);
+    await settled();
+    const shown = () => find(page.root, "[data-testid=survey-7]").textContent;
+    expect(shown()).toContain("50\u00a0m above takeoff");
+    expect(shown()).toContain("Height above ground22\u00a0m to 71\u00a0m");
+    page.dispose();
+    show(survey(7, { height_above_takeoff_m: null, height_above_ground_m: 40 }));
+    expect(shown()).toContain("40\u00a0m above ground");
+  });
+
   it("that flies shows no estimate", () => {
     show(survey(7));
     expect(page.root.querySelector("[data-testid=estimate-7]")).toBeNull();
@@ -137,6 +150,26 @@ describe("a new survey", () => {
         },
       },
     ]);
+  });
+
+  it("is planned above the ground where the site has an elevation model", () => {
+    const regions = [area("survey", [0, 0], 50, { name: "south field" })];
+    const base = station([vehicle(1)]);
+    const begin = (terrain: "model" | "flat assumed") => {
+      const site = base.site === null ? null : { ...base.site, areas: regions, terrain };
+      page = renderPage(SurveyPanel, { ...base, site });
+      return find<HTMLOptionElement>(page.root, "select[name=above] option[value=ground]");
+    };
+    const unknown = begin("flat assumed");
+    expect([unknown.disabled, unknown.textContent]).toEqual([true, "Ground (no elevation model)"]);
+    page.dispose();
+    expect(begin("model").disabled).toBe(false);
+    find<HTMLSelectElement>(page.root, "select[name=above]").value = "ground";
+    find<HTMLFormElement>(page.root, "form").dispatchEvent(
+      new SubmitEvent("submit", { bubbles: true, cancelable: true }),
+    );
+    expect(page.requests).toMatchObject([{ plannedSurvey: { height_above_ground_m: 50 } }]);
+    expect(page.requests).not.toMatchObject([{ plannedSurvey: { height_above_takeoff_m: 50 } }]);
   });
 
   it("begins with the camera that all survey drones have", async () => {

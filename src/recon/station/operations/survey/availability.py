@@ -9,7 +9,7 @@ from recon.model.command import Phase
 from recon.model.control import AuthorityHolder
 from recon.model.vehicle import Staleness, VehicleState
 from recon.safety.airspace import PreparedAirspace
-from recon.safety.datum import frame_for, home_enu_m, vehicle_enu_m
+from recon.safety.datum import frame_for, home_enu_m, takeoff_up_m, vehicle_enu_m
 from recon.safety.energy import consumption
 from recon.safety.separation_minima import gate_minima
 from recon.safety.settings import EnergySettings
@@ -20,6 +20,11 @@ from recon.station.traffic.known_traffic import hazard
 
 CLOSED_SLACK_M = 5.0
 """The gate's trajectories are wider than a row: GNSS, and drift since the last position."""
+
+NO_TAKEOFF_HEIGHT = (
+    "the height of its takeoff point is unknown: its takeoff was not observed, or was outside the "
+    "site's elevation model; let it take off from a pad of the site"
+)
 
 
 def available_vehicles(station: Station, record: SurveyRecord, now_ns: int) -> Iterator[Surveyor]:
@@ -46,6 +51,7 @@ def available_vehicles(station: Station, record: SurveyRecord, now_ns: int) -> I
             home_m=None if home_m is None else (float(home_m[0]), float(home_m[1])),
             is_flying=vehicle.is_flying.value is True,
             height_above_takeoff_m=vehicle.height_above_takeoff_m.value,
+            takeoff_up_m=takeoff_up_m(station.airspace, vehicle),
         )
 
 
@@ -83,6 +89,8 @@ def hindrance(station: Station, member: SurveyMember, now_ns: int) -> str | None
         return None
     if staleness(vehicle, now_ns) is not Staleness.LIVE:
         return "no telemetry now"
+    if takeoff_up_m(station.airspace, vehicle) is None:
+        return NO_TAKEOFF_HEIGHT
     if vehicle.is_flying.value is not True and not member.may_take_off:
         return "it is on the ground; takeoff was not allowed"
     return None

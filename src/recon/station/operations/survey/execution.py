@@ -30,7 +30,7 @@ from recon.model.shade import ShadeMap
 from recon.model.survey import MissionAssignment, SurveyPhase
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleState
-from recon.safety.datum import places_m
+from recon.safety.datum import places_m, takeoff_up_m
 from recon.safety.rules.battery import RULE as BATTERY
 from recon.safety.rules.separation import RULE as SEPARATION
 from recon.station.control import authority, order_gateway
@@ -78,7 +78,8 @@ def on_position(
         if at.value is None or height_m.value is None or at.received_at_ns != now_ns:
             continue
         east_m, north_m = (float(metres) for metres in places_m(frame, [at.value])[0])
-        sample = PositionSample(now_ns, east_m, north_m, height_m.value)
+        takeoff_m = takeoff_up_m(station.airspace, vehicle)
+        sample = PositionSample(now_ns, east_m, north_m, height_m.value, takeoff_m)
         kept = record.positions.with_one((serial, sample), settings.positions_kept)
         record = replace(record, positions=kept)
         record = _with_path(station, record, serial, (east_m, north_m), settings)

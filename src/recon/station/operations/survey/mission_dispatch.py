@@ -1,17 +1,21 @@
 """A survey's mission as an order, with an approach to its first row and an exit from its last.
 
-All rows are flown at one height. A vehicle that crosses other rows at that height, or hovers at the
-end of its own, comes too near to other vehicles, and the gate would refuse their missions until it
-is gone. So each vehicle of a survey has heights of its own: it flies to its first row at one of
-them, and climbs or sinks back to it after the last row. A planner that gives the next mission at
-once leaves that out: then the vehicle flies straight to a row that is near, where the gate sees
-room, and one that has to wait steps aside into its layer.
+Rows are flown at one height above takeoff, or above ground. A vehicle that crosses other rows at
+that height, or hovers at the end of its own, comes too near to other vehicles, and the gate would
+refuse their missions until it is gone. So each vehicle of a survey has heights of its own
+(`approach_layers`): it flies to its first row at one of them, and climbs or sinks back to it after
+the last row. A planner that gives the next mission at once leaves that out: then the vehicle flies
+straight to a row that is near, where the gate sees room, and one that has to wait steps aside into
+its layer.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from recon.geo.distance import horizontal_distance_m
+from recon.guidance.survey import SurveyPlan
 from recon.model.airspace import FlightLimits
 from recon.model.command import FlyMission, Refusal
 from recon.model.control import AuthorityHolder
@@ -21,26 +25,22 @@ from recon.model.mission import Mission, Waypoint
 from recon.model.survey import MissionAssignment
 from recon.model.vehicle import VehicleState
 from recon.safety import judge
+from recon.safety.datum import places_m, takeoff_up_m
 from recon.safety.rules.height_zones import RULE as HEIGHT_ZONES
 from recon.safety.rules.keep_out import RULE as KEEP_OUT
 from recon.safety.rules.max_height import RULE as MAX_HEIGHT
 from recon.safety.rules.min_height import RULE as MIN_HEIGHT
 from recon.safety.rules.separation import RULE as SEPARATION
 from recon.station.control.situation_builder import command_of, situation
+from recon.station.operations.survey.approach_layers import (
+    layers_above_takeoff_m,
+    layers_over_terrain_m,
+)
 from recon.station.state.station import Station
 from recon.station.state.survey_record import SurveyRecord
 
 OTHER_HEIGHT_RULES = frozenset({HEIGHT_ZONES, KEEP_OUT, MAX_HEIGHT, MIN_HEIGHT, SEPARATION})
 """Rules that another height of the approach may satisfy; others refuse every height."""
-
-LAYER_M = 8.0
-"""Between two approach heights: the same as between two layers of a fleet return."""
-
-SPARE_M = 5.0
-"""Under the site's ceiling: the ground under an approach may lie higher than the takeoff point."""
-
-LOWEST_M = 20.0
-"""No approach is lower: trees and buildings are in a zone, or lower than this."""
 
 NEAR_M = 20.0
 """A vehicle this near to its first row, at its height, flies straight there."""
@@ -101,10 +101,31 @@ def _straight(
         return None
     first = given.mission.waypoints[0]
     far_m = horizontal_distance_m(here, LatLon(first.latitude_deg, first.longitude_deg))
-    is_level = abs(height_m - first.height_above_takeoff_m) < LEVEL_M
+    is_level = _is_at_rows_height(station, record, vehicle, here, height_m, first)
     if not is_level or far_m > within_m or given.stands_by:
         return None
     return replace(_order(record, given, vehicle), body=FlyMission(given.mission))
+
+
+def _is_at_rows_height(
+    station: Station,
+    record: SurveyRecord,
+    vehicle: VehicleState,
+    here: LatLon,
+    height_m: float,
+    first: Waypoint,
+) -> bool:
+    """Whether a vehicle is as high as rows are: at the first one, or above ground where it is."""
+    plan, frame = _plan_of(record), station.airspace.airspace.frame
+    if plan is None or plan.terrain is None or frame is None:
+        return abs(height_m - first.height_above_takeoff_m) < LEVEL_M
+    east_m, north_m = places_m(frame, [here])[0].tolist()
+    off_m = plan.height_off_m((east_m, north_m), height_m, takeoff_up_m(station.airspace, vehicle))
+    return off_m is not None and abs(off_m) < LEVEL_M + plan.settings.terrain_above_m
+
+
+def _plan_of(record: SurveyRecord) -> SurveyPlan | None:
+    return None if record.state is None else record.state.plan
 
 
 def _refusal(station: Station, order: OperatorOrder, now_ns: int) -> Refusal | None:
@@ -118,8 +139,11 @@ def _orders(
     number, count = tuple(record.members).index(given.serial), len(record.members)
     limits = station.airspace.airspace.limits
     order = _order(record, given, vehicle)
+    layers_m = _layers_over_terrain_m(station, record, given, vehicle)
     if given.stands_by:
-        missions = standing_by(given.mission, vehicle, number, count, limits, given.approach)
+        missions = standing_by(
+            given.mission, vehicle, number, count, limits, given.approach, layers_m=layers_m
+        )
     else:
         missions = with_approaches(
             given.mission,
@@ -129,8 +153,29 @@ def _orders(
             limits,
             given.approach,
             ends_in_layer=given.straight_within_m is None,
+            layers_m=layers_m,
         )
     return tuple(replace(order, body=FlyMission(mission)) for mission in missions)
+
+
+def _layers_over_terrain_m(
+    station: Station, record: SurveyRecord, given: MissionAssignment, vehicle: VehicleState
+) -> Sequence[float]:
+    """The vehicle's layers above its takeoff point in a survey above ground; else none.
+
+    Where none is free of ground and rows, it is the height of its first row: the gate judges.
+    """
+    plan, air = _plan_of(record), station.airspace
+    here, takeoff_m = vehicle.position.value, takeoff_up_m(air, vehicle)
+    frame = air.airspace.frame
+    if plan is None or plan.terrain is None or frame is None or here is None or takeoff_m is None:
+        return ()
+    number, count = tuple(record.members).index(given.serial), len(record.members)
+    first, last = given.mission.waypoints[0], given.mission.waypoints[-1]
+    *way_m, end_m = places_m(frame, [here, *given.approach, first, last])
+    up_m = layers_over_terrain_m(plan.terrain, air, np.array(way_m), end_m, number, count)
+    layers_m = [round(each - takeoff_m, 2) for each in up_m]
+    return layers_m or [first.height_above_takeoff_m]
 
 
 def _order(record: SurveyRecord, given: MissionAssignment, vehicle: VehicleState) -> OperatorOrder:
@@ -152,10 +197,13 @@ def standing_by(
     count: int,
     limits: FlightLimits,
     corners: tuple[LatLon, ...] = (),
+    *,
+    layers_m: Sequence[float] = (),
 ) -> tuple[Mission, ...]:
     """Return the mission to the mission's first waypoint, at each of the vehicle's own heights.
 
-    Where it is there already it climbs or sinks on the spot; none where there is no other height.
+    `layers_m` are these above terrain. Where it is there already it climbs or sinks on the spot;
+    none where there is no other height.
     """
     here, height_m = vehicle.position.value, vehicle.height_above_takeoff_m.value
     first = replace(mission.waypoints[0], gimbal_pitch_deg=None)
@@ -164,7 +212,8 @@ def standing_by(
     far_m = horizontal_distance_m(here, LatLon(first.latitude_deg, first.longitude_deg))
     is_there = far_m < NEAR_M and abs(height_m - first.height_above_takeoff_m) < LEVEL_M
     flown = []
-    for layer_m in _own_layers_m(first.height_above_takeoff_m, number, count, limits):
+    rows_m = first.height_above_takeoff_m
+    for layer_m in layers_m or layers_above_takeoff_m(rows_m, number, count, limits):
         if is_there and abs(layer_m - first.height_above_takeoff_m) < LEVEL_M:
             continue
         there = replace(first, height_above_takeoff_m=layer_m)
@@ -190,16 +239,18 @@ def with_approaches(
     corners: tuple[LatLon, ...] = (),
     *,
     ends_in_layer: bool = True,
+    layers_m: Sequence[float] = (),
 ) -> tuple[Mission, ...]:
     """Return the mission with each possible approach: straight up or down, across, onto the first
     row; and off the last row to the same height, if it `ends_in_layer`.
 
-    One for each of the vehicle's heights, the nearest to the rows first. `number` counts the
+    One for each of the vehicle's heights, the nearest to the rows first; `layers_m` are these above
+    terrain. `number` counts the
     survey's `count` vehicles from 0: no two share a height, as long as there are enough; beyond,
     they share the last one. The way across turns at `corners`; zones are left to the gate.
     """
     rows_m = mission.waypoints[0].height_above_takeoff_m
-    own_m = _own_layers_m(rows_m, number, count, limits)
+    own_m = layers_m or layers_above_takeoff_m(rows_m, number, count, limits)
     flown = tuple(_with_approach(mission, vehicle, layer_m, corners) for layer_m in own_m)
     if count > 1 and ends_in_layer:
         flown = tuple(_with_end(each, layer_m) for each, layer_m in zip(flown, own_m, strict=True))
@@ -234,16 +285,3 @@ def _with_end(mission: Mission, layer_m: float) -> Mission:
         return mission
     end = replace(last, height_above_takeoff_m=layer_m, gimbal_pitch_deg=None)
     return replace(mission, waypoints=(*mission.waypoints, end))
-
-
-def _own_layers_m(rows_m: float, number: int, count: int, limits: FlightLimits) -> list[float]:
-    layers_m = _layers_m(rows_m, limits)
-    return layers_m[number::count] or layers_m[-1:]
-
-
-def _layers_m(rows_m: float, limits: FlightLimits) -> list[float]:
-    """The heights of approaches: above the rows, below, and so on; without room the rows' own."""
-    ceiling_m = limits.max_height_above_ground_m - SPARE_M
-    steps = range(1, 1 + int(max(ceiling_m, rows_m) // LAYER_M))
-    outwards = [rows_m + sign * step * LAYER_M for step in steps for sign in (1.0, -1.0)]
-    return [height_m for height_m in outwards if LOWEST_M <= height_m <= ceiling_m] or [rows_m]
