@@ -15,12 +15,14 @@ from tests.station.relieved_world import (
 )
 from tests.station.surveyed_world import SURVEY_ID, asked, field
 
+from recon.api.schema import SurveyLightView
 from recon.guidance.survey.settings import DEFAULT as SURVEY_DEFAULT
 from recon.model.airspace import Region, Zone, ZoneKind
 from recon.model.command import Hover, Phase, Refusal
 from recon.model.control import AuthorityHolder
 from recon.model.event import AllStopped, AuthorityTaken, OperatorOrder, ReliefOrdered
 from recon.model.survey import SurveyPhase
+from recon.station.api_views.operation_views import survey_view
 from recon.station.imaging.at_work import imagers_at_work
 from recon.station.operations.imager_relief.commands import audit_entries, refusal
 from recon.station.state.fleet_return_record import Stage
@@ -222,6 +224,36 @@ class TestForeseen:
         assert 0.7 * took_s < needs_s < 1.4 * took_s
         assert world.station.reliefs.newest is None
         assert leaves_texts(world) == []
+
+
+class TestView:
+    def test_it_states_until_when_there_is_light_and_what_is_flown_without(self) -> None:
+        world = surveying(None, allowed=False, first=LOW)
+        world.runs(75.0)
+        light = light_of(world)
+        assert light.needs_s is not None
+        (first,) = light.imagers
+        assert first.leaves_in_s is not None
+        assert light.unknown_in_s == pytest.approx(first.leaves_in_s)
+        assert light.unknown_for_s == pytest.approx(light.needs_s - first.leaves_in_s)
+        assert (light.without_age_s, light.absent) == (None, [])
+        world.surveyed.fleet.call(FIRST)
+        assert world.runs_until(lambda: left_at_home(world), 120.0)
+        world.runs(20.0)
+        light = light_of(world)
+        assert light.imagers == []
+        assert light.without_age_s is not None
+        assert 15.0 < light.without_age_s < 60.0
+        assert light.without_m2 is not None
+        (absent,) = light.absent
+        assert (absent.serial, absent.is_on_ground) == (FIRST, True)
+        assert absent.gone_age_s > 20.0
+
+
+def light_of(world: RelievedWorld) -> SurveyLightView:
+    view = survey_view(world.station, world.surveyed.record(), world.surveyed.driver.now_ns)
+    assert view.light is not None
+    return view.light
 
 
 class TestNotByItself:

@@ -35,6 +35,11 @@ class SurveyService:
         region = self._region(asked)
         if isinstance(region, Refusal):
             return _refused(region)
+        imagers, reserve = self.driver.station.imaging.imagers, asked.reserve_serial
+        if reserve is not None and reserve not in imagers:
+            known = ", ".join(imagers) or "none"
+            text = f"{reserve!a} is no imaging drone of the site; available: {known}"
+            return _refused(Refusal(RULE, text))
         try:
             camera = _camera(asked.camera, self.site)
         except SurveyCameraError as problem:
@@ -168,6 +173,8 @@ def _survey(
         when_done=WhenDone(asked.when_done),
         look_aside_allowed=asked.look_aside_allowed,
         upwind_allowed=asked.upwind_allowed,
+        relief_allowed=asked.relief_allowed,
+        reserve_serial=asked.reserve_serial,
     )
 
 
