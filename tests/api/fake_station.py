@@ -157,15 +157,13 @@ class FakeStation:
     def relieve(
         self,
         serial: str,
-        reserve: str,
+        spare: str,
         *,
         takeoff: bool,
         by: Person,
         given_at_ns: int | None = None,
     ) -> ActionResponse:
-        return self.service.relieve(
-            serial, reserve, takeoff=takeoff, by=by, given_at_ns=given_at_ns
-        )
+        return self.service.relieve(serial, spare, takeoff=takeoff, by=by, given_at_ns=given_at_ns)
 
     def dismiss_hazard(self, name: str, by: Person) -> bool:
         return self.service.dismiss_hazard(name, by)

@@ -383,7 +383,7 @@ class TestLookAside:
 
 class TestRelief:
     def test_without_an_imaging_drone_it_is_refused_and_audited(self, client: Client) -> None:
-        answer = client.post("/api/imager-relief", json={"serial": "A", "reserve": "B"}).json()
+        answer = client.post("/api/imager-relief", json={"serial": "A", "spare": "B"}).json()
         assert answer == {
             "accepted": False,
             "rule": "imager_relief",
@@ -395,12 +395,12 @@ class TestRelief:
     def test_a_survey_allows_it_only_when_asked(self, client: Client) -> None:
         plain = client.post("/api/surveys", json=ASKED).json()["survey"]
         allowed = client.post("/api/surveys", json={**ASKED, "relief_allowed": True}).json()
-        assert (plain["relief_allowed"], plain["reserve_serial"]) == (False, None)
+        assert (plain["relief_allowed"], plain["spare_serial"]) == (False, None)
         assert allowed["survey"]["relief_allowed"] is True
         assert allowed["survey"]["light"] is None
 
-    def test_a_reserve_that_is_no_imaging_drone_is_refused(self, client: Client) -> None:
-        answer = client.post("/api/surveys", json={**ASKED, "reserve_serial": "X"}).json()
+    def test_a_spare_that_is_no_imaging_drone_is_refused(self, client: Client) -> None:
+        answer = client.post("/api/surveys", json={**ASKED, "spare_serial": "X"}).json()
         assert answer["accepted"] is False
         assert answer["reason"] == "'X' is no imaging drone of the site; available: none"
 

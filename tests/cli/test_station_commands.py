@@ -96,7 +96,7 @@ class TestOnTheGround:
             "--height",
             "45",
             "--relief",
-            "--reserve",
+            "--spare",
             "SIM-1",
         )
         assert survey.code != 0

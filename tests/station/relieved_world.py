@@ -29,7 +29,7 @@ from recon.station.state.station import Station
 from recon.station.state.steps import JobDone
 
 CAMERAS = ("CAM-1", "CAM-2")
-FIRST, RESERVE = CAMERAS
+FIRST, SPARE = CAMERAS
 PLACE_M = (60.0, 30.0)
 FIRST_UP_M = 45.0
 SURVEY_M = 25.0
@@ -95,7 +95,7 @@ class RelievedWorld:
         left: float = self.app(serial).aircraft.battery.fraction
         return left
 
-    def orders(self, serial: str = RESERVE, relieved: str = FIRST, *, takeoff: bool = True) -> None:
+    def orders(self, serial: str = SPARE, relieved: str = FIRST, *, takeoff: bool = True) -> None:
         event = ReliefOrdered(relieved, serial, "ann", takeoff, person="ann")
         self.surveyed.driver.handle(event)
 
@@ -159,11 +159,11 @@ def _forecast(shade: ShadeMap) -> SunForecast:
 
 
 def relieved_world(
-    surveying: int = 0, *, reserve_pad_m: tuple[float, float] = (0.0, -20.0), **options: object
+    surveying: int = 0, *, spare_pad_m: tuple[float, float] = (0.0, -20.0), **options: object
 ) -> RelievedWorld:
-    """Return an imaging drone that hovers over the field, its reserve on its pad, survey drones."""
-    pads = [(60.0, -20.0), reserve_pad_m, *((40.0 * n, -40.0) for n in range(surveying))]
-    places = [(*PLACE_M, FIRST_UP_M), (*reserve_pad_m, 0.0)]
+    """Return an imaging drone that hovers over the field, its spare on its pad, survey drones."""
+    pads = [(60.0, -20.0), spare_pad_m, *((40.0 * n, -40.0) for n in range(surveying))]
+    places = [(*PLACE_M, FIRST_UP_M), (*spare_pad_m, 0.0)]
     places += [(*pad, SURVEY_M) for pad in pads[2:]]
     setup = ImagerSetup(FRAME, FeedSettings(starts_on=False))
     fleet = returning_world(

@@ -115,7 +115,7 @@ def _add_operations(app: FastAPI, port: StationPort) -> None:
         """
         return port.relieve(
             asked.serial,
-            asked.reserve or asked.serial,
+            asked.spare or asked.serial,
             takeoff=asked.takeoff,
             by=person_of(request),
             given_at_ns=given_at_ns(asked.given_at_unix_ms),

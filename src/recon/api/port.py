@@ -223,13 +223,13 @@ class StationPort(Protocol):
     def relieve(
         self,
         serial: str,
-        reserve: str,
+        spare: str,
         *,
         takeoff: bool,
         by: Person,
         given_at_ns: int | None = None,
     ) -> ActionResponse:
-        """Have `reserve` take the place of an imaging drone; refusals are results, not errors."""
+        """Have `spare` take the place of an imaging drone; refusals are results, not errors."""
 
     def dismiss_hazard(self, name: str, by: Person) -> bool:
         """Dismiss the hazard area of a lost vehicle; False when it has none."""

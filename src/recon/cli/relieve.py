@@ -29,10 +29,10 @@ def relieve_command(
         str,
         typer.Argument(metavar="VEHICLE", help="The imaging drone whose place is taken."),
     ],
-    reserve: Annotated[
+    spare: Annotated[
         str | None,
         typer.Argument(
-            metavar="[RESERVE]",
+            metavar="[SPARE]",
             help="The imaging drone that takes it; without one VEHICLE returns to its own place.",
         ),
     ] = None,
@@ -46,13 +46,13 @@ def relieve_command(
 ) -> None:
     """Relieve an imaging drone, or send it back to its place with a fresh battery.
 
-    The reserve flies to the place in a layer of its own; once its shade maps show the ground, the
-    other one is called home. Exits once it has begun; with --wait, once it has ended or after that
-    many seconds. It continues after the exit: `recon hold` stops it.
+    The spare drone flies to the place in a layer of its own; once its shade maps show the ground,
+    the other one is called home. Exits once it has begun; with --wait, once it has ended or after
+    that many seconds. It continues after the exit: `recon hold` stops it.
     """
 
     async def work(station: Station) -> int:
-        serials = named_serials(station, [vehicle] if reserve is None else [vehicle, reserve])
+        serials = named_serials(station, [vehicle] if spare is None else [vehicle, spare])
         refusal = await station.relieve(serials[0], serials[-1], takeoff=takeoff)
         if refusal is not None:
             print_line(f"relieve: refused ({refusal.rule}): {refusal.reason}")

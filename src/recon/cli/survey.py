@@ -107,13 +107,13 @@ def create_command(
         bool,
         typer.Option(
             "--relief",
-            help="The imaging drone is relieved by the reserve, or called home, when its battery "
-            "wants it.",
+            help="The imaging drone is relieved by the spare drone, or called home, when its "
+            "battery wants it.",
         ),
     ] = False,
-    reserve: Annotated[
+    spare: Annotated[
         str | None,
-        typer.Option("--reserve", help="The imaging drone that relieves it; with --relief."),
+        typer.Option("--spare", help="The imaging drone that relieves it; with --relief."),
     ] = None,
     as_json: JsonOption = False,
     address: AddressOption = DEFAULT_ADDRESS,
@@ -140,8 +140,8 @@ def create_command(
 
     async def work(station: Station) -> int:
         area = await _area(station, region, feature, name)
-        if reserve is not None:
-            area["reserve_serial"] = named_serials(station, [reserve])[0]
+        if spare is not None:
+            area["spare_serial"] = named_serials(station, [spare])[0]
         return _print_answer(await station.surveys.create(**area, **settings), as_json)
 
     run_at_station(address, token_file, work)

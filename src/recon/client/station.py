@@ -159,7 +159,7 @@ class Station:
         return (await self._state()).look_aside
 
     async def relieve(
-        self, serial: str, reserve: str | None = None, *, takeoff: bool = False
+        self, serial: str, spare: str | None = None, *, takeoff: bool = False
     ) -> Refusal | None:
         """Have an imaging drone take the place of another; None on success.
 
@@ -168,7 +168,7 @@ class Station:
         """
         request = {
             "serial": serial,
-            "reserve": reserve,
+            "spare": spare,
             "takeoff": takeoff,
             "given_at_unix_ms": self._order_api.station_time_ms(),
         }

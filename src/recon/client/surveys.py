@@ -74,7 +74,7 @@ class SurveyStatus(msgspec.Struct, frozen=True):
     look_aside_allowed: bool
     upwind_allowed: bool
     relief_allowed: bool
-    reserve_serial: str | None
+    spare_serial: str | None
     light: SurveyLight | None
     round: int
     missions: int

@@ -4,7 +4,7 @@ An imaging drone hovers until its charge is what the way home and the reserve ta
 from the changes of the charge that it reports, in whole percent; so the moment is known to about a
 quarter of a minute. How long a survey goes on follows from its missing ground and its recent pace.
 
-The reserve flies to the place in a layer of its own, so that both may hover there together.
+The spare one flies to the place in a layer of its own, so that both may hover there together.
 """
 
 from collections.abc import Iterator
@@ -28,7 +28,7 @@ class ImagerReliefSettings:
     """Time to fetch a drone, and to fly it there: takeoff, 100 m up and 500 m across take two
     minutes."""
 
-    spare_s: float = 90.0
+    early_s: float = 90.0
     """A relief by itself begins so much before it must: for another height or a refusal, and for
     the way home of the one relieved to be free."""
 
@@ -60,11 +60,11 @@ class ImagerReliefSettings:
     lowest_m: float = 20.0
     """As for approaches of a survey: trees and buildings are in a zone, or lower than this."""
 
-    highest_spare_m: float = 1.0
+    below_ceiling_m: float = 1.0
     """Under the site's ceiling, as in a fleet return."""
 
     stays_s: float = 300.0
-    """What the reserve's battery must give at the place: less is not worth the flight."""
+    """What the spare one's battery must give at the place: less is not worth the flight."""
 
     maps_in_a_row: int = 3
     """One map may come by chance from the climb's last frame; three are a camera that works."""

@@ -95,7 +95,7 @@ class Survey:
     """Whether the imaging drone may fly by itself to where it sees more of the shade to come."""
     relief_allowed: bool = False
     """Whether the imaging drone may be relieved, or called home, when its battery wants it."""
-    reserve_serial: str | None = None
+    spare_serial: str | None = None
     """The imaging drone that relieves it then; it takes off if the start allowed takeoff."""
 
 

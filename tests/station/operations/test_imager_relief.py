@@ -1,5 +1,6 @@
 """Reliefs of imaging drones, in virtual time: simulated apps, the real station and gate."""
 
+from dataclasses import replace
 from math import dist
 
 import numpy as np
@@ -8,7 +9,7 @@ from tests.station.relieved_world import (
     FIRST,
     FIRST_UP_M,
     PLACE_M,
-    RESERVE,
+    SPARE,
     SURVEY_M,
     RelievedWorld,
     relieved_world,
@@ -21,10 +22,13 @@ from recon.model.airspace import Region, Zone, ZoneKind
 from recon.model.command import Hover, Phase, Refusal
 from recon.model.control import AuthorityHolder
 from recon.model.event import AllStopped, AuthorityTaken, OperatorOrder, ReliefOrdered
+from recon.model.imagery import Outlook
 from recon.model.survey import SurveyPhase
 from recon.station.api_views.operation_views import survey_view
 from recon.station.imaging.at_work import imagers_at_work
+from recon.station.imaging.upwind import upwind_question
 from recon.station.operations.imager_relief.commands import audit_entries, refusal
+from recon.station.operations.look_aside.commands import meant
 from recon.station.state.fleet_return_record import Stage
 from recon.station.state.imager_motion import MotionStage
 from recon.station.state.steps import StepTaken
@@ -42,7 +46,7 @@ WALL = Zone(
 
 
 def surveying(
-    reserve: str | None = RESERVE,
+    spare: str | None = SPARE,
     *,
     allowed: bool = True,
     takeoff: bool = True,
@@ -60,7 +64,7 @@ def surveying(
         front_overlap=0.5,
         planner=planner,
         relief_allowed=allowed,
-        reserve_serial=reserve,
+        spare_serial=spare,
     )
     world.surveyed.asks(survey)
     world.surveyed.starts("SIM-1", takeoff=takeoff)
@@ -76,7 +80,7 @@ def ordered(**options: object) -> RelievedWorld:
     world.orders()
     world.runs(20.0)
     assert world.newest().stage is MotionStage.TO_PLACE
-    assert world.holder(RESERVE) is AuthorityHolder.GUIDANCE
+    assert world.holder(SPARE) is AuthorityHolder.GUIDANCE
     return world
 
 
@@ -127,25 +131,42 @@ class TestFlown:
         assert world.battery(FIRST) >= limits.battery_reserve_fraction
         assert world.surveyed.fleet.stages()[FIRST] is Stage.LANDED
 
-    def test_the_reserve_hovers_above_the_place_and_the_operator_has_it(self, flown: Flown) -> None:
+    def test_the_spare_hovers_above_the_place_and_the_operator_has_it(self, flown: Flown) -> None:
         world = flown[0]
         assert world.newest().stage is MotionStage.DONE
-        assert dist(world.place_m(RESERVE)[:2], PLACE_M) < 3.0
-        assert world.place_m(RESERVE)[2] == pytest.approx(FIRST_UP_M + 8.0, abs=1.5)
-        assert world.holder(RESERVE) is AuthorityHolder.OPERATOR
-        assert imagers_at_work(world.station) == (RESERVE,)
+        assert dist(world.place_m(SPARE)[:2], PLACE_M) < 3.0
+        assert world.place_m(SPARE)[2] == pytest.approx(FIRST_UP_M + 8.0, abs=1.5)
+        assert world.holder(SPARE) is AuthorityHolder.OPERATOR
+        assert imagers_at_work(world.station) == (SPARE,)
+
+    def test_it_is_the_imaging_drone_from_then_on(self, flown: Flown) -> None:
+        """Looks aside and moves upwind mean it where none is named."""
+        world = flown[0]
+        assert meant(world.station) == SPARE
+        shade = world.station.shade
+        assert shade.sun is not None
+        moving = replace(shade, sun=replace(shade.sun, velocity_mps=(5.0, 0.0)))
+        imagers = {
+            serial: replace(each, outlook=Outlook(1.1))
+            for serial, each in world.station.imaging.imagers.items()
+        }
+        imaging = replace(world.station.imaging, imagers=imagers)
+        station = replace(world.station, shade=moving, imaging=imaging)
+        asked = upwind_question(station, [REGION], None, world.surveyed.driver.now_ns)
+        assert not isinstance(asked, str)
+        assert asked.serial == SPARE
 
     def test_each_stage_is_audited_and_the_way_is_an_information(self, flown: Flown) -> None:
         world, entries, on_the_way = flown
         stages = ["imager_relief.to_place", "imager_relief.maps", "imager_relief.done"]
         assert [kind for kind, _ in entries] == stages
-        assert {serial for _, serial in entries} == {RESERVE}
+        assert {serial for _, serial in entries} == {SPARE}
         assert list(on_the_way) == ["imager_relief:motion"]
         assert "relieves CAM-1 for its survey" in on_the_way["imager_relief:motion"]
         assert world.alarms() == {}
 
     def test_the_takeoff_was_allowed_once(self, flown: Flown) -> None:
-        assert not flown[0].surveyed.record().reserve_may_take_off
+        assert not flown[0].surveyed.record().spare_may_take_off
 
 
 class TestWithoutRelief:
@@ -264,35 +285,35 @@ class TestNotByItself:
         assert "Relieve it" in leaves_texts(world)[0]
 
     def test_where_the_gate_refuses_every_layer(self) -> None:
-        world = surveying(zones=(WALL,), reserve_pad_m=(-60.0, -20.0), first=SHORT)
+        world = surveying(zones=(WALL,), spare_pad_m=(-60.0, -20.0), first=SHORT)
         world.runs(2.0)
         text = world.alarms()["imager_relief:refused"]
         assert "wall" in text
         assert "no other height is free" in text
         assert "imager_relief:leaves:CAM-1" in world.alarms()
-        assert world.holder(RESERVE) is AuthorityHolder.OPERATOR
-        assert not world.surveyed.fleet.flies(RESERVE)
-        assert world.surveyed.record().reserve_may_take_off  # nothing has used it
+        assert world.holder(SPARE) is AuthorityHolder.OPERATOR
+        assert not world.surveyed.fleet.flies(SPARE)
+        assert world.surveyed.record().spare_may_take_off  # nothing has used it
 
 
 class TestEndedBefore:
-    """Whatever ends it, the reserve holds, the first one stays, and nothing resumes."""
+    """Whatever ends it, the spare holds, the first one stays, and nothing resumes."""
 
     def stays(self, world: RelievedWorld, why: str) -> None:
         world.runs(6.0)
         ended = world.newest()
         assert ended.stage is MotionStage.STOPPED
         assert why in ended.reason
-        here = world.place_m(RESERVE)
+        here = world.place_m(SPARE)
         world.runs(20.0)
-        assert dist(here, world.place_m(RESERVE)) < 2.0
+        assert dist(here, world.place_m(SPARE)) < 2.0
         assert world.newest() is ended
         assert dist(world.place_m(FIRST)[:2], PLACE_M) < 2.0
         assert world.surveyed.fleet.flies(FIRST)
 
     def test_by_a_lost_connection(self) -> None:
         world = ordered()
-        connected = world.surveyed.fleet.world.connected[RESERVE]
+        connected = world.surveyed.fleet.world.connected[SPARE]
         world.surveyed.driver.disconnect(connected.link_id)
         world.runs(5.0)
         world.surveyed.fleet.world.connect(connected.app)
@@ -306,24 +327,24 @@ class TestEndedBefore:
 
     def test_by_its_pilot(self) -> None:
         world = ordered()
-        world.app(RESERVE).aircraft.pilot_takes()
+        world.app(SPARE).aircraft.pilot_takes()
         self.stays(world, "pilot")
-        assert world.holder(RESERVE) is AuthorityHolder.PILOT
+        assert world.holder(SPARE) is AuthorityHolder.PILOT
         assert world.alarms() == {}
 
     def test_by_an_all_stop(self) -> None:
         world = ordered()
         world.surveyed.driver.handle(AllStopped("bob"))
-        for number, serial in enumerate((FIRST, RESERVE), 900):
+        for number, serial in enumerate((FIRST, SPARE), 900):
             world.surveyed.driver.handle(OperatorOrder(number, Hover(), "bob", serial=serial))
         self.stays(world, "all stop by bob")
-        again = why_not(world, ReliefOrdered(FIRST, RESERVE, "ann", True))
+        again = why_not(world, ReliefOrdered(FIRST, SPARE, "ann", True))
         assert again is not None
         assert "held by an all stop" in again.reason
 
     def test_by_control_taken(self) -> None:
         world = ordered()
-        taken = AuthorityTaken(RESERVE, AuthorityHolder.OPERATOR, "ann", "ann")
+        taken = AuthorityTaken(SPARE, AuthorityHolder.OPERATOR, "ann", "ann")
         world.surveyed.driver.handle(taken)
         world.runs(1.0)
         assert world.newest().stage is MotionStage.STOPPED
@@ -331,9 +352,9 @@ class TestEndedBefore:
 
     def test_without_maps_and_ordered_again_it_goes_on_from_the_place(self) -> None:
         world = ordered()
-        world.blind_cameras = {RESERVE}
+        world.blind_cameras = {SPARE}
         assert world.runs_until(lambda: world.newest().is_over, 120.0)
-        assert world.app(RESERVE).feed.is_on  # it was switched on
+        assert world.app(SPARE).feed.is_on  # it was switched on
         self.stays(world, "no 3 shade maps in a row within 60 s of its arrival")
         assert "Relieve again" in world.alarms()["imager_relief:stopped"]
         world.blind_cameras = set()
@@ -345,8 +366,8 @@ class TestEndedBefore:
 
     def test_by_maps_of_other_ground(self) -> None:
         world = ordered()
-        world.charges(RESERVE, 0.9)
-        world.shown_m = {RESERVE: 20.0}
+        world.charges(SPARE, 0.9)
+        world.shown_m = {SPARE: 20.0}
         assert world.runs_until(lambda: world.newest().is_over, 120.0)
         assert "of what CAM-1 shows" in world.newest().reason
 
@@ -355,7 +376,7 @@ def test_a_relief_by_itself_that_a_person_stops_does_not_begin_again() -> None:
     world = surveying(first=LOW)
     assert world.runs_until(lambda: world.station.reliefs.newest is not None, 60.0)
     world.runs(10.0)
-    world.surveyed.driver.handle(OperatorOrder(900, Hover(), "bob", serial=RESERVE))
+    world.surveyed.driver.handle(OperatorOrder(900, Hover(), "bob", serial=SPARE))
     world.runs(2.0)
     stopped = world.newest()
     assert stopped.stage is MotionStage.STOPPED
@@ -379,7 +400,7 @@ def test_a_first_one_that_cannot_be_called_home_in_the_end_is_an_alarm() -> None
 
 
 def test_a_first_one_that_must_leave_at_once_is_called_home_and_the_relief_follows() -> None:
-    """A survey drone crosses above the reserve: the relief is refused for the first seconds."""
+    """A survey drone crosses above the spare: the relief is refused for the first seconds."""
     world = surveying(first=0.29)
     assert "relief cannot begin" in world.alarms()["imager_relief:refused"]
     assert world.surveyed.fleet.stages()[FIRST] in (Stage.STOPPING, Stage.WAITING, Stage.FLYING)
@@ -399,24 +420,24 @@ def test_a_first_one_that_must_leave_at_once_is_called_home_and_the_relief_follo
 class TestRefused:
     def test_what_is_no_imaging_drone_or_not_connected(self) -> None:
         world = relieved_world(1)
-        for event in (ReliefOrdered(FIRST, "SIM-1", "ann"), ReliefOrdered("X", RESERVE, "ann")):
+        for event in (ReliefOrdered(FIRST, "SIM-1", "ann"), ReliefOrdered("X", SPARE, "ann")):
             refused = why_not(world, event)
             assert refused is not None
             assert "expected CAM-1, CAM-2" in refused.reason
-        connected = world.surveyed.fleet.world.connected[RESERVE]
+        connected = world.surveyed.fleet.world.connected[SPARE]
         world.surveyed.driver.disconnect(connected.link_id)
         world.runs(4.0)
-        refused = why_not(world, ReliefOrdered(FIRST, RESERVE, "ann", True))
+        refused = why_not(world, ReliefOrdered(FIRST, SPARE, "ann", True))
         assert refused is not None
 
     def test_without_takeoff_and_with_a_weak_battery(self) -> None:
         world = relieved_world()
-        refused = why_not(world, ReliefOrdered(FIRST, RESERVE, "ann"))
+        refused = why_not(world, ReliefOrdered(FIRST, SPARE, "ann"))
         assert refused is not None
         assert "on the ground; takeoff was not allowed" in refused.reason
-        world.charges(RESERVE, 0.48)
+        world.charges(SPARE, 0.48)
         world.runs(2.0)
-        refused = why_not(world, ReliefOrdered(FIRST, RESERVE, "ann", True))
+        refused = why_not(world, ReliefOrdered(FIRST, SPARE, "ann", True))
         assert refused is not None
         assert "min at the place; expected 5 min or more" in refused.reason
 
@@ -424,26 +445,26 @@ class TestRefused:
         world = relieved_world()
         taken = AuthorityTaken(FIRST, AuthorityHolder.PILOT, "bob")
         world.surveyed.driver.handle(taken)
-        refused = why_not(world, ReliefOrdered(FIRST, RESERVE, "ann", True))
+        refused = why_not(world, ReliefOrdered(FIRST, SPARE, "ann", True))
         assert refused is not None
         assert "controlled by the pilot" in refused.reason
 
     def test_without_a_place(self) -> None:
         world = relieved_world()
-        refused = why_not(world, ReliefOrdered(RESERVE, FIRST, "ann"))
+        refused = why_not(world, ReliefOrdered(SPARE, FIRST, "ann"))
         assert refused is not None
         assert "has not hovered over the field yet" in refused.reason
 
     def test_a_refused_one_changes_nothing_and_is_audited(self) -> None:
         world = relieved_world()
         before = world.station
-        event = ReliefOrdered(FIRST, RESERVE, "ann")
+        event = ReliefOrdered(FIRST, SPARE, "ann")
         now_ns = world.surveyed.driver.now_ns
         world.orders(takeoff=False)
         assert world.station.reliefs.newest is None
         (entry,) = audit_entries(before, event, world.station, now_ns)
         assert entry.kind == "imager_relief.refused"
-        assert world.station.control(RESERVE).authority is before.control(RESERVE).authority
+        assert world.station.control(SPARE).authority is before.control(SPARE).authority
 
     def test_below_a_low_ceiling_it_goes_underneath(self) -> None:
         world = relieved_world(max_height_m=50.0)

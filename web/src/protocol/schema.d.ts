@@ -2802,15 +2802,15 @@ export interface components {
              */
             given_at_unix_ms?: number | null;
             /**
-             * Reserve
-             * @description the imaging drone that takes it; null: the same one returns to its place
-             */
-            reserve?: string | null;
-            /**
              * Serial
              * @description whose place is taken
              */
             serial: string;
+            /**
+             * Spare
+             * @description the imaging drone that takes it; null: the same one returns to its place
+             */
+            spare?: string | null;
             /**
              * Takeoff
              * @default false
@@ -3760,11 +3760,6 @@ export interface components {
              * @default false
              */
             relief_allowed: boolean;
-            /**
-             * Reserve Serial
-             * @description the imaging drone that relieves it then, and takes off if the start allows
-             */
-            reserve_serial?: string | null;
             /** Row Bearing Deg */
             row_bearing_deg?: number | null;
             /**
@@ -3772,6 +3767,11 @@ export interface components {
              * @default 0.6
              */
             side_overlap: number;
+            /**
+             * Spare Serial
+             * @description the imaging drone that relieves it then, and takes off if the start allows
+             */
+            spare_serial?: string | null;
             /** Speed Mps */
             speed_mps: number;
             /**
@@ -3857,8 +3857,6 @@ export interface components {
             reason: string;
             /** Relief Allowed */
             relief_allowed: boolean;
-            /** Reserve Serial */
-            reserve_serial: string | null;
             /** Round */
             round: number;
             /**
@@ -3866,6 +3864,8 @@ export interface components {
              * @description number of planned rows or parts of rows
              */
             rows: number;
+            /** Spare Serial */
+            spare_serial: string | null;
             /** Speed Mps */
             speed_mps: number;
             /** Started By */

@@ -175,8 +175,8 @@ export class LiveSource implements StationSource {
     return this.requests.lookAside(serial, this.stationNowMs());
   }
 
-  relieve(serial: string, reserve: string, takeoff: boolean) {
-    return this.requests.relieve(serial, reserve, takeoff, this.stationNowMs());
+  relieve(serial: string, spare: string, takeoff: boolean) {
+    return this.requests.relieve(serial, spare, takeoff, this.stationNowMs());
   }
 
   setAuthority(serial: string, holder: AuthorityHolder, takeOver = false) {

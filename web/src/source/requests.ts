@@ -82,11 +82,11 @@ export class Requests {
 
   relieve(
     serial: string,
-    reserve: string,
+    spare: string,
     takeoff: boolean,
     given_at_unix_ms: number | null,
   ): Promise<Outcome<ActionResponse>> {
-    const body = { serial, reserve, takeoff, given_at_unix_ms };
+    const body = { serial, spare, takeoff, given_at_unix_ms };
     return answered(ORDER, (signal) => this.client.POST("/api/imager-relief", { body, signal }));
   }
 

@@ -105,7 +105,7 @@ export interface StationSource {
   /** Has the imaging drone fly 25 m aside and back. */
   lookAside(serial: string): Promise<Outcome<ActionResponse>>;
   /** Has an imaging drone take the place of another; of the same serial: return to its own. */
-  relieve(serial: string, reserve: string, takeoff: boolean): Promise<Outcome<ActionResponse>>;
+  relieve(serial: string, spare: string, takeoff: boolean): Promise<Outcome<ActionResponse>>;
   /** `takeOver`: also from another person who operates the vehicle. */
   setAuthority(
     serial: string,

@@ -60,7 +60,7 @@ export function survey(id: number, changes: Partial<SurveyView> = {}): SurveyVie
     look_aside_allowed: false,
     upwind_allowed: false,
     relief_allowed: false,
-    reserve_serial: null,
+    spare_serial: null,
     light: null,
     height_above_takeoff_m: 50,
     speed_mps: 5,

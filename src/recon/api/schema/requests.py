@@ -197,7 +197,7 @@ class ReliefRequest(StrictMessage):
     """
 
     serial: str = Field(max_length=256, description="whose place is taken")
-    reserve: str | None = Field(
+    spare: str | None = Field(
         None,
         max_length=256,
         description="the imaging drone that takes it; null: the same one returns to its place",

@@ -76,7 +76,7 @@ class SurveyRequest(StrictMessage):
         description="the imaging drone may be relieved by itself, or called home, when its "
         "battery wants it",
     )
-    reserve_serial: Annotated[str, Field(max_length=256)] | None = Field(
+    spare_serial: Annotated[str, Field(max_length=256)] | None = Field(
         default=None,
         description="the imaging drone that relieves it then, and takes off if the start allows",
     )
@@ -180,7 +180,7 @@ class SurveyView(Message):
     look_aside_allowed: bool
     upwind_allowed: bool
     relief_allowed: bool
-    reserve_serial: str | None
+    spare_serial: str | None
     light: SurveyLightView | None = Field(description="null: it does not run")
     height_above_takeoff_m: float
     speed_mps: float

@@ -48,7 +48,7 @@ def survey_view(station: Station, record: SurveyRecord, now_ns: int) -> schema.S
         look_aside_allowed=survey.look_aside_allowed,
         upwind_allowed=survey.upwind_allowed,
         relief_allowed=survey.relief_allowed,
-        reserve_serial=survey.reserve_serial,
+        spare_serial=survey.spare_serial,
         light=light_view(station, record, now_ns),
         height_above_takeoff_m=survey.height_above_takeoff_m,
         speed_mps=survey.speed_mps,

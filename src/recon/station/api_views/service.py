@@ -216,14 +216,14 @@ class Service:
     def relieve(
         self,
         serial: str,
-        reserve: str,
+        spare: str,
         *,
         takeoff: bool,
         by: Person,
         given_at_ns: int | None = None,
     ) -> schema.ActionResponse:
         """Have an imaging drone take another's place; the audit has a refusal too."""
-        event = ReliefOrdered(serial, reserve, by.label, takeoff, given_at_ns, by.name)
+        event = ReliefOrdered(serial, spare, by.label, takeoff, given_at_ns, by.name)
         refused = relief_refusal(self.driver.station, event, self.driver.now_ns())
         self.driver.handle(event)
         return _action(refused)

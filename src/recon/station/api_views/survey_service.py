@@ -35,10 +35,10 @@ class SurveyService:
         region = self._region(asked)
         if isinstance(region, Refusal):
             return _refused(region)
-        imagers, reserve = self.driver.station.imaging.imagers, asked.reserve_serial
-        if reserve is not None and reserve not in imagers:
+        imagers, spare = self.driver.station.imaging.imagers, asked.spare_serial
+        if spare is not None and spare not in imagers:
             known = ", ".join(imagers) or "none"
-            text = f"{reserve!a} is no imaging drone of the site; available: {known}"
+            text = f"{spare!a} is no imaging drone of the site; available: {known}"
             return _refused(Refusal(RULE, text))
         try:
             camera = _camera(asked.camera, self.site)
@@ -174,7 +174,7 @@ def _survey(
         look_aside_allowed=asked.look_aside_allowed,
         upwind_allowed=asked.upwind_allowed,
         relief_allowed=asked.relief_allowed,
-        reserve_serial=asked.reserve_serial,
+        spare_serial=asked.spare_serial,
     )
 
 

@@ -145,7 +145,7 @@ export function NewSurvey(props: {
                 <For each={imagers().length > 1 ? imagers() : []}>
                   {(vehicle) => (
                     <option value={vehicle.serial ?? "home"}>
-                      {text.newSurvey.reserve(vehicleLabel(vehicle))}
+                      {text.newSurvey.spare(vehicleLabel(vehicle))}
                     </option>
                   )}
                 </For>
@@ -168,6 +168,6 @@ export function NewSurvey(props: {
 
 /** What a survey may do when its imaging drone's battery ends: warn, return it home, or relieve it. */
 function reliefOf(battery: string) {
-  const reserve_serial = battery === "warn" || battery === "home" ? null : battery;
-  return { relief_allowed: battery !== "warn", reserve_serial };
+  const spare_serial = battery === "warn" || battery === "home" ? null : battery;
+  return { relief_allowed: battery !== "warn", spare_serial };
 }

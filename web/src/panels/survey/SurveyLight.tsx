@@ -20,14 +20,14 @@ export function SurveyLight(props: { light: SurveyLightView }) {
     formatMinuteOfDay((source.state()?.time_ns ?? 0) / 1e6 + seconds * 1000);
   const isAtWork = (serial: string | null) =>
     props.light.imagers.some((each) => each.serial === serial);
-  const reserves = () =>
+  const spares = () =>
     fleet.vehicles.filter(({ is_imager, serial }) => is_imager && !isAtWork(serial));
   const isUnderWay = () =>
     [fleet.lookAside, fleet.moveUpwind, fleet.imagerRelief].some(
       (motion) => motion !== null && !isOver(motion),
     );
-  const relieve = async (serial: string, reserve: string, takeoff: boolean) =>
-    setProblem(responseProblem(await source.relieve(serial, reserve, takeoff)));
+  const relieve = async (serial: string, spare: string, takeoff: boolean) =>
+    setProblem(responseProblem(await source.relieve(serial, spare, takeoff)));
   const subject = (...parts: string[]) => (isUnderWay() ? "" : parts.join(" "));
   return (
     <div class="survey-light" data-testid="survey-light">
@@ -47,19 +47,15 @@ export function SurveyLight(props: { light: SurveyLightView }) {
       <div class="section-buttons">
         <For each={props.light.imagers}>
           {(imager) => (
-            <For each={reserves()}>
-              {(reserve) => (
+            <For each={spares()}>
+              {(spare) => (
                 <GuardButton
-                  label={text.relief.relieve(vehicleLabel(reserve))}
-                  of={text.relief.relieveOf(vehicleLabel(reserve), imager.vehicle_name)}
+                  label={text.relief.relieve(vehicleLabel(spare))}
+                  of={text.relief.relieveOf(vehicleLabel(spare), imager.vehicle_name)}
                   hold_ms={GUARD_MS}
-                  subject={subject(imager.serial, reserve.serial ?? "")}
+                  subject={subject(imager.serial, spare.serial ?? "")}
                   onConfirm={() =>
-                    void relieve(
-                      imager.serial,
-                      reserve.serial ?? "",
-                      reserve.is_flying.value !== true,
-                    )
+                    void relieve(imager.serial, spare.serial ?? "", spare.is_flying.value !== true)
                   }
                 />
               )}

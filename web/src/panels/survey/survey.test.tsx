@@ -154,12 +154,12 @@ describe("the light of a running survey", () => {
     expect(text()).toContain("When Cedar must return is not known: endurance unknown.");
   });
 
-  it("has the reserve relieve it by a long press, with takeoff from the ground", () => {
+  it("has the spare relieve it by a long press, with takeoff from the ground", () => {
     showLight({});
     hold("Relieve by 4 Dogwood", 1400);
     expect(page.requests).toEqual([]);
     hold("Relieve by 4 Dogwood", 1600);
-    expect(page.requests).toEqual([{ relieved: "SN-003", reserve: "SN-004", takeoff: true }]);
+    expect(page.requests).toEqual([{ relieved: "SN-003", spare: "SN-004", takeoff: true }]);
   });
 
   it("shows the relief under way, and takes no other order meanwhile", () => {
@@ -177,7 +177,7 @@ describe("the light of a running survey", () => {
     showLight({ imagers: [], absent, unknown_in_s: null, ...without });
     expect(text()).toContain("No shade map for 1 min 15 s: 0.8\u00a0ha flown with light unknown.");
     hold("Send Cedar back", 1600);
-    expect(page.requests).toEqual([{ relieved: "SN-003", reserve: "SN-003", takeoff: true }]);
+    expect(page.requests).toEqual([{ relieved: "SN-003", spare: "SN-003", takeoff: true }]);
   });
 
   it("shows why a relief was refused", async () => {
@@ -217,8 +217,8 @@ describe("a new survey", () => {
       );
     }
     expect(page.requests).toMatchObject([
-      { plannedSurvey: { relief_allowed: true, reserve_serial: null } },
-      { plannedSurvey: { relief_allowed: true, reserve_serial: "SN-004" } },
+      { plannedSurvey: { relief_allowed: true, spare_serial: null } },
+      { plannedSurvey: { relief_allowed: true, spare_serial: "SN-004" } },
     ]);
   });
 
@@ -242,7 +242,7 @@ describe("a new survey", () => {
           look_aside_allowed: false,
           upwind_allowed: false,
           relief_allowed: false,
-          reserve_serial: null,
+          spare_serial: null,
         },
       },
     ]);

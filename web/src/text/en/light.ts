@@ -71,8 +71,8 @@ export const relief = {
   unknown: "Without a relief, light is unknown from then on.",
   without: (age: string, area: string) =>
     `No shade map for ${age}: ${area} flown with light unknown.`,
-  relieve: (reserve: string) => `Relieve by ${reserve}`,
-  relieveOf: (reserve: string, vehicle: string) => `${reserve} flies to the place of ${vehicle}`,
+  relieve: (spare: string) => `Relieve by ${spare}`,
+  relieveOf: (spare: string, vehicle: string) => `${spare} flies to the place of ${vehicle}`,
   sendBack: (vehicle: string) => `Send ${vehicle} back`,
   sendBackOf: (vehicle: string) => `${vehicle} takes off and flies to its place`,
   stages: {
@@ -171,6 +171,6 @@ export const newSurvey = {
   upwind: "Imaging drone may move upwind by itself",
   battery: "When the imaging drone's battery ends",
   batteryEnds: { warn: "Warn only", home: "Return it home" },
-  reserve: (vehicle: string) => `Relieve it by ${vehicle}`,
+  spare: (vehicle: string) => `Relieve it by ${vehicle}`,
   plan: "Plan survey",
 };

@@ -40,7 +40,7 @@ def begin_if_due(
     refusal = begun if isinstance(begun, Refusal) else None
     station, outputs = (station, ()) if isinstance(begun, Refusal) else begun
     if refusal is None:
-        used = replace(record, reserve_may_take_off=False)
+        used = replace(record, spare_may_take_off=False)
         station = replace(station, surveys=station.surveys.put(used))
     again_s = settings.refused_again_s
     reliefs = station.reliefs.after_try(refusal, again_s, again_s, now_ns)
@@ -78,9 +78,9 @@ def by_survey(record: SurveyRecord) -> str:
     return f"{record.started_by}: survey {record.survey.name}"
 
 
-def relief_takes_s(station: Station, relieved: str, reserve: str) -> float | None:
+def relief_takes_s(station: Station, relieved: str, spare: str) -> float | None:
     """Return how long a relief takes until its maps come; None while a place is not known."""
-    at, vehicle = station.reliefs.places.get(relieved), station.fleet.vehicles.get(reserve)
+    at, vehicle = station.reliefs.places.get(relieved), station.fleet.vehicles.get(spare)
     if at is None or vehicle is None:
         return None
     here, height_m = vehicle.position.value, vehicle.height_above_takeoff_m.value
@@ -101,16 +101,16 @@ def _due(
     """Yield the reliefs that must begin now, of surveys that allow them."""
     at_work, called = imagers_at_work(station), station.reliefs.called_home
     for record in _running(station):
-        survey, reserve = record.survey, record.survey.reserve_serial
-        if not survey.relief_allowed or reserve is None or not record.reserve_may_take_off:
+        survey, spare = record.survey, record.survey.spare_serial
+        if not survey.relief_allowed or spare is None or not record.spare_may_take_off:
             continue
-        due = [each for each in at_work if is_due(station, record, each, reserve, settings)]
+        due = [each for each in at_work if is_due(station, record, each, spare, settings)]
         left = [each for each, number in called.items() if number == survey.id]
         for serial in due if at_work else left:
-            takeoff = not is_in_the_air(station, reserve)
+            takeoff = not is_in_the_air(station, spare)
             by, person = by_survey(record), record.person
-            event = ReliefOrdered(serial, reserve, by, takeoff, person=person, survey_id=survey.id)
-            if serial != reserve:
+            event = ReliefOrdered(serial, spare, by, takeoff, person=person, survey_id=survey.id)
+            if serial != spare:
                 yield record, event
 
 
@@ -118,13 +118,13 @@ def is_due(
     station: Station,
     record: SurveyRecord,
     serial: str,
-    reserve: str,
+    spare: str,
     settings: ImagerReliefSettings,
 ) -> bool:
     """Return whether an imaging drone's relief must begin now, for its survey to have light."""
     outlook = station.reliefs.outlooks.get(serial)
-    takes_s = relief_takes_s(station, serial, reserve)
+    takes_s = relief_takes_s(station, serial, spare)
     if outlook is None or outlook.leaves_at_ns is None or takes_s is None:
         return False
-    is_soon = outlook.leaves_in_s <= takes_s + settings.spare_s
+    is_soon = outlook.leaves_in_s <= takes_s + settings.early_s
     return is_soon and needs_longer(station.reliefs, record.survey.id, outlook.leaves_in_s)

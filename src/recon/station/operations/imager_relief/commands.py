@@ -137,14 +137,15 @@ def _layers_up_m(
     """The heights above the site beside the one that hovers there, the nearest first."""
     hovering = station.fleet.vehicles[event.relieved]
     base_m = takeoff_up_m(station.airspace, hovering)
-    assert base_m is not None, "its place is known"
+    if base_m is None:
+        return ()
     height_m = at.up_m - base_m
     goes_home_m = None if hovering.profile is None else hovering.profile.go_home_height_m
     limits = station.airspace.airspace.limits
     heights_m = layers_m(
         height_m,
         separation(station, RETURN_SETTINGS, now_ns, PLAN_LASTS_S).vertical_m,
-        limits.max_height_above_ground_m - RELIEF_SETTINGS.highest_spare_m,
+        limits.max_height_above_ground_m - RELIEF_SETTINGS.below_ceiling_m,
         # Called home by its aircraft it would climb through what hovers above it.
         may_be_above=goes_home_m is not None and goes_home_m <= height_m,
     )
@@ -183,7 +184,7 @@ def _begun(
             return put(flying, replace(motion, command_id=order.command.id)), (*withdrawn, *sent)
         first = first or why
     if first is None:
-        first = Refusal(RULE, f"{name}: no height beside the other one is below the site's ceiling")
+        first = Refusal(RULE, f"{name}: no height beside the other one is below the ceiling")
     others = "; no other height is free" if len(ups_m) > 1 else ""
     return replace(first, reason=f"{first.reason}{others}")
 

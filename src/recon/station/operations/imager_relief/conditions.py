@@ -34,8 +34,8 @@ def conditions(station: Station) -> Iterator[Condition]:
         yield from _must_leave(station, record)
     for record in running:
         yield from _without_light(station, record)
-    reserve = next((r.survey.reserve_serial for r in running if r.survey.relief_allowed), None)
-    yield from cannot_begin(RULE, reliefs.refused, reserve or "", "the relief cannot begin")
+    spare = next((r.survey.spare_serial for r in running if r.survey.relief_allowed), None)
+    yield from cannot_begin(RULE, reliefs.refused, spare or "", "the relief cannot begin")
 
 
 def _ended(station: Station, newest: ImagerRelief) -> Iterator[Condition]:
@@ -77,13 +77,13 @@ def _shows_too(station: Station, serial: str) -> bool:
 
 
 def _will_relieve(station: Station, record: SurveyRecord) -> bool:
-    """Whether the survey's reserve takes the place by itself, and is not refused."""
-    survey, reserve = record.survey, record.survey.reserve_serial
-    if not survey.relief_allowed or reserve is None or station.reliefs.refused is not None:
+    """Whether the survey's spare drone takes the place by itself, and is not refused."""
+    survey, spare = record.survey, record.survey.spare_serial
+    if not survey.relief_allowed or spare is None or station.reliefs.refused is not None:
         return False
-    vehicle = station.fleet.vehicles.get(reserve)
+    vehicle = station.fleet.vehicles.get(spare)
     is_there = vehicle is not None and vehicle.link_id is not None
-    return is_there and record.reserve_may_take_off
+    return is_there and record.spare_may_take_off
 
 
 def _leaves(

@@ -15,16 +15,14 @@ from recon.guidance.imager_relief import (
 )
 from recon.guidance.survey import SurveyState, figures
 from recon.guidance.survey.settings import DEFAULT as SURVEY_DEFAULT
-from recon.model.failsafe_matrix import Activity
 from recon.model.survey import PLANNER_GOALS, CellState
 from recon.model.units import ns_to_seconds, seconds_to_ns
 from recon.model.vehicle import BatteryWarning, VehicleState
 from recon.safety.datum import takeoff_up_m
 from recon.safety.energy import consumption, fraction_to_get_home
-from recon.station.failsafe.activity import activity_of
 from recon.station.imaging.at_work import imagers_at_work
 from recon.station.imaging.upwind import LEAST_HEIGHT_M
-from recon.station.operations.imager_motion.claim import RESTING_MPS
+from recon.station.operations.imager_motion.claim import RESTING_MPS, is_at_rest, motion_under_way
 from recon.station.state.imager_relief import (
     HoverPlace,
     ImagerOutlook,
@@ -109,19 +107,18 @@ def imager_outlook(station: Station, serial: str, now_ns: int) -> ImagerOutlook:
 
 
 def _places(station: Station, now_ns: int) -> Mapping[str, HoverPlace]:
-    """Where each imaging drone hovers now, or did last."""
-    places = dict(station.reliefs.places)
+    """Where each imaging drone hovers now, or did last; not beside its place to look aside."""
+    places, motion = dict(station.reliefs.places), motion_under_way(station)
     for serial in imagers_at_work(station):
         vehicle = station.fleet.vehicles[serial]
         place, velocity = vehicle.position.value, vehicle.velocity_ned.value
-        height_m, base_m = (
-            vehicle.height_above_takeoff_m.value,
-            takeoff_up_m(station.airspace, vehicle),
-        )
+        height_m = vehicle.height_above_takeoff_m.value
+        base_m = takeoff_up_m(station.airspace, vehicle)
         if place is None or velocity is None or height_m is None or base_m is None:
             continue
         is_still = velocity.speed_mps < RESTING_MPS and height_m >= LEAST_HEIGHT_M
-        if is_still and activity_of(station, vehicle) is Activity.HOLDING:
+        is_moving = motion is not None and motion.serial == serial
+        if is_still and not is_moving and is_at_rest(station, vehicle):
             places[serial] = HoverPlace(place, base_m + height_m, now_ns)
     return places
 
