@@ -9,6 +9,7 @@ from recon.guidance.imager_relief import (
     Charge,
     MissingGround,
     layers_m,
+    least_share,
     leaves_at_ns,
     relief_mission,
     shown_share,
@@ -113,11 +114,17 @@ class TestShown:
         assert shown_share(one, nothing) == 1.0
         assert shown_share(nothing, None) == 0.0
 
+    def test_from_lower_less_ground_must_be_shown(self) -> None:
+        assert least_share(120.0, 100.0) == 0.8
+        assert least_share(50.0, 100.0) == pytest.approx(0.2)
+        assert least_share(None, 100.0) == least_share(100.0, None) == 0.8
+
 
 class TestWay:
     def test_layers_go_outwards_between_ground_and_ceiling(self) -> None:
-        assert list(layers_m(60.0, 7.9, 75.0, may_be_above=True)) == [68, 52, 72, 48, 44, 40, 36]
-        assert list(layers_m(60.0, 7.9, 75.0, may_be_above=False)) == [52, 48, 44, 40, 36]
+        assert list(layers_m(60.0, 7.9, 75.0, may_be_above=True)) == [68, 72, 44, 40, 36, 32, 28]
+        assert list(layers_m(60.0, 7.9, 99.0, may_be_above=True))[:4] == [68, 72, 76, 44]
+        assert list(layers_m(60.0, 7.9, 75.0, may_be_above=False)) == [44, 40, 36, 32, 28]
         assert list(layers_m(25.0, 7.9, 30.0, may_be_above=True)) == []
 
     def test_barometers_that_may_have_drifted_take_more(self) -> None:

@@ -35,6 +35,9 @@ class ImagerReliefSettings:
     refused_again_s: float = 15.0
     """Traffic in the way passes; the battery does not wait."""
 
+    called_again_s: float = 60.0
+    """One that was called home and hovers again, left out of the fleet return, is called anew."""
+
     speed_mps: float = 8.0
     """As a move upwind."""
 
@@ -76,7 +79,7 @@ class ImagerReliefSettings:
     """A camera needs seconds to start, detection some frames to learn; then it does not work."""
 
     shows_share: float = 0.8
-    """Of the ground whose light the other one knows: 8 m of height change the view by a tenth."""
+    """Of the ground whose light the other one knows, and that it can see from its own height."""
 
     camera_quiet_s: float = 5.0
     """Without a frame for so long its camera is taken to be off, and is switched on."""
@@ -176,20 +179,30 @@ def shown_share(valid: MaskMap, others_valid: MaskMap | None) -> float:
     return float((valid & others_valid).sum() / others_valid.sum())
 
 
+def least_share(height_m: float | None, others_height_m: float | None) -> float:
+    """Return the share that must be shown from a height: from lower, less ground is in view."""
+    if height_m is None or not others_height_m:
+        return RELIEF_SETTINGS.shows_share
+    lower = min(1.0, max(0.0, height_m) / others_height_m)
+    return RELIEF_SETTINGS.shows_share * lower * lower
+
+
 def layers_m(
     height_m: float, apart_m: float, ceiling_m: float, *, may_be_above: bool
 ) -> Iterator[float]:
-    """Yield heights beside one that is taken, the nearest first, the higher of equals first.
+    """Yield heights beside one that is taken, the nearest first.
 
-    All are above the same point; `apart_m` is the least distance.
+    All are above the same point; `apart_m` is the least distance. Below it is one layer more: the
+    way home of the one above begins with a descent into a layer of the fleet return.
     """
     settings = RELIEF_SETTINGS
-    for step in range(settings.layers):
-        off_m = max(settings.layer_m, apart_m) + step * settings.layer_step_m
-        if may_be_above and height_m + off_m <= ceiling_m:
+    least_m = max(settings.layer_m, apart_m)
+    steps_m = [step * settings.layer_step_m for step in range(settings.layers)]
+    above_m = [least_m + step_m for step_m in steps_m] if may_be_above else []
+    below_m = [-least_m - settings.layer_m - step_m for step_m in steps_m]
+    for off_m in sorted([*above_m, *below_m], key=lambda each: (abs(each), each < 0.0)):
+        if settings.lowest_m <= height_m + off_m <= ceiling_m:
             yield height_m + off_m
-        if height_m - off_m >= settings.lowest_m:
-            yield height_m - off_m
 
 
 def relief_mission(

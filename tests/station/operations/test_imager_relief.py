@@ -38,6 +38,7 @@ LOW = 0.44
 """Of the first one: two and a half minutes above the field."""
 SHORT = 0.375
 """About a minute."""
+AT_ONCE = 0.32
 WALL = Zone(
     "wall",
     ZoneKind.KEEP_OUT,
@@ -172,20 +173,33 @@ class TestFlown:
 class TestWithoutRelief:
     """The baseline: the same survey, and a survey that allows the way home alone."""
 
-    def test_light_becomes_unknown_and_stays_so(self) -> None:
-        world = surveying(None, allowed=False, first=SHORT)
+    def test_light_becomes_unknown_and_stays_so_and_the_view_states_both(self) -> None:
+        world = surveying(None, allowed=False, first=0.39)
+        world.runs(62.0)
+        light = light_of(world)
+        assert light.needs_s is not None
+        (first,) = light.imagers
+        assert first.leaves_in_s is not None
+        assert light.unknown_in_s == pytest.approx(first.leaves_in_s)
+        assert light.unknown_for_s == pytest.approx(light.needs_s - first.leaves_in_s)
+        assert (light.without_age_s, light.absent) == (None, [])
         assert world.runs_until(lambda: left_at_home(world), 200.0)
         assert "light is unknown from then on. Call it home" in leaves_texts(world)[-1]
-        world.runs(60.0)
+        world.runs(45.0)
         assert world.surveyed.phase() is SurveyPhase.RUNNING
-        assert world.worst_age_s > 60.0 > SURVEY_DEFAULT.forecast_age_s
+        assert world.worst_age_s > 45.0 > SURVEY_DEFAULT.forecast_age_s
         assert "counts as light unknown" in world.alarms()[f"imager_relief:light:{SURVEY_ID}"]
-        without = world.station.reliefs.surveys[SURVEY_ID].without_light
-        assert without is not None
-        assert world.surveyed.figures().sun_unknown_m2 > without.sun_unknown_m2
+        light = light_of(world)
+        assert light.imagers == []
+        assert light.without_age_s == pytest.approx(world.worst_age_s, abs=2.0)
+        assert light.without_m2 is not None
+        assert light.without_m2 > 0.0
+        (absent,) = light.absent
+        assert (absent.serial, absent.is_on_ground) == (FIRST, True)
+        assert absent.gone_age_s > 45.0
 
     def test_it_is_called_home_when_it_must_leave_and_sent_back_with_a_fresh_battery(self) -> None:
-        world = surveying(None, first=SHORT)
+        world = surveying(None, first=0.345)
         assert world.runs_until(lambda: bool(world.alarms()), 10.0)
         text = world.alarms()["imager_relief:leaves:CAM-1"]
         assert "Relieve it, or it is called home then" in text
@@ -247,30 +261,6 @@ class TestForeseen:
         assert leaves_texts(world) == []
 
 
-class TestView:
-    def test_it_states_until_when_there_is_light_and_what_is_flown_without(self) -> None:
-        world = surveying(None, allowed=False, first=LOW)
-        world.runs(75.0)
-        light = light_of(world)
-        assert light.needs_s is not None
-        (first,) = light.imagers
-        assert first.leaves_in_s is not None
-        assert light.unknown_in_s == pytest.approx(first.leaves_in_s)
-        assert light.unknown_for_s == pytest.approx(light.needs_s - first.leaves_in_s)
-        assert (light.without_age_s, light.absent) == (None, [])
-        world.surveyed.fleet.call(FIRST)
-        assert world.runs_until(lambda: left_at_home(world), 120.0)
-        world.runs(20.0)
-        light = light_of(world)
-        assert light.imagers == []
-        assert light.without_age_s is not None
-        assert 15.0 < light.without_age_s < 60.0
-        assert light.without_m2 is not None
-        (absent,) = light.absent
-        assert (absent.serial, absent.is_on_ground) == (FIRST, True)
-        assert absent.gone_age_s > 20.0
-
-
 def light_of(world: RelievedWorld) -> SurveyLightView:
     view = survey_view(world.station, world.surveyed.record(), world.surveyed.driver.now_ns)
     assert view.light is not None
@@ -294,6 +284,44 @@ class TestNotByItself:
         assert world.holder(SPARE) is AuthorityHolder.OPERATOR
         assert not world.surveyed.fleet.flies(SPARE)
         assert world.surveyed.record().spare_may_take_off  # nothing has used it
+
+    def test_one_left_out_of_the_fleet_return_is_called_again_after_a_minute(self) -> None:
+        world = surveying(None, first=AT_ONCE)
+        assert world.runs_until(lambda: bool(world.surveyed.fleet.stages()), 10.0)
+        returning = world.station.fleet_return
+        assert returning is not None
+        left = returning.members[FIRST].at(Stage.LEFT_OUT, world.surveyed.driver.now_ns, "no layer")
+        world.station = replace(world.station, fleet_return=returning.put(left))
+        assert holds(world) == 1
+        world.runs(5.0)
+        assert holds(world) == 1
+        called = world.station.reliefs.called_home[FIRST]
+        again = {FIRST: replace(called, at_ns=called.at_ns - 60_000_000_000)}
+        reliefs = replace(world.station.reliefs, called_home=again)
+        world.station = replace(world.station, reliefs=reliefs)
+        world.runs(2.0)
+        assert holds(world) == 2
+
+    def test_one_that_its_pilot_flies_is_not_called_home_and_an_alarm_states_why(self) -> None:
+        world = surveying(None)
+        taken = AuthorityTaken(FIRST, AuthorityHolder.PILOT, "bob")
+        world.surveyed.driver.handle(taken)
+        world.charges(FIRST, AT_ONCE)
+        world.runs(5.0)
+        text = world.alarms()["imager_relief:leaves:CAM-1"]
+        assert "cannot be called home by itself: CAM-1 is controlled by the pilot" in text
+        assert holds(world) == 0
+
+
+def holds(world: RelievedWorld) -> int:
+    """The holds that began the first one's way home."""
+    records = world.station.orders.records.values()
+    return sum(
+        each.command.serial == FIRST
+        and each.command.name == "hover"
+        and each.command.issued_by.endswith("relief")
+        for each in records
+    )
 
 
 class TestEndedBefore:
@@ -434,7 +462,7 @@ class TestRefused:
         world = relieved_world()
         refused = why_not(world, ReliefOrdered(FIRST, SPARE, "ann"))
         assert refused is not None
-        assert "on the ground; takeoff was not allowed" in refused.reason
+        assert "not in the air, and takeoff was not allowed" in refused.reason
         world.charges(SPARE, 0.48)
         world.runs(2.0)
         refused = why_not(world, ReliefOrdered(FIRST, SPARE, "ann", True))
@@ -466,10 +494,16 @@ class TestRefused:
         assert entry.kind == "imager_relief.refused"
         assert world.station.control(SPARE).authority is before.control(SPARE).authority
 
-    def test_below_a_low_ceiling_it_goes_underneath(self) -> None:
+    def test_below_a_low_ceiling_it_goes_underneath_and_leaves_the_way_home_free(self) -> None:
         world = relieved_world(max_height_m=50.0)
         world.orders()
-        assert world.newest().height_above_takeoff_m == pytest.approx(FIRST_UP_M - 8.0, abs=0.5)
+        assert world.newest().height_above_takeoff_m == pytest.approx(FIRST_UP_M - 16.0, abs=0.5)
+        assert world.runs_until(lambda: world.newest().is_over, 120.0)
+        world.runs(10.0)
+        assert world.newest().stage is MotionStage.DONE
+        assert world.surveyed.fleet.stages()[FIRST] is Stage.FLYING
+        assert world.runs_until(lambda: left_at_home(world), 120.0)
+        assert world.nearest_m > 7.0
 
     def test_the_return_way_is_an_order_of_guidance(self) -> None:
         world = ordered()

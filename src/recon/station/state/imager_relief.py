@@ -48,6 +48,14 @@ class SurveyOutlook:
     without_light: WithoutLight | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class CalledHome:
+    """For which survey an imaging drone was called home by itself, and when."""
+
+    survey_id: int
+    at_ns: int
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ImagerRelief(ImagerMotion):
     """One relief: `serial` takes the place of `relieved`; the same one returns to its own place."""
@@ -78,8 +86,7 @@ class ImagerRelief(ImagerMotion):
 class Reliefs(ByItself):
     """The newest relief; charges, places and outlooks by serial, surveys' outlooks by id.
 
-    `called_home`: the survey for which an imaging drone was called home by itself, by serial;
-    `home_refused`: why one that must leave could not be.
+    `called_home`: those called home by themselves, by serial.
     """
 
     newest: ImagerRelief | None = None
@@ -87,6 +94,5 @@ class Reliefs(ByItself):
     places: Mapping[str, HoverPlace] = field(default_factory=dict)
     outlooks: Mapping[str, ImagerOutlook] = field(default_factory=dict)
     surveys: Mapping[int, SurveyOutlook] = field(default_factory=dict)
-    called_home: Mapping[str, int] = field(default_factory=dict)
-    home_refused: Mapping[str, str] = field(default_factory=dict)
+    called_home: Mapping[str, CalledHome] = field(default_factory=dict)
     checked_at_ns: int | None = None

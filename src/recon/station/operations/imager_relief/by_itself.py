@@ -15,11 +15,13 @@ from dataclasses import replace
 from recon.guidance.imager_relief import RELIEF_SETTINGS, ImagerReliefSettings, way_takes_s
 from recon.model.command import Refusal
 from recon.model.event import ReliefOrdered
+from recon.model.units import seconds_to_ns
 from recon.station.imaging.at_work import imagers_at_work, is_in_the_air
 from recon.station.operations.imager_motion.claim import motion_under_way
 from recon.station.operations.imager_relief.commands import begin
 from recon.station.operations.imager_relief.outlook import needs_longer
 from recon.station.operations.imager_relief.return_home import call_home
+from recon.station.state.imager_relief import CalledHome
 from recon.station.state.station import Station
 from recon.station.state.steps import Output, Stepped
 from recon.station.state.survey_record import SurveyRecord
@@ -47,29 +49,30 @@ def begin_if_due(
     return replace(station, reliefs=reliefs), outputs
 
 
-def call_home_if_due(station: Station, now_ns: int) -> Stepped:
+def call_home_if_due(
+    station: Station, now_ns: int, settings: ImagerReliefSettings = RELIEF_SETTINGS
+) -> Stepped:
     """Call home each imaging drone that must leave now, if a running survey allows it."""
-    outputs: tuple[Output, ...] = ()
-    refused: dict[str, str] = {}
     record = next((r for r in _running(station) if r.survey.relief_allowed), None)
-    motion = motion_under_way(station)
-    for serial in imagers_at_work(station) if record is not None else ():
+    outputs: tuple[Output, ...] = ()
+    if record is None:
+        return station, outputs
+    motion, again_ns = motion_under_way(station), seconds_to_ns(settings.called_again_s)
+    for serial in imagers_at_work(station):
         if motion is not None and motion.serial == serial:
             continue  # it flies as ordered; the failsafe matrix has the last word
         outlook = station.reliefs.outlooks.get(serial)
-        if record is None or outlook is None or outlook.leaves_at_ns is None:
+        if outlook is None or outlook.leaves_at_ns is None or outlook.leaves_at_ns > now_ns:
             continue
-        if outlook.leaves_at_ns > now_ns:
+        before = station.reliefs.called_home.get(serial)
+        if before is not None and now_ns - before.at_ns < again_ns:
             continue
         called = call_home(station, serial, by_survey(record), record.person, now_ns)
-        if isinstance(called, Refusal):
-            refused[serial] = called.reason
-        else:
+        if not isinstance(called, Refusal):
             station, outputs = called[0], (*outputs, *called[1])
-            left = {**station.reliefs.called_home, serial: record.survey.id}
-            station = replace(station, reliefs=replace(station.reliefs, called_home=left))
-    if refused != station.reliefs.home_refused:
-        station = replace(station, reliefs=replace(station.reliefs, home_refused=refused))
+            left = CalledHome(record.survey.id, now_ns)
+            all_left = {**station.reliefs.called_home, serial: left}
+            station = replace(station, reliefs=replace(station.reliefs, called_home=all_left))
     return station, outputs
 
 
@@ -105,7 +108,7 @@ def _due(
         if not survey.relief_allowed or spare is None or not record.spare_may_take_off:
             continue
         due = [each for each in at_work if is_due(station, record, each, spare, settings)]
-        left = [each for each, number in called.items() if number == survey.id]
+        left = [serial for serial, each in called.items() if each.survey_id == survey.id]
         for serial in due if at_work else left:
             takeoff = not is_in_the_air(station, spare)
             by, person = by_survey(record), record.person

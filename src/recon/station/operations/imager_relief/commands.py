@@ -105,8 +105,8 @@ def _busy(station: Station, event: ReliefOrdered, now_ns: int) -> Refusal | None
         return Refusal(RULE, f"{other.name} {other.doing} already")
     if is_in_the_air(station, serial) and is_going_home(station, serial):
         return Refusal(RULE, f"{name} is on its way home; hold it first, or let it land")
-    if is_up is False and not event.takeoff:
-        return Refusal(RULE, f"{name} is on the ground; takeoff was not allowed")
+    if is_up is not True and not event.takeoff:
+        return Refusal(RULE, f"{name} is not in the air, and takeoff was not allowed")
     if is_up is True and not is_at_rest(station, vehicle):
         return Refusal(RULE, f"{name} flies; hold it first")
     taken = AuthorityTaken(serial, AuthorityHolder.GUIDANCE, event.by, event.person)

@@ -12,6 +12,8 @@ from recon.station.operations.imager_motion.notices import (
     cannot_begin,
     is_left,
 )
+from recon.station.operations.imager_relief import return_home
+from recon.station.operations.imager_relief.by_itself import by_survey
 from recon.station.operations.imager_relief.outlook import needs_longer
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.imager_motion import MotionStage
@@ -94,10 +96,11 @@ def _leaves(
     when = "now" if outlook.leaves_in_s <= 0.0 else f"in {minutes} min"
     what = "Relieve it, or call it home"
     if record.survey.relief_allowed:
-        refused = station.reliefs.home_refused.get(serial)
+        by, now_ns = by_survey(record), station.reliefs.checked_at_ns or 0
+        refused = return_home.refusal(station, serial, by, record.person, now_ns)
         what = "Relieve it, or it is called home then"
         if refused is not None:
-            what = f"It cannot be called home: {refused}. Call it home, or have its pilot land it"
+            what = f"It cannot be called home by itself: {refused.reason}"
     elif outlook.leaves_in_s <= 0.0:
         what = "Call it home"
     text = (

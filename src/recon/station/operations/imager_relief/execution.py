@@ -5,7 +5,7 @@
     either --pilot, another order, all stop, telemetry or connection lost, the way or the maps late,
              what ends any motion (`imager_motion/execution.py`)--> stopped
 
-The one that flies goes in a layer of its own, 8 m or more from the other's height. Both hover at
+The one that flies goes in a layer of its own, 8 m above the other's height or more. Both hover at
 the place until the newer one's maps show four fifths of the ground whose light the other knows; so
 no moment is without light. A relief that stops holds its vehicle where it is, with an alarm: mostly
 its camera or site file is at fault, best seen in place, and an order from there goes on with the
@@ -18,6 +18,7 @@ from recon.guidance.imager_relief import (
     FRAMES_HZ,
     RELIEF_SETTINGS,
     ImagerReliefSettings,
+    least_share,
     shown_share,
 )
 from recon.model.command import Refusal, StartCamera
@@ -53,7 +54,7 @@ def advance(
     if not is_due:
         return station, went_on
     station, begun = begin_if_due(station, now_ns, settings)
-    station, called = call_home_if_due(station, now_ns)
+    station, called = call_home_if_due(station, now_ns, settings)
     return station, (*went_on, *begun, *called)
 
 
@@ -67,12 +68,18 @@ def on_shade(station: Station, _shade: ShadeMap) -> Station:
     if at_ns <= since_ns:
         return station
     share = shown_share(own.shade.valid, _known_to_other(station, current, at_ns))
-    is_shown = share >= RELIEF_SETTINGS.shows_share
+    own_m, others_m = (_height_m(station, each) for each in (current.serial, current.relieved))
+    is_shown = share >= least_share(own_m, others_m)
     is_next = at_ns - current.map_at_ns <= seconds_to_ns(RELIEF_SETTINGS.map_gap_s)
     maps = (current.maps if is_next else 0) + 1 if is_shown else 0
     shows = f"its shade map shows {share:.0%} of what {current.relieved_name} shows"
     counted = replace(current, maps=maps, map_at_ns=at_ns, reason="" if is_shown else shows)
     return put(station, counted)
+
+
+def _height_m(station: Station, serial: str) -> float | None:
+    vehicle = station.fleet.vehicles.get(serial)
+    return None if vehicle is None else vehicle.height_above_takeoff_m.value
 
 
 def _known_to_other(station: Station, current: ImagerRelief, at_ns: int) -> MaskMap | None:
