@@ -52,7 +52,7 @@ def begin(station: Station, event: ReliefOrdered, now_ns: int) -> Stepped | Refu
     why = why or _unknown(station, event) or _busy(station, event, now_ns)
     if why is not None:
         return why
-    at = _place(station, event.relieved, now_ns)
+    at = _place(station, event.relieved)
     if isinstance(at, Refusal):
         return at
     if event.relieved == event.serial or not is_in_the_air(station, event.relieved):
@@ -113,7 +113,7 @@ def _busy(station: Station, event: ReliefOrdered, now_ns: int) -> Refusal | None
     return handover.refusal(station, taken, now_ns)
 
 
-def _place(station: Station, serial: str, now_ns: int) -> HoverPlace | Refusal:
+def _place(station: Station, serial: str) -> HoverPlace | Refusal:
     """Where the relieved one hovers, or hovered last."""
     known = station.reliefs.places.get(serial)
     vehicle = station.fleet.vehicles.get(serial)
@@ -165,14 +165,10 @@ def _begun(
     claimed, withdrawn = handover.take(station, taken, now_ns)
     first: Refusal | None = None
     for to_m in (up_m - base_m for up_m in ups_m):
-        is_there = (
-            horizontal_distance_m(here, at.place) < THERE_M and abs(to_m - height_m) < THERE_M
-        )
-        motion = _motion(station, event, at, to_m, now_ns)
-        motion = replace(
-            motion, within_s=motion.within_s + way_takes_s(here, to_m - height_m, at.place)
-        )
-        if is_there:
+        takes_s = way_takes_s(here, to_m - height_m, at.place)
+        motion = _motion(station, event, at, to_m, takes_s, now_ns)
+        is_near = horizontal_distance_m(here, at.place) < THERE_M
+        if is_near and abs(to_m - height_m) < THERE_M:
             return put(claimed, motion.at(MotionStage.MAPS, now_ns)), withdrawn
         mission = relief_mission(here, at.place, to_m, _gimbal_deg(station, vehicle))
         body, takeoff = FlyMission(mission), vehicle.is_flying.value is not True
@@ -190,7 +186,12 @@ def _begun(
 
 
 def _motion(
-    station: Station, event: ReliefOrdered, at: HoverPlace, height_m: float, now_ns: int
+    station: Station,
+    event: ReliefOrdered,
+    at: HoverPlace,
+    height_m: float,
+    takes_s: float,
+    now_ns: int,
 ) -> ImagerRelief:
     vehicle = station.fleet.vehicles[event.serial]
     relieved = station.fleet.vehicles.get(event.relieved)
@@ -207,7 +208,7 @@ def _motion(
         survey_id=event.survey_id,
         relieved=event.relieved,
         relieved_name=event.relieved if relieved is None else relieved.display_name,
-        within_s=RELIEF_SETTINGS.late_by_s,
+        within_s=takes_s + RELIEF_SETTINGS.late_by_s,
         link_id=vehicle.link_id,
         person=event.person,
     )
