@@ -115,9 +115,9 @@ class TestShown:
         assert shown_share(nothing, None) == 0.0
 
     def test_from_lower_less_ground_must_be_shown(self) -> None:
-        assert least_share(120.0, 100.0) == 0.8
-        assert least_share(50.0, 100.0) == pytest.approx(0.2)
-        assert least_share(None, 100.0) == least_share(100.0, None) == 0.8
+        assert least_share(120.0, 100.0) == 0.7
+        assert least_share(50.0, 100.0) == pytest.approx(0.175)
+        assert least_share(None, 100.0) == least_share(100.0, None) == 0.7
 
 
 class TestWay:

@@ -78,8 +78,9 @@ class ImagerReliefSettings:
     maps_within_s: float = 60.0
     """A camera needs seconds to start, detection some frames to learn; then it does not work."""
 
-    shows_share: float = 0.8
-    """Of the ground whose light the other one knows, and that it can see from its own height."""
+    shows_share: float = 0.7
+    """Of the ground whose light the other one knows, and that it can see from its own height. A
+    method that has just begun knew 72 to 79 % of it for 40 s, of rendered frames under cumulus."""
 
     camera_quiet_s: float = 5.0
     """Without a frame for so long its camera is taken to be off, and is switched on."""
