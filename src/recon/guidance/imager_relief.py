@@ -28,9 +28,9 @@ class ImagerReliefSettings:
     """Time to fetch a drone, and to fly it there: takeoff, 100 m up and 500 m across take two
     minutes."""
 
-    early_s: float = 90.0
-    """A relief by itself begins so much before it must: for another height or a refusal, and for
-    the way home of the one relieved to be free."""
+    early_s: float = 150.0
+    """A relief by itself begins so much before it must: for refusals, and for its shade method to
+    learn the ground while both are there."""
 
     refused_again_s: float = 15.0
     """Traffic in the way passes; the battery does not wait."""
@@ -75,8 +75,12 @@ class ImagerReliefSettings:
     map_gap_s: float = 5.0
     """Between two maps in a row; older ones do not count for a survey's photos."""
 
-    maps_within_s: float = 60.0
-    """A camera needs seconds to start, detection some frames to learn; then it does not work."""
+    maps_within_s: float = 150.0
+    """At the place, for maps that show enough: a shade method learns the ground for a minute or
+    two, of rendered frames under cumulus."""
+
+    first_map_within_s: float = 60.0
+    """At the place, for a map with any light: without, its camera or its placing does not work."""
 
     shows_share: float = 0.7
     """Of the ground whose light the other one knows, and that it can see from its own height. A

@@ -1,6 +1,6 @@
 """Reliefs and ways home by themselves: for a running survey that allows them.
 
-A relief begins a minute and a half before it must, if the survey goes on after its imaging drone
+A relief begins two and a half minutes before it must, if the survey goes on after its imaging drone
 has to leave. A drone that must leave is called home, relieved or not: its battery ends; a relief
 that was refused until then still follows. Both are ordered for the person who started the survey,
 and refused for the same reasons as when a person asks.

@@ -73,7 +73,13 @@ def on_shade(station: Station, _shade: ShadeMap) -> Station:
     is_next = at_ns - current.map_at_ns <= seconds_to_ns(RELIEF_SETTINGS.map_gap_s)
     maps = (current.maps if is_next else 0) + 1 if is_shown else 0
     shows = f"its shade map shows {share:.0%} of what {current.relieved_name} shows"
-    counted = replace(current, maps=maps, map_at_ns=at_ns, reason="" if is_shown else shows)
+    counted = replace(
+        current,
+        maps=maps,
+        map_at_ns=at_ns,
+        has_light=current.has_light or bool(own.shade.valid.any()),
+        reason="" if is_shown else shows,
+    )
     return put(station, counted)
 
 
@@ -130,12 +136,13 @@ def _await_maps(
 ) -> Stepped:
     if current.maps >= settings.maps_in_a_row:
         return _relieved(station, current, now_ns)
-    if now_ns - current.since_ns <= seconds_to_ns(settings.maps_within_s):
+    within_s = settings.maps_within_s if current.has_light else settings.first_map_within_s
+    if now_ns - current.since_ns <= seconds_to_ns(within_s):
         return _with_camera(station, current, now_ns, settings)
     rejected = station.shade.rejected.get(current.serial)
     seen = current.reason or ("no frames" if rejected is None else rejected.reason)
-    number, within_s = settings.maps_in_a_row, settings.maps_within_s
-    why = f"no {number} shade maps in a row within {within_s:g} s of its arrival: {seen}"
+    what = f"{settings.maps_in_a_row} shade maps in a row" if current.has_light else "shade map"
+    why = f"no {what} within {within_s:g} s of its arrival: {seen}"
     return held(station, current, why, now_ns)
 
 
