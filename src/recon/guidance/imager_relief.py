@@ -80,7 +80,7 @@ class ImagerReliefSettings:
     two, of rendered frames under cumulus."""
 
     first_map_within_s: float = 60.0
-    """At the place, for a map with any light: without, its camera or its placing does not work."""
+    """At the place, for any shade map: without, its camera or its placing does not work."""
 
     shows_share: float = 0.7
     """Of the ground whose light the other one knows, and that it can see from its own height. A

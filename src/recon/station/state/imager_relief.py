@@ -72,8 +72,8 @@ class ImagerRelief(ImagerMotion):
     maps: int = 0
     """Shade maps in a row since it is at the place, the newest taken at `map_at_ns`."""
     map_at_ns: int = 0
-    has_light: bool = False
-    """Whether a map of its own has had light since then."""
+    has_map: bool = False
+    """Whether any shade map of its own came since then."""
     is_camera_ordered: bool = False
     home_refused: str = ""
     """Why the relieved one could not be called home at the end."""

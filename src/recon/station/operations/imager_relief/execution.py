@@ -77,7 +77,7 @@ def on_shade(station: Station, _shade: ShadeMap) -> Station:
         current,
         maps=maps,
         map_at_ns=at_ns,
-        has_light=current.has_light or bool(own.shade.valid.any()),
+        has_map=True,
         reason="" if is_shown else shows,
     )
     return put(station, counted)
@@ -136,12 +136,12 @@ def _await_maps(
 ) -> Stepped:
     if current.maps >= settings.maps_in_a_row:
         return _relieved(station, current, now_ns)
-    within_s = settings.maps_within_s if current.has_light else settings.first_map_within_s
+    within_s = settings.maps_within_s if current.has_map else settings.first_map_within_s
     if now_ns - current.since_ns <= seconds_to_ns(within_s):
         return _with_camera(station, current, now_ns, settings)
     rejected = station.shade.rejected.get(current.serial)
     seen = current.reason or ("no frames" if rejected is None else rejected.reason)
-    what = f"{settings.maps_in_a_row} shade maps in a row" if current.has_light else "shade map"
+    what = f"{settings.maps_in_a_row} shade maps in a row" if current.has_map else "shade map"
     why = f"no {what} within {within_s:g} s of its arrival: {seen}"
     return held(station, current, why, now_ns)
 
