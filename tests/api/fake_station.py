@@ -154,6 +154,17 @@ class FakeStation:
     ) -> ActionResponse:
         return self.service.look_aside(serial, by, given_at_ns)
 
+    def relieve(
+        self,
+        serial: str,
+        spare: str,
+        *,
+        takeoff: bool,
+        by: Person,
+        given_at_ns: int | None = None,
+    ) -> ActionResponse:
+        return self.service.relieve(serial, spare, takeoff=takeoff, by=by, given_at_ns=given_at_ns)
+
     def dismiss_hazard(self, name: str, by: Person) -> bool:
         return self.service.dismiss_hazard(name, by)
 

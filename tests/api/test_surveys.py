@@ -387,6 +387,30 @@ class TestLookAside:
         assert allowed["survey"]["upwind_allowed"] is True
 
 
+class TestRelief:
+    def test_without_an_imaging_drone_it_is_refused_and_audited(self, client: Client) -> None:
+        answer = client.post("/api/imager-relief", json={"serial": "A", "spare": "B"}).json()
+        assert answer == {
+            "accepted": False,
+            "rule": "imager_relief",
+            "reason": "A is no imaging drone of the site: expected none: the site has no imaging "
+            "drone",
+        }
+        assert client.get("/api/state").json()["imager_relief"] is None
+
+    def test_a_survey_allows_it_only_when_asked(self, client: Client) -> None:
+        plain = client.post("/api/surveys", json=ASKED).json()["survey"]
+        allowed = client.post("/api/surveys", json={**ASKED, "relief_allowed": True}).json()
+        assert (plain["relief_allowed"], plain["spare_serial"]) == (False, None)
+        assert allowed["survey"]["relief_allowed"] is True
+        assert allowed["survey"]["light"] is None
+
+    def test_a_spare_that_is_no_imaging_drone_is_refused(self, client: Client) -> None:
+        answer = client.post("/api/surveys", json={**ASKED, "spare_serial": "X"}).json()
+        assert answer["accepted"] is False
+        assert answer["reason"] == "'X' is no imaging drone of the site; available: none"
+
+
 IN_VIEW = {"sun": 0.4, "shade": 0.4, "unknown": 0.2}
 """Of `found`, with the last row seen by half."""
 

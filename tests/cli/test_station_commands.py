@@ -85,6 +85,23 @@ class TestOnTheGround:
         assert result.code != 0
         assert "refused (look_aside): the imaging drone SIM-IMAGER is not connected" in result.out
 
+    def test_a_relief_by_what_is_no_imaging_drone_is_refused(self, station: StationProcess) -> None:
+        result = station.recon("relieve", "SIM-1", "SIM-2")
+        assert result.code != 0
+        assert "refused (imager_relief): SIM-1 is no imaging drone of the site" in result.out
+        survey = station.recon(
+            "survey",
+            "create",
+            "south-east field",
+            "--height",
+            "45",
+            "--relief",
+            "--spare",
+            "SIM-1",
+        )
+        assert survey.code != 0
+        assert "is no imaging drone of the site; available: SIM-IMAGER" in survey.out
+
     def test_a_temporary_zone_is_added_listed_and_ended(self, station: StationProcess) -> None:
         (first, *_) = station.recon("status", "--json").json
         place = first["position"]

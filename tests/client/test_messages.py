@@ -9,6 +9,7 @@ from tests.client import fake_state
 from recon.api import schema
 from recon.client import BadAnswerError, Staleness
 from recon.client.messages import (
+    ImagerReliefStatus,
     LookAsideStatus,
     OrderMessage,
     OrderStatus,
@@ -20,6 +21,7 @@ from recon.client.messages import (
     decode,
 )
 from recon.client.order import order_json
+from recon.client.surveys import SurveyLight
 from recon.client.telemetry import Telemetry
 from recon.model.command import (
     Body,
@@ -40,6 +42,8 @@ PAIRS = [
     (StateMessage, schema.StationState),
     (StationMessage, schema.StationView),
     (LookAsideStatus, schema.LookAsideView),
+    (ImagerReliefStatus, schema.ImagerReliefView),
+    (SurveyLight, schema.SurveyLightView),
     (Telemetry, schema.VehicleView),
     (OrderStatus, schema.CommandView),
     (PhaseReport, schema.PhaseView),

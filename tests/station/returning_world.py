@@ -1,6 +1,6 @@
 """A site with pads, a fleet in the air over its field, and a station that calls it home."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations
 from math import hypot
@@ -18,7 +18,7 @@ from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.vehicle import Failsafe
 from recon.safety import PreparedAirspace
 from recon.sim.app.faults import parse_fault
-from recon.sim.fleet import Airborne, SimulationConfig, build_fleet
+from recon.sim.fleet import Airborne, ImagerSetup, SimulationConfig, build_fleet
 from recon.sim.flight.flight_modes import Grounded
 from recon.station.kernel.build import first_state
 from recon.station.kernel.virtual import VirtualDriver
@@ -26,6 +26,7 @@ from recon.station.kernel.worker import JobRunner
 from recon.station.state.fleet_return_record import ReturningVehicle, Stage
 
 FRAME = LocalFrame(HOME)
+NO_IMAGERS: Mapping[str, ImagerSetup] = {}
 LEAST_LEVEL_M, LEAST_HEIGHT_M = 15.0, 6.0
 
 
@@ -137,15 +138,17 @@ def returning_world(
     plans: bool = True,
     plan_takes_s: float = 0.05,
     elevation: ElevationModel | None = None,
+    imagers: Mapping[str, ImagerSetup] = NO_IMAGERS,
     **profile: object,
 ) -> ReturningWorld:
     """Return a fleet that hovers at (east, north, height above its pad), each with its pad.
 
     With an elevation model pads lie on its ground. Pads may be the same place for several vehicles.
-    `go_home_height_m` is set in all aircraft.
-    `profile` changes the profile of every vehicle.
+    `go_home_height_m` is set in all aircraft. `profile` changes the profile of every vehicle.
+    `imagers` are the first of them.
     """
-    serials = [f"SIM-{number}" for number in range(1, len(places_m) + 1)]
+    others = len(places_m) - len(imagers)
+    serials = [*imagers, *(f"SIM-{number}" for number in range(1, others + 1))]
     points = {
         serial: point_from_enu(FRAME, (*pad, 0.0))
         for serial, pad in zip(serials, pads_m, strict=True)
@@ -159,6 +162,7 @@ def returning_world(
     config = SimulationConfig(
         home=HOME,
         vehicle_count=len(serials),
+        imagers=imagers,
         airborne=Airborne.ALL,
         seed=seed,
         pads=points,

@@ -106,6 +106,21 @@ def _add_operations(app: FastAPI, port: StationPort) -> None:
             asked.serial, person_of(request), given_at_ns(asked.given_at_unix_ms)
         )
 
+    @app.post("/api/imager-relief")
+    async def imager_relief(asked: schema.ReliefRequest, request: Request) -> schema.ActionResponse:
+        """Have an imaging drone take the place of another, or return to its own.
+
+        Guidance has it meanwhile; once its shade maps show the ground, the other one is called
+        home. `imager_relief` in the state shows the progress.
+        """
+        return port.relieve(
+            asked.serial,
+            asked.spare or asked.serial,
+            takeoff=asked.takeoff,
+            by=person_of(request),
+            given_at_ns=given_at_ns(asked.given_at_unix_ms),
+        )
+
 
 def _add_hazards(app: FastAPI, port: StationPort) -> None:
     @app.post("/api/vehicle/hazard/dismiss", responses=PROBLEMS, status_code=204)

@@ -220,6 +220,17 @@ class StationPort(Protocol):
         None: the one whose light is unknown, or the site's first.
         """
 
+    def relieve(
+        self,
+        serial: str,
+        spare: str,
+        *,
+        takeoff: bool,
+        by: Person,
+        given_at_ns: int | None = None,
+    ) -> ActionResponse:
+        """Have `spare` take the place of an imaging drone; refusals are results, not errors."""
+
     def dismiss_hazard(self, name: str, by: Person) -> bool:
         """Dismiss the hazard area of a lost vehicle; False when it has none."""
 

@@ -51,6 +51,10 @@ COMMANDS = {
         "look_aside:look_aside_command",
         "Fly an imaging drone 25 m aside and back, to tell even sun from even shade.",
     ),
+    "relieve": CommandSource(
+        "relieve:relieve_command",
+        "Have an imaging drone take another's place, or return to its own.",
+    ),
     "goto": CommandSource(
         "steering:goto_command",
         "Fly a vehicle straight to a position.",

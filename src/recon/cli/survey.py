@@ -113,6 +113,18 @@ def create_command(
             help="The imaging drone may fly by itself to where it sees more of the shade to come.",
         ),
     ] = False,
+    relief: Annotated[
+        bool,
+        typer.Option(
+            "--relief",
+            help="The imaging drone is relieved by the spare drone, or called home, when its "
+            "battery wants it.",
+        ),
+    ] = False,
+    spare: Annotated[
+        str | None,
+        typer.Option("--spare", help="The imaging drone that relieves it; with --relief."),
+    ] = None,
     as_json: JsonOption = False,
     address: AddressOption = DEFAULT_ADDRESS,
     token_file: TokenOption = None,
@@ -133,10 +145,13 @@ def create_command(
         "when_done": when_done.value,
         "look_aside_allowed": look_aside,
         "upwind_allowed": upwind,
+        "relief_allowed": relief,
     }
 
     async def work(station: Station) -> int:
         area = await _area(station, region, feature, name)
+        if spare is not None:
+            area["spare_serial"] = named_serials(station, [spare])[0]
         return _print_answer(await station.surveys.create(**area, **settings), as_json)
 
     run_at_station(address, token_file, work)

@@ -16,7 +16,9 @@ M = TypeVar("M")
 SHOWN_CHARACTERS = 60
 
 ReturnStage = Literal["stopping", "waiting", "ordered", "flying", "landed", "released", "left_out"]
-MotionStageName = Literal["aside", "waiting", "back", "upwind", "done", "stopped"]
+MotionStageName = Literal[
+    "aside", "waiting", "back", "upwind", "to_place", "maps", "done", "stopped"
+]
 
 
 class PhaseReport(msgspec.Struct, frozen=True):
@@ -141,6 +143,17 @@ class MoveUpwindStatus(ImagerMotionStatus, frozen=True):
     """The newest move upwind of the imaging drone, for a survey that allows it."""
 
     place: UpwindPlaceStatus
+
+
+class ImagerReliefStatus(ImagerMotionStatus, frozen=True):
+    """The newest relief: `serial` takes the place of `relieved`; the same one returns to its own.
+
+    `maps` counts the shade maps in a row that it has given there.
+    """
+
+    relieved: str
+    relieved_name: str
+    maps: int
 
 
 class AlarmStatus(msgspec.Struct, frozen=True):
@@ -295,6 +308,7 @@ class StateMessage(msgspec.Struct, frozen=True):
     alarms: tuple[AlarmStatus, ...]
     fleet_return: FleetReturnMessage | None = None
     look_aside: LookAsideStatus | None = None
+    imager_relief: ImagerReliefStatus | None = None
     move_upwind: MoveUpwindStatus | None = None
     stop_latch: StopLatchStatus | None = None
     links: tuple[LinkStatus, ...] = ()

@@ -9,6 +9,7 @@ from recon.client.messages import (
     AlarmStatus,
     AnswerMessage,
     AuditLogPage,
+    ImagerReliefStatus,
     LinkStatus,
     LookAsideStatus,
     MoveUpwindStatus,
@@ -156,6 +157,29 @@ class Station:
     async def looking_aside(self) -> LookAsideStatus | None:
         """Return the newest look aside; None before the first."""
         return (await self._state()).look_aside
+
+    async def relieve(
+        self, serial: str, spare: str | None = None, *, takeoff: bool = False
+    ) -> Refusal | None:
+        """Have an imaging drone take the place of another; None on success.
+
+        By default the same one returns to its own place. `takeoff` allows it to leave the ground.
+        It goes on after this call; `relieving` has the progress, a hold stops it.
+        """
+        request = {
+            "serial": serial,
+            "spare": spare,
+            "takeoff": takeoff,
+            "given_at_unix_ms": self._order_api.station_time_ms(),
+        }
+        answer = await self._http.post(
+            "/api/imager-relief", request, AnswerMessage, "an answer to a relief"
+        )
+        return answer.refusal
+
+    async def relieving(self) -> ImagerReliefStatus | None:
+        """Return the newest relief of an imaging drone; None before the first."""
+        return (await self._state()).imager_relief
 
     async def moving_upwind(self) -> MoveUpwindStatus | None:
         """Return the newest move upwind for a survey that allows it; None before the first."""

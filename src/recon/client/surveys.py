@@ -41,6 +41,27 @@ class SurveyVehicle(msgspec.Struct, frozen=True):
     """Returned home for the survey and landed: after a battery change it can be added again."""
 
 
+class ImagerStay(msgspec.Struct, frozen=True):
+    """When the battery of an imaging drone wants it home; None with the reason if unknown."""
+
+    serial: str
+    vehicle_name: str
+    leaves_in_s: float | None
+    unknown: str | None
+
+
+class SurveyLight(msgspec.Struct, frozen=True):
+    """Until when a running survey has light, and what it flies without; None where unknown."""
+
+    needs_s: float | None
+    imagers: tuple[ImagerStay, ...]
+    unknown_in_s: float | None
+    """Until the last imaging drone must leave; None if the survey is done by then."""
+    unknown_for_s: float | None
+    without_age_s: float | None
+    without_m2: float | None
+
+
 class SurveyStatus(msgspec.Struct, frozen=True):
     """The status of one survey."""
 
@@ -52,6 +73,9 @@ class SurveyStatus(msgspec.Struct, frozen=True):
     when_done: WhenDoneName
     look_aside_allowed: bool
     upwind_allowed: bool
+    relief_allowed: bool
+    spare_serial: str | None
+    light: SurveyLight | None
     height_above_takeoff_m: float | None
     height_above_ground_m: float | None
     round: int

@@ -326,6 +326,24 @@ class LookAsideOrdered:
     """Which one; None: the one whose light is unknown, or the site's first."""
 
 
+@dataclass(frozen=True, slots=True)
+class ReliefOrdered:
+    """An imaging drone is to take the place of another; the same serial twice: its own place.
+
+    `takeoff` allows `serial` to leave the ground, for this relief only. `given_at_ns` is when its
+    person gave the command, in station time; None if not stated. `survey_id` is the survey for
+    which the station itself orders it; None: a person does.
+    """
+
+    relieved: str
+    serial: str
+    by: str
+    takeoff: bool = False
+    given_at_ns: int | None = None
+    person: str = ""
+    survey_id: int | None = None
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class SurveyRequested:
     """A survey is to be planned; its id is chosen by the client. Nothing flies yet."""
@@ -480,6 +498,7 @@ Event = (
     | ImagerMarked
     | FleetReturnOrdered
     | LookAsideOrdered
+    | ReliefOrdered
     | SurveyRequested
     | SurveyStarted
     | SurveyStopped

@@ -94,6 +94,10 @@ class Survey:
     """Whether the imaging drone may look aside by itself while light is mostly unknown."""
     upwind_allowed: bool = False
     """Whether the imaging drone may fly by itself to where it sees more of the shade to come."""
+    relief_allowed: bool = False
+    """Whether the imaging drone may be relieved, or called home, when its battery wants it."""
+    spare_serial: str | None = None
+    """The imaging drone that relieves it then; it takes off if the start allowed takeoff."""
     height_above_ground_m: float | None = None
 
     @property

@@ -8,10 +8,11 @@ from tests.architecture.source import files, tree
 
 from recon.station.api_views.audit_service import KINDS_OF
 from recon.station.state.imager_motion import LookAside, MoveUpwind
+from recon.station.state.imager_relief import ImagerRelief
 
 FROM_NAMES = {
     "{what}": ("authority", "preflight"),
-    "{after.rule}": (LookAside.rule, MoveUpwind.rule),
+    "{after.rule}": (LookAside.rule, MoveUpwind.rule, ImagerRelief.rule),
 }
 """What begins a kind that a function is given, by the expression."""
 

@@ -1,5 +1,5 @@
 import type { StationState, SurveyWays } from "../../src/protocol";
-import { shadeLine, survey } from "../../src/testing/fakeField";
+import { shadeLine, survey, surveyLight } from "../../src/testing/fakeField";
 import { area, at, station, vehicle } from "../../src/testing/fakeState";
 
 const ID = 4;
@@ -40,9 +40,26 @@ export function surveyedState(elapsed_s: number): StationState {
       ],
     },
     shade: shadeLine(),
+    imager_relief: {
+      serial: "SN-005",
+      vehicle_name: "Elm",
+      stage: "stopped",
+      since_age_s: 95,
+      begun_by: "anna (10.0.0.2): survey south-east field by the long brook",
+      begun_age_s: 180,
+      reason: "no 3 shade maps in a row within 60 s of its arrival: no frames",
+      survey_id: ID,
+      relieved: "SN-004",
+      relieved_name: "Dogwood",
+      maps: 0,
+    },
     surveys: [
       survey(ID, {
         name: "south-east field by the long brook",
+        light: surveyLight({
+          imagers: [{ serial: "SN-004", vehicle_name: "Dogwood", leaves_in_s: 540, unknown: null }],
+          absent: [{ serial: "SN-005", vehicle_name: "Elm", gone_age_s: 90, is_on_ground: true }],
+        }),
         vehicles: [
           {
             serial: "SN-001",

@@ -5,6 +5,7 @@ import type {
   CommandView,
   FleetReturnView,
   GroundImageView,
+  ImagerReliefView,
   LinkView,
   LookAsideView,
   MoveUpwindView,
@@ -38,6 +39,7 @@ interface FleetData {
   fleetReturn: FleetReturnView | null;
   lookAside: LookAsideView | null;
   moveUpwind: MoveUpwindView | null;
+  imagerRelief: ImagerReliefView | null;
   shade: ShadeLineView | null;
   surveys: SurveyView[];
   temporaryZones: TemporaryZoneView[];
@@ -56,6 +58,7 @@ const NO_DATA: FleetData = {
   fleetReturn: null,
   lookAside: null,
   moveUpwind: null,
+  imagerRelief: null,
   shade: null,
   surveys: [],
   temporaryZones: [],
@@ -87,6 +90,7 @@ export function createFleetView(source: Pick<StationSource, "state">): FleetView
     setView("fleetReturn", reconcile(state.fleet_return, { key: "serial" }));
     setView("lookAside", reconcile(state.look_aside));
     setView("moveUpwind", reconcile(state.move_upwind));
+    setView("imagerRelief", reconcile(state.imager_relief));
     setView("shade", reconcile(state.shade));
     setView("surveys", reconcile([...state.surveys], { key: "id" }));
     setView("groundImage", reconcile(state.ground_image));

@@ -33,7 +33,11 @@ export type FailsafeRowView = Schemas["FailsafeRowView"];
 export type PreflightView = Schemas["PreflightView"];
 export type CheckView = Schemas["CheckView"];
 export type FleetReturnView = Schemas["FleetReturnView"];
-export type ImagerMotionView = Schemas["LookAsideView"] | Schemas["MoveUpwindView"];
+export type ImagerMotionView =
+  | Schemas["LookAsideView"]
+  | Schemas["MoveUpwindView"]
+  | Schemas["ImagerReliefView"];
+export type ImagerReliefView = Schemas["ImagerReliefView"];
 export type LookAsideView = Schemas["LookAsideView"];
 export type MoveUpwindView = Schemas["MoveUpwindView"];
 export type LightSharesView = Schemas["LightSharesView"];
@@ -44,6 +48,7 @@ export type SunAtView = Schemas["SunAtView"];
 export type UpwindPlaceView = Schemas["UpwindPlaceView"];
 export type UpwindView = Schemas["UpwindView"];
 export type SurveyView = Schemas["SurveyView"];
+export type SurveyLightView = Schemas["SurveyLightView"];
 export type SurveyingView = Schemas["SurveyingView"];
 export type SurveyRequest = Schemas["SurveyRequest"];
 export type SurveyResponse = Schemas["SurveyResponse"];

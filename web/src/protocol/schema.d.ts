@@ -413,6 +413,29 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/imager-relief": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Imager Relief
+         * @description Have an imaging drone take the place of another, or return to its own.
+         *
+         *     Guidance has it meanwhile; once its shade maps show the ground, the other one is called
+         *     home. `imager_relief` in the state shows the progress.
+         */
+        post: operations["imager_relief_api_imager_relief_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/look-aside": {
         parameters: {
             query?: never;
@@ -1239,6 +1262,20 @@ export interface paths {
 export type webhooks = Record<string, never>;
 export interface components {
     schemas: {
+        /**
+         * AbsentImagerView
+         * @description An imaging drone that hovered over the field, and can be sent to its place again.
+         */
+        AbsentImagerView: {
+            /** Gone Age S */
+            gone_age_s: number;
+            /** Is On Ground */
+            is_on_ground: boolean;
+            /** Serial */
+            serial: string;
+            /** Vehicle Name */
+            vehicle_name: string;
+        };
         /**
          * AccessView
          * @description The person of this request. `is_logged_in`: by a token, not as this computer's user.
@@ -2194,6 +2231,63 @@ export interface components {
             detail?: components["schemas"]["ValidationError"][];
         };
         /**
+         * ImagerOutlookView
+         * @description When the battery of an imaging drone over the field wants it home.
+         */
+        ImagerOutlookView: {
+            /**
+             * Leaves In S
+             * @description null: not known; `unknown` states why
+             */
+            leaves_in_s: number | null;
+            /** Serial */
+            serial: string;
+            /** Unknown */
+            unknown: string | null;
+            /** Vehicle Name */
+            vehicle_name: string;
+        };
+        /**
+         * ImagerReliefView
+         * @description The newest relief of an imaging drone; `relieved` is the same one if it returns.
+         */
+        ImagerReliefView: {
+            /** Begun Age S */
+            begun_age_s: number;
+            /** Begun By */
+            begun_by: string;
+            /**
+             * Maps
+             * @description shade maps in a row at the place
+             */
+            maps: number;
+            /**
+             * Reason
+             * @description why it waits beside its place, or has stopped
+             */
+            reason: string | null;
+            /** Relieved */
+            relieved: string;
+            /** Relieved Name */
+            relieved_name: string;
+            /** Serial */
+            serial: string;
+            /** Since Age S */
+            since_age_s: number;
+            /**
+             * Stage
+             * @enum {string}
+             */
+            stage: "aside" | "waiting" | "back" | "upwind" | "to_place" | "maps" | "done" | "stopped";
+            /**
+             * Survey Id
+             * @description the survey it began for by itself; null: ordered
+             */
+            survey_id: number | null;
+            /** Vehicle Name */
+            vehicle_name: string;
+        };
+        /**
          * ImportedFeatureView
          * @description A feature of an imported file, not in the site yet.
          */
@@ -2377,7 +2471,7 @@ export interface components {
              * Stage
              * @enum {string}
              */
-            stage: "aside" | "waiting" | "back" | "upwind" | "done" | "stopped";
+            stage: "aside" | "waiting" | "back" | "upwind" | "to_place" | "maps" | "done" | "stopped";
             /**
              * Survey Id
              * @description the survey it began for by itself; null: ordered
@@ -2451,7 +2545,7 @@ export interface components {
              * Stage
              * @enum {string}
              */
-            stage: "aside" | "waiting" | "back" | "upwind" | "done" | "stopped";
+            stage: "aside" | "waiting" | "back" | "upwind" | "to_place" | "maps" | "done" | "stopped";
             /**
              * Survey Id
              * @description the survey it began for by itself; null: ordered
@@ -2694,6 +2788,34 @@ export interface components {
         RefuseAppRequest: {
             /** Link Id */
             link_id: number;
+        };
+        /**
+         * ReliefRequest
+         * @description An imaging drone is to take the place of another, or to return to its own.
+         *
+         *     `takeoff` explicitly allows it to leave the ground, for this relief.
+         */
+        ReliefRequest: {
+            /**
+             * Given At Unix Ms
+             * @description when its person gave it, in Unix milliseconds of the station's time (a state's `time_ns` and the time since then) or of a clock set by NTP; null: now. What moves a vehicle is refused when given more than 5 s ago or in the future; stops are never late
+             */
+            given_at_unix_ms?: number | null;
+            /**
+             * Serial
+             * @description whose place is taken
+             */
+            serial: string;
+            /**
+             * Spare
+             * @description the imaging drone that takes it; null: the same one returns to its place
+             */
+            spare?: string | null;
+            /**
+             * Takeoff
+             * @default false
+             */
+            takeoff: boolean;
         };
         /**
          * ReplayMark
@@ -3135,6 +3257,7 @@ export interface components {
             commands: components["schemas"]["CommandView"][];
             fleet_return: components["schemas"]["FleetReturnView"] | null;
             ground_image: components["schemas"]["GroundImageView"] | null;
+            imager_relief: components["schemas"]["ImagerReliefView"] | null;
             /** Links */
             links: components["schemas"]["LinkView"][];
             look_aside: components["schemas"]["LookAsideView"] | null;
@@ -3543,6 +3666,41 @@ export interface components {
             vehicle_name: string;
         };
         /**
+         * SurveyLightView
+         * @description Until when a running survey has light, and what it flies without.
+         */
+        SurveyLightView: {
+            /** Absent */
+            absent: components["schemas"]["AbsentImagerView"][];
+            /** Imagers */
+            imagers: components["schemas"]["ImagerOutlookView"][];
+            /**
+             * Needs S
+             * @description for its missing ground, at its recent pace
+             */
+            needs_s: number | null;
+            /**
+             * Unknown For S
+             * @description from then on, without a relief
+             */
+            unknown_for_s: number | null;
+            /**
+             * Unknown In S
+             * @description until the last imaging drone must leave, if that is before the survey is done
+             */
+            unknown_in_s: number | null;
+            /**
+             * Without Age S
+             * @description since the last shade map; null: it has light
+             */
+            without_age_s: number | null;
+            /**
+             * Without M2
+             * @description imaged since then, its light unknown
+             */
+            without_m2: number | null;
+        };
+        /**
          * SurveyRequest
          * @description A survey to plan. Either `region`, a survey region of the site by name, or `polygon`; and
          *     exactly one height.
@@ -3612,6 +3770,12 @@ export interface components {
             polygon?: number[][][] | null;
             /** Region */
             region?: string | null;
+            /**
+             * Relief Allowed
+             * @description the imaging drone may be relieved by itself, or called home, when its battery wants it
+             * @default false
+             */
+            relief_allowed: boolean;
             /** Row Bearing Deg */
             row_bearing_deg?: number | null;
             /**
@@ -3619,6 +3783,11 @@ export interface components {
              * @default 0.6
              */
             side_overlap: number;
+            /**
+             * Spare Serial
+             * @description the imaging drone that relieves it then, and takes off if the start allows
+             */
+            spare_serial?: string | null;
             /** Speed Mps */
             speed_mps: number;
             /**
@@ -3693,6 +3862,8 @@ export interface components {
             height_above_takeoff_m: number | null;
             /** Id */
             id: number;
+            /** @description null: it does not run */
+            light: components["schemas"]["SurveyLightView"] | null;
             /** Look Aside Allowed */
             look_aside_allowed: boolean;
             /** Missions */
@@ -3708,6 +3879,8 @@ export interface components {
             planner: string;
             /** Reason */
             reason: string;
+            /** Relief Allowed */
+            relief_allowed: boolean;
             /** Round */
             round: number;
             /**
@@ -3715,6 +3888,8 @@ export interface components {
              * @description number of planned rows or parts of rows
              */
             rows: number;
+            /** Spare Serial */
+            spare_serial: string | null;
             /** Speed Mps */
             speed_mps: number;
             /** Started By */
@@ -4717,6 +4892,39 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    imager_relief_api_imager_relief_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ReliefRequest"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ActionResponse"];
+                };
+            };
+            /** @description Validation Error */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HTTPValidationError"];
                 };
             };
         };

@@ -175,6 +175,10 @@ export class LiveSource implements StationSource {
     return this.requests.lookAside(serial, this.stationNowMs());
   }
 
+  relieve(serial: string, spare: string, takeoff: boolean) {
+    return this.requests.relieve(serial, spare, takeoff, this.stationNowMs());
+  }
+
   setAuthority(serial: string, holder: AuthorityHolder, takeOver = false) {
     return this.requests.setAuthority(serial, holder, takeOver);
   }

@@ -80,6 +80,16 @@ export class Requests {
     return answered(ORDER, (signal) => this.client.POST("/api/look-aside", { body, signal }));
   }
 
+  relieve(
+    serial: string,
+    spare: string,
+    takeoff: boolean,
+    given_at_unix_ms: number | null,
+  ): Promise<Outcome<ActionResponse>> {
+    const body = { serial, spare, takeoff, given_at_unix_ms };
+    return answered(ORDER, (signal) => this.client.POST("/api/imager-relief", { body, signal }));
+  }
+
   /** `take_over`: also from another person who operates the vehicle. */
   setAuthority(
     serial: string,

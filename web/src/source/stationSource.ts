@@ -104,6 +104,8 @@ export interface StationSource {
   fleetReturn(serials: readonly string[] | null): Promise<Outcome<readonly OrderResult[]>>;
   /** Has the imaging drone fly 25 m aside and back. */
   lookAside(serial: string): Promise<Outcome<ActionResponse>>;
+  /** Has an imaging drone take the place of another; of the same serial: return to its own. */
+  relieve(serial: string, spare: string, takeoff: boolean): Promise<Outcome<ActionResponse>>;
   /** `takeOver`: also from another person who operates the vehicle. */
   setAuthority(
     serial: string,

@@ -3,6 +3,7 @@ import type {
   GroundImageView,
   ShadeLineView,
   SurveyEstimateView,
+  SurveyLightView,
   SurveyView,
 } from "../protocol";
 import { at } from "./fakeState";
@@ -32,6 +33,20 @@ export function surveyEstimate(changes: Partial<SurveyEstimateView> = {}): Surve
   };
 }
 
+/** A survey whose imaging drone must return in nine minutes, and that needs eighteen. */
+export function surveyLight(changes: Partial<SurveyLightView> = {}): SurveyLightView {
+  return {
+    needs_s: 1080,
+    imagers: [{ serial: "SN-003", vehicle_name: "Cedar", leaves_in_s: 540, unknown: null }],
+    absent: [],
+    unknown_in_s: 540,
+    unknown_for_s: 540,
+    without_age_s: null,
+    without_m2: null,
+    ...changes,
+  };
+}
+
 /** A survey of two hectares with one vehicle flying rows, with `changes` applied. */
 export function survey(id: number, changes: Partial<SurveyView> = {}): SurveyView {
   return {
@@ -46,6 +61,9 @@ export function survey(id: number, changes: Partial<SurveyView> = {}): SurveyVie
     when_done: "return_home",
     look_aside_allowed: false,
     upwind_allowed: false,
+    relief_allowed: false,
+    spare_serial: null,
+    light: null,
     height_above_takeoff_m: 50,
     height_above_ground_m: null,
     speed_mps: 5,

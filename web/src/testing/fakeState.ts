@@ -222,6 +222,7 @@ export function station(
     fleet_return: null,
     look_aside: null,
     move_upwind: null,
+    imager_relief: null,
     shade: null,
     surveys: [],
     replay: null,

@@ -106,6 +106,7 @@ export function fakeSource(station: FakeStation): StationSource {
     admitApp: (admittedLink, serial, lasting) => requests.answer({ admittedLink, serial, lasting }),
     refuseApp: (refusedLink) => requests.answer({ refusedLink }),
     lookAside: (serial) => requests.answer({ lookAside: serial }),
+    relieve: (relieved, spare, takeoff) => requests.answer({ relieved, spare, takeoff }),
     setAuthority: (serial, authority, takeOver) =>
       requests.answer({ authority, serial, ...(takeOver && { takeOver }) }),
     preflight: async () => station.preflight,

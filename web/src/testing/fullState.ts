@@ -10,7 +10,7 @@ import type {
   UpwindPlaceView,
   VehicleView,
 } from "../protocol";
-import { groundImage, shadeLine, survey } from "./fakeField";
+import { groundImage, shadeLine, survey, surveyLight } from "./fakeField";
 import {
   alarm,
   area,
@@ -89,10 +89,25 @@ function vehicles(): VehicleView[] {
   ];
 }
 
+const LIGHT = surveyLight({
+  imagers: [
+    { serial: "SN-003", vehicle_name: "Cedar", leaves_in_s: 540, unknown: null },
+    { serial: "SN-004", vehicle_name: "Dogwood", leaves_in_s: null, unknown: "Charge unknown" },
+  ],
+  absent: [{ serial: "SN-002", vehicle_name: "Birch", gone_age_s: 200, is_on_ground: true }],
+  without_age_s: 75,
+  without_m2: 8000,
+});
+
 function surveys(): SurveyView[] {
   const phases = ["running", "paused", "created", "done", "planning", "refused"] as const;
   return phases.map((phase, index) =>
-    survey(index + 1, { phase, reason: "Wind above 9 m/s", started_by: BY }),
+    survey(index + 1, {
+      phase,
+      reason: "Wind above 9 m/s",
+      started_by: BY,
+      light: phase === "running" ? LIGHT : null,
+    }),
   );
 }
 
@@ -194,6 +209,13 @@ export function fullState(changes: Partial<StationState> = {}): StationState {
     },
     look_aside: { ...motion, bearing_deg: 90, stage: "aside" },
     move_upwind: { ...motion, place: UPWIND, stage: "upwind" },
+    imager_relief: {
+      ...motion,
+      stage: "maps",
+      relieved: "SN-003",
+      relieved_name: "Cedar",
+      maps: 1,
+    },
     shade: shadeLine({ reference: "Of an earlier flight", rejected: "Too dark" }),
     surveys: surveys(),
     ...changes,

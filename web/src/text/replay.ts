@@ -14,6 +14,11 @@ export function formatTimeOfDay(unixMs: number): string {
   return new Date(unixMs).toLocaleTimeString("en-GB");
 }
 
+/** The local time of day of a moment to the minute. */
+export function formatMinuteOfDay(unixMs: number): string {
+  return new Date(unixMs).toLocaleTimeString("en-GB", { hour: "2-digit", minute: "2-digit" });
+}
+
 /** The local date of a moment. */
 export function formatDay(unixMs: number): string {
   return new Date(unixMs).toLocaleDateString("en-GB", {

@@ -47,6 +47,7 @@ from recon.api.schema.requests import (
     OrderRequest,
     PreflightOverrideRequest,
     RefuseAppRequest,
+    ReliefRequest,
     StopReleaseRequest,
     WaypointOrder,
 )
@@ -90,6 +91,7 @@ from recon.api.schema.site_drawing import (
 )
 from recon.api.schema.station import (
     FleetReturnView,
+    ImagerReliefView,
     LinkView,
     LookAsideView,
     MoveUpwindView,
@@ -100,7 +102,9 @@ from recon.api.schema.station import (
     WaitingAppView,
 )
 from recon.api.schema.surveys import (
+    AbsentImagerView,
     DroneEstimateView,
+    ImagerOutlookView,
     SurveyBudgetRequest,
     SurveyCameraRequest,
     SurveyCameraView,
@@ -108,6 +112,7 @@ from recon.api.schema.surveys import (
     SurveyEstimateView,
     SurveyFiguresView,
     SurveyingView,
+    SurveyLightView,
     SurveyPhaseName,
     SurveyRequest,
     SurveyResponse,
@@ -141,6 +146,7 @@ from recon.api.schema.zones import (
 )
 
 __all__ = [
+    "AbsentImagerView",
     "AccessView",
     "ActionResponse",
     "AdmitAppRequest",
@@ -181,6 +187,8 @@ __all__ = [
     "HazardView",
     "HindcastView",
     "HolderName",
+    "ImagerOutlookView",
+    "ImagerReliefView",
     "ImportedFeatureView",
     "ImportedView",
     "LayerView",
@@ -208,6 +216,7 @@ __all__ = [
     "PreflightView",
     "Problem",
     "RefuseAppRequest",
+    "ReliefRequest",
     "ReplayMark",
     "ReplayMarksView",
     "ReplayTransport",
@@ -241,6 +250,7 @@ __all__ = [
     "SurveyCellsView",
     "SurveyEstimateView",
     "SurveyFiguresView",
+    "SurveyLightView",
     "SurveyPhaseName",
     "SurveyRequest",
     "SurveyResponse",

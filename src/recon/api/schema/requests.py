@@ -190,6 +190,22 @@ class LookAsideRequest(StrictMessage):
     given_at_unix_ms: GivenAt = None
 
 
+class ReliefRequest(StrictMessage):
+    """An imaging drone is to take the place of another, or to return to its own.
+
+    `takeoff` explicitly allows it to leave the ground, for this relief.
+    """
+
+    serial: str = Field(max_length=256, description="whose place is taken")
+    spare: str | None = Field(
+        None,
+        max_length=256,
+        description="the imaging drone that takes it; null: the same one returns to its place",
+    )
+    takeoff: bool = False
+    given_at_unix_ms: GivenAt = None
+
+
 class StopReleaseRequest(StrictMessage):
     """Vehicles to release from an all stop; null: all, also those that connect later."""
 

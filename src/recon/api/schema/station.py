@@ -109,7 +109,7 @@ class ImagerMotionView(Message):
 
     serial: str
     vehicle_name: str
-    stage: Literal["aside", "waiting", "back", "upwind", "done", "stopped"]
+    stage: Literal["aside", "waiting", "back", "upwind", "to_place", "maps", "done", "stopped"]
     since_age_s: float
     begun_by: str
     begun_age_s: float
@@ -129,6 +129,14 @@ class MoveUpwindView(ImagerMotionView):
     place: UpwindPlaceView = Field(description="as it was proposed when the move began")
 
 
+class ImagerReliefView(ImagerMotionView):
+    """The newest relief of an imaging drone; `relieved` is the same one if it returns."""
+
+    relieved: str
+    relieved_name: str
+    maps: int = Field(description="shade maps in a row at the place")
+
+
 class StationState(Message):
     """Everything a console shows; the stream pushes one of these at up to 10 Hz."""
 
@@ -145,6 +153,7 @@ class StationState(Message):
     fleet_return: FleetReturnView | None
     look_aside: LookAsideView | None
     move_upwind: MoveUpwindView | None
+    imager_relief: ImagerReliefView | None
     shade: ShadeLineView | None
     surveys: list[SurveyView]
     replay: ReplayView | None = Field(description="null: a live station")

@@ -79,6 +79,15 @@ class SurveyRequest(StrictMessage):
         description="the imaging drone may fly by itself to where it sees more of the shade to "
         "come",
     )
+    relief_allowed: bool = Field(
+        default=False,
+        description="the imaging drone may be relieved by itself, or called home, when its "
+        "battery wants it",
+    )
+    spare_serial: Annotated[str, Field(max_length=256)] | None = Field(
+        default=None,
+        description="the imaging drone that relieves it then, and takes off if the start allows",
+    )
     camera: SurveyCameraRequest = SurveyCameraRequest()
     budget: SurveyBudgetRequest = SurveyBudgetRequest()
 
@@ -132,6 +141,38 @@ class SurveyingView(Message):
     mission_command_id: int | None
 
 
+class ImagerOutlookView(Message):
+    """When the battery of an imaging drone over the field wants it home."""
+
+    serial: str
+    vehicle_name: str
+    leaves_in_s: float | None = Field(description="null: not known; `unknown` states why")
+    unknown: str | None
+
+
+class AbsentImagerView(Message):
+    """An imaging drone that hovered over the field, and can be sent to its place again."""
+
+    serial: str
+    vehicle_name: str
+    gone_age_s: float
+    is_on_ground: bool
+
+
+class SurveyLightView(Message):
+    """Until when a running survey has light, and what it flies without."""
+
+    needs_s: float | None = Field(description="for its missing ground, at its recent pace")
+    imagers: list[ImagerOutlookView]
+    absent: list[AbsentImagerView]
+    unknown_in_s: float | None = Field(
+        description="until the last imaging drone must leave, if that is before the survey is done"
+    )
+    unknown_for_s: float | None = Field(description="from then on, without a relief")
+    without_age_s: float | None = Field(description="since the last shade map; null: it has light")
+    without_m2: float | None = Field(description="imaged since then, its light unknown")
+
+
 class SurveyView(Message):
     """Summary of one survey; paths and cells have routes of their own."""
 
@@ -146,6 +187,9 @@ class SurveyView(Message):
     when_done: WhenDoneName
     look_aside_allowed: bool
     upwind_allowed: bool
+    relief_allowed: bool
+    spare_serial: str | None
+    light: SurveyLightView | None = Field(description="null: it does not run")
     height_above_takeoff_m: float | None = Field(description="null: it is above ground")
     height_above_ground_m: float | None = Field(description="null: it is above takeoff")
     speed_mps: float

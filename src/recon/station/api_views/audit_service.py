@@ -16,6 +16,7 @@ KINDS_OF: dict[TimelineSubject, tuple[str, ...]] = {
         "fleet_return.",
         "look_aside.",
         "move_upwind.",
+        "imager_relief.",
         "temporary_zone.",
         "site.",
     ),

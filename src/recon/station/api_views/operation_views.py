@@ -12,6 +12,7 @@ from recon.guidance.survey import SurveyState, figures
 from recon.model.geo import LocalFrame
 from recon.model.units import ns_to_seconds
 from recon.station.api_views.imaging_views import corners_lon_lat, upwind_place_view
+from recon.station.api_views.relief_views import light_view
 from recon.station.operations.fleet_return.conditions import in_turn
 from recon.station.operations.survey.availability import hindrance, is_flown, is_on_ground
 from recon.station.operations.survey.return_to_home import is_under_way
@@ -46,6 +47,9 @@ def survey_view(station: Station, record: SurveyRecord, now_ns: int) -> schema.S
         when_done=survey.when_done.value,
         look_aside_allowed=survey.look_aside_allowed,
         upwind_allowed=survey.upwind_allowed,
+        relief_allowed=survey.relief_allowed,
+        spare_serial=survey.spare_serial,
+        light=light_view(station, record, now_ns),
         height_above_takeoff_m=survey.height_above_takeoff_m,
         height_above_ground_m=survey.height_above_ground_m,
         speed_mps=survey.speed_mps,
@@ -176,6 +180,19 @@ def move_upwind_view(station: Station, now_ns: int) -> schema.MoveUpwindView | N
         return None
     place = upwind_place_view(newest.proposal)
     return schema.MoveUpwindView(**_motion(newest, now_ns), place=place)
+
+
+def imager_relief_view(station: Station, now_ns: int) -> schema.ImagerReliefView | None:
+    """Return the newest relief of an imaging drone; None before the first."""
+    newest = station.reliefs.newest
+    if newest is None:
+        return None
+    return schema.ImagerReliefView(
+        **_motion(newest, now_ns),
+        relieved=newest.relieved,
+        relieved_name=newest.relieved_name,
+        maps=newest.maps,
+    )
 
 
 def _motion(newest: ImagerMotion, now_ns: int) -> dict[str, Any]:

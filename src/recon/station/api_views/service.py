@@ -24,6 +24,7 @@ from recon.model.event import (
     PersonConnected,
     PersonDisconnected,
     PreflightOverridden,
+    ReliefOrdered,
     SeparationHoldSwitched,
     StopReleased,
     ZoneDrawn,
@@ -52,6 +53,7 @@ from recon.station.api_views.vehicle_views import preflight_view
 from recon.station.api_views.zone_views import zone_views
 from recon.station.control import handover, preflight, stop_latch, temporary_zones
 from recon.station.imaging.mosaic import mosaic, newest_images
+from recon.station.operations.imager_relief.commands import refusal as relief_refusal
 from recon.station.operations.look_aside.commands import refusal as look_aside_refusal
 from recon.station.traffic.known_traffic import is_dismissible
 
@@ -208,6 +210,21 @@ class Service:
         """Have an imaging drone look aside; the audit has a refusal too."""
         event = LookAsideOrdered(by.label, given_at_ns, by.name, serial=serial)
         refused = look_aside_refusal(self.driver.station, event, self.driver.now_ns())
+        self.driver.handle(event)
+        return _action(refused)
+
+    def relieve(
+        self,
+        serial: str,
+        spare: str,
+        *,
+        takeoff: bool,
+        by: Person,
+        given_at_ns: int | None = None,
+    ) -> schema.ActionResponse:
+        """Have an imaging drone take another's place; the audit has a refusal too."""
+        event = ReliefOrdered(serial, spare, by.label, takeoff, given_at_ns, by.name)
+        refused = relief_refusal(self.driver.station, event, self.driver.now_ns())
         self.driver.handle(event)
         return _action(refused)
 

@@ -16,6 +16,7 @@ from recon.model.vehicle import AltitudeReference, VehicleState
 from recon.station.api_views.imaging_views import ground_image_view, shade_view
 from recon.station.api_views.operation_views import (
     fleet_return_view,
+    imager_relief_view,
     look_aside_view,
     move_upwind_view,
     survey_views,
@@ -71,6 +72,7 @@ def state_view(station: Station, around: DriverState, now_ns: int) -> schema.Sta
         fleet_return=fleet_return_view(station, now_ns),
         look_aside=look_aside_view(station, now_ns),
         move_upwind=move_upwind_view(station, now_ns),
+        imager_relief=imager_relief_view(station, now_ns),
         shade=shade_view(station, now_ns),
         surveys=survey_views(station, now_ns),
         replay=around.replay,

@@ -37,6 +37,11 @@ class SurveyService:
         region = self._region(asked)
         if isinstance(region, Refusal):
             return _refused(region)
+        imagers, spare = self.driver.station.imaging.imagers, asked.spare_serial
+        if spare is not None and spare not in imagers:
+            known = ", ".join(imagers) or "none"
+            text = f"{spare!a} is no imaging drone of the site; available: {known}"
+            return _refused(Refusal(RULE, text))
         try:
             camera = _camera(asked.camera, self.site)
         except SurveyCameraError as problem:
@@ -171,6 +176,8 @@ def _survey(
         when_done=WhenDone(asked.when_done),
         look_aside_allowed=asked.look_aside_allowed,
         upwind_allowed=asked.upwind_allowed,
+        relief_allowed=asked.relief_allowed,
+        spare_serial=asked.spare_serial,
     )
 
 

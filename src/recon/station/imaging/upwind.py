@@ -8,6 +8,7 @@ from recon.guidance.upwind_proposal import UpwindProposal, UpwindQuestion, propo
 from recon.model.airspace import Region, ZoneKind
 from recon.model.imagery import Outlook
 from recon.model.units import ns_to_seconds
+from recon.station.imaging.at_work import imagers_at_work
 from recon.station.state.station import Station
 from recon.station.steering.kinematic_state import kinematic_state, refusal_without_telemetry
 
@@ -21,7 +22,8 @@ def proposed(
 ) -> UpwindProposal | str:
     """Return the best place over these regions, or why none is known, as a sentence.
 
-    Without a serial the site's first imaging drone is meant. Takes too long for a step.
+    Without a serial the first imaging drone that shows the field is meant. Takes too long for a
+    step.
     """
     asked = upwind_question(station, regions, serial, now_ns)
     return asked if isinstance(asked, str) else propose(asked)
@@ -32,7 +34,7 @@ def upwind_question(
 ) -> UpwindQuestion | str:
     """Return what a place is proposed by, or why none can be, as a sentence."""
     imagers = station.imaging.imagers
-    imager = imagers.get(serial or next(iter(imagers), ""))
+    imager = imagers.get(serial or next(iter((*imagers_at_work(station), *imagers)), ""))
     if imager is None or imager.outlook is None:
         return "expected an imaging drone of the site, got " + (serial or "a site without any")
     if not regions:

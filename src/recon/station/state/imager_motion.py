@@ -1,7 +1,7 @@
 """Motions of an imaging drone under guidance: the newest of each kind, and what begins the next.
 
-There are two kinds, looks aside and moves upwind. Of both together one at most is under way. All
-of it is of this run: after a restart none continues.
+There are three kinds, looks aside, moves upwind and reliefs (`imager_relief`). Of all together one
+at most is under way. All of it is of this run: after a restart none continues.
 """
 
 from collections.abc import Mapping
@@ -29,6 +29,10 @@ class MotionStage(Enum):
     """On the way back."""
     UPWIND = "upwind"
     """On the way to its place upwind."""
+    TO_PLACE = "to_place"
+    """On the way to the place of an imaging drone, in a layer of its own."""
+    MAPS = "maps"
+    """At that place: waits for its own shade maps."""
     DONE = "done"
     """At the place where it was to end, holding."""
     STOPPED = "stopped"

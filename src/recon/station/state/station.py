@@ -15,6 +15,7 @@ from recon.station.state.alarm_book import AlarmBook, Condition
 from recon.station.state.failsafe_state import FailsafeState
 from recon.station.state.fleet_return_record import FleetReturn
 from recon.station.state.imager_motion import LookAsides, UpwindMoves
+from recon.station.state.imager_relief import Reliefs
 from recon.station.state.imaging import Imaging, ShadePipeline
 from recon.station.state.orders import OrderBook
 from recon.station.state.setpoint_stream import SetpointStream
@@ -110,6 +111,8 @@ class Station:
     """Of this run. Writer: `operations/look_aside`, and for its end `operations/imager_motion`."""
     upwind_moves: UpwindMoves = field(default_factory=UpwindMoves)
     """Of this run. Writer: `operations/move_upwind`, and for its end `operations/imager_motion`."""
+    reliefs: Reliefs = field(default_factory=Reliefs)
+    """Of this run. Writer: `operations/imager_relief`, for its end `operations/imager_motion`."""
     watchdog_state: WatchdogState = field(default_factory=WatchdogState)
     """Findings, holds and switches of the watchdogs."""
     failsafe_state: FailsafeState = field(default_factory=FailsafeState)

@@ -18,7 +18,9 @@ export function LookAside() {
   const [problem, setProblem] = createSignal<string | null>(null);
   const imagers = () => fleet.vehicles.filter(({ is_imager: isImager }) => isImager);
   const isUnderWay = () =>
-    [fleet.lookAside, fleet.moveUpwind].some((motion) => motion !== null && !isOver(motion));
+    [fleet.lookAside, fleet.moveUpwind, fleet.imagerRelief].some(
+      (motion) => motion !== null && !isOver(motion),
+    );
   const order = async (serial: string) =>
     setProblem(responseProblem(await source.lookAside(serial)));
   const button = (label: string, name: string, serial: string) => (

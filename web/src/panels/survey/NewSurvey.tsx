@@ -3,6 +3,7 @@ import { useConsole } from "../../console";
 import type { SurveyResponse } from "../../protocol";
 import type { Outcome } from "../../source/stationSource";
 import { text } from "../../text/catalogue";
+import { vehicleLabel } from "../../text/names";
 import { createLengthField, inLengthUnit, lengthUnit } from "../../text/units";
 
 const PLANNERS = ["lawnmower_once", "lawnmower_again", "sunlit_first"] as const;
@@ -36,6 +37,7 @@ export function NewSurvey(props: {
     return others.length === 0 ? (camera ?? "") : "";
   };
   const isGroundKnown = () => fleet.site?.terrain === "model";
+  const imagers = () => fleet.vehicles.filter(({ is_imager }) => is_imager);
   const regions = () => (fleet.site?.areas ?? []).filter(({ kind }) => kind === "survey");
   const plan = async (form: HTMLFormElement) => {
     const height_m = height.metres();
@@ -53,6 +55,7 @@ export function NewSurvey(props: {
       camera: { model: model === "" ? null : model, interval_s: Number(data.get("interval")) },
       look_aside_allowed: data.get("look_aside") !== null,
       upwind_allowed: data.get("upwind") !== null,
+      ...reliefOf(String(data.get("battery") ?? "warn")),
       when_done: data.get("when_done") === "hover" ? "hover" : "return_home",
     });
     setPlanning(false);
@@ -145,6 +148,22 @@ export function NewSurvey(props: {
             <input name="upwind" type="checkbox" />
             {text.newSurvey.upwind}
           </label>
+          <Show when={imagers().length > 0}>
+            <label class="survey-wide">
+              {text.newSurvey.battery}
+              <select name="battery">
+                <option value="warn">{text.newSurvey.batteryEnds.warn}</option>
+                <option value="home">{text.newSurvey.batteryEnds.home}</option>
+                <For each={imagers().length > 1 ? imagers() : []}>
+                  {(vehicle) => (
+                    <option value={vehicle.serial ?? "home"}>
+                      {text.newSurvey.spare(vehicleLabel(vehicle))}
+                    </option>
+                  )}
+                </For>
+              </select>
+            </label>
+          </Show>
           <button
             type="submit"
             class="button"
@@ -157,4 +176,10 @@ export function NewSurvey(props: {
       </details>
     </Show>
   );
+}
+
+/** What a survey may do when its imaging drone's battery ends: warn, return it home, or relieve it. */
+function reliefOf(battery: string) {
+  const spare_serial = battery === "warn" || battery === "home" ? null : battery;
+  return { relief_allowed: battery !== "warn", spare_serial };
 }

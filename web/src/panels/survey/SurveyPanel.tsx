@@ -9,6 +9,7 @@ import { withLengthUnit } from "../../text/units";
 import { BRIEF_MS, GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Panel, Problem } from "../Panel";
 import { NewSurvey } from "./NewSurvey";
+import { SurveyLight } from "./SurveyLight";
 import { SurveyPreview } from "./SurveyPreview";
 import { Coverage, Decisions } from "./SurveySummary";
 import "./survey.css";
@@ -66,6 +67,7 @@ function SurveySection(props: SurveyProps) {
       </p>
       <p class="muted">{surveyHeight(props.survey)}</p>
       <Coverage survey={props.survey} />
+      <Show when={props.survey.light}>{(light) => <SurveyLight light={light()} />}</Show>
       <Decisions lines={active().map((vehicle) => lineOf(vehicle, is("done")))} />
       <Show when={is("created")}>
         <SurveyPreview survey={props.survey} />

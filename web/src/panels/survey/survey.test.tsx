@@ -1,8 +1,9 @@
 import { afterEach, describe, expect, it } from "vitest";
-import type { SurveyView, VehicleView } from "../../protocol";
-import { survey } from "../../testing/fakeField";
+import type { ImagerReliefView, SurveyLightView, SurveyView, VehicleView } from "../../protocol";
+import { survey, surveyLight } from "../../testing/fakeField";
 import { area, station, vehicle } from "../../testing/fakeState";
 import { find, type RenderedPage, renderPage, settled } from "../../testing/renderPage";
+import { formatMinuteOfDay } from "../../text/replay";
 import { sharePercent, shownSurvey } from "../../text/survey";
 import { SurveyPanel } from "./SurveyPanel";
 
@@ -127,7 +128,113 @@ describe("a survey in the list", () => {
   });
 });
 
+describe("the light of a running survey", () => {
+  const cedar = vehicle(3, { is_imager: true });
+  const dogwood = vehicle(4, { is_imager: true, is_flying: { value: false, age_s: 0 } });
+  const text = () => find(page.root, "[data-testid=survey-light]").textContent;
+
+  function showLight(changes: Partial<SurveyLightView>, relief: ImagerReliefView | null = null) {
+    const running = survey(7, { light: surveyLight(changes) });
+    const state = station([vehicle(1), cedar, dogwood], {
+      surveys: [running],
+      imager_relief: relief,
+    });
+    page = renderPage(SurveyPanel, { ...state, time_ns: NOON_NS });
+  }
+
+  it("states when the imaging drone must return and how long light is then unknown", () => {
+    showLight({});
+    const time = (minutes: number) => formatMinuteOfDay(NOON_NS / 1e6 + minutes * 60_000);
+    expect(text()).toContain(
+      `Cedar must return at ${time(9)}; the survey needs until about ${time(18)}.`,
+    );
+    expect(text()).toContain("light is unknown from then on, for about 9 min");
+  });
+
+  it("states only the return where the survey is done before, or its end is not known", () => {
+    showLight({ needs_s: 300, unknown_in_s: null, unknown_for_s: null });
+    expect(text()).toMatch(/Cedar must return at \d\d:\d\d\./);
+    expect(text()).not.toContain("unknown");
+    page.dispose();
+    showLight({ needs_s: null, unknown_for_s: null });
+    expect(text()).toContain("Without a relief, light is unknown from then on.");
+  });
+
+  it("states why the return is not known", () => {
+    const unknown = "endurance unknown";
+    const imagers = [{ serial: "SN-003", vehicle_name: "Cedar", leaves_in_s: null, unknown }];
+    showLight({ imagers, unknown_in_s: null });
+    expect(text()).toContain("When Cedar must return is not known: endurance unknown.");
+  });
+
+  it("has the spare relieve it by a long press, with takeoff from the ground", () => {
+    showLight({});
+    hold("Relieve by 4 Dogwood", 1400);
+    expect(page.requests).toEqual([]);
+    hold("Relieve by 4 Dogwood", 1600);
+    expect(page.requests).toEqual([{ relieved: "SN-003", spare: "SN-004", takeoff: true }]);
+  });
+
+  it("shows the relief under way, and takes no other order meanwhile", () => {
+    showLight({}, { ...RELIEF, stage: "maps" });
+    expect(text()).toContain("Dogwood is at the place of Cedar, waits for its shade maps");
+    hold("Relieve by 4 Dogwood", 1600);
+    expect(page.requests).toEqual([]);
+  });
+
+  it("states what is flown without light, and sends the drone back", () => {
+    const absent = [
+      { serial: "SN-003", vehicle_name: "Cedar", gone_age_s: 200, is_on_ground: true },
+    ];
+    const without = { without_age_s: 75, without_m2: 8000 };
+    showLight({ imagers: [], absent, unknown_in_s: null, ...without });
+    expect(text()).toContain("No shade map for 1 min 15 s: 0.8\u00a0ha flown with light unknown.");
+    hold("Send Cedar back", 1600);
+    expect(page.requests).toEqual([{ relieved: "SN-003", spare: "SN-003", takeoff: true }]);
+  });
+
+  it("shows why a relief was refused", async () => {
+    showLight({});
+    page.answerRequestsWith({ accepted: false, rule: "imager_relief", reason: "no layer is free" });
+    hold("Relieve by 4 Dogwood", 1600);
+    await settled();
+    expect(text()).toContain("no layer is free");
+  });
+});
+
+const NOON_NS = 1_800_000_000_000 * 1e6;
+const RELIEF: ImagerReliefView = {
+  serial: "SN-004",
+  vehicle_name: "Dogwood",
+  stage: "to_place",
+  since_age_s: 3,
+  begun_by: "ann 127.0.0.1",
+  begun_age_s: 20,
+  reason: null,
+  survey_id: null,
+  relieved: "SN-003",
+  relieved_name: "Cedar",
+  maps: 0,
+};
+
 describe("a new survey", () => {
+  it("may relieve its imaging drone or return it home", () => {
+    const regions = [area("survey", [0, 0], 50, { name: "south field" })];
+    const base = station([vehicle(3, { is_imager: true }), vehicle(4, { is_imager: true })]);
+    const site = base.site === null ? null : { ...base.site, areas: regions };
+    page = renderPage(SurveyPanel, { ...base, site });
+    for (const battery of ["home", "SN-004"]) {
+      find<HTMLSelectElement>(page.root, "select[name=battery]").value = battery;
+      find<HTMLFormElement>(page.root, "form").dispatchEvent(
+        new SubmitEvent("submit", { bubbles: true, cancelable: true }),
+      );
+    }
+    expect(page.requests).toMatchObject([
+      { plannedSurvey: { relief_allowed: true, spare_serial: null } },
+      { plannedSurvey: { relief_allowed: true, spare_serial: "SN-004" } },
+    ]);
+  });
+
   it("is planned with the region and numbers of the form", () => {
     const regions = [area("survey", [0, 0], 50, { name: "south field" })];
     const base = station([vehicle(1)]);
@@ -147,6 +254,8 @@ describe("a new survey", () => {
           when_done: "return_home",
           look_aside_allowed: false,
           upwind_allowed: false,
+          relief_allowed: false,
+          spare_serial: null,
         },
       },
     ]);

@@ -119,6 +119,7 @@ export const alarms = {
     gnss: "GNSS",
     look_aside: "Look aside",
     move_upwind: "Move upwind",
+    imager_relief: "Imaging drone",
   } as Readonly<Record<string, string>>,
   pairs: (cause: string, count: number) => `${cause}: ${count} pairs`,
   drones: (cause: string, count: number) => `${cause}: ${plural(count, "drone")}`,

@@ -1,4 +1,4 @@
-import type { LookAsideView, MoveUpwindView, SurveyView } from "../../protocol";
+import type { ImagerReliefView, LookAsideView, MoveUpwindView, SurveyView } from "../../protocol";
 import type { LightPercents } from "../light";
 
 const exposures = { locked: "locked", notLocked: "not locked", automatic: "automatic" };
@@ -55,6 +55,38 @@ export const upwind = {
     done: (distance: string) => `flew upwind by itself, ${distance}`,
     stopped: (distance: string) => `stopped its flight upwind, ${distance}`,
   } as Stages<MoveUpwindView>,
+};
+
+/** Until when a survey has light, and the relief of its imaging drone. */
+export const relief = {
+  name: "Light of the survey",
+  leaves: (vehicle: string, time: string) => `${vehicle} must return at ${time}.`,
+  leavesBefore: (vehicle: string, time: string, end: string) =>
+    `${vehicle} must return at ${time}; the survey needs until about ${end}.`,
+  leavesNow: (vehicle: string) => `${vehicle} must return now.`,
+  notKnown: (vehicle: string, reason: string) =>
+    `When ${vehicle} must return is not known: ${reason}.`,
+  unknownFor: (minutes: number) =>
+    `Without a relief, light is unknown from then on, for about ${minutes} min.`,
+  unknown: "Without a relief, light is unknown from then on.",
+  without: (age: string, area: string) =>
+    `No shade map for ${age}: ${area} flown with light unknown.`,
+  relieve: (spare: string) => `Relieve by ${spare}`,
+  relieveOf: (spare: string, vehicle: string) => `${spare} flies to the place of ${vehicle}`,
+  sendBack: (vehicle: string) => `Send ${vehicle} back`,
+  sendBackOf: (vehicle: string) => `${vehicle} takes off and flies to its place`,
+  stages: {
+    to_place: (vehicle: string) => `flies to the place of ${vehicle}`,
+    maps: (vehicle: string) => `is at the place of ${vehicle}, waits for its shade maps`,
+    done: (vehicle: string) => `has taken the place of ${vehicle}`,
+    stopped: (vehicle: string) => `stopped its flight to the place of ${vehicle}`,
+  } as Stages<ImagerReliefView>,
+  itsOwn: {
+    to_place: "flies back to its place",
+    maps: "is at its place, waits for its shade maps",
+    done: "is back at its place",
+    stopped: "stopped its flight back to its place",
+  } as Readonly<Partial<Record<ImagerReliefView["stage"], string>>>,
 };
 
 /** The scale of the next minutes. */
@@ -147,5 +179,8 @@ export const newSurvey = {
   thenDo: { return_home: "Return home", hover: "Hover" },
   lookAside: "Imaging drone may look aside by itself",
   upwind: "Imaging drone may move upwind by itself",
+  battery: "When the imaging drone's battery ends",
+  batteryEnds: { warn: "Warn only", home: "Return it home" },
+  spare: (vehicle: string) => `Relieve it by ${vehicle}`,
   plan: "Plan survey",
 };

@@ -57,7 +57,7 @@ def claimed(
 
 def motion_under_way(station: Station) -> ImagerMotion | None:
     """Return the motion of an imaging drone that is under way; there is one at most."""
-    newest = (station.look_asides.newest, station.upwind_moves.newest)
+    newest = (station.look_asides.newest, station.upwind_moves.newest, station.reliefs.newest)
     return next((each for each in newest if each is not None and not each.is_over), None)
 
 
@@ -81,10 +81,10 @@ def _hindrance(station: Station, rule: str, vehicle: VehicleState, now_ns: int) 
             f"{RESTING_MPS:g} m/s",
             parameters={"speed_mps": seen.speed_mps, "max_mps": RESTING_MPS},
         )
-    return None if _is_at_rest(station, vehicle) else Refusal(rule, f"{name} flies; hold it first")
+    return None if is_at_rest(station, vehicle) else Refusal(rule, f"{name} flies; hold it first")
 
 
-def _is_at_rest(station: Station, vehicle: VehicleState) -> bool:
+def is_at_rest(station: Station, vehicle: VehicleState) -> bool:
     """Whether it holds its position: by itself, or by a steered order that has arrived."""
     activity = activity_of(station, vehicle)
     stream = station.control(vehicle.serial).stream

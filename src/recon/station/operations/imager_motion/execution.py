@@ -1,8 +1,9 @@
 """The ways of an imaging drone's motion, and the ends of it.
 
-A way is one goto of guidance through the gate, without a connection that owns it: it ends by
-itself in a stated time. The end of a way is read from its order's record, which telemetry makes.
-A motion ends in one of two ways, and control goes back to the operator with either:
+A way is one goto, or the mission of a relief, of guidance through the gate, without a connection
+that owns it: it ends by itself in a stated time. The end of a way is read from its order's record,
+which telemetry makes. A motion ends in one of two ways, and control goes back to the operator with
+either:
 
     done: at its place, held there by the aircraft's own hold
     stopped, by pilot, another order, all stop, lost connection, refused setpoint or too long a way:
@@ -11,7 +12,7 @@ A motion ends in one of two ways, and control goes back to the operator with eit
 
 from collections.abc import Callable
 
-from recon.model.command import GoTo, Hover, Phase, issued_by_station
+from recon.model.command import Body, Hover, Phase, issued_by_station
 from recon.model.control import AuthorityHolder
 from recon.model.event import OperatorOrder
 from recon.model.replacing import replace
@@ -24,18 +25,31 @@ from recon.station.state.imager_motion import (
     MotionT,
     MoveUpwind,
 )
+from recon.station.state.imager_relief import ImagerRelief
 from recon.station.state.orders import OrderRecord
 from recon.station.state.station import Station, take_id
 from recon.station.state.steps import Output, Stepped
 
 
 def tried(
-    station: Station, kind: type[ImagerMotion], by: str, serial: str, body: GoTo, now_ns: int
+    station: Station,
+    kind: type[ImagerMotion],
+    by: str,
+    serial: str,
+    body: Body,
+    now_ns: int,
+    *,
+    takeoff: bool = False,
 ) -> tuple[Station, tuple[Output, ...], OrderRecord]:
     """Order a way; return the station, the packets and the order's record, perhaps refused."""
     station, number = take_id(station)
     order = OperatorOrder(
-        number, body, f"{by}: {kind.words}", serial=serial, role=AuthorityHolder.GUIDANCE
+        number,
+        body,
+        f"{by}: {kind.words}",
+        serial=serial,
+        takeoff=takeoff,
+        role=AuthorityHolder.GUIDANCE,
     )
     station, outputs = order_gateway.submit(station, order, now_ns)
     return station, outputs, station.orders.records[number]
@@ -102,6 +116,8 @@ def put(station: Station, motion: ImagerMotion) -> Station:
             return replace(station, look_asides=replace(station.look_asides, newest=motion))
         case MoveUpwind():
             return replace(station, upwind_moves=replace(station.upwind_moves, newest=motion))
+        case ImagerRelief():
+            return replace(station, reliefs=replace(station.reliefs, newest=motion))
     raise TypeError(f"expected a kind of motion that has a place in the state, got {motion!r}")
 
 

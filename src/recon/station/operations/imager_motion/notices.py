@@ -42,20 +42,28 @@ def off_its_place(
     station: Station, motion: ImagerMotion | None, what_to_do: str
 ) -> Iterator[Condition]:
     """A vehicle that stopped away from its place, until it is commanded elsewhere."""
-    if motion is None or motion.stage is not MotionStage.STOPPED:
+    if motion is None or not is_left(station, motion):
         return
-    vehicle = station.fleet.vehicles.get(motion.serial)
-    if vehicle is None or vehicle.is_flying.value is False or vehicle.position.value is None:
+    place = station.fleet.vehicles[motion.serial].position.value
+    if place is None:
         return
-    if station.control(motion.serial).authority.holder is AuthorityHolder.PILOT:
-        return
-    newest = newest_motion(station, motion.serial)
-    if newest is not None and newest.command.moves and newest.command.id != motion.command_id:
-        return
-    off_m = horizontal_distance_m(vehicle.position.value, motion.place)
+    off_m = horizontal_distance_m(place, motion.place)
     if off_m >= OFF_PLACE_M:
         text = f"its {motion.words} stopped {off_m:.0f} m from its place: {motion.reason}. "
         yield about(station, motion, Severity.WARNING, "stopped", text + what_to_do)
+
+
+def is_left(station: Station, motion: ImagerMotion) -> bool:
+    """Return whether a motion's vehicle still hovers where it stopped, commanded nowhere since."""
+    vehicle = station.fleet.vehicles.get(motion.serial)
+    if motion.stage is not MotionStage.STOPPED or vehicle is None:
+        return False
+    if vehicle.is_flying.value is False:
+        return False
+    if station.control(motion.serial).authority.holder is AuthorityHolder.PILOT:
+        return False
+    newest = newest_motion(station, motion.serial)
+    return newest is None or not newest.command.moves or newest.command.id == motion.command_id
 
 
 def stage_entries(

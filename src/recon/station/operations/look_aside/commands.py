@@ -11,6 +11,7 @@ from recon.model.geo import LatLon
 from recon.model.units import ns_to_seconds
 from recon.record.audit import AuditEntry
 from recon.safety.rules.not_expired import given_refusal
+from recon.station.imaging.at_work import imagers_at_work
 from recon.station.operations.imager_motion.claim import Claimed, claimed
 from recon.station.operations.imager_motion.execution import is_refused, put, tried
 from recon.station.operations.imager_motion.notices import stage_entries
@@ -44,12 +45,11 @@ def begin(station: Station, event: LookAsideOrdered, now_ns: int) -> Stepped | R
 def meant(station: Station) -> str | None:
     """Return the imaging drone to look aside when none is named: light is unknown below it.
 
-    The site's first one if light is known below all of them; None without any.
+    The first one that shows the field if light is known below all of them; None without any.
     """
-    unknown = station.look_asides.unknown_since_ns
-    return next((s for s in station.imaging.imagers if s in unknown), None) or next(
-        iter(station.imaging.imagers), None
-    )
+    unknown, imagers = station.look_asides.unknown_since_ns, station.imaging.imagers
+    present = (*imagers_at_work(station), *imagers)
+    return next((s for s in present if s in unknown), None) or next(iter(present), None)
 
 
 def audit_entries(

@@ -81,6 +81,7 @@ def start_survey(station: Station, event: SurveyStarted, now_ns: int) -> Stepped
         started_by=event.by,
         person=event.person,
         members=MappingProxyType({**kept, **fresh}),
+        spare_may_take_off=event.takeoff,
         step_due_ns=now_ns,
     )
     surveys = station.surveys.without_pending(event.survey_id)

@@ -1,0 +1,36 @@
+"""An imaging drone is called home under guidance, for the person who ordered it or the survey."""
+
+from recon.model.command import Hover, Phase, Refusal
+from recon.model.control import AuthorityHolder
+from recon.model.event import AuthorityTaken, OperatorOrder
+from recon.station.control import handover
+from recon.station.operations.fleet_return import commands
+from recon.station.state.station import Station, take_id
+from recon.station.state.steps import Stepped
+
+
+def refusal(station: Station, serial: str, by: str, person: str, now_ns: int) -> Refusal | None:
+    """Return why guidance cannot call an imaging drone home; the gate judges its hold."""
+    taken = AuthorityTaken(serial, AuthorityHolder.GUIDANCE, by, person)
+    return commands.refusal(station, serial) or handover.refusal(station, taken, now_ns)
+
+
+def call_home(
+    station: Station, serial: str, by: str, person: str, now_ns: int
+) -> Stepped | Refusal:
+    """Have an imaging drone join the fleet return: a hold, then a landing mission in a layer."""
+    why = refusal(station, serial, by, person, now_ns)
+    if why is not None:
+        return why
+    taken = AuthorityTaken(serial, AuthorityHolder.GUIDANCE, by, person)
+    called, withdrawn = handover.take(station, taken, now_ns)
+    called, number = take_id(called)
+    hold = OperatorOrder(
+        number, Hover(), f"{by}: relief", serial=serial, role=AuthorityHolder.GUIDANCE
+    )
+    called, sent = commands.join(called, hold, by, now_ns)
+    placed = called.orders.records[number]
+    if placed.phase is Phase.REFUSED_BY_STATION:
+        assert placed.refusal is not None, "a refused order has its refusal"
+        return placed.refusal
+    return called, (*withdrawn, *sent)
