@@ -4,7 +4,9 @@ With ideal detection, frames of a few pixels are sent over the link, with latenc
 worker then returns the true sky of each frame instead of reading its pixels.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -13,6 +15,7 @@ from recon.camera.sight import farthest_sight_m
 from recon.detection import DetectionSettings
 from recon.detection.cells import field_grid
 from recon.geo import cell_centres_m, shift_east_north_m
+from recon.guidance.survey.settings import DEFAULT as SURVEYS
 from recon.model.imagery import CameraPose, GroundImage, Outlook, RgbImage
 from recon.model.shade import MaskMap, ShadeMap
 from recon.model.vehicle import VehicleProfile
@@ -77,9 +80,21 @@ def settings_of(scenario: Scenario) -> StationSettings:
     if methods.detection != IDEAL:
         detection = replace(detection, method=methods.detection)
     settings = replace(settings, detection=detection)
+    forecast = settings.forecast
     if methods.forecast != NO_FORECAST:
-        settings = replace(settings, forecast=replace(settings.forecast, method=methods.forecast))
-    return settings
+        forecast = replace(forecast, method=methods.forecast)
+    if not methods.scores_maps:
+        forecast = replace(forecast, lead_s=_leads_planned_with_s(forecast.lead_s))
+    return replace(settings, forecast=forecast)
+
+
+def _leads_planned_with_s(leads_s: Sequence[float]) -> tuple[float, ...]:
+    """The leads that guidance reads; later ones are for operators, and half of a flight's computing.
+
+    A forecast is read between two leads, until it is too old.
+    """
+    until_s = SURVEYS.planned_s + SURVEYS.forecast_age_s
+    return tuple(lead_s for before_s, lead_s in pairwise((-1.0, *leads_s)) if before_s < until_s)
 
 
 def jobs_of(scenario: Scenario, sky: Sky, frames: Frames) -> JobRunner:
