@@ -89,7 +89,7 @@ def settings_of(scenario: Scenario) -> StationSettings:
 
 
 def _leads_planned_with_s(leads_s: Sequence[float]) -> tuple[float, ...]:
-    """The leads that guidance reads; later ones are for operators, and half of a flight's computing.
+    """The leads that guidance reads; later ones are for operators, and half of all computing.
 
     A forecast is read between two leads, until it is too old.
     """
