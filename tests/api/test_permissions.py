@@ -26,6 +26,7 @@ ZONE = {
     "circle": {"latitude_deg": 42.0, "longitude_deg": -93.6, "radius_m": 20.0},
     "reason": "checks a sprinkler",
 }
+RELIEF = {"serial": "A", "spare": "B"}
 START = {"serials": ["A"], "takeoff": False}
 
 BODIES: dict[str, tuple[str, object, Role]] = {
@@ -48,6 +49,7 @@ BODIES: dict[str, tuple[str, object, Role]] = {
     "release": ("/api/all-stop/release", {"serials": None}, Role.OPERATOR),
     "fleet return": ("/api/fleet-return", {"serials": None}, Role.OPERATOR),
     "look aside": ("/api/look-aside", {}, Role.OPERATOR),
+    "relieve": ("/api/imager-relief", RELIEF, Role.OPERATOR),
     "dismiss": ("/api/vehicle/hazard/dismiss?serial=A", None, Role.OPERATOR),
     "acknowledge": ("/api/alarms/1/acknowledge", None, Role.OPERATOR),
     "holds on": ("/api/separation-hold/on", None, Role.OPERATOR),

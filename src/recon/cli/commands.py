@@ -53,7 +53,7 @@ COMMANDS = {
     ),
     "relieve": CommandSource(
         "relieve:relieve_command",
-        "Have an imaging drone take another's place, or return to its own.",
+        "Relieve an imaging drone, or send it back to its place with a fresh battery.",
     ),
     "goto": CommandSource(
         "steering:goto_command",
