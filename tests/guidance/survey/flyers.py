@@ -219,6 +219,7 @@ class Flights:
             horizon_s=np.full(size, 300.0, np.float32),
             prior_sunlit=0.5,
             method="true",
+            velocity_mps=(2.0, 2.0),
         )
 
     def _tell(self, flyer: Flyer) -> None:

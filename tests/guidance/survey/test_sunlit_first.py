@@ -197,6 +197,29 @@ class TestSurveys:
         state, _missions = after(state, 410.0, missions[0].number)
         assert rows <= set(flown_rows(state, "S-1"))
 
+    def test_the_first_missions_wait_until_the_shadows_motion_is_known(self) -> None:
+        def half(east_m: float, _north_m: float, _lead_s: float) -> bool:
+            return east_m < 180.0
+
+        here = Surveyor("S-1", (0.0, 60.0)), Surveyor("S-2", (0.0, 180.0))
+        still = replace(forecast(half), velocity_mps=None)
+        state, missions = decided(still, *here, now_s=1.0)
+        assert (missions, state.reason) == ((), "waiting: how shadows move is not known yet")
+        assert len(decided(forecast(half, 3.0), *here, state=state, now_s=3.0)[1]) == 2
+        # Where no motion is found it does not wait for ever.
+        late = replace(forecast(half, 16.0), velocity_mps=None)
+        assert len(decided(late, *here, state=state, now_s=16.0)[1]) == 2
+        # Once a vehicle has flown, no other waits.
+        state, _missions = decided(forecast(half, 3.0), *here, state=state, now_s=3.0)
+        done = replace(here[0], ended_mission=1), here[1]
+        later = replace(forecast(half, 9.0), velocity_mps=None)
+        assert len(decided(later, *done, state=state, now_s=9.0)[1]) == 1
+
+    def test_where_all_is_in_sun_none_waits_for_its_motion(self) -> None:
+        here = Surveyor("S-1", (0.0, 60.0)), Surveyor("S-2", (0.0, 180.0))
+        still = replace(forecast(lambda _east, _north, _lead: True), velocity_mps=None)
+        assert len(decided(still, *here, now_s=1.0)[1]) == 2
+
     def test_another_vehicle_in_the_way_bars_none(self) -> None:
         sun = forecast(lambda _east, _north, _lead: True)
         here = Surveyor("S-1", (0.0, 60.0))
@@ -234,6 +257,7 @@ def forecast(sunlit: object, now_s: float = 0.0) -> SunForecast:
         horizon_s=np.full(east.shape, 300.0, np.float32),
         prior_sunlit=0.5,
         method="made",
+        velocity_mps=(1.0, 0.0),
     )
 
 

@@ -6,18 +6,20 @@ once. One call of `sunlit_first`:
 1. Missions of vehicles that ended or dropped out are removed; their rows count as flown until their
    photos have counted.
 2. Without known light it is `lawnmower_once`: rows are flown in whatever light, until it is known.
-3. The survey is done when enough is imaged in sun, or its budget is spent, and all have ended.
-4. For each vehicle without a mission: its **share** of the missing ground is what it would fly if
+3. Before the first mission it waits some seconds until a forecast knows how the shadows move:
+   without that, what lies in sun now seems to stay there. Where all is in sun it does not wait.
+4. The survey is done when enough is imaged in sun, or its budget is spent, and all have ended.
+5. For each vehicle without a mission: its **share** of the missing ground is what it would fly if
    all finished at the same time, in rows side by side, so that vehicles keep apart. Over its share
    the best flight is searched (`search`): which parts of rows, in which order and direction, when.
-5. If that begins at once, the vehicle gets its rows up to `committed_s` as a mission. If it begins
+6. If that begins at once, the vehicle gets its rows up to `committed_s` as a mission. If it begins
    later, the vehicle goes to its first row and stands by in its layer; one on the ground stays
    there until it is time to take off. If nothing is expected in sun, it waits where it is.
-6. One that would wait returns to home instead if a change of battery costs less sun now than later.
+7. One that would wait returns to home instead if a change of battery costs less sun now than later.
    One that waits at the rows' height climbs or sinks to its layer first, out of others' rows.
-7. Rows where a vehicle without telemetry may be are left out, and its own rows: the gate would
+8. Rows where a vehicle without telemetry may be are left out, and its own rows: the gate would
    refuse them. They are flown once it is in contact again, or dismissed by an operator.
-8. If no vehicle is busy and a round of the lawnmower would image most of what is missing in sun, by
+9. If no vehicle is busy and a round of the lawnmower would image most of what is missing in sun, by
    the forecast at the moments at which it would pass, that round is flown: choosing takes longer.
 
 Each decision leaves a sentence. What a forecast does not know is its prior, so flights over ground
@@ -66,6 +68,7 @@ from recon.guidance.survey.state import (
     AssignedMission,
     Decision,
     JustFlown,
+    Routes,
     Surveyor,
     SurveyState,
     end_between_rounds,
@@ -105,7 +108,10 @@ def sunlit_first(
     choices = [
         _Choice(state, segments, expected, tuple(able.values()), each, now_ns) for each in idle
     ]
-    rows = _round_in_sun(choices) if len(idle) == len(able) else {}
+    whole = _round(choices) if len(idle) == len(able) else None
+    if _awaits_motion(state, whole, sun, now_ns):
+        return replace(state, reason="waiting: how shadows move is not known yet"), ()
+    rows = whole.rows if whole is not None and whole.is_worth else NO_ROUTES
     missions: list[MissionAssignment] = []
     for each in choices:
         choice = replace(each, state=state)
@@ -115,13 +121,23 @@ def sunlit_first(
     return state, tuple(missions)
 
 
-def _round_in_sun(choices: Sequence["_Choice"]) -> Mapping[str, Route]:
-    """Return each vehicle's rows in a round over all that is missing, if most of it is expected in
-    sun when they pass, and waiting does not bring more into sun than is flown meanwhile."""
+@dataclass(frozen=True, slots=True)
+class _Round:
+    """A round of the lawnmower over all that is missing, with each vehicle's rows."""
+
+    rows: Routes
+    lit_share: float
+    """Of its ground, expected in sun when they pass."""
+    is_worth: bool
+    """Most of it is, and waiting does not bring more into sun than is flown meanwhile."""
+
+
+def _round(choices: Sequence["_Choice"]) -> _Round | None:
+    """Return a round that all vehicles would begin now; None if nothing is free."""
     state, segments, expected = choices[0].state, choices[0].segments, choices[0].expected
     is_free = (expected.missing_m2 > 0.0) & ~segments.under(_just_flown(state))
     if not is_free.any():
-        return {}
+        return None
     settings, surveyors = state.plan.settings, [each.surveyor for each in choices]
     rows = shares(state.plan, _pieces(state, segments, is_free), surveyors)
     passed = [each.passing(rows.get(each.surveyor.serial, ())) for each in choices]
@@ -133,7 +149,20 @@ def _round_in_sun(choices: Sequence["_Choice"]) -> Mapping[str, Route]:
         for wait_s in expected.moments_s.tolist()
     )
     is_worth = lit_m2 >= settings.round_from * missing_m2 and not gained_by_waiting
-    return rows if is_worth else {}
+    return _Round(rows, lit_m2 / missing_m2, is_worth)
+
+
+def _awaits_motion(
+    state: SurveyState, whole: _Round | None, sun: SunForecast | None, now_ns: int
+) -> bool:
+    """Whether some seconds more, before any vehicle flies, show how the shadows move."""
+    if state.missions > 0 or sun is None or sun.velocity_mps is not None:
+        return False
+    settings = state.plan.settings
+    if whole is not None and whole.lit_share >= settings.sure_round:
+        return False
+    began_ns = state.started_at_ns if state.started_at_ns is not None else now_ns
+    return now_ns < began_ns + seconds_to_ns(settings.motion_within_s)
 
 
 def _just_flown(state: SurveyState) -> list[RowLeg]:
