@@ -5,9 +5,10 @@ Exit codes: 0 done; 1 refused, or not confirmed by telemetry; 2 wrong use, or no
 
 import asyncio
 import os
+import time
 from collections.abc import Awaitable, Callable, Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, TypeVar
 
 import typer
 
@@ -15,6 +16,9 @@ from recon.client import ClientError, Station, Telemetry
 from recon.client.errors import AddressError
 
 DONE, REFUSED, WRONG_USE = 0, 1, 2
+
+Seen = TypeVar("Seen")
+READ_EVERY_S = 0.5
 
 DEFAULT_ADDRESS = "http://127.0.0.1:8080"
 MAX_TOKEN_BYTES = 4096
@@ -79,6 +83,18 @@ def read_token(path: Path | None) -> str | None:
             return file.read(MAX_TOKEN_BYTES).decode("utf-8").strip()
     except (OSError, UnicodeDecodeError) as problem:
         raise AddressError(f"cannot read the token file {path}: {problem}") from problem
+
+
+async def read_until(
+    read: Callable[[], Awaitable[Seen]], is_enough: Callable[[Seen], bool], timeout_s: float
+) -> Seen:
+    """Read again and again until it is enough or the time is over; return what was read last."""
+    end_s = time.monotonic() + timeout_s
+    while True:
+        seen = await read()
+        if is_enough(seen) or time.monotonic() >= end_s:
+            return seen
+        await asyncio.sleep(READ_EVERY_S)
 
 
 def named_serials(station: Station, names: Sequence[str] | None) -> list[str]:

@@ -1,8 +1,6 @@
 """`recon fleet-return`: vehicles returned in separate height layers, and their progress."""
 
-import asyncio
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import msgspec
 
@@ -16,15 +14,13 @@ from recon.cli.connection import (
     TokenOption,
     WaitOption,
     named_serials,
+    read_until,
     run_at_station,
 )
 from recon.cli.output import print_json, print_table
 from recon.client import Station, VehicleReturn
 
 PLANNING_TIMEOUT_S = 10.0
-POLL_INTERVAL_S = 0.5
-
-Condition = Callable[[Sequence[VehicleReturn]], bool]
 
 
 def fleet_return_command(
@@ -43,9 +39,13 @@ def fleet_return_command(
     async def work(station: Station) -> int:
         serials = named_serials(station, vehicles) if vehicles else None
         called = {answer.serial for answer in await station.fleet.return_in_layers(serials)}
-        flights = await _poll(station, called, _are_planned, PLANNING_TIMEOUT_S)
+
+        async def read() -> list[VehicleReturn]:
+            return [f for f in await station.fleet.returning() if f.serial in called]
+
+        flights = await read_until(read, _are_planned, PLANNING_TIMEOUT_S)
         if wait > 0.0:
-            flights = await _poll(station, called, _are_done, wait)
+            flights = await read_until(read, _are_done, wait)
         _print_flights(flights, as_json)
         is_good = all(flight.stage not in ("left_out", "released") for flight in flights)
         is_over = wait == 0.0 or _are_done(flights)
@@ -60,18 +60,6 @@ def _are_planned(flights: Sequence[VehicleReturn]) -> bool:
 
 def _are_done(flights: Sequence[VehicleReturn]) -> bool:
     return all(flight.is_done for flight in flights)
-
-
-async def _poll(
-    station: Station, called: set[str | None], condition: Condition, timeout_s: float
-) -> list[VehicleReturn]:
-    """Return the called vehicles' flights once they meet the condition, or at the timeout."""
-    end_s = time.monotonic() + timeout_s
-    while True:
-        flights = [f for f in await station.fleet.returning() if f.serial in called]
-        if condition(flights) or time.monotonic() >= end_s:
-            return flights
-        await asyncio.sleep(POLL_INTERVAL_S)
 
 
 def _print_flights(flights: Sequence[VehicleReturn], as_json: bool) -> None:

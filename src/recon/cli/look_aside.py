@@ -1,7 +1,5 @@
 """`recon look-aside`: an imaging drone flies 25 m aside and back, and its progress."""
 
-import asyncio
-import time
 from typing import Annotated
 
 import msgspec
@@ -16,12 +14,11 @@ from recon.cli.connection import (
     TokenOption,
     WaitOption,
     named_serials,
+    read_until,
     run_at_station,
 )
 from recon.cli.output import print_json, print_line
 from recon.client import LookAsideStatus, Station
-
-POLL_INTERVAL_S = 0.5
 
 
 def look_aside_command(
@@ -51,7 +48,7 @@ def look_aside_command(
         if refusal is not None:
             print_line(f"look aside: refused ({refusal.rule}): {refusal.reason}")
             return REFUSED
-        status = await _ended_within(station, wait)
+        status = await read_until(station.looking_aside, _is_over, wait)
         assert status is not None, "the station has accepted one"
         _print(status, as_json)
         is_good = status.stage == "done" if wait > 0.0 else status.stage != "stopped"
@@ -60,14 +57,8 @@ def look_aside_command(
     run_at_station(address, token_file, work)
 
 
-async def _ended_within(station: Station, timeout_s: float) -> LookAsideStatus | None:
-    """Return the look aside once it has ended, or at the timeout."""
-    end_s = time.monotonic() + timeout_s
-    while True:
-        status = await station.looking_aside()
-        if status is None or status.is_over or time.monotonic() >= end_s:
-            return status
-        await asyncio.sleep(POLL_INTERVAL_S)
+def _is_over(status: LookAsideStatus | None) -> bool:
+    return status is None or status.is_over
 
 
 def _print(status: LookAsideStatus, as_json: bool) -> None:

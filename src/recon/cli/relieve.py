@@ -1,7 +1,5 @@
 """`recon relieve`: an imaging drone takes the place of another, or returns to its own."""
 
-import asyncio
-import time
 from typing import Annotated
 
 import msgspec
@@ -16,12 +14,11 @@ from recon.cli.connection import (
     TokenOption,
     WaitOption,
     named_serials,
+    read_until,
     run_at_station,
 )
 from recon.cli.output import print_json, print_line
 from recon.client import ImagerReliefStatus, Station
-
-POLL_INTERVAL_S = 0.5
 
 
 def relieve_command(
@@ -57,7 +54,7 @@ def relieve_command(
         if refusal is not None:
             print_line(f"relieve: refused ({refusal.rule}): {refusal.reason}")
             return REFUSED
-        status = await _ended_within(station, wait)
+        status = await read_until(station.relieving, _is_over, wait)
         assert status is not None, "the station has accepted one"
         _print(status, as_json)
         is_good = status.stage == "done" if wait > 0.0 else status.stage != "stopped"
@@ -66,14 +63,8 @@ def relieve_command(
     run_at_station(address, token_file, work)
 
 
-async def _ended_within(station: Station, timeout_s: float) -> ImagerReliefStatus | None:
-    """Return the relief once it has ended, or at the timeout."""
-    end_s = time.monotonic() + timeout_s
-    while True:
-        status = await station.relieving()
-        if status is None or status.is_over or time.monotonic() >= end_s:
-            return status
-        await asyncio.sleep(POLL_INTERVAL_S)
+def _is_over(status: ImagerReliefStatus | None) -> bool:
+    return status is None or status.is_over
 
 
 def _print(status: ImagerReliefStatus, as_json: bool) -> None:

@@ -25,6 +25,7 @@ from recon.model.event import AllStopped, AuthorityTaken, OperatorOrder, ReliefO
 from recon.model.imagery import Outlook
 from recon.model.survey import SurveyPhase
 from recon.station.api_views.operation_views import survey_view
+from recon.station.api_views.relief_views import unknown_from_s
 from recon.station.imaging.at_work import imagers_at_work
 from recon.station.imaging.upwind import upwind_question
 from recon.station.operations.imager_relief.commands import audit_entries, refusal
@@ -168,6 +169,24 @@ class TestFlown:
 
     def test_the_takeoff_was_allowed_once(self, flown: Flown) -> None:
         assert not flown[0].surveyed.record().spare_may_take_off
+
+
+@pytest.mark.parametrize(
+    ("leaves_s", "needs_s", "unknown_from"),
+    [
+        ([600.0], 900.0, 600.0),
+        ([600.0], 500.0, None),
+        ([600.0, 800.0], 900.0, 800.0),
+        ([600.0, None], 900.0, None),
+        ([], 900.0, None),
+        ([600.0], None, None),
+        ([240.0], None, 240.0),
+    ],
+)
+def test_light_is_stated_to_end_where_a_survey_goes_on_or_the_end_is_near(
+    leaves_s: list[float | None], needs_s: float | None, unknown_from: float | None
+) -> None:
+    assert unknown_from_s(leaves_s, needs_s) == unknown_from
 
 
 class TestWithoutRelief:

@@ -72,3 +72,19 @@ export function Problem(props: { text: string | null }) {
     </Show>
   );
 }
+
+/** What needs attention while it holds; nothing without a text. */
+export function Warning(props: { text: string | null }) {
+  return (
+    <Show when={props.text}>
+      {(why) => (
+        <p class="problem wire-text">
+          <span class="tone-warning">
+            <SeverityMark severity="warning" />
+          </span>
+          <span>{why()}</span>
+        </p>
+      )}
+    </Show>
+  );
+}

@@ -29,44 +29,26 @@ under broken cloud it costs battery alone, and sometimes sun comes.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
-from itertools import takewhile
-from math import hypot
 from types import MappingProxyType
 
 import numpy as np
 
-from recon.guidance.survey.cells import BoolArray
-from recon.guidance.survey.closed_areas import closed_ground, closed_segments, is_open
-from recon.guidance.survey.own_share import own_share
-from recon.guidance.survey.passing import Passing, passing
-from recon.guidance.survey.plan import SurveyPlan
+from recon.guidance.survey.closed_areas import closed_ground, closed_segments
 from recon.guidance.survey.rounds import (
     Step,
     ended,
     fly_rounds,
-    flying,
     may_ask,
     shares,
-    sortie,
     without_able,
     without_ended,
 )
-from recon.guidance.survey.route import Place, Route, RowLeg, reversed_route, route_of
-from recon.guidance.survey.rows import Piece
-from recon.guidance.survey.search import Flight, Pace, PlannedLeg, Search
 from recon.guidance.survey.segments import (
-    NONE,
-    ExpectedSun,
-    Segments,
     expected_sun,
     segments_of,
 )
-from recon.guidance.survey.settings import SurveySettings
 from recon.guidance.survey.state import (
     NO_ROUTES,
-    AssignedMission,
-    Decision,
     JustFlown,
     Routes,
     Surveyor,
@@ -75,11 +57,10 @@ from recon.guidance.survey.state import (
     is_enough,
     spent_budget,
 )
+from recon.guidance.survey.vehicle_choice import WANTED, Choice, just_flown_legs, missing_pieces
 from recon.model.shade import SunForecast
-from recon.model.survey import CellState, MissionAssignment, SurveyPhase, WhenDone
+from recon.model.survey import CellState, MissionAssignment, SurveyPhase
 from recon.model.units import seconds_to_ns
-
-WANTED = CellState.IN_SUN
 
 
 def sunlit_first(
@@ -106,7 +87,7 @@ def sunlit_first(
         expected = replace(expected, missing_m2=np.where(is_closed, 0.0, expected.missing_m2))
     state = replace(state, waiting=NO_ROUTES, round=max(1, state.round), reason="under way")
     choices = [
-        _Choice(state, segments, expected, tuple(able.values()), each, now_ns) for each in idle
+        Choice(state, segments, expected, tuple(able.values()), each, now_ns) for each in idle
     ]
     whole = _round(choices) if len(idle) == len(able) else None
     if _awaits_motion(state, whole, sun, now_ns):
@@ -132,14 +113,14 @@ class _Round:
     """Most of it is, and waiting does not bring more into sun than is flown meanwhile."""
 
 
-def _round(choices: Sequence["_Choice"]) -> _Round | None:
+def _round(choices: Sequence["Choice"]) -> _Round | None:
     """Return a round that all vehicles would begin now; None if nothing is free."""
     state, segments, expected = choices[0].state, choices[0].segments, choices[0].expected
-    is_free = (expected.missing_m2 > 0.0) & ~segments.under(_just_flown(state))
+    is_free = (expected.missing_m2 > 0.0) & ~segments.under(just_flown_legs(state))
     if not is_free.any():
         return None
     settings, surveyors = state.plan.settings, [each.surveyor for each in choices]
-    rows = shares(state.plan, _pieces(state, segments, is_free), surveyors)
+    rows = shares(state.plan, missing_pieces(state, segments, is_free), surveyors)
     passed = [each.passing(rows.get(each.surveyor.serial, ())) for each in choices]
     lit_m2 = sum(each.lit_m2(expected) for each in passed)
     missing_m2 = float(expected.missing_m2[is_free].sum())
@@ -163,17 +144,6 @@ def _awaits_motion(
         return False
     began_ns = state.started_at_ns if state.started_at_ns is not None else now_ns
     return now_ns < began_ns + seconds_to_ns(settings.motion_within_s)
-
-
-def _just_flown(state: SurveyState) -> list[RowLeg]:
-    return [leg for each in state.just_flown.values() for leg in each.route]
-
-
-def _pieces(state: SurveyState, segments: Segments, chosen: BoolArray) -> Sequence[Piece]:
-    """The missing ground of the chosen segments (S,), in pieces of rows."""
-    of_cell = segments.of_cell
-    is_missing = (state.progress.state < WANTED) & (of_cell != NONE) & chosen[of_cell]
-    return state.plan.pieces_over(is_missing)
 
 
 def _in_any_light(state: SurveyState, positions: Sequence[Surveyor], now_ns: int) -> Step:
@@ -207,253 +177,3 @@ def _is_asked(state: SurveyState, serial: str, able: Mapping[str, Surveyor], now
     return may_ask(state, serial, able, now_ns) and (
         decision is None or now_ns >= decision.again_ns
     )
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Choice:
-    """What one vehicle without a mission does now."""
-
-    state: SurveyState
-    segments: Segments
-    expected: ExpectedSun
-    able: tuple[Surveyor, ...]
-    surveyor: Surveyor
-    now_ns: int
-
-    @property
-    def plan(self) -> SurveyPlan:
-        return self.state.plan
-
-    @property
-    def settings(self) -> SurveySettings:
-        return self.state.plan.settings
-
-    def made(self) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
-        """Return the survey with the decision, and the vehicle's mission if it gets one."""
-        free = self._free()
-        if not free.any():
-            return self._waits(self._why_none_is_free())
-        share = self._share(free)
-        if self.expected.is_clear(share, self.settings.clear_from):
-            return self.flies_all(self._rows(share))
-        flight = self._best(share)
-        if (flight.waits_s > 0.0 or not flight.legs) and self._is_time_to_swap(free):
-            return self._returns()
-        if not flight.legs:
-            minutes = self.settings.planned_s / 60.0
-            return self._waits(f"waits: no sun is expected on its rows for {minutes:.0f} min")
-        if flight.waits_s > 0.0:
-            return self._stands_by(flight)
-        legs = self._committed(flight)
-        return self._flies(tuple(self._long_enough(leg) for leg in legs), flown_text(legs))
-
-    def _free(self) -> BoolArray:
-        """(S,): segments with missing ground that no vehicle flies, or has just flown."""
-        flown = [leg for flight in self.state.flights.values() for leg in flight.route]
-        flown += _just_flown(self.state)
-        free: BoolArray = (self.expected.missing_m2 > 0.0) & ~self.segments.under(flown)
-        return free
-
-    def _why_none_is_free(self) -> str:
-        if not self.state.closed:
-            return "waits: others are on what is left"
-        names = ", ".join(each.name for each in self.state.closed)
-        return f"waits: {names} may be where rows are left, without telemetry"
-
-    def _share(self, free: BoolArray) -> BoolArray:
-        """(S,): the free segments of its own share; all free ones where its share has no sun."""
-        state = self.state
-        share = own_share(
-            self.surveyor, self.able, state.flights, free, self.expected, self.plan, self.now_ns
-        )
-        missing_m2 = np.where(share, self.expected.missing_m2, 0.0)
-        lit_m2 = float(missing_m2 @ self.expected.probability.max(axis=1))
-        is_worth = lit_m2 > self.settings.share_worth * missing_m2.sum()
-        return share if is_worth else free
-
-    def _is_time_to_swap(self, free: BoolArray) -> bool:
-        """Whether a change of battery costs less sun now than later.
-
-        Now it costs the sun expected on free ground until the vehicle is back. Later, in sun
-        throughout, it costs all of that time, if it is needed at all: the more probably the more of
-        the battery has been used.
-        """
-        surveyor, swap_s = self.surveyor, self.settings.swap_s
-        if not surveyor.is_flying or surveyor.charge_share is None:
-            return False
-        if self.plan.survey.when_done is not WhenDone.RETURN_HOME:
-            return False
-        missing_m2 = self.expected.missing_m2[free]
-        sun = missing_m2 @ self.expected.probability[free] / missing_m2.sum()
-        used = 1.0 - surveyor.charge_share
-        is_worth, later = used >= self.settings.swapped_from, used * self.settings.swap_later
-        return is_worth and float(sun[self.expected.moments_s <= swap_s].mean()) < later
-
-    def _returns(self) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
-        minutes = self.settings.swap_s / 60.0
-        text = f"returns to change its battery: little sun is expected for {minutes:.0f} min"
-        state = self._decided(text, self.now_ns + seconds_to_ns(self.settings.retry_s), True)
-        return state, ()
-
-    def _rows(self, share: BoolArray) -> Route:
-        """The missing ground of a share row by row, to and fro, from the end that is near.
-
-        All vehicles work across the field in the same direction, so that none begins where its
-        neighbour does.
-        """
-        start_m = self._along_across_m(self.surveyor.place_m)
-        route = route_of(_pieces(self.state, self.segments, share), self.plan.lattice, start_m)
-        others = {_direction(flight.route) for flight in self.state.flights.values()} - {0}
-        is_against = others == {-_direction(route)}
-        return reversed_route(route) if is_against else route
-
-    def flies_all(self, route: Route) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
-        """Fly these rows one after the other: most of their ground is in sun by then."""
-        rows = sorted({leg.piece.row + 1 for leg in route})
-        passed = self.passing(route)
-        missing_m2 = sum(each.missing_m2 for each in passed.passes)
-        sun = passed.lit_m2(self.expected) / max(missing_m2, 1.0)
-        return self._flies(
-            route, f"flies rows {rows[0]} to {rows[-1]}: probability of sun {sun:.1f}"
-        )
-
-    def _best(self, share: BoolArray) -> Flight:
-        search = Search(
-            self.segments, self.expected, share, self.plan.lattice, self._pace, self.settings
-        )
-        return search.best(self._along_across_m(self.surveyor.place_m), self._starts_s)
-
-    def passing(self, route: Route) -> Passing:
-        """When it passes the rows of a route."""
-        start_m = self._along_across_m(self.surveyor.place_m)
-        segments, lattice = self.segments, self.plan.lattice
-        return passing(route, segments, self.expected, lattice, self._pace, start_m, self._starts_s)
-
-    @property
-    def _pace(self) -> Pace:
-        speed_mps, settings = self.plan.survey.speed_mps, self.settings
-        stop_s = speed_mps / settings.turning_mps2 + settings.corner_s
-        # Stops within rows make them slower, on average.
-        rows_mps = speed_mps / (1.0 + speed_mps * self.plan.stops_per_m * stop_s)
-        return Pace(rows_mps, stop_s, settings.layer_s)
-
-    @property
-    def _starts_s(self) -> float:
-        if self.surveyor.is_flying:
-            return self.settings.start_s
-        surveyor = self.surveyor
-        wanted_m = self.plan.height_above_takeoff_m(surveyor.place_m, surveyor.takeoff_up_m)
-        assert wanted_m is not None, "a vehicle without a takeoff height is not asked"
-        climb_s = max(wanted_m, 0.0) / self.settings.climb_mps
-        return self.settings.start_s + self.settings.takeoff_s + climb_s
-
-    def _along_across_m(self, place_m: Place) -> Place:
-        ((along_m, across_m),) = self.plan.lattice.along_across_m([place_m]).tolist()
-        return along_m, across_m
-
-    def _committed(self, flight: Flight) -> tuple[PlannedLeg, ...]:
-        """The legs of a flight that are flown before it is decided anew; the first one always."""
-        first, *others = flight.legs
-        until_s = self.settings.committed_s
-        return first, *takewhile(lambda leg: leg.until_s <= until_s, others)
-
-    def _flies(self, route: Route, text: str) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
-        state = self.state
-        may_fly = partial(is_open, closed_ground(state.closed)) if state.closed else None
-        track, count = sortie(self.plan, route, self.surveyor, may_fly)
-        if track is None:
-            text = "waits: its battery lasts for no row, the way there and the return"
-            return self._waits(text, self.settings.retry_s)
-        speed_mps, stops_s = self.plan.survey.speed_mps, self._pace.stop_s * len(track.corners_m)
-        climbing_s = track.climbing_s(speed_mps, self.settings.climb_mps)
-        ends_s = self._starts_s + track.length_m / speed_mps + stops_s + climbing_s
-        mission = AssignedMission(
-            state.missions + 1,
-            route[:count],
-            track.corners_m,
-            track.length_m,
-            self.now_ns + seconds_to_ns(ends_s),
-            track.up_m,
-        )
-        state, given = flying(self._decided(text), self.surveyor, mission, ())
-        return state, (replace(given, straight_within_m=self.settings.near_m),)
-
-    def _long_enough(self, leg: PlannedLeg) -> RowLeg:
-        piece = self.segments.parts[leg.segments[0]].piece
-        return replace(leg.route, piece=self.plan.long_enough(piece, leg.route.piece))
-
-    def _stands_by(self, flight: Flight) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
-        plan, surveyor = self.plan, self.surveyor
-        first = flight.legs[0]
-        entry, _ = first.route.ends_m(plan.lattice, plan.swath.lead_m)
-        ((east_m, north_m),) = plan.lattice.east_north_m([entry]).tolist()
-        far_m = hypot(east_m - surveyor.place_m[0], north_m - surveyor.place_m[1])
-        row = first.route.piece.row + 1
-        sun = f"row {row} in {first.from_s:.0f} s, probability {first.probability:.1f}"
-        if surveyor.is_flying and far_m <= self.settings.standby_m:
-            return self._waits(f"waits: sun is expected on {sun}")
-        if not surveyor.is_flying and flight.waits_s > self._starts_s + self.settings.standby_s:
-            return self._waits(f"waits on the ground: sun is expected on {sun}")
-        there_ns = self.now_ns + seconds_to_ns(first.from_s)
-        text = f"goes to row {row} and stands by: sun is expected on {sun}"
-        return self._goes((east_m, north_m), there_ns, text)
-
-    def _waits(
-        self, text: str, again_s: float | None = None
-    ) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
-        if self._is_among_rows:
-            return self._steps_aside(text)
-        again_s = self.settings.decided_again_s if again_s is None else again_s
-        return self._decided(text, self.now_ns + seconds_to_ns(again_s)), ()
-
-    @property
-    def _is_among_rows(self) -> bool:
-        """Whether it hovers where other vehicles fly rows, and may have a place aside."""
-        refused = self.state.refusals.get(self.surveyor.serial)
-        wait_ns = seconds_to_ns(self.settings.retry_s)
-        if refused is not None and self.now_ns < refused.again_ns + wait_ns:
-            return False
-        surveyor, height_m = self.surveyor, self.surveyor.height_above_takeoff_m
-        if height_m is None or not surveyor.is_flying or len(self.able) == 1:
-            return False
-        off_m = self.plan.height_off_m(surveyor.place_m, height_m, surveyor.takeoff_up_m)
-        return off_m is not None and abs(off_m) < self._level_m
-
-    @property
-    def _level_m(self) -> float:
-        """Waypoints that follow the ground may be off the wanted height."""
-        is_above_ground = self.plan.terrain is not None
-        return self.settings.level_m + self.settings.terrain_above_m * is_above_ground
-
-    def _steps_aside(self, text: str) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
-        aside_ns = self.now_ns + seconds_to_ns(self._starts_s + self.settings.layer_s / 2.0)
-        return self._goes(self.surveyor.place_m, aside_ns, text)
-
-    def _goes(
-        self, place_m: Place, there_ns: int, text: str
-    ) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
-        """Stand by in its layer over a place, without rows."""
-        terrain = self.plan.terrain
-        up_m = () if terrain is None else (terrain.up_at_m(place_m),)
-        mission = AssignedMission(self.state.missions + 1, (), (place_m,), 0.0, there_ns, up_m)
-        state, given = flying(self._decided(text), self.surveyor, mission, ())
-        return state, (replace(given, stands_by=True),)
-
-    def _decided(self, text: str, again_ns: int = 0, returns: bool = False) -> SurveyState:
-        decision = Decision(text, again_ns, returns)
-        decisions = {**self.state.decisions, self.surveyor.serial: decision}
-        return replace(self.state, decisions=MappingProxyType(decisions))
-
-
-def _direction(route: Route) -> int:
-    """1 if it leads to higher rows, -1 to lower ones, 0 neither."""
-    rows = (route[-1].piece.row - route[0].piece.row) if route else 0
-    return (rows > 0) - (rows < 0)
-
-
-def flown_text(legs: Sequence[PlannedLeg]) -> str:
-    """Return what a vehicle flies and why."""
-    rows = sorted({leg.route.piece.row + 1 for leg in legs})
-    named = f"row {rows[0]}" if len(rows) == 1 else f"rows {rows[0]} to {rows[-1]}"
-    sun = sum(leg.probability for leg in legs) / len(legs)
-    return f"flies {named}: probability of sun {sun:.1f}"

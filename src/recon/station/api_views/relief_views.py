@@ -1,6 +1,9 @@
 """Until when a running survey has light, as the API sends it."""
 
+from collections.abc import Sequence
+
 from recon.api import schema
+from recon.guidance.imager_relief import RELIEF_SETTINGS
 from recon.guidance.survey import figures
 from recon.model.units import ns_to_seconds
 from recon.station.imaging.at_work import imagers_at_work, is_in_the_air
@@ -18,7 +21,7 @@ def light_view(
         return None
     at_work = imagers_at_work(station)
     imagers = [_imager(station, serial, now_ns) for serial in at_work]
-    unknown_in_s = _unknown_in_s(imagers, outlook.needs_s)
+    unknown_in_s = unknown_from_s([each.leaves_in_s for each in imagers], outlook.needs_s)
     unknown_for_s = None
     if unknown_in_s is not None and outlook.needs_s is not None:
         unknown_for_s = outlook.needs_s - unknown_in_s
@@ -60,14 +63,19 @@ def _absent(station: Station, now_ns: int) -> list[schema.AbsentImagerView]:
     ]
 
 
-def _unknown_in_s(imagers: list[schema.ImagerOutlookView], needs_s: float | None) -> float | None:
-    """When the last one must leave; None if one is not known, or the survey is done by then."""
-    leaves_s = [each.leaves_in_s for each in imagers]
+def unknown_from_s(leaves_s: Sequence[float | None], needs_s: float | None) -> float | None:
+    """Return when the last imaging drone must leave, if the survey goes on then; else None.
+
+    None where one's time is not known. What a survey needs is not known for its first minutes: then
+    only what is near is stated, or every survey would begin with a warning.
+    """
     known_s = [each for each in leaves_s if each is not None]
     if not known_s or len(known_s) < len(leaves_s):
         return None
     last_s = max(known_s)
-    return None if needs_s is not None and needs_s <= last_s else last_s
+    if needs_s is None:
+        return last_s if last_s <= RELIEF_SETTINGS.warned_before_s else None
+    return last_s if needs_s > last_s else None
 
 
 def _without(

@@ -3,8 +3,7 @@ import { useConsole } from "../../console";
 import type { ForecastView, GroundImageView, ShadeLineView } from "../../protocol";
 import { text } from "../../text/catalogue";
 import { formatAge, formatHeading, formatQuantity } from "../../text/quantities";
-import { Panel } from "../Panel";
-import { SeverityMark } from "../SeverityMark";
+import { Panel, Warning } from "../Panel";
 import { LightShares } from "./LightShares";
 import { LookAside } from "./LookAside";
 import { UpwindPlace } from "./UpwindPlace";
@@ -54,16 +53,7 @@ function ShadeStatus(props: { line: ShadeLineView }) {
       <Show when={props.line.forecast}>
         {(forecast) => <p class="muted">{motion(forecast())}</p>}
       </Show>
-      <Show when={problem()}>
-        {(why) => (
-          <p class="problem wire-text">
-            <span class="tone-warning">
-              <SeverityMark severity="warning" />
-            </span>
-            <span>{why()}</span>
-          </p>
-        )}
-      </Show>
+      <Warning text={problem()} />
     </div>
   );
 }

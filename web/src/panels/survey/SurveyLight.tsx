@@ -7,8 +7,7 @@ import { formatAge } from "../../text/quantities";
 import { formatMinuteOfDay } from "../../text/replay";
 import { formatArea } from "../../text/survey";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
-import { Problem } from "../Panel";
-import { SeverityMark } from "../SeverityMark";
+import { Problem, Warning } from "../Panel";
 import { isOver, MotionProgress } from "../sun/MotionProgress";
 
 /** Until when a running survey has light, what it flies without, and the orders that bring light. */
@@ -34,16 +33,7 @@ export function SurveyLight(props: { light: SurveyLightView }) {
       <For each={props.light.imagers}>
         {(imager) => <p class="wire-text">{leavesText(imager, props.light, timeIn)}</p>}
       </For>
-      <Show when={warning(props.light, behindS())}>
-        {(why) => (
-          <p class="problem">
-            <span class="tone-warning">
-              <SeverityMark severity="warning" />
-            </span>
-            <span>{why()}</span>
-          </p>
-        )}
-      </Show>
+      <Warning text={warning(props.light, behindS())} />
       <div class="section-buttons">
         <For each={props.light.imagers}>
           {(imager) => (

@@ -12,7 +12,12 @@ other begins by itself until the survey is started again.
 from collections.abc import Iterator
 from dataclasses import replace
 
-from recon.guidance.imager_relief import RELIEF_SETTINGS, ImagerReliefSettings, way_takes_s
+from recon.guidance.imager_relief import (
+    FRAMES_HZ,
+    RELIEF_SETTINGS,
+    ImagerReliefSettings,
+    way_takes_s,
+)
 from recon.model.command import Refusal
 from recon.model.event import ReliefOrdered
 from recon.model.units import seconds_to_ns
@@ -90,7 +95,7 @@ def relief_takes_s(station: Station, relieved: str, spare: str) -> float | None:
     if here is None or height_m is None:
         return None
     settings = RELIEF_SETTINGS
-    maps_s = settings.camera_quiet_s + settings.maps_in_a_row / 1.0
+    maps_s = settings.camera_quiet_s + settings.maps_in_a_row / FRAMES_HZ
     return way_takes_s(here, at.up_m - height_m, at.place) + maps_s
 
 
