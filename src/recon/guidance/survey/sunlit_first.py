@@ -57,7 +57,12 @@ from recon.guidance.survey.state import (
     is_enough,
     spent_budget,
 )
-from recon.guidance.survey.vehicle_choice import WANTED, Choice, just_flown_legs, missing_pieces
+from recon.guidance.survey.vehicle_choice import (
+    WANTED,
+    VehicleChoice,
+    just_flown_legs,
+    missing_pieces,
+)
 from recon.model.shade import SunForecast
 from recon.model.survey import CellState, MissionAssignment, SurveyPhase
 from recon.model.units import seconds_to_ns
@@ -87,7 +92,8 @@ def sunlit_first(
         expected = replace(expected, missing_m2=np.where(is_closed, 0.0, expected.missing_m2))
     state = replace(state, waiting=NO_ROUTES, round=max(1, state.round), reason="under way")
     choices = [
-        Choice(state, segments, expected, tuple(able.values()), each, now_ns) for each in idle
+        VehicleChoice(state, segments, expected, tuple(able.values()), each, now_ns)
+        for each in idle
     ]
     whole = _round(choices) if len(idle) == len(able) else None
     if _awaits_motion(state, whole, sun, now_ns):
@@ -113,7 +119,7 @@ class _Round:
     """Most of it is, and waiting does not bring more into sun than is flown meanwhile."""
 
 
-def _round(choices: Sequence["Choice"]) -> _Round | None:
+def _round(choices: Sequence["VehicleChoice"]) -> _Round | None:
     """Return a round that all vehicles would begin now; None if nothing is free."""
     state, segments, expected = choices[0].state, choices[0].segments, choices[0].expected
     is_free = (expected.missing_m2 > 0.0) & ~segments.under(just_flown_legs(state))

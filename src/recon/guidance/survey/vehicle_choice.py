@@ -57,7 +57,7 @@ def missing_pieces(state: SurveyState, segments: Segments, chosen: BoolArray) ->
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Choice:
+class VehicleChoice:
     """What one vehicle without a mission does now."""
 
     state: SurveyState
