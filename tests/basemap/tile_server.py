@@ -33,7 +33,7 @@ class RunningTileServer:
     answer: Answer = tile
     asked: Counter[Key] = field(default_factory=Counter)
     agents: set[str] = field(default_factory=set)
-    at_once: int = 0
+    under_way: set[BaseHTTPRequestHandler] = field(default_factory=set)
     most_at_once: int = 0
 
 
@@ -47,15 +47,21 @@ def tile_server(answer: Answer = tile) -> Iterator[RunningTileServer]:
             with lock:
                 running.asked[zoom, col, row] += 1
                 running.agents.add(self.headers["User-Agent"])
-                running.at_once += 1
-                running.most_at_once = max(running.most_at_once, running.at_once)
+                running.under_way.add(self)
+                running.most_at_once = max(running.most_at_once, len(running.under_way))
             try:
                 running.answer(self, (zoom, col, row))
             except OSError:
                 pass  # The client has closed it.
             finally:
                 with lock:
-                    running.at_once -= 1
+                    running.under_way.discard(self)
+
+        def end_headers(self) -> None:
+            # Before the client can have all of it, and ask for the next.
+            with lock:
+                running.under_way.discard(self)
+            super().end_headers()
 
         def log_message(self, *_: object) -> None:
             pass
