@@ -12,7 +12,7 @@ where it was, and what `recon score` has flown is not flown again.
 
 import argparse
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isfinite
 from pathlib import Path
 
@@ -20,8 +20,9 @@ import cv2
 import numpy as np
 
 from recon.cli.score import Chosen, Flying
-from recon.score import RunScore
+from recon.score import RunScore, Scenario
 from recon.score.interval import Interval
+from recon.score.scenario import PERFECT
 from recon.score.survey_table import SurveyRatios, survey_ratios
 from recon.score.table_rows import NOTHING, bounds, fine, percent, table
 
@@ -87,14 +88,23 @@ class Claim:
         self, seeds: range, jobs: int | None, cluster: str | None
     ) -> tuple[list[RunScore], list[RunScore], float]:
         """Return its runs, the runs they are compared with, and the shorter limit, seconds."""
-        chosen = Chosen(PLANNER, self.detection, self.forecast, None, surveys_only=True)
         flying = Flying(seeds, jobs, cluster, fresh=False)
+        one, other = self.compared()
+        limit_s = min(one[1].limit_s, other[1].limit_s)
+        return flying.runs_of(*one), flying.runs_of(*other), limit_s
+
+    def compared(self) -> tuple[tuple[Path, Scenario], tuple[Path, Scenario]]:
+        """Return its scenario and the one that it is compared with, each with its file.
+
+        The baseline uses no forecast: it flies with the file's, so that claims share its runs.
+        """
+        chosen = Chosen(PLANNER, self.detection, self.forecast, None, surveys_only=True)
         path = _file(self.scenario)
-        other_path = path if self.over is None else _file(self.over)
-        one = chosen.scenario(path)
-        other = chosen.scenario(other_path, planner=BASELINE if self.over is None else None)
-        limit_s = min(one.limit_s, other.limit_s)
-        return flying.runs_of(path, one), flying.runs_of(other_path, other), limit_s
+        if self.over is not None:
+            other_path = _file(self.over)
+            return (path, chosen.scenario(path)), (other_path, chosen.scenario(other_path))
+        baseline = replace(chosen, planner=BASELINE, forecast=None)
+        return (path, chosen.scenario(path)), (path, baseline.scenario(path))
 
 
 CLAIMS = (
@@ -102,7 +112,7 @@ CLAIMS = (
         Claim(f"{cover} %, wide view", f"cumulus-{cover}-wide", 0.9, 1.0, 30, lost_most=LOST_MOST)
         for cover in (40, 60)
     ),
-    Claim("two layers, true motion", "two-layers-wide", 0.9, forecast="true_motion"),
+    Claim("two layers, perfect forecast", "two-layers-wide", 0.9, forecast=PERFECT),
     Claim("clear sky", "clear-sky", 1.05, seeds=6),
     Claim("overcast, flight time", "overcast", 0.2, of_flight_time=True),
     *(Claim(f"plain view, {name}", name, 1.03, 1.08) for name in PLAIN),

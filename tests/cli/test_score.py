@@ -135,6 +135,19 @@ def test_a_detection_is_compared_with_the_ideal_one_seed_by_seed(tmp_path: Path)
     assert "| over ideal | ratio | 95 % | runs |" in done.stdout
 
 
+def test_the_perfect_forecast_is_flown_and_compared_with_methods(tmp_path: Path) -> None:
+    options = ["--forecast", "perfect", "--against", "persistence", "--seeds", "1"]
+    done = CliRunner().invoke(app, ["score", str(written(tmp_path, SHORT)), *options])
+    assert done.exit_code == 0, done.stderr
+    assert "forecast perfect, planner lawnmower_again; 1 seeds" in done.stdout
+    assert "| forecast by perfect | 15 s |" in done.stdout
+    # It states no time to shade that could be scored.
+    assert "| median error, s | - | - | 1 |" in done.stdout
+    rows = done.stdout.partition("| Brier over that of persistence, all ")[2].splitlines()
+    (perfect,) = (row for row in rows if row.startswith("| perfect | "))
+    assert float(perfect.split(" | ")[1].split()[0]) < 0.1
+
+
 def test_options_choose_methods(tmp_path: Path) -> None:
     options = ["--planner", "lawnmower_once", "--forecast", "none", "--seeds", "1"]
     done = CliRunner().invoke(app, ["score", str(written(tmp_path, SHORT)), *options])
@@ -157,6 +170,14 @@ def test_options_choose_methods(tmp_path: Path) -> None:
         (["--against", "magic"], "--against: expected advection or global_shift or"),
         (["--against", "persistence", "--forecast", "none"], "expected a forecast to compare"),
         (["--against", "persistence", "--surveys-only"], "--surveys-only: expected --against a"),
+        (
+            ["--forecast", "perfect", "--detection", "otsu"],
+            "--forecast: expected detection ideal with the forecast perfect, got detection otsu",
+        ),
+        (
+            ["--forecast", "perfect", "--against", "otsu"],
+            "--forecast: expected detection ideal with the forecast perfect, got detection otsu",
+        ),
         (["--jobs", "0"], "--jobs: expected 1 or more, got 0"),
         (["--cluster", "127.0.0.1:1"], "expected a Dask scheduler at 127.0.0.1:1, got"),
     ],

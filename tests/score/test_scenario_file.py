@@ -123,7 +123,7 @@ def test_the_task_may_allow_a_move_upwind_and_the_site_has_room_for_it(tmp_path:
 
 def test_method_names_are_those_of_the_registries() -> None:
     assert METHOD_NAMES["detection"] == ("ideal", *DETECTORS)
-    assert METHOD_NAMES["forecast"] == ("none", *FORECASTERS)
+    assert METHOD_NAMES["forecast"] == ("none", "perfect", *FORECASTERS)
     assert METHOD_NAMES["planner"] == tuple(PLANNERS) == tuple(PLANNER_GOALS)
 
 
@@ -187,6 +187,12 @@ def test_every_registered_method_is_accepted(tmp_path: Path, kind: str, name: st
         ("2025-06-20T16:00:00Z", "2025-06-20T16:00:00", "expected a moment like 2025-06-20T16:00"),
         ("2025-06-20T16:00:00Z", '"today"', "start_utc: expected a moment like 2025-06-20T16:00"),
         ("[imager]", '[methods]\nplanner = "magic"\n[imager]', "or 'sunlit_first', got 'magic'"),
+        (
+            "[imager]",
+            '[methods]\ndetection = "otsu"\nforecast = "perfect"\n[imager]',
+            "methods.forecast: expected detection ideal with the forecast perfect, got detection "
+            "otsu: choose detection ideal, or another forecast",
+        ),
     ],
 )
 def test_errors_name_file_and_line(tmp_path: Path, old: str, new: str, words: str) -> None:
@@ -202,6 +208,7 @@ def test_errors_name_file_and_line(tmp_path: Path, old: str, new: str, words: st
         ("cover = 0.4", "covers = 0.4", 24),
         ("survey_drones = 2", "survey_drones = 0", 18),
         ("[200.0, 0.0],", "[200.0],", 11),
+        ("[imager]", '[methods]\ndetection = "otsu"\nforecast = "perfect"\n[imager]', 22),
         ('"pilot-takes:1:40:30"', '"gremlins"', 3),
         ("[wind]\nspeed_10m_mps = 4.0", "[wind]\nspeed_10m_mps = 99.0", 28),
     ],

@@ -5,10 +5,11 @@ from pathlib import Path
 
 import cv2
 import pytest
-from studies.guidance import CLAIMS, Claim, Measured, drawn
+from studies.guidance import CLAIMS, FIRST_SEED, Claim, Measured, drawn
 from tests.score.test_survey_table import run_score
 
 from recon.score import RunScore, load_scenario
+from recon.score.kept_runs import runs_digest
 from recon.score.survey_table import survey_ratios
 
 CLAIM = Claim("40 %, wide view", "cumulus-40-wide", 0.9, 1.0, 30, lost_most=0.15)
@@ -69,6 +70,24 @@ def test_every_claim_is_about_scenarios_that_exist() -> None:
         for name in names:
             path = Path(__file__).parents[2] / "scenarios" / f"{name}.toml"
             assert load_scenario(path).name == name
+
+
+@pytest.mark.parametrize("claim", CLAIMS, ids=[claim.name for claim in CLAIMS])
+def test_every_claims_scenarios_and_methods_can_be_flown(claim: Claim) -> None:
+    no_seeds = range(FIRST_SEED, FIRST_SEED)
+    runs, others, limit_s = claim.flown(no_seeds, jobs=1, cluster=None)
+    assert runs == others == []
+    assert limit_s > 0.0
+
+
+def test_claims_of_one_scenario_share_the_runs_of_its_baseline() -> None:
+    usual, other = replace(CLAIM, forecast=None), replace(CLAIM, forecast="perfect")
+    (path, flown), (baseline_path, baseline) = other.compared()
+    assert (flown.methods.forecast, flown.survey.planner) == ("perfect", "sunlit_first")
+    assert baseline.survey.planner == "lawnmower_again"
+    assert path == baseline_path
+    assert runs_digest(path, baseline, "") == runs_digest(path, usual.compared()[1][1], "")
+    assert runs_digest(path, flown, "") != runs_digest(path, usual.compared()[0][1], "")
 
 
 def test_the_picture_has_a_line_for_each_claim(tmp_path: Path) -> None:

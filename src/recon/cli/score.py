@@ -221,6 +221,8 @@ def with_methods(
         detection=detection or scenario.methods.detection,
         forecast=forecast or scenario.methods.forecast,
     )
+    if methods.conflict is not None:
+        raise ScenarioError(f"--{methods.conflict}")
     survey = replace(scenario.survey, planner=planner or scenario.survey.planner)
     return replace(scenario, methods=methods, survey=survey)
 

@@ -19,7 +19,7 @@ from recon.model.units import NS_PER_S
 from recon.score.change_figures import GRACE_S, ChangeScore, score_change
 from recon.score.forecast_figures import FloatArray, LeadScore, SeenCells, score_cells
 from recon.score.forecast_figures import sun_probability as probability_on
-from recon.score.scenario import TRUE_MOTION
+from recon.score.scenario import PERFECT, TRUE_MOTION
 from recon.score.settings import SCORE
 from recon.sim.world import Sky
 from recon.station.state.imaging import ShadePipeline
@@ -44,7 +44,7 @@ class ForecastScoring:
     """The maps' time at which the sky's is zero."""
     sums: dict[ForecastKey, LeadScore] = field(default_factory=dict)
     changes: ChangeScore = field(default_factory=ChangeScore)
-    """Of the station's own."""
+    """Of the station's own; none of the perfect one, which follows no shadows in the map."""
     _states: dict[str, ForecastState] = field(default_factory=dict)
     _number: int = 0
     _due_s: float = 0.0
@@ -62,7 +62,8 @@ class ForecastScoring:
         if now_s >= self._due_s:
             self._due_s = now_s + SCORE.score_forecasts_every_s
             self._score(line.sun, line.shade, line.seen)
-            self.changes += self._changes(line.sun, line.followed or line.shade)
+            if self.own != PERFECT:
+                self.changes += self._changes(line.sun, line.followed or line.shade)
 
     def _score(self, own: SunForecast, shade: ShadeMap, seen: MaskMap | None) -> None:
         issued = {

@@ -1,7 +1,8 @@
 """The imaging drones of a run: rendered frames for the station's detector, or true shade maps.
 
 With ideal detection, frames of a few pixels are sent over the link, with latency and faults; the
-worker then returns the true sky of each frame instead of reading its pixels.
+worker then returns the true sky of each frame instead of reading its pixels, and with the perfect
+forecast also the true sky to come.
 """
 
 from collections.abc import Sequence
@@ -19,7 +20,8 @@ from recon.guidance.survey.settings import DEFAULT as SURVEYS
 from recon.model.imagery import CameraPose, GroundImage, Outlook, RgbImage
 from recon.model.shade import MaskMap, ShadeMap
 from recon.model.vehicle import VehicleProfile
-from recon.score.scenario import IDEAL, NO_FORECAST, Scenario
+from recon.score.perfect_forecast import perfect_forecast
+from recon.score.scenario import IDEAL, NO_FORECAST, PERFECT, Scenario
 from recon.score.scenario_conditions import conditions_of
 from recon.score.simulation import simulation_of
 from recon.score.true_frames import Frames, ground_seen
@@ -74,14 +76,18 @@ def sent_by(config: SimulationConfig, scenario: Scenario) -> SimulationConfig:
 
 
 def settings_of(scenario: Scenario) -> StationSettings:
-    """Return the station's settings with the scenario's methods."""
+    """Return the station's settings with the scenario's methods.
+
+    With the perfect forecast the station's usual method observes the maps: what it remembers of
+    shade that has left the view is used beside the forecast.
+    """
     settings, methods = StationSettings(), scenario.methods
     detection = replace(settings.detection, cell_m=scenario.imager.cell_m)
     if methods.detection != IDEAL:
         detection = replace(detection, method=methods.detection)
     settings = replace(settings, detection=detection)
     forecast = settings.forecast
-    if methods.forecast != NO_FORECAST:
+    if methods.forecast not in (NO_FORECAST, PERFECT):
         forecast = replace(forecast, method=methods.forecast)
     if not methods.scores_maps:
         forecast = replace(forecast, lead_s=_leads_planned_with_s(forecast.lead_s))
@@ -125,6 +131,7 @@ class IdealDetection:
         self._points_m = np.column_stack([east_m, north_m])
         self._outlooks = {serial: each.outlook for serial, each in site.imagers.items()}
         self._coarsest_m = scenario.imager.coarsest_m
+        self._is_forecast_perfect = scenario.methods.forecast == PERFECT
 
     def lay(self, work: LayFrame) -> LaidFrame:
         """Return a frame's time and believed pose, without pixels."""
@@ -148,7 +155,13 @@ class IdealDetection:
 
     def read(self, work: ReadShade) -> ShadeRead:
         """Return the true sky of an image as a shade map, and the forecast from it."""
-        return with_forecast(work, work.detection, self._shade(work.image), work.image.valid)
+        shade = self._shade(work.image)
+        found = with_forecast(work, work.detection, shade, work.image.valid)
+        if found.merged is None or not self._is_forecast_perfect:
+            return found
+        together, sun = found.merged
+        perfect = perfect_forecast(self._sky, sun, work.forecast_settings.surest)
+        return replace(found, merged=(together, perfect))
 
     def _shade(self, image: GroundImage) -> ShadeMap:
         """Return the true sky as this image shows it; raises `ValueError` without its frame."""

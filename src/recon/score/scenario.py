@@ -13,6 +13,8 @@ from recon.sim.world import LayerSettings, SunSettings, WindSettings
 from recon.site import Site
 
 IDEAL, NO_FORECAST = "ideal", "none"
+PERFECT = "perfect"
+"""The station's forecast is the true sky to come."""
 TRUE_MOTION = "true_motion"
 """The forecast that moves what is seen now by the true motion, without error."""
 
@@ -73,8 +75,8 @@ class ScenarioImager:
 class Methods:
     """Names of the detection and forecast methods; the planner's is in the survey.
 
-    `detection` is `ideal` (true shade maps) or a name in `DETECTORS`; `forecast` is `none` or a
-    name in `FORECASTERS`.
+    `detection` is `ideal` (true shade maps) or a name in `DETECTORS`; `forecast` is `none`,
+    `perfect` (the true sky to come, with `ideal` detection only) or a name in `FORECASTERS`.
     """
 
     detection: str = IDEAL
@@ -83,6 +85,16 @@ class Methods:
     """Forecast methods that are scored beside the station's own, on the same maps."""
     scores_maps: bool = True
     """Whether shade maps and forecasts are scored; without that a run ends with the survey."""
+
+    @property
+    def conflict(self) -> str | None:
+        """Why detection and forecast cannot be flown together, as a sentence; None if they can."""
+        if self.forecast != PERFECT or self.detection == IDEAL:
+            return None
+        return (
+            f"forecast: expected detection {IDEAL} with the forecast {PERFECT}, got detection "
+            f"{self.detection}: choose detection {IDEAL}, or another forecast"
+        )
 
     @property
     def is_guidance_alone(self) -> bool:

@@ -85,6 +85,9 @@ def _text(path: Path) -> str:
 
 def _scenario(path: Path, file: ScenarioFile, errors: ScenarioErrors) -> Scenario:
     survey = _survey(path.stem, file.task, file.methods.planner)
+    methods = Methods(file.methods.detection, file.methods.forecast)
+    if methods.conflict is not None:
+        raise errors.error(methods.conflict, "methods")
     place = staged(path, file, survey, errors)
     script = _script(path, file, errors)
     sun = _sun(file, place.frame.origin, errors)
@@ -101,7 +104,7 @@ def _scenario(path: Path, file: ScenarioFile, errors: ScenarioErrors) -> Scenari
         faults=(*_faults(file, errors), *script.faults),
         chances=script.chances,
         survey=survey,
-        methods=Methods(file.methods.detection, file.methods.forecast),
+        methods=methods,
         limit_s=60.0 * file.task.limit_min,
         files=tuple(path.parent / name for name in (file.site.folder, file.fault_file) if name),
     )

@@ -20,12 +20,12 @@ from recon.detection import DETECTORS
 from recon.forecast import FORECASTERS
 from recon.guidance.survey import PLANNERS
 from recon.model.errors import ReconError
-from recon.score.scenario import IDEAL, NO_FORECAST
+from recon.score.scenario import IDEAL, NO_FORECAST, PERFECT
 from recon.sim.errors import SimulationError
 
 METHOD_NAMES = {
     "detection": (IDEAL, *DETECTORS),
-    "forecast": (NO_FORECAST, *FORECASTERS),
+    "forecast": (NO_FORECAST, PERFECT, *FORECASTERS),
     "planner": tuple(PLANNERS),
 }
 """The values of `[methods]`."""
