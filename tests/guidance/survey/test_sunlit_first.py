@@ -1,6 +1,5 @@
 """The planner that flies what is in sun first: whole surveys, and single decisions."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 from itertools import combinations, pairwise
 
@@ -9,7 +8,15 @@ import pytest
 import shapely
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.guidance.survey.fields import FRAME, planned, rectangle, survey_of
+from tests.guidance.survey.decisions import (
+    GRID,
+    PLAN,
+    SURVEY,
+    decided,
+    flown_rows,
+    forecast,
+)
+from tests.guidance.survey.fields import planned
 from tests.guidance.survey.flyers import (
     BoolArray,
     Flights,
@@ -33,19 +40,13 @@ from recon.guidance.survey import (
     refused,
     returning,
     start,
-    step,
 )
 from recon.guidance.survey.closed_areas import closed_ground
 from recon.guidance.survey.own_share import finished_together_s
 from recon.guidance.survey.segments import NONE, expected_sun, segments_of
-from recon.model.geo import GroundGrid
 from recon.model.shade import ShadeMap, SunForecast
 from recon.model.survey import CellState, MissionAssignment, SurveyBudget, SurveyPhase, WhenDone
 from recon.model.units import seconds_to_ns
-
-FIELD = rectangle(360.0, 240.0)
-SURVEY = survey_of(FIELD, planner="sunlit_first", bearing_deg=90.0)
-PLAN = planned(SURVEY)
 
 
 def started(flyers: list[Flyer], planner: str = "sunlit_first") -> SurveyState:
@@ -237,48 +238,6 @@ class TestSurveys:
             flights.run(200.0)
             given.append(flights.given)
         assert given[0] == given[1]
-
-
-GRID = GroundGrid(FRAME, -40.0, 280.0, 8.0, 42, 55)
-LEADS_S = np.arange(0.0, 330.0, 15.0)
-
-
-def forecast(sunlit: object, now_s: float = 0.0) -> SunForecast:
-    """A forecast that is sure: `sunlit(east_m, north_m, lead_s)`."""
-    east_m = GRID.west_m + GRID.cell_m * (np.arange(GRID.cols) + 0.5)
-    north_m = GRID.north_m - GRID.cell_m * (np.arange(GRID.rows) + 0.5)
-    east, north = np.meshgrid(east_m, north_m)
-    by_lead = np.stack([np.broadcast_to(sunlit(east, north, lead), east.shape) for lead in LEADS_S])  # type: ignore[operator]
-    return SunForecast(
-        grid=GRID,
-        issued_at_ns=seconds_to_ns(now_s),
-        lead_s=LEADS_S,
-        sun_probability=np.where(by_lead, 255, 0).astype(np.uint8),
-        horizon_s=np.full(east.shape, 300.0, np.float32),
-        prior_sunlit=0.5,
-        method="made",
-        velocity_mps=(1.0, 0.0),
-    )
-
-
-def decided(
-    sun: SunForecast,
-    *surveyors: Surveyor,
-    state: SurveyState | None = None,
-    now_s: float = 0.0,
-    closed: Sequence[ClosedArea] = (),
-) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
-    if state is None:
-        made = create(PLAN)
-        assert isinstance(made, SurveyState)
-        running = start(made, [each.serial for each in surveyors], 0)
-        assert isinstance(running, SurveyState)
-        state = running
-    return step(state, surveyors, seconds_to_ns(now_s), sun, closed)
-
-
-def flown_rows(state: SurveyState, serial: str) -> list[int]:
-    return [leg.piece.row for leg in state.flights[serial].route]
 
 
 class TestDecisions:

@@ -33,6 +33,8 @@ class ClosedArea:
     home_m: Place | None
     """None where it is not expected to return, or its home is unknown."""
     corridor_half_m: float
+    lost_s: float = 0.0
+    """How long the vehicle has been without telemetry."""
 
 
 def closed_ground(areas: Sequence[ClosedArea]) -> shapely.Geometry:

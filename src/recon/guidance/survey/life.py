@@ -40,7 +40,14 @@ from recon.guidance.survey.progress import (
 )
 from recon.guidance.survey.rounds import Step, ended, lasts
 from recon.guidance.survey.route import Route, route_of
-from recon.guidance.survey.state import Refused, Surveyor, SurveyState
+from recon.guidance.survey.state import (
+    AssignedMission,
+    Decision,
+    Refused,
+    Surveyor,
+    SurveyState,
+)
+from recon.guidance.survey.vehicle_choice import named
 from recon.model.command import Refusal
 from recon.model.shade import ShadeMap, SunForecast
 from recon.model.survey import PLANNER_GOALS, SurveyPhase
@@ -109,6 +116,8 @@ def refused(
     flight = state.flights.get(serial)
     if flight is None or flight.number != number:
         return state
+    if flight.replaces is not None:
+        return _flown_on(state, serial, flight, flight.replaces)
     flights = {key: each for key, each in state.flights.items() if key != serial}
     route = (*flight.route, *state.waiting.get(serial, ()))
     settings = state.plan.settings
@@ -118,14 +127,30 @@ def refused(
     decisions = {key: each for key, each in state.decisions.items() if key != serial}
     again_ns = now_ns + seconds_to_ns(settings.retry_soon_s if is_soon else settings.retry_s)
     is_barred = not flights and not may_end and not (in_the_way and is_decided_anew)
+    rows_most = None
+    if in_the_way and is_decided_anew and len(flight.route) > 1:
+        rows_most, again_ns = len(flight.route) // 2, now_ns
     return replace(
         state,
         flights=MappingProxyType(flights),
         waiting=MappingProxyType({**state.waiting, serial: route}),
-        refusals=MappingProxyType({**state.refusals, serial: Refused(reason, again_ns)}),
+        refusals=MappingProxyType({**state.refusals, serial: Refused(reason, again_ns, rows_most)}),
         barred=state.barred | {serial} if is_barred else state.barred,
         decisions=MappingProxyType(decisions),
         flown_m=state.flown_m - flight.length_m,
+    )
+
+
+def _flown_on(
+    state: SurveyState, serial: str, refused: AssignedMission, kept: AssignedMission
+) -> SurveyState:
+    """The survey with the mission that a refused one was to replace."""
+    text = f"flies on with {named(kept.rows_left)}: other rows were refused"
+    return replace(
+        state,
+        flights=MappingProxyType({**state.flights, serial: kept}),
+        decisions=MappingProxyType({**state.decisions, serial: Decision(text)}),
+        flown_m=state.flown_m - refused.length_m + kept.unflown_m,
     )
 
 

@@ -28,6 +28,11 @@ class Passing:
     passes: Sequence[Pass]
     ends_s: float
 
+    @property
+    def missing_m2(self) -> float:
+        """The missing ground that is passed."""
+        return sum(each.missing_m2 for each in self.passes)
+
     def lit_m2(self, expected: ExpectedSun, later_s: float = 0.0) -> float:
         """Return the ground expected in sun when it is passed, if all begins so much later."""
         return sum(

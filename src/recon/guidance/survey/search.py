@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from recon.guidance.survey.cells import BoolArray
+from recon.guidance.survey.cells import BoolArray, FloatArray
 from recon.guidance.survey.lattice import RowLattice
 from recon.guidance.survey.route import Place, RowLeg
 from recon.guidance.survey.rows import Piece
@@ -93,6 +93,7 @@ class Search:
         missing = np.where(free, expected.missing_m2, 0.0)
         self._missing_m2: list[float] = missing.tolist()
         self._sun: list[list[float]] = expected.probability.tolist()
+        self._is_soon_lit = _soon(expected.probability, settings).tolist()
         self._rate = settings.expected_rate * float(
             (missing @ expected.probability).mean() / max(missing.sum(), 1.0)
         ) * (pace.speed_mps * lattice.spacing_m)  # fmt: skip
@@ -152,16 +153,16 @@ class Search:
         yield node._replace(at_s=at_s, heading=WAITS, gain_m2=0.0, before=node)
 
     def _entries(self, node: Node) -> set[tuple[int, int]]:
-        """Where a flight may go on on the nearest rows that have something left: at the ends of
-        that, and of what will be in sun of it."""
+        """Where a flight may go on on the nearest rows that have something left in sun, now or when
+        it may come there: at the ends of what is left, and of what will be in sun of it."""
+        when = min(int(node.at_s / self._step_s) + 1, len(self._fade) - 1)
         left: list[tuple[float, list[int]]] = []
         for row, numbers in self._rows.items():
             free = [number for number in numbers if not node.taken >> number & 1]
-            if free:
+            if any(self._is_soon_lit[number][when] for number in free):
                 left.append((abs(self._lattice.row_across_m(row) - node.place_m[1]), free))
         left.sort(key=lambda each: each[0])
         entries: set[tuple[int, int]] = set()
-        when = min(int(node.at_s / self._step_s) + 1, len(self._fade) - 1)
         for _, free in left[: self._settings.rows_looked_at]:
             lit = [number for number in free if self._sun[number][when] > 0.5]
             for ends in (free, lit):
@@ -260,6 +261,16 @@ class Search:
             flown[-1].at_s,
             sun,
         )
+
+
+def _soon(probability: FloatArray, settings: SurveySettings) -> BoolArray:
+    """(S, K): whether flying over a segment is worth it at a moment, or within `way_s` of it."""
+    is_worth = probability >= settings.taken_from
+    soon = is_worth.copy()
+    for later in range(1, 1 + int(settings.way_s / settings.moment_s)):
+        soon[:, :-later] |= is_worth[:, later:]
+    found: BoolArray = soon
+    return found
 
 
 def _goes_on(node: Node, following: Node, parts: Sequence[Segment]) -> bool:

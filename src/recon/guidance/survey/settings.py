@@ -121,7 +121,10 @@ class SurveySettings:
     """Flights that are followed at each step; twice as many image no more."""
 
     rows_looked_at: int = 5
-    """Nearest rows with something left on which a flight may go on."""
+    """Nearest rows with something left in sun on which a flight may go on."""
+
+    way_s: float = 40.0
+    """To the rows looked at: so much later they must be in sun."""
 
     expected_rate: float = 0.8
     """Of flying rows without a stop, to compare flights that end at different moments."""
@@ -155,6 +158,31 @@ class SurveySettings:
     committed_s: float = 90.0
     """A mission takes the rows begun by then; what comes later is decided anew, with a newer
     forecast. Each mission costs some seconds."""
+
+    at_end_m: float = 12.0
+    """A vehicle this near to the end of a row has reached it: positions come each second, and it
+    stops there."""
+
+    closed_from_s: float = 10.0
+    """A mission that leads over ground where a vehicle was lost is replaced after this: most links
+    are back by then."""
+
+    handed_on_s: float = 30.0
+    """Rows are handed on to a vehicle without any if that saves as much: its way there, and another
+    mission, take half of it."""
+
+    little_free: float = 0.2
+    """Rows are handed on if what is free has no more ground in sun than this share of theirs."""
+
+    in_want_below: float = 0.3
+    """A vehicle flies in shade if no more of the rest of its mission is expected in sun."""
+
+    kept_from: float = 0.6
+    """With this share of its missing ground expected in sun, what is left of a mission is flown."""
+
+    replaced_from: float = 0.25
+    """It is replaced if that brings so much more ground into sun, as a share of what is flown
+    meanwhile."""
 
     clear_from: float = 0.85
     """With this mean probability of sun for as long as is planned, nothing is gained by choosing:

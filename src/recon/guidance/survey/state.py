@@ -56,6 +56,26 @@ class AssignedMission:
     """As planned, for planners that share rows by it."""
     up_m: tuple[float, ...] = ()
     """The height at each corner, up of the site's frame, of a survey above ground."""
+    ends_passed: int = 0
+    """Of the beginnings and ends of its rows, in order, for planners that replace missions."""
+    replaces: "AssignedMission | None" = None
+    """The mission that is flown on if this one is refused."""
+
+    @property
+    def rows_left(self) -> Route:
+        """The rows whose end it has not reached yet."""
+        return self.route[self.ends_passed // 2 :]
+
+    @property
+    def rows_taken(self) -> Route:
+        """These and the row flown last, whose photos may not have counted yet."""
+        return self.route[max(0, self.ends_passed // 2 - 1) :]
+
+    @property
+    def unflown_m(self) -> float:
+        """What is left of its length, as far as its rows show."""
+        left_m = sum(leg.piece.length_m for leg in self.rows_left)
+        return left_m / sum(leg.piece.length_m for leg in self.route) * self.length_m
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +84,8 @@ class Refused:
 
     reason: str
     again_ns: int
+    rows_most: int | None = None
+    """For the next one, after a mission that would have met another vehicle on its way."""
 
 
 @dataclass(frozen=True, slots=True)

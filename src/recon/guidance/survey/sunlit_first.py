@@ -19,8 +19,10 @@ once. One call of `sunlit_first`:
    One that waits at the rows' height climbs or sinks to its layer first, out of others' rows.
 8. Rows where a vehicle without telemetry may be are left out, and its own rows: the gate would
    refuse them. They are flown once it is in contact again, or dismissed by an operator.
-9. If no vehicle is busy and a round of the lawnmower would image most of what is missing in sun, by
-   the forecast at the moments at which it would pass, that round is flown: choosing takes longer.
+9. Missions may be replaced under way, mostly at the end of a row (`row_ends`).
+10. If no vehicle is busy and a round of the lawnmower would image most of what is missing in
+   sun, by the forecast at the moments at which it would pass, that round is flown: choosing takes
+   longer.
 
 Each decision leaves a sentence. What a forecast does not know is its prior, so flights over ground
 whose light is unknown are worth something, and rows in shade are flown when nothing else is left:
@@ -42,6 +44,12 @@ from recon.guidance.survey.rounds import (
     shares,
     without_able,
     without_ended,
+)
+from recon.guidance.survey.row_ends import (
+    at_row_end,
+    off_closed_ground,
+    on_closed_ground,
+    with_ends_passed,
 )
 from recon.guidance.survey.segments import (
     expected_sun,
@@ -80,8 +88,10 @@ def sunlit_first(
         return (state if state.flights else ended(state, SurveyPhase.DONE, end, now_ns)), ()
     if able and not state.flights and able.keys() <= state.barred:
         return without_able(state, able, now_ns), ()
+    state, at_end = with_ends_passed(state, able)
     idle = [each for serial, each in able.items() if _is_asked(state, serial, able, now_ns)]
-    if not idle:
+    closed = on_closed_ground(state, able, now_ns)
+    if not idle and not at_end and not closed:
         return state, ()
     segments = segments_of(state.plan)
     expected = expected_sun(segments, state.plan, state.progress, sun, now_ns)
@@ -91,6 +101,19 @@ def sunlit_first(
         is_closed = closed_segments(closed_ground(state.closed), segments, state.plan)
         expected = replace(expected, missing_m2=np.where(is_closed, 0.0, expected.missing_m2))
     state = replace(state, waiting=NO_ROUTES, round=max(1, state.round), reason="under way")
+    missions: list[MissionAssignment] = []
+    for serial in (*closed, *at_end):
+        choice = VehicleChoice(
+            state, segments, expected, tuple(able.values()), able[serial], now_ns
+        )
+        if serial in closed:
+            state, new = off_closed_ground(choice)
+        else:
+            state, new = at_row_end(choice, able)
+        missions += new
+    idle = [each for serial, each in able.items() if _is_asked(state, serial, able, now_ns)]
+    if not idle:
+        return state, tuple(missions)
     choices = [
         VehicleChoice(state, segments, expected, tuple(able.values()), each, now_ns)
         for each in idle
@@ -99,7 +122,6 @@ def sunlit_first(
     if _awaits_motion(state, whole, sun, now_ns):
         return replace(state, reason="waiting: how shadows move is not known yet"), ()
     rows = whole.rows if whole is not None and whole.is_worth else NO_ROUTES
-    missions: list[MissionAssignment] = []
     for each in choices:
         choice = replace(each, state=state)
         own = rows.get(choice.surveyor.serial)

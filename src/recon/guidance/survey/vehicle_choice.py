@@ -79,13 +79,13 @@ class VehicleChoice:
 
     def made(self) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
         """Return the survey with the decision, and the vehicle's mission if it gets one."""
-        free = self._free()
+        free = self.free()
         if not free.any():
             return self._waits(self._why_none_is_free())
-        share = self._share(free)
+        share = self.share(free)
         if self.expected.is_clear(share, self.settings.clear_from):
-            return self.flies_all(self._rows(share))
-        flight = self._best(share)
+            return self.flies_all(self.rows(share))
+        flight = self.best(share)
         if (flight.waits_s > 0.0 or not flight.legs) and self._is_time_to_swap(free):
             return self._returns()
         if not flight.legs:
@@ -93,12 +93,12 @@ class VehicleChoice:
             return self._waits(f"waits: no sun is expected on its rows for {minutes:.0f} min")
         if flight.waits_s > 0.0:
             return self._stands_by(flight)
-        legs = self._committed(flight)
-        return self._flies(tuple(self._long_enough(leg) for leg in legs), flown_text(legs))
+        legs = self.committed(flight)
+        return self.flies(self._allowed(self.long_enough(legs)), flown_text(legs))
 
-    def _free(self) -> BoolArray:
-        """(S,): segments with missing ground that no vehicle flies, or has just flown."""
-        flown = [leg for flight in self.state.flights.values() for leg in flight.route]
+    def free(self) -> BoolArray:
+        """Return (S,): segments with missing ground that no vehicle flies, or has just flown."""
+        flown = [leg for flight in self.state.flights.values() for leg in flight.rows_taken]
         flown += just_flown_legs(self.state)
         free: BoolArray = (self.expected.missing_m2 > 0.0) & ~self.segments.under(flown)
         return free
@@ -109,8 +109,8 @@ class VehicleChoice:
         names = ", ".join(each.name for each in self.state.closed)
         return f"waits: {names} may be where rows are left, without telemetry"
 
-    def _share(self, free: BoolArray) -> BoolArray:
-        """(S,): the free segments of its own share; all free ones where its share has no sun."""
+    def share(self, free: BoolArray) -> BoolArray:
+        """Return (S,): its own share of the free segments; all of them where that has no sun."""
         state = self.state
         share = own_share(
             self.surveyor, self.able, state.flights, free, self.expected, self.plan, self.now_ns
@@ -144,8 +144,8 @@ class VehicleChoice:
         state = self._decided(text, self.now_ns + seconds_to_ns(self.settings.retry_s), True)
         return state, ()
 
-    def _rows(self, share: BoolArray) -> Route:
-        """The missing ground of a share row by row, to and fro, from the end that is near.
+    def rows(self, share: BoolArray) -> Route:
+        """Return the missing ground of a share row by row, to and fro, from the end that is near.
 
         All vehicles work across the field in the same direction, so that none begins where its
         neighbour does.
@@ -159,25 +159,24 @@ class VehicleChoice:
 
     def flies_all(self, route: Route) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
         """Fly these rows one after the other: most of their ground is in sun by then."""
-        rows = sorted({leg.piece.row + 1 for leg in route})
+        route = self._allowed(route)
         passed = self.passing(route)
-        missing_m2 = sum(each.missing_m2 for each in passed.passes)
-        sun = passed.lit_m2(self.expected) / max(missing_m2, 1.0)
-        return self._flies(
-            route, f"flies rows {rows[0]} to {rows[-1]}: probability of sun {sun:.1f}"
-        )
+        sun = passed.lit_m2(self.expected) / max(passed.missing_m2, 1.0)
+        return self.flies(route, f"flies {named(route)}: probability of sun {sun:.1f}")
 
-    def _best(self, share: BoolArray) -> Flight:
+    def best(self, share: BoolArray) -> Flight:
+        """Return the best flight over the segments (S,) of a share."""
         search = Search(
             self.segments, self.expected, share, self.plan.lattice, self._pace, self.settings
         )
         return search.best(self._along_across_m(self.surveyor.place_m), self._starts_s)
 
-    def passing(self, route: Route) -> Passing:
-        """When it passes the rows of a route."""
+    def passing(self, route: Route, starts_s: float | None = None) -> Passing:
+        """When it passes the rows of a route; without a start, that of a new mission."""
+        starts_s = self._starts_s if starts_s is None else starts_s
         start_m = self._along_across_m(self.surveyor.place_m)
         segments, lattice = self.segments, self.plan.lattice
-        return passing(route, segments, self.expected, lattice, self._pace, start_m, self._starts_s)
+        return passing(route, segments, self.expected, lattice, self._pace, start_m, starts_s)
 
     @property
     def _pace(self) -> Pace:
@@ -201,13 +200,14 @@ class VehicleChoice:
         ((along_m, across_m),) = self.plan.lattice.along_across_m([place_m]).tolist()
         return along_m, across_m
 
-    def _committed(self, flight: Flight) -> tuple[PlannedLeg, ...]:
-        """The legs of a flight that are flown before it is decided anew; the first one always."""
+    def committed(self, flight: Flight) -> tuple[PlannedLeg, ...]:
+        """Return the legs of a flight flown before it is decided anew; the first one always."""
         first, *others = flight.legs
         until_s = self.settings.committed_s
         return first, *takewhile(lambda leg: leg.until_s <= until_s, others)
 
-    def _flies(self, route: Route, text: str) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
+    def flies(self, route: Route, text: str) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
+        """Fly these rows, as far as the battery lasts and no lost vehicle may be; else wait."""
         state = self.state
         may_fly = partial(is_open, closed_ground(state.closed)) if state.closed else None
         track, count = sortie(self.plan, route, self.surveyor, may_fly)
@@ -227,6 +227,18 @@ class VehicleChoice:
         )
         state, given = flying(self._decided(text), self.surveyor, mission, ())
         return state, (replace(given, straight_within_m=self.settings.near_m),)
+
+    def _allowed(self, route: Route) -> Route:
+        """The first of these rows after a mission that would meet another vehicle on its way."""
+        refused = self.state.refusals.get(self.surveyor.serial)
+        if refused is None or refused.rows_most is None:
+            return route
+        is_new = self.now_ns < refused.again_ns + seconds_to_ns(self.settings.retry_soon_s)
+        return route[: refused.rows_most] if is_new else route
+
+    def long_enough(self, legs: Sequence[PlannedLeg]) -> Route:
+        """Return the rows to be flown for these legs: each long enough for a photo."""
+        return tuple(self._long_enough(leg) for leg in legs)
 
     def _long_enough(self, leg: PlannedLeg) -> RowLeg:
         piece = self.segments.parts[leg.segments[0]].piece
@@ -303,7 +315,12 @@ def _direction(route: Route) -> int:
 
 def flown_text(legs: Sequence[PlannedLeg]) -> str:
     """Return what a vehicle flies and why."""
-    rows = sorted({leg.route.piece.row + 1 for leg in legs})
-    named = f"row {rows[0]}" if len(rows) == 1 else f"rows {rows[0]} to {rows[-1]}"
     sun = sum(leg.probability for leg in legs) / len(legs)
-    return f"flies {named}: probability of sun {sun:.1f}"
+    rows = named([leg.route for leg in legs])
+    return f"flies {rows}: probability of sun {sun:.1f}"
+
+
+def named(route: Sequence[RowLeg]) -> str:
+    """Name the rows of a route."""
+    rows = sorted({leg.piece.row + 1 for leg in route})
+    return f"row {rows[0]}" if len(rows) == 1 else f"rows {rows[0]} to {rows[-1]}"

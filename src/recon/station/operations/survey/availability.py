@@ -69,6 +69,7 @@ def closed_areas(station: Station, now_ns: int) -> Iterator[ClosedArea]:
                 radius_m=found.largest_m + room_m,
                 home_m=found.home_m,
                 corridor_half_m=found.corridor_half_m + room_m,
+                lost_s=found.age_s,
             )
 
 

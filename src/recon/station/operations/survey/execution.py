@@ -289,7 +289,8 @@ def _order_mission(
     )
     record = replace(record, state=state)
     station = replace(station, surveys=station.surveys.put(record))
-    if returns_home(record) and refusal.rule == BATTERY:
+    flies_on = given.serial in state.flights
+    if returns_home(record) and refusal.rule == BATTERY and not flies_on:
         return send_home(station, survey_id, given.serial, NO_BATTERY, now_ns)
     return station, sent
 
