@@ -8,7 +8,9 @@ from tests.station.station_world import HOME
 from tests.station.surveyed_world import SurveyedWorld, asked, surveyed_world
 
 from recon.guidance.survey.state import SurveyState
-from recon.model.event import Event
+from recon.model.command import Phase
+from recon.model.control import AuthorityHolder
+from recon.model.event import AuthorityTaken, Event
 from recon.model.geo import GroundGrid, LocalFrame
 from recon.model.imagery import CameraPose, GroundImage
 from recon.model.survey import CellState, SurveyBudget, SurveyPhase
@@ -35,7 +37,20 @@ def ground_image(number: int, at_ns: int, is_shaded: bool) -> GroundImage:
 
 def flown_under_an_imager(planner: str, sunny_from_s: float) -> SurveyedWorld:
     """A frame a second: half of the field in shade until a moment, then all in sun."""
-    world = surveyed_world()
+    world = under_an_imager()
+    world.asks(asked(planner=planner, budget=SurveyBudget(rounds=3)))
+    world.starts("SIM-1")
+    for number in range(41, 500):
+        if world.phase() is not SurveyPhase.RUNNING:
+            break
+        world.driver.handle(seen(world, number, number < sunny_from_s))
+        world.runs(1.0)
+    return world
+
+
+def under_an_imager(vehicles: int = 1) -> SurveyedWorld:
+    """The field has been seen in sun, and half of it in shade, for 40 s."""
+    world = surveyed_world(vehicles)
     world.driver.station = with_imagers(world.driver.station, "IMAGER")
     settings = world.driver.station.settings
     # It maps a drawn field at once; over two minutes, shade that lasts the whole flight would come
@@ -47,13 +62,6 @@ def flown_under_an_imager(planner: str, sunny_from_s: float) -> SurveyedWorld:
     for number in range(1, 41):
         # The field must be imaged in sun first: else shade looks like dark soil.
         world.driver.handle(seen(world, number, number > 30))
-        world.runs(1.0)
-    world.asks(asked(planner=planner, budget=SurveyBudget(rounds=3)))
-    world.starts("SIM-1")
-    for number in range(41, 500):
-        if world.phase() is not SurveyPhase.RUNNING:
-            break
-        world.driver.handle(seen(world, number, number < sunny_from_s))
         world.runs(1.0)
     return world
 
@@ -85,3 +93,34 @@ def test_cells_in_shade_are_flown_again_until_imaged_in_sun() -> None:
     assert "in sun" in world.state().reason
     assert world.state().round > 1
     assert world.figures().in_sun_m2 > 0.97 * world.figures().reached_m2
+
+
+class TestHandedOn:
+    """A vehicle that its operator gives back finds another one on all rows."""
+
+    @staticmethod
+    def flown(most_s: int) -> SurveyedWorld:
+        world = under_an_imager(2)
+        world.asks(asked(planner="sunlit_first", budget=SurveyBudget(rounds=3), speed_mps=3.0))
+        world.starts("SIM-1", "SIM-2")
+        world.driver.handle(AuthorityTaken("SIM-2", AuthorityHolder.OPERATOR, "bob", "bob"))
+        for number in range(41, 41 + most_s):
+            if world.phase() is not SurveyPhase.RUNNING:
+                break
+            world.driver.handle(seen(world, number, is_shaded=False))
+            world.runs(1.0)
+            if number == 60:
+                given = AuthorityTaken("SIM-2", AuthorityHolder.GUIDANCE, "bob", "bob")
+                world.driver.handle(given)
+        return world
+
+    def test_it_gets_half_of_them_and_neither_is_stopped(self) -> None:
+        world = self.flown(500)
+        assert world.phase() is SurveyPhase.DONE
+        first, second, *_more = world.missions("SIM-1")
+        assert first.phase is Phase.SUPERSEDED
+        assert first.note == f"Replaced by order {second.command.id}"
+        assert second.phase is Phase.DONE
+        assert world.missions("SIM-2")
+        assert {each.stop_reason for each in world.record().members.values()} == {None}
+        assert world.figures().in_sun_m2 > 0.97 * world.figures().reached_m2
