@@ -73,6 +73,7 @@ class Claim:
     seeds: int = 10
     over: str | None = None
     """The scenario that it is compared with; None: the same one, by the baseline."""
+    planner: str = PLANNER
     forecast: str | None = None
     detection: str | None = None
     of_flight_time: bool = False
@@ -98,7 +99,7 @@ class Claim:
 
         The baseline uses no forecast: it flies with the file's, so that claims share its runs.
         """
-        chosen = Chosen(PLANNER, self.detection, self.forecast, None, surveys_only=True)
+        chosen = Chosen(self.planner, self.detection, self.forecast, None, surveys_only=True)
         path = _file(self.scenario)
         if self.over is not None:
             other_path = _file(self.over)
@@ -127,6 +128,18 @@ CLAIMS = (
     Claim("faults, clear sky", "clear-sky-faults", 1.5, over="clear-sky"),
     Claim("8 drones over 3", "clear-60ha-eight", 1.0 / 2.2, seeds=3, over="clear-60ha-three"),
 )
+
+
+REFERENCES = tuple(
+    Claim(f"{cover} %, {name}", f"cumulus-{cover}-wide", float("inf"), planner=planner, forecast=by)
+    for cover in (40, 60)
+    for name, planner, by in (
+        ("perfect forecast", PLANNER, PERFECT),
+        ("waiting for sun", "lawnmower_waits", None),
+        ("nearest row in sun", "nearest_sunlit", None),
+    )
+)
+"""Flown with `--references`: what a perfect forecast would bring, and what comes to mind first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,7 +188,7 @@ class Measured:
             f"{0 if ratio is None else ratio.count}",
             NOTHING if ratio is None else fine(ratio.mean),
             NOTHING if ratio is None else bounds(ratio, fine, float("inf")),
-            f"{fine(claim.most)}{bound}",
+            f"{fine(claim.most)}{bound}" if isfinite(claim.most) else NOTHING,
             NOTHING if lost is None else percent(lost.mean),
             f"{self.violations}",
             fine(self.refusals),
@@ -237,12 +250,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--list", action="store_true", help="print the claims, fly nothing")
     parser.add_argument("--only", default="", help="claims whose name or scenario contains this")
+    parser.add_argument("--references", action="store_true", help="fly what is compared with")
     parser.add_argument("--seeds", type=int, help="at most so many of each claim")
     parser.add_argument("--jobs", type=int, help="runs at once; default: one for each core")
     parser.add_argument("--cluster", help="address of a Dask scheduler")
     parser.add_argument("--picture", type=Path, help="PNG file to draw")
     asked = parser.parse_args()
-    claims = [each for each in CLAIMS if asked.only in f"{each.name} {each.scenario}"]
+    known = REFERENCES if asked.references else CLAIMS
+    claims = [each for each in known if asked.only in f"{each.name} {each.scenario}"]
     if asked.list:
         rows = [(e.name, e.scenario, e.against, f"{e.seeds}", fine(e.most)) for e in claims]
         print(table(("claim", "scenario", "over", "seeds", "must"), rows))

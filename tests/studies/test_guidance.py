@@ -5,7 +5,7 @@ from pathlib import Path
 
 import cv2
 import pytest
-from studies.guidance import CLAIMS, FIRST_SEED, Claim, Measured, drawn
+from studies.guidance import CLAIMS, FIRST_SEED, REFERENCES, Claim, Measured, drawn
 from tests.score.test_survey_table import run_score
 
 from recon.score import RunScore, load_scenario
@@ -65,14 +65,17 @@ def test_a_wide_interval_is_not_reached_whatever_its_mean() -> None:
 
 
 def test_every_claim_is_about_scenarios_that_exist() -> None:
-    for claim in CLAIMS:
+    for claim in (*CLAIMS, *REFERENCES):
         names = [claim.scenario, *([] if claim.over is None else [claim.over])]
         for name in names:
             path = Path(__file__).parents[2] / "scenarios" / f"{name}.toml"
             assert load_scenario(path).name == name
 
 
-@pytest.mark.parametrize("claim", CLAIMS, ids=[claim.name for claim in CLAIMS])
+FLOWN = (*CLAIMS, *REFERENCES)
+
+
+@pytest.mark.parametrize("claim", FLOWN, ids=[claim.name for claim in FLOWN])
 def test_every_claims_scenarios_and_methods_can_be_flown(claim: Claim) -> None:
     no_seeds = range(FIRST_SEED, FIRST_SEED)
     runs, others, limit_s = claim.flown(no_seeds, jobs=1, cluster=None)

@@ -168,6 +168,8 @@ PLANNER_GOALS: Mapping[str, CellState] = MappingProxyType(
         "lawnmower_once": CellState.IN_SHADE,
         "lawnmower_again": CellState.IN_SUN,
         "sunlit_first": CellState.IN_SUN,
+        "lawnmower_waits": CellState.IN_SUN,
+        "nearest_sunlit": CellState.IN_SUN,
     }
 )
 """The state up to which each planner, by name, images every cell."""

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 
+from recon.guidance.survey.comparison import lawnmower_waits, nearest_sunlit
 from recon.guidance.survey.rounds import Step, lawnmower_again, lawnmower_once
 from recon.guidance.survey.state import Surveyor, SurveyState
 from recon.guidance.survey.sunlit_first import sunlit_first
@@ -17,5 +18,7 @@ PLANNERS: Mapping[str, Planner] = MappingProxyType(
         "lawnmower_once": lawnmower_once,
         "lawnmower_again": lawnmower_again,
         "sunlit_first": sunlit_first,
+        "lawnmower_waits": lawnmower_waits,
+        "nearest_sunlit": nearest_sunlit,
     }
 )

@@ -29,7 +29,7 @@ whose light is unknown are worth something, and rows in shade are flown when not
 under broken cloud it costs battery alone, and sometimes sun comes.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
@@ -52,6 +52,8 @@ from recon.guidance.survey.row_ends import (
     with_ends_passed,
 )
 from recon.guidance.survey.segments import (
+    ExpectedSun,
+    Segments,
     expected_sun,
     segments_of,
 )
@@ -76,10 +78,47 @@ from recon.model.survey import CellState, MissionAssignment, SurveyPhase
 from recon.model.units import seconds_to_ns
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class PlanningMoment:
+    """What all decisions of one call share; `able` are the vehicles that can fly, by serial."""
+
+    segments: Segments
+    expected: ExpectedSun
+    able: Mapping[str, Surveyor]
+    sun: SunForecast | None
+    now_ns: int
+
+    def choice(self, state: SurveyState, serial: str) -> VehicleChoice:
+        """Return what one vehicle may do."""
+        able = tuple(self.able.values())
+        return VehicleChoice(
+            state, self.segments, self.expected, able, self.able[serial], self.now_ns
+        )
+
+    def idle(self, state: SurveyState) -> list[str]:
+        """Return the vehicles that are to be decided on."""
+        return [each for each in self.able if _is_asked(state, each, self.able, self.now_ns)]
+
+
+Begun = Callable[[SurveyState, PlanningMoment], Step]
+"""Gives missions to idle vehicles."""
+
+
 def sunlit_first(
     state: SurveyState, positions: Sequence[Surveyor], sun: SunForecast | None, now_ns: int
 ) -> Step:
     """Fly what is in sun first, wait for the rest near where it will come, until all is in sun."""
+    return vehicle_by_vehicle(state, positions, sun, now_ns, _begun)
+
+
+def vehicle_by_vehicle(
+    state: SurveyState,
+    positions: Sequence[Surveyor],
+    sun: SunForecast | None,
+    now_ns: int,
+    begun: Begun,
+) -> Step:
+    """Fly until all is in sun, without waiting for one another; `begun` gives the missions."""
     able = {each.serial: each for each in positions if each.is_able}
     state = _with_just_flown(state, without_ended(state, able, now_ns), now_ns)
     spent = spent_budget(state, WANTED, now_ns)
@@ -89,9 +128,9 @@ def sunlit_first(
     if able and not state.flights and able.keys() <= state.barred:
         return without_able(state, able, now_ns), ()
     state, at_end = with_ends_passed(state, able)
-    idle = [each for serial, each in able.items() if _is_asked(state, serial, able, now_ns)]
     closed = on_closed_ground(state, able, now_ns)
-    if not idle and not at_end and not closed:
+    is_asked = any(_is_asked(state, serial, able, now_ns) for serial in able)
+    if not (is_asked or at_end or closed):
         return state, ()
     segments = segments_of(state.plan)
     expected = expected_sun(segments, state.plan, state.progress, sun, now_ns)
@@ -100,34 +139,42 @@ def sunlit_first(
     if state.closed:
         is_closed = closed_segments(closed_ground(state.closed), segments, state.plan)
         expected = replace(expected, missing_m2=np.where(is_closed, 0.0, expected.missing_m2))
+    moment = PlanningMoment(segments, expected, able, sun, now_ns)
     state = replace(state, waiting=NO_ROUTES, round=max(1, state.round), reason="under way")
-    missions: list[MissionAssignment] = []
-    for serial in (*closed, *at_end):
-        choice = VehicleChoice(
-            state, segments, expected, tuple(able.values()), able[serial], now_ns
-        )
-        if serial in closed:
-            state, new = off_closed_ground(choice)
-        else:
-            state, new = at_row_end(choice, able)
+    state, instead = _replaced(state, moment, closed, at_end)
+    state, missions = begun(state, moment)
+    return state, (*instead, *missions)
+
+
+def _replaced(
+    state: SurveyState, moment: PlanningMoment, closed: Sequence[str], at_end: Sequence[str]
+) -> Step:
+    """Replace missions under way, where that is worth it."""
+    missions: tuple[MissionAssignment, ...] = ()
+    for serial in dict.fromkeys((*closed, *at_end)):
+        choice = moment.choice(state, serial)
+        is_closed = serial in closed
+        state, new = off_closed_ground(choice) if is_closed else at_row_end(choice, moment.able)
         missions += new
-    idle = [each for serial, each in able.items() if _is_asked(state, serial, able, now_ns)]
-    if not idle:
-        return state, tuple(missions)
-    choices = [
-        VehicleChoice(state, segments, expected, tuple(able.values()), each, now_ns)
-        for each in idle
-    ]
-    whole = _round(choices) if len(idle) == len(able) else None
-    if _awaits_motion(state, whole, sun, now_ns):
+    return state, missions
+
+
+def _begun(state: SurveyState, moment: PlanningMoment) -> Step:
+    """Begin a round that is worth it, or what is best for each vehicle by itself."""
+    choices = [moment.choice(state, serial) for serial in moment.idle(state)]
+    if not choices:
+        return state, ()
+    whole = _round(choices) if len(choices) == len(moment.able) else None
+    if _awaits_motion(state, whole, moment.sun, moment.now_ns):
         return replace(state, reason="waiting: how shadows move is not known yet"), ()
     rows = whole.rows if whole is not None and whole.is_worth else NO_ROUTES
+    missions: tuple[MissionAssignment, ...] = ()
     for each in choices:
         choice = replace(each, state=state)
         own = rows.get(choice.surveyor.serial)
         state, mission = choice.made() if own is None else choice.flies_all(own)
         missions += mission
-    return state, tuple(missions)
+    return state, missions
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,7 +188,7 @@ class _Round:
     """Most of it is, and waiting does not bring more into sun than is flown meanwhile."""
 
 
-def _round(choices: Sequence["VehicleChoice"]) -> _Round | None:
+def _round(choices: Sequence[VehicleChoice]) -> _Round | None:
     """Return a round that all vehicles would begin now; None if nothing is free."""
     state, segments, expected = choices[0].state, choices[0].segments, choices[0].expected
     is_free = (expected.missing_m2 > 0.0) & ~segments.under(just_flown_legs(state))

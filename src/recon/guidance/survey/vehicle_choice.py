@@ -81,7 +81,7 @@ class VehicleChoice:
         """Return the survey with the decision, and the vehicle's mission if it gets one."""
         free = self.free()
         if not free.any():
-            return self._waits(self._why_none_is_free())
+            return self.waits(self._why_none_is_free())
         share = self.share(free)
         if self.expected.is_clear(share, self.settings.clear_from):
             return self.flies_all(self.rows(share))
@@ -90,7 +90,7 @@ class VehicleChoice:
             return self._returns()
         if not flight.legs:
             minutes = self.settings.planned_s / 60.0
-            return self._waits(f"waits: no sun is expected on its rows for {minutes:.0f} min")
+            return self.waits(f"waits: no sun is expected on its rows for {minutes:.0f} min")
         if flight.waits_s > 0.0:
             return self._stands_by(flight)
         legs = self.committed(flight)
@@ -150,7 +150,7 @@ class VehicleChoice:
         All vehicles work across the field in the same direction, so that none begins where its
         neighbour does.
         """
-        start_m = self._along_across_m(self.surveyor.place_m)
+        start_m = self.start_m
         pieces = missing_pieces(self.state, self.segments, share)
         route = route_of(pieces, self.plan.lattice, start_m)
         others = {_direction(flight.route) for flight in self.state.flights.values()} - {0}
@@ -169,12 +169,12 @@ class VehicleChoice:
         search = Search(
             self.segments, self.expected, share, self.plan.lattice, self._pace, self.settings
         )
-        return search.best(self._along_across_m(self.surveyor.place_m), self._starts_s)
+        return search.best(self.start_m, self._starts_s)
 
     def passing(self, route: Route, starts_s: float | None = None) -> Passing:
         """When it passes the rows of a route; without a start, that of a new mission."""
         starts_s = self._starts_s if starts_s is None else starts_s
-        start_m = self._along_across_m(self.surveyor.place_m)
+        start_m = self.start_m
         segments, lattice = self.segments, self.plan.lattice
         return passing(route, segments, self.expected, lattice, self._pace, start_m, starts_s)
 
@@ -196,7 +196,10 @@ class VehicleChoice:
         climb_s = max(wanted_m, 0.0) / self.settings.climb_mps
         return self.settings.start_s + self.settings.takeoff_s + climb_s
 
-    def _along_across_m(self, place_m: Place) -> Place:
+    @property
+    def start_m(self) -> Place:
+        """Where it is, along and across."""
+        place_m = self.surveyor.place_m
         ((along_m, across_m),) = self.plan.lattice.along_across_m([place_m]).tolist()
         return along_m, across_m
 
@@ -213,7 +216,7 @@ class VehicleChoice:
         track, count = sortie(self.plan, route, self.surveyor, may_fly)
         if track is None:
             text = "waits: its battery lasts for no row, the way there and the return"
-            return self._waits(text, self.settings.retry_s)
+            return self.waits(text, self.settings.retry_s)
         speed_mps, stops_s = self.plan.survey.speed_mps, self._pace.stop_s * len(track.corners_m)
         climbing_s = track.climbing_s(speed_mps, self.settings.climb_mps)
         ends_s = self._starts_s + track.length_m / speed_mps + stops_s + climbing_s
@@ -253,16 +256,17 @@ class VehicleChoice:
         row = first.route.piece.row + 1
         sun = f"row {row} in {first.from_s:.0f} s, probability {first.probability:.1f}"
         if surveyor.is_flying and far_m <= self.settings.standby_m:
-            return self._waits(f"waits: sun is expected on {sun}")
+            return self.waits(f"waits: sun is expected on {sun}")
         if not surveyor.is_flying and flight.waits_s > self._starts_s + self.settings.standby_s:
-            return self._waits(f"waits on the ground: sun is expected on {sun}")
+            return self.waits(f"waits on the ground: sun is expected on {sun}")
         there_ns = self.now_ns + seconds_to_ns(first.from_s)
         text = f"goes to row {row} and stands by: sun is expected on {sun}"
         return self._goes((east_m, north_m), there_ns, text)
 
-    def _waits(
+    def waits(
         self, text: str, again_s: float | None = None
     ) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
+        """Wait where it is; out of the others' rows if there is a place."""
         if self._is_among_rows:
             return self._steps_aside(text)
         again_s = self.settings.decided_again_s if again_s is None else again_s
