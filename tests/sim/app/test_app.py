@@ -22,6 +22,9 @@ from recon.sim.flight.kinematics import AircraftMotion
 
 HOME = GeoPoint(41.9, -93.6, 275.0)
 HOVER, LAND, RETURN = (wire.EmergencyCommand(action=action) for action in (0, 1, 2))
+STARTS_S = 3.0
+"""A mission of a few waypoints is uploaded and flown by then."""
+
 SQUARE = [(0.0, 10.0, 40.0), (60.0, 10.0, 40.0), (60.0, 70.0, 40.0)]
 
 
@@ -128,11 +131,54 @@ def test_both_altitude_references_reach_the_same_true_height(
 def test_a_mission_shows_its_mode_and_number(app_bench, mission_packet) -> None:
     bench = app_bench()
     bench.send(mission_packet(SQUARE))
-    bench.run(1.0)
+    bench.run(STARTS_S)
     assert bench.mode == FlightMode.GPS_WAYPOINT
     assert bench.last(wire.ExtendedTelemetry).mission_id == 1
     bench.run(60.0)
     assert bench.last(wire.ExtendedTelemetry).mission_id == 0
+
+
+class TestUpload:
+    """0.1 s for each waypoint, and 2 s until it is flown."""
+
+    def test_the_aircraft_holds_until_its_mission_is_there(self, app_bench, mission_packet) -> None:
+        bench = app_bench()
+        bench.send(mission_packet(SQUARE))
+        bench.run(2.0 + 0.1 * len(SQUARE))
+        assert bench.mode == FlightMode.GPS_ATTI
+        bench.run(0.8)
+        assert bench.mode == FlightMode.GPS_WAYPOINT
+
+    def test_a_mission_under_way_is_stopped_before(self, app_bench, mission_packet) -> None:
+        bench = app_bench()
+        bench.send(mission_packet(SQUARE))
+        bench.run(5.0)
+        bench.send(mission_packet(SQUARE[::-1]))
+        bench.run(1.0)
+        assert bench.mode == FlightMode.GPS_ATTI
+        bench.run(3.0)
+        assert bench.mode == FlightMode.GPS_WAYPOINT
+        assert bench.last(wire.ExtendedTelemetry).mission_id == 2
+
+    def test_whatever_is_ordered_meanwhile_replaces_it(self, app_bench, mission_packet) -> None:
+        bench = app_bench()
+        bench.send(mission_packet(SQUARE))
+        bench.run(1.0)
+        bench.send(HOVER)
+        bench.run(10.0)
+        assert bench.mode == FlightMode.GPS_ATTI
+        assert bench.last(wire.ExtendedTelemetry).mission_id == 0
+
+    def test_it_is_not_started_for_a_pilot_who_has_taken_over(
+        self, app_bench, mission_packet
+    ) -> None:
+        bench = app_bench()
+        bench.send(mission_packet(SQUARE))
+        bench.run(1.0)
+        bench.app.aircraft.has_pilot_control = True
+        bench.run(10.0)
+        assert bench.last(wire.ExtendedTelemetry).mission_id == 0
+        assert any("mission not started: the pilot" in line for line in bench.app.take_log())
 
 
 def test_a_mission_that_the_sdk_rejects_is_acknowledged_and_nothing_happens(
@@ -294,7 +340,7 @@ def test_mission_numbers_are_reported_or_always_0(app_bench, mission_packet, rep
         bench.app.settings, behaviour=AppBehaviour(reports_mission_id=reports)
     )
     bench.send(mission_packet(SQUARE))
-    bench.run(1.0)
+    bench.run(STARTS_S)
     assert bench.mode == FlightMode.GPS_WAYPOINT
     assert bench.last(wire.ExtendedTelemetry).mission_id == int(reports)
 

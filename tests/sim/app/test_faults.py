@@ -91,11 +91,11 @@ def test_the_old_link_sends_nothing(app_bench, kind) -> None:
 
 
 def test_a_restarted_app_has_no_memory_and_the_aircraft_flies_on(app_bench, mission_packet) -> None:
-    bench = faulty(app_bench, FaultKind.RESTART, start_s=2.0)
+    bench = faulty(app_bench, FaultKind.RESTART, start_s=5.0)
     bench.run(1.0)
     mission = mission_packet([(0.0, 10.0, 30.0), (400.0, 10.0, 30.0)])
     bench.send(mission)
-    bench.run(0.9)
+    bench.run(3.9)
     bench.send(LAND)
     bench.run(0.2)
     bench.app.connected(bench.now_ns)
@@ -103,7 +103,7 @@ def test_a_restarted_app_has_no_memory_and_the_aircraft_flies_on(app_bench, miss
     assert bench.mode == FlightMode.GPS_WAYPOINT
     assert bench.last(wire.ExtendedTelemetry).mission_id == 0
     bench.send(mission)
-    bench.run(1.0)
+    bench.run(4.0)
     assert bench.last(wire.ExtendedTelemetry).mission_id == 1
 
 

@@ -71,7 +71,10 @@ class TestMission:
     def test_one_that_is_silently_rejected_is_an_alarm(self) -> None:
         scene = hovering()
         order = scene.order(mission())
-        scene.answered(order, True).passes(8.1)
+        upload_s = 0.1 * len(mission().mission.waypoints)
+        scene.answered(order, True).passes(7.9 + upload_s)
+        assert scene.phase(order) is not Phase.TIMED_OUT
+        scene.passes(0.2)
         assert scene.phase(order) is Phase.TIMED_OUT
         assert scene.alarms() == {"mission_ignored"}
         scene.keeps_receiving(1, core(), extended(mode=FlightMode.GPS_WAYPOINT)).passes(0.2)

@@ -218,8 +218,8 @@ class TestWithoutRelief:
         assert absent.gone_age_s > 45.0
 
     def test_it_is_called_home_when_it_must_leave_and_sent_back_with_a_fresh_battery(self) -> None:
-        world = surveying(None, first=0.345)
-        assert world.runs_until(lambda: bool(world.alarms()), 10.0)
+        world = surveying(None, first=0.36)
+        assert world.runs_until(lambda: bool(world.alarms()), 60.0)
         text = world.alarms()["imager_relief:leaves:CAM-1"]
         assert "Relieve it, or it is called home then" in text
         assert world.runs_until(lambda: left_at_home(world), 200.0)

@@ -32,7 +32,7 @@ def is_home(world: SurveyedWorld, serial: str) -> bool:
 def runs_until_home(world: SurveyedWorld, serials: tuple[str, ...], at_most_s: float) -> bool:
     for _ in range(round(at_most_s)):
         if all(is_home(world, serial) for serial in serials):
-            world.runs(1.0)
+            world.runs(2.0)
             return True
         world.runs(1.0)
     return False

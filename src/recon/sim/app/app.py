@@ -35,7 +35,7 @@ from recon.model.geo import GeoPoint
 from recon.model.imagery import CameraPose
 from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.sim.app.camera_feed import CameraFeed, Shot
-from recon.sim.app.commands import AppBehaviour, AppResponse, CommandHandler
+from recon.sim.app.commands import AppBehaviour, AppResponse, CommandHandler, MissionStart
 from recon.sim.app.fault_effects import AircraftFaults, FaultSchedule
 from recon.sim.app.faults import (
     AIRCRAFT_FAULTS,
@@ -141,6 +141,8 @@ class SimulatedApp:
         self._commands = CommandHandler(home, aircraft, feed, behaviour, self._altitude)
         self._links: dict[int, _Link] = {}
         self._pending: deque[tuple[int, AppResponse]] = deque()
+        self._start: tuple[int, MissionStart] | None = None
+        """When a mission that is being uploaded is flown."""
         self._link_orders: deque[LinkOrder] = deque()
         name = f"{settings.seed}/{settings.serial}/faults"
         self._plan = FaultSchedule(settings.faults, name, self._start_ns)
@@ -247,6 +249,8 @@ class SimulatedApp:
         due_ns, work = NEVER_NS, self._send_core
         if self._pending:
             due_ns, work = self._pending[0][0], self._execute
+        if self._start is not None and self._start[0] < due_ns:
+            due_ns, work = self._start[0], self._start_mission
         if self._fault_events and self._fault_events[0][0] < due_ns:
             due_ns, work = self._fault_events[0][0], self._run_fault_event
         for number, link in self._links.items():
@@ -320,7 +324,21 @@ class SimulatedApp:
     def _execute(self, now_ns: int) -> None:
         _, response = self._pending.popleft()
         mode = self.aircraft.flight_mode
-        self._log.append(response.act(now_ns))
+        if response.moves:
+            self._start = None
+        done = response.act(now_ns)
+        if isinstance(done, MissionStart):
+            self._start = (now_ns + seconds_to_ns(done.after_s), done)
+        else:
+            self._log.append(done)
+        if self.aircraft.flight_mode is not mode:
+            self._log.append(f"mode {self.aircraft.flight_mode.name}")
+
+    def _start_mission(self, now_ns: int) -> None:
+        assert self._start is not None  # or it would not be due
+        (_, mission), self._start = self._start, None
+        mode = self.aircraft.flight_mode
+        self._log.append(mission.start())
         if self.aircraft.flight_mode is not mode:
             self._log.append(f"mode {self.aircraft.flight_mode.name}")
 
@@ -407,6 +425,7 @@ class SimulatedApp:
         self.disconnected()
         if fault.kind is FaultKind.RESTART:
             self._pending.clear()
+            self._start = None
             self.aircraft.forget_mission_numbers()
 
     def _has(self, kind: FaultKind, now_ns: int) -> bool:

@@ -40,16 +40,33 @@ class AppBehaviour:
     reports_mission_id: bool = True
     """False: MissionID in telemetry is always 0, as from some apps in the field."""
     sdk: SdkLimits = field(default_factory=SdkLimits)
+    upload_s: float = 0.1
+    """For each waypoint of a mission; the aircraft holds meanwhile."""
+    start_s: float = 2.0
+    """From a mission's upload until the aircraft flies it."""
 
 
 @dataclass(frozen=True, slots=True)
 class AppResponse:
-    """The acknowledgment of one command packet, and the action (returning a log line)."""
+    """The acknowledgment of one command packet, and the action (returning a log line).
+
+    A mission's action begins its upload and returns after how long it starts, and the start.
+    """
 
     source_pid: int
     is_positive: bool
-    act: Callable[[int], str]
+    act: Callable[[int], "str | MissionStart"]
     """Takes the time in nanoseconds."""
+    moves: bool = False
+    """Whether it replaces what the aircraft does, and a mission that has not started."""
+
+
+@dataclass(frozen=True, slots=True)
+class MissionStart:
+    """A mission on its way to the aircraft."""
+
+    after_s: float
+    start: Callable[[], str]
 
 
 class CommandHandler:
@@ -78,9 +95,11 @@ class CommandHandler:
             case wire.CameraControl():
                 return self._camera(packet)
             case wire.ExecuteWaypointMission():
-                return AppResponse(packet.PID, True, lambda now_ns: self._fly(packet))
+                return AppResponse(
+                    packet.PID, True, lambda now_ns: self._upload(packet), moves=True
+                )
             case wire.VirtualStickCommand():
-                return AppResponse(packet.PID, True, lambda now_ns: self._stick(packet))
+                return AppResponse(packet.PID, True, lambda now_ns: self._stick(packet), moves=True)
             case _:
                 return None
 
@@ -89,7 +108,7 @@ class CommandHandler:
         act = acts.get(packet.action)
         if act is None:
             return _refusal(packet.PID, f"emergency action {packet.action} unknown")
-        return AppResponse(packet.PID, True, lambda now_ns: act())
+        return AppResponse(packet.PID, True, lambda now_ns: act(), moves=True)
 
     def _hover(self) -> str:
         if self._aircraft.is_on_ground and self._takes_off_on_hover:
@@ -124,12 +143,23 @@ class CommandHandler:
             return _refusal(packet.PID, f"camera control: action {packet.action}, {fps_hz:g} fps")
         return AppResponse(packet.PID, True, lambda now_ns: _switch_on(feed, fps_hz, now_ns))
 
-    def _fly(self, packet: wire.ExecuteWaypointMission) -> str:
+    def _upload(self, packet: wire.ExecuteWaypointMission) -> str | MissionStart:
         points = self.mission_points(packet)
         is_curved = packet.curved_flight == 1
         problem = mission_problem(points, is_curved, self._limits()) or self._no_app_control()
         if problem is not None:
             return f"mission rejected silently: {problem}"
+        # A mission under way must be stopped before another one is uploaded.
+        self._aircraft.hover()
+        after_s = self._behaviour.upload_s * len(points) + self._behaviour.start_s
+        return MissionStart(after_s, lambda: self._start(points, is_curved, packet))
+
+    def _start(
+        self, points: tuple[MissionPoint, ...], is_curved: bool, packet: wire.ExecuteWaypointMission
+    ) -> str:
+        problem = self._no_app_control()
+        if problem is not None:
+            return f"mission not started: {problem}"
         self._aircraft.fly_mission(points, is_curved, packet.land_at_end == 1)
         return f"mission of {len(points)} waypoints"
 
