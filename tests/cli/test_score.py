@@ -163,7 +163,7 @@ def test_options_choose_methods(tmp_path: Path) -> None:
         (["--first-seed", "-1"], "--first-seed of 0 or more"),
         (
             ["--planner", "magic"],
-            "--planner: expected lawnmower_once or lawnmower_again or sunlit_first, got",
+            f"--planner: expected {known('planner')}, got",
         ),
         (["--detection", "magic"], f"--detection: expected {known('detection')}, got"),
         (["--forecast", "magic"], f"--forecast: expected {known('forecast')}, got"),

@@ -19,7 +19,7 @@ once. One call of `sunlit_first`:
    One that waits at the rows' height climbs or sinks to its layer first, out of others' rows.
 8. Rows where a vehicle without telemetry may be are left out, and its own rows: the gate would
    refuse them. They are flown once it is in contact again, or dismissed by an operator.
-9. Missions may be replaced under way, mostly at the end of a row (`row_ends`).
+9. Missions may be replaced under way, mostly at the end of a row (`mission_changes`).
 10. If no vehicle is busy and a round of the lawnmower would image most of what is missing in
    sun, by the forecast at the moments at which it would pass, that round is flown: choosing takes
    longer.
@@ -36,6 +36,12 @@ from types import MappingProxyType
 import numpy as np
 
 from recon.guidance.survey.closed_areas import closed_ground, closed_segments
+from recon.guidance.survey.mission_changes import (
+    at_row_end,
+    off_closed_ground,
+    on_closed_ground,
+    with_ends_passed,
+)
 from recon.guidance.survey.rounds import (
     Step,
     ended,
@@ -44,12 +50,6 @@ from recon.guidance.survey.rounds import (
     shares,
     without_able,
     without_ended,
-)
-from recon.guidance.survey.row_ends import (
-    at_row_end,
-    off_closed_ground,
-    on_closed_ground,
-    with_ends_passed,
 )
 from recon.guidance.survey.segments import (
     ExpectedSun,

@@ -14,7 +14,8 @@ the same seed and commands give the same bytes.
 
 A command is acknowledged at once and acts `ACTION_DELAY_NS` later, as with real apps: a positive
 acknowledgment promises nothing. What DJI's SDK would reject is dropped silently after the positive
-acknowledgment.
+acknowledgment. A mission first stops what the aircraft flies; it is uploaded, and started some
+seconds later, unless another command has come by then.
 
 Faults act in three places: on what is sent (`FaultSchedule`: held back, damaged), on the aircraft
 (`AircraftFaults`), and on the connection itself, which only the driver can close or open; those
