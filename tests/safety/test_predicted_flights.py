@@ -180,10 +180,12 @@ class TestFirstWaypoint:
     @pytest.mark.parametrize(
         ("body", "height_m", "delay_s"),
         [
-            (FlyMission(ALONG), 40.0, 8.0),
-            (FlyMission(ALONG), 20.0, 8.0 + 10.0),
-            (FlyMission(ALONG), 60.0, 8.0 + 10.0),
-            (FlyMission(ALONG), None, 8.0),
+            (FlyMission(ALONG), 40.0, 8.2),
+            (FlyMission(ALONG), 20.0, 8.2 + 10.0),
+            (FlyMission(ALONG), 60.0, 8.2 + 10.0),
+            (FlyMission(ALONG), None, 8.2),
+            (FlyMission(route(*((float(n), 0.0) for n in range(60)))), 40.0, 14.0),
+            (FlyMission(route(*((float(n), 0.0) for n in range(300)))), 40.0, 17.9),
             (GoTo(at(100.0, 0.0), 40.0, 5.0), 40.0, 0.0),
             (GoTo(at(100.0, 0.0), 40.0, 5.0), 10.0, 15.0 - 10.0),
             (GoTo(at(100.0, 0.0), 40.0, 5.0), 60.0, 10.0 - 5.0),
@@ -194,7 +196,8 @@ class TestFirstWaypoint:
         self, body: Body, height_m: float | None, delay_s: float, age_s: float
     ) -> None:
         """As slow as 2 m/s; the flight itself counts 3 m/s up and 4 m/s down. A mission's change
-        of height may come first, and its start 8 s late."""
+        of height may come first, and its start 8 s late, and 0.1 s for each waypoint that is
+        uploaded at once."""
         state = aircraft(height_m=height_m, age_s=age_s)
         assert predict_order(seen(state), body, SETTINGS).delay_s == pytest.approx(delay_s)
 

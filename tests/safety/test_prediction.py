@@ -119,7 +119,7 @@ class TestLegs:
         flown_s = float(predicted.rows[0, 1])
         assert flown_s == pytest.approx(10.0)
         # Climbs first, then 30 m: its flight as well; and no faster than 2 m/s.
-        assert predicted.delay_s == pytest.approx(8.0 + 10.0 + 5.0)
+        assert predicted.delay_s == pytest.approx(8.0 + 0.2 + 10.0 + 5.0)
 
     def test_a_goto_that_climbs_arrives_when_it_has_climbed(self) -> None:
         goto = GoTo(at(10.0, 0.0), 70.0, 5.0)

@@ -104,7 +104,7 @@ class FlightLimits:
     """Three times the combined error of two GNSS positions (2 x 2.5 m)."""
 
     min_separation_vertical_m: float = 6.0
-    """Two barometers drift apart by a few metres in an hour; the return's layers are 8 m apart."""
+    """Two barometers drift apart by a few metres in an hour; the return's layers are 10 m apart."""
 
     boundary_margin_m: float = 5.0
     """Kept to the boundary and to keep-out zones: GNSS error and a gust."""

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from recon.model.mission import DJI
+from recon.model.mission import DJI, Mission
 from recon.model.vehicle import LATE_UNDER_S, LIVE_UNDER_S
 
 
@@ -176,8 +176,9 @@ class PredictionSettings:
     """Beyond that: gaining speed and stopping are counted in whole legs."""
 
     start_delay_s: float = 8.0
+    waypoint_upload_s: float = 0.1
     """A mission under judgement, or another's that has not begun, starts at once or as late as
-    this; later it counts as ignored."""
+    this and the upload of its waypoints (`starts_within_s`); later it counts as ignored."""
 
     piece_s: float = 3.0
     """Paths are compared in pieces of this time, or of their own uncertainty when that is more."""
@@ -242,7 +243,7 @@ class PredictionSettings:
     height_drift_m_per_h: float = 0.5
     """Of each vehicle's height above takeoff, by its time in the air: so much more is kept between
     two. An assumption, for barometers that were warm at takeoff: two in the air for half an hour
-    are half a metre off each other, which layers of 8 m hold (docs/decisions/0014)."""
+    are half a metre off each other, which layers of 10 m hold (docs/decisions/0014)."""
 
     corridor_m: float = 10.0
     """Half the width of a way home: GNSS error, wind, and where home really is."""
@@ -250,6 +251,12 @@ class PredictionSettings:
     escape_s: float = 20.0
     """Two vehicles already too near each other may be led apart: for this long only getting nearer
     is refused. Time for 100 m at a survey's speed."""
+
+    def starts_within_s(self, mission: Mission) -> float:
+        """Return how long after its order a mission may begin; one of many waypoints is uploaded
+        in parts of as many as an aircraft takes."""
+        uploaded = min(len(mission.waypoints), DJI.max_waypoints)
+        return self.start_delay_s + self.waypoint_upload_s * uploaded
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,8 +25,8 @@ CROSSED = [(45, -20), (-15, -20), (-45, -20), (75, -20), (15, -20), (-75, -20)]
 """Their pads in a row, each on the other side of it: their ways cross."""
 
 SIX = [f"SIM-{number}" for number in range(1, 7)]
-LOW_CEILING_M = 40.0
-"""Room for three layers: 20, 28 and 36 m."""
+LOW_CEILING_M = 43.0
+"""Room for three layers: 20, 30 and 40 m."""
 
 
 def six_in_the_air(pads: list[tuple[int, int]] = CROSSED, **options: object) -> ReturningWorld:
@@ -37,8 +37,8 @@ FOUR = SIX[:4]
 
 
 def four_in_the_air(**options: object) -> ReturningWorld:
-    """The first four with room for two layers, 20 and 28 m; a fifth hovers and is not called."""
-    return returning_world(FIELD[:5], CROSSED[:5], max_height_m=31.0, **options)  # type: ignore[arg-type]
+    """The first four with room for two layers, 20 and 30 m; a fifth hovers and is not called."""
+    return returning_world(FIELD[:5], CROSSED[:5], max_height_m=33.0, **options)  # type: ignore[arg-type]
 
 
 def landed_on_its_pad(world: ReturningWorld, serial: str) -> bool:
@@ -69,7 +69,7 @@ class TestSixInTwoWaves:
         assert waves == {1, 2}
         for wave in waves:
             heights = sorted(f.layer_up_m for f in flights if f is not None and f.wave == wave)
-            assert heights == pytest.approx([20.0, 28.0, 36.0])
+            assert heights == pytest.approx([20.0, 30.0, 40.0])
 
     def test_each_flew_level_in_its_layer(self, flown: ReturningWorld) -> None:
         """Away from the place where it hovered and from its pad it is nowhere but there."""
@@ -377,6 +377,6 @@ class TestCalling:
         assert shown is not None
         assert not shown.is_over
         assert [v.wave for v in shown.vehicles] == [1, 1, 1, 2, 2, 2]
-        assert [v.layer_height_m for v in shown.vehicles] == pytest.approx([20, 28, 36] * 2)
+        assert [v.layer_height_m for v in shown.vehicles] == pytest.approx([20, 30, 40] * 2)
         assert "flying" in {v.stage for v in shown.vehicles[:3]}
         assert all(v.reason for v in shown.vehicles[3:])

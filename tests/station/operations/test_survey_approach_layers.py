@@ -75,10 +75,10 @@ def test_no_two_vehicles_share_a_layer_and_none_meets_rows_or_ground(
 def test_over_flat_ground_they_are_multiples_of_a_layer_off_the_rows_the_nearest_first() -> None:
     terrain, air = over(flat)
     assert layers_over_terrain_m(terrain, air, *way(0), 0, 2) == pytest.approx(
-        [48.0, 32.0, 64.0, 80.0, 96.0, 112.0]
+        [50.0, 30.0, 70.0, 90.0, 110.0]
     )
     assert layers_over_terrain_m(terrain, air, *way(1), 1, 2) == pytest.approx(
-        [56.0, 24.0, 72.0, 88.0, 104.0]
+        [60.0, 20.0, 80.0, 100.0]
     )
 
 

@@ -130,7 +130,7 @@ class TestOnASlope:
         world.asks(asked(field_of(240.0, 60.0), height_above_takeoff_m=HEIGHT_M))
         world.starts("SIM-1", takeoff=True)
         level = Flown(world)
-        level.run(85)
+        level.run(88)
         assert level.range_m[0] < HEIGHT_M - 20.0
         assert flown.range_m[0] > HEIGHT_M - 3.0
 

@@ -47,7 +47,7 @@ def predict_order(motion: VehicleMotion, body: Body, settings: PredictionSetting
     predictor = Predictor(motion, settings)
     write_order(predictor, body)
     trajectory = predictor.writer.trajectory(motion.name, motion.drift_m)
-    start_s = settings.start_delay_s if isinstance(body, FlyMission) else 0.0
+    start_s = settings.starts_within_s(body.mission) if isinstance(body, FlyMission) else 0.0
     return replace(trajectory, delay_s=predictor.delay_s + start_s)
 
 
@@ -68,7 +68,9 @@ def predict_traffic(
     predictor = Predictor(motion, settings, until_s=until_s)
     predictor.follow(intent)
     trajectory = predictor.writer.trajectory(motion.name, motion.drift_m)
-    start_s = settings.start_delay_s if _has_not_begun(motion, intent) else 0.0
+    start_s = 0.0
+    if intent.mission is not None and _has_not_begun(motion, intent):
+        start_s = settings.starts_within_s(intent.mission)
     return (replace(trajectory, delay_s=predictor.delay_s + start_s), *volumes)
 
 

@@ -121,11 +121,8 @@ class StationSettings:
     """A hover that has begun: from 15 m/s an aircraft needs 6 s to stand still."""
 
     mission_confirm_s: float = 8.0
-    """A mission is stopped, uploaded and started within this and `mission_waypoint_s` for each
-    waypoint; after that it was rejected silently."""
-
-    mission_waypoint_s: float = 0.1
-    """The upload of a waypoint to the aircraft."""
+    """A mission is stopped, uploaded and started within this and the upload of its waypoints, as
+    the gate assumes (`PredictionSettings`); after that it was rejected silently."""
 
     mission_takeoff_s: float = 20.0
     """A mission that is seen to take off for it: motors, climb, then the mission's mode."""

@@ -58,10 +58,13 @@ def about_to_fly(station: Station, now_ns: int) -> Iterator[tuple[VehicleState, 
         intent = _queued_flight(record) if record.phase is Phase.QUEUED else None
         if vehicle is not None and intent is not None:
             yield vehicle, intent
-    starts_ns = seconds_to_ns(station.settings.safety.prediction.start_delay_s)
+    prediction = station.settings.safety.prediction
     for serial, control in station.controls.items():
-        intent = control.intent
-        if intent.commanded is Commanded.NOTHING or now_ns - intent.since_ns > starts_ns:
+        intent, starts_s = control.intent, prediction.start_delay_s
+        if intent.mission is not None:
+            starts_s = prediction.starts_within_s(intent.mission)
+        is_over = now_ns - intent.since_ns > seconds_to_ns(starts_s)
+        if intent.commanded is Commanded.NOTHING or is_over:
             continue
         vehicle = station.fleet.vehicles.get(serial)
         if vehicle is None or vehicle.is_flying.value is not False:

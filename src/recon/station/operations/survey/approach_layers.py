@@ -18,7 +18,7 @@ from recon.safety.airspace import PreparedAirspace
 
 FloatArray = npt.NDArray[np.float64]
 
-LAYER_M = 8.0
+LAYER_M = 10.0
 """Between two approach heights: the same as between two layers of a fleet return."""
 
 SPARE_M = 5.0
