@@ -26,8 +26,8 @@ from recon.station.kernel.worker import JobRunner
 
 HOME = GeoPoint(41.9012, -93.6034, 275.0)
 FRAME = LocalFrame(HOME)
-CEILING_M = 40.0
-"""Leaves three layers: 20, 28 and 36 m."""
+CEILING_M = 43.0
+"""Leaves three layers: 20, 30 and 40 m."""
 
 FIELD_M = [(-60, 150, 30), (0, 160, 38), (60, 150, 30), (-80, 220, 34), (0, 240, 30), (80, 220, 34)]
 """Initial positions of the six vehicles: east, north, up."""
@@ -114,10 +114,10 @@ def drawing(flown: Flown) -> str:
 
     parts = [
         f'<text x="{x(0):.0f}" y="22">height above the pads over time, m; '
-        f"ceiling {CEILING_M:g} m, layers 8 m apart</text>"
+        f"ceiling {CEILING_M:g} m, layers 10 m apart</text>"
     ]
-    for height_m in (0, 20, 28, 36, 40):
-        dash = "" if height_m in (0, 40) else ' stroke-dasharray="3 5"'
+    for height_m in (0, 20, 30, 40, 43):
+        dash = "" if height_m in (0, 43) else ' stroke-dasharray="3 5"'
         parts.append(
             f'<path d="M60 {y(height_m):.0f}H760" stroke="#888"{dash}/>'
             f'<text x="52" y="{y(height_m) + 5:.0f}" text-anchor="end">{height_m}</text>'

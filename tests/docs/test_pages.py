@@ -101,6 +101,6 @@ def test_examples_run(
         "03": "of the grid covered",
         "04": "landing: confirmed",
         "05": "arrived",
-        "06": "SIM-6: wave 2, 36 m, landed",
+        "06": "SIM-6: wave 2, 40 m, landed",
     }
     assert expected[example.name[:2]] in printed
