@@ -74,6 +74,8 @@ async def field(*sim_options: str, damage: Damage | None = None) -> AsyncIterato
     finally:
         proxy.cancel()
         ticking.cancel()
+        # The proxy closes its connections when it ends.
+        await asyncio.gather(proxy, ticking, return_exceptions=True)
         await links.stop()
 
 

@@ -54,7 +54,7 @@ def test_a_gate_without_rules_and_no_watchdogs_are_found(monkeypatch: Patch) -> 
         "run",
         lambda station, now_ns, _: runner(station, now_ns, ()),
     )
-    kinds = own_kinds(flown(41, 60.0))
+    kinds = own_kinds(flown(55, 60.0))
     assert kinds & {"separation", "fence", "too low", "too high", "keep-out zone"}
     assert "alarm missing" in kinds
 
