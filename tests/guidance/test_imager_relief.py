@@ -122,13 +122,13 @@ class TestShown:
 
 class TestWay:
     def test_layers_go_outwards_between_ground_and_ceiling(self) -> None:
-        assert list(layers_m(60.0, 7.9, 75.0, may_be_above=True)) == [68, 72, 44, 40, 36, 32, 28]
-        assert list(layers_m(60.0, 7.9, 99.0, may_be_above=True))[:4] == [68, 72, 76, 44]
-        assert list(layers_m(60.0, 7.9, 75.0, may_be_above=False)) == [44, 40, 36, 32, 28]
+        assert list(layers_m(60.0, 7.9, 75.0, may_be_above=True)) == [70, 74, 40, 36, 32, 28, 24]
+        assert list(layers_m(60.0, 7.9, 99.0, may_be_above=True))[:4] == [70, 74, 78, 40]
+        assert list(layers_m(60.0, 7.9, 75.0, may_be_above=False)) == [40, 36, 32, 28, 24]
         assert list(layers_m(25.0, 7.9, 30.0, may_be_above=True)) == []
 
     def test_barometers_that_may_have_drifted_take_more(self) -> None:
-        assert next(layers_m(60.0, 9.5, 119.0, may_be_above=True)) == 69.5
+        assert next(layers_m(60.0, 11.5, 119.0, may_be_above=True)) == 71.5
 
     def test_straight_up_and_across(self) -> None:
         mission = relief_mission(HERE, THERE, 68.0, -90.0)

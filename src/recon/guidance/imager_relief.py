@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from recon.geo.distance import horizontal_distance_m
+from recon.model.airspace import LAYER_SPACING_M
 from recon.model.geo import LatLon
 from recon.model.mission import Mission, Waypoint
 from recon.model.shade import MaskMap
@@ -53,7 +54,7 @@ class ImagerReliefSettings:
     telemetry_within_s: float = 3.0
     """As in a fleet return: a vehicle without telemetry for so long may do anything."""
 
-    layer_m: float = 8.0
+    layer_m: float = LAYER_SPACING_M
     """Between the two at the place: as between two layers of a fleet return."""
 
     layer_step_m: float = 4.0

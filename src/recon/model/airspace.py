@@ -84,6 +84,12 @@ class LandingPad:
     place: GeoPoint
 
 
+LAYER_SPACING_M = 10.0
+"""Between two heights that are kept by vehicles above each other: in a fleet return, on the way to
+rows, over the field. The gate keeps 7.5 m at first, and the watchdog holds below 7 m: two
+barometers may drift apart by a metre or two within a flight."""
+
+
 @dataclass(frozen=True, slots=True)
 class FlightLimits:
     """Limits for every vehicle of a site, each optional in site.toml."""
@@ -104,7 +110,7 @@ class FlightLimits:
     """Three times the combined error of two GNSS positions (2 x 2.5 m)."""
 
     min_separation_vertical_m: float = 6.0
-    """Two barometers drift apart by a few metres in an hour; the return's layers are 10 m apart."""
+    """Two barometers drift apart by a few metres in an hour; layers are `LAYER_SPACING_M` apart."""
 
     boundary_margin_m: float = 5.0
     """Kept to the boundary and to keep-out zones: GNSS error and a gust."""

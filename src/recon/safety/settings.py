@@ -252,10 +252,11 @@ class PredictionSettings:
     """Two vehicles already too near each other may be led apart: for this long only getting nearer
     is refused. Time for 100 m at a survey's speed."""
 
-    def starts_within_s(self, mission: Mission) -> float:
-        """Return how long after its order a mission may begin; one of many waypoints is uploaded
-        in parts of as many as an aircraft takes."""
-        uploaded = min(len(mission.waypoints), DJI.max_waypoints)
+    def starts_within_s(self, mission: Mission | None) -> float:
+        """Return how long after its order a mission, or a takeoff without one, may begin. Many
+        waypoints are uploaded in parts of as many as an aircraft takes."""
+        waypoints = () if mission is None else mission.waypoints
+        uploaded = min(len(waypoints), DJI.max_waypoints)
         return self.start_delay_s + self.waypoint_upload_s * uploaded
 
 

@@ -96,6 +96,16 @@ class TestHandingOn:
             took_s.append(flights.time_s)
         assert took_s[0] < 0.7 * took_s[1]
 
+    def test_a_vehicle_whose_battery_lasts_for_no_other_mission_flies_on(self) -> None:
+        """Else it would leave rows that the gate has approved, and step aside."""
+        low = replace(HERE, time_left_s=20.0, height_above_takeoff_m=60.0)
+        state, _given = decided(lit(), HERE, replace(OTHER, is_able=False))
+        for now_s, end_m in enumerate(ends_m(state, "S-1")[:2], 1):
+            at_end = replace(low, place_m=end_m)
+            state, missions = decided(lit(now_s), at_end, OTHER, state=state, now_s=now_s)
+            assert "S-1" not in {mission.serial for mission in missions}
+        assert (state.flights["S-1"].number, state.flights["S-1"].ends_passed) == (1, 2)
+
     def test_little_is_not_handed_on(self) -> None:
         state, _given = decided(lit(), HERE, replace(OTHER, is_able=False))
         all_but_two = 2 * (len(flown_rows(state, "S-1")) - 1)
@@ -149,6 +159,7 @@ class TestShade:
         assert (flight.number, flight.ends_passed) == (1, 2)
         assert back.flown_m == pytest.approx(flown_m)
         assert back.decisions["S-1"].text.endswith("other rows were refused")
+        assert back.decisions["S-1"].again_ns == seconds_to_ns(3.0)
         assert (back.refusals, back.barred, back.waiting) == ({}, frozenset(), {})
 
 

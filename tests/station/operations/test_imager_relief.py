@@ -137,7 +137,7 @@ class TestFlown:
         world = flown[0]
         assert world.newest().stage is MotionStage.DONE
         assert dist(world.place_m(SPARE)[:2], PLACE_M) < 3.0
-        assert world.place_m(SPARE)[2] == pytest.approx(FIRST_UP_M + 8.0, abs=1.5)
+        assert world.place_m(SPARE)[2] == pytest.approx(FIRST_UP_M + 10.0, abs=1.5)
         assert world.holder(SPARE) is AuthorityHolder.OPERATOR
         assert imagers_at_work(world.station) == (SPARE,)
 
@@ -522,7 +522,7 @@ class TestRefused:
     def test_below_a_low_ceiling_it_goes_underneath_and_leaves_the_way_home_free(self) -> None:
         world = relieved_world(max_height_m=50.0)
         world.orders()
-        assert world.newest().height_above_takeoff_m == pytest.approx(FIRST_UP_M - 16.0, abs=0.5)
+        assert world.newest().height_above_takeoff_m == pytest.approx(FIRST_UP_M - 20.0, abs=0.5)
         assert world.runs_until(lambda: world.newest().is_over, 120.0)
         world.runs(10.0)
         assert world.newest().stage is MotionStage.DONE

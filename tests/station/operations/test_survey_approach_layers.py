@@ -12,10 +12,9 @@ from tests.guidance.survey.grounds import FloatArray, Ground, flat, hills, model
 
 from recon.guidance.survey import SurveyPlan, SurveySurroundings, plan_survey
 from recon.guidance.survey.terrain import Terrain
-from recon.model.airspace import Airspace
+from recon.model.airspace import LAYER_SPACING_M, Airspace
 from recon.safety import PreparedAirspace
 from recon.station.operations.survey.approach_layers import (
-    LAYER_M,
     LOWEST_M,
     SPARE_M,
     layers_over_terrain_m,
@@ -63,13 +62,13 @@ def test_no_two_vehicles_share_a_layer_and_none_meets_rows_or_ground(
         places_m = places_of(way_m, end_m)
         wanted_m, ground_m = terrain.up_m(places_m), ground(*places_m.T)
         for layer_m in layers_m:
-            assert np.abs(layer_m - wanted_m).min() >= LAYER_M - 0.5
+            assert np.abs(layer_m - wanted_m).min() >= LAYER_SPACING_M - 0.5
             assert layer_m >= ground_m.max() + LOWEST_M - 0.5
             assert layer_m <= ground_m.min() + CEILING_M - SPARE_M + 0.5
         found.append(layers_m)
     for one, other in combinations(found, 2):
         apart_m = [abs(a - b) for a in one for b in other]
-        assert min(apart_m, default=LAYER_M) >= LAYER_M - 1e-6
+        assert min(apart_m, default=LAYER_SPACING_M) >= LAYER_SPACING_M - 1e-6
 
 
 def test_over_flat_ground_they_are_multiples_of_a_layer_off_the_rows_the_nearest_first() -> None:

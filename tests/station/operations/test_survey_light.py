@@ -3,17 +3,20 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from tests.station.imagers import with_imagers
 from tests.station.station_world import HOME
 from tests.station.surveyed_world import SurveyedWorld, asked, surveyed_world
 
 from recon.guidance.survey.state import SurveyState
-from recon.model.command import Phase
+from recon.model.command import Command, FlyMission, Phase, Refusal
 from recon.model.control import AuthorityHolder
 from recon.model.event import AuthorityTaken, Event
 from recon.model.geo import GroundGrid, LocalFrame
 from recon.model.imagery import CameraPose, GroundImage
 from recon.model.survey import CellState, SurveyBudget, SurveyPhase
+from recon.safety import gate
+from recon.safety.situation import Situation
 from recon.station.imaging.frames import LAY_FRAME
 from recon.station.imaging.projection import LaidFrame
 from recon.station.state.steps import JobDone
@@ -124,3 +127,21 @@ class TestHandedOn:
         assert world.missions("SIM-2")
         assert {each.stop_reason for each in world.record().members.values()} == {None}
         assert world.figures().in_sun_m2 > 0.97 * world.figures().reached_m2
+
+    def test_a_battery_too_low_for_the_new_mission_is_no_reason_to_call_it_home(
+        self, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        def of_few_waypoints(command: Command, _situation: Situation) -> Refusal | None:
+            body = command.body
+            is_new = isinstance(body, FlyMission) and len(body.mission.waypoints) < 6
+            low = Refusal("battery", "too low for this")
+            return low if is_new and command.serial == "SIM-1" else None
+
+        monkeypatch.setattr(gate, "RULES", (*gate.RULES, of_few_waypoints))
+        world = self.flown(100)
+        refused = [m for m in world.missions("SIM-1") if m.refusal is not None]
+        assert [m.refusal.rule for m in refused if m.refusal] == ["battery"]
+        assert world.missions("SIM-1")[0].phase is Phase.STARTED
+        assert world.record().members["SIM-1"].return_reason is None
+        decision = world.state().decisions["SIM-1"]
+        assert decision.text == "flies on with rows 1 to 2: other rows were refused"

@@ -2,14 +2,14 @@
 
 from dataclasses import dataclass
 
+from recon.model.airspace import LAYER_SPACING_M
+
 
 @dataclass(frozen=True, slots=True)
 class FleetReturnSettings:
     """Distances in metres, speeds in metres per second."""
 
-    layer_spacing_m: float = 10.0
-    """The gate keeps 7.5 m, and the watchdog holds below 7 m: two barometers may drift apart by a
-    metre or two within a flight."""
+    layer_spacing_m: float = LAYER_SPACING_M
 
     lowest_layer_m: float = 20.0
     """Above the highest ground on the ways: over vans, masts and the trees of a field's edge."""
@@ -25,7 +25,7 @@ class FleetReturnSettings:
     a vehicle at 8 m/s is a few tenths of a second old."""
 
     vertical_slack_m: float = 0.4
-    """As above; less than the difference between the layers' 10 m and the gate's 7.5 m."""
+    """As above; less than the difference between the layers' spacing and the gate's 7.5 m."""
 
     detour_slack_m: float = 1.0
     """Added to the margin at boundary and zones: a waypoint is rounded, a corner is not."""

@@ -111,28 +111,25 @@ def refused(
     While others fly, the mission is requested again after `retry_s`; otherwise the vehicle is
     barred and its rows go to others. Without a vehicle left the survey pauses. If the refusal may
     end by itself, the mission is requested again after `retry_soon_s`, whether others fly or not;
-    so it is if another vehicle is `in_the_way` and the planner decides vehicle by vehicle.
+    so it is if another vehicle is `in_the_way` and the mission was chosen for this one alone: then
+    half of its rows are asked for at once.
     """
     flight = state.flights.get(serial)
     if flight is None or flight.number != number:
         return state
     if flight.replaces is not None:
-        return _flown_on(state, serial, flight, flight.replaces)
-    flights = {key: each for key, each in state.flights.items() if key != serial}
+        return _flown_on(state, serial, flight, flight.replaces, now_ns)
+    state = state.without_flight(serial)
     route = (*flight.route, *state.waiting.get(serial, ()))
-    settings = state.plan.settings
-    # A planner that decides vehicle by vehicle may find other rows at once.
-    is_decided_anew = serial in state.decisions
-    is_soon = may_end or is_decided_anew
+    settings, half = state.plan.settings, len(flight.route) // 2
+    finds_others = in_the_way and flight.is_chosen
+    rows_most = half if finds_others and half else None
+    wait_s = settings.retry_soon_s if may_end or flight.is_chosen else settings.retry_s
+    again_ns = now_ns if rows_most else now_ns + seconds_to_ns(wait_s)
     decisions = {key: each for key, each in state.decisions.items() if key != serial}
-    again_ns = now_ns + seconds_to_ns(settings.retry_soon_s if is_soon else settings.retry_s)
-    is_barred = not flights and not may_end and not (in_the_way and is_decided_anew)
-    rows_most = None
-    if in_the_way and is_decided_anew and len(flight.route) > 1:
-        rows_most, again_ns = len(flight.route) // 2, now_ns
+    is_barred = not (state.flights or may_end or finds_others)
     return replace(
         state,
-        flights=MappingProxyType(flights),
         waiting=MappingProxyType({**state.waiting, serial: route}),
         refusals=MappingProxyType({**state.refusals, serial: Refused(reason, again_ns, rows_most)}),
         barred=state.barred | {serial} if is_barred else state.barred,
@@ -142,16 +139,13 @@ def refused(
 
 
 def _flown_on(
-    state: SurveyState, serial: str, refused: AssignedMission, kept: AssignedMission
+    state: SurveyState, serial: str, refused: AssignedMission, kept: AssignedMission, now_ns: int
 ) -> SurveyState:
     """The survey with the mission that a refused one was to replace."""
     text = f"flies on with {named(kept.rows_left)}: other rows were refused"
-    return replace(
-        state,
-        flights=MappingProxyType({**state.flights, serial: kept}),
-        decisions=MappingProxyType({**state.decisions, serial: Decision(text)}),
-        flown_m=state.flown_m - refused.length_m + kept.unflown_m,
-    )
+    again_ns = now_ns + seconds_to_ns(state.plan.settings.retry_soon_s)
+    state = state.with_flight(serial, kept).with_decision(serial, Decision(text, again_ns))
+    return replace(state, flown_m=state.flown_m - refused.length_m + kept.unflown_m)
 
 
 def observe(state: SurveyState, serial: str, seen: Sequence[PositionSample]) -> SurveyState:

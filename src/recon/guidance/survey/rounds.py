@@ -196,8 +196,7 @@ def flying(
     if not rest:
         del waiting[serial]
     state = replace(
-        state,
-        flights=MappingProxyType({**state.flights, serial: flight}),
+        state.with_flight(serial, flight),
         waiting=MappingProxyType(waiting),
         missions=flight.number,
         flown_m=state.flown_m + flight.length_m,

@@ -1,7 +1,7 @@
 """The state of a survey, its figures, and the reasons for its end."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 
 import numpy as np
@@ -10,8 +10,9 @@ from recon.guidance.survey.closed_areas import ClosedArea
 from recon.guidance.survey.plan import SurveyPlan
 from recon.guidance.survey.progress import CoverageProgress
 from recon.guidance.survey.route import Place, Route
+from recon.guidance.survey.settings import SurveySettings
 from recon.model.survey import CellState, SurveyPhase
-from recon.model.units import ns_to_seconds
+from recon.model.units import ns_to_seconds, seconds_to_ns
 
 Routes = Mapping[str, Route]
 NO_ROUTES: Routes = MappingProxyType({})
@@ -60,6 +61,8 @@ class AssignedMission:
     """Of the beginnings and ends of its rows, in order, for planners that replace missions."""
     replaces: "AssignedMission | None" = None
     """The mission that is flown on if this one is refused."""
+    is_chosen: bool = False
+    """For its vehicle alone, not as a share of a round: if it is refused, another is chosen."""
 
     @property
     def rows_left(self) -> Route:
@@ -105,6 +108,15 @@ class JustFlown:
     until_ns: int
 
 
+COUNTED_S = 2.0
+"""After positions have settled, until the survey's next step has counted them."""
+
+
+def flown_just_now(route: Route, settings: SurveySettings, now_ns: int) -> JustFlown:
+    """Return rows that have been flown just now."""
+    return JustFlown(route, now_ns + seconds_to_ns(settings.settle_s + COUNTED_S))
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class SurveyState:
     """One survey's state; mappings are by serial.
@@ -137,6 +149,19 @@ class SurveyState:
     ended_at_ns: int | None = None
     quiet_since_ns: int = 0
     """Since when no vehicle flies."""
+
+    def with_flight(self, serial: str, flight: AssignedMission) -> "SurveyState":
+        """Return it with a vehicle on a mission."""
+        return replace(self, flights=MappingProxyType({**self.flights, serial: flight}))
+
+    def without_flight(self, serial: str) -> "SurveyState":
+        """Return it with a vehicle on no mission."""
+        flights = {key: each for key, each in self.flights.items() if key != serial}
+        return replace(self, flights=MappingProxyType(flights))
+
+    def with_decision(self, serial: str, decision: Decision) -> "SurveyState":
+        """Return it with the newest decision on a vehicle."""
+        return replace(self, decisions=MappingProxyType({**self.decisions, serial: decision}))
 
 
 @dataclass(frozen=True, slots=True)

@@ -59,11 +59,11 @@ from recon.guidance.survey.segments import (
 )
 from recon.guidance.survey.state import (
     NO_ROUTES,
-    JustFlown,
     Routes,
     Surveyor,
     SurveyState,
     end_between_rounds,
+    flown_just_now,
     is_enough,
     spent_budget,
 )
@@ -236,14 +236,14 @@ def _in_any_light(state: SurveyState, positions: Sequence[Surveyor], now_ns: int
 
 def _with_just_flown(before: SurveyState, state: SurveyState, now_ns: int) -> SurveyState:
     """Keep the rows of missions that have just ended until their photos have counted."""
-    until_ns = now_ns + seconds_to_ns(state.plan.settings.settle_s + 2.0)
+    settings = state.plan.settings
     kept = {key: each for key, each in state.just_flown.items() if now_ns < each.until_ns}
     # One without telemetry may still fly them.
     lost = {each.serial for each in state.closed}
     kept |= {key: each for key, each in state.just_flown.items() if key in lost}
     for serial, flight in before.flights.items():
         if serial not in state.flights and flight.route:
-            kept[serial] = JustFlown(flight.route, until_ns)
+            kept[serial] = flown_just_now(flight.route, settings, now_ns)
     return replace(state, just_flown=MappingProxyType(kept))
 
 

@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 from functools import partial
 from itertools import takewhile
 from math import hypot
-from types import MappingProxyType
 
 import numpy as np
 
@@ -95,6 +94,11 @@ class VehicleChoice:
             return self._stands_by(flight)
         legs = self.committed(flight)
         return self.flies(self._allowed(self.long_enough(legs)), flown_text(legs))
+
+    def begun_at_once(self, share: BoolArray) -> tuple[PlannedLeg, ...]:
+        """Return the first legs of the best flight over a share; none if that would wait."""
+        best = self.best(share)
+        return self.committed(best) if best.legs and best.waits_s <= 0.0 else ()
 
     def free(self) -> BoolArray:
         """Return (S,): segments with missing ground that no vehicle flies, or has just flown."""
@@ -227,6 +231,7 @@ class VehicleChoice:
             track.length_m,
             self.now_ns + seconds_to_ns(ends_s),
             track.up_m,
+            is_chosen=True,
         )
         state, given = flying(self._decided(text), self.surveyor, mission, ())
         return state, (replace(given, straight_within_m=self.settings.near_m),)
@@ -301,14 +306,14 @@ class VehicleChoice:
         """Stand by in its layer over a place, without rows."""
         terrain = self.plan.terrain
         up_m = () if terrain is None else (terrain.up_at_m(place_m),)
-        mission = AssignedMission(self.state.missions + 1, (), (place_m,), 0.0, there_ns, up_m)
+        number = self.state.missions + 1
+        mission = AssignedMission(number, (), (place_m,), 0.0, there_ns, up_m, is_chosen=True)
         state, given = flying(self._decided(text), self.surveyor, mission, ())
         return state, (replace(given, stands_by=True),)
 
     def _decided(self, text: str, again_ns: int = 0, returns: bool = False) -> SurveyState:
         decision = Decision(text, again_ns, returns)
-        decisions = {**self.state.decisions, self.surveyor.serial: decision}
-        return replace(self.state, decisions=MappingProxyType(decisions))
+        return self.state.with_decision(self.surveyor.serial, decision)
 
 
 def _direction(route: Route) -> int:

@@ -68,9 +68,8 @@ def predict_traffic(
     predictor = Predictor(motion, settings, until_s=until_s)
     predictor.follow(intent)
     trajectory = predictor.writer.trajectory(motion.name, motion.drift_m)
-    start_s = 0.0
-    if intent.mission is not None and _has_not_begun(motion, intent):
-        start_s = settings.starts_within_s(intent.mission)
+    begins_late = _has_not_begun(motion, intent)
+    start_s = settings.starts_within_s(intent.mission) if begins_late else 0.0
     return (replace(trajectory, delay_s=predictor.delay_s + start_s), *volumes)
 
 

@@ -24,6 +24,7 @@ come out as `LinkOrder`s.
 
 from collections import deque
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from enum import Enum
 from functools import partial
@@ -324,22 +325,25 @@ class SimulatedApp:
 
     def _execute(self, now_ns: int) -> None:
         _, response = self._pending.popleft()
-        mode = self.aircraft.flight_mode
         if response.moves:
             self._start = None
-        done = response.act(now_ns)
-        if isinstance(done, MissionStart):
-            self._start = (now_ns + seconds_to_ns(done.after_s), done)
-        else:
-            self._log.append(done)
-        if self.aircraft.flight_mode is not mode:
-            self._log.append(f"mode {self.aircraft.flight_mode.name}")
+        with self._mode_logged():
+            done = response.act(now_ns)
+            if isinstance(done, MissionStart):
+                self._start = (now_ns + seconds_to_ns(done.after_s), done)
+            else:
+                self._log.append(done)
 
     def _start_mission(self, now_ns: int) -> None:
         assert self._start is not None  # or it would not be due
         (_, mission), self._start = self._start, None
+        with self._mode_logged():
+            self._log.append(mission.start())
+
+    @contextmanager
+    def _mode_logged(self) -> Iterator[None]:
         mode = self.aircraft.flight_mode
-        self._log.append(mission.start())
+        yield
         if self.aircraft.flight_mode is not mode:
             self._log.append(f"mode {self.aircraft.flight_mode.name}")
 

@@ -180,7 +180,6 @@ def _confirm_limit_s(record: OrderRecord, seen: Progress, settings: StationSetti
         return settings.camera_confirm_s
     if isinstance(body, FlyMission):
         part = body.mission if record.plan is None else record.plan.part
-        upload_s = settings.safety.prediction.waypoint_upload_s * len(part.waypoints)
-        starts_s = settings.mission_takeoff_s if is_begun else settings.mission_confirm_s
-        return starts_s + upload_s
+        starts_s = settings.safety.prediction.starts_within_s(part)
+        return starts_s + settings.mission_takeoff_s if is_begun else starts_s
     return settings.stick_confirm_s

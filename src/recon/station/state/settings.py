@@ -107,8 +107,8 @@ class StationSettings:
     telemetry: a stop must not be lost in a gap."""
 
     takeoff_stop_s: float = 30.0
-    """A stop follows a takeoff under way this long: motors, climb and the upload of a mission take
-    20 s at most (`mission_takeoff_s`), and some more for an app that is late."""
+    """A stop follows a takeoff under way this long: a mission's upload and start, motors and climb
+    take 20 s and some seconds for many waypoints (`mission_takeoff_s`)."""
 
     emergency_repeat_s: float = 0.7
     emergency_repeats: int = 3
@@ -120,12 +120,9 @@ class StationSettings:
     emergency_confirm_s: float = 10.0
     """A hover that has begun: from 15 m/s an aircraft needs 6 s to stand still."""
 
-    mission_confirm_s: float = 8.0
-    """A mission is stopped, uploaded and started within this and the upload of its waypoints, as
-    the gate assumes (`PredictionSettings`); after that it was rejected silently."""
-
-    mission_takeoff_s: float = 20.0
-    """A mission that is seen to take off for it: motors, climb, then the mission's mode."""
+    mission_takeoff_s: float = 12.0
+    """A mission that is seen to take off for it takes so much longer to show its mode: motors and
+    climb. When missions start at the latest is the gate's (`PredictionSettings`)."""
 
     mode_lasts_s: float = 1.0
     """A sign of the pilot or a failsafe that an app may show in passing counts after this: three

@@ -60,10 +60,9 @@ def about_to_fly(station: Station, now_ns: int) -> Iterator[tuple[VehicleState, 
             yield vehicle, intent
     prediction = station.settings.safety.prediction
     for serial, control in station.controls.items():
-        intent, starts_s = control.intent, prediction.start_delay_s
-        if intent.mission is not None:
-            starts_s = prediction.starts_within_s(intent.mission)
-        is_over = now_ns - intent.since_ns > seconds_to_ns(starts_s)
+        intent = control.intent
+        starts_ns = seconds_to_ns(prediction.starts_within_s(intent.mission))
+        is_over = now_ns - intent.since_ns > starts_ns
         if intent.commanded is Commanded.NOTHING or is_over:
             continue
         vehicle = station.fleet.vehicles.get(serial)

@@ -13,13 +13,10 @@ import numpy as np
 import numpy.typing as npt
 
 from recon.guidance.survey.terrain import Terrain
-from recon.model.airspace import FlightLimits
+from recon.model.airspace import LAYER_SPACING_M, FlightLimits
 from recon.safety.airspace import PreparedAirspace
 
 FloatArray = npt.NDArray[np.float64]
-
-LAYER_M = 10.0
-"""Between two approach heights: the same as between two layers of a fleet return."""
 
 SPARE_M = 5.0
 """Under the site's ceiling: the ground under an approach may lie higher than the takeoff point."""
@@ -38,8 +35,8 @@ def layers_above_takeoff_m(
 ) -> list[float]:
     """Return the layers of vehicle `number` of `count` for rows at one height, nearest first."""
     ceiling_m = limits.max_height_above_ground_m - SPARE_M
-    steps = range(1, 1 + int(max(ceiling_m, rows_m) // LAYER_M))
-    outwards = [rows_m + sign * step * LAYER_M for step in steps for sign in (1.0, -1.0)]
+    steps = range(1, 1 + int(max(ceiling_m, rows_m) // LAYER_SPACING_M))
+    outwards = [rows_m + sign * step * LAYER_SPACING_M for step in steps for sign in (1.0, -1.0)]
     layers_m = [each for each in outwards if LOWEST_M <= each <= ceiling_m] or [rows_m]
     return layers_m[number::count] or layers_m[-1:]
 
@@ -66,13 +63,13 @@ def layers_over_terrain_m(
     if not isfinite(farthest_m):
         return []
     # Every `count`-th layer from the highest rows upwards and downwards is its own.
-    most = ceil(farthest_m / LAYER_M)
+    most = ceil(farthest_m / LAYER_SPACING_M)
     steps = (step for step in range(-most, most + 1) if (step - 1 - number) % count == 0)
-    own_m = [terrain.highest_up_m + step * LAYER_M for step in steps]
+    own_m = [terrain.highest_up_m + step * LAYER_SPACING_M for step in steps]
     free_m = [
         each
         for each in own_m
-        if floor_m <= each <= ceiling_m and off_rows_m(each) >= LAYER_M - ROUNDING_M
+        if floor_m <= each <= ceiling_m and off_rows_m(each) >= LAYER_SPACING_M - ROUNDING_M
     ]
     return sorted(free_m, key=lambda each: (off_rows_m(each), -each))
 
