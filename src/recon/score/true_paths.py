@@ -120,7 +120,7 @@ def _middles_m(plan: SurveyPlan, cells: IntArray) -> tuple[FloatArray, FloatArra
 BoolArray = npt.NDArray[np.bool_]
 
 AT_HEIGHT_WITHIN_M = 3.0
-"""Of the survey's height: cruise heights to and from rows are 8 m away from it."""
+"""Of the survey's height: cruise heights to and from rows are 10 m away from it."""
 SLOWEST_ON_ROW_MPS = 0.2
 """Below this the course is undefined: the drone turns, or waits."""
 COURSE_OVER_S = 0.5

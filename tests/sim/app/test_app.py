@@ -16,9 +16,7 @@ from recon.model.vehicle import AltitudeReference, FlightMode
 from recon.sim.app.commands import AppBehaviour, HoverOnGround
 from recon.sim.app.telemetry import FIELD_SENSORS, HomeAltitude, TelemetrySensors
 from recon.sim.fleet import Airborne, SimulationConfig, build_fleet
-from recon.sim.flight.aircraft import Aircraft, AircraftSettings
-from recon.sim.flight.flight_modes import PositionHold
-from recon.sim.flight.kinematics import AircraftMotion
+from recon.sim.flight.aircraft import AircraftSettings
 
 HOME = GeoPoint(41.9, -93.6, 275.0)
 HOVER, LAND, RETURN = (wire.EmergencyCommand(action=action) for action in (0, 1, 2))
@@ -380,16 +378,32 @@ def test_pads_at_different_altitudes_differ_in_altitude_and_not_in_height() -> N
     assert [height for _, height in altitudes] == pytest.approx([40.0, 50.0], abs=0.5)
 
 
+def drifted_m(seed: int, seconds: float) -> float:
+    """The height's slow error of field sensors, after a time."""
+    sensors = TelemetrySensors(
+        HOME, HomeAltitude(275.0), FIELD_SENSORS, random.Random(0), random.Random(seed)
+    )
+    return sensors.drift_m(seconds)[2]
+
+
 def test_field_sensors_are_good_to_metres_and_drift_slowly() -> None:
-    altitude = HomeAltitude(275.0)
-    aircraft = Aircraft(0, motion=AircraftMotion(height_m=50.0), active_mode=PositionHold())
-    ends = []
-    for seed in range(200):
-        sensors = TelemetrySensors(
-            HOME, altitude, FIELD_SENSORS, random.Random(seed), random.Random(-seed)
-        )
-        sensors.core(aircraft, 0.1)
-        start, end = (sensors.core(aircraft, s).height_above_takeoff_m for s in (0.1, 900.0))
-        assert start == pytest.approx(50.0, abs=0.6)
-        ends.append(end - 50.0)
-    assert 0.5 < (sum(e * e for e in ends) / len(ends)) ** 0.5 < 1.1
+    ends_m = [drifted_m(seed, 900.0) for seed in range(200)]
+    assert 0.5 < (sum(end * end for end in ends_m) / len(ends_m)) ** 0.5 < 1.1
+    assert max(abs(drifted_m(seed, 0.1)) for seed in range(200)) < 0.1
+
+
+def test_an_aircraft_holds_the_height_it_reports_and_not_the_true_one(
+    app_bench, mission_packet
+) -> None:
+    bench = app_bench(sensors=replace(FIELD_SENSORS, height_drift_m=3.0, height_drift_time_s=300.0))
+    bench.send(mission_packet([(0.0, 10.0, 40.0), (400.0, 10.0, 40.0)], speed_mps=4.0))
+    bench.run(20.0)
+    reported_m, off_m = [], []
+    for _ in range(200):
+        bench.run(1.0)
+        reported_m.append(bench.last(wire.CoreTelemetry).height_above_takeoff_m)
+        off_m.append(abs(bench.app.aircraft.motion.height_m - 40.0))
+    # A hundred seconds of mission and as many of hovering where it ended.
+    assert bench.mode == FlightMode.GPS_ATTI
+    assert reported_m == pytest.approx([40.0] * 200, abs=1.2)
+    assert max(off_m) > 1.5

@@ -349,9 +349,11 @@ class SimulatedApp:
 
     def _send_core(self, now_ns: int) -> None:
         self._next_core_ns = now_ns + CORE_PERIOD_NS
+        period_s = CORE_PERIOD_NS / NS_PER_S
+        self.aircraft.estimate_error_m = self._sensors.drift_m(period_s)
         packet = self._sensors.core(
             self.aircraft,
-            CORE_PERIOD_NS / NS_PER_S,
+            period_s,
             is_flying=self.aircraft.is_flying and not self._has(FaultKind.FALSE_GROUND, now_ns),
             north_deg=JUMP_DEG if self._has(FaultKind.POSITION_JUMP, now_ns) else 0.0,
         )

@@ -1,4 +1,4 @@
-"""Telemetry packets: the aircraft's true state with the errors of GNSS and barometer."""
+"""Telemetry packets: the aircraft's estimate of its state, with the noise of GNSS and barometer."""
 
 from dataclasses import dataclass, field
 from math import exp, sqrt
@@ -20,7 +20,7 @@ FEW_SATELLITES = 3
 class TelemetrySensorSettings:
     """Standard deviations and time constants of sensor errors (first-order Gauss-Markov).
 
-    Errors count from takeoff: the home point is recorded with the same ones.
+    By the slow errors it flies (`Aircraft.estimate`): it holds the height that it reports.
     """
 
     position_sigma_m: float = 0.15
@@ -77,20 +77,8 @@ class GaussMarkov:
 
 
 @dataclass(slots=True)
-class SensorError:
-    """The error of one sensor: a fast and a slow process added."""
-
-    fast: GaussMarkov
-    slow: GaussMarkov
-
-    def step(self, seconds: float, random: Random, slow_random: Random) -> float:
-        """Advance by `seconds` and return the sum."""
-        return self.fast.step(seconds, random) + self.slow.step(seconds, slow_random)
-
-
-@dataclass(slots=True)
 class TelemetrySensors:
-    """Makes telemetry packets from an aircraft's true state."""
+    """Makes telemetry packets from an aircraft's estimate of its state, and the errors of both."""
 
     home: GeoPoint
     altitude: HomeAltitude
@@ -98,22 +86,28 @@ class TelemetrySensors:
     random: Random
     slow_random: Random
     """For the slow errors: separate, so that the telemetry rate does not change them."""
-    _north: "SensorError" = field(init=False)
-    _east: "SensorError" = field(init=False)
-    _height: "SensorError" = field(init=False)
+    _noise: tuple[GaussMarkov, ...] = field(init=False)
+    """Of north, east and height, as the next."""
+    _drift: tuple[GaussMarkov, ...] = field(init=False)
     _satellites: int = field(init=False)
     _plane: TangentPlane = field(init=False)
 
     def __post_init__(self) -> None:
         s = self.settings
-        level = (s.position_sigma_m, s.position_drift_m, s.position_drift_time_s)
-        upright = (s.height_sigma_m, s.height_drift_m, s.height_drift_time_s)
-        self._north, self._east, self._height = (
-            SensorError(GaussMarkov(fast, s.wander_time_s), GaussMarkov(slow, slow_s))
-            for fast, slow, slow_s in (level, level, upright)
+        sigmas_m = (s.position_sigma_m, s.position_sigma_m, s.height_sigma_m)
+        self._noise = tuple(GaussMarkov(sigma_m, s.wander_time_s) for sigma_m in sigmas_m)
+        self._drift = (
+            GaussMarkov(s.position_drift_m, s.position_drift_time_s),
+            GaussMarkov(s.position_drift_m, s.position_drift_time_s),
+            GaussMarkov(s.height_drift_m, s.height_drift_time_s),
         )
         self._satellites = self.random.randint(14, 19)
         self._plane = tangent_plane(LocalFrame(self.home))
+
+    def drift_m(self, seconds: float) -> tuple[float, float, float]:
+        """Advance the slow errors of north, east and height by `seconds` and return them."""
+        north_m, east_m, up_m = (axis.step(seconds, self.slow_random) for axis in self._drift)
+        return north_m, east_m, up_m
 
     def core(
         self,
@@ -127,11 +121,12 @@ class TelemetrySensors:
 
         `is_flying` replaces the aircraft's flag and `north_deg` is added to its latitude: faults.
         """
-        motion = aircraft.motion
-        north_m = motion.north_m + self._north.step(seconds, self.random, self.slow_random)
-        east_m = motion.east_m + self._east.step(seconds, self.random, self.slow_random)
-        latitude, longitude, _ = self._plane.place(east_m, north_m, 0.0)
-        height = motion.height_m + self._height.step(seconds, self.random, self.slow_random)
+        motion = aircraft.estimate
+        north_m, east_m, up_m = (axis.step(seconds, self.random) for axis in self._noise)
+        latitude, longitude, _ = self._plane.place(
+            motion.east_m + east_m, motion.north_m + north_m, 0.0
+        )
+        height = motion.height_m + up_m
         return wire.CoreTelemetry(
             is_flying=int(aircraft.is_flying if is_flying is None else is_flying),
             latitude_deg=latitude + north_deg,

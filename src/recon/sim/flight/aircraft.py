@@ -12,6 +12,10 @@ Land -> Grounded. Everything else changes the mode from outside:
 - the pilot (`pilot_takes`), loss of GNSS (PositionHold in ATTI, drifting with the wind), a crash;
 - the battery: below `FORCED_LANDING_FRACTION` the aircraft lands where it is, whatever it flies.
 
+It flies by its own estimate of where it is: GNSS and a barometer that is zeroed at takeoff, with
+slow errors that the app draws. So telemetry shows the height commanded, and the true one is off.
+Taking off and landing it flies by the ground it sees.
+
 Home is set at each takeoff. `MissionID` counts missions started, and is 0 while none is flown.
 """
 
@@ -84,11 +88,26 @@ class Aircraft:
     """Whether the pilot has control by the mode switch: missions and sticks are ignored."""
     air: Air = field(default_factory=Air)
     has_gnss: bool = True
+    estimate_error_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Estimated minus true north, east and height; the height's counts from the last takeoff."""
     home_north_m: float = 0.0
     home_east_m: float = 0.0
+    _zeroed_at_m: float = 0.0
+    """The barometer's error at takeoff."""
     _mission_count: int = 0
     _landed_at_ns: int | None = None
     """Time of the last landing, until its battery is changed."""
+
+    @property
+    def estimate(self) -> AircraftMotion:
+        """Where it takes itself to be."""
+        north_m, east_m, up_m = self.estimate_error_m
+        motion = self.motion
+        return motion._replace(
+            north_m=motion.north_m + north_m,
+            east_m=motion.east_m + east_m,
+            height_m=motion.height_m + up_m - self._zeroed_at_m,
+        )
 
     @property
     def is_on_ground(self) -> bool:
@@ -116,14 +135,13 @@ class Aircraft:
     @property
     def is_at_max_height(self) -> bool:
         """Whether it has reached the height limit of its settings."""
-        return self.motion.height_m >= self.settings.max_height_m - AT_LIMIT_WITHIN_M
+        return self.estimate.height_m >= self.settings.max_height_m - AT_LIMIT_WITHIN_M
 
     @property
     def is_at_max_distance(self) -> bool:
         """Whether it has reached the distance limit of its settings."""
-        away_m = hypot(
-            self.motion.north_m - self.home_north_m, self.motion.east_m - self.home_east_m
-        )
+        here = self.estimate
+        away_m = hypot(here.north_m - self.home_north_m, here.east_m - self.home_east_m)
         return away_m >= self.settings.max_distance_m - AT_LIMIT_WITHIN_M
 
     @property
@@ -244,7 +262,9 @@ class Aircraft:
         self._landed_at_ns = None
 
     def _set_home(self) -> None:
-        self.home_north_m, self.home_east_m = self.motion.north_m, self.motion.east_m
+        self._zeroed_at_m = self.estimate_error_m[2]
+        here = self.estimate
+        self.home_north_m, self.home_east_m = here.north_m, here.east_m
 
     def _go_home_mode(self) -> GoHome:
         return GoHome(
@@ -259,7 +279,7 @@ class Aircraft:
         # Wind first: demand, drag and load of this tick all use the same wind.
         self.air.step(self.motion, self.now_ns, seconds)
         if not self.is_on_ground:
-            demand = self._disturbed(self.active_mode.demand(self.motion, seconds))
+            demand = self._disturbed(self.active_mode.demand(self._flown_by, seconds))
             wind = self.air.horizontal
             self.motion = _kept_above_ground(
                 step(self.motion, demand, seconds, self.settings.limits, wind)
@@ -275,12 +295,17 @@ class Aircraft:
         if self.battery.fraction < FORCED_LANDING_FRACTION:
             self.land()
 
+    @property
+    def _flown_by(self) -> AircraftMotion:
+        """What the mode is flown by: close to the ground what it sees of it."""
+        return self.motion if isinstance(self.active_mode, TakeOff | Land) else self.estimate
+
     def _disturbed(self, demand: VelocityDemand) -> VelocityDemand:
         """Return a demand with the wind's drift added and the height limit applied."""
         north, east, up = self._drift() if self.is_flying else (0.0, 0.0, 0.0)
         limits = self.settings.limits
         # The height limit is a speed limit towards it, so that the aircraft slows down before it.
-        highest = hold_height_mps(self.motion.height_m, self.settings.max_height_m, limits)
+        highest = hold_height_mps(self.estimate.height_m, self.settings.max_height_m, limits)
         return VelocityDemand(
             demand.velocity_north_mps + north,
             demand.velocity_east_mps + east,
@@ -299,7 +324,7 @@ class Aircraft:
         return north, east, up
 
     def _switch_mode(self) -> None:
-        following = self.active_mode.successor(self.motion)
+        following = self.active_mode.successor(self._flown_by)
         if following is None:
             return
         self.active_mode = following

@@ -36,6 +36,11 @@ SPIN_UP_S = 1.5
 CONFIRM_HEIGHT_M = 0.3
 """DJI's firmware stops here until the app confirms that the ground is fit to land on."""
 
+AT_REST_BELOW_MPS = 0.05
+HEIGHT_GAIN_PER_S = 0.5
+HOLD_MPS = 1.0
+"""Fastest climb or descent back to the height that is held."""
+
 SHORTEST_GO_HOME_S = 2.0
 """The mode lasts this long even above home, so that telemetry at 2 Hz reports it."""
 
@@ -78,13 +83,19 @@ class Grounded:
 
 @dataclass(slots=True)
 class PositionHold:
-    """Brake, then hover (DJI's position mode)."""
+    """Brake, then hover at the height reached (DJI's position mode)."""
 
     mode: FlightMode = FlightMode.GPS_ATTI
+    _height_m: float | None = None
 
     def demand(self, motion: AircraftMotion, seconds: float) -> VelocityDemand:
-        """Return zero velocity."""
-        return VelocityDemand()
+        """Return zero velocity, but for what keeps the height."""
+        if self._height_m is None:
+            if abs(motion.velocity_up_mps) < AT_REST_BELOW_MPS:
+                self._height_m = motion.height_m
+            return VelocityDemand()
+        up_mps = HEIGHT_GAIN_PER_S * (self._height_m - motion.height_m)
+        return VelocityDemand(velocity_up_mps=max(-HOLD_MPS, min(up_mps, HOLD_MPS)))
 
     def successor(self, motion: AircraftMotion) -> ActiveMode | None:
         """Stay until commanded otherwise."""

@@ -92,7 +92,7 @@ class MissionFlight:
         if _has_arrived(motion, target):
             self._begin_action(target)
         previous = self.points[max(0, self.next_index - 1)]
-        return _pursue(motion, target, previous.speed_mps, self.limits)
+        return _pursue(motion, previous, target, self.limits)
 
     def successor(self, motion: AircraftMotion) -> ActiveMode | None:
         """Land or hover after the last waypoint."""
@@ -177,19 +177,30 @@ def _has_arrived(motion: AircraftMotion, point: MissionPoint) -> bool:
 
 
 def _pursue(
-    motion: AircraftMotion, target: MissionPoint, speed_mps: float, limits: Limits
+    motion: AircraftMotion, previous: MissionPoint, target: MissionPoint, limits: Limits
 ) -> VelocityDemand:
-    """Return the demand that flies straight to a waypoint in 3D and stops there."""
+    """Return the demand that flies on to a waypoint in 3D, back to the leg's height, and stops."""
     north, east = target.north_m - motion.north_m, target.east_m - motion.east_m
     up = target.height_m - motion.height_m
     distance = sqrt(north * north + east * east + up * up)
     if distance < 1e-6:
         return VelocityDemand()
-    share = min(speed_mps, braking_speed_mps(distance, BRAKING_MPS2)) / distance
+    share = min(previous.speed_mps, braking_speed_mps(distance, BRAKING_MPS2)) / distance
     # On a steep leg the climb or descent limit sets the speed.
     steepest = limits.climb_mps if up > 0.0 else limits.descent_mps
     if abs(up) * share > steepest:
         share = steepest / abs(up)
     # Near the waypoint the bearing is noise: keep the heading.
     yaw = heading_deg(north, east) if hypot(north, east) > 3.0 else None
-    return VelocityDemand(north * share, east * share, up * share, yaw)
+    up_mps = up * share + PATH_GAIN_PER_S * _below_leg_m(motion, previous, target)
+    return VelocityDemand(north * share, east * share, up_mps, yaw)
+
+
+def _below_leg_m(motion: AircraftMotion, previous: MissionPoint, target: MissionPoint) -> float:
+    """Return how far the leg's line is above the aircraft; 0 on a vertical leg."""
+    length_m = hypot(target.north_m - previous.north_m, target.east_m - previous.east_m)
+    if length_m < ARRIVED_WITHIN_M and previous is not target:
+        return 0.0
+    left_m = hypot(target.north_m - motion.north_m, target.east_m - motion.east_m)
+    left = 0.0 if previous is target else min(1.0, left_m / length_m)
+    return target.height_m + left * (previous.height_m - target.height_m) - motion.height_m
