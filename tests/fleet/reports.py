@@ -45,6 +45,7 @@ def extended(
     battery: float | None = 0.8,
     warning: BatteryWarning | None = BatteryWarning.NONE,
     gnss_level: int | None = 4,
+    mission_id: int = 0,
 ) -> ExtendedReport:
     return ExtendedReport(
         serial=serial,
@@ -57,7 +58,7 @@ def extended(
         wind_level=0,
         camera_state=CameraState.FEED_OFF,
         flight_mode=mode,
-        mission_id=0,
+        mission_id=mission_id,
     )
 
 

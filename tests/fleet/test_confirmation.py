@@ -149,6 +149,28 @@ class TestMission:
         expected = Progress.CONFIRMED if is_seen else Progress.UNSEEN
         assert seen(NORTH_THEN_EAST, state) is expected
 
+    @pytest.mark.parametrize(
+        ("reported", "is_seen"),
+        [
+            ([(WAYPOINT, 7), (WAYPOINT, 7)], False),  # flies on with the mission before
+            ([(WAYPOINT, 7), (WAYPOINT, 8)], True),
+            ([(WAYPOINT, 7), (WAYPOINT, 0)], False),  # restarted, and flies on with it
+            ([(WAYPOINT, 7), (WAYPOINT, 0), (GPS, 0), (WAYPOINT, 1)], True),
+            ([(WAYPOINT, 7), (GPS, 0), (WAYPOINT, 7), (WAYPOINT, 7)], True),  # always the same
+            ([(WAYPOINT, 0), (WAYPOINT, 0)], True),  # always 0
+        ],
+    )
+    def test_an_app_that_counts_its_missions_must_show_another_number(
+        self, reported: list[tuple[FlightMode, int]], is_seen: bool
+    ) -> None:
+        first, *later = (extended(mode=mode, mission_id=number) for mode, number in reported)
+        story = Story().opens(1).receives(1, core(velocity=MOVING), first).at(1.0)
+        when_sent = story.vehicle().mission_id.value
+        state = story.at(2.0).receives(1, core(velocity=MOVING), *later).vehicle()
+        context = SentContext(1 * S, WAYPOINT, True, when_sent)
+        expected = Progress.CONFIRMED if is_seen else Progress.UNSEEN
+        assert seen(NORTH_THEN_EAST, state, context) is expected
+
     def test_taking_off_for_it_is_only_its_beginning(self) -> None:
         state = after(core(), extended(mode=FlightMode.AUTO_TAKEOFF))
         assert seen(NORTH_THEN_EAST, state, sent(GPS)) is Progress.BEGUN

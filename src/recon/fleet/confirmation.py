@@ -24,7 +24,7 @@ from recon.model.command import (
 )
 from recon.model.geo import LatLon
 from recon.model.units import seconds_to_ns, wrap_degrees
-from recon.model.vehicle import FlightMode, VehicleState, VelocityNed
+from recon.model.vehicle import FlightMode, MissionNumbers, VehicleState, VelocityNed
 
 STANDING_SPEED_MPS = 0.5
 """Below this a vehicle counts as standing: GNSS velocity noise and gusts stay under it."""
@@ -64,6 +64,7 @@ class SentContext:
     sent_at_ns: int
     mode_when_sent: FlightMode | None
     was_flying: bool | None
+    mission_id: int | None = None
 
 
 def progress(body: Body, sent: SentContext, state: VehicleState, now_ns: int) -> Progress:
@@ -143,7 +144,18 @@ def _mission(body: FlyMission, sent: SentContext, state: VehicleState, _now_ns: 
     if sent.mode_when_sent not in (None, FlightMode.GPS_WAYPOINT):
         return Progress.CONFIRMED
     agrees = _core_is_new(sent, state) and _is_on_first_leg(body, state)
-    return Progress.CONFIRMED if agrees else Progress.UNSEEN
+    return Progress.CONFIRMED if agrees and _is_another(sent, state) else Progress.UNSEEN
+
+
+def _is_another(sent: SentContext, state: VehicleState) -> bool:
+    """Whether the mission flown may be another than when the order was sent.
+
+    A leg of the mission before may agree with the first one of the new mission: without a look at
+    MissionID an order that the app ignored would pass for flown.
+    """
+    if state.mission_numbers is not MissionNumbers.COUNTED:
+        return True
+    return state.mission_id.value not in (None, 0, sent.mission_id)
 
 
 def _is_on_first_leg(body: FlyMission, state: VehicleState) -> bool:

@@ -13,7 +13,7 @@ from recon.model.geo import LatLon
 from recon.model.replacing import replace
 from recon.model.report import CoreReport, ExtendedReport
 from recon.model.units import Stamped, seconds_to_ns
-from recon.model.vehicle import TrackPoint, VehicleState
+from recon.model.vehicle import FlightMode, MissionNumbers, TrackPoint, VehicleState
 
 LEAST_TRACK_STEP_M = 0.5
 
@@ -57,6 +57,7 @@ def fold_extended(
     if is_backlog(state, now_ns):
         return state
     battery, trust = judge_battery(state, _battery(state, report), now_ns, settings.trust)
+    mission_numbers, newest_mission_id = _mission_numbers(state, report)
     return replace(
         state,
         gnss_satellite_count=Stamped(report.gnss_satellite_count, now_ns),
@@ -69,6 +70,8 @@ def fold_extended(
         camera_state=Stamped(report.camera_state, now_ns),
         flight_mode=Stamped(report.flight_mode, now_ns),
         mission_id=Stamped(report.mission_id, now_ns),
+        mission_numbers=mission_numbers,
+        newest_mission_id=newest_mission_id,
         extended_received_at_ns=now_ns,
         trust=trust,
     )
@@ -102,6 +105,7 @@ def with_newest_values(
         **times,
         trust=trust,
         image_count=state.image_count + other.image_count,
+        mission_numbers=max(state.mission_numbers, other.mission_numbers),
         altitude_offset_at_takeoff_m=source.altitude_offset_at_takeoff_m,
         takeoff_point=other.takeoff_point or state.takeoff_point,
         track=track[-settings.track_points :],
@@ -122,6 +126,22 @@ def _later(a: int | None, b: int | None) -> int | None:
 
 def _received_at_ns(stamped: Stamped[Any]) -> int:
     return -1 if stamped.received_at_ns is None else stamped.received_at_ns
+
+
+def _mission_numbers(state: VehicleState, report: ExtendedReport) -> tuple[MissionNumbers, int]:
+    """Return what MissionID is known to say, and that of the newest mission.
+
+    Two missions with the same one, apart in time: the app does not count them.
+    """
+    if report.flight_mode is not FlightMode.GPS_WAYPOINT:
+        return state.mission_numbers, state.newest_mission_id
+    number, mode = report.mission_id, state.flight_mode.value
+    if number == 0:
+        return state.mission_numbers, 0
+    is_another = mode is not None and mode is not FlightMode.GPS_WAYPOINT
+    is_repeated = is_another and number == state.newest_mission_id
+    known = MissionNumbers.REPEATED if is_repeated else MissionNumbers.COUNTED
+    return max(state.mission_numbers, known), number
 
 
 def _altitude_offset_m(report: CoreReport) -> float | None:

@@ -57,6 +57,17 @@ class BatteryWarning(IntEnum):
     SERIOUS = 2
 
 
+class MissionNumbers(IntEnum):
+    """What is known of MissionID in an app's extended telemetry; higher values are known better."""
+
+    UNKNOWN = 0
+    """None reported yet: some apps always send 0."""
+    COUNTED = 1
+    """Each mission has its own, as far as is known."""
+    REPEATED = 2
+    """Several missions had the same one: it says nothing."""
+
+
 class AltitudeReference(Enum):
     """What a waypoint's altitude field means to a vehicle's app. Never guessed."""
 
@@ -233,6 +244,9 @@ class VehicleState:
     camera_state: Stamped[CameraState] = Stamped()
     flight_mode: Stamped[FlightMode] = Stamped()
     mission_id: Stamped[int] = Stamped()
+    mission_numbers: MissionNumbers = MissionNumbers.UNKNOWN
+    newest_mission_id: int = 0
+    """Of its newest mission; 0 if the app reported none, as one that was restarted meanwhile."""
     core_received_at_ns: int | None = None
     extended_received_at_ns: int | None = None
     image_received_at_ns: int | None = None

@@ -110,7 +110,7 @@ def sent_context(station: Station, record: OrderRecord, now_ns: int) -> SentCont
     age_s = target.flight_mode.age_s(now_ns)
     is_fresh = age_s is not None and age_s <= station.settings.safety.fresh_telemetry_s
     mode = target.flight_mode.value if is_fresh else None
-    return SentContext(now_ns, mode, target.is_flying.value)
+    return SentContext(now_ns, mode, target.is_flying.value, target.mission_id.value)
 
 
 def _name(station: Station, command: Command) -> str:
