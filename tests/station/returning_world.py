@@ -19,7 +19,7 @@ from recon.model.vehicle import Failsafe
 from recon.safety import PreparedAirspace
 from recon.sim.app.faults import parse_fault
 from recon.sim.fleet import Airborne, ImagerSetup, SimulationConfig, build_fleet
-from recon.sim.flight.flight_modes import Grounded
+from recon.sim.flight.flight_modes import Grounded, PositionHold
 from recon.station.kernel.build import first_state
 from recon.station.kernel.virtual import VirtualDriver
 from recon.station.kernel.worker import JobRunner
@@ -89,6 +89,8 @@ class ReturningWorld:
             north_m=place_m[1] - pad[1],
             height_m=place_m[2] - self.pads_up_m[serial],
         )
+        if isinstance(aircraft.active_mode, PositionHold):
+            aircraft.hover()  # at this height
 
     def flies(self, serial: str) -> bool:
         return self.world.app(serial).aircraft.is_flying
@@ -186,8 +188,7 @@ def returning_world(
         app.aircraft.motion = motion._replace(
             east_m=place[0] - pad[0], north_m=place[1] - pad[1], height_m=place[2]
         )
-        if place[2] == 0.0:
-            app.aircraft.active_mode = Grounded()
+        app.aircraft.active_mode = Grounded() if place[2] == 0.0 else PositionHold()
         if go_home_height_m is not None:
             settings = app.aircraft.settings
             app.aircraft.settings = replace(settings, go_home_height_m=go_home_height_m)

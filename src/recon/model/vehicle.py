@@ -65,7 +65,7 @@ class MissionNumbers(IntEnum):
     COUNTED = 1
     """Each mission has its own, as far as is known."""
     REPEATED = 2
-    """Several missions had the same one: it says nothing."""
+    """Several missions had the same one: it shows nothing."""
 
 
 class AltitudeReference(Enum):

@@ -261,6 +261,19 @@ class TestAnswers:
         rules = {a.condition.rule for a in w.driver.station.alarms.alarms.values()}
         assert "mission_ignored" in rules
 
+    def test_a_mission_is_not_begun_because_the_one_before_flies_the_same_way(self) -> None:
+        w = world(faults=("ignored-missions::20:30",))
+        w.run_for(2.0)
+        flown = w.order("SIM-1", FlyMission(square_mission()))
+        w.run_for(20.0)
+        assert w.record(flown).phase is Phase.STARTED
+        again = w.order("SIM-1", FlyMission(square_mission()))
+        w.run_for(10.0)
+        assert w.vehicle("SIM-1").flight_mode.value is FlightMode.GPS_WAYPOINT
+        assert w.record(again).phase is Phase.TIMED_OUT
+        rules = {a.condition.rule for a in w.driver.station.alarms.alarms.values()}
+        assert "mission_ignored" in rules
+
     def test_an_emergency_ignored_is_repeated_and_alarmed(self) -> None:
         w = world(faults=("ack-then-nothing",), wanders=True)
         w.run_for(2.0)

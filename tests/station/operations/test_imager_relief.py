@@ -416,8 +416,7 @@ class TestEndedBefore:
         world.charges(SPARE, 0.9)
         world.shown_m = {SPARE: 20.0}
         assert world.runs_until(lambda: world.newest().stage is MotionStage.MAPS, 60.0)
-        world.runs(5.0)
-        assert "of what CAM-1 shows" in world.newest().reason
+        assert world.runs_until(lambda: "of what CAM-1 shows" in world.newest().reason, 15.0)
         waits = world.newest()
         late = replace(waits, since_ns=waits.since_ns - 150_000_000_000)
         reliefs = replace(world.station.reliefs, newest=late)
