@@ -6,7 +6,7 @@ order of the shortest tour among those that always go on to the nearest end of a
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 from math import hypot
 
@@ -35,16 +35,24 @@ Route = tuple[RowLeg, ...]
 Chain = tuple[Piece, ...]
 
 
-def route_of(pieces: Sequence[Piece], lattice: RowLattice, start_m: Place | None) -> Route:
-    """Return the legs in the order they are flown, beginning near `start_m` (along, across)."""
+def route_of(
+    pieces: Sequence[Piece], lattice: RowLattice, start_m: Place | None, direction: int = 0
+) -> Route:
+    """Return the legs in the order they are flown, beginning near `start_m` (along, across).
+
+    They lead to higher rows if `direction` is 1 and to lower ones if it is -1, where they can.
+    """
     entries = [_entries(chain) for chain in chains(pieces)]
-    tours = _tours(entries, lattice, start_m)
+    tours = list(_tours(entries, lattice, start_m))
+    if direction:
+        tours = [tour for tour in tours if direction_of(tour) != -direction] or tours
     return min(tours, key=lambda tour: between_m(tour, lattice, start_m), default=())
 
 
-def reversed_route(route: Route) -> Route:
-    """Return the same legs flown from the end of the last to the beginning of the first."""
-    return tuple(replace(leg, is_reversed=not leg.is_reversed) for leg in reversed(route))
+def direction_of(route: Route) -> int:
+    """Return 1 if a route leads to higher rows, -1 if to lower ones, 0 if to neither."""
+    rows = route[-1].piece.row - route[0].piece.row if route else 0
+    return (rows > 0) - (rows < 0)
 
 
 def chains(pieces: Sequence[Piece]) -> list[Chain]:

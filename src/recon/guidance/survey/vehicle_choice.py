@@ -22,7 +22,7 @@ from recon.guidance.survey.rounds import (
     flying,
     sortie,
 )
-from recon.guidance.survey.route import Place, Route, RowLeg, reversed_route, route_of
+from recon.guidance.survey.route import Place, Route, RowLeg, direction_of, route_of
 from recon.guidance.survey.rows import Piece
 from recon.guidance.survey.search import Flight, Pace, PlannedLeg, Search
 from recon.guidance.survey.segments import (
@@ -154,12 +154,10 @@ class VehicleChoice:
         All vehicles work across the field in the same direction, so that none begins where its
         neighbour does.
         """
-        start_m = self.start_m
         pieces = missing_pieces(self.state, self.segments, share)
-        route = route_of(pieces, self.plan.lattice, start_m)
-        others = {_direction(flight.route) for flight in self.state.flights.values()} - {0}
-        is_against = others == {-_direction(route)}
-        return reversed_route(route) if is_against else route
+        others = {direction_of(flight.route) for flight in self.state.flights.values()} - {0}
+        direction = others.pop() if len(others) == 1 else 0
+        return route_of(pieces, self.plan.lattice, self.start_m, direction)
 
     def flies_all(self, route: Route) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
         """Fly these rows one after the other: most of their ground is in sun by then."""
@@ -314,12 +312,6 @@ class VehicleChoice:
     def _decided(self, text: str, again_ns: int = 0, returns: bool = False) -> SurveyState:
         decision = Decision(text, again_ns, returns)
         return self.state.with_decision(self.surveyor.serial, decision)
-
-
-def _direction(route: Route) -> int:
-    """1 if it leads to higher rows, -1 to lower ones, 0 neither."""
-    rows = (route[-1].piece.row - route[0].piece.row) if route else 0
-    return (rows > 0) - (rows < 0)
 
 
 def flown_text(legs: Sequence[PlannedLeg]) -> str:
