@@ -97,14 +97,14 @@ class Claim:
     def compared(self) -> tuple[tuple[Path, Scenario], tuple[Path, Scenario]]:
         """Return its scenario and the one that it is compared with, each with its file.
 
-        The baseline uses no forecast: it flies with the file's, so that claims share its runs.
+        The baseline uses no forecast: it flies with the one that costs least to compute.
         """
         chosen = Chosen(self.planner, self.detection, self.forecast, None, surveys_only=True)
         path = _file(self.scenario)
         if self.over is not None:
             other_path = _file(self.over)
             return (path, chosen.scenario(path)), (other_path, chosen.scenario(other_path))
-        baseline = replace(chosen, planner=BASELINE, forecast=None)
+        baseline = replace(chosen, planner=BASELINE, forecast="climatology")
         return (path, chosen.scenario(path)), (path, baseline.scenario(path))
 
 
