@@ -7,7 +7,7 @@ Each claim is a scenario flown by `sunlit_first` and, under the same skies, by `
 in another scenario. Its figure is the geometric mean of the ratios by seed, of the time to 95 % in
 sun or of the flight time, with a 95 % interval. All claims take days on one computer; `--cluster`
 shares the runs with others. Finished runs are kept, as by `recon score`: a stopped study goes on
-where it was, and what `recon score` has flown is not flown again.
+where it was.
 """
 
 import argparse

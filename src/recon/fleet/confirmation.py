@@ -65,6 +65,7 @@ class SentContext:
     mode_when_sent: FlightMode | None
     was_flying: bool | None
     mission_id: int | None = None
+    """As reported last."""
 
 
 def progress(body: Body, sent: SentContext, state: VehicleState, now_ns: int) -> Progress:

@@ -20,7 +20,7 @@ FEW_SATELLITES = 3
 class TelemetrySensorSettings:
     """Standard deviations and time constants of sensor errors (first-order Gauss-Markov).
 
-    By the slow errors it flies (`Aircraft.estimate`): it holds the height that it reports.
+    The slow ones are the aircraft's own (`Aircraft.estimate`): it holds the height that it reports.
     """
 
     position_sigma_m: float = 0.15
