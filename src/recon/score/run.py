@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from recon.model.command import Hover, Phase
+from recon.model.control import AuthorityHolder
 from recon.model.survey import CellState
 from recon.model.units import NS_PER_S
 from recon.score.connected_apps import ConnectedApps
@@ -147,9 +148,14 @@ class StationRun:
     def _record_orders(self) -> None:
         """Remember refused orders and watchdogs' holds: the station drops old records."""
         for number, order in self.driver.station.orders.records.items():
+            command = order.command
+            # Guidance ends its own motions with a hold.
+            is_hold = (
+                isinstance(command.body, Hover) and command.role is not AuthorityHolder.GUIDANCE
+            )
             if order.phase is Phase.REFUSED_BY_STATION:
                 self._refused.add(number)
-            elif order.command.is_own and isinstance(order.command.body, Hover):
+            elif command.is_own and is_hold:
                 self._held.add(number)
 
     def _is_over(self) -> bool:

@@ -64,6 +64,15 @@ def in_bands(places_m: FloatArray, time_s: float) -> BoolArray:
     return np.asarray(np.mod(along_m, 300.0) < 150.0)
 
 
+def lit_west(now_s: float) -> SunForecast:
+    """Sun over the western third."""
+    return forecast(lambda east, _north, _lead: east < 120.0, now_s)
+
+
+def clear_sky(_east: FloatArray, _north: FloatArray, _lead_s: float) -> bool:
+    return True
+
+
 class TestSurveys:
     @pytest.mark.parametrize("sky", [clear, leaves_eastwards, in_bands])
     def test_all_is_imaged_in_sun_as_photos_truly_show(self, sky: object) -> None:
@@ -215,6 +224,29 @@ class TestSurveys:
         done = replace(here[0], ended_mission=1), here[1]
         later = replace(forecast(half, 9.0), velocity_mps=None)
         assert len(decided(later, *done, state=state, now_s=9.0)[1]) == 1
+
+    def test_until_any_light_is_known_rows_are_flown_and_then_decided_on(self) -> None:
+        here, unseen = Surveyor("S-1", (0.0, 0.0)), np.full((GRID.rows, GRID.cols), np.nan)
+        blind = replace(lit_west(10.0), horizon_s=unseen.astype(np.float32), velocity_mps=None)
+        state, given = decided(blind, here, now_s=10.0)
+        assert len(given) == 1
+        rows = {row + 1 for row in flown_rows(state, "S-1")}
+        assert state.decisions["S-1"].text == (
+            f"flies rows {min(rows)} to {max(rows)} in any light: "
+            "how the light is over the field is not known"
+        )
+        # On its way to the first row: most of what it has is in shade.
+        state, instead = decided(lit_west(13.0), here, state=state, now_s=13.0)
+        assert len(instead) == 1
+        assert state.decisions["S-1"].text.startswith("leaves its rows; flies ")
+        _later, none = decided(lit_west(14.0), here, state=state, now_s=14.0)
+        assert none == ()
+        # Where it is in sun, its rows are flown on; it is looked at once.
+        state, _given = decided(blind, here, now_s=10.0)
+        kept, none = decided(forecast(clear_sky, 13.0), here, state=state, now_s=13.0)
+        assert none == ()
+        assert kept.flights["S-1"].route == state.flights["S-1"].route
+        assert kept.flights["S-1"].is_chosen
 
     def test_where_all_is_in_sun_none_waits_for_its_motion(self) -> None:
         here = Surveyor("S-1", (0.0, 60.0)), Surveyor("S-2", (0.0, 180.0))

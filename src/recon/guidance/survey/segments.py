@@ -114,14 +114,15 @@ def expected_sun(
     sun: SunForecast | None,
     now_ns: int,
 ) -> ExpectedSun | None:
-    """Return the sun expected on each segment's missing ground; None if its light is unknown.
+    """Return the sun expected on each segment's missing ground; None if light is unknown anywhere.
 
-    Without a recent forecast the newest shade map counts, the less the older it is.
+    Without a recent forecast the newest shade map counts, the less the older it is. A forecast that
+    has seen no light yet, as while a detection is still learning the ground, is none.
     """
     settings = plan.settings
     missing = (progress.state < CellState.IN_SUN) & plan.cells.is_reached
     moments_s = np.arange(0.0, settings.planned_s + settings.moment_s, settings.moment_s)
-    if sun is not None and ns_to_seconds(now_ns - sun.issued_at_ns) <= settings.forecast_age_s:
+    if sun is not None and _is_usable(sun, now_ns, settings):
         by_cell = _forecast(sun, plan.cells.grid, missing, moments_s, now_ns)
     elif (seen := _seen(progress, now_ns, settings)) is not None:
         by_cell = _persisting(seen, plan.cells.grid, missing, moments_s, now_ns, settings)
@@ -133,6 +134,11 @@ def expected_sun(
     probability = sums / np.maximum(count, 1)[:, np.newaxis]
     missing_m2 = count.astype(np.float64) * plan.cells.cell_m2
     return ExpectedSun(missing_m2, probability, moments_s)
+
+
+def _is_usable(sun: SunForecast, now_ns: int, settings: SurveySettings) -> bool:
+    is_recent = ns_to_seconds(now_ns - sun.issued_at_ns) <= settings.forecast_age_s
+    return is_recent and bool(np.isfinite(sun.horizon_s).any())
 
 
 def _forecast(

@@ -6,6 +6,7 @@ once. One call of `sunlit_first`:
 1. Missions of vehicles that ended or dropped out are removed; their rows count as flown until their
    photos have counted.
 2. Without known light it is `lawnmower_once`: rows are flown in whatever light, until it is known.
+   A vehicle that is still on its way to its first row by then is decided on as at the end of a row.
 3. Before the first mission it waits some seconds until a forecast knows how the shadows move:
    without that, what lies in sun now seems to stay there. Where all is in sun it does not wait.
 4. The survey is done when enough is imaged in sun, or its budget is spent, and all have ended.
@@ -59,6 +60,7 @@ from recon.guidance.survey.segments import (
 )
 from recon.guidance.survey.state import (
     NO_ROUTES,
+    Decision,
     Routes,
     Surveyor,
     SurveyState,
@@ -72,6 +74,7 @@ from recon.guidance.survey.vehicle_choice import (
     VehicleChoice,
     just_flown_legs,
     missing_pieces,
+    named,
 )
 from recon.model.shade import SunForecast
 from recon.model.survey import CellState, MissionAssignment, SurveyPhase
@@ -129,8 +132,9 @@ def vehicle_by_vehicle(
         return without_able(state, able, now_ns), ()
     state, at_end = with_ends_passed(state, able)
     closed = on_closed_ground(state, able, now_ns)
+    in_any_light = _in_any_light_until_now(state, able)
     is_asked = any(_is_asked(state, serial, able, now_ns) for serial in able)
-    if not (is_asked or at_end or closed):
+    if not (is_asked or at_end or closed or in_any_light):
         return state, ()
     segments = segments_of(state.plan)
     expected = expected_sun(segments, state.plan, state.progress, sun, now_ns)
@@ -141,7 +145,7 @@ def vehicle_by_vehicle(
         expected = replace(expected, missing_m2=np.where(is_closed, 0.0, expected.missing_m2))
     moment = PlanningMoment(segments, expected, able, sun, now_ns)
     state = replace(state, waiting=NO_ROUTES, round=max(1, state.round), reason="under way")
-    state, instead = _replaced(state, moment, closed, at_end)
+    state, instead = _replaced(state, moment, closed, (*at_end, *in_any_light))
     state, missions = begun(state, moment)
     return state, (*instead, *missions)
 
@@ -155,6 +159,8 @@ def _replaced(
         choice = moment.choice(state, serial)
         is_closed = serial in closed
         state, new = off_closed_ground(choice) if is_closed else at_row_end(choice, moment.able)
+        if not new:
+            state = state.with_flight(serial, replace(state.flights[serial], is_chosen=True))
         missions += new
     return state, missions
 
@@ -221,11 +227,27 @@ def _awaits_motion(
     return now_ns < began_ns + seconds_to_ns(settings.motion_within_s)
 
 
+def _in_any_light_until_now(state: SurveyState, able: Mapping[str, Surveyor]) -> tuple[str, ...]:
+    """Return the vehicles on the way to the first row of a mission given in unknown light."""
+    flights = state.flights.items()
+    return tuple(
+        serial
+        for serial, flight in flights
+        if serial in able and not flight.is_chosen and flight.ends_passed == 0
+    )
+
+
 def _in_any_light(state: SurveyState, positions: Sequence[Surveyor], now_ns: int) -> Step:
     """Fly what is not imaged yet; then wait for light to become known, if it ever was."""
-    state = replace(state, decisions=MappingProxyType({}))
+    kept = {key: each for key, each in state.decisions.items() if key in state.flights}
+    state = replace(state, decisions=MappingProxyType(kept))
     if not is_enough(state, CellState.IN_SHADE):
-        return fly_rounds(state, positions, now_ns, CellState.IN_SHADE)
+        state, missions = fly_rounds(state, positions, now_ns, CellState.IN_SHADE)
+        for serial in {mission.serial for mission in missions}:
+            rows = named(state.flights[serial].route)
+            text = f"flies {rows} in any light: how the light is over the field is not known"
+            state = state.with_decision(serial, Decision(text))
+        return state, missions
     if state.flights:
         return state, ()
     end = end_between_rounds(state, WANTED)
