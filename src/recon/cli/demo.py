@@ -3,6 +3,7 @@
 import asyncio
 import sys
 from collections.abc import Coroutine, Sequence
+from dataclasses import replace
 from pathlib import Path
 from time import monotonic_ns, time, time_ns
 from typing import Annotated, Any
@@ -31,6 +32,8 @@ FPS_HZ = 2
 SIMULATED = "SIM-"
 """The serials of simulated drones begin with it."""
 DEMO_SCENARIO = "cumulus-40.toml"
+DEMO_PLANNER = "sunlit_first"
+"""Scenarios name the one that others are compared with; this one states what it does and why."""
 DEMO_SEED = 11
 """Its sky has sun and shadows by turns from the first minute on."""
 
@@ -71,7 +74,8 @@ def demo_command(
         return
     try:
         path = demo_scenario_file() if scenario is None else scenario
-        played = load_scenario(path)
+        loaded = load_scenario(path)
+        played = replace(loaded, survey=replace(loaded.survey, planner=DEMO_PLANNER))
         # The record states when the sky's time began, so that its truth is known.
         began_ns, start_ns = time_ns(), monotonic_ns()
         world = world_text(path, seed, began_ns)

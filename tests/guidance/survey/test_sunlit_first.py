@@ -232,8 +232,7 @@ class TestSurveys:
         assert len(given) == 1
         rows = {row + 1 for row in flown_rows(state, "S-1")}
         assert state.decisions["S-1"].text == (
-            f"flies rows {min(rows)} to {max(rows)} in any light: "
-            "how the light is over the field is not known"
+            f"flies rows {min(rows)} to {max(rows)} in any light: sun and shade are not known yet"
         )
         # On its way to the first row: most of what it has is in shade.
         state, instead = decided(lit_west(13.0), here, state=state, now_s=13.0)
@@ -246,7 +245,9 @@ class TestSurveys:
         kept, none = decided(forecast(clear_sky, 13.0), here, state=state, now_s=13.0)
         assert none == ()
         assert kept.flights["S-1"].route == state.flights["S-1"].route
-        assert kept.flights["S-1"].is_chosen
+        assert kept.decisions["S-1"].text == (
+            f"flies on with rows {min(rows)} to {max(rows)}: probability of sun 1.0"
+        )
 
     def test_where_all_is_in_sun_none_waits_for_its_motion(self) -> None:
         here = Surveyor("S-1", (0.0, 60.0)), Surveyor("S-2", (0.0, 180.0))

@@ -117,7 +117,7 @@ def expected_sun(
     """Return the sun expected on each segment's missing ground; None if light is unknown anywhere.
 
     Without a recent forecast the newest shade map counts, the less the older it is. A forecast that
-    has seen no light yet, as while a detection is still learning the ground, is none.
+    has seen no light yet, as while a detection is still learning the ground, does not count.
     """
     settings = plan.settings
     missing = (progress.state < CellState.IN_SUN) & plan.cells.is_reached

@@ -159,10 +159,21 @@ def _replaced(
         choice = moment.choice(state, serial)
         is_closed = serial in closed
         state, new = off_closed_ground(choice) if is_closed else at_row_end(choice, moment.able)
-        if not new:
-            state = state.with_flight(serial, replace(state.flights[serial], is_chosen=True))
+        if not new and not state.flights[serial].is_chosen:
+            state = _flown_on(replace(choice, state=state))
         missions += new
     return state, missions
+
+
+def _flown_on(choice: VehicleChoice) -> SurveyState:
+    """The survey with a mission that was given in unknown light and is as good as any other."""
+    state, serial = choice.state, choice.surveyor.serial
+    flight = state.flights[serial]
+    left = choice.passing(flight.rows_left, 0.0)
+    sun = left.lit_m2(choice.expected) / max(left.missing_m2, 1.0)
+    text = f"flies on with {named(flight.rows_left)}: probability of sun {sun:.1f}"
+    state = state.with_flight(serial, replace(flight, is_chosen=True))
+    return state.with_decision(serial, Decision(text))
 
 
 def _begun(state: SurveyState, moment: PlanningMoment) -> Step:
@@ -245,7 +256,7 @@ def _in_any_light(state: SurveyState, positions: Sequence[Surveyor], now_ns: int
         state, missions = fly_rounds(state, positions, now_ns, CellState.IN_SHADE)
         for serial in {mission.serial for mission in missions}:
             rows = named(state.flights[serial].route)
-            text = f"flies {rows} in any light: how the light is over the field is not known"
+            text = f"flies {rows} in any light: sun and shade are not known yet"
             state = state.with_decision(serial, Decision(text))
         return state, missions
     if state.flights:
