@@ -33,7 +33,8 @@ SIMULATED = "SIM-"
 """The serials of simulated drones begin with it."""
 DEMO_SCENARIO = "cumulus-40.toml"
 DEMO_PLANNER = "sunlit_first"
-"""Scenarios name the one that others are compared with; this one states what it does and why."""
+"""Of the usual scenario, whose file names the one that others are compared with; this one states
+what it does and why."""
 DEMO_SEED = 11
 """Its sky has sun and shadows by turns from the first minute on."""
 
@@ -74,8 +75,9 @@ def demo_command(
         return
     try:
         path = demo_scenario_file() if scenario is None else scenario
-        loaded = load_scenario(path)
-        played = replace(loaded, survey=replace(loaded.survey, planner=DEMO_PLANNER))
+        played = load_scenario(path)
+        if scenario is None:
+            played = replace(played, survey=replace(played.survey, planner=DEMO_PLANNER))
         # The record states when the sky's time began, so that its truth is known.
         began_ns, start_ns = time_ns(), monotonic_ns()
         world = world_text(path, seed, began_ns)

@@ -222,6 +222,10 @@ class TestMissions:
         assert w.app("SIM-1").aircraft.motion.height_m > 150.0
 
 
+def alarm_rules(w: World) -> set[str]:
+    return {alarm.condition.rule for alarm in w.driver.station.alarms.alarms.values()}
+
+
 class TestAnswers:
     def test_a_good_app_acknowledges_then_telemetry_confirms(self) -> None:
         w = world()
@@ -258,8 +262,7 @@ class TestAnswers:
         assert w.record(order).phase is Phase.ACKNOWLEDGED
         w.run_for(10.0)
         assert w.record(order).phase is Phase.TIMED_OUT
-        rules = {a.condition.rule for a in w.driver.station.alarms.alarms.values()}
-        assert "mission_ignored" in rules
+        assert "mission_ignored" in alarm_rules(w)
 
     def test_a_mission_is_not_begun_because_the_one_before_flies_the_same_way(self) -> None:
         w = world(faults=("ignored-missions::20:30",))
@@ -271,8 +274,7 @@ class TestAnswers:
         w.run_for(10.0)
         assert w.vehicle("SIM-1").flight_mode.value is FlightMode.GPS_WAYPOINT
         assert w.record(again).phase is Phase.TIMED_OUT
-        rules = {a.condition.rule for a in w.driver.station.alarms.alarms.values()}
-        assert "mission_ignored" in rules
+        assert "mission_ignored" in alarm_rules(w)
 
     def test_an_emergency_ignored_is_repeated_and_alarmed(self) -> None:
         w = world(faults=("ack-then-nothing",), wanders=True)
@@ -281,8 +283,7 @@ class TestAnswers:
         w.run_for(15.0)
         assert w.record(order).times_sent == 4
         assert w.record(order).phase is Phase.TIMED_OUT
-        rules = {a.condition.rule for a in w.driver.station.alarms.alarms.values()}
-        assert "order_not_confirmed" in rules
+        assert "order_not_confirmed" in alarm_rules(w)
 
     def test_on_the_ground_hover_is_refused(self) -> None:
         w = world(airborne=Airborne.NONE)

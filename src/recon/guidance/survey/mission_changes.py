@@ -2,7 +2,8 @@
 
 Theory of operation. A mission that leads over ground that has been closed since, because a vehicle
 there has lost its link, is replaced at once by one over other ground: else the station would hold
-its vehicle when it comes near. When a vehicle reaches the end of a row and its mission has more:
+its vehicle when it comes near. When a vehicle reaches the end of a row and its mission has more,
+and once when light becomes known, if its mission was given without and its first row is ahead:
 
 1. If much of what is left is expected in shade, the best flight from here is searched, over all
    that is free without this mission. It is flown instead if it brings so much more ground into sun
@@ -26,7 +27,13 @@ from recon.guidance.survey.passing import Passing
 from recon.guidance.survey.plan import SurveyPlan
 from recon.guidance.survey.rounds import may_ask
 from recon.guidance.survey.route import Place, Route
-from recon.guidance.survey.state import AssignedMission, Surveyor, SurveyState, flown_just_now
+from recon.guidance.survey.state import (
+    AssignedMission,
+    Decision,
+    Surveyor,
+    SurveyState,
+    flown_just_now,
+)
 from recon.guidance.survey.vehicle_choice import VehicleChoice, flown_text, named
 from recon.model.survey import MissionAssignment
 from recon.model.units import seconds_to_ns
@@ -123,6 +130,29 @@ def at_row_end(choice: VehicleChoice, able: Mapping[str, Surveyor]) -> Replaced:
     else:
         replaced = _handed_on(choice, able, _nearer_half(rows, choice.plan), lit_m2)
     return (choice.state, ()) if replaced is None else replaced
+
+
+def on_the_way_in_any_light(state: SurveyState, able: Mapping[str, Surveyor]) -> tuple[str, ...]:
+    """Return the vehicles on the way to the first row of a mission given in unknown light."""
+    return tuple(
+        serial
+        for serial, flight in state.flights.items()
+        if serial in able and not flight.is_chosen and flight.ends_passed == 0
+    )
+
+
+def when_light_is_known(choice: VehicleChoice, able: Mapping[str, Surveyor]) -> Replaced:
+    """Decide once on a mission given in unknown light, as at the end of a row."""
+    state, missions = at_row_end(choice, able)
+    if missions:
+        return state, missions
+    serial = choice.surveyor.serial
+    flight = state.flights[serial]
+    left = choice.passing(flight.rows_left, 0.0)
+    sun = left.lit_m2(choice.expected) / max(left.missing_m2, 1.0)
+    text = f"flies on with {named(flight.rows_left)}: probability of sun {sun:.1f}"
+    state = state.with_flight(serial, replace(flight, is_chosen=True))
+    return state.with_decision(serial, Decision(text)), ()
 
 
 def _handed_on(

@@ -41,6 +41,8 @@ from recon.guidance.survey.mission_changes import (
     at_row_end,
     off_closed_ground,
     on_closed_ground,
+    on_the_way_in_any_light,
+    when_light_is_known,
     with_ends_passed,
 )
 from recon.guidance.survey.rounds import (
@@ -132,7 +134,7 @@ def vehicle_by_vehicle(
         return without_able(state, able, now_ns), ()
     state, at_end = with_ends_passed(state, able)
     closed = on_closed_ground(state, able, now_ns)
-    in_any_light = _in_any_light_until_now(state, able)
+    in_any_light = on_the_way_in_any_light(state, able)
     is_asked = any(_is_asked(state, serial, able, now_ns) for serial in able)
     if not (is_asked or at_end or closed or in_any_light):
         return state, ()
@@ -145,35 +147,30 @@ def vehicle_by_vehicle(
         expected = replace(expected, missing_m2=np.where(is_closed, 0.0, expected.missing_m2))
     moment = PlanningMoment(segments, expected, able, sun, now_ns)
     state = replace(state, waiting=NO_ROUTES, round=max(1, state.round), reason="under way")
-    state, instead = _replaced(state, moment, closed, (*at_end, *in_any_light))
+    state, instead = _replaced(state, moment, closed, at_end, in_any_light)
     state, missions = begun(state, moment)
     return state, (*instead, *missions)
 
 
 def _replaced(
-    state: SurveyState, moment: PlanningMoment, closed: Sequence[str], at_end: Sequence[str]
+    state: SurveyState,
+    moment: PlanningMoment,
+    closed: Sequence[str],
+    at_end: Sequence[str],
+    in_any_light: Sequence[str],
 ) -> Step:
     """Replace missions under way, where that is worth it."""
     missions: tuple[MissionAssignment, ...] = ()
-    for serial in dict.fromkeys((*closed, *at_end)):
+    for serial in dict.fromkeys((*closed, *at_end, *in_any_light)):
         choice = moment.choice(state, serial)
-        is_closed = serial in closed
-        state, new = off_closed_ground(choice) if is_closed else at_row_end(choice, moment.able)
-        if not new and not state.flights[serial].is_chosen:
-            state = _flown_on(replace(choice, state=state))
+        if serial in closed:
+            state, new = off_closed_ground(choice)
+        elif serial in at_end:
+            state, new = at_row_end(choice, moment.able)
+        else:
+            state, new = when_light_is_known(choice, moment.able)
         missions += new
     return state, missions
-
-
-def _flown_on(choice: VehicleChoice) -> SurveyState:
-    """The survey with a mission that was given in unknown light and is as good as any other."""
-    state, serial = choice.state, choice.surveyor.serial
-    flight = state.flights[serial]
-    left = choice.passing(flight.rows_left, 0.0)
-    sun = left.lit_m2(choice.expected) / max(left.missing_m2, 1.0)
-    text = f"flies on with {named(flight.rows_left)}: probability of sun {sun:.1f}"
-    state = state.with_flight(serial, replace(flight, is_chosen=True))
-    return state.with_decision(serial, Decision(text))
 
 
 def _begun(state: SurveyState, moment: PlanningMoment) -> Step:
@@ -236,16 +233,6 @@ def _awaits_motion(
         return False
     began_ns = state.started_at_ns if state.started_at_ns is not None else now_ns
     return now_ns < began_ns + seconds_to_ns(settings.motion_within_s)
-
-
-def _in_any_light_until_now(state: SurveyState, able: Mapping[str, Surveyor]) -> tuple[str, ...]:
-    """Return the vehicles on the way to the first row of a mission given in unknown light."""
-    flights = state.flights.items()
-    return tuple(
-        serial
-        for serial, flight in flights
-        if serial in able and not flight.is_chosen and flight.ends_passed == 0
-    )
 
 
 def _in_any_light(state: SurveyState, positions: Sequence[Surveyor], now_ns: int) -> Step:
