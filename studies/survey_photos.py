@@ -34,10 +34,10 @@ from recon.score.scenario_conditions import conditions_of
 from recon.score.scenario_sky import sky_of
 from recon.score.true_frames import FleetFrames
 from recon.score.true_paths import phases_s
-from recon.sim.app.telemetry import GaussMarkov
 from recon.sim.camera.field import FieldRenderer
 from recon.sim.camera.frames import CameraView
 from recon.sim.camera.settings import CameraSettings
+from recon.sim.flight.estimate import GaussMarkov
 from recon.sim.world import Sky
 from recon.station.imaging.shade import READ_SHADE
 

@@ -22,8 +22,8 @@ from recon.model.vehicle import AltitudeReference, Failsafe, VehicleProfile
 from recon.sim.app.app import SimulatedApp
 from recon.sim.app.commands import HoverOnGround
 from recon.sim.app.faults import FaultKind, InjectedFault
-from recon.sim.app.telemetry import FIELD_SENSORS, TelemetrySensorSettings
 from recon.sim.fleet import Airborne, SimulationConfig, build_fleet
+from recon.sim.flight.estimate import FIELD_SENSORS, SensorSettings
 from recon.sim.flight.flight_modes import PositionHold
 from recon.sim.world import WindSettings
 from recon.site import Site
@@ -125,12 +125,12 @@ def _settings(rng: Random, seconds: float) -> RunSettings:
     )
 
 
-def _truth(rng: Random) -> tuple[TrueSite, TelemetrySensorSettings]:
+def _truth(rng: Random) -> tuple[TrueSite, SensorSettings]:
     ground = TrueGround()
     if rng.random() < 0.6:
         rises = rng.uniform(-0.06, 0.06), rng.uniform(-0.06, 0.06)
         ground = TrueGround(*rises, rng.uniform(0.0, 4.0), rng.uniform(400.0, 900.0))
-    sensors = FIELD_SENSORS if rng.random() < 0.4 else TelemetrySensorSettings()
+    sensors = FIELD_SENSORS if rng.random() < 0.4 else SensorSettings()
     is_field = sensors is FIELD_SENSORS
     truth = TrueSite(
         boundary_m=_star(rng, (0.0, 0.0), rng.uniform(180.0, 450.0)),
@@ -241,7 +241,7 @@ def _apps(
     pads: Mapping[str, GeoPoint],
     profiles: Mapping[str, VehicleProfile],
     faults: tuple[InjectedFault, ...],
-    sensors: TelemetrySensorSettings,
+    sensors: SensorSettings,
 ) -> list[SimulatedApp]:
     wind_mps = rng.choice((0.0, 0.0, 3.0, 6.0))
     wind = WindSettings(seed, wind_mps, rng.uniform(0.0, 360.0)) if wind_mps else None

@@ -17,11 +17,11 @@ from recon.score.connected_apps import ConnectedApps
 from recon.sim.app.app import SimulatedApp
 from recon.sim.app.camera_feed import FeedSettings, ImageFormat
 from recon.sim.app.faults import parse_fault
-from recon.sim.app.telemetry import FIELD_SENSORS
 from recon.sim.camera.field import FieldRenderer
 from recon.sim.camera.rig import CameraRig
 from recon.sim.camera.settings import CameraSettings
 from recon.sim.fleet import IMAGER_SERIAL, Airborne, ImagerSetup, SimulationConfig, build_fleet
+from recon.sim.flight.estimate import FIELD_SENSORS
 from recon.sim.world import LayerSettings, Sky, SkySettings, SunSettings
 from recon.site import Site, demo_site_folder, load_site
 from recon.station.kernel.build import first_state

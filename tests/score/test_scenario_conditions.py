@@ -11,10 +11,10 @@ from recon.score import Scenario, load_scenario
 from recon.score.scenario_conditions import conditions_of, with_exposure
 from recon.score.scenario_sky import sky_of
 from recon.score.simulation import simulation_of
-from recon.sim.app.telemetry import FIELD_SENSORS
 from recon.sim.camera.field import FieldRenderer
 from recon.sim.conditions import Range
 from recon.sim.fleet import IMAGER_SERIAL
+from recon.sim.flight.estimate import FIELD_SENSORS
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 

@@ -1,6 +1,7 @@
 """Flying simulated aircraft and apps by hand."""
 
 from collections.abc import Callable, Iterator
+from random import Random
 
 import pytest
 
@@ -11,8 +12,9 @@ from recon.model.vehicle import AltitudeReference
 from recon.sim.app.app import AppSettings, SimulatedApp
 from recon.sim.app.commands import AppBehaviour, HoverOnGround
 from recon.sim.app.faults import InjectedFault
-from recon.sim.app.telemetry import TelemetrySensorSettings, position_deg
+from recon.sim.app.telemetry import position_deg
 from recon.sim.flight.aircraft import TICK_NS, Aircraft
+from recon.sim.flight.estimate import EstimateErrors, SensorSettings
 from recon.sim.flight.flight_modes import Grounded, PositionHold
 from recon.sim.flight.kinematics import AircraftMotion
 
@@ -112,10 +114,13 @@ def app_bench() -> Callable[..., AppBench]:
         hover_on_ground: HoverOnGround = HoverOnGround.NOTHING,
         faults: tuple[InjectedFault, ...] = (),
         bias_m: float = -23.0,
-        sensors: TelemetrySensorSettings | None = None,
+        sensors: SensorSettings | None = None,
     ) -> AppBench:
         active_mode = Grounded() if height_m == 0.0 else PositionHold()
-        aircraft = Aircraft(0, motion=AircraftMotion(height_m=height_m), active_mode=active_mode)
+        motion = AircraftMotion(height_m=height_m)
+        sensors = sensors or SensorSettings()
+        errors = EstimateErrors(random=Random(4), settings=sensors)
+        aircraft = Aircraft(0, motion=motion, active_mode=active_mode, errors=errors)
         behaviour = AppBehaviour(reference, hover_on_ground, bias_m)
         settings = AppSettings(
             "SIM-7",
@@ -123,7 +128,7 @@ def app_bench() -> Callable[..., AppBench]:
             seed=4,
             behaviour=behaviour,
             faults=faults,
-            sensors=sensors or TelemetrySensorSettings(),
+            sensors=sensors,
         )
         return AppBench(SimulatedApp(settings, aircraft))
 

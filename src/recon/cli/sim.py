@@ -52,7 +52,6 @@ from recon.sim.app.camera_feed import FeedSettings, ImageFormat
 from recon.sim.app.commands import HoverOnGround
 from recon.sim.app.fault_file import FaultScript, load_faults
 from recon.sim.app.faults import parse_fault
-from recon.sim.app.telemetry import FIELD_SENSORS
 from recon.sim.camera import CameraSettings
 from recon.sim.camera.field import FieldRenderer
 from recon.sim.camera.frames import FrameSource, folder_frames
@@ -60,6 +59,7 @@ from recon.sim.camera.replay import load_replay
 from recon.sim.camera.rig import CameraRig
 from recon.sim.errors import SimulationError
 from recon.sim.fleet import IMAGER_SERIAL, Airborne, ImagerSetup, SimulationConfig
+from recon.sim.flight.estimate import FIELD_SENSORS
 from recon.sim.run import run_fleet
 from recon.sim.world import LayerSettings, Sky, SkySettings, SunSettings, WindSettings
 from recon.site import Imager, Site, SiteError, demo_site_folder, load_site

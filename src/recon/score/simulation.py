@@ -9,11 +9,11 @@ from recon.score.scenario_conditions import conditions_of
 from recon.score.scenario_sky import sky_of
 from recon.sim.app.camera_feed import FeedSettings
 from recon.sim.app.faults import InjectedFault, RandomFault
-from recon.sim.app.telemetry import FIELD_SENSORS
 from recon.sim.camera.field import FieldRenderer
 from recon.sim.camera.replay import rig_over
 from recon.sim.camera.rig import CameraRig
 from recon.sim.fleet import Airborne, ImagerSetup, SimulationConfig
+from recon.sim.flight.estimate import FIELD_SENSORS
 from recon.sim.world.relief import Relief, ReliefSettings
 from recon.site import Imager, Site
 

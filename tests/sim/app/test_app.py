@@ -14,9 +14,9 @@ from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import AltitudeReference, FlightMode
 from recon.sim.app.commands import AppBehaviour, HoverOnGround
-from recon.sim.app.telemetry import FIELD_SENSORS, HomeAltitude, TelemetrySensors
 from recon.sim.fleet import Airborne, SimulationConfig, build_fleet
 from recon.sim.flight.aircraft import AircraftSettings
+from recon.sim.flight.estimate import FIELD_SENSORS, EstimateErrors
 
 HOME = GeoPoint(41.9, -93.6, 275.0)
 HOVER, LAND, RETURN = (wire.EmergencyCommand(action=action) for action in (0, 1, 2))
@@ -380,10 +380,9 @@ def test_pads_at_different_altitudes_differ_in_altitude_and_not_in_height() -> N
 
 def drifted_m(seed: int, seconds: float) -> float:
     """The height's slow error of field sensors, after a time."""
-    sensors = TelemetrySensors(
-        HOME, HomeAltitude(275.0), FIELD_SENSORS, random.Random(0), random.Random(seed)
-    )
-    return sensors.drift_m(seconds)[2]
+    errors = EstimateErrors(random=random.Random(seed), settings=FIELD_SENSORS)
+    errors.step(seconds)
+    return errors.north_east_up_m[2]
 
 
 def test_field_sensors_are_good_to_metres_and_drift_slowly() -> None:

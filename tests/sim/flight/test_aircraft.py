@@ -5,6 +5,7 @@ import pytest
 from recon.model.vehicle import BatteryWarning, FlightMode
 from recon.sim.flight.aircraft import Aircraft, AircraftSettings
 from recon.sim.flight.battery import Battery
+from recon.sim.flight.estimate import EstimateErrors
 from recon.sim.flight.flight_modes import CONFIRM_HEIGHT_M, PositionHold, Stick
 from recon.sim.flight.kinematics import AircraftMotion, Limits
 
@@ -33,12 +34,12 @@ def test_takeoff_rises_to_takeoff_height_and_hovers(flights) -> None:
 
 
 def test_the_barometer_is_zeroed_at_takeoff_and_its_later_error_is_flown(flights) -> None:
-    aircraft = Aircraft(0, estimate_error_m=(0.0, 0.0, -3.0))
+    aircraft = Aircraft(0, errors=EstimateErrors((0.0, 0.0, -3.0)))
     assert aircraft.estimate.height_m == -3.0
     aircraft.take_off(PositionHold())
     flights.fly_on(aircraft, 20.0)
     assert aircraft.estimate.height_m == aircraft.motion.height_m == pytest.approx(1.2, abs=0.2)
-    aircraft.estimate_error_m = (0.0, 0.0, -5.0)
+    aircraft.errors.north_east_up_m = (0.0, 0.0, -5.0)
     flights.fly_on(aircraft, 20.0)
     assert aircraft.estimate.height_m == pytest.approx(1.2, abs=0.2)
     assert aircraft.motion.height_m == pytest.approx(3.2, abs=0.2)
@@ -46,7 +47,7 @@ def test_the_barometer_is_zeroed_at_takeoff_and_its_later_error_is_flown(flights
 
 def test_an_aircraft_lands_on_the_ground_whatever_its_barometer_says(flights) -> None:
     aircraft = flights.hovering(height_m=20.0)
-    aircraft.estimate_error_m = (0.0, 0.0, 4.0)
+    aircraft.errors.north_east_up_m = (0.0, 0.0, 4.0)
     aircraft.land()
     flights.fly_until(aircraft, lambda a: a.is_on_ground, 60.0)
     assert aircraft.motion.height_m == 0.0

@@ -51,12 +51,11 @@ from recon.sim.app.link_buffers import AppInbox, AppOutbox
 from recon.sim.app.telemetry import (
     HomeAltitude,
     TelemetrySensors,
-    TelemetrySensorSettings,
     position_deg,
 )
-from recon.sim.camera.frames import Black, FrameFlaw, exposed, torn
 from recon.sim.camera.rig import CameraRig
 from recon.sim.flight.aircraft import Aircraft
+from recon.sim.flight.estimate import SensorSettings
 
 CORE_PERIOD_NS = 100_000_000
 EXTENDED_PERIOD_NS = 500_000_000
@@ -106,7 +105,7 @@ class AppSettings:
     seed: int = 0
     behaviour: AppBehaviour = field(default_factory=AppBehaviour)
     faults: tuple[InjectedFault, ...] = ()
-    sensors: TelemetrySensorSettings = field(default_factory=TelemetrySensorSettings)
+    sensors: SensorSettings = field(default_factory=SensorSettings)
     renders_inline: bool = True
     """False: the driver takes the shots and renders them in a thread."""
 
@@ -136,10 +135,7 @@ class SimulatedApp:
         home, behaviour = settings.home, settings.behaviour
         self._altitude = HomeAltitude(home.ellipsoid_height_m, behaviour.altitude_bias_m)
         random = Random(f"{settings.seed}/{settings.serial}/sensors")
-        slow_random = Random(f"{settings.seed}/{settings.serial}/drift")
-        self._sensors = TelemetrySensors(
-            home, self._altitude, settings.sensors, random, slow_random
-        )
+        self._sensors = TelemetrySensors(home, self._altitude, settings.sensors, random)
         self._commands = CommandHandler(home, aircraft, feed, behaviour, self._altitude)
         self._links: dict[int, _Link] = {}
         self._pending: deque[tuple[int, AppResponse]] = deque()
@@ -148,10 +144,8 @@ class SimulatedApp:
         self._link_orders: deque[LinkOrder] = deque()
         name = f"{settings.seed}/{settings.serial}/faults"
         self._plan = FaultSchedule(settings.faults, name, self._start_ns)
-        self._flaws = Random(f"{name}/frames")
         self._aircraft_faults = AircraftFaults(aircraft, self._altitude, name)
         self._is_silent = False
-        self._repeated: dict[type, wire.Packet] = {}
         self._now_ns = self._start_ns
         self._fault_events = sorted(self._one_off_events(), key=_DUE_NS)
         self._log: deque[str] = deque(maxlen=64)
@@ -349,15 +343,13 @@ class SimulatedApp:
 
     def _send_core(self, now_ns: int) -> None:
         self._next_core_ns = now_ns + CORE_PERIOD_NS
-        period_s = CORE_PERIOD_NS / NS_PER_S
-        self.aircraft.estimate_error_m = self._sensors.drift_m(period_s)
         packet = self._sensors.core(
             self.aircraft,
-            period_s,
+            CORE_PERIOD_NS / NS_PER_S,
             is_flying=self.aircraft.is_flying and not self._has(FaultKind.FALSE_GROUND, now_ns),
             north_deg=JUMP_DEG if self._has(FaultKind.POSITION_JUMP, now_ns) else 0.0,
         )
-        self._broadcast(self._frozen(packet, now_ns), now_ns)
+        self._broadcast(self._plan.as_frozen(packet, now_ns), now_ns)
 
     def _send_extended(self, now_ns: int) -> None:
         self._next_extended_ns = now_ns + EXTENDED_PERIOD_NS
@@ -365,32 +357,17 @@ class SimulatedApp:
         serial = PLACEHOLDER_SERIAL if is_placeholder else self.settings.serial.encode()
         reports_id = self.settings.behaviour.reports_mission_id
         packet = self._sensors.extended(self.aircraft, self.feed, serial, reports_id)
-        self._broadcast(self._frozen(packet, now_ns), now_ns)
-
-    def _frozen(self, packet: wire.Packet, now_ns: int) -> wire.Packet:
-        """Return the packet, or while telemetry is frozen the first of its kind since then."""
-        if not self._has(FaultKind.FROZEN_TELEMETRY, now_ns):
-            self._repeated.clear()
-            return packet
-        return self._repeated.setdefault(type(packet), packet)
+        self._broadcast(self._plan.as_frozen(packet, now_ns), now_ns)
 
     def _take_picture(self, feed: CameraFeed, now_ns: int) -> None:
         if self._has(FaultKind.CAMERA_STOPS, now_ns):
             feed.miss()
             return
         repeats = self._has(FaultKind.FRAMES_REPEATED, now_ns)
-        feed.take(self._camera_pose(), self._flaw(now_ns), repeats)
+        feed.take(self._camera_pose(), self._plan.frame_flaw(now_ns), repeats)
         if self.settings.renders_inline:
             for shot in feed.take_shots():
                 feed.add(shot, shot.packet())
-
-    def _flaw(self, now_ns: int) -> FrameFlaw | None:
-        """Return the defect of a frame taken now, None without a fault."""
-        if self._has(FaultKind.FRAMES_BLACK, now_ns):
-            return Black()
-        if self._has(FaultKind.FRAMES_TORN, now_ns):
-            return torn(self._flaws)
-        return exposed(self._flaws) if self._has(FaultKind.EXPOSURE_JUMPS, now_ns) else None
 
     def _camera_pose(self) -> CameraPose | None:
         return None if self.rig is None else self.rig.pose_at(self.true_reference())

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable
 from math import nan
 from random import Random
 
+from recon import wire
 from recon.model.units import seconds_to_ns
 from recon.sim.app.faults import (
     FAILED_CELL_FRACTION,
@@ -14,6 +15,7 @@ from recon.sim.app.faults import (
     InjectedFault,
 )
 from recon.sim.app.telemetry import HomeAltitude
+from recon.sim.camera.frames import Black, FrameFlaw, exposed, torn
 from recon.sim.flight.air import Squall
 from recon.sim.flight.aircraft import Aircraft
 
@@ -36,6 +38,8 @@ class FaultSchedule:
         self._start_ns = start_ns
         self._delays = Random(f"{seed}/delays")
         self._changes = Random(f"{seed}/changes")
+        self._flaws = Random(f"{seed}/frames")
+        self._repeated: dict[type, wire.Packet] = {}
 
     def active(self, kind: FaultKind, now_ns: int) -> InjectedFault | None:
         """Return the active fault of a kind (the last listed of several), else None."""
@@ -80,6 +84,21 @@ class FaultSchedule:
             # Never XOR with 0: a chosen byte really changes.
             changed[self._changes.randrange(len(changed))] ^= self._changes.randint(1, 255)
         return bytes(changed)
+
+    def as_frozen(self, packet: wire.Packet, now_ns: int) -> wire.Packet:
+        """Return the packet, or while telemetry is frozen the first of its kind since then."""
+        if not self.has(FaultKind.FROZEN_TELEMETRY, now_ns):
+            self._repeated.clear()
+            return packet
+        return self._repeated.setdefault(type(packet), packet)
+
+    def frame_flaw(self, now_ns: int) -> FrameFlaw | None:
+        """Return the defect of a frame taken now, None without a fault."""
+        if self.has(FaultKind.FRAMES_BLACK, now_ns):
+            return Black()
+        if self.has(FaultKind.FRAMES_TORN, now_ns):
+            return torn(self._flaws)
+        return exposed(self._flaws) if self.has(FaultKind.EXPOSURE_JUMPS, now_ns) else None
 
 
 class AircraftFaults:

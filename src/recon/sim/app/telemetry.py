@@ -1,7 +1,6 @@
 """Telemetry packets: the aircraft's estimate of its state, with the noise of GNSS and barometer."""
 
 from dataclasses import dataclass, field
-from math import exp, sqrt
 from random import Random
 
 from recon import wire
@@ -11,34 +10,10 @@ from recon.model.units import wrap_degrees
 from recon.model.vehicle import CameraState
 from recon.sim.app.camera_feed import CameraFeed
 from recon.sim.flight.aircraft import Aircraft
+from recon.sim.flight.estimate import GaussMarkov, SensorSettings
 
 FEW_SATELLITES = 3
 """One fewer than a position fix needs."""
-
-
-@dataclass(frozen=True, slots=True)
-class TelemetrySensorSettings:
-    """Standard deviations and time constants of sensor errors (first-order Gauss-Markov).
-
-    The slow ones are the aircraft's own (`Aircraft.estimate`): it holds the height that it reports.
-    """
-
-    position_sigma_m: float = 0.15
-    height_sigma_m: float = 0.10
-    wander_time_s: float = 30.0
-    """Time constant of both: satellites change, gusts change the static pressure."""
-    position_drift_m: float = 0.0
-    """Slow part: satellite geometry and ionosphere."""
-    position_drift_time_s: float = 400.0
-    height_drift_m: float = 0.0
-    """Slow part: air pressure, and the barometer warming up."""
-    height_drift_time_s: float = 900.0
-    yaw_error_deg: float = 0.0
-    """Reported minus true yaw: the compass near metal and motors, for a whole flight."""
-
-
-FIELD_SENSORS = TelemetrySensorSettings(position_drift_m=0.7, height_drift_m=0.8)
-"""Metres, as outdoors: twice these values within a quarter of an hour is common."""
 
 
 @dataclass(slots=True)
@@ -61,34 +36,15 @@ class HomeAltitude:
 
 
 @dataclass(slots=True)
-class GaussMarkov:
-    """A first-order Gauss-Markov process."""
-
-    sigma: float
-    time_s: float
-    value: float = 0.0
-
-    def step(self, seconds: float, random: Random) -> float:
-        """Advance by `seconds` and return the value."""
-        # The noise term keeps the variance at sigma squared for any step length.
-        keep = exp(-seconds / self.time_s)
-        self.value = keep * self.value + sqrt(1.0 - keep * keep) * random.gauss(0.0, self.sigma)
-        return self.value
-
-
-@dataclass(slots=True)
 class TelemetrySensors:
-    """Makes telemetry packets from an aircraft's estimate of its state, and the errors of both."""
+    """Makes telemetry packets from an aircraft's estimate of its state, with fast errors."""
 
     home: GeoPoint
     altitude: HomeAltitude
-    settings: TelemetrySensorSettings
+    settings: SensorSettings
     random: Random
-    slow_random: Random
-    """For the slow errors: separate, so that the telemetry rate does not change them."""
     _noise: tuple[GaussMarkov, ...] = field(init=False)
-    """Of north, east and height, as the next."""
-    _drift: tuple[GaussMarkov, ...] = field(init=False)
+    """Of north, east and height."""
     _satellites: int = field(init=False)
     _plane: TangentPlane = field(init=False)
 
@@ -96,18 +52,8 @@ class TelemetrySensors:
         s = self.settings
         sigmas_m = (s.position_sigma_m, s.position_sigma_m, s.height_sigma_m)
         self._noise = tuple(GaussMarkov(sigma_m, s.wander_time_s) for sigma_m in sigmas_m)
-        self._drift = (
-            GaussMarkov(s.position_drift_m, s.position_drift_time_s),
-            GaussMarkov(s.position_drift_m, s.position_drift_time_s),
-            GaussMarkov(s.height_drift_m, s.height_drift_time_s),
-        )
         self._satellites = self.random.randint(14, 19)
         self._plane = tangent_plane(LocalFrame(self.home))
-
-    def drift_m(self, seconds: float) -> tuple[float, float, float]:
-        """Advance the slow errors of north, east and height by `seconds` and return them."""
-        north_m, east_m, up_m = (axis.step(seconds, self.slow_random) for axis in self._drift)
-        return north_m, east_m, up_m
 
     def core(
         self,

@@ -26,6 +26,7 @@ from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.model.vehicle import FlightMode
 from recon.sim.flight.air import Air
 from recon.sim.flight.battery import FORCED_LANDING_FRACTION, GROUND_LOAD, Battery, flying_load
+from recon.sim.flight.estimate import EstimateErrors
 from recon.sim.flight.flight_modes import (
     ActiveMode,
     GoHome,
@@ -88,8 +89,7 @@ class Aircraft:
     """Whether the pilot has control by the mode switch: missions and sticks are ignored."""
     air: Air = field(default_factory=Air)
     has_gnss: bool = True
-    estimate_error_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Estimated minus true north, east and height; the height's counts from the last takeoff."""
+    errors: EstimateErrors = field(default_factory=EstimateErrors)
     home_north_m: float = 0.0
     home_east_m: float = 0.0
     _zeroed_at_m: float = 0.0
@@ -101,7 +101,7 @@ class Aircraft:
     @property
     def estimate(self) -> AircraftMotion:
         """Where it takes itself to be."""
-        north_m, east_m, up_m = self.estimate_error_m
+        north_m, east_m, up_m = self.errors.north_east_up_m
         motion = self.motion
         return motion._replace(
             north_m=motion.north_m + north_m,
@@ -262,7 +262,7 @@ class Aircraft:
         self._landed_at_ns = None
 
     def _set_home(self) -> None:
-        self._zeroed_at_m = self.estimate_error_m[2]
+        self._zeroed_at_m = self.errors.north_east_up_m[2]
         here = self.estimate
         self.home_north_m, self.home_east_m = here.north_m, here.east_m
 
@@ -276,6 +276,7 @@ class Aircraft:
         )
 
     def _tick(self, seconds: float) -> None:
+        self.errors.step(seconds)
         # Wind first: demand, drag and load of this tick all use the same wind.
         self.air.step(self.motion, self.now_ns, seconds)
         if not self.is_on_ground:

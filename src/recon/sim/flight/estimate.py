@@ -1,0 +1,74 @@
+"""What an aircraft's estimate of its own position is off by: GNSS and a barometer."""
+
+from dataclasses import dataclass, field
+from math import exp, sqrt
+from random import Random
+
+
+@dataclass(frozen=True, slots=True)
+class SensorSettings:
+    """Standard deviations and time constants of sensor errors (first-order Gauss-Markov).
+
+    Slow ones, the drifts, are in what an aircraft flies by; fast ones in its telemetry alone.
+    """
+
+    position_sigma_m: float = 0.15
+    height_sigma_m: float = 0.10
+    wander_time_s: float = 30.0
+    """Time constant of both: satellites change, gusts change the static pressure."""
+    position_drift_m: float = 0.0
+    """Slow part: satellite geometry and ionosphere."""
+    position_drift_time_s: float = 400.0
+    height_drift_m: float = 0.0
+    """Slow part: air pressure, and the barometer warming up."""
+    height_drift_time_s: float = 900.0
+    yaw_error_deg: float = 0.0
+    """Reported minus true yaw: the compass near metal and motors, for a whole flight."""
+
+
+FIELD_SENSORS = SensorSettings(position_drift_m=0.7, height_drift_m=0.8)
+"""Metres, as outdoors: twice these values within a quarter of an hour is common."""
+
+
+@dataclass(slots=True)
+class GaussMarkov:
+    """A first-order Gauss-Markov process."""
+
+    sigma: float
+    time_s: float
+    value: float = 0.0
+
+    def step(self, seconds: float, random: Random) -> float:
+        """Advance by `seconds` and return the value."""
+        # The noise term keeps the variance at sigma squared for any step length.
+        keep = exp(-seconds / self.time_s)
+        self.value = keep * self.value + sqrt(1.0 - keep * keep) * random.gauss(0.0, self.sigma)
+        return self.value
+
+
+@dataclass(slots=True)
+class EstimateErrors:
+    """Estimated minus true north, east and height, metres; constant without a generator.
+
+    The height's counts from the last takeoff: there the barometer is zeroed.
+    """
+
+    north_east_up_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    random: Random | None = None
+    settings: SensorSettings = field(default_factory=SensorSettings)
+    _axes: tuple[GaussMarkov, ...] = field(init=False)
+
+    def __post_init__(self) -> None:
+        s = self.settings
+        self._axes = (
+            GaussMarkov(s.position_drift_m, s.position_drift_time_s),
+            GaussMarkov(s.position_drift_m, s.position_drift_time_s),
+            GaussMarkov(s.height_drift_m, s.height_drift_time_s),
+        )
+
+    def step(self, seconds: float) -> None:
+        """Advance by `seconds`."""
+        if self.random is None:
+            return
+        north_m, east_m, up_m = (axis.step(seconds, self.random) for axis in self._axes)
+        self.north_east_up_m = north_m, east_m, up_m
