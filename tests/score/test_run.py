@@ -99,6 +99,7 @@ def test_an_overcast_survey_ends_at_the_limit_and_all_return(folder: Path) -> No
     assert max(found.in_sun_share, default=0.0) == 0.0
     assert 180.0 < found.survey_s < 400.0
     assert "abort" in found.end
+    assert found.holds == 0
     printed = tables(scenario, [found, replace(found, seed=1)])
     row = "| time to 95 % in sun, min | at least 3.0 | 3.0 to 3.0 | 0 of 2 within the limit |"
     assert row in printed

@@ -6,6 +6,7 @@ import pytest
 
 from recon.score.scripted_operator import (
     AbortSurvey,
+    CallFleetHome,
     CallHome,
     DismissHazard,
     DroneView,
@@ -109,9 +110,12 @@ def test_at_the_limit_the_survey_is_aborted_and_all_return() -> None:
     operator = ScriptedOperator(SERIALS, limit_s=10.0)
     assert actions(operator, flying_view(FLYING), 12) == [(10, AbortSurvey()), (11, AbortSurvey())]
     over = FieldView([FLYING, replace(OTHER, is_descending=True)], SurveyStage.FINISHED)
-    assert list(operator.decide(over, 12.0)) == [CallHome("SIM-1")]
-    assert list(operator.decide(over, 13.0)) == []
-    assert list(operator.decide(over, 33.0)) == [CallHome("SIM-1")]
+    assert list(operator.decide(over, 12.0)) == [CallFleetHome(("SIM-1",))]
+    returning = replace(over, vehicles=[replace(FLYING, is_flying_home=True)])
+    assert [list(operator.decide(returning, 13.0 + s)) for s in range(30)] == [[]] * 30
+    # It was stopped on its way.
+    found = actions(operator, over, 70)
+    assert found == [(30, CallHome("SIM-1")), (51, CallHome("SIM-1"))]
 
 
 def test_the_next_survey_follows_only_where_surveys_repeat() -> None:

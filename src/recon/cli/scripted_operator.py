@@ -14,6 +14,7 @@ from recon.geo import point_from_enu
 from recon.score import Scenario
 from recon.score.scripted_operator import (
     AbortSurvey,
+    CallFleetHome,
     CallHome,
     DismissHazard,
     DroneView,
@@ -163,6 +164,9 @@ class _HttpOperator:
             case CallHome(serial):
                 ordered = await self._station.known(serial).return_home()
                 return ordered if isinstance(ordered, Refusal) else None
+            case CallFleetHome(serials):
+                await self._station.fleet.return_in_layers(serials)
+                return None
             case DismissHazard():
                 return None  # the person at the console sees to it
             case TakeAuthority(serial):

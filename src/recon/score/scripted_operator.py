@@ -8,7 +8,7 @@ Theory of operation. `decide` is called about once a second with a `FieldView` a
                  command return to home where a low-battery alarm is active and it is not returning;
                  dismiss the hazard area of one that has been lost in the air for FOUND_AFTER_S
     finished     nothing; with `repeats`, plan the next survey when all batteries are full again
-    past limit_s abort, then command return to home, and again for drones stopped on the way
+    past limit_s abort, then call the fleet home, and one by one drones stopped on the way
 
 An operator needs time to notice an alarm or a stopped drone, find out why, and press a button: a
 condition has to last for REACTION_S before an action follows, and again before it is repeated.
@@ -56,7 +56,7 @@ class DroneView:
     is_called_home: bool = False
     """The survey called it home; after landing it is started again with a full battery."""
     is_flying_home: bool = False
-    """Called home, it flies its landing mission now."""
+    """Called home, it flies its landing mission now, or waits for its turn to."""
     has_battery_alarm: bool = False
     """The watchdog that compares battery and way home has an active alarm."""
     is_under_pilot: bool = False
@@ -110,6 +110,13 @@ class CallHome:
 
 
 @dataclass(frozen=True, slots=True)
+class CallFleetHome:
+    """Command a fleet return: returning at once, several meet on the way."""
+
+    serials: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class DismissHazard:
     """Clear the hazard area of a lost vehicle that has been located."""
 
@@ -121,7 +128,15 @@ class AbortSurvey:
     """End the survey for good."""
 
 
-OperatorAction = RequestPlan | StartDrones | TakeAuthority | CallHome | DismissHazard | AbortSurvey
+OperatorAction = (
+    RequestPlan
+    | StartDrones
+    | TakeAuthority
+    | CallHome
+    | CallFleetHome
+    | DismissHazard
+    | AbortSurvey
+)
 
 
 @dataclass(slots=True)
@@ -183,9 +198,14 @@ class ScriptedOperator:
     ) -> Iterator[OperatorAction]:
         if stage is not SurveyStage.FINISHED:
             yield AbortSurvey()
-        elif not self._is_called_home or self._lasts("return", True, now_s):
-            self._is_called_home = True
-            yield from (CallHome(each.serial) for each in drones if each.is_out)
+            return
+        out = [each for each in drones if each.is_out]
+        if not self._is_called_home and out:
+            yield CallFleetHome(tuple(each.serial for each in out))
+        for each in out if self._is_called_home else ():
+            if self._lasts(f"{each.serial}: return", not each.is_flying_home, now_s):
+                yield CallHome(each.serial)
+        self._is_called_home = True
 
     def _lasts(self, what: str, holds: bool, now_s: float, for_s: float = REACTION_S) -> bool:
         """Whether a condition has held for so long; the time starts again when it has."""

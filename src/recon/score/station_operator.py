@@ -10,6 +10,7 @@ from recon.model.control import AuthorityHolder
 from recon.model.event import (
     AuthorityTaken,
     Event,
+    FleetReturnOrdered,
     HazardDismissed,
     OperatorOrder,
     SurveyRequested,
@@ -21,6 +22,7 @@ from recon.model.units import NS_PER_S
 from recon.model.vehicle import FlightMode, Staleness
 from recon.score.scripted_operator import (
     AbortSurvey,
+    CallFleetHome,
     CallHome,
     DismissHazard,
     DroneView,
@@ -33,6 +35,7 @@ from recon.score.scripted_operator import (
     TakeAuthority,
 )
 from recon.station.imaging.upwind import proposed
+from recon.station.state.fleet_return_record import ENDED
 from recon.station.state.station import Station
 from recon.station.state.survey_record import SurveyRecord
 
@@ -89,6 +92,9 @@ class StationOperator:
                 return SurveyStopped(SURVEY_ID, BY, is_aborted=True)
             case CallHome(serial):
                 return self._order(ReturnHome(), serial)
+            case CallFleetHome(serials):
+                self._next_order += len(serials)
+                return FleetReturnOrdered(self._next_order - len(serials), serials, BY)
 
 
 def view_of(station: Station, now_ns: int) -> FieldView:
@@ -109,11 +115,19 @@ def _stage(record: SurveyRecord) -> SurveyStage:
     return SurveyStage.FLYING if record.members else SurveyStage.PLANNED
 
 
+def _returning(station: Station) -> frozenset[str]:
+    called = station.fleet_return
+    if called is None:
+        return frozenset()
+    return frozenset(each.serial for each in called.members.values() if each.stage not in ENDED)
+
+
 def _drone(station: Station, record: SurveyRecord | None, serial: str, now_ns: int) -> DroneView:
     vehicle = station.fleet.vehicles[serial]
     member = None if record is None else record.members.get(serial)
     is_live = staleness(vehicle, now_ns) is Staleness.LIVE
     is_called_home = member is not None and member.return_reason is not None
+    is_in_fleet_return = serial in _returning(station)
     mode = vehicle.flight_mode.value
     is_running = record is not None and record.is_running
     return DroneView(
@@ -125,6 +139,6 @@ def _drone(station: Station, record: SurveyRecord | None, serial: str, now_ns: i
         battery_fraction=vehicle.battery_fraction.value,
         is_stopped=not is_running or member is None or member.stop_reason is not None,
         is_called_home=is_called_home,
-        is_flying_home=is_called_home and mode is FlightMode.GPS_WAYPOINT,
+        is_flying_home=is_in_fleet_return or (is_called_home and mode is FlightMode.GPS_WAYPOINT),
         is_under_pilot=station.control(serial).authority.holder is AuthorityHolder.PILOT,
     )
