@@ -1,4 +1,5 @@
-"""Missions replaced under way: at the end of a row, and off ground that has been closed."""
+"""Missions replaced under way: at the end of a row, off ground that has been closed, and on the
+way to the first row when more becomes known."""
 
 from dataclasses import replace
 from itertools import combinations
@@ -161,6 +162,76 @@ class TestShade:
         assert back.decisions["S-1"].text.endswith("other rows were refused")
         assert back.decisions["S-1"].again_ns == seconds_to_ns(3.0)
         assert (back.refusals, back.barred, back.waiting) == ({}, frozenset(), {})
+
+
+def in_the_west(east_m: FloatArray, _north_m: FloatArray, _lead_s: float) -> BoolArray:
+    return np.asarray(east_m < 120.0)
+
+
+def unmoved(sunlit: object, now_s: float = 0.0) -> SunForecast:
+    """A forecast that does not know yet how shadows move."""
+    return replace(forecast(sunlit, now_s), velocity_mps=None)
+
+
+class TestOnTheWay:
+    """Missions given before it is known how shadows move, of vehicles before their first row."""
+
+    there = (Surveyor("S-1", (0.0, -60.0)), Surveyor("S-2", (360.0, -60.0)))
+
+    def test_a_round_is_flown_instead_once_its_ground_will_be_in_sun(self) -> None:
+        state, given = decided(unmoved(in_the_west), *self.there)
+        assert len(given) == 2
+        parts = {leg.piece.length_m for each in state.flights.values() for leg in each.route}
+        assert max(parts) < 200.0
+        state, instead = decided(lit(4.0), *self.there, state=state, now_s=4.0)
+        assert {mission.serial for mission in instead} == {"S-1", "S-2"}
+        rows = flown_rows(state, "S-1") + flown_rows(state, "S-2")
+        assert sorted(rows) == list(range(len(rows)))
+        assert decided(lit(5.0), *self.there, state=state, now_s=5.0)[1] == ()
+
+    def test_it_goes_to_where_sun_will_come_instead_of_into_shade(self) -> None:
+        def comes(_east_m: FloatArray, north_m: FloatArray, lead_s: float) -> BoolArray:
+            return np.asarray((north_m > 120.0) & (lead_s > 60.0))
+
+        before, _given = decided(unmoved(lambda _east, _north, _lead: True), HERE)
+        state, (mission,) = decided(forecast(comes, 4.0), HERE, state=before, now_s=4.0)
+        assert mission.stands_by
+        assert "stands by: sun is expected on row" in state.decisions["S-1"].text
+        assert state.flown_m == pytest.approx(0.0, abs=0.1)
+        back = refused(state, "S-1", mission.number, "near Drone 2", 0, in_the_way=True)
+        assert back.flights["S-1"].route == before.flights["S-1"].route
+        assert back.flown_m == pytest.approx(before.flown_m)
+        assert decided(forecast(comes, 9.0), HERE, state=back, now_s=9.0)[1] == ()
+
+    def test_one_that_stands_by_flies_what_lies_in_sun_after_all(self) -> None:
+        def comes(east_m: FloatArray, _north_m: FloatArray, lead_s: float) -> BoolArray:
+            return np.asarray((east_m > 200.0) & (lead_s >= 80.0))
+
+        here = Surveyor("S-1", (0.0, 100.0))
+        state, (standing,) = decided(unmoved(comes), here)
+        assert standing.stands_by
+        state, (flown,) = decided(forecast(in_the_west, 4.0), here, state=state, now_s=4.0)
+        assert not flown.stands_by
+        assert state.flights["S-1"].route != ()
+
+    def test_one_that_is_in_sun_flies_on(self) -> None:
+        state, _given = decided(unmoved(lambda _east, _north, _lead: True), *self.there)
+        after, none = decided(lit(4.0), *self.there, state=state, now_s=4.0)
+        assert none == ()
+        for serial, flight in after.flights.items():
+            assert flight.route == state.flights[serial].route
+            assert after.decisions[serial].text.startswith("flies on with rows")
+            assert after.decisions[serial].text.endswith("probability of sun 1.0")
+
+    def test_on_the_ground_or_in_its_rows_none_is_decided_on(self) -> None:
+        before, _given = decided(unmoved(in_the_west), *self.there)
+        ground = [replace(each, is_flying=False) for each in self.there]
+        state, none = decided(lit(4.0), *ground, state=before, now_s=4.0)
+        assert (none, state.decisions) == ((), before.decisions)
+        begun_m = ends_m(before, "S-1")[0]
+        at_row = replace(self.there[0], place_m=begun_m), replace(self.there[1], is_flying=False)
+        state, none = decided(lit(4.0), *at_row, state=before, now_s=4.0)
+        assert (none, state.decisions) == ((), before.decisions)
 
 
 LOST = ClosedArea("Drone 3", "S-3", (180.0, 120.0), 60.0, None, 20.0, lost_s=12.0)

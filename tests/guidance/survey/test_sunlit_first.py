@@ -207,24 +207,6 @@ class TestSurveys:
         state, _missions = after(state, 410.0, missions[0].number)
         assert rows <= set(flown_rows(state, "S-1"))
 
-    def test_the_first_missions_wait_until_the_shadows_motion_is_known(self) -> None:
-        def half(east_m: float, _north_m: float, _lead_s: float) -> bool:
-            return east_m < 180.0
-
-        here = Surveyor("S-1", (0.0, 60.0)), Surveyor("S-2", (0.0, 180.0))
-        still = replace(forecast(half), velocity_mps=None)
-        state, missions = decided(still, *here, now_s=1.0)
-        assert (missions, state.reason) == ((), "waiting: how shadows move is not known yet")
-        assert len(decided(forecast(half, 3.0), *here, state=state, now_s=3.0)[1]) == 2
-        # Where no motion is found it does not wait for ever.
-        late = replace(forecast(half, 16.0), velocity_mps=None)
-        assert len(decided(late, *here, state=state, now_s=16.0)[1]) == 2
-        # Once a vehicle has flown, no other waits.
-        state, _missions = decided(forecast(half, 3.0), *here, state=state, now_s=3.0)
-        done = replace(here[0], ended_mission=1), here[1]
-        later = replace(forecast(half, 9.0), velocity_mps=None)
-        assert len(decided(later, *done, state=state, now_s=9.0)[1]) == 1
-
     def test_until_any_light_is_known_rows_are_flown_and_then_decided_on(self) -> None:
         here, unseen = Surveyor("S-1", (0.0, 0.0)), np.full((GRID.rows, GRID.cols), np.nan)
         blind = replace(lit_west(10.0), horizon_s=unseen.astype(np.float32), velocity_mps=None)
@@ -237,10 +219,11 @@ class TestSurveys:
         # On its way to the first row: most of what it has is in shade.
         state, instead = decided(lit_west(13.0), here, state=state, now_s=13.0)
         assert len(instead) == 1
-        assert state.decisions["S-1"].text.startswith("leaves its rows; flies ")
+        assert state.decisions["S-1"].text.startswith("flies row")
+        assert state.decisions["S-1"].text.endswith("probability of sun 1.0")
         _later, none = decided(lit_west(14.0), here, state=state, now_s=14.0)
         assert none == ()
-        # Where it is in sun, its rows are flown on; it is looked at once.
+        # Where it is in sun, its rows are flown on.
         state, _given = decided(blind, here, now_s=10.0)
         kept, none = decided(forecast(clear_sky, 13.0), here, state=state, now_s=13.0)
         assert none == ()
@@ -248,11 +231,6 @@ class TestSurveys:
         assert kept.decisions["S-1"].text == (
             f"flies on with rows {min(rows)} to {max(rows)}: probability of sun 1.0"
         )
-
-    def test_where_all_is_in_sun_none_waits_for_its_motion(self) -> None:
-        here = Surveyor("S-1", (0.0, 60.0)), Surveyor("S-2", (0.0, 180.0))
-        still = replace(forecast(lambda _east, _north, _lead: True), velocity_mps=None)
-        assert len(decided(still, *here, now_s=1.0)[1]) == 2
 
     def test_another_vehicle_in_the_way_bars_none(self) -> None:
         sun = forecast(lambda _east, _north, _lead: True)

@@ -105,16 +105,18 @@ class TestHandedOn:
     def flown(most_s: int) -> SurveyedWorld:
         world = under_an_imager(2)
         world.asks(asked(planner="sunlit_first", budget=SurveyBudget(rounds=3), speed_mps=3.0))
-        world.starts("SIM-1", "SIM-2")
-        world.driver.handle(AuthorityTaken("SIM-2", AuthorityHolder.OPERATOR, "bob", "bob"))
-        for number in range(41, 41 + most_s):
-            if world.phase() is not SurveyPhase.RUNNING:
-                break
+        for number in range(41, 56 + most_s):
             world.driver.handle(seen(world, number, is_shaded=False))
             world.runs(1.0)
-            if number == 60:
+            if number == 55:
+                world.starts("SIM-1", "SIM-2")
+                taken = AuthorityTaken("SIM-2", AuthorityHolder.OPERATOR, "bob", "bob")
+                world.driver.handle(taken)
+            if number == 75:
                 given = AuthorityTaken("SIM-2", AuthorityHolder.GUIDANCE, "bob", "bob")
                 world.driver.handle(given)
+            if number > 55 and world.phase() is not SurveyPhase.RUNNING:
+                break
         return world
 
     def test_it_gets_half_of_them_and_neither_is_stopped(self) -> None:

@@ -91,14 +91,9 @@ class VehicleChoice:
             minutes = self.settings.planned_s / 60.0
             return self.waits(f"waits: no sun is expected on its rows for {minutes:.0f} min")
         if flight.waits_s > 0.0:
-            return self._stands_by(flight)
+            return self.stands_by(flight)
         legs = self.committed(flight)
         return self.flies(self._allowed(self.long_enough(legs)), flown_text(legs))
-
-    def begun_at_once(self, share: BoolArray) -> tuple[PlannedLeg, ...]:
-        """Return the first legs of the best flight over a share; none if that would wait."""
-        best = self.best(share)
-        return self.committed(best) if best.legs and best.waits_s <= 0.0 else ()
 
     def free(self) -> BoolArray:
         """Return (S,): segments with missing ground that no vehicle flies, or has just flown."""
@@ -155,7 +150,7 @@ class VehicleChoice:
         neighbour does.
         """
         pieces = missing_pieces(self.state, self.segments, share)
-        others = {direction_of(flight.route) for flight in self.state.flights.values()} - {0}
+        others = {direction_of(flight.rows_left) for flight in self.state.flights.values()} - {0}
         direction = others.pop() if len(others) == 1 else 0
         return route_of(pieces, self.plan.lattice, self.start_m, direction)
 
@@ -179,6 +174,11 @@ class VehicleChoice:
         start_m = self.start_m
         segments, lattice = self.segments, self.plan.lattice
         return passing(route, segments, self.expected, lattice, self._pace, start_m, starts_s)
+
+    @property
+    def flown_m2ps(self) -> float:
+        """New ground on photos per second, along a row without a stop."""
+        return self.plan.survey.speed_mps * self.plan.lattice.spacing_m
 
     @property
     def _pace(self) -> Pace:
@@ -230,6 +230,7 @@ class VehicleChoice:
             self.now_ns + seconds_to_ns(ends_s),
             track.up_m,
             is_chosen=True,
+            known=self.expected.known,
         )
         state, given = flying(self._decided(text), self.surveyor, mission, ())
         return state, (replace(given, straight_within_m=self.settings.near_m),)
@@ -250,7 +251,8 @@ class VehicleChoice:
         piece = self.segments.parts[leg.segments[0]].piece
         return replace(leg.route, piece=self.plan.long_enough(piece, leg.route.piece))
 
-    def _stands_by(self, flight: Flight) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
+    def stands_by(self, flight: Flight) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
+        """Go to where a flight that begins later does; or wait here, if that is near or late."""
         plan, surveyor = self.plan, self.surveyor
         first = flight.legs[0]
         entry, _ = first.route.ends_m(plan.lattice, plan.swath.lead_m)
@@ -305,7 +307,10 @@ class VehicleChoice:
         terrain = self.plan.terrain
         up_m = () if terrain is None else (terrain.up_at_m(place_m),)
         number = self.state.missions + 1
-        mission = AssignedMission(number, (), (place_m,), 0.0, there_ns, up_m, is_chosen=True)
+        known = self.expected.known
+        mission = AssignedMission(
+            number, (), (place_m,), 0.0, there_ns, up_m, is_chosen=True, known=known
+        )
         state, given = flying(self._decided(text), self.surveyor, mission, ())
         return state, (replace(given, stands_by=True),)
 
