@@ -31,6 +31,7 @@ FIRST_SEED = 1000
 """Nothing is tuned on seeds from here on."""
 PLANNER, BASELINE = "sunlit_first", "lawnmower_again"
 LOST_MOST = 0.15
+ANY = float("inf")
 PLAIN = (
     "cumulus-20",
     "cumulus-40",
@@ -69,7 +70,7 @@ class Claim:
     name: str
     scenario: str
     most: float
-    bound: float = float("inf")
+    bound: float = ANY
     seeds: int = 10
     over: str | None = None
     """The scenario that it is compared with; None: the same one, by the baseline."""
@@ -79,6 +80,7 @@ class Claim:
     of_flight_time: bool = False
     lost_most: float = 1.0
     refusals_most: float = 1.0
+    holds_most: float = 0.0
 
     @property
     def against(self) -> str:
@@ -124,14 +126,14 @@ CLAIMS = (
         detection="sunlit_reference",
         refusals_most=0.02,
     ),
-    Claim("faults under cloud", "faults-wide", 1.5, over="cumulus-40-wide"),
-    Claim("faults, clear sky", "clear-sky-faults", 1.5, over="clear-sky"),
+    Claim("faults under cloud", "faults-wide", 1.5, over="cumulus-40-wide", holds_most=ANY),
+    Claim("faults, clear sky", "clear-sky-faults", 1.5, over="clear-sky", holds_most=ANY),
     Claim("8 drones over 3", "clear-60ha-eight", 1.0 / 2.2, seeds=3, over="clear-60ha-three"),
 )
 
 
 REFERENCES = tuple(
-    Claim(f"{cover} %, {name}", f"cumulus-{cover}-wide", float("inf"), planner=planner, forecast=by)
+    Claim(f"{cover} %, {name}", f"cumulus-{cover}-wide", ANY, planner=planner, forecast=by)
     for cover in (40, 60)
     for name, planner, by in (
         ("perfect forecast", PLANNER, PERFECT),
@@ -175,6 +177,7 @@ class Measured:
             return False
         is_fast = ratio.mean <= claim.most and ratio.high < claim.bound
         is_safe = self.violations == 0 and self.refusals <= claim.refusals_most
+        is_safe = is_safe and self.holds <= claim.holds_most
         return is_fast and is_safe and lost.mean <= claim.lost_most
 
     @property
@@ -187,7 +190,7 @@ class Measured:
             claim.against,
             f"{0 if ratio is None else ratio.count}",
             NOTHING if ratio is None else fine(ratio.mean),
-            NOTHING if ratio is None else bounds(ratio, fine, float("inf")),
+            NOTHING if ratio is None else bounds(ratio, fine, ANY),
             f"{fine(claim.most)}{bound}" if isfinite(claim.most) else NOTHING,
             NOTHING if lost is None else percent(lost.mean),
             f"{self.violations}",

@@ -43,6 +43,7 @@ def test_what_is_fast_and_safe_is_reached() -> None:
         found(0.8, like=replace(SAFE, encounters=1)),
         found(0.8, like=replace(SAFE, low_landings=1)),
         found(0.8, like=replace(SAFE, breaches=1)),
+        found(0.8, like=replace(SAFE, holds=1)),
         found(0.8, replace(CLAIM, refusals_most=0.02), replace(SAFE, refusals=1)),
         found(1.06, replace(CLAIM, most=1.1, bound=2.0)),
         found(0.8, replace(CLAIM, of_flight_time=True, most=0.5)),
@@ -51,6 +52,15 @@ def test_what_is_fast_and_safe_is_reached() -> None:
 def test_what_falls_short_in_one_part_is_not(short: Measured) -> None:
     assert not short.is_reached
     assert short.row[-1] == "no"
+
+
+def test_watchdogs_stop_vehicles_only_where_there_are_faults() -> None:
+    faults = replace(CLAIM, holds_most=float("inf"))
+    assert found(0.8, faults, replace(SAFE, holds=3)).is_reached
+    assert [each.scenario for each in CLAIMS if each.holds_most > 0.0] == [
+        "faults-wide",
+        "clear-sky-faults",
+    ]
 
 
 def test_a_wide_interval_is_not_reached_whatever_its_mean() -> None:
