@@ -76,6 +76,17 @@ def test_a_boundary_with_a_hole_comes_in_local_metres(tmp_path: Path) -> None:
     assert dict(site.layers.files) == {"boundary": "layer.geojson"}
 
 
+def test_one_feature_or_one_geometry_is_a_layer_of_that_alone(tmp_path: Path) -> None:
+    feature = polygon(ring(SQUARE), ring(HOLE), name="hay")
+    whole = load(tmp_path, "boundary", collection(feature)).layers.boundary
+    assert whole is not None
+    for alone in (feature, feature["geometry"]):
+        read = load(tmp_path, "boundary", json.dumps(alone)).layers.boundary
+        assert read is not None
+        assert (read.outline_m == whole.outline_m).all()
+        assert len(read.holes_m) == 1
+
+
 def test_no_layers_are_empty_layers(tmp_path: Path) -> None:
     (tmp_path / "site.toml").write_text(HEAD)
     layers = load_site(tmp_path).layers
@@ -170,7 +181,12 @@ ONE = FILE + "feature 1: "
         ("boundary", " " * 4_200_000, FILE + "expected at most 4194304 bytes, got more"),
         ("boundary", "[]", FILE + "expected a GeoJSON FeatureCollection, got a list"),
         ("boundary", "{}", FILE + "expected a GeoJSON FeatureCollection, got nothing"),
-        ("boundary", json.dumps(polygon()), "FeatureCollection, got 'Feature'"),
+        (
+            "boundary",
+            json.dumps(polygon()),
+            ONE + "coordinates: expected a polygon's list of rings",
+        ),
+        ("boundary", '{"type": "LineString"}', "expected a GeoJSON FeatureCollection, got 'LineS"),
         ("boundary", '{"type": "FeatureCollection"}', "expected a list of features, got nothing"),
         ("keep_out", collection(*[1] * 1_001), "expected at most 1000 features, got 1001"),
         ("boundary", collection(crs=LCC), "got the CRS 'urn:ogc:def:crs:EPSG::26915'; export"),

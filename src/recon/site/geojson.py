@@ -27,6 +27,7 @@ LARGEST_LAYER_BYTES = 4 * 1024 * 1024
 MOST_FEATURES = 1_000
 MOST_CORNERS = 10_000
 """Of one feature: a drawn outline has tens, a surveyed one hundreds."""
+GEOMETRIES = ("Polygon", "MultiPolygon", "Point")
 FARTHEST_M = 50_000.0
 """Of a corner from the origin: more is another place, or latitude and longitude swapped."""
 ACCEPTED_CRS = frozenset(
@@ -60,14 +61,22 @@ class Feature:
 
 
 def read_features(path: Path) -> tuple[Feature, ...]:
-    """Return a layer's features in the file's order. Raises `SiteError`."""
-    collection = _object(str(path), _read_json(path), "FeatureCollection")
-    features = collection.get("features")
+    """Return a layer's features in the file's order. Raises `SiteError`.
+
+    A file of one feature, or of one geometry without properties, is a layer of that alone.
+    """
+    data = _read_json(path)
+    kind = data.get("type") if isinstance(data, dict) else None
+    if kind in GEOMETRIES:
+        data, kind = {"type": "Feature", "geometry": data}, "Feature"
+    if kind == "Feature":
+        return (_feature(path, 1, data),)
+    features = _object(str(path), data, "FeatureCollection").get("features")
     if not isinstance(features, list):
         raise SiteError(f"{path}: expected a list of features, got {shown_value(features)}")
     if len(features) > MOST_FEATURES:
         raise SiteError(f"{path}: expected at most {MOST_FEATURES} features, got {len(features)}")
-    return tuple(_feature(path, number, data) for number, data in enumerate(features, start=1))
+    return tuple(_feature(path, number, each) for number, each in enumerate(features, start=1))
 
 
 def regions_of(feature: Feature, frame: LocalFrame) -> tuple[Region, ...]:
