@@ -176,7 +176,11 @@ def unmoved(sunlit: object, now_s: float = 0.0) -> SunForecast:
 class TestOnTheWay:
     """Missions given before it is known how shadows move, of vehicles before their first row."""
 
-    there = (Surveyor("S-1", (0.0, -60.0)), Surveyor("S-2", (360.0, -60.0)))
+    there = (
+        Surveyor("S-1", (0.0, -60.0), height_above_takeoff_m=40.0),
+        Surveyor("S-2", (360.0, -60.0), height_above_takeoff_m=40.0),
+    )
+    here = Surveyor("S-1", (0.0, 0.0), height_above_takeoff_m=40.0)
 
     def test_a_round_is_flown_instead_once_its_ground_will_be_in_sun(self) -> None:
         state, given = decided(unmoved(in_the_west), *self.there)
@@ -193,21 +197,21 @@ class TestOnTheWay:
         def comes(_east_m: FloatArray, north_m: FloatArray, lead_s: float) -> BoolArray:
             return np.asarray((north_m > 120.0) & (lead_s > 60.0))
 
-        before, _given = decided(unmoved(lambda _east, _north, _lead: True), HERE)
-        state, (mission,) = decided(forecast(comes, 4.0), HERE, state=before, now_s=4.0)
+        before, _given = decided(unmoved(lambda _east, _north, _lead: True), self.here)
+        state, (mission,) = decided(forecast(comes, 4.0), self.here, state=before, now_s=4.0)
         assert mission.stands_by
         assert "stands by: sun is expected on row" in state.decisions["S-1"].text
         assert state.flown_m == pytest.approx(0.0, abs=0.1)
         back = refused(state, "S-1", mission.number, "near Drone 2", 0, in_the_way=True)
         assert back.flights["S-1"].route == before.flights["S-1"].route
         assert back.flown_m == pytest.approx(before.flown_m)
-        assert decided(forecast(comes, 9.0), HERE, state=back, now_s=9.0)[1] == ()
+        assert decided(forecast(comes, 9.0), self.here, state=back, now_s=9.0)[1] == ()
 
     def test_one_that_stands_by_flies_what_lies_in_sun_after_all(self) -> None:
         def comes(east_m: FloatArray, _north_m: FloatArray, lead_s: float) -> BoolArray:
             return np.asarray((east_m > 200.0) & (lead_s >= 80.0))
 
-        here = Surveyor("S-1", (0.0, 100.0))
+        here = replace(self.here, place_m=(0.0, 100.0))
         state, (standing,) = decided(unmoved(comes), here)
         assert standing.stands_by
         state, (flown,) = decided(forecast(in_the_west, 4.0), here, state=state, now_s=4.0)
@@ -223,13 +227,18 @@ class TestOnTheWay:
             assert after.decisions[serial].text.startswith("flies on with rows")
             assert after.decisions[serial].text.endswith("probability of sun 1.0")
 
-    def test_on_the_ground_or_in_its_rows_none_is_decided_on(self) -> None:
+    @pytest.mark.parametrize("height_m", [None, 0.0, 1.2, 4.0])
+    def test_during_takeoff_none_is_decided_on(self, height_m: float | None) -> None:
         before, _given = decided(unmoved(in_the_west), *self.there)
-        ground = [replace(each, is_flying=False) for each in self.there]
-        state, none = decided(lit(4.0), *ground, state=before, now_s=4.0)
+        low = [replace(each, height_above_takeoff_m=height_m) for each in self.there]
+        state, none = decided(lit(4.0), *low, state=before, now_s=4.0)
         assert (none, state.decisions) == ((), before.decisions)
+
+    def test_in_its_rows_none_is_decided_on(self) -> None:
+        before, _given = decided(unmoved(in_the_west), *self.there)
         begun_m = ends_m(before, "S-1")[0]
-        at_row = replace(self.there[0], place_m=begun_m), replace(self.there[1], is_flying=False)
+        low = replace(self.there[1], height_above_takeoff_m=0.0)
+        at_row = replace(self.there[0], place_m=begun_m), low
         state, none = decided(lit(4.0), *at_row, state=before, now_s=4.0)
         assert (none, state.decisions) == ((), before.decisions)
 

@@ -208,7 +208,8 @@ class TestSurveys:
         assert rows <= set(flown_rows(state, "S-1"))
 
     def test_until_any_light_is_known_rows_are_flown_and_then_decided_on(self) -> None:
-        here, unseen = Surveyor("S-1", (0.0, 0.0)), np.full((GRID.rows, GRID.cols), np.nan)
+        here = Surveyor("S-1", (0.0, 0.0), height_above_takeoff_m=40.0)
+        unseen = np.full((GRID.rows, GRID.cols), np.nan)
         blind = replace(lit_west(10.0), horizon_s=unseen.astype(np.float32), velocity_mps=None)
         state, given = decided(blind, here, now_s=10.0)
         assert len(given) == 1

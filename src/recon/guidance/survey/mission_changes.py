@@ -141,16 +141,17 @@ def at_row_end(choice: VehicleChoice, able: Mapping[str, Surveyor]) -> Replaced:
 
 
 def on_the_way(state: SurveyState, able: Mapping[str, Surveyor]) -> tuple[str, ...]:
-    """Return the vehicles in the air before their first row, on missions given while something was
-    not known yet."""
-    return tuple(
-        serial
-        for serial, flight in state.flights.items()
-        if flight.known < Known.MOTION
-        and flight.ends_passed == 0
-        and serial in able
-        and able[serial].is_flying
-    )
+    """Return the vehicles before their first row, on missions given while something was not known
+    yet; not those that take off: an aircraft may ignore a mission then."""
+    taken_off_m = state.plan.settings.taken_off_m
+    found = []
+    for serial, flight in state.flights.items():
+        if flight.known == Known.MOTION or flight.ends_passed > 0 or serial not in able:
+            continue
+        height_m = able[serial].height_above_takeoff_m
+        if height_m is not None and height_m > taken_off_m:
+            found.append(serial)
+    return tuple(found)
 
 
 def when_more_is_known(choice: VehicleChoice, of_round: Route | None) -> Replaced:

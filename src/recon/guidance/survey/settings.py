@@ -148,6 +148,9 @@ class SurveySettings:
     """From the decision until an aircraft that hovers moves: upload and start."""
 
     takeoff_s: float = 5.0
+    taken_off_m: float = 5.0
+    """An aircraft takes off to about 1.2 m by itself, and then flies its mission."""
+
     climb_mps: float = 2.5
     corner_s: float = 0.8
     """Beside braking and starting, an aircraft stands this long at a corner."""
