@@ -133,7 +133,14 @@ CLAIMS = (
 
 
 REFERENCES = tuple(
-    Claim(f"{cover} %, {name}", f"cumulus-{cover}-wide", ANY, planner=planner, forecast=by)
+    Claim(
+        f"{cover} %, {name}",
+        f"cumulus-{cover}-wide",
+        ANY,
+        planner=planner,
+        forecast=by,
+        holds_most=ANY,
+    )
     for cover in (40, 60)
     for name, planner, by in (
         ("perfect forecast", PLANNER, PERFECT),

@@ -111,11 +111,13 @@ def test_at_the_limit_the_survey_is_aborted_and_all_return() -> None:
     assert actions(operator, flying_view(FLYING), 12) == [(10, AbortSurvey()), (11, AbortSurvey())]
     over = FieldView([FLYING, replace(OTHER, is_descending=True)], SurveyStage.FINISHED)
     assert list(operator.decide(over, 12.0)) == [CallFleetHome(("SIM-1",))]
-    returning = replace(over, vehicles=[replace(FLYING, is_flying_home=True)])
+    returning = replace(over, vehicles=[replace(FLYING, is_in_fleet_return=True)])
     assert [list(operator.decide(returning, 13.0 + s)) for s in range(30)] == [[]] * 30
-    # It was stopped on its way.
+    # It was stopped on its way; of two, one is called after the other.
     found = actions(operator, over, 70)
     assert found == [(30, CallHome("SIM-1")), (51, CallHome("SIM-1"))]
+    both = replace(over, vehicles=[FLYING, OTHER])
+    assert list(operator.decide(both, 100.0)) == [CallHome("SIM-1")]
 
 
 def test_the_next_survey_follows_only_where_surveys_repeat() -> None:

@@ -56,7 +56,9 @@ class DroneView:
     is_called_home: bool = False
     """The survey called it home; after landing it is started again with a full battery."""
     is_flying_home: bool = False
-    """Called home, it flies its landing mission now, or waits for its turn to."""
+    """Called home, it flies its landing mission now."""
+    is_in_fleet_return: bool = False
+    """It is being returned, or waits for its turn."""
     has_battery_alarm: bool = False
     """The watchdog that compares battery and way home has an active alarm."""
     is_under_pilot: bool = False
@@ -199,13 +201,15 @@ class ScriptedOperator:
         if stage is not SurveyStage.FINISHED:
             yield AbortSurvey()
             return
-        out = [each for each in drones if each.is_out]
-        if not self._is_called_home and out:
-            yield CallFleetHome(tuple(each.serial for each in out))
-        for each in out if self._is_called_home else ():
-            if self._lasts(f"{each.serial}: return", not each.is_flying_home, now_s):
-                yield CallHome(each.serial)
-        self._is_called_home = True
+        if not self._is_called_home:
+            self._is_called_home = True
+            out = tuple(each.serial for each in drones if each.is_out)
+            if out:
+                yield CallFleetHome(out)
+            return
+        stopped = [each.serial for each in drones if each.is_out and not each.is_in_fleet_return]
+        if self._lasts("stopped on the way", bool(stopped), now_s):
+            yield CallHome(stopped[0])
 
     def _lasts(self, what: str, holds: bool, now_s: float, for_s: float = REACTION_S) -> bool:
         """Whether a condition has held for so long; the time starts again when it has."""

@@ -127,7 +127,6 @@ def _drone(station: Station, record: SurveyRecord | None, serial: str, now_ns: i
     member = None if record is None else record.members.get(serial)
     is_live = staleness(vehicle, now_ns) is Staleness.LIVE
     is_called_home = member is not None and member.return_reason is not None
-    is_in_fleet_return = serial in _returning(station)
     mode = vehicle.flight_mode.value
     is_running = record is not None and record.is_running
     return DroneView(
@@ -139,6 +138,7 @@ def _drone(station: Station, record: SurveyRecord | None, serial: str, now_ns: i
         battery_fraction=vehicle.battery_fraction.value,
         is_stopped=not is_running or member is None or member.stop_reason is not None,
         is_called_home=is_called_home,
-        is_flying_home=is_in_fleet_return or (is_called_home and mode is FlightMode.GPS_WAYPOINT),
+        is_flying_home=is_called_home and mode is FlightMode.GPS_WAYPOINT,
+        is_in_fleet_return=serial in _returning(station),
         is_under_pilot=station.control(serial).authority.holder is AuthorityHolder.PILOT,
     )

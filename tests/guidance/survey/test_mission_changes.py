@@ -1,5 +1,4 @@
-"""Missions replaced under way: at the end of a row, off ground that has been closed, and on the
-way to the first row when more becomes known."""
+"""Missions replaced under way: at the end of a row, and off ground that has been closed."""
 
 from dataclasses import replace
 from itertools import combinations
@@ -164,85 +163,6 @@ class TestShade:
         assert (back.refusals, back.barred, back.waiting) == ({}, frozenset(), {})
 
 
-def in_the_west(east_m: FloatArray, _north_m: FloatArray, _lead_s: float) -> BoolArray:
-    return np.asarray(east_m < 120.0)
-
-
-def unmoved(sunlit: object, now_s: float = 0.0) -> SunForecast:
-    """A forecast that does not know yet how shadows move."""
-    return replace(forecast(sunlit, now_s), velocity_mps=None)
-
-
-class TestOnTheWay:
-    """Missions given before it is known how shadows move, of vehicles before their first row."""
-
-    there = (
-        Surveyor("S-1", (0.0, -60.0), height_above_takeoff_m=40.0),
-        Surveyor("S-2", (360.0, -60.0), height_above_takeoff_m=40.0),
-    )
-    here = Surveyor("S-1", (0.0, 0.0), height_above_takeoff_m=40.0)
-
-    def test_a_round_is_flown_instead_once_its_ground_will_be_in_sun(self) -> None:
-        state, given = decided(unmoved(in_the_west), *self.there)
-        assert len(given) == 2
-        parts = {leg.piece.length_m for each in state.flights.values() for leg in each.route}
-        assert max(parts) < 200.0
-        state, instead = decided(lit(4.0), *self.there, state=state, now_s=4.0)
-        assert {mission.serial for mission in instead} == {"S-1", "S-2"}
-        rows = flown_rows(state, "S-1") + flown_rows(state, "S-2")
-        assert sorted(rows) == list(range(len(rows)))
-        assert decided(lit(5.0), *self.there, state=state, now_s=5.0)[1] == ()
-
-    def test_it_goes_to_where_sun_will_come_instead_of_into_shade(self) -> None:
-        def comes(_east_m: FloatArray, north_m: FloatArray, lead_s: float) -> BoolArray:
-            return np.asarray((north_m > 120.0) & (lead_s > 60.0))
-
-        before, _given = decided(unmoved(lambda _east, _north, _lead: True), self.here)
-        state, (mission,) = decided(forecast(comes, 4.0), self.here, state=before, now_s=4.0)
-        assert mission.stands_by
-        assert "stands by: sun is expected on row" in state.decisions["S-1"].text
-        assert state.flown_m == pytest.approx(0.0, abs=0.1)
-        back = refused(state, "S-1", mission.number, "near Drone 2", 0, in_the_way=True)
-        assert back.flights["S-1"].route == before.flights["S-1"].route
-        assert back.flown_m == pytest.approx(before.flown_m)
-        assert decided(forecast(comes, 9.0), self.here, state=back, now_s=9.0)[1] == ()
-
-    def test_one_that_stands_by_flies_what_lies_in_sun_after_all(self) -> None:
-        def comes(east_m: FloatArray, _north_m: FloatArray, lead_s: float) -> BoolArray:
-            return np.asarray((east_m > 200.0) & (lead_s >= 80.0))
-
-        here = replace(self.here, place_m=(0.0, 100.0))
-        state, (standing,) = decided(unmoved(comes), here)
-        assert standing.stands_by
-        state, (flown,) = decided(forecast(in_the_west, 4.0), here, state=state, now_s=4.0)
-        assert not flown.stands_by
-        assert state.flights["S-1"].route != ()
-
-    def test_one_that_is_in_sun_flies_on(self) -> None:
-        state, _given = decided(unmoved(lambda _east, _north, _lead: True), *self.there)
-        after, none = decided(lit(4.0), *self.there, state=state, now_s=4.0)
-        assert none == ()
-        for serial, flight in after.flights.items():
-            assert flight.route == state.flights[serial].route
-            assert after.decisions[serial].text.startswith("flies on with rows")
-            assert after.decisions[serial].text.endswith("probability of sun 1.0")
-
-    @pytest.mark.parametrize("height_m", [None, 0.0, 1.2, 4.0])
-    def test_during_takeoff_none_is_decided_on(self, height_m: float | None) -> None:
-        before, _given = decided(unmoved(in_the_west), *self.there)
-        low = [replace(each, height_above_takeoff_m=height_m) for each in self.there]
-        state, none = decided(lit(4.0), *low, state=before, now_s=4.0)
-        assert (none, state.decisions) == ((), before.decisions)
-
-    def test_in_its_rows_none_is_decided_on(self) -> None:
-        before, _given = decided(unmoved(in_the_west), *self.there)
-        begun_m = ends_m(before, "S-1")[0]
-        low = replace(self.there[1], height_above_takeoff_m=0.0)
-        at_row = replace(self.there[0], place_m=begun_m), low
-        state, none = decided(lit(4.0), *at_row, state=before, now_s=4.0)
-        assert (none, state.decisions) == ((), before.decisions)
-
-
 LOST = ClosedArea("Drone 3", "S-3", (180.0, 120.0), 60.0, None, 20.0, lost_s=12.0)
 
 
@@ -270,6 +190,30 @@ class TestClosedGround:
         assert missions == ()
         assert state.decisions["S-1"].again_ns == seconds_to_ns(5.0)
         assert state.flights["S-1"].number == 1
+
+    def test_once_it_is_open_what_was_left_beside_it_is_left_for_whole_rows(self) -> None:
+        wide = replace(LOST, radius_m=100.0)
+        state, _given = decided(lit(), HERE, closed=[wide])
+        assert min(leg.piece.length_m for leg in state.flights["S-1"].route) < 100.0
+        still, none = state, ()
+        for now_s, end_m in enumerate(ends_m(state, "S-1")[:2], 1):
+            place = replace(HERE, place_m=end_m)
+            still, none = decided(lit(now_s), place, state=still, now_s=now_s, closed=[wide])
+        assert none == ()
+        state, (mission,) = flown_to(state, 2)
+        assert mission.serial == "S-1"
+        assert state.decisions["S-1"].text.startswith("leaves its rows; flies row")
+        assert {leg.piece.length_m for leg in state.flights["S-1"].route} == {360.0}
+        state, _none = flown_to(decided(lit(), HERE)[0], 2)
+        assert not state.flights["S-1"].was_closed
+
+    def test_none_is_replaced_during_takeoff(self) -> None:
+        state, _given = decided(lit(), HERE)
+        for height_m, missions in ((0.0, 0), (1.2, 0), (8.0, 1)):
+            place = replace(HERE, height_above_takeoff_m=height_m)
+            assert (
+                len(decided(lit(8.0), place, state=state, now_s=8.0, closed=[LOST])[1]) == missions
+            )
 
     def test_the_lost_vehicle_itself_gets_no_other_mission(self) -> None:
         state, _given = decided(lit(), HERE)

@@ -207,9 +207,26 @@ class TestSurveys:
         state, _missions = after(state, 410.0, missions[0].number)
         assert rows <= set(flown_rows(state, "S-1"))
 
+    def test_the_first_missions_wait_until_the_shadows_motion_is_known(self) -> None:
+        def half(east_m: float, _north_m: float, _lead_s: float) -> bool:
+            return east_m < 180.0
+
+        here = Surveyor("S-1", (0.0, 60.0)), Surveyor("S-2", (0.0, 180.0))
+        still = replace(forecast(half), velocity_mps=None)
+        state, missions = decided(still, *here, now_s=1.0)
+        assert (missions, state.reason) == ((), "waiting: how shadows move is not known yet")
+        assert len(decided(forecast(half, 3.0), *here, state=state, now_s=3.0)[1]) == 2
+        # Where no motion is found it does not wait for ever.
+        late = replace(forecast(half, 16.0), velocity_mps=None)
+        assert len(decided(late, *here, state=state, now_s=16.0)[1]) == 2
+        # Once a vehicle has flown, no other waits.
+        state, _missions = decided(forecast(half, 3.0), *here, state=state, now_s=3.0)
+        done = replace(here[0], ended_mission=1), here[1]
+        later = replace(forecast(half, 9.0), velocity_mps=None)
+        assert len(decided(later, *done, state=state, now_s=9.0)[1]) == 1
+
     def test_until_any_light_is_known_rows_are_flown_and_then_decided_on(self) -> None:
-        here = Surveyor("S-1", (0.0, 0.0), height_above_takeoff_m=40.0)
-        unseen = np.full((GRID.rows, GRID.cols), np.nan)
+        here, unseen = Surveyor("S-1", (0.0, 0.0)), np.full((GRID.rows, GRID.cols), np.nan)
         blind = replace(lit_west(10.0), horizon_s=unseen.astype(np.float32), velocity_mps=None)
         state, given = decided(blind, here, now_s=10.0)
         assert len(given) == 1
@@ -220,11 +237,10 @@ class TestSurveys:
         # On its way to the first row: most of what it has is in shade.
         state, instead = decided(lit_west(13.0), here, state=state, now_s=13.0)
         assert len(instead) == 1
-        assert state.decisions["S-1"].text.startswith("flies row")
-        assert state.decisions["S-1"].text.endswith("probability of sun 1.0")
+        assert state.decisions["S-1"].text.startswith("leaves its rows; flies ")
         _later, none = decided(lit_west(14.0), here, state=state, now_s=14.0)
         assert none == ()
-        # Where it is in sun, its rows are flown on.
+        # Where it is in sun, its rows are flown on; it is looked at once.
         state, _given = decided(blind, here, now_s=10.0)
         kept, none = decided(forecast(clear_sky, 13.0), here, state=state, now_s=13.0)
         assert none == ()
@@ -232,6 +248,11 @@ class TestSurveys:
         assert kept.decisions["S-1"].text == (
             f"flies on with rows {min(rows)} to {max(rows)}: probability of sun 1.0"
         )
+
+    def test_where_all_is_in_sun_none_waits_for_its_motion(self) -> None:
+        here = Surveyor("S-1", (0.0, 60.0)), Surveyor("S-2", (0.0, 180.0))
+        still = replace(forecast(lambda _east, _north, _lead: True), velocity_mps=None)
+        assert len(decided(still, *here, now_s=1.0)[1]) == 2
 
     def test_another_vehicle_in_the_way_bars_none(self) -> None:
         sun = forecast(lambda _east, _north, _lead: True)
@@ -356,6 +377,22 @@ class TestDecisions:
         assert all(np.hypot(a[0] - b[0], a[1] - b[1]) > 40.0 for a, b in combinations(begins_m, 2))
         flown = [flown_rows(state, each.serial) for each in fleet]
         assert len({rows[-1] > rows[0] for rows in flown}) == 1
+
+    @pytest.mark.parametrize(("passed", "begins_near"), [(0, False), (6, True)])
+    def test_one_begins_near_where_no_other_has_rows_left_to_lead_the_way(
+        self, passed: int, begins_near: bool
+    ) -> None:
+        """S-1 is where its mission ended, and has all of its rows to fly again."""
+        here, other = Surveyor("S-1", (0.0, -40.0)), Surveyor("S-2", (20.0, -40.0))
+        state, _missions = decided(forecast(clear_sky), here, other)
+        first, flight = state.flights["S-1"], state.flights["S-2"]
+        state = state.with_flight("S-2", replace(flight, ends_passed=passed))
+        done = replace(here, place_m=first.corners_m[-1], ended_mission=1)
+        for now_s in (200.0, 210.0):
+            sun = forecast(clear_sky, now_s)
+            state, _missions = decided(sun, done, other, state=state, now_s=now_s)
+        begin_m = state.flights["S-1"].corners_m[0]
+        assert (np.hypot(*np.subtract(begin_m, done.place_m)) < 60.0) == begins_near
 
     @pytest.mark.parametrize(("lit_from_s", "is_round"), [(100.0, True), (600.0, False)])
     def test_a_round_is_flown_that_passes_most_ground_in_sun(

@@ -141,8 +141,7 @@ def refused(
 def _flown_on(
     state: SurveyState, serial: str, refused: AssignedMission, kept: AssignedMission, now_ns: int
 ) -> SurveyState:
-    """The survey with the mission that a refused one was to replace; it is not decided on again."""
-    kept = replace(kept, known=refused.known)
+    """The survey with the mission that a refused one was to replace."""
     text = f"flies on with {named(kept.rows_left)}: other rows were refused"
     again_ns = now_ns + seconds_to_ns(state.plan.settings.retry_soon_s)
     state = state.with_flight(serial, kept).with_decision(serial, Decision(text, again_ns))

@@ -2,20 +2,20 @@
 
 Theory of operation. A mission that leads over ground that has been closed since, because a vehicle
 there has lost its link, is replaced at once by one over other ground: else the station would hold
-its vehicle when it comes near. One of a vehicle in the air whose first row is still ahead is
-decided on anew each time that more becomes known: light, and how shadows move. Missions begin
-without, as waiting for it on the ground gains nothing, and under a clear sky no motion is ever
-seen. Others are looked at when their vehicle reaches the end of a row and has more:
+its vehicle when it comes near. When a vehicle reaches the end of a row and its mission has more,
+and once when light becomes known, if its mission was given without and its first row is ahead:
 
-1. If much of what is left is expected in shade, or its rows are short and far apart, the best
-   flight from here is searched, over all that is free without this mission. It is flown instead if
-   it brings so much more ground into sun in the same time that a new mission is worth it.
-2. Else, if another vehicle has nothing to fly, or flies in shade, and little that is free is in
-   sun, the farther half of what is left is handed on: the mission is replaced by one of the nearer
-   half. The other vehicle finds the rest when it is asked, or at the end of its row.
+1. If much of what is left is expected in shade, or is what was left beside ground that was closed
+   then and is open now, the best flight from here is searched, over all that is free without this
+   mission. It is flown instead if it brings so much more ground into sun in the same time that a
+   new mission is worth it.
+2. If most of it is in sun, another vehicle has nothing to fly or flies in shade, and little that is
+   free is in sun, the farther half of what is left is handed on: the mission is replaced by one of
+   the nearer half. The other vehicle finds the rest when it is asked, or at the end of its row.
 
 Otherwise the mission is flown on; so it is if the gate refuses the new one (`life.refused`). An end
-that no position has come near to, as without telemetry, ends this for the mission.
+that no position has come near to, as without telemetry, ends this for the mission. None is replaced
+during takeoff: an aircraft may ignore the new one then.
 """
 
 from collections.abc import Mapping
@@ -29,8 +29,6 @@ from recon.guidance.survey.passing import Passing
 from recon.guidance.survey.plan import SurveyPlan
 from recon.guidance.survey.rounds import may_ask
 from recon.guidance.survey.route import Place, Route
-from recon.guidance.survey.search import Flight
-from recon.guidance.survey.segments import Known
 from recon.guidance.survey.state import (
     AssignedMission,
     Decision,
@@ -97,6 +95,8 @@ def on_closed_ground(
         is_lost = serial not in able or serial in lost
         if is_lost or decision is None or now_ns < decision.again_ns:
             continue
+        if _takes_off(flight, able[serial], state.plan):
+            continue
         way_m = tuple(_ends_left_m(flight, state.plan))
         is_out = is_open(ground, Track((able[serial].place_m,)))
         if way_m and is_out and not is_open(ground, Track(way_m)):
@@ -112,10 +112,8 @@ def off_closed_ground(choice: VehicleChoice) -> Replaced:
     rows: Route = ()
     if free.any():
         share = alone.share(free)
-        if alone.expected.is_clear(share, settings.clear_from):
-            rows = alone.rows(share)
-        elif (best := alone.best(share)).legs and best.waits_s <= 0.0:
-            rows = alone.long_enough(alone.committed(best))
+        is_clear = alone.expected.is_clear(share, settings.clear_from)
+        rows = alone.rows(share) if is_clear else alone.long_enough(alone.begun_at_once(share))
     if rows:
         names = ", ".join(each.name for each in state.closed)
         text = f"keeps clear of {names}, without telemetry; flies {named(rows)}"
@@ -128,50 +126,55 @@ def off_closed_ground(choice: VehicleChoice) -> Replaced:
 
 def at_row_end(choice: VehicleChoice, able: Mapping[str, Surveyor]) -> Replaced:
     """Replace the mission of a vehicle at the end of a row, if that is worth it."""
-    rows, settings = choice.state.flights[choice.surveyor.serial].rows_left, choice.settings
+    rows = choice.state.flights[choice.surveyor.serial].rows_left
     left = choice.passing(rows, 0.0)
-    lit_m2, missing_m2 = left.lit_m2(choice.expected), left.missing_m2
-    is_slow = missing_m2 < settings.kept_from * choice.flown_m2ps * left.ends_s
+    lit_m2 = left.lit_m2(choice.expected)
+    is_in_sun = lit_m2 >= choice.settings.kept_from * left.missing_m2
     replaced = None
-    if is_slow or lit_m2 < settings.kept_from * missing_m2:
+    if not is_in_sun or _has_opened(choice):
         replaced = _in_more_sun(choice, left)
-    if replaced is None:
+    if replaced is None and is_in_sun:
         replaced = _handed_on(choice, able, _nearer_half(rows, choice.plan), lit_m2)
     return (choice.state, ()) if replaced is None else replaced
 
 
-def on_the_way(state: SurveyState, able: Mapping[str, Surveyor]) -> tuple[str, ...]:
-    """Return the vehicles before their first row, on missions given while something was not known
-    yet; not those that take off: an aircraft may ignore a mission then."""
-    taken_off_m = state.plan.settings.taken_off_m
-    found = []
-    for serial, flight in state.flights.items():
-        if flight.known == Known.MOTION or flight.ends_passed > 0 or serial not in able:
-            continue
-        height_m = able[serial].height_above_takeoff_m
-        if height_m is not None and height_m > taken_off_m:
-            found.append(serial)
-    return tuple(found)
+def _has_opened(choice: VehicleChoice) -> bool:
+    state = choice.state
+    return state.flights[choice.surveyor.serial].was_closed and not state.closed
 
 
-def when_more_is_known(choice: VehicleChoice, of_round: Route | None) -> Replaced:
-    """Decide anew, as if it had none, on a mission whose first row is ahead.
+def on_the_way_in_any_light(state: SurveyState, able: Mapping[str, Surveyor]) -> tuple[str, ...]:
+    """Return the vehicles on the way to the first row of a mission given in unknown light."""
+    return tuple(
+        serial
+        for serial, flight in state.flights.items()
+        if serial in able
+        and not flight.is_chosen
+        and flight.ends_passed == 0
+        and not _takes_off(flight, able[serial], state.plan)
+    )
 
-    `of_round` is the rows of a round that is worth it. One that lies in sun and is as long is kept.
-    """
-    serial, alone = choice.surveyor.serial, _alone(choice)
-    flight = choice.state.flights[serial]
-    left = choice.passing(flight.route)
+
+def _takes_off(flight: AssignedMission, surveyor: Surveyor, plan: SurveyPlan) -> bool:
+    """Whether a vehicle is on the ground, or not higher than it takes off to."""
+    if not surveyor.is_flying:
+        return True
+    height_m = surveyor.height_above_takeoff_m
+    is_low = height_m is not None and abs(height_m) <= plan.settings.taken_off_m
+    return is_low and flight.ends_passed == 0
+
+
+def when_light_is_known(choice: VehicleChoice, able: Mapping[str, Surveyor]) -> Replaced:
+    """Decide once on a mission given in unknown light, as at the end of a row."""
+    state, missions = at_row_end(choice, able)
+    if missions:
+        return state, missions
+    serial = choice.surveyor.serial
+    flight = state.flights[serial]
+    left = choice.passing(flight.rows_left, 0.0)
     sun = left.lit_m2(choice.expected) / max(left.missing_m2, 1.0)
-    is_longer = of_round is not None and len(of_round) > len(flight.route)
-    if is_longer or sun < choice.settings.clear_from:
-        state, missions = alone.made() if of_round is None else alone.flies_all(of_round)
-        if missions and state.flights[serial].route != flight.route:
-            return _replacing(choice, state, missions)
-    state = choice.state.with_flight(serial, replace(flight, known=choice.expected.known))
-    if not flight.route:
-        return state, ()
-    text = f"flies on with {named(flight.route)}: probability of sun {sun:.1f}"
+    text = f"flies on with {named(flight.rows_left)}: probability of sun {sun:.1f}"
+    state = state.with_flight(serial, replace(flight, is_chosen=True))
     return state.with_decision(serial, Decision(text)), ()
 
 
@@ -219,12 +222,11 @@ def _nearer_half(rows: Route, plan: SurveyPlan) -> Route:
 
 def _in_more_sun(choice: VehicleChoice, left: Passing) -> Replaced | None:
     """Fly what is in sun instead of what is left, if that is worth a new mission."""
-    alone, expected = _alone(choice), choice.expected
+    alone, expected, plan = _alone(choice), choice.expected, choice.plan
     free = alone.free()
-    best = alone.best(alone.share(free)) if free.any() else Flight((), 0.0)
-    if not best.legs or best.waits_s > 0.0:
+    legs = alone.begun_at_once(alone.share(free)) if free.any() else ()
+    if not legs:
         return None
-    legs = alone.committed(best)
     until_s = legs[-1].until_s
     gained_m2 = sum(
         leg.probability * float(expected.missing_m2[list(leg.segments)].sum()) for leg in legs
@@ -233,26 +235,22 @@ def _in_more_sun(choice: VehicleChoice, left: Passing) -> Replaced | None:
         for each in left.passes
         if each.at_s <= until_s
     )
-    if gained_m2 < choice.settings.replaced_from * choice.flown_m2ps * until_s:
+    flown_m2 = plan.survey.speed_mps * plan.lattice.spacing_m * until_s
+    if gained_m2 < plan.settings.replaced_from * flown_m2:
         return None
     return _instead(choice, alone.long_enough(legs), f"leaves its rows; {flown_text(legs)}")
 
 
 def _instead(choice: VehicleChoice, rows: Route, text: str) -> Replaced | None:
     """Fly these rows instead of the mission's; None if the battery lasts for none of them."""
-    state, missions = _alone(choice).flies(rows, text)
-    new = state.flights.get(choice.surveyor.serial)
-    return _replacing(choice, state, missions) if new is not None and new.route else None
-
-
-def _replacing(
-    choice: VehicleChoice, state: SurveyState, missions: tuple[MissionAssignment, ...]
-) -> Replaced:
-    """The survey with a new mission that replaces the vehicle's."""
     serial = choice.surveyor.serial
-    old, new = choice.state.flights[serial], state.flights[serial]
-    state = state.with_flight(serial, replace(new, replaces=replace(old, replaces=None)))
-    return replace(state, flown_m=state.flown_m - old.unflown_m), missions
+    flight = choice.state.flights[serial]
+    state, missions = _alone(choice).flies(rows, text)
+    new = state.flights.get(serial)
+    if new is None or not new.route:
+        return None
+    state = state.with_flight(serial, replace(new, replaces=replace(flight, replaces=None)))
+    return replace(state, flown_m=state.flown_m - flight.unflown_m), missions
 
 
 def _alone(choice: VehicleChoice) -> VehicleChoice:
@@ -260,6 +258,9 @@ def _alone(choice: VehicleChoice) -> VehicleChoice:
     state, serial = choice.state, choice.surveyor.serial
     flight = state.flights[serial]
     route = flight.route[: flight.ends_passed // 2]
-    flown = flown_just_now(route, choice.settings, choice.now_ns)
-    just_flown = MappingProxyType({**state.just_flown, serial: flown})
-    return replace(choice, state=replace(state.without_flight(serial), just_flown=just_flown))
+    state = state.without_flight(serial)
+    if route:
+        flown = flown_just_now(route, choice.settings, choice.now_ns)
+        just_flown = MappingProxyType({**state.just_flown, serial: flown})
+        state = replace(state, just_flown=just_flown)
+    return replace(choice, state=state)

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from enum import IntEnum
 from itertools import pairwise
 
 import numpy as np
@@ -86,25 +85,14 @@ def segments_of(plan: SurveyPlan) -> Segments:
     return Segments(tuple(parts), of_stretch[plan.cells.stretch])
 
 
-class Known(IntEnum):
-    """How much was known of the light over the field."""
-
-    NOTHING = 0
-    LIGHT = 1
-    """What is in sun and in shade now."""
-    MOTION = 2
-    """And how the shadows move."""
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class ExpectedSun:
     """`missing_m2` (S,): ground of each segment not imaged in sun yet; `probability` (S, K): of
-    sun there, at `moments_s` (K,) from now on; `known`: from how much that follows."""
+    sun there, at `moments_s` (K,) from now on."""
 
     missing_m2: FloatArray
     probability: FloatArray
     moments_s: FloatArray
-    known: Known
 
     def at(self, segment: int, at_s: float) -> float:
         """Return the probability at the nearest moment; beyond the last one it stays."""
@@ -134,9 +122,7 @@ def expected_sun(
     settings = plan.settings
     missing = (progress.state < CellState.IN_SUN) & plan.cells.is_reached
     moments_s = np.arange(0.0, settings.planned_s + settings.moment_s, settings.moment_s)
-    known = Known.LIGHT
     if sun is not None and _is_usable(sun, now_ns, settings):
-        known = Known.LIGHT if sun.velocity_mps is None else Known.MOTION
         by_cell = _forecast(sun, plan.cells.grid, missing, moments_s, now_ns)
     elif (seen := _seen(progress, now_ns, settings)) is not None:
         by_cell = _persisting(seen, plan.cells.grid, missing, moments_s, now_ns, settings)
@@ -147,7 +133,7 @@ def expected_sun(
     sums = np.stack([np.bincount(of_cell, each, len(segments.parts)) for each in by_cell], axis=1)
     probability = sums / np.maximum(count, 1)[:, np.newaxis]
     missing_m2 = count.astype(np.float64) * plan.cells.cell_m2
-    return ExpectedSun(missing_m2, probability, moments_s, known)
+    return ExpectedSun(missing_m2, probability, moments_s)
 
 
 def _is_usable(sun: SunForecast, now_ns: int, settings: SurveySettings) -> bool:

@@ -195,6 +195,14 @@ class SurveySettings:
     """With this share of the missing ground expected in sun when a round would pass it, the round
     is flown: choosing takes longer than it gains."""
 
+    sure_round: float = 0.8
+    """A round of which this much is expected in sun is flown before the shadows' motion is known:
+    what is in sun without any shade near stays so."""
+
+    motion_within_s: float = 9.0
+    """From the start on, the first forecast with motion comes within this where there are shadows:
+    three maps or more show it."""
+
     share_worth: float = 0.15
     """Of a share's missing ground that must be expected in sun; else its vehicle helps others."""
 

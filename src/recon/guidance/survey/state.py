@@ -10,7 +10,6 @@ from recon.guidance.survey.closed_areas import ClosedArea
 from recon.guidance.survey.plan import SurveyPlan
 from recon.guidance.survey.progress import CoverageProgress
 from recon.guidance.survey.route import Place, Route
-from recon.guidance.survey.segments import Known
 from recon.guidance.survey.settings import SurveySettings
 from recon.model.survey import CellState, SurveyPhase
 from recon.model.units import ns_to_seconds, seconds_to_ns
@@ -64,8 +63,8 @@ class AssignedMission:
     """The mission that is flown on if this one is refused."""
     is_chosen: bool = False
     """For its vehicle alone, not as a share of a round: if it is refused, another is chosen."""
-    known: Known = Known.NOTHING
-    """When it was given, for planners that decide again once more is known."""
+    was_closed: bool = False
+    """Whether there was closed ground when it was given: its rows were what was left beside."""
 
     @property
     def rows_left(self) -> Route:
@@ -79,9 +78,7 @@ class AssignedMission:
 
     @property
     def unflown_m(self) -> float:
-        """What is left of its length, as far as its rows show; of none that only stands by."""
-        if not self.route:
-            return 0.0
+        """What is left of its length, as far as its rows show."""
         left_m = sum(leg.piece.length_m for leg in self.rows_left)
         return left_m / sum(leg.piece.length_m for leg in self.route) * self.length_m
 

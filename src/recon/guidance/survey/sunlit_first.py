@@ -6,8 +6,9 @@ once. One call of `sunlit_first`:
 1. Missions of vehicles that ended or dropped out are removed; their rows count as flown until their
    photos have counted.
 2. Without known light it is `lawnmower_once`: rows are flown in whatever light, until it is known.
-3. While it is not known how the shadows move, what lies in sun seems to stay there. A vehicle that
-   is still on its way to its first row is decided on again when light, or motion, becomes known.
+   A vehicle that is still on its way to its first row by then is decided on as at the end of a row.
+3. Before the first mission it waits some seconds until a forecast knows how the shadows move:
+   without that, what lies in sun now seems to stay there. Where all is in sun it does not wait.
 4. The survey is done when enough is imaged in sun, or its budget is spent, and all have ended.
 5. For each vehicle without a mission: its **share** of the missing ground is what it would fly if
    all finished at the same time, in rows side by side, so that vehicles keep apart. Over its share
@@ -40,8 +41,8 @@ from recon.guidance.survey.mission_changes import (
     at_row_end,
     off_closed_ground,
     on_closed_ground,
-    on_the_way,
-    when_more_is_known,
+    on_the_way_in_any_light,
+    when_light_is_known,
     with_ends_passed,
 )
 from recon.guidance.survey.rounds import (
@@ -79,6 +80,7 @@ from recon.guidance.survey.vehicle_choice import (
 )
 from recon.model.shade import SunForecast
 from recon.model.survey import CellState, MissionAssignment, SurveyPhase
+from recon.model.units import seconds_to_ns
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -88,6 +90,7 @@ class PlanningMoment:
     segments: Segments
     expected: ExpectedSun
     able: Mapping[str, Surveyor]
+    sun: SunForecast | None
     now_ns: int
 
     def choice(self, state: SurveyState, serial: str) -> VehicleChoice:
@@ -100,11 +103,6 @@ class PlanningMoment:
     def idle(self, state: SurveyState) -> list[str]:
         """Return the vehicles that are to be decided on."""
         return [each for each in self.able if _is_asked(state, each, self.able, self.now_ns)]
-
-    def knowing_less(self, state: SurveyState) -> list[str]:
-        """Return the vehicles before their first row whose missions were given knowing less."""
-        known = self.expected.known
-        return [each for each in on_the_way(state, self.able) if state.flights[each].known < known]
 
 
 Begun = Callable[[SurveyState, PlanningMoment], Step]
@@ -136,8 +134,9 @@ def vehicle_by_vehicle(
         return without_able(state, able, now_ns), ()
     state, at_end = with_ends_passed(state, able)
     closed = on_closed_ground(state, able, now_ns)
+    in_any_light = on_the_way_in_any_light(state, able)
     is_asked = any(_is_asked(state, serial, able, now_ns) for serial in able)
-    if not (is_asked or at_end or closed or on_the_way(state, able)):
+    if not (is_asked or at_end or closed or in_any_light):
         return state, ()
     segments = segments_of(state.plan)
     expected = expected_sun(segments, state.plan, state.progress, sun, now_ns)
@@ -146,52 +145,65 @@ def vehicle_by_vehicle(
     if state.closed:
         is_closed = closed_segments(closed_ground(state.closed), segments, state.plan)
         expected = replace(expected, missing_m2=np.where(is_closed, 0.0, expected.missing_m2))
-    moment = PlanningMoment(segments, expected, able, now_ns)
+    moment = PlanningMoment(segments, expected, able, sun, now_ns)
     state = replace(state, waiting=NO_ROUTES, round=max(1, state.round), reason="under way")
-    state, instead = _replaced(state, moment, closed, at_end)
+    state, instead = _replaced(state, moment, closed, at_end, in_any_light)
     state, missions = begun(state, moment)
     return state, (*instead, *missions)
 
 
 def _replaced(
-    state: SurveyState, moment: PlanningMoment, closed: Sequence[str], at_end: Sequence[str]
+    state: SurveyState,
+    moment: PlanningMoment,
+    closed: Sequence[str],
+    at_end: Sequence[str],
+    in_any_light: Sequence[str],
 ) -> Step:
     """Replace missions under way, where that is worth it."""
     missions: tuple[MissionAssignment, ...] = ()
-    for serial in dict.fromkeys((*closed, *at_end)):
+    for serial in dict.fromkeys((*closed, *at_end, *in_any_light)):
         choice = moment.choice(state, serial)
         if serial in closed:
             state, new = off_closed_ground(choice)
-        else:
+        elif serial in at_end:
             state, new = at_row_end(choice, moment.able)
+        else:
+            state, new = when_light_is_known(choice, moment.able)
         missions += new
     return state, missions
 
 
 def _begun(state: SurveyState, moment: PlanningMoment) -> Step:
     """Begin a round that is worth it, or what is best for each vehicle by itself."""
-    on_way = moment.knowing_less(state)
-    choices = [moment.choice(state, serial) for serial in (*moment.idle(state), *on_way)]
-    whole = _round(choices) if choices and len(choices) == len(moment.able) else None
-    rows = whole if whole is not None else NO_ROUTES
+    choices = [moment.choice(state, serial) for serial in moment.idle(state)]
+    if not choices:
+        return state, ()
+    whole = _round(choices) if len(choices) == len(moment.able) else None
+    if _awaits_motion(state, whole, moment.sun, moment.now_ns):
+        return replace(state, reason="waiting: how shadows move is not known yet"), ()
+    rows = whole.rows if whole is not None and whole.is_worth else NO_ROUTES
     missions: tuple[MissionAssignment, ...] = ()
     for each in choices:
-        choice, serial = replace(each, state=state), each.surveyor.serial
-        own = rows.get(serial)
-        if serial in on_way:
-            state, new = when_more_is_known(choice, own)
-        else:
-            state, new = choice.made() if own is None else choice.flies_all(own)
-        missions += new
+        choice = replace(each, state=state)
+        own = rows.get(choice.surveyor.serial)
+        state, mission = choice.made() if own is None else choice.flies_all(own)
+        missions += mission
     return state, missions
 
 
-def _round(choices: Sequence[VehicleChoice]) -> Routes | None:
-    """Return each vehicle's rows of a round of the lawnmower over all that is missing, begun now.
+@dataclass(frozen=True, slots=True)
+class _Round:
+    """A round of the lawnmower over all that is missing, with each vehicle's rows."""
 
-    None unless most of it is expected in sun when they pass, and waiting does not bring more into
-    sun than is flown meanwhile.
-    """
+    rows: Routes
+    lit_share: float
+    """Of its ground, expected in sun when they pass."""
+    is_worth: bool
+    """Most of it is, and waiting does not bring more into sun than is flown meanwhile."""
+
+
+def _round(choices: Sequence[VehicleChoice]) -> _Round | None:
+    """Return a round that all vehicles would begin now; None if nothing is free."""
     state, segments, expected = choices[0].state, choices[0].segments, choices[0].expected
     is_free = (expected.missing_m2 > 0.0) & ~segments.under(just_flown_legs(state))
     if not is_free.any():
@@ -207,7 +219,20 @@ def _round(choices: Sequence[VehicleChoice]) -> Routes | None:
         for wait_s in expected.moments_s.tolist()
     )
     is_worth = lit_m2 >= settings.round_from * missing_m2 and not gained_by_waiting
-    return rows if is_worth else None
+    return _Round(rows, lit_m2 / missing_m2, is_worth)
+
+
+def _awaits_motion(
+    state: SurveyState, whole: _Round | None, sun: SunForecast | None, now_ns: int
+) -> bool:
+    """Whether some seconds more, before any vehicle flies, show how the shadows move."""
+    if state.missions > 0 or sun is None or sun.velocity_mps is not None:
+        return False
+    settings = state.plan.settings
+    if whole is not None and whole.lit_share >= settings.sure_round:
+        return False
+    began_ns = state.started_at_ns if state.started_at_ns is not None else now_ns
+    return now_ns < began_ns + seconds_to_ns(settings.motion_within_s)
 
 
 def _in_any_light(state: SurveyState, positions: Sequence[Surveyor], now_ns: int) -> Step:

@@ -91,9 +91,14 @@ class VehicleChoice:
             minutes = self.settings.planned_s / 60.0
             return self.waits(f"waits: no sun is expected on its rows for {minutes:.0f} min")
         if flight.waits_s > 0.0:
-            return self.stands_by(flight)
+            return self._stands_by(flight)
         legs = self.committed(flight)
         return self.flies(self._allowed(self.long_enough(legs)), flown_text(legs))
+
+    def begun_at_once(self, share: BoolArray) -> tuple[PlannedLeg, ...]:
+        """Return the first legs of the best flight over a share; none if that would wait."""
+        best = self.best(share)
+        return self.committed(best) if best.legs and best.waits_s <= 0.0 else ()
 
     def free(self) -> BoolArray:
         """Return (S,): segments with missing ground that no vehicle flies, or has just flown."""
@@ -176,11 +181,6 @@ class VehicleChoice:
         return passing(route, segments, self.expected, lattice, self._pace, start_m, starts_s)
 
     @property
-    def flown_m2ps(self) -> float:
-        """New ground on photos per second, along a row without a stop."""
-        return self.plan.survey.speed_mps * self.plan.lattice.spacing_m
-
-    @property
     def _pace(self) -> Pace:
         speed_mps, settings = self.plan.survey.speed_mps, self.settings
         stop_s = speed_mps / settings.turning_mps2 + settings.corner_s
@@ -230,7 +230,7 @@ class VehicleChoice:
             self.now_ns + seconds_to_ns(ends_s),
             track.up_m,
             is_chosen=True,
-            known=self.expected.known,
+            was_closed=bool(state.closed),
         )
         state, given = flying(self._decided(text), self.surveyor, mission, ())
         return state, (replace(given, straight_within_m=self.settings.near_m),)
@@ -251,8 +251,7 @@ class VehicleChoice:
         piece = self.segments.parts[leg.segments[0]].piece
         return replace(leg.route, piece=self.plan.long_enough(piece, leg.route.piece))
 
-    def stands_by(self, flight: Flight) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
-        """Go to where a flight that begins later does; or wait here, if that is near or late."""
+    def _stands_by(self, flight: Flight) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
         plan, surveyor = self.plan, self.surveyor
         first = flight.legs[0]
         entry, _ = first.route.ends_m(plan.lattice, plan.swath.lead_m)
@@ -307,10 +306,7 @@ class VehicleChoice:
         terrain = self.plan.terrain
         up_m = () if terrain is None else (terrain.up_at_m(place_m),)
         number = self.state.missions + 1
-        known = self.expected.known
-        mission = AssignedMission(
-            number, (), (place_m,), 0.0, there_ns, up_m, is_chosen=True, known=known
-        )
+        mission = AssignedMission(number, (), (place_m,), 0.0, there_ns, up_m, is_chosen=True)
         state, given = flying(self._decided(text), self.surveyor, mission, ())
         return state, (replace(given, stands_by=True),)
 

@@ -106,6 +106,7 @@ class AppSettings:
     behaviour: AppBehaviour = field(default_factory=AppBehaviour)
     faults: tuple[InjectedFault, ...] = ()
     sensors: SensorSettings = field(default_factory=SensorSettings)
+    """Of telemetry; the drifts are those of the aircraft's own errors."""
     renders_inline: bool = True
     """False: the driver takes the shots and renders them in a thread."""
 

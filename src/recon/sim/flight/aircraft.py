@@ -13,7 +13,7 @@ Land -> Grounded. Everything else changes the mode from outside:
 - the battery: below `FORCED_LANDING_FRACTION` the aircraft lands where it is, whatever it flies.
 
 It flies by its own estimate of where it is: GNSS and a barometer that is zeroed at takeoff, with
-slow errors that the app draws. So telemetry shows the height commanded, and the true one is off.
+slow errors of its own. So telemetry shows the height commanded, and the true one is off.
 Taking off and landing it flies by the ground it sees.
 
 Home is set at each takeoff. `MissionID` counts missions started, and is 0 while none is flown.

@@ -48,10 +48,7 @@ class GaussMarkov:
 
 @dataclass(slots=True)
 class EstimateErrors:
-    """Estimated minus true north, east and height, metres; constant without a generator.
-
-    The height's counts from the last takeoff: there the barometer is zeroed.
-    """
+    """Measured minus true north, east and height, metres; constant without a generator."""
 
     north_east_up_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
     random: Random | None = None
