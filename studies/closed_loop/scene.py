@@ -23,7 +23,7 @@ from recon.sim.app.app import SimulatedApp
 from recon.sim.app.commands import HoverOnGround
 from recon.sim.app.faults import FaultKind, InjectedFault
 from recon.sim.fleet import Airborne, SimulationConfig, build_fleet
-from recon.sim.flight.estimate import FIELD_SENSORS, SensorSettings
+from recon.sim.flight.estimate import FIELD_DRIFT, DriftSettings
 from recon.sim.flight.flight_modes import PositionHold
 from recon.sim.world import WindSettings
 from recon.site import Site
@@ -89,7 +89,7 @@ def draw(seed: int, seconds: float) -> Scene:
     rng = Random(f"{seed}/scene")
     settings = _settings(rng, seconds)
     count = rng.randint(2, 10)
-    truth, sensors = _truth(rng)
+    truth, drift = _truth(rng)
     homes = _homes(rng, truth, count)
     truth = replace(truth, zones=tuple(_zones(rng, truth, homes)))
     serials = [f"SIM-{number}" for number in range(1, count + 1)]
@@ -100,7 +100,7 @@ def draw(seed: int, seconds: float) -> Scene:
         serial: _profile(rng, serial, pads[serial], truth, n) for n, serial in enumerate(serials)
     }
     faults = tuple(_faults(rng, serials, seconds)) if settings.has_faults else ()
-    apps = _apps(rng, seed, pads, profiles, faults, sensors)
+    apps = _apps(rng, seed, pads, profiles, faults, drift)
     homes_m = dict(zip(serials, homes, strict=True))
     if rng.random() < 0.6:
         _lift(rng, truth, apps, homes_m)
@@ -125,13 +125,13 @@ def _settings(rng: Random, seconds: float) -> RunSettings:
     )
 
 
-def _truth(rng: Random) -> tuple[TrueSite, SensorSettings]:
+def _truth(rng: Random) -> tuple[TrueSite, DriftSettings]:
     ground = TrueGround()
     if rng.random() < 0.6:
         rises = rng.uniform(-0.06, 0.06), rng.uniform(-0.06, 0.06)
         ground = TrueGround(*rises, rng.uniform(0.0, 4.0), rng.uniform(400.0, 900.0))
-    sensors = FIELD_SENSORS if rng.random() < 0.4 else SensorSettings()
-    is_field = sensors is FIELD_SENSORS
+    drift = FIELD_DRIFT if rng.random() < 0.4 else DriftSettings()
+    is_field = drift is FIELD_DRIFT
     truth = TrueSite(
         boundary_m=_star(rng, (0.0, 0.0), rng.uniform(180.0, 450.0)),
         ground=ground,
@@ -144,7 +144,7 @@ def _truth(rng: Random) -> tuple[TrueSite, SensorSettings]:
         error_level_m=2.2 if is_field else 0.5,
         error_up_m=2.5 if is_field else 0.5,
     )
-    return truth, sensors
+    return truth, drift
 
 
 def _star(rng: Random, centre_m: EastNorth, radius_m: float) -> tuple[EastNorth, ...]:
@@ -241,7 +241,7 @@ def _apps(
     pads: Mapping[str, GeoPoint],
     profiles: Mapping[str, VehicleProfile],
     faults: tuple[InjectedFault, ...],
-    sensors: SensorSettings,
+    drift: DriftSettings,
 ) -> list[SimulatedApp]:
     wind_mps = rng.choice((0.0, 0.0, 3.0, 6.0))
     wind = WindSettings(seed, wind_mps, rng.uniform(0.0, 360.0)) if wind_mps else None
@@ -255,7 +255,7 @@ def _apps(
             hover_on_ground=rng.choice(list(HoverOnGround)),
             airborne=Airborne.NONE,
             endurance_s=profile.endurance_s or 1_500.0,
-            sensors=sensors,
+            drift=drift,
             wind=wind,
             reports_mission_id=rng.random() < 0.9,
             seed=seed,

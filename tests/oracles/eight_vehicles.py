@@ -21,7 +21,7 @@ from recon.sim.camera.field import FieldRenderer
 from recon.sim.camera.rig import CameraRig
 from recon.sim.camera.settings import CameraSettings
 from recon.sim.fleet import IMAGER_SERIAL, Airborne, ImagerSetup, SimulationConfig, build_fleet
-from recon.sim.flight.estimate import FIELD_SENSORS
+from recon.sim.flight.estimate import FIELD_DRIFT
 from recon.sim.world import LayerSettings, Sky, SkySettings, SunSettings
 from recon.site import Site, demo_site_folder, load_site
 from recon.station.kernel.build import first_state
@@ -195,7 +195,7 @@ def _config(
         vehicle_count=VEHICLES,
         imagers={IMAGER_SERIAL: setup},
         airborne=Airborne.ALL,
-        sensors=FIELD_SENSORS,
+        drift=FIELD_DRIFT,
         seed=seed,
         faults=tuple(parse_fault(text) for text in faults),
         pads=pads,

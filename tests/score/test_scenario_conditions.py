@@ -1,6 +1,5 @@
 """A scenario's conditions: the sun where they have it, the view in shade, exposure locked."""
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +13,7 @@ from recon.score.simulation import simulation_of
 from recon.sim.camera.field import FieldRenderer
 from recon.sim.conditions import Range
 from recon.sim.fleet import IMAGER_SERIAL
-from recon.sim.flight.estimate import FIELD_SENSORS
+from recon.sim.flight.estimate import FIELD_DRIFT
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 
@@ -49,7 +48,8 @@ def test_the_simulation_has_the_conditions(cumulus: Scenario) -> None:
     assert (source.imager, source.light) == (conditions.camera, conditions.light)
     assert source.relief is not None
     assert source.relief.settings.height_m == conditions.relief_m
-    assert config.sensors == replace(FIELD_SENSORS, yaw_error_deg=conditions.yaw_error_deg)
+    assert config.drift == FIELD_DRIFT
+    assert config.sensors.yaw_error_deg == conditions.yaw_error_deg
 
 
 @pytest.mark.parametrize("seed", range(3))

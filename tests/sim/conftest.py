@@ -14,7 +14,7 @@ from recon.sim.app.commands import AppBehaviour, HoverOnGround
 from recon.sim.app.faults import InjectedFault
 from recon.sim.app.telemetry import position_deg
 from recon.sim.flight.aircraft import TICK_NS, Aircraft
-from recon.sim.flight.estimate import EstimateErrors, SensorSettings
+from recon.sim.flight.estimate import DriftSettings, EstimateErrors
 from recon.sim.flight.flight_modes import Grounded, PositionHold
 from recon.sim.flight.kinematics import AircraftMotion
 
@@ -114,12 +114,11 @@ def app_bench() -> Callable[..., AppBench]:
         hover_on_ground: HoverOnGround = HoverOnGround.NOTHING,
         faults: tuple[InjectedFault, ...] = (),
         bias_m: float = -23.0,
-        sensors: SensorSettings | None = None,
+        drift: DriftSettings | None = None,
     ) -> AppBench:
         active_mode = Grounded() if height_m == 0.0 else PositionHold()
         motion = AircraftMotion(height_m=height_m)
-        sensors = sensors or SensorSettings()
-        errors = EstimateErrors(random=Random(4), settings=sensors)
+        errors = EstimateErrors(random=Random(4), settings=drift or DriftSettings())
         aircraft = Aircraft(0, motion=motion, active_mode=active_mode, errors=errors)
         behaviour = AppBehaviour(reference, hover_on_ground, bias_m)
         settings = AppSettings(
@@ -128,7 +127,6 @@ def app_bench() -> Callable[..., AppBench]:
             seed=4,
             behaviour=behaviour,
             faults=faults,
-            sensors=sensors,
         )
         return AppBench(SimulatedApp(settings, aircraft))
 

@@ -59,7 +59,7 @@ from recon.sim.camera.replay import load_replay
 from recon.sim.camera.rig import CameraRig
 from recon.sim.errors import SimulationError
 from recon.sim.fleet import IMAGER_SERIAL, Airborne, ImagerSetup, SimulationConfig
-from recon.sim.flight.estimate import FIELD_SENSORS
+from recon.sim.flight.estimate import FIELD_DRIFT
 from recon.sim.run import run_fleet
 from recon.sim.world import LayerSettings, Sky, SkySettings, SunSettings, WindSettings
 from recon.site import Imager, Site, SiteError, demo_site_folder, load_site
@@ -116,20 +116,15 @@ def sim_command(
         script = FaultScript() if faults is None else load_faults(faults)
         place = _load_site(site)
         feed_settings = FeedSettings(fps, image_format, latency_s, feed)
-        if not imager and (frames is not None or replay_site is not None):
-            raise SimulationError(
-                "--no-imager: expected neither --frames nor --replay-site, got one"
-            )
+        if not imager:
+            _refuse_frames(frames, replay_site)
         worlds = _imager_worlds(place, replay_site, frames, frame_size, seed) if imager else {}
         config = SimulationConfig(
             home=_home(home, place, worlds),
             station_host=host,
             station_port=port,
             vehicle_count=vehicles,
-            imagers={
-                serial: ImagerSetup(world.source, feed_settings, world.rig)
-                for serial, world in worlds.items()
-            },
+            imagers={s: ImagerSetup(w.source, feed_settings, w.rig) for s, w in worlds.items()},
             altitude_reference=AltitudeReference(altitude_reference.value),
             hover_on_ground=hover_on_ground,
             airborne=_AIRBORNE[airborne],
@@ -137,7 +132,7 @@ def sim_command(
             altitude_bias_m=altitude_bias_m,
             endurance_s=60.0 * endurance_min,
             seed=seed,
-            sensors=FIELD_SENSORS,
+            drift=FIELD_DRIFT,
             wind=_wind(wind_mps, wind_to_deg, seed),
             reports_mission_id=mission_ids,
             faults=(*(parse_fault(text) for text in fault or ()), *script.faults),
@@ -149,6 +144,11 @@ def sim_command(
     except ReconError as problem:
         print(f"recon sim: {problem}", file=sys.stderr)
         raise typer.Exit(2) from None
+
+
+def _refuse_frames(frames: Path | None, replay_site: Path | None) -> None:
+    if frames is not None or replay_site is not None:
+        raise SimulationError("--no-imager: expected neither --frames nor --replay-site, got one")
 
 
 _AIRBORNE = {None: Airborne.IMAGER, True: Airborne.ALL, False: Airborne.NONE}

@@ -9,11 +9,12 @@ from recon.score.scenario_conditions import conditions_of
 from recon.score.scenario_sky import sky_of
 from recon.sim.app.camera_feed import FeedSettings
 from recon.sim.app.faults import InjectedFault, RandomFault
+from recon.sim.app.telemetry import TelemetrySensorSettings
 from recon.sim.camera.field import FieldRenderer
 from recon.sim.camera.replay import rig_over
 from recon.sim.camera.rig import CameraRig
 from recon.sim.fleet import Airborne, ImagerSetup, SimulationConfig
-from recon.sim.flight.estimate import FIELD_SENSORS
+from recon.sim.flight.estimate import FIELD_DRIFT
 from recon.sim.world.relief import Relief, ReliefSettings
 from recon.site import Imager, Site
 
@@ -48,7 +49,8 @@ def simulation_of(
         endurance_s=fleet.endurance_s,
         endurances_s=dict.fromkeys(imagers, IMAGER_ENDURANCE_S),
         battery_swap_s=fleet.swap_s,
-        sensors=replace(FIELD_SENSORS, yaw_error_deg=conditions.yaw_error_deg),
+        drift=FIELD_DRIFT,
+        sensors=TelemetrySensorSettings(yaw_error_deg=conditions.yaw_error_deg),
         wind=replace(scenario.wind, seed=seed),
         seed=seed,
         faults=tuple(_by_serial(fault, fleet.serials) for fault in scenario.faults),

@@ -115,11 +115,10 @@ def _stage(record: SurveyRecord) -> SurveyStage:
     return SurveyStage.FLYING if record.members else SurveyStage.PLANNED
 
 
-def _returning(station: Station) -> frozenset[str]:
+def _is_in_fleet_return(station: Station, serial: str) -> bool:
     called = station.fleet_return
-    if called is None:
-        return frozenset()
-    return frozenset(each.serial for each in called.members.values() if each.stage not in ENDED)
+    member = None if called is None else called.members.get(serial)
+    return member is not None and member.stage not in ENDED
 
 
 def _drone(station: Station, record: SurveyRecord | None, serial: str, now_ns: int) -> DroneView:
@@ -139,6 +138,6 @@ def _drone(station: Station, record: SurveyRecord | None, serial: str, now_ns: i
         is_stopped=not is_running or member is None or member.stop_reason is not None,
         is_called_home=is_called_home,
         is_flying_home=is_called_home and mode is FlightMode.GPS_WAYPOINT,
-        is_in_fleet_return=serial in _returning(station),
+        is_in_fleet_return=_is_in_fleet_return(station, serial),
         is_under_pilot=station.control(serial).authority.holder is AuthorityHolder.PILOT,
     )

@@ -12,13 +12,14 @@ from recon.sim.app.app import AppSettings, SimulatedApp
 from recon.sim.app.camera_feed import CameraFeed, FeedSettings
 from recon.sim.app.commands import AppBehaviour, HoverOnGround
 from recon.sim.app.faults import InjectedFault, RandomFault, draw_faults
+from recon.sim.app.telemetry import TelemetrySensorSettings
 from recon.sim.camera.frames import FrameSource
 from recon.sim.camera.rig import CameraRig
 from recon.sim.errors import FaultError
 from recon.sim.flight.air import Air
 from recon.sim.flight.aircraft import Aircraft, AircraftSettings
 from recon.sim.flight.battery import Battery
-from recon.sim.flight.estimate import EstimateErrors, SensorSettings
+from recon.sim.flight.estimate import DriftSettings, EstimateErrors
 from recon.sim.flight.flight_modes import ActiveMode, BackAndForth, Grounded, PositionHold, TakeOff
 from recon.sim.flight.kinematics import AircraftMotion
 from recon.sim.world import Wind, WindSettings
@@ -69,7 +70,8 @@ class SimulationConfig:
     """By serial, where it differs from `endurance_s`."""
     battery_swap_s: float | None = None
     """From landing to a full battery; None: batteries are not changed."""
-    sensors: SensorSettings = field(default_factory=SensorSettings)
+    sensors: TelemetrySensorSettings = field(default_factory=TelemetrySensorSettings)
+    drift: DriftSettings = field(default_factory=DriftSettings)
     wind: WindSettings | None = None
     """None: calm."""
     reports_mission_id: bool = True
@@ -147,7 +149,7 @@ def _build_app(
         active_mode = _wandering(settings, motion, number, random, (north_m, east_m))
     wind = None if config.wind is None else Wind(config.wind)
     air = Air(wind, north_m, east_m, start_ns)
-    errors = EstimateErrors(random=Random(f"{config.seed}/{serial}/drift"), settings=config.sensors)
+    errors = EstimateErrors(random=Random(f"{config.seed}/{serial}/drift"), settings=config.drift)
     aircraft = Aircraft(
         start_ns, settings, motion, active_mode, battery=battery, air=air, errors=errors
     )

@@ -71,7 +71,12 @@ def read_features(path: Path) -> tuple[Feature, ...]:
         data, kind = {"type": "Feature", "geometry": data}, "Feature"
     if kind == "Feature":
         return (_feature(path, 1, data),)
-    features = _object(str(path), data, "FeatureCollection").get("features")
+    if kind != "FeatureCollection":
+        got = shown_value(kind if isinstance(data, dict) else data)
+        raise SiteError(
+            f"{path}: expected a GeoJSON FeatureCollection, Feature or polygon, got {got}"
+        )
+    features = _object(str(path), data, kind).get("features")
     if not isinstance(features, list):
         raise SiteError(f"{path}: expected a list of features, got {shown_value(features)}")
     if len(features) > MOST_FEATURES:

@@ -205,7 +205,7 @@ class TestClosedGround:
         assert state.decisions["S-1"].text.startswith("leaves its rows; flies row")
         assert {leg.piece.length_m for leg in state.flights["S-1"].route} == {360.0}
         state, _none = flown_to(decided(lit(), HERE)[0], 2)
-        assert not state.flights["S-1"].was_closed
+        assert not state.flights["S-1"].is_beside_closed
 
     def test_none_is_replaced_during_takeoff(self) -> None:
         state, _given = decided(lit(), HERE)

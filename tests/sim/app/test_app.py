@@ -16,7 +16,7 @@ from recon.model.vehicle import AltitudeReference, FlightMode
 from recon.sim.app.commands import AppBehaviour, HoverOnGround
 from recon.sim.fleet import Airborne, SimulationConfig, build_fleet
 from recon.sim.flight.aircraft import AircraftSettings
-from recon.sim.flight.estimate import FIELD_SENSORS, EstimateErrors
+from recon.sim.flight.estimate import FIELD_DRIFT, DriftSettings, EstimateErrors
 
 HOME = GeoPoint(41.9, -93.6, 275.0)
 HOVER, LAND, RETURN = (wire.EmergencyCommand(action=action) for action in (0, 1, 2))
@@ -379,13 +379,13 @@ def test_pads_at_different_altitudes_differ_in_altitude_and_not_in_height() -> N
 
 
 def drifted_m(seed: int, seconds: float) -> float:
-    """The height's slow error of field sensors, after a time."""
-    errors = EstimateErrors(random=random.Random(seed), settings=FIELD_SENSORS)
+    """The height's slow error outdoors, after a time."""
+    errors = EstimateErrors(random=random.Random(seed), settings=FIELD_DRIFT)
     errors.step(seconds)
     return errors.north_east_up_m[2]
 
 
-def test_field_sensors_are_good_to_metres_and_drift_slowly() -> None:
+def test_outdoors_estimates_are_good_to_metres_and_drift_slowly() -> None:
     ends_m = [drifted_m(seed, 900.0) for seed in range(200)]
     assert 0.5 < (sum(end * end for end in ends_m) / len(ends_m)) ** 0.5 < 1.1
     assert max(abs(drifted_m(seed, 0.1)) for seed in range(200)) < 0.1
@@ -394,7 +394,7 @@ def test_field_sensors_are_good_to_metres_and_drift_slowly() -> None:
 def test_an_aircraft_holds_the_height_it_reports_and_not_the_true_one(
     app_bench, mission_packet
 ) -> None:
-    bench = app_bench(sensors=replace(FIELD_SENSORS, height_drift_m=3.0, height_drift_time_s=300.0))
+    bench = app_bench(drift=DriftSettings(height_m=3.0, height_time_s=300.0))
     bench.send(mission_packet([(0.0, 10.0, 40.0), (400.0, 10.0, 40.0)], speed_mps=4.0))
     bench.run(20.0)
     reported_m, off_m = [], []

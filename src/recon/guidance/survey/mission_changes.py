@@ -140,7 +140,7 @@ def at_row_end(choice: VehicleChoice, able: Mapping[str, Surveyor]) -> Replaced:
 
 def _has_opened(choice: VehicleChoice) -> bool:
     state = choice.state
-    return state.flights[choice.surveyor.serial].was_closed and not state.closed
+    return state.flights[choice.surveyor.serial].is_beside_closed and not state.closed
 
 
 def on_the_way_in_any_light(state: SurveyState, able: Mapping[str, Surveyor]) -> tuple[str, ...]:
@@ -149,14 +149,17 @@ def on_the_way_in_any_light(state: SurveyState, able: Mapping[str, Surveyor]) ->
         serial
         for serial, flight in state.flights.items()
         if serial in able
-        and not flight.is_chosen
+        and flight.is_in_any_light
         and flight.ends_passed == 0
         and not _takes_off(flight, able[serial], state.plan)
     )
 
 
 def _takes_off(flight: AssignedMission, surveyor: Surveyor, plan: SurveyPlan) -> bool:
-    """Whether a vehicle is on the ground, or not higher than it takes off to."""
+    """Whether a vehicle is on the ground, or before its first row not higher than it takes off to.
+
+    Rows over low ground may be far below the takeoff point: there it is not taking off.
+    """
     if not surveyor.is_flying:
         return True
     height_m = surveyor.height_above_takeoff_m
@@ -174,7 +177,7 @@ def when_light_is_known(choice: VehicleChoice, able: Mapping[str, Surveyor]) -> 
     left = choice.passing(flight.rows_left, 0.0)
     sun = left.lit_m2(choice.expected) / max(left.missing_m2, 1.0)
     text = f"flies on with {named(flight.rows_left)}: probability of sun {sun:.1f}"
-    state = state.with_flight(serial, replace(flight, is_chosen=True))
+    state = state.with_flight(serial, replace(flight, is_in_any_light=False))
     return state.with_decision(serial, Decision(text)), ()
 
 

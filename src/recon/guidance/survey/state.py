@@ -63,8 +63,10 @@ class AssignedMission:
     """The mission that is flown on if this one is refused."""
     is_chosen: bool = False
     """For its vehicle alone, not as a share of a round: if it is refused, another is chosen."""
-    was_closed: bool = False
-    """Whether there was closed ground when it was given: its rows were what was left beside."""
+    is_beside_closed: bool = False
+    """There was closed ground when it was given: its rows are what was left beside."""
+    is_in_any_light: bool = False
+    """Given without known light, and not decided on since."""
 
     @property
     def rows_left(self) -> Route:

@@ -242,9 +242,9 @@ def _in_any_light(state: SurveyState, positions: Sequence[Surveyor], now_ns: int
     if not is_enough(state, CellState.IN_SHADE):
         state, missions = fly_rounds(state, positions, now_ns, CellState.IN_SHADE)
         for serial in {mission.serial for mission in missions}:
-            rows = named(state.flights[serial].route)
-            text = f"flies {rows} in any light: sun and shade are not known yet"
-            state = state.with_decision(serial, Decision(text))
+            flight = replace(state.flights[serial], is_in_any_light=True)
+            text = f"flies {named(flight.route)} in any light: sun and shade are not known yet"
+            state = state.with_flight(serial, flight).with_decision(serial, Decision(text))
         return state, missions
     if state.flights:
         return state, ()

@@ -230,7 +230,7 @@ class VehicleChoice:
             self.now_ns + seconds_to_ns(ends_s),
             track.up_m,
             is_chosen=True,
-            was_closed=bool(state.closed),
+            is_beside_closed=bool(state.closed),
         )
         state, given = flying(self._decided(text), self.surveyor, mission, ())
         return state, (replace(given, straight_within_m=self.settings.near_m),)

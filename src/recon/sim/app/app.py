@@ -51,11 +51,11 @@ from recon.sim.app.link_buffers import AppInbox, AppOutbox
 from recon.sim.app.telemetry import (
     HomeAltitude,
     TelemetrySensors,
+    TelemetrySensorSettings,
     position_deg,
 )
 from recon.sim.camera.rig import CameraRig
 from recon.sim.flight.aircraft import Aircraft
-from recon.sim.flight.estimate import SensorSettings
 
 CORE_PERIOD_NS = 100_000_000
 EXTENDED_PERIOD_NS = 500_000_000
@@ -105,8 +105,7 @@ class AppSettings:
     seed: int = 0
     behaviour: AppBehaviour = field(default_factory=AppBehaviour)
     faults: tuple[InjectedFault, ...] = ()
-    sensors: SensorSettings = field(default_factory=SensorSettings)
-    """Of telemetry; the drifts are those of the aircraft's own errors."""
+    sensors: TelemetrySensorSettings = field(default_factory=TelemetrySensorSettings)
     renders_inline: bool = True
     """False: the driver takes the shots and renders them in a thread."""
 

@@ -10,10 +10,23 @@ from recon.model.units import wrap_degrees
 from recon.model.vehicle import CameraState
 from recon.sim.app.camera_feed import CameraFeed
 from recon.sim.flight.aircraft import Aircraft
-from recon.sim.flight.estimate import GaussMarkov, SensorSettings
+from recon.sim.flight.estimate import GaussMarkov
 
 FEW_SATELLITES = 3
 """One fewer than a position fix needs."""
+
+
+@dataclass(frozen=True, slots=True)
+class TelemetrySensorSettings:
+    """Standard deviations and time constants of the fast errors, in telemetry alone (first-order
+    Gauss-Markov); slow ones are in what an aircraft flies by (`DriftSettings`)."""
+
+    position_sigma_m: float = 0.15
+    height_sigma_m: float = 0.10
+    wander_time_s: float = 30.0
+    """Time constant of both: satellites change, gusts change the static pressure."""
+    yaw_error_deg: float = 0.0
+    """Reported minus true yaw: the compass near metal and motors, for a whole flight."""
 
 
 @dataclass(slots=True)
@@ -41,7 +54,7 @@ class TelemetrySensors:
 
     home: GeoPoint
     altitude: HomeAltitude
-    settings: SensorSettings
+    settings: TelemetrySensorSettings
     random: Random
     _noise: tuple[GaussMarkov, ...] = field(init=False)
     """Of north, east and height."""

@@ -6,27 +6,18 @@ from random import Random
 
 
 @dataclass(frozen=True, slots=True)
-class SensorSettings:
-    """Standard deviations and time constants of sensor errors (first-order Gauss-Markov).
+class DriftSettings:
+    """Standard deviations and time constants of slow errors (first-order Gauss-Markov)."""
 
-    Slow ones, the drifts, are in what an aircraft flies by; fast ones in its telemetry alone.
-    """
-
-    position_sigma_m: float = 0.15
-    height_sigma_m: float = 0.10
-    wander_time_s: float = 30.0
-    """Time constant of both: satellites change, gusts change the static pressure."""
-    position_drift_m: float = 0.0
-    """Slow part: satellite geometry and ionosphere."""
-    position_drift_time_s: float = 400.0
-    height_drift_m: float = 0.0
-    """Slow part: air pressure, and the barometer warming up."""
-    height_drift_time_s: float = 900.0
-    yaw_error_deg: float = 0.0
-    """Reported minus true yaw: the compass near metal and motors, for a whole flight."""
+    position_m: float = 0.0
+    """Satellite geometry and ionosphere."""
+    position_time_s: float = 400.0
+    height_m: float = 0.0
+    """Air pressure, and the barometer warming up."""
+    height_time_s: float = 900.0
 
 
-FIELD_SENSORS = SensorSettings(position_drift_m=0.7, height_drift_m=0.8)
+FIELD_DRIFT = DriftSettings(position_m=0.7, height_m=0.8)
 """Metres, as outdoors: twice these values within a quarter of an hour is common."""
 
 
@@ -52,15 +43,15 @@ class EstimateErrors:
 
     north_east_up_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
     random: Random | None = None
-    settings: SensorSettings = field(default_factory=SensorSettings)
+    settings: DriftSettings = field(default_factory=DriftSettings)
     _axes: tuple[GaussMarkov, ...] = field(init=False)
 
     def __post_init__(self) -> None:
         s = self.settings
         self._axes = (
-            GaussMarkov(s.position_drift_m, s.position_drift_time_s),
-            GaussMarkov(s.position_drift_m, s.position_drift_time_s),
-            GaussMarkov(s.height_drift_m, s.height_drift_time_s),
+            GaussMarkov(s.position_m, s.position_time_s),
+            GaussMarkov(s.position_m, s.position_time_s),
+            GaussMarkov(s.height_m, s.height_time_s),
         )
 
     def step(self, seconds: float) -> None:
