@@ -47,14 +47,20 @@ async def station_with(serial: str) -> AsyncIterator[str]:
     driver.links = links = LinkServer(driver.handle, driver.now_ns, LinkSettings())
     await links.start("127.0.0.1", 0)
     _, writer = await asyncio.open_connection("127.0.0.1", links.port)
-    writer.write(extended(serial.encode()) + core())
+    writer.write(extended(serial.encode()))
     app = AccessCheck(create_app(Service.around(driver, site, None), None, "test"), Access())
     try:
-        async with background(driver.run()), serving(app) as url:
+        async with background(driver.run()), background(_telemetry(writer)), serving(app) as url:
             yield url
     finally:
         writer.close()
         await links.stop()
+
+
+async def _telemetry(writer: asyncio.StreamWriter) -> None:
+    while True:
+        writer.write(core())
+        await asyncio.sleep(0.1)
 
 
 @pytest.mark.parametrize("serial", SERIALS)
