@@ -122,6 +122,26 @@ test("the tools and notes of a low map leave each other free", async ({ page }) 
   expect(await overlaps(page, ".map-notes > *, .map-tools button")).toEqual([]);
 });
 
+test("on a phone in landscape panels leave map tools and orders free", async ({ page }) => {
+  await FakeStation.behind(page, fullState());
+  await page.goto("/");
+  await expect(page.locator("button.craft").first()).toBeVisible();
+  await page.keyboard.press("1");
+  await openPanel(page, "Survey");
+  for (const [width, height] of [
+    [740, 360],
+    [844, 390],
+    [932, 430],
+  ] as const) {
+    await page.setViewportSize({ width, height });
+    const where = `${width} x ${height} px`;
+    expect(await cornerFaults(page), where).toEqual([]);
+    const parts = "header.bar, .map-tools button, .dock-right, .order-hover";
+    expect(await overlaps(page, parts), where).toEqual([]);
+    await expect(page.locator(".order-hover"), where).toBeInViewport({ ratio: 1 });
+  }
+});
+
 test("an answer neither moves nor shrinks the map", async ({ page }) => {
   const fake = await FakeStation.behind(page, fleetState(20, 0));
   fake.stopsAll = true;
