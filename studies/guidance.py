@@ -7,7 +7,7 @@ Each claim is a scenario flown by `sunlit_first` and, under the same skies, by `
 in another scenario. Its figure is the geometric mean of the ratios by seed, of the time to 95 % in
 sun or of the flight time, with a 95 % interval. All claims take days on one computer; `--cluster`
 shares the runs with others. Finished runs are kept, as by `recon score`: a stopped study goes on
-where it was.
+where it was. At the end it states, by all landings, how probable one below the reserve is.
 """
 
 import argparse
@@ -21,7 +21,7 @@ import numpy as np
 
 from recon.cli.score import Chosen, Flying
 from recon.score import RunScore, Scenario
-from recon.score.interval import Interval
+from recon.score.interval import Interval, probability_at_most
 from recon.score.scenario import PERFECT
 from recon.score.survey_table import SurveyRatios, survey_ratios
 from recon.score.table_rows import NOTHING, bounds, fine, percent, table
@@ -31,6 +31,8 @@ FIRST_SEED = 1000
 """Nothing is tuned on seeds from here on."""
 PLANNER, BASELINE = "sunlit_first", "lawnmower_again"
 LOST_MOST = 0.15
+LOW_LANDINGS_MOST = 0.01
+"""Of all landings, below the battery reserve: vehicles are home with it at 0.99."""
 ANY = float("inf")
 PLAIN = (
     "cumulus-20",
@@ -162,6 +164,8 @@ class Measured:
     refusals: float
     """For each mission."""
     holds: int
+    landings: int
+    low_landings: int
 
     @classmethod
     def of(cls, claim: Claim, runs: Sequence[RunScore], ratios: SurveyRatios) -> "Measured":
@@ -169,7 +173,9 @@ class Measured:
         violations = sum(run.encounters + run.low_landings + run.breaches for run in runs)
         missions = max(1, sum(run.missions for run in runs))
         refusals = sum(run.refusals for run in runs) / missions
-        return cls(claim, ratios, violations, refusals, sum(run.holds for run in runs))
+        holds, landings = sum(run.holds for run in runs), sum(run.landings for run in runs)
+        low = sum(run.low_landings for run in runs)
+        return cls(claim, ratios, violations, refusals, holds, landings, low)
 
     @property
     def ratio(self) -> Interval | None:
@@ -216,6 +222,16 @@ def measured(
         seeds = range(FIRST_SEED, FIRST_SEED + count)
         runs, others, limit_s = claim.flown(seeds, jobs, cluster)
         yield Measured.of(claim, runs, survey_ratios(runs, others, limit_s))
+
+
+def landings_text(found: Sequence[Measured]) -> str:
+    """Return how many of all landings were below the battery reserve, and how probable one is."""
+    low, landings = sum(each.low_landings for each in found), sum(each.landings for each in found)
+    most = probability_at_most(low, landings)
+    return (
+        f"Landings below the battery reserve: {low} of {landings}; the probability of one is below "
+        f"{most:.4f} with 95 % confidence (must: {LOW_LANDINGS_MOST:g})"
+    )
 
 
 def _file(scenario: str) -> Path:
@@ -277,6 +293,7 @@ def main() -> None:
     for each in measured(claims, asked.seeds, asked.jobs, asked.cluster):
         found.append(each)
         print(f"| {' | '.join(each.row)} |", flush=True)
+    print(f"\n{landings_text(found)}")
     if asked.picture is not None:
         drawn(asked.picture, found)
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from recon.score.interval import interval, ratio, times
+from recon.score.interval import interval, probability_at_most, ratio, times
 
 values = st.lists(st.one_of(st.none(), st.floats(0.0, 1e6)), min_size=1, max_size=12)
 pairs = st.lists(st.tuples(st.integers(0, 50), st.integers(0, 50)), min_size=1, max_size=8)
@@ -39,6 +39,13 @@ def test_the_interval_holds_the_mean_at_its_confidence() -> None:
         assert found is not None
         held += found.low <= 3.0 <= found.high
     assert 0.93 < held / 2_000 < 0.97
+
+
+def test_the_probability_of_what_never_happened_is_about_three_in_all_trials() -> None:
+    # (1 - p)^n = 0.05, exactly.
+    assert probability_at_most(0, 300) == pytest.approx(1.0 - 0.05 ** (1.0 / 300.0), rel=1e-9)
+    assert probability_at_most(1, 300) > probability_at_most(0, 300)
+    assert probability_at_most(0, 0) == probability_at_most(5, 5) == 1.0
 
 
 def test_a_ratio_is_of_the_sums() -> None:

@@ -73,6 +73,7 @@ def test_a_field_in_sun_is_imaged_in_one_round(clear: RunScore) -> None:
 
 def test_all_drones_land_without_a_violation(clear: RunScore) -> None:
     assert (clear.encounters, clear.breaches, clear.low_landings) == (0, 0, 0)
+    assert clear.landings == 2
     # Two drones, each in the air for part of the run.
     assert 0.0 < clear.flight_s <= 2.0 * clear.survey_s
 
@@ -219,7 +220,7 @@ def test_a_survey_continues_after_a_battery_change(folder: Path) -> None:
     )
     found = run(guidance_alone(small(folder, text)), 0)
     assert found.missions > 1
-    assert found.low_landings == 0
+    assert (found.landings, found.low_landings) == (2, 0)
     assert found.in_sun_share[-1] > 0.99
     assert found.flight_s < found.survey_s - 30.0
 

@@ -23,6 +23,7 @@ def run_score(seed: int, to_95_in_sun_s: float | None) -> RunScore:
         photos=0,
         shaded_photos=0,
         encounters=0,
+        landings=3,
         low_landings=0,
         end="",
     )

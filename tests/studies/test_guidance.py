@@ -5,7 +5,7 @@ from pathlib import Path
 
 import cv2
 import pytest
-from studies.guidance import CLAIMS, FIRST_SEED, REFERENCES, Claim, Measured, drawn
+from studies.guidance import CLAIMS, FIRST_SEED, REFERENCES, Claim, Measured, drawn, landings_text
 from tests.score.test_survey_table import run_score
 
 from recon.score import RunScore, load_scenario
@@ -52,6 +52,14 @@ def test_what_is_fast_and_safe_is_reached() -> None:
 def test_what_falls_short_in_one_part_is_not(short: Measured) -> None:
     assert not short.is_reached
     assert short.row[-1] == "no"
+
+
+def test_no_low_landing_of_300_is_a_probability_below_a_hundredth() -> None:
+    safe = found(0.8, like=replace(SAFE, landings=30))
+    text = "Landings below the battery reserve: {}; the probability of one is below {} "
+    assert landings_text([safe]).startswith(text.format("0 of 300", "0.0099"))
+    one = replace(safe, low_landings=1)
+    assert landings_text([safe, one]).startswith(text.format("1 of 600", "0.0079"))
 
 
 def test_watchdogs_stop_vehicles_only_where_there_are_faults() -> None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from math import exp, inf, log, sqrt
 
 import numpy as np
-from scipy.special import stdtrit
+from scipy.special import betaincinv, stdtrit
 
 CONFIDENCE = 0.95
 RESAMPLES = 2_000
@@ -53,6 +53,14 @@ def interval(values: Sequence[float | None]) -> Interval | None:
     deviation = sqrt(sum((value - mean) ** 2 for value in present) / (count - 1))
     half = float(stdtrit(count - 1, 0.5 + CONFIDENCE / 2.0)) * deviation / sqrt(count)
     return Interval(mean, mean - half, mean + half, count)
+
+
+def probability_at_most(happened: int, of: int) -> float:
+    """Return the upper 95 % bound on the probability of what happened in some of `of` trials.
+
+    One-sided and exact (Clopper and Pearson 1934): with none of n it is about 3 / n.
+    """
+    return 1.0 if happened >= of else float(betaincinv(happened + 1, of - happened, CONFIDENCE))
 
 
 def ratio(parts: Sequence[tuple[float, float]]) -> Interval | None:

@@ -178,6 +178,7 @@ class StationRun:
         limit_s = scenario.limit_s
         curve_s = np.array([60.0 * m for m in SCORE.curve_min if 60.0 * m <= limit_s])
         reserve = scenario.fleet.reserve_share
+        landed_with = [left for path in self.drones for left in path.landed_with]
         return RunScore(
             seed=self.seed,
             shade=shade.shade,
@@ -196,7 +197,8 @@ class StationRun:
             photos=found.photos,
             shaded_photos=found.shaded_photos,
             encounters=encounters(list(self._paths.values())),
-            low_landings=sum(left < reserve for p in self.drones for left in p.landed_with),
+            landings=len(landed_with),
+            low_landings=sum(left < reserve for left in landed_with),
             end=record.state.reason,
             simulated_s=self.now_s,
             breaches=breaches(self.drones, scenario.site),

@@ -76,8 +76,9 @@ class RunScore:
     shaded_photos: int
     encounters: int
     """Times that two vehicles in the air came nearer than the separation."""
+    landings: int
     low_landings: int
-    """Landings with less than the battery reserve."""
+    """Of these, with less than the battery reserve."""
     end: str
     """Why the survey ended."""
     changes: ChangeScore = field(default_factory=ChangeScore)
