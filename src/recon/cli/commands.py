@@ -48,11 +48,11 @@ COMMANDS = {
         "Return vehicles in separate height layers; they land one at a time.",
     ),
     "look-aside": CommandSource(
-        "look_aside:look_aside_command",
+        "imaging_drone:look_aside_command",
         "Fly an imaging drone 25 m aside and back, to tell even sun from even shade.",
     ),
     "relieve": CommandSource(
-        "relieve:relieve_command",
+        "imaging_drone:relieve_command",
         "Relieve an imaging drone, or send it back to its place with a fresh battery.",
     ),
     "goto": CommandSource(
