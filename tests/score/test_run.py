@@ -12,6 +12,7 @@ import pytest
 from tests.score.scenes import SMALL, small
 
 from recon.model.geo import GeoPoint
+from recon.model.units import NS_PER_S
 from recon.score import Methods, RunScore, Scenario, StationRun, run, tables
 from recon.score.forecast_figures import SeenCells
 from recon.score.run_score import shares_by, time_to_share
@@ -300,6 +301,19 @@ def test_an_encounter_counts_once_level_and_in_the_air() -> None:
     assert encounters([there, flying(east_m[::-1], 50.0, is_up=False)]) == 0
     twice = [50.0, 5.0, 5.0, 50.0, 5.0, 50.0]
     assert encounters([flying([0.0] * 6, 50.0), flying(twice, 50.0)]) == 2
+
+
+def test_a_landing_counts_and_a_crash_does_not() -> None:
+    landing, crash = flying([], 0.5), flying([], 50.0)
+    landing.app.aircraft.land()
+    for second in range(30):
+        for path in (landing, crash):
+            path.app.aircraft.advance(second * NS_PER_S)
+            path.sample(second * NS_PER_S)
+        if second == 10:
+            crash.app.aircraft.crash()
+    assert (len(landing.landed_with), crash.landed_with) == (1, [])
+    assert not any((landing.is_up[-1], crash.is_up[-1]))
 
 
 def test_each_turn_to_true_counts_once() -> None:

@@ -148,7 +148,7 @@ class TruePath:
         place_m = (motion.east_m + east_m, motion.north_m + north_m, motion.height_m + up_m)
         self.places_m.append(place_m)
         self.is_up.append(aircraft.is_flying)
-        if was_up and not aircraft.is_flying:
+        if was_up and not aircraft.is_flying and not aircraft.has_crashed:
             self.landed_with.append(aircraft.battery.fraction)
 
     def at(self, moments_s: FloatArray) -> FloatArray:

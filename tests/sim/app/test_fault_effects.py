@@ -131,6 +131,15 @@ def test_a_crashed_drone_sends_nothing_and_its_link_stays_open(faulty) -> None:
     assert not bench.app.aircraft.is_flying
 
 
+def test_a_crashed_drone_flies_no_mission_that_was_being_uploaded(faulty, mission_packet) -> None:
+    bench = faulty(FaultKind.FALLS_SILENT, start_s=2.0)
+    bench.run(1.9)
+    assert bench.send(mission_packet(MISSION)) != []
+    bench.run(30.0)
+    assert bench.app.aircraft.motion.height_m == 0.0
+    assert not bench.app.aircraft.is_flying
+
+
 def test_a_lost_takeoff_altitude_is_nan_and_missions_by_it_are_rejected(
     faulty, mission_packet
 ) -> None:

@@ -8,6 +8,7 @@ from recon.sim.flight.battery import Battery
 from recon.sim.flight.estimate import EstimateErrors
 from recon.sim.flight.flight_modes import CONFIRM_HEIGHT_M, PositionHold, Stick
 from recon.sim.flight.kinematics import AircraftMotion, Limits
+from recon.sim.flight.mission import MissionPoint
 
 
 def stick(**changes) -> Stick:
@@ -215,6 +216,17 @@ def test_the_battery_is_not_changed_after_a_crash_or_before_a_flight(flights, sw
         aircraft.crash()
         flights.fly_on(aircraft, 60.0)
         assert aircraft.battery.fraction < 0.4
+
+
+def test_a_crashed_aircraft_never_takes_off_again(flights) -> None:
+    aircraft = flights.hovering()
+    aircraft.crash()
+    aircraft.take_off()
+    aircraft.take_off_and_go_home()
+    aircraft.fly_mission((MissionPoint(10.0, 0.0, 30.0, 5.0),), False, False)
+    flights.fly_on(aircraft, 10.0)
+    assert aircraft.is_on_ground
+    assert aircraft.mission_id == 0
 
 
 def test_motion_does_not_depend_on_how_often_it_is_advanced(flights) -> None:

@@ -89,6 +89,8 @@ class Aircraft:
     """Whether the pilot has control by the mode switch: missions and sticks are ignored."""
     air: Air = field(default_factory=Air)
     has_gnss: bool = True
+    has_crashed: bool = False
+    """Then it stays where it lies, whatever its app is sent."""
     errors: EstimateErrors = field(default_factory=EstimateErrors)
     home_north_m: float = 0.0
     home_east_m: float = 0.0
@@ -147,7 +149,7 @@ class Aircraft:
     @property
     def accepts_app_control(self) -> bool:
         """Whether missions and sticks are accepted: GNSS available, pilot not in control."""
-        return self.has_gnss and not self.has_pilot_control
+        return self.has_gnss and not self.has_pilot_control and not self.has_crashed
 
     @property
     def next_tick_ns(self) -> int:
@@ -167,6 +169,8 @@ class Aircraft:
 
     def take_off(self, then: ActiveMode | None = None) -> None:
         """Take off from the ground, which becomes home, and continue with `then`."""
+        if self.has_crashed:
+            return
         if self.is_on_ground:
             self._set_home()
             self.active_mode = TakeOff(self.settings.limits, then or PositionHold())
@@ -185,7 +189,7 @@ class Aircraft:
 
     def take_off_and_go_home(self) -> None:
         """Take off first when on the ground, as some apps do on a return command."""
-        if not self.has_gnss:
+        if not self.has_gnss or self.has_crashed:
             return
         if self.is_on_ground:
             self._set_home()
@@ -258,6 +262,7 @@ class Aircraft:
     def crash(self) -> None:
         """Fall to the ground at once, and stay there."""
         self.active_mode = Grounded()
+        self.has_crashed = True
         self._come_to_rest()
         self._landed_at_ns = None
 
