@@ -29,6 +29,7 @@ from recon.sim.flight.battery import FORCED_LANDING_FRACTION, GROUND_LOAD, Batte
 from recon.sim.flight.estimate import EstimateErrors
 from recon.sim.flight.flight_modes import (
     ActiveMode,
+    Crashed,
     GoHome,
     Grounded,
     Land,
@@ -89,8 +90,6 @@ class Aircraft:
     """Whether the pilot has control by the mode switch: missions and sticks are ignored."""
     air: Air = field(default_factory=Air)
     has_gnss: bool = True
-    has_crashed: bool = False
-    """Then it stays where it lies, whatever its app is sent."""
     errors: EstimateErrors = field(default_factory=EstimateErrors)
     home_north_m: float = 0.0
     home_east_m: float = 0.0
@@ -125,6 +124,11 @@ class Aircraft:
         return not isinstance(mode, Grounded)
 
     @property
+    def has_crashed(self) -> bool:
+        """Whether it has fallen: it stays where it lies, whatever its app is sent."""
+        return isinstance(self.active_mode, Crashed)
+
+    @property
     def flight_mode(self) -> FlightMode:
         """The flight mode that telemetry reports."""
         return self.active_mode.mode
@@ -149,7 +153,7 @@ class Aircraft:
     @property
     def accepts_app_control(self) -> bool:
         """Whether missions and sticks are accepted: GNSS available, pilot not in control."""
-        return self.has_gnss and not self.has_pilot_control and not self.has_crashed
+        return self.has_gnss and not self.has_pilot_control
 
     @property
     def next_tick_ns(self) -> int:
@@ -189,7 +193,7 @@ class Aircraft:
 
     def take_off_and_go_home(self) -> None:
         """Take off first when on the ground, as some apps do on a return command."""
-        if not self.has_gnss or self.has_crashed:
+        if not self.has_gnss:
             return
         if self.is_on_ground:
             self._set_home()
@@ -261,8 +265,7 @@ class Aircraft:
 
     def crash(self) -> None:
         """Fall to the ground at once, and stay there."""
-        self.active_mode = Grounded()
-        self.has_crashed = True
+        self.active_mode = Crashed()
         self._come_to_rest()
         self._landed_at_ns = None
 

@@ -81,6 +81,10 @@ class Grounded:
         return None
 
 
+class Crashed(Grounded):
+    """Fallen: on the ground, and nothing it is sent makes it take off again."""
+
+
 @dataclass(slots=True)
 class PositionHold:
     """Brake, then hover at the height reached (DJI's position mode)."""
