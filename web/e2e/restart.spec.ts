@@ -1,21 +1,38 @@
 import { mkdtemp, rm } from "node:fs/promises";
-import { createServer } from "node:net";
+import { type AddressInfo, createServer, type Server } from "node:net";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { expect, test } from "@playwright/test";
 import { runRecon, startStation } from "./stationProcess";
 
-/** A port that is free now, so that the station can have it again after a restart. */
-function freePort(): Promise<number> {
-  return new Promise((resolve, reject) => {
+/** Listens on a port, 0 for any; undefined if it is taken. */
+function listening(port: number): Promise<Server | undefined> {
+  return new Promise((resolve) => {
     const server = createServer();
-    server.on("error", reject);
-    server.listen(0, "127.0.0.1", () => {
-      const address = server.address();
-      const port = typeof address === "object" && address !== null ? address.port : 0;
-      server.close(() => resolve(port));
-    });
+    server.once("error", () => resolve(undefined));
+    server.listen(port, "127.0.0.1", () => resolve(server));
   });
+}
+
+function portOf(server: Server | undefined): number {
+  return (server?.address() as AddressInfo | null | undefined)?.port ?? 0;
+}
+
+/** Ports for the console and for apps, free now with the guard's, so that they can be had again. */
+async function freePorts(): Promise<[number, number]> {
+  const held: (Server | undefined)[] = [];
+  try {
+    for (;;) {
+      const http = await listening(0);
+      // The guard's port is the one beside the console's.
+      const guard = await listening(portOf(http) + 1);
+      const apps = await listening(0);
+      held.push(http, guard, apps);
+      if (http && guard && apps) return [portOf(http), portOf(apps)];
+    }
+  } finally {
+    for (const server of held) server?.close();
+  }
 }
 
 test("a station is restarted while the page is open: it recovers, and each drone keeps its number", async ({
@@ -23,7 +40,8 @@ test("a station is restarted while the page is open: it recovers, and each drone
 }) => {
   const folder = await mkdtemp(join(tmpdir(), "recon-restart-"));
   await runRecon("site", "new", folder, "--at", "41.9012,-93.6034", "--ground-altitude-m", "275");
-  const ports = ["--http-port", String(await freePort()), "--link-port", String(await freePort())];
+  const [httpPort, linkPort] = await freePorts();
+  const ports = ["--http-port", `${httpPort}`, "--link-port", `${linkPort}`];
   let station = await startStation("--site", folder, ...ports);
   try {
     await page.goto(station.url);
