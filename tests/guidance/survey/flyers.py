@@ -133,6 +133,8 @@ class Flights:
     sky: Sky = clear
     time_s: float = 0.0
     tells_shade: bool = True
+    view: Sky | None = None
+    """Which ground shade maps show; None: all."""
     foresees: bool = False
     """Whether the planner gets the sky of the next five minutes, as a forecast that is right."""
     closed: tuple[ClosedArea, ...] = ()
@@ -191,12 +193,13 @@ class Flights:
         )
         lit = self.sky(middles_m(grid), self.time_s).reshape(grid.rows, grid.cols)
         shape = (grid.rows, grid.cols)
+        is_shown = (self.view or clear)(middles_m(grid), self.time_s).reshape(shape)
         return ShadeMap(
             grid,
             seconds_to_ns(self.time_s),
             (),
             lit.astype(np.float32),
-            np.ones(shape, np.bool_),
+            is_shown,
             np.ones(shape, np.float32),
             np.ones(shape, np.float32),
         )

@@ -61,3 +61,43 @@ def test_without_shade_maps_nothing_is_flown_again_for_sun() -> None:
 def test_in_sun_it_ends_after_one_round() -> None:
     end = flown(sky=clear).state
     assert (end.round, end.reason) == (1, "Complete: all reachable ground photographed in sun")
+
+
+def west_of_260_m(places_m: FloatArray, time_s: float) -> BoolArray:
+    return np.asarray(places_m[:, 0] < 260.0)
+
+
+@pytest.mark.parametrize("planner", ["lawnmower_again", "sunlit_first"])
+def test_ground_outside_the_imaging_drones_view_is_flown_once(planner: str) -> None:
+    flyers = fleet(1)
+    survey = survey_of(rectangle(), planner=planner)
+    flights = Flights(begun(survey, flyers), flyers, clear, view=west_of_260_m)
+    end = flights.run(3_000.0)
+    assert end.phase is SurveyPhase.DONE
+    unseen_m2 = figures(end).sun_unknown_m2
+    assert unseen_m2 == pytest.approx(8_000.0, rel=0.02)
+    assert end.reason == (
+        "Complete: all reachable ground photographed in sun where shade maps show it; of 6.00 ha, "
+        f"{unseen_m2 / 10_000.0:.2f} ha lie outside the imaging drone's view: photographed, light "
+        "unknown"
+    )
+    assert flights.shown is not None
+    assert flights.shown[end.plan.cells.is_inside].mean() > 0.99
+    alone = fleet(1)
+    once = Flights(begun(survey_of(rectangle()), alone), alone, clear)
+    once.run()
+    assert flights.time_s < 1.3 * once.time_s
+
+
+def test_what_the_imaging_drone_loses_from_view_for_a_while_is_flown_for_sun() -> None:
+    """It looks aside for 90 s, while the last of the field is flown."""
+
+    def aside(places_m: FloatArray, time_s: float) -> BoolArray:
+        return np.full(len(places_m), not 60.0 <= time_s < 150.0)
+
+    flyers = fleet(2)
+    survey = survey_of(rectangle(), planner="lawnmower_again")
+    flights = Flights(begun(survey, flyers), flyers, clear, view=aside)
+    end = flights.run(3_000.0)
+    assert end.reason == "Complete: all reachable ground photographed in sun"
+    assert end.round == 2

@@ -24,7 +24,13 @@ from recon.guidance.survey import (
     start,
     step,
 )
-from recon.guidance.survey.progress import no_progress, settled, with_seen, with_shade
+from recon.guidance.survey.progress import (
+    missing_cells,
+    no_progress,
+    settled,
+    with_seen,
+    with_shade,
+)
 from recon.guidance.survey.view import crossing
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.shade import ShadeMap
@@ -308,6 +314,52 @@ class TestCrossing:
         assert np.abs(left_s - last[window])[both].max(initial=0.0) < 0.003
         grazed = cross.is_in_view & ~seen[window]
         assert (left_s - entered_s)[grazed].max(initial=0.0) < 0.003
+
+
+class TestGroundOutOfView:
+    """Ground that no shade map shows is not missing once it is imaged."""
+
+    WEST = PLAN.cells.along_m < 150.0
+
+    def missing_after(self, *maps: ShadeMap) -> BoolArray:
+        progress = settled(
+            with_seen(no_progress(PLAN.cells), "A", row_flown(), PLAN), PLAN, LATE_NS
+        )
+        for each in maps:
+            progress = with_shade(progress, each, PLAN)
+        return missing_cells(progress, PLAN, CellState.IN_SUN)
+
+    def western(self, at_s: float) -> ShadeMap:
+        whole = shade(at_s)
+        is_shown = np.arange(whole.grid.cols) < 20
+        return replace(whole, valid=whole.valid & is_shown)
+
+    @pytest.mark.parametrize("period_s", [1.0, 5.0])
+    def test_it_is_known_as_such_after_208_s(self, period_s: float) -> None:
+        until_s = [207.0, 209.0 + period_s]
+        kept, released = (
+            self.missing_after(*map(self.western, np.arange(0.0, until, period_s)))
+            for until in until_s
+        )
+        assert kept.all()
+        assert (released == (self.WEST | ~imaged(counted(row_flown())))).all()
+
+    def test_at_the_edge_of_the_view_a_map_now_and_then_changes_nothing(self) -> None:
+        maps = [shade(t) if t % 10 == 0 else self.western(t) for t in range(600)]
+        assert not self.missing_after(*maps)[~self.WEST & imaged(counted(row_flown()))].any()
+
+    def test_back_in_view_it_is_missing_again(self) -> None:
+        away = [self.western(t) for t in range(600)]
+        assert self.missing_after(*away, *(shade(600.0 + t) for t in range(50))).all()
+
+    def test_what_is_not_imaged_is_missing_wherever_it_lies(self) -> None:
+        missing = self.missing_after(*(self.western(t) for t in range(600)))
+        assert missing[~imaged(counted(row_flown()))].all()
+
+    def test_without_maps_or_light_in_them_nothing_changes(self) -> None:
+        learning = [shade(t, valid=False) for t in range(600)]
+        assert self.missing_after(*learning).all()
+        assert self.missing_after(self.western(0.0), self.western(900.0)).all()
 
 
 class TestFigures:

@@ -353,6 +353,19 @@ class TestDecisions:
             assert called == {"S-1": why}
             assert returning(state, [replace(here, is_able=False)]) == {}
 
+    @pytest.mark.parametrize(("shaded_s", "called"), [(240.0, {"S-1"}), (290.0, {"S-1", "S-2"})])
+    def test_one_stays_for_sun_that_may_come_while_another_changes_its_battery(
+        self, shaded_s: float, called: set[str]
+    ) -> None:
+        sun = forecast(lambda _east, _north, lead: lead >= shaded_s)
+        pair = [Surveyor(f"S-{n}", (0.0, 80.0 * n), charge_share=0.5) for n in (1, 2)]
+        made = create(planned(replace(SURVEY, when_done=WhenDone.RETURN_HOME)))
+        assert isinstance(made, SurveyState)
+        running = start(made, ["S-1", "S-2"], 0)
+        assert isinstance(running, SurveyState)
+        state, _ = decided(sun, *pair, state=running)
+        assert set(returning(state, pair)) == called
+
     def test_vehicles_side_by_side_get_rows_side_by_side(self) -> None:
         sun = forecast(lambda _east, _north, _lead: True)
         places = {f"S-{n}": (0.0, 60.0 + 60.0 * n) for n in range(3)}

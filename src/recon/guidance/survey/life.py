@@ -50,7 +50,7 @@ from recon.guidance.survey.state import (
 from recon.guidance.survey.vehicle_choice import named
 from recon.model.command import Refusal
 from recon.model.shade import ShadeMap, SunForecast
-from recon.model.survey import PLANNER_GOALS, SurveyPhase
+from recon.model.survey import SurveyPhase
 from recon.model.units import seconds_to_ns
 
 
@@ -244,7 +244,7 @@ def _left(state: SurveyState, surveyor: Surveyor) -> Route:
     if waiting:
         return waiting
     plan = state.plan
-    pieces = plan.pieces_over(state.progress.state < PLANNER_GOALS[plan.survey.planner])
+    pieces = plan.pieces_over(state.missing())
     ((along_m, across_m),) = plan.lattice.along_across_m([surveyor.place_m]).tolist()
     return route_of(pieces, plan.lattice, (along_m, across_m)) if pieces else ()
 

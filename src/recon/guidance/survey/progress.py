@@ -1,6 +1,8 @@
 """What has been imaged, and in which light, from the reported positions of vehicles.
 
-A state machine per cell: NOT_YET -> IN_SHADE -> IN_SUN; a cell never falls back.
+A state machine per cell: NOT_YET -> IN_SHADE -> IN_SUN; a cell never falls back. One that no shade
+map shows, outside the imaging drone's view, stays IN_SHADE however often it is flown: it is missing
+until it is imaged, and no longer (`missing_cells`).
 
 A photo is taken every `interval_s`, but not at known moments. So a cell counts as imaged when it
 was in view, without a break, for at least that long: then a photo shows it, whatever the timer's
@@ -15,6 +17,7 @@ another height, or faster than planned does not count.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
+from math import exp
 from types import MappingProxyType
 
 import numpy as np
@@ -29,6 +32,7 @@ from recon.model.survey import CellState, Survey
 from recon.model.units import ns_to_seconds, seconds_to_ns
 
 StateArray = npt.NDArray[np.uint8]
+ShareArray = npt.NDArray[np.float32]
 NEVER = -1
 
 
@@ -58,6 +62,30 @@ class InView:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class LightSeen:
+    """`share` (R, C) of about the last minutes' shade maps that have a value for a cell, 1 before
+    the first map; `until_ns` is when the newest of them was captured."""
+
+    share: ShareArray
+    until_ns: int | None = None
+
+    def after(self, shade: ShadeMap, plan: SurveyPlan) -> "LightSeen":
+        """Return it with one more map. One that knows no light at all, as while a detection is
+        learning the ground, changes nothing."""
+        settings, grid, at_ns = plan.settings, plan.cells.grid, shade.captured_at_ns
+        if not shade.valid.any():
+            return self
+        # Without maps, as during a change of battery, what was in view is not forgotten.
+        since_s = 0.0 if self.until_ns is None else ns_to_seconds(at_ns - self.until_ns)
+        since_s = min(max(since_s, 0.0), settings.shade_age_s)
+        whole = Window(0, grid.rows, 0, grid.cols)
+        _, is_known = sunlit_cells(shade, grid, whole, settings.least_transmittance)
+        kept = np.float32(exp(-since_s / settings.light_seen_s))
+        share = np.where(is_known, 1.0 - kept * (1.0 - self.share), kept * self.share)
+        return LightSeen(share, max(at_ns, self.until_ns or at_ns))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class CoverageProgress:
     """`state` (R, C) holds `CellState`s on the plan's cells; never written to once made.
 
@@ -67,6 +95,7 @@ class CoverageProgress:
 
     state: StateArray
     is_sun_known: BoolArray
+    light_seen: LightSeen
     shade: tuple[ShadeMap, ...] = ()
     waiting: Mapping[str, tuple[PositionSample, ...]] = field(
         default_factory=lambda: MappingProxyType({})
@@ -81,13 +110,30 @@ def no_progress(cells: CoverageCells) -> CoverageProgress:
     """Return the progress of a survey that has not begun."""
     shape = (cells.grid.rows, cells.grid.cols)
     state = np.full(shape, CellState.NOT_YET, dtype=np.uint8)
-    return CoverageProgress(state, np.zeros(shape, dtype=np.bool_))
+    seen = LightSeen(np.ones(shape, dtype=np.float32))
+    return CoverageProgress(state, np.zeros(shape, dtype=np.bool_), seen)
+
+
+def missing_cells(progress: CoverageProgress, plan: SurveyPlan, wanted: CellState) -> BoolArray:
+    """Return (R, C): the reached cells that are to be imaged yet, up to the `wanted` state.
+
+    What is imaged, and shown by no shade map, is not flown again for sun.
+    """
+    is_below: BoolArray = progress.state < wanted
+    return plan.cells.is_reached & is_below & ~unseen_cells(progress, plan)
+
+
+def unseen_cells(progress: CoverageProgress, plan: SurveyPlan) -> BoolArray:
+    """Return (R, C): the reached cells that are imaged and whose light shade maps do not show."""
+    is_shown: BoolArray = progress.light_seen.share >= plan.settings.light_seen_from
+    is_imaged: BoolArray = progress.state == CellState.IN_SHADE
+    return plan.cells.is_reached & is_imaged & ~is_shown
 
 
 def with_shade(progress: CoverageProgress, shade: ShadeMap, plan: SurveyPlan) -> CoverageProgress:
     """Return the progress with one more shade map to look at; the oldest is dropped."""
     kept = (*progress.shade, shade)[-plan.settings.shade_maps_kept :]
-    return replace(progress, shade=kept)
+    return replace(progress, shade=kept, light_seen=progress.light_seen.after(shade, plan))
 
 
 def with_seen(

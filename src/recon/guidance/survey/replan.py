@@ -15,7 +15,7 @@ from recon.guidance.survey.route import Route, RowLeg
 from recon.guidance.survey.rows import Piece
 from recon.guidance.survey.state import SurveyState
 from recon.model.command import Refusal
-from recon.model.survey import PLANNER_GOALS, SurveyPhase
+from recon.model.survey import SurveyPhase
 
 LEAST_LEG_M = 1.0
 """What is left of a row must be this long: less is rounding."""
@@ -34,7 +34,7 @@ def replanned(
         was_flying = bool(state.flights or state.waiting)
         paused = ended(state, SurveyPhase.PAUSED, plan.reason, now_ns)
         return replace(paused, round=state.round - was_flying)
-    missing = plan.pieces_over(state.progress.state < PLANNER_GOALS[plan.survey.planner])
+    missing = plan.pieces_over(replace(state, plan=plan).missing())
     kept = {key: flight for key, flight in state.flights.items() if key in flying}
     waiting: dict[str, Route] = {}
     for serial in {**state.flights, **state.waiting}:

@@ -72,7 +72,7 @@ def fly_rounds(
     end = end_between_rounds(state, wanted)
     if end is not None:
         return ended(state, SurveyPhase.DONE, end, now_ns), ()
-    pieces = state.plan.pieces_over(state.progress.state < wanted)
+    pieces = state.plan.pieces_over(state.missing(wanted))
     return _begun(state, pieces, free, now_ns)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from recon.geo import nearest_cells
 from recon.guidance.survey.cells import BoolArray, FloatArray, IntArray
 from recon.guidance.survey.plan import SurveyPlan
-from recon.guidance.survey.progress import CoverageProgress
+from recon.guidance.survey.progress import CoverageProgress, missing_cells
 from recon.guidance.survey.route import RowLeg
 from recon.guidance.survey.settings import SurveySettings
 from recon.model.geo import GroundGrid
@@ -120,7 +120,7 @@ def expected_sun(
     has seen no light yet, as while a detection is still learning the ground, does not count.
     """
     settings = plan.settings
-    missing = (progress.state < CellState.IN_SUN) & plan.cells.is_reached
+    missing = missing_cells(progress, plan, CellState.IN_SUN)
     moments_s = np.arange(0.0, settings.planned_s + settings.moment_s, settings.moment_s)
     if sun is not None and _is_usable(sun, now_ns, settings):
         by_cell = _forecast(sun, plan.cells.grid, missing, moments_s, now_ns)

@@ -66,6 +66,14 @@ class SurveySettings:
     shade_age_s: float = 5.0
     """Shade maps farther off in time do not count: shadows move at 10 m/s."""
 
+    light_seen_s: float = 150.0
+    """Over about this long it is remembered how often shade maps show a cell's light: longer than
+    an imaging drone looks aside."""
+
+    light_seen_from: float = 0.25
+    """A cell that fewer maps show lies outside the imaging drone's view, or at its edge: it cannot
+    count in sun. One that no map shows is known as such after 208 s."""
+
     least_transmittance: float = 0.6
     """In a shade map, for a cell to count in sun: half of the beam is sun, and maps err by up to
     0.1. A photo taken home with shade in it costs more than a row flown again."""

@@ -6,12 +6,13 @@ from types import MappingProxyType
 
 import numpy as np
 
+from recon.guidance.survey.cells import BoolArray
 from recon.guidance.survey.closed_areas import ClosedArea
 from recon.guidance.survey.plan import SurveyPlan
-from recon.guidance.survey.progress import CoverageProgress
+from recon.guidance.survey.progress import CoverageProgress, missing_cells, unseen_cells
 from recon.guidance.survey.route import Place, Route
 from recon.guidance.survey.settings import SurveySettings
-from recon.model.survey import CellState, SurveyPhase
+from recon.model.survey import PLANNER_GOALS, CellState, SurveyPhase
 from recon.model.units import ns_to_seconds, seconds_to_ns
 
 Routes = Mapping[str, Route]
@@ -154,6 +155,12 @@ class SurveyState:
     quiet_since_ns: int = 0
     """Since when no vehicle flies."""
 
+    def missing(self, wanted: CellState | None = None) -> BoolArray:
+        """Return (R, C): the reached cells that are to be imaged yet, up to the `wanted` state, or
+        the one that the survey's planner wants."""
+        goal = PLANNER_GOALS[self.plan.survey.planner] if wanted is None else wanted
+        return missing_cells(self.progress, self.plan, goal)
+
     def with_flight(self, serial: str, flight: AssignedMission) -> "SurveyState":
         """Return it with a vehicle on a mission."""
         return replace(self, flights=MappingProxyType({**self.flights, serial: flight}))
@@ -231,7 +238,7 @@ def spent_budget(state: SurveyState, wanted: CellState, now_ns: int) -> str | No
 def end_between_rounds(state: SurveyState, wanted: CellState) -> str | None:
     """Return why the survey is done, between two rounds; None: it continues."""
     if is_enough(state, wanted):
-        sun = " in sun" if wanted == CellState.IN_SUN else ""
+        sun = _sun_text(state) if wanted == CellState.IN_SUN else ""
         return f"Complete: all reachable ground photographed{sun}"
     if is_enough(state, CellState.IN_SHADE) and not state.progress.is_sun_known.any():
         return (
@@ -246,23 +253,41 @@ def end_between_rounds(state: SurveyState, wanted: CellState) -> str | None:
 
 
 def is_enough(state: SurveyState, wanted: CellState) -> bool:
-    """Return whether `enough_share` of the reached cells have the wanted state."""
-    reached = state.plan.cells.is_reached
-    share = float((state.progress.state[reached] >= wanted).mean())
-    return share >= state.plan.settings.enough_share
+    """Return whether `enough_share` of the reached cells are not missing up to the wanted state."""
+    return not _is_much(state, state.missing(wanted))
+
+
+def _is_much(state: SurveyState, cells: BoolArray) -> bool:
+    """Whether these reached cells are more than is left when enough is done."""
+    plan = state.plan
+    share_most = 1.0 - plan.settings.enough_share
+    return float(cells.sum()) > share_most * float(plan.cells.is_reached.sum())
+
+
+def _sun_text(state: SurveyState) -> str:
+    reached, unseen = state.plan.cells.is_reached, unseen_cells(state.progress, state.plan)
+    if not _is_much(state, unseen):
+        return " in sun"
+    return (
+        f" in sun where shade maps show it; of {_area_text(state, reached)}, "
+        f"{_area_text(state, unseen)} lie outside the imaging drone's view: photographed, light "
+        "unknown"
+    )
 
 
 def _missing(state: SurveyState, wanted: CellState) -> str:
-    """Return the reached area that is not imaged, and that is imaged in shade only."""
-    cells = state.plan.cells
-    states = state.progress.state[cells.is_reached]
+    """Return the reached area that is not imaged, and that is imaged without certain sun."""
+    progress, reached = state.progress, state.plan.cells.is_reached
+    is_imaged = reached & (progress.state == CellState.IN_SHADE)
+    is_unknown = is_imaged & ~progress.is_sun_known
+    parts = [f"of {_area_text(state, reached)}"]
+    if wanted == CellState.IN_SUN:
+        parts.append(f"{_area_text(state, is_imaged & ~is_unknown)} imaged in shade only")
+    if wanted == CellState.IN_SUN and is_unknown.any():
+        parts.append(f"{_area_text(state, is_unknown)} imaged in unknown light")
+    not_yet = reached & (progress.state == CellState.NOT_YET)
+    return ", ".join((*parts, f"{_area_text(state, not_yet)} not imaged"))
 
-    def area(which: CellState, what: str) -> str:
-        area_ha = float((states == which).sum()) * cells.cell_m2 / HECTARE_M2
-        return f"{area_ha:.2f} ha {what}"
 
-    reached = f"of {states.size * cells.cell_m2 / HECTARE_M2:.2f} ha"
-    not_yet = area(CellState.NOT_YET, "not imaged")
-    if wanted == CellState.IN_SHADE:
-        return f"{reached}, {not_yet}"
-    return f"{reached}, {area(CellState.IN_SHADE, 'imaged in shade only')}, {not_yet}"
+def _area_text(state: SurveyState, cells: BoolArray) -> str:
+    return f"{float(cells.sum()) * state.plan.cells.cell_m2 / HECTARE_M2:.2f} ha"

@@ -51,7 +51,7 @@ def just_flown_legs(state: SurveyState) -> list[RowLeg]:
 def missing_pieces(state: SurveyState, segments: Segments, chosen: BoolArray) -> Sequence[Piece]:
     """The missing ground of the chosen segments (S,), in pieces of rows."""
     of_cell = segments.of_cell
-    is_missing = (state.progress.state < WANTED) & (of_cell != NONE) & chosen[of_cell]
+    is_missing = state.missing(WANTED) & (of_cell != NONE) & chosen[of_cell]
     return state.plan.pieces_over(is_missing)
 
 
@@ -127,9 +127,10 @@ class VehicleChoice:
     def _is_time_to_swap(self, free: BoolArray) -> bool:
         """Whether a change of battery costs less sun now than later.
 
-        Now it costs the sun expected on free ground until the vehicle is back. Later, in sun
-        throughout, it costs all of that time, if it is needed at all: the more probably the more of
-        the battery has been used.
+        Now it costs the sun expected on free ground until the vehicle is back, the more the fewer
+        others stay: with all of them away sun would come in vain. Later, in sun throughout, it
+        costs all of that time, if it is needed at all: the more probably the more of the battery
+        has been used.
         """
         surveyor, swap_s = self.surveyor, self.settings.swap_s
         if not surveyor.is_flying or surveyor.charge_share is None:
@@ -140,7 +141,17 @@ class VehicleChoice:
         sun = missing_m2 @ self.expected.probability[free] / missing_m2.sum()
         used = 1.0 - surveyor.charge_share
         is_worth, later = used >= self.settings.swapped_from, used * self.settings.swap_later
-        return is_worth and float(sun[self.expected.moments_s <= swap_s].mean()) < later
+        now = float(sun[self.expected.moments_s <= swap_s].mean()) * self._scarcity
+        return is_worth and now < later
+
+    @property
+    def _scarcity(self) -> float:
+        """How many of the survey's other vehicles there are for each one that stays; with none
+        left, twice as many as with one."""
+        others = set(self.state.serials) - {self.surveyor.serial}
+        returning = {serial for serial, each in self.state.decisions.items() if each.returns}
+        staying = others & {each.serial for each in self.able} - returning
+        return len(others) / max(len(staying), 0.5) if others else 1.0
 
     def _returns(self) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
         minutes = self.settings.swap_s / 60.0
