@@ -75,6 +75,7 @@ def test_ground_outside_the_imaging_drones_view_is_flown_once(planner: str) -> N
     end = flights.run(3_000.0)
     assert end.phase is SurveyPhase.DONE
     unseen_m2 = figures(end).sun_unknown_m2
+    assert figures(end).out_of_view_m2 == pytest.approx(unseen_m2, rel=0.02)
     assert unseen_m2 == pytest.approx(8_000.0, rel=0.02)
     assert end.reason == (
         "Complete: all reachable ground photographed in sun where shade maps show it; of 6.00 ha, "

@@ -3612,6 +3612,11 @@ export interface components {
             /** Not Yet M2 */
             not_yet_m2: number;
             /**
+             * Out Of View M2
+             * @description reached, but not shown by shade maps: imaged once, in unknown light
+             */
+            out_of_view_m2: number;
+            /**
              * Reached M2
              * @description imaged by the rows with certainty
              */

@@ -125,9 +125,14 @@ def missing_cells(progress: CoverageProgress, plan: SurveyPlan, wanted: CellStat
 
 def unseen_cells(progress: CoverageProgress, plan: SurveyPlan) -> BoolArray:
     """Return (R, C): the reached cells that are imaged and whose light shade maps do not show."""
-    is_shown: BoolArray = progress.light_seen.share >= plan.settings.light_seen_from
     is_imaged: BoolArray = progress.state == CellState.IN_SHADE
-    return plan.cells.is_reached & is_imaged & ~is_shown
+    return is_imaged & out_of_view(progress, plan)
+
+
+def out_of_view(progress: CoverageProgress, plan: SurveyPlan) -> BoolArray:
+    """Return (R, C): the reached cells whose light shade maps do not show, imaged or not."""
+    is_unseen: BoolArray = progress.light_seen.share < plan.settings.light_seen_from
+    return is_unseen & plan.cells.is_reached
 
 
 def with_shade(progress: CoverageProgress, shade: ShadeMap, plan: SurveyPlan) -> CoverageProgress:

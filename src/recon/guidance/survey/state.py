@@ -9,7 +9,12 @@ import numpy as np
 from recon.guidance.survey.cells import BoolArray
 from recon.guidance.survey.closed_areas import ClosedArea
 from recon.guidance.survey.plan import SurveyPlan
-from recon.guidance.survey.progress import CoverageProgress, missing_cells, unseen_cells
+from recon.guidance.survey.progress import (
+    CoverageProgress,
+    missing_cells,
+    out_of_view,
+    unseen_cells,
+)
 from recon.guidance.survey.route import Place, Route
 from recon.guidance.survey.settings import SurveySettings
 from recon.model.survey import PLANNER_GOALS, CellState, SurveyPhase
@@ -188,6 +193,8 @@ class CoverageFigures:
     in_sun_m2: float
     sun_unknown_m2: float
     """Imaged while no shade map had a value: neither in sun nor in shade."""
+    out_of_view_m2: float
+    """Of the reached ground, what shade maps do not show: it is imaged in unknown light."""
     time_to_95_imaged_s: float | None
     time_to_95_in_sun_s: float | None
     """Of the reached cells."""
@@ -206,6 +213,7 @@ def figures(state: SurveyState) -> CoverageFigures:
         in_shade_m2=float((not_in_sun & is_known).sum()) * cells.cell_m2,
         in_sun_m2=_area_m2(states, CellState.IN_SUN, cells.cell_m2),
         sun_unknown_m2=float((not_in_sun & ~is_known).sum()) * cells.cell_m2,
+        out_of_view_m2=float(out_of_view(progress, state.plan).sum()) * cells.cell_m2,
         time_to_95_imaged_s=_after_s(state, progress.imaged_95_at_ns),
         time_to_95_in_sun_s=_after_s(state, progress.in_sun_95_at_ns),
     )

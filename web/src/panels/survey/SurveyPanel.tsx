@@ -4,7 +4,7 @@ import { targetsKey } from "../../orders/targets";
 import type { SurveyingView, SurveyResponse, SurveyView } from "../../protocol";
 import type { Outcome } from "../../source/stationSource";
 import { text } from "../../text/catalogue";
-import { surveyHeight, surveyStatus, timeLeft } from "../../text/survey";
+import { formatArea, sharePercent, surveyHeight, surveyStatus, timeLeft } from "../../text/survey";
 import { withLengthUnit } from "../../text/units";
 import { BRIEF_MS, GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Panel, Problem } from "../Panel";
@@ -67,6 +67,9 @@ function SurveySection(props: SurveyProps) {
       </p>
       <p class="muted">{surveyHeight(props.survey)}</p>
       <Coverage survey={props.survey} />
+      <Show when={is("running", "paused") && outOfView(props.survey)}>
+        {(line) => <p class="muted wire-text">{line()}</p>}
+      </Show>
       <Show when={props.survey.light}>{(light) => <SurveyLight light={light()} />}</Show>
       <Decisions lines={active().map((vehicle) => lineOf(vehicle, is("done")))} />
       <Show when={is("created")}>
@@ -88,6 +91,13 @@ function SurveySection(props: SurveyProps) {
       </div>
     </section>
   );
+}
+
+/** How much of the region shade maps do not show; null while that is less than one per cent. */
+function outOfView({ figures }: SurveyView): string | null {
+  if (figures === null) return null;
+  const percent = sharePercent(figures.out_of_view_m2, figures.region_m2);
+  return percent > 0 ? text.surveys.outOfView(formatArea(figures.out_of_view_m2), percent) : null;
 }
 
 /** A drone and what it does for the survey, with the reason. */

@@ -134,6 +134,8 @@ export const surveys = {
   inShade: (percent: number) => `${percent} % in shade`,
   lightUnknown: (percent: number) => `${percent} % light unknown`,
   toFly: (percent: number) => `${percent} % to fly`,
+  outOfView: (area: string, percent: number) =>
+    `${area} (${percent} %) out of the imaging drone's view: flown once, light unknown.`,
   fewer: "Fewer",
   allDrones: (count: number) => `All ${count} drones`,
 };
