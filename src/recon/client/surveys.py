@@ -25,7 +25,7 @@ class SurveyProgress(msgspec.Struct, frozen=True):
     in_shade_m2: float
     in_sun_m2: float
     sun_unknown_m2: float
-    out_of_view_m2: float
+    not_shown_m2: float
     time_to_95_imaged_s: float | None
     time_to_95_in_sun_s: float | None
 

@@ -3609,13 +3609,13 @@ export interface components {
             in_shade_m2: number;
             /** In Sun M2 */
             in_sun_m2: number;
-            /** Not Yet M2 */
-            not_yet_m2: number;
             /**
-             * Out Of View M2
+             * Not Shown M2
              * @description reached, but not shown by shade maps: imaged once, in unknown light
              */
-            out_of_view_m2: number;
+            not_shown_m2: number;
+            /** Not Yet M2 */
+            not_yet_m2: number;
             /**
              * Reached M2
              * @description imaged by the rows with certainty

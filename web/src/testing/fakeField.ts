@@ -99,7 +99,7 @@ export function survey(id: number, changes: Partial<SurveyView> = {}): SurveyVie
       in_shade_m2: 2_000,
       in_sun_m2: 8_000,
       sun_unknown_m2: 0,
-      out_of_view_m2: 0,
+      not_shown_m2: 0,
       time_to_95_imaged_s: null,
       time_to_95_in_sun_s: null,
     },

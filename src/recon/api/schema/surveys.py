@@ -112,7 +112,7 @@ class SurveyFiguresView(Message):
     in_shade_m2: float = Field(description="imaged, light known, not certainly in sun")
     in_sun_m2: float
     sun_unknown_m2: float = Field(description="imaged, not certainly in sun, light unknown")
-    out_of_view_m2: float = Field(
+    not_shown_m2: float = Field(
         description="reached, but not shown by shade maps: imaged once, in unknown light"
     )
     time_to_95_imaged_s: float | None

@@ -62,14 +62,14 @@ class InView:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class LightSeen:
+class LightShown:
     """`share` (R, C) of about the last minutes' shade maps that have a value for a cell, 1 before
     the first map; `until_ns` is when the newest of them was captured."""
 
     share: ShareArray
     until_ns: int | None = None
 
-    def after(self, shade: ShadeMap, plan: SurveyPlan) -> "LightSeen":
+    def after(self, shade: ShadeMap, plan: SurveyPlan) -> "LightShown":
         """Return it with one more map. One that knows no light at all, as while a detection is
         learning the ground, changes nothing."""
         settings, grid, at_ns = plan.settings, plan.cells.grid, shade.captured_at_ns
@@ -80,9 +80,9 @@ class LightSeen:
         since_s = min(max(since_s, 0.0), settings.shade_age_s)
         whole = Window(0, grid.rows, 0, grid.cols)
         _, is_known = sunlit_cells(shade, grid, whole, settings.least_transmittance)
-        kept = np.float32(exp(-since_s / settings.light_seen_s))
+        kept = np.float32(exp(-since_s / settings.light_shown_s))
         share = np.where(is_known, 1.0 - kept * (1.0 - self.share), kept * self.share)
-        return LightSeen(share, max(at_ns, self.until_ns or at_ns))
+        return LightShown(share, max(at_ns, self.until_ns or at_ns))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -95,7 +95,7 @@ class CoverageProgress:
 
     state: StateArray
     is_sun_known: BoolArray
-    light_seen: LightSeen
+    light_shown: LightShown
     shade: tuple[ShadeMap, ...] = ()
     waiting: Mapping[str, tuple[PositionSample, ...]] = field(
         default_factory=lambda: MappingProxyType({})
@@ -110,7 +110,7 @@ def no_progress(cells: CoverageCells) -> CoverageProgress:
     """Return the progress of a survey that has not begun."""
     shape = (cells.grid.rows, cells.grid.cols)
     state = np.full(shape, CellState.NOT_YET, dtype=np.uint8)
-    seen = LightSeen(np.ones(shape, dtype=np.float32))
+    seen = LightShown(np.ones(shape, dtype=np.float32))
     return CoverageProgress(state, np.zeros(shape, dtype=np.bool_), seen)
 
 
@@ -119,26 +119,21 @@ def missing_cells(progress: CoverageProgress, plan: SurveyPlan, wanted: CellStat
 
     What is imaged, and shown by no shade map, is not flown again for sun.
     """
+    is_imaged: BoolArray = progress.state > CellState.NOT_YET
     is_below: BoolArray = progress.state < wanted
-    return plan.cells.is_reached & is_below & ~unseen_cells(progress, plan)
+    return plan.cells.is_reached & is_below & ~(is_imaged & not_shown_cells(progress, plan))
 
 
-def unseen_cells(progress: CoverageProgress, plan: SurveyPlan) -> BoolArray:
-    """Return (R, C): the reached cells that are imaged and whose light shade maps do not show."""
-    is_imaged: BoolArray = progress.state == CellState.IN_SHADE
-    return is_imaged & out_of_view(progress, plan)
-
-
-def out_of_view(progress: CoverageProgress, plan: SurveyPlan) -> BoolArray:
+def not_shown_cells(progress: CoverageProgress, plan: SurveyPlan) -> BoolArray:
     """Return (R, C): the reached cells whose light shade maps do not show, imaged or not."""
-    is_unseen: BoolArray = progress.light_seen.share < plan.settings.light_seen_from
-    return is_unseen & plan.cells.is_reached
+    is_not_shown: BoolArray = progress.light_shown.share < plan.settings.light_shown_from
+    return plan.cells.is_reached & is_not_shown
 
 
 def with_shade(progress: CoverageProgress, shade: ShadeMap, plan: SurveyPlan) -> CoverageProgress:
     """Return the progress with one more shade map to look at; the oldest is dropped."""
     kept = (*progress.shade, shade)[-plan.settings.shade_maps_kept :]
-    return replace(progress, shade=kept, light_seen=progress.light_seen.after(shade, plan))
+    return replace(progress, shade=kept, light_shown=progress.light_shown.after(shade, plan))
 
 
 def with_seen(

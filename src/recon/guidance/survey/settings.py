@@ -66,11 +66,11 @@ class SurveySettings:
     shade_age_s: float = 5.0
     """Shade maps farther off in time do not count: shadows move at 10 m/s."""
 
-    light_seen_s: float = 150.0
+    light_shown_s: float = 150.0
     """Over about this long it is remembered how often shade maps show a cell's light: longer than
     an imaging drone looks aside."""
 
-    light_seen_from: float = 0.25
+    light_shown_from: float = 0.25
     """A cell that fewer maps show lies outside the imaging drone's view, or at its edge: it cannot
     count in sun. One that no map shows is known as such after 208 s."""
 

@@ -9,12 +9,7 @@ import numpy as np
 from recon.guidance.survey.cells import BoolArray
 from recon.guidance.survey.closed_areas import ClosedArea
 from recon.guidance.survey.plan import SurveyPlan
-from recon.guidance.survey.progress import (
-    CoverageProgress,
-    missing_cells,
-    out_of_view,
-    unseen_cells,
-)
+from recon.guidance.survey.progress import CoverageProgress, missing_cells, not_shown_cells
 from recon.guidance.survey.route import Place, Route
 from recon.guidance.survey.settings import SurveySettings
 from recon.model.survey import PLANNER_GOALS, CellState, SurveyPhase
@@ -193,7 +188,7 @@ class CoverageFigures:
     in_sun_m2: float
     sun_unknown_m2: float
     """Imaged while no shade map had a value: neither in sun nor in shade."""
-    out_of_view_m2: float
+    not_shown_m2: float
     """Of the reached ground, what shade maps do not show: it is imaged in unknown light."""
     time_to_95_imaged_s: float | None
     time_to_95_in_sun_s: float | None
@@ -213,7 +208,7 @@ def figures(state: SurveyState) -> CoverageFigures:
         in_shade_m2=float((not_in_sun & is_known).sum()) * cells.cell_m2,
         in_sun_m2=_area_m2(states, CellState.IN_SUN, cells.cell_m2),
         sun_unknown_m2=float((not_in_sun & ~is_known).sum()) * cells.cell_m2,
-        out_of_view_m2=float(out_of_view(progress, state.plan).sum()) * cells.cell_m2,
+        not_shown_m2=float(not_shown_cells(progress, state.plan).sum()) * cells.cell_m2,
         time_to_95_imaged_s=_after_s(state, progress.imaged_95_at_ns),
         time_to_95_in_sun_s=_after_s(state, progress.in_sun_95_at_ns),
     )
@@ -273,13 +268,12 @@ def _is_much(state: SurveyState, cells: BoolArray) -> bool:
 
 
 def _sun_text(state: SurveyState) -> str:
-    reached, unseen = state.plan.cells.is_reached, unseen_cells(state.progress, state.plan)
-    if not _is_much(state, unseen):
+    reached, not_shown = state.plan.cells.is_reached, not_shown_cells(state.progress, state.plan)
+    if not _is_much(state, not_shown):
         return " in sun"
     return (
         f" in sun where shade maps show it; of {_area_text(state, reached)}, "
-        f"{_area_text(state, unseen)} lie outside the imaging drone's view: photographed, light "
-        "unknown"
+        f"{_area_text(state, not_shown)} are not shown by them: photographed, light unknown"
     )
 
 

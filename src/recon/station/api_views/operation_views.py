@@ -120,7 +120,7 @@ def _figures(state: SurveyState) -> schema.SurveyFiguresView:
         in_shade_m2=seen.in_shade_m2,
         in_sun_m2=seen.in_sun_m2,
         sun_unknown_m2=seen.sun_unknown_m2,
-        out_of_view_m2=seen.out_of_view_m2,
+        not_shown_m2=seen.not_shown_m2,
         time_to_95_imaged_s=seen.time_to_95_imaged_s,
         time_to_95_in_sun_s=seen.time_to_95_in_sun_s,
     )

@@ -67,7 +67,7 @@ function SurveySection(props: SurveyProps) {
       </p>
       <p class="muted">{surveyHeight(props.survey)}</p>
       <Coverage survey={props.survey} />
-      <Show when={is("running", "paused") && outOfView(props.survey)}>
+      <Show when={is("running", "paused") && notShown(props.survey)}>
         {(line) => <p class="muted wire-text">{line()}</p>}
       </Show>
       <Show when={props.survey.light}>{(light) => <SurveyLight light={light()} />}</Show>
@@ -94,10 +94,10 @@ function SurveySection(props: SurveyProps) {
 }
 
 /** How much of the region shade maps do not show; null while that is less than one per cent. */
-function outOfView({ figures }: SurveyView): string | null {
+function notShown({ figures }: SurveyView): string | null {
   if (figures === null) return null;
-  const percent = sharePercent(figures.out_of_view_m2, figures.region_m2);
-  return percent > 0 ? text.surveys.outOfView(formatArea(figures.out_of_view_m2), percent) : null;
+  const percent = sharePercent(figures.not_shown_m2, figures.region_m2);
+  return percent > 0 ? text.surveys.notShown(formatArea(figures.not_shown_m2), percent) : null;
 }
 
 /** A drone and what it does for the survey, with the reason. */

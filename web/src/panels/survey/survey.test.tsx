@@ -34,17 +34,17 @@ describe("a survey in the list", () => {
     expect(text).toContain("battery too low");
   });
 
-  it("states how much of the region the imaging drone does not show, while it is flown", () => {
+  it("states how much of the region shade maps do not show, while it is flown", () => {
     const { figures } = survey(7);
     if (figures === null) throw new Error("expected figures");
-    const part = { figures: { ...figures, out_of_view_m2: 3_000 } };
+    const part = { figures: { ...figures, not_shown_m2: 3_000 } };
     show(survey(7, part), survey(8), survey(9, { ...part, phase: "done" }));
     const text = (id: number) => find(page.root, `[data-testid=survey-${id}]`).textContent;
     expect(text(7)).toContain(
-      "0.3\u00a0ha (15 %) out of the imaging drone's view: flown once, light unknown.",
+      "0.3\u00a0ha (15 %) not shown by shade maps: flown once, light unknown.",
     );
-    expect(text(8)).not.toContain("view");
-    expect(text(9)).not.toContain("view");
+    expect(text(8)).not.toContain("shade maps");
+    expect(text(9)).not.toContain("shade maps");
   });
 
   it("is started by a long press with the selected vehicles, and takes off only if allowed", () => {

@@ -134,8 +134,8 @@ export const surveys = {
   inShade: (percent: number) => `${percent} % in shade`,
   lightUnknown: (percent: number) => `${percent} % light unknown`,
   toFly: (percent: number) => `${percent} % to fly`,
-  outOfView: (area: string, percent: number) =>
-    `${area} (${percent} %) out of the imaging drone's view: flown once, light unknown.`,
+  notShown: (area: string, percent: number) =>
+    `${area} (${percent} %) not shown by shade maps: flown once, light unknown.`,
   fewer: "Fewer",
   allDrones: (count: number) => `All ${count} drones`,
 };
