@@ -470,7 +470,7 @@ def test_a_dead_process_is_an_alarm_and_another_one_goes_on(tmp_path: Path) -> N
             scene.run_for(0.05)
             # By the takeoff it has another name, reported a moment later.
             with suppress(FileNotFoundError):
-                return first.path is not None and first.path.stat().st_size > 20_000
+                return first.path is not None and first.path.stat().st_size > 60_000
             return False
 
         until(is_written)
