@@ -57,6 +57,10 @@ class CoverageCells:
         """One cell's area."""
         return self.grid.cell_m**2
 
+    def area_m2(self, chosen: BoolArray) -> float:
+        """Return the area of the chosen cells."""
+        return float(chosen.sum()) * self.cell_m2
+
 
 def cells_over(
     area: shapely.Geometry,

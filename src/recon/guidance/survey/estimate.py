@@ -169,7 +169,7 @@ def plan_figures(
     height_m, region_m2 = survey.height_m, shape_of(survey.region).area
     return PlanFigures(
         region_m2=region_m2,
-        reached_m2=min(float(cells.is_reached.sum()) * cells.cell_m2, region_m2),
+        reached_m2=min(cells.area_m2(cells.is_reached), region_m2),
         least_height_above_ground_m=min((low for low, _ in above_m), default=None),
         most_height_above_ground_m=max((high for _, high in above_m), default=None),
         rows=len({piece.row for piece in plan.pieces}),

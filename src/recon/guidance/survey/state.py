@@ -4,8 +4,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 
-import numpy as np
-
 from recon.guidance.survey.cells import BoolArray
 from recon.guidance.survey.closed_areas import ClosedArea
 from recon.guidance.survey.plan import SurveyPlan
@@ -197,25 +195,19 @@ class CoverageFigures:
 
 def figures(state: SurveyState) -> CoverageFigures:
     """Return the figures of a survey as it stands."""
-    cells, progress = state.plan.cells, state.progress
-    inside = cells.is_inside
-    states = progress.state[inside]
-    not_in_sun, is_known = states == CellState.IN_SHADE, progress.is_sun_known[inside]
+    cells, progress, inside = state.plan.cells, state.progress, state.plan.cells.is_inside
+    not_in_sun, is_known = progress.state == CellState.IN_SHADE, progress.is_sun_known
     return CoverageFigures(
-        region_m2=float(inside.sum()) * cells.cell_m2,
-        reached_m2=float(cells.is_reached.sum()) * cells.cell_m2,
-        not_yet_m2=_area_m2(states, CellState.NOT_YET, cells.cell_m2),
-        in_shade_m2=float((not_in_sun & is_known).sum()) * cells.cell_m2,
-        in_sun_m2=_area_m2(states, CellState.IN_SUN, cells.cell_m2),
-        sun_unknown_m2=float((not_in_sun & ~is_known).sum()) * cells.cell_m2,
-        not_shown_m2=float(not_shown_cells(progress, state.plan).sum()) * cells.cell_m2,
+        region_m2=cells.area_m2(inside),
+        reached_m2=cells.area_m2(cells.is_reached),
+        not_yet_m2=cells.area_m2(inside & (progress.state == CellState.NOT_YET)),
+        in_shade_m2=cells.area_m2(inside & not_in_sun & is_known),
+        in_sun_m2=cells.area_m2(inside & (progress.state == CellState.IN_SUN)),
+        sun_unknown_m2=cells.area_m2(inside & not_in_sun & ~is_known),
+        not_shown_m2=cells.area_m2(not_shown_cells(progress, state.plan)),
         time_to_95_imaged_s=_after_s(state, progress.imaged_95_at_ns),
         time_to_95_in_sun_s=_after_s(state, progress.in_sun_95_at_ns),
     )
-
-
-def _area_m2(states: "np.typing.NDArray[np.uint8]", which: CellState, cell_m2: float) -> float:
-    return float((states == which).sum()) * cell_m2
 
 
 def _after_s(state: SurveyState, at_ns: int | None) -> float | None:
@@ -292,4 +284,4 @@ def _missing(state: SurveyState, wanted: CellState) -> str:
 
 
 def _area_text(state: SurveyState, cells: BoolArray) -> str:
-    return f"{float(cells.sum()) * state.plan.cells.cell_m2 / HECTARE_M2:.2f} ha"
+    return f"{state.plan.cells.area_m2(cells) / HECTARE_M2:.2f} ha"

@@ -129,7 +129,7 @@ def _survey_outlook(station: Station, record: SurveyRecord, now_ns: int) -> Surv
     assert state is not None, "a running survey has rows"
     missing = before.missing
     if not missing or now_ns - missing[-1].at_ns >= seconds_to_ns(PACE_EVERY_S):
-        missing_m2 = float(state.missing().sum()) * state.plan.cells.cell_m2
+        missing_m2 = state.plan.cells.area_m2(state.missing())
         missing = with_missing(missing, MissingGround(now_ns, missing_m2))
     return SurveyOutlook(
         missing, survey_needs_s(missing, now_ns), _without_light(station, state, before, now_ns)
