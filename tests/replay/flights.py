@@ -27,7 +27,8 @@ FOLDER = Path(__file__).parent / "flights"
 
 
 def skip_if_recorded_elsewhere(start: FlightStart) -> None:
-    """Skip a test of what follows from pixels: linear algebra differs between processors."""
+    """Skip a test of what follows from pixels: linear algebra differs between processors in its
+    last bits, and is compared with thresholds."""
     if start.machine != this_machine():
         pytest.skip("recorded on another processor: numbers differ in their last bits")
 
