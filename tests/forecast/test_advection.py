@@ -1,5 +1,6 @@
 """Advection: motion from all pairs together, and what the nearest seen shade shows elsewhere."""
 
+from dataclasses import replace
 from itertools import pairwise
 from math import hypot
 from pathlib import Path
@@ -118,6 +119,24 @@ def test_what_lies_upwind_of_the_view_is_shown_by_its_rim() -> None:
     assert chances[0] < 0.1
     assert all(one < other for one, other in pairwise(chances[1:]))
     assert chances[-1] < last.prior_sunlit
+
+
+def kept_behind_an_edge(transmittance: float) -> float:
+    """Of what the ground behind an edge that crosses the view from the west deviates from the
+    prior: the share forecast five minutes later, by the usual scale."""
+    settings, maps = replace(SETTINGS, usual_likeness_s=1e6), []
+    for at_s in np.arange(0.0, 60.0, 5.0):
+        is_behind = 6.0 * (at_s - 20.0) - 0.5 * np.abs(NORTH_M) > EAST_M
+        maps.append(shade_map(np.where(is_behind, transmittance, 1.0 - transmittance), at_s))
+    last = forecasts("advection", maps, settings)[-1]
+    assert last.velocity_mps == pytest.approx((6.0, 0.0), abs=0.6)
+    rim = SEEN & (EAST_M < -100.0)
+    now, later = (float((last.sun_probability[k][rim] / 255.0).mean()) for k in (0, -1))
+    return (later - last.prior_sunlit) / (now - last.prior_sunlit)
+
+
+def test_shade_shows_less_of_what_is_far_upwind_than_sun_does() -> None:
+    assert 0.1 < kept_behind_an_edge(0.0) < 0.6 * kept_behind_an_edge(1.0)
 
 
 def true_maps(seed: int) -> tuple[list[ShadeMap], dict[float, np.ndarray]]:

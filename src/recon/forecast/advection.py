@@ -99,7 +99,9 @@ class _Seen:
         sun = (direct - SUNLIT_TRANSMITTANCE) / (2.0 * soft) + 0.5
         sun = np.clip(sun, 1.0 - settings.surest, settings.surest)
         weight = confidence * exp(-lead_s / settings.shade_memory_s)
-        weight = weight / (1.0 + off_m / settings.shade_scale_m)
+        of_shade_m = min(settings.shade_scale_m, settings.most_scale_of_shade_m)
+        scale_m = np.where(sun < prior, of_shade_m, settings.shade_scale_m).astype(np.float32)
+        weight = weight / (1.0 + off_m / scale_m)
         found: FloatMap = (prior + weight * (sun - prior)).astype(np.float32)
         return found
 

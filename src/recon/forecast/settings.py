@@ -124,6 +124,10 @@ class ForecastSettings:
     """Distance at which the nearest seen shade shows half as much of the sun as shade that is
     followed. Fitted, as the next, to Brier scores under the scenarios' skies, seeds 0 to 7."""
 
+    most_scale_of_shade_m: float = 700.0
+    """The same at most, of seen shade: a view all in shade is alike throughout, and does not show
+    that the shade ends beyond it. What lies farther off was in sun twice as often as forecast."""
+
     likeness_apart_m: float = 160.0
     """Distance at which the likeness of shade is measured: a third of a view."""
 

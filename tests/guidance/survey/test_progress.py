@@ -197,7 +197,7 @@ class TestLight:
         assert progress.is_sun_known[imaged(progress)].all()
 
     @pytest.mark.parametrize(
-        ("transmittance", "state"), [(0.55, CellState.IN_SHADE), (0.65, CellState.IN_SUN)]
+        ("transmittance", "state"), [(0.52, CellState.IN_SHADE), (0.58, CellState.IN_SUN)]
     )
     def test_what_is_hardly_in_sun_does_not_count(
         self, transmittance: float, state: CellState

@@ -326,24 +326,30 @@ class TestDecisions:
         assert state.decisions["S-1"].text == "waits: no sun is expected on its rows for 5 min"
 
     @pytest.mark.parametrize(
-        ("charge_share", "shaded_s", "when_done", "returns"),
+        ("charge_share", "time_left_s", "shaded_s", "when_done", "returns"),
         [
-            (0.5, 290.0, WhenDone.RETURN_HOME, True),
-            (0.5, 120.0, WhenDone.RETURN_HOME, False),  # later it would cost more than 120 s less
-            (0.8, 290.0, WhenDone.RETURN_HOME, False),
-            (0.5, 290.0, WhenDone.HOVER, False),
-            (None, 290.0, WhenDone.RETURN_HOME, False),
+            (0.5, 300.0, 290.0, WhenDone.RETURN_HOME, True),
+            (0.5, 300.0, 120.0, WhenDone.RETURN_HOME, False),  # sun comes while it is away
+            (0.5, 3_000.0, 290.0, WhenDone.RETURN_HOME, False),  # longer than any shade
+            (0.9, 300.0, 290.0, WhenDone.RETURN_HOME, False),
+            (0.5, 300.0, 290.0, WhenDone.HOVER, False),
+            (None, None, 290.0, WhenDone.RETURN_HOME, False),
         ],
     )
-    def test_a_used_battery_is_changed_while_little_sun_is_expected(
-        self, charge_share: float | None, shaded_s: float, when_done: WhenDone, returns: bool
+    def test_a_battery_that_may_not_last_is_changed_while_little_sun_is_expected(
+        self,
+        charge_share: float | None,
+        time_left_s: float | None,
+        shaded_s: float,
+        when_done: WhenDone,
+        returns: bool,
     ) -> None:
         sun = forecast(lambda _east, _north, lead: lead >= shaded_s)
         made = create(planned(replace(SURVEY, when_done=when_done)))
         assert isinstance(made, SurveyState)
         running = start(made, ["S-1"], 0)
         assert isinstance(running, SurveyState)
-        here = Surveyor("S-1", (0.0, 100.0), charge_share=charge_share)
+        here = Surveyor("S-1", (0.0, 100.0), charge_share=charge_share, time_left_s=time_left_s)
         state, missions = decided(sun, here, state=running)
         called = returning(state, [here])
         assert bool(called) == returns
@@ -358,7 +364,9 @@ class TestDecisions:
         self, shaded_s: float, called: set[str]
     ) -> None:
         sun = forecast(lambda _east, _north, lead: lead >= shaded_s)
-        pair = [Surveyor(f"S-{n}", (0.0, 80.0 * n), charge_share=0.5) for n in (1, 2)]
+        pair = [
+            Surveyor(f"S-{n}", (0.0, 80.0 * n), charge_share=0.5, time_left_s=300.0) for n in (1, 2)
+        ]
         made = create(planned(replace(SURVEY, when_done=WhenDone.RETURN_HOME)))
         assert isinstance(made, SurveyState)
         running = start(made, ["S-1", "S-2"], 0)

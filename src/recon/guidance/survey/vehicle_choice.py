@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import takewhile
-from math import hypot
+from math import exp, hypot
 
 import numpy as np
 
@@ -128,21 +128,27 @@ class VehicleChoice:
         """Whether a change of battery costs less sun now than later.
 
         Now it costs the sun expected on free ground until the vehicle is back, the more the fewer
-        others stay: with all of them away sun would come in vain. Later, in sun throughout, it
-        costs all of that time, if it is needed at all: the more probably the more of the battery
-        has been used.
+        others stay: with all of them away sun would come in vain. Later it costs that time in sun,
+        but only if it is needed at all: if the battery does not last for the work left, or shade
+        lasts longer than what it has beyond that.
         """
-        surveyor, swap_s = self.surveyor, self.settings.swap_s
-        if not surveyor.is_flying or surveyor.charge_share is None:
+        surveyor, settings = self.surveyor, self.settings
+        time_left_s, charge = surveyor.time_left_s, surveyor.charge_share
+        if not surveyor.is_flying or time_left_s is None or charge is None:
             return False
         if self.plan.survey.when_done is not WhenDone.RETURN_HOME:
             return False
         missing_m2 = self.expected.missing_m2[free]
         sun = missing_m2 @ self.expected.probability[free] / missing_m2.sum()
-        used = 1.0 - surveyor.charge_share
-        is_worth, later = used >= self.settings.swapped_from, used * self.settings.swap_later
-        now = float(sun[self.expected.moments_s <= swap_s].mean()) * self._scarcity
-        return is_worth and now < later
+        now = float(sun[self.expected.moments_s <= settings.swap_s].mean()) * self._scarcity
+        spare_s = time_left_s * settings.flight_time_share - self._work_s(missing_m2.sum())
+        is_needed = exp(-max(spare_s, 0.0) / settings.shade_lasts_s)
+        return charge <= 1.0 - settings.swapped_from and now < settings.swap_later * is_needed
+
+    def _work_s(self, ground_m2: float) -> float:
+        """How long this vehicle flies for its part of some ground."""
+        rows_m = ground_m2 / self.plan.lattice.spacing_m / len(self.able)
+        return rows_m / (self.plan.survey.speed_mps * self.settings.expected_rate)
 
     @property
     def _scarcity(self) -> float:
