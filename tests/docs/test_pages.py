@@ -1,5 +1,6 @@
 """The pages say what is true: links lead somewhere, commands and targets exist, examples run."""
 
+import asyncio
 import re
 import runpy
 import sys
@@ -10,6 +11,7 @@ from pathlib import Path
 import pytest
 import typer
 import typer.core
+from tests.patient_loop import run_patiently
 
 from recon.cli.commands import COMMANDS, app
 from recon.site import load_site
@@ -93,6 +95,7 @@ def test_examples_run(
     example: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(sys, "argv", [str(example)])
+    monkeypatch.setattr(asyncio, "run", run_patiently)
     runpy.run_path(str(example), run_name="__main__")
     printed = capsys.readouterr().out
     expected = {
