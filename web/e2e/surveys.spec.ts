@@ -28,7 +28,7 @@ async function hold(page: Page, button: Locator, until: () => Promise<void>): Pr
 test("plans a survey of a site region, flies it with two vehicles, pauses and aborts it", async ({
   page,
 }) => {
-  test.setTimeout(240_000);
+  test.setTimeout(600_000);
   const station = await startStation("--no-survey");
   try {
     await page.goto(station.url);
