@@ -6,7 +6,8 @@ Theory of operation, per forecast:
 2. At each lead, what will be over a cell is now upwind of it. If that place is seen, its shade is
    the best estimate; else that of the seen place nearest to it is. The farther off that is, the
    less it shows: its deviation from the prior counts by 1 / (1 + distance / scale), where the scale
-   follows from how alike shade is at a distance in this flight (`likeness`).
+   follows from how alike shade is at a distance in this flight (`likeness`). Of seen shade it is
+   at most `most_scale_of_shade_m`.
 3. Followed shadows change their shape: deviations fade with `shade_memory_s`.
 4. Without a velocity the shade above each cell is the guide, as far off as shadows usually move.
 """

@@ -122,11 +122,11 @@ class ForecastSettings:
 
     shade_scale_m: float = 2_500.0
     """Distance at which the nearest seen shade shows half as much of the sun as shade that is
-    followed. Fitted, as the next, to Brier scores under the scenarios' skies, seeds 0 to 7."""
+    followed. Fitted, as the likeness, to Brier scores under the scenarios' skies, seeds 0 to 7."""
 
     most_scale_of_shade_m: float = 700.0
     """The same at most, of seen shade: a view all in shade is alike throughout, and does not show
-    that the shade ends beyond it. Fitted as the scale, seeds 0 to 19 of eight scenarios."""
+    that the shade ends beyond it. Fitted likewise, seeds 0 to 19."""
 
     likeness_apart_m: float = 160.0
     """Distance at which the likeness of shade is measured: a third of a view."""

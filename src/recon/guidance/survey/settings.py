@@ -76,8 +76,8 @@ class SurveySettings:
 
     least_transmittance: float = 0.55
     """In a shade map, for a cell to count in sun: half of the beam is sun, and maps err. Ground is
-    chosen by the forecast from a half on: with 0.6 a tenth of a field was flown again and again
-    under thin cloud."""
+    chosen by the forecast from a half on: what lies between is photographed, and does not count.
+    With 0.6 that was wide under thin cloud."""
 
     terrain_below_m: float = 1.5
     """Below the height wanted above ground, between two waypoints: rows are this much narrower for

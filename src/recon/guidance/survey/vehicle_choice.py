@@ -129,26 +129,27 @@ class VehicleChoice:
 
         Now it costs the sun expected on free ground until the vehicle is back, the more the fewer
         others stay: with all of them away sun would come in vain. Later it costs that time in sun,
-        but only if it is needed at all: if the battery does not last for the work left, or shade
-        lasts longer than what it has beyond that.
+        but only if it is needed at all.
         """
         surveyor, settings = self.surveyor, self.settings
-        time_left_s, charge = surveyor.time_left_s, surveyor.charge_share
-        if not surveyor.is_flying or time_left_s is None or charge is None:
+        if self.plan.survey.when_done is not WhenDone.RETURN_HOME or not surveyor.is_flying:
             return False
-        if self.plan.survey.when_done is not WhenDone.RETURN_HOME:
+        if surveyor.charge_share is None or surveyor.charge_share > 1.0 - settings.swapped_from:
             return False
         missing_m2 = self.expected.missing_m2[free]
         sun = missing_m2 @ self.expected.probability[free] / missing_m2.sum()
         now = float(sun[self.expected.moments_s <= settings.swap_s].mean()) * self._scarcity
-        spare_s = time_left_s * settings.flight_time_share - self._work_s(missing_m2.sum())
-        is_needed = exp(-max(spare_s, 0.0) / settings.shade_lasts_s)
-        return charge <= 1.0 - settings.swapped_from and now < settings.swap_later * is_needed
+        return now < settings.swap_later * self._swap_probability(float(missing_m2.sum()))
 
-    def _work_s(self, ground_m2: float) -> float:
-        """How long this vehicle flies for its part of some ground."""
-        rows_m = ground_m2 / self.plan.lattice.spacing_m / len(self.able)
-        return rows_m / (self.plan.survey.speed_mps * self.settings.expected_rate)
+    def _swap_probability(self, missing_m2: float) -> float:
+        """Return how probably its battery does not last: for its part of the missing ground, or for
+        shade that lasts longer than what it has beyond that."""
+        assert self.surveyor.time_left_s is not None, "known where the charge is"
+        settings, lattice = self.settings, self.plan.lattice
+        rows_m = missing_m2 / lattice.spacing_m / len(self.able)
+        flown_s = rows_m / (self.plan.survey.speed_mps * settings.expected_rate)
+        spare_s = self.surveyor.time_left_s * settings.flight_time_share - flown_s
+        return exp(-max(spare_s, 0.0) / settings.shade_lasts_s)
 
     @property
     def _scarcity(self) -> float:
