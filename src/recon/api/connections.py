@@ -7,6 +7,7 @@ after `PING_S` and as long again, whatever fits into the kernel's buffers.
 """
 
 import asyncio
+import socket
 import sys
 from collections.abc import Callable, Hashable
 from typing import ClassVar, cast
@@ -33,6 +34,10 @@ PING_S = 10.0
 
 STEP_BYTES = 64 * 1024
 """A reader must take this much within the patience."""
+
+SEND_BUFFER_BYTES = 128 * 1024
+"""Of a stream's socket. Left to itself a kernel takes megabytes: minutes of states for a slow
+radio link, each of them old when it arrives."""
 
 
 class Deadline:
@@ -122,6 +127,9 @@ class StreamConnection(WebSocketsSansIOProtocol):
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """Take over an upgraded connection."""
         super().connection_made(transport)
+        own = self.transport.get_extra_info("socket")
+        if own is not None:
+            own.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SEND_BUFFER_BYTES)
         self._deadline = Deadline(self.transport, self._awaited)
 
     def connection_lost(self, exc: Exception | None) -> None:

@@ -1,10 +1,11 @@
 """The WebSocket streams: states to consoles and clients, and audit entries.
 
 States are conflated: a slow reader gets the newest state when it is ready, at most 10 Hz. The
-server's send blocks while more than 64 KiB wait for the socket, so a slow reader costs that and
-one message; one that reads nothing loses its place (`api/connections.py`). Audit entries are not
-conflated: a slow reader holds one page and gets the rest as it reads; one that falls behind what
-the station keeps in memory sees a gap in the numbers (`first_n`).
+server's send blocks while more than 64 KiB wait for the socket, whose buffer in the kernel is
+bounded too, so a slow reader is sent little that is old; one that reads nothing loses its place
+(`api/connections.py`). Audit entries are not conflated: a slow reader holds one page and gets the
+rest as it reads; one that falls behind what the station keeps in memory sees a gap in the numbers
+(`first_n`).
 
 A reader that asks for it (`changes=1`) gets the first state whole, and then what has changed since
 the last one it was sent (`api/state_changes.py`).
