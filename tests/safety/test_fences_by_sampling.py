@@ -1,5 +1,6 @@
 """The fence rules say what an independent, slow checker measures; `make study` draws 10,000."""
 
+import pytest
 from tests.oracles.drawn_fences import RULES, compare
 
 from recon.geo import Footprints
@@ -7,6 +8,8 @@ from recon.model.command import Command, Refusal
 from recon.safety.path.pieces import UnknownPath
 from recon.safety.path.volumes import path_volume
 from recon.safety.situation import Situation
+
+pytestmark = pytest.mark.uncovered
 
 SEEDS = range(20_000, 20_300)
 """None that `make study` draws too."""

@@ -16,6 +16,8 @@ from recon.safety.rules.separation import separation
 from recon.safety.settings import SafetySettings
 from recon.safety.situation import Situation
 
+pytestmark = pytest.mark.uncovered
+
 SEEDS = range(20_000, 20_300)
 """None that `make study` draws too."""
 

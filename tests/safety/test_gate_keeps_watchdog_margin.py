@@ -22,6 +22,8 @@ from recon.safety.settings import SafetySettings
 from recon.safety.watchdogs import Finding, WatchedVehicle, build_traffic_picture
 from recon.safety.watchdogs.separation import separation as separation_watchdog
 
+pytestmark = pytest.mark.uncovered
+
 Place = tuple[float, float, float]
 LOOK_S = 0.5
 OFF_TRACK_M = 0.3

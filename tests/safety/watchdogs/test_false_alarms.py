@@ -8,6 +8,7 @@ error of up to a metre and a half a metre of noise, by a quarter of a metre a se
 from dataclasses import dataclass, field
 from random import Random
 
+import pytest
 from tests.safety.traffic import AIR, S, aircraft, flies, route
 from tests.safety.watchdogs.flights import SETTINGS
 
@@ -15,6 +16,8 @@ from recon.model.mission import Mission, Waypoint
 from recon.model.vehicle import FlightMode
 from recon.safety.watchdogs import WatchedVehicle, build_traffic_picture
 from recon.safety.watchdogs.separation import separation
+
+pytestmark = pytest.mark.uncovered
 
 LINE_M, LINES = 300.0, 2
 SPEED_MPS, GAINS_MPS2 = 8.0, 2.5

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.safety.traffic import NOTHING, aircraft, at, flies, route, waypoint
@@ -117,6 +118,7 @@ def unbounded(of: TrafficPicture) -> TrafficPicture:
     return copied
 
 
+@pytest.mark.uncovered
 @settings(max_examples=300, deadline=None)
 @given(fleets)
 def test_bounds_change_no_finding(fleet: tuple[WatchedVehicle, ...]) -> None:
@@ -125,6 +127,7 @@ def test_bounds_change_no_finding(fleet: tuple[WatchedVehicle, ...]) -> None:
         assert list(watchdog(bounded)) == list(watchdog(unbounded(bounded)))
 
 
+@pytest.mark.uncovered
 @settings(max_examples=300, deadline=None)
 @given(vehicles("V1"))
 def test_what_is_predicted_stays_within_its_bound(vehicle: WatchedVehicle) -> None:
@@ -161,6 +164,14 @@ def test_a_vehicle_without_a_bound_is_predicted_and_so_are_all() -> None:
     for intent in unknown:
         assert picture(in_context(aircraft("A"), intent=intent), aircraft("B")).reaches is None
     assert picture(aircraft("A"), aircraft("B", age_s=30.0)).reaches is None
+
+
+def test_a_vehicle_that_leaves_is_found_beside_one_without_a_bound() -> None:
+    leaving = in_context(aircraft("A", (490.0, 0.0), velocity=(10.0, 0.0, 0.0)), intent=NOTHING)
+    unbounded = in_context(aircraft("B"), intent=Intent(Commanded.LAND))
+    looked_at = picture(leaving, unbounded, airspace=SITE)
+    assert looked_at.reaches is None
+    assert [each.serial for each in fences(looked_at)] == ["A"]
 
 
 def test_only_vehicles_near_each_other_or_near_a_limit_are_predicted() -> None:

@@ -17,6 +17,8 @@ from recon.safety.prediction.trajectory import Samples
 from recon.safety.watchdogs import TrafficPicture, WatchedVehicle
 from recon.safety.watchdogs.separation import separation
 
+pytestmark = pytest.mark.uncovered
+
 MODES = {
     Commanded.MISSION: FlightMode.GPS_WAYPOINT,
     Commanded.RETURN: FlightMode.GO_HOME,

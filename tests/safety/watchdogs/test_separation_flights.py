@@ -11,6 +11,8 @@ from tests.safety.watchdogs.flights import Air, Aircraft, Vector, closeness, str
 
 from recon.model.vehicle import FlightMode
 
+pytestmark = pytest.mark.uncovered
+
 PAIRS = 32
 APART_M = 2_500.0
 MEETS_AFTER_S = 14.0
