@@ -6,13 +6,12 @@ from time import sleep
 
 import pytest
 from tests.cli.processes import started
-from tests.score.scenes import SMALL, written
+from tests.score.scenes import BRIEF, SMALL, written
 from typer.testing import CliRunner
 
 from recon.cli.commands import app
 from recon.score.scenario_schema import METHOD_NAMES
 
-SHORT = SMALL.replace("limit_min = 10.0", "limit_min = 1.0")
 FEW = ["--seeds", "2", "--first-seed", "7"]
 
 
@@ -26,7 +25,7 @@ def _kept_here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_tables_go_to_stdout_and_a_stopped_command_goes_on_where_it_was(tmp_path: Path) -> None:
-    path = str(written(tmp_path, SHORT))
+    path = str(written(tmp_path, BRIEF))
     one = CliRunner().invoke(app, ["score", path, "--seeds", "1", "--first-seed", "7"])
     assert one.exit_code == 0, one.stderr
     assert [line.split(":")[0] for line in one.stderr.splitlines()] == ["seed 7"]
@@ -77,7 +76,7 @@ def _flying(pid: int) -> list[str]:
 
 def test_all_forecasts_are_compared_with_one(tmp_path: Path) -> None:
     options = ["--seeds", "1", "--against", "persistence"]
-    done = CliRunner().invoke(app, ["score", str(written(tmp_path, SHORT)), *options])
+    done = CliRunner().invoke(app, ["score", str(written(tmp_path, BRIEF)), *options])
     assert done.exit_code == 0
     assert "| forecast by advection | 15 s |" in done.stdout
     assert "| Brier, seen | 15 s |" in done.stdout
@@ -90,7 +89,7 @@ def test_all_forecasts_are_compared_with_one(tmp_path: Path) -> None:
 
 
 def test_two_planners_are_compared_seed_by_seed(tmp_path: Path) -> None:
-    path = str(written(tmp_path, SHORT))
+    path = str(written(tmp_path, BRIEF))
     options = ["--planner", "sunlit_first", "--seeds", "1", "--first-seed", "7"]
     done = CliRunner().invoke(app, ["score", path, *options, "--against", "lawnmower_again"])
     assert done.exit_code == 0, done.stderr
@@ -102,7 +101,7 @@ def test_two_planners_are_compared_seed_by_seed(tmp_path: Path) -> None:
 
 
 def test_another_scenario_is_compared_seed_by_seed(tmp_path: Path) -> None:
-    path = written(tmp_path, SHORT)
+    path = written(tmp_path, BRIEF)
     other = tmp_path / "longer.toml"
     other.write_text(path.read_text().replace("limit_min = 1.0", "limit_min = 2.0"))
     options = ["--planner", "lawnmower_once", "--seeds", "1", "--surveys-only"]
@@ -115,7 +114,7 @@ def test_another_scenario_is_compared_seed_by_seed(tmp_path: Path) -> None:
 
 
 def test_surveys_alone_are_flown_the_same_and_score_no_maps(tmp_path: Path) -> None:
-    path = str(written(tmp_path, SHORT))
+    path = str(written(tmp_path, BRIEF))
     options = ["--planner", "lawnmower_once", "--seeds", "1"]
     whole, alone = (
         CliRunner().invoke(app, ["score", path, *options, *more]).stdout.rstrip().split("\n\n")
@@ -127,7 +126,7 @@ def test_surveys_alone_are_flown_the_same_and_score_no_maps(tmp_path: Path) -> N
 
 
 def test_a_detection_is_compared_with_the_ideal_one_seed_by_seed(tmp_path: Path) -> None:
-    path = str(written(tmp_path, SHORT))
+    path = str(written(tmp_path, BRIEF))
     options = ["--detection", "otsu", "--forecast", "none", "--seeds", "1"]
     done = CliRunner().invoke(app, ["score", path, *options, "--against", "ideal"])
     assert done.exit_code == 0, done.stderr
@@ -137,7 +136,7 @@ def test_a_detection_is_compared_with_the_ideal_one_seed_by_seed(tmp_path: Path)
 
 def test_the_perfect_forecast_is_flown_and_compared_with_methods(tmp_path: Path) -> None:
     options = ["--forecast", "perfect", "--against", "persistence", "--seeds", "1"]
-    done = CliRunner().invoke(app, ["score", str(written(tmp_path, SHORT)), *options])
+    done = CliRunner().invoke(app, ["score", str(written(tmp_path, BRIEF)), *options])
     assert done.exit_code == 0, done.stderr
     assert "forecast perfect, planner lawnmower_again; 1 seeds" in done.stdout
     assert "| forecast by perfect | 15 s |" in done.stdout
@@ -150,7 +149,7 @@ def test_the_perfect_forecast_is_flown_and_compared_with_methods(tmp_path: Path)
 
 def test_options_choose_methods(tmp_path: Path) -> None:
     options = ["--planner", "lawnmower_once", "--forecast", "none", "--seeds", "1"]
-    done = CliRunner().invoke(app, ["score", str(written(tmp_path, SHORT)), *options])
+    done = CliRunner().invoke(app, ["score", str(written(tmp_path, BRIEF)), *options])
     assert done.exit_code == 0
     assert "forecast none, planner lawnmower_once; 1 seeds" in done.stdout
     assert "Brier" not in done.stdout

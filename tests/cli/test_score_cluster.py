@@ -12,14 +12,13 @@ from time import monotonic, sleep
 
 import pytest
 from distributed import Client
-from tests.score.scenes import SMALL, written
+from tests.score.scenes import BRIEF, written
 from typer.testing import CliRunner
 
 from recon.cli.commands import app
 
 HOW_TO = Path(__file__).parents[2] / "docs" / "how-to" / "score-a-method.md"
 BLOCK = re.compile(r"```\n(dask scheduler.*?)```", re.DOTALL)
-SHORT = SMALL.replace("limit_min = 10.0", "limit_min = 1.0")
 PATIENCE_S = 120.0
 
 
@@ -75,7 +74,7 @@ def wait_for(port: int) -> None:
 
 
 def test_a_cluster_flies_what_one_process_flies_to_the_byte(tmp_path: Path, address: str) -> None:
-    path = str(written(tmp_path, SHORT))
+    path = str(written(tmp_path, BRIEF))
     command = ["score", path, "--seeds", "2", "--fresh"]
     spread = CliRunner().invoke(app, [*command, "--cluster", address])
     assert spread.exit_code == 0, spread.stderr
