@@ -7,7 +7,7 @@ import pytest
 import websockets
 from tests.api.client import Client
 from tests.api.fake_station import FakeStation, application
-from tests.api.test_stream import PATIENCE_S, served
+from tests.api.serving import PATIENCE_S, streaming
 from tests.link.approved import core, extended
 from tests.persons import user
 
@@ -80,8 +80,8 @@ def test_it_needs_the_token_like_all_else(station: FakeStation) -> None:
 def test_the_stream_tells_every_entry_once_and_in_order(station: FakeStation) -> None:
     async def main() -> None:
         put(station, 230)
-        async with asyncio.timeout(PATIENCE_S), served(station) as port:
-            url = f"ws://127.0.0.1:{port}/api/audit/stream?after=20"
+        async with asyncio.timeout(PATIENCE_S), streaming(station) as address:
+            url = f"{address}/api/audit/stream?after=20"
             async with websockets.connect(url) as reader:
                 seen: list[int] = []
                 while len(seen) < 210:

@@ -4,13 +4,11 @@ import asyncio
 import socket
 from collections.abc import Awaitable, Callable
 from typing import cast
-from urllib.parse import urlsplit
 
 import pytest
 from starlette.types import ASGIApp, Receive, Scope, Send
 from tests.api.fake_station import FakeStation, application
-from tests.api.test_stream import BigStation
-from tests.client.running_station import serving
+from tests.api.serving import BigStation, connected, serving, until_closed
 from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed
 
@@ -43,32 +41,10 @@ def short_patience(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(connections, "PATIENCE_S", 0.3)
 
 
-async def connected(url: str) -> socket.socket:
-    """Return a connection whose kernel takes little."""
-    place = urlsplit(url)
-    peer = socket.socket()
-    peer.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
-    peer.setblocking(False)
-    await asyncio.get_running_loop().sock_connect(peer, (place.hostname, place.port))
-    return peer
-
-
 async def sent(url: str, data: bytes) -> socket.socket:
     peer = await connected(url)
     await asyncio.get_running_loop().sock_sendall(peer, data)
     return peer
-
-
-async def until_closed(peer: socket.socket) -> None:
-    """Read until the station ends the connection."""
-    loop = asyncio.get_running_loop()
-    try:
-        while await loop.sock_recv(peer, 65536):
-            pass
-    except ConnectionError:
-        pass
-    finally:
-        peer.close()
 
 
 @pytest.mark.parametrize("data", HALF_REQUESTS)

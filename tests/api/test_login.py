@@ -12,9 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.api.client import Client
 from tests.api.fake_station import FakeStation, application
+from tests.api.serving import PATIENCE_S, serving
 from tests.api.test_owners import read_on
-from tests.api.test_stream import PATIENCE_S
-from tests.client.running_station import serving
 from tests.examples import examples
 from tests.patient_loop import run_patiently
 from tests.persons import TOKEN, user

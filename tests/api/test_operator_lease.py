@@ -7,7 +7,7 @@ import pytest
 import websockets
 from tests.api.client import Client
 from tests.api.fake_station import FakeStation, application
-from tests.api.test_stream import PATIENCE_S, served
+from tests.api.serving import PATIENCE_S, streaming
 from tests.link.approved import core, extended
 from tests.patient_loop import run_patiently
 
@@ -97,8 +97,8 @@ def test_a_pilot_hands_it_to_the_pilot_but_takes_nothing_over(station: FakeStati
 def test_an_open_stream_of_states_is_presence() -> None:
     async def main() -> None:
         station = FakeStation()
-        async with asyncio.timeout(PATIENCE_S), served(station) as port:
-            async with websockets.connect(f"ws://127.0.0.1:{port}/api/stream") as reader:
+        async with asyncio.timeout(PATIENCE_S), streaming(station) as address:
+            async with websockets.connect(f"{address}/api/stream") as reader:
                 await reader.recv()
                 (present,) = station.driver.station.persons.values()
                 assert (present.streams, present.left_at_ns) == (1, None)

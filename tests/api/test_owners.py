@@ -7,7 +7,7 @@ import pytest
 import websockets
 from tests.api.client import Client
 from tests.api.fake_station import FakeStation, application
-from tests.api.test_stream import PATIENCE_S, served
+from tests.api.serving import PATIENCE_S, streaming
 from tests.patient_loop import run_patiently
 
 from recon.api import streams
@@ -17,8 +17,8 @@ from recon.model.person import Role
 NAME = "a-name-of-a-owner-01"
 
 
-def url_of(port: int, name: str = NAME) -> str:
-    return f"ws://127.0.0.1:{port}/api/stream?owner={name}"
+def url_of(address: str, name: str = NAME) -> str:
+    return f"{address}/api/stream?owner={name}"
 
 
 def held(station: FakeStation) -> frozenset[str]:
@@ -39,12 +39,12 @@ async def read_on(reader: websockets.ClientConnection) -> None:
 def test_a_stream_holds_while_it_is_open() -> None:
     async def main() -> None:
         station = FakeStation()
-        async with asyncio.timeout(PATIENCE_S), served(station) as port:
-            async with websockets.connect(url_of(port)) as reader:
+        async with asyncio.timeout(PATIENCE_S), streaming(station) as address:
+            async with websockets.connect(url_of(address)) as reader:
                 await reader.recv()
                 await until_held(station, {NAME})
             await until_held(station, set())
-            async with websockets.connect(f"ws://127.0.0.1:{port}/api/stream") as reader:
+            async with websockets.connect(f"{address}/api/stream") as reader:
                 await reader.recv()
                 assert held(station) == frozenset()
 
@@ -58,8 +58,8 @@ def test_the_open_page_of_an_observer_is_no_owner() -> None:
             access = Access(local=replace(LOCAL_PERSON, role=role))
             async with (
                 asyncio.timeout(PATIENCE_S),
-                served(station, access) as port,
-                websockets.connect(url_of(port)) as reader,
+                streaming(station, access) as address,
+                websockets.connect(url_of(address)) as reader,
             ):
                 for _ in range(3):
                     await reader.recv()
@@ -76,8 +76,8 @@ def test_a_silent_stream_is_closed_and_owns_nothing(
 
     async def main() -> None:
         station = FakeStation()
-        async with asyncio.timeout(PATIENCE_S), served(station) as port:
-            async with websockets.connect(url_of(port)) as reader:
+        async with asyncio.timeout(PATIENCE_S), streaming(station) as address:
+            async with websockets.connect(url_of(address)) as reader:
                 with pytest.raises(websockets.ConnectionClosed, match=r"no message for 0\.2 s"):
                     await read_on(reader)
             assert held(station) == frozenset()
@@ -93,8 +93,8 @@ def test_an_owner_that_sends_keepalives_stays_open(monkeypatch: pytest.MonkeyPat
         station = FakeStation()
         async with (
             asyncio.timeout(PATIENCE_S),
-            served(station) as port,
-            websockets.connect(url_of(port)) as reader,
+            streaming(station) as address,
+            websockets.connect(url_of(address)) as reader,
         ):
             await until_held(station, {NAME})
             for _ in range(13):
@@ -109,9 +109,9 @@ def test_an_owner_that_sends_keepalives_stays_open(monkeypatch: pytest.MonkeyPat
 def test_names_that_are_none_are_refused(name: str) -> None:
     async def main() -> None:
         station = FakeStation()
-        async with asyncio.timeout(PATIENCE_S), served(station) as port:
+        async with asyncio.timeout(PATIENCE_S), streaming(station) as address:
             with pytest.raises((websockets.InvalidStatus, websockets.ConnectionClosed)):
-                async with websockets.connect(url_of(port, name)) as reader:
+                async with websockets.connect(url_of(address, name)) as reader:
                     await reader.recv()
             assert held(station) == frozenset()
 
@@ -123,12 +123,12 @@ def test_a_name_is_one_streams_at_a_time() -> None:
         station = FakeStation()
         async with (
             asyncio.timeout(PATIENCE_S),
-            served(station) as port,
-            websockets.connect(url_of(port)) as first,
+            streaming(station) as address,
+            websockets.connect(url_of(address)) as first,
         ):
             await until_held(station, {NAME})
             with pytest.raises((websockets.InvalidStatus, websockets.ConnectionClosed)):
-                async with websockets.connect(url_of(port)) as second:
+                async with websockets.connect(url_of(address)) as second:
                     await second.recv()
             await first.recv()
             assert held(station) == {NAME}

@@ -8,7 +8,7 @@ import pytest
 import websockets
 from tests.api.client import Client
 from tests.api.fake_station import FakeStation, application
-from tests.api.test_stream import serving
+from tests.api.serving import serving
 from tests.patient_loop import run_patiently
 from tests.replay.flights import FOLDER
 
@@ -80,17 +80,17 @@ def test_no_stream_takes_anything(scene: Scene) -> None:
     streams = [path for method, path in LEAST_ROLE if method == STREAM]
     before = scene.replay.station
 
-    async def main(port: int) -> None:
+    async def main(url: str) -> None:
         for path in (*streams, "/api/stream?owner=a-name-of-a-owner-01"):
-            async with websockets.connect(f"ws://127.0.0.1:{port}{path}") as socket:
+            async with websockets.connect(url.replace("http", "ws", 1) + path) as socket:
                 for message in ('{"order": {"kind": "goto"}}', "keepalive", b"\x00\xff", "{}"):
                     await socket.send(message)
                 if "audit" not in path:
                     await socket.recv()
 
     async def served() -> None:
-        async with serving(scene.app) as port:
-            await main(port)
+        async with serving(scene.app) as url:
+            await main(url)
 
     run_patiently(served())
     assert scene.replay.station is before

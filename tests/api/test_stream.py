@@ -2,65 +2,22 @@
 
 import asyncio
 import contextlib
-import socket
-from collections.abc import AsyncIterator
 
 import pytest
-import uvicorn
 import websockets
-from starlette.types import ASGIApp
-from tests.api.fake_station import FakeStation, application
+from tests.api.fake_station import FakeStation
+from tests.api.serving import PATIENCE_S, BigStation, connected, streaming
 from tests.patient_loop import run_patiently
 
 from recon.api import streams as stream_module
-from recon.api.connections import HttpConnection, StreamConnection
 from recon.api.schema import StationState
-from recon.api.security import PROTOCOL, Access
-
-PATIENCE_S = 120.0
-
-
-class BigStation(FakeStation):
-    """A station whose state is large: one megabyte of text."""
-
-    def state(self) -> StationState:
-        state = super().state()
-        name = state.station.model_copy(update={"version": "v" * 1_000_000})
-        return state.model_copy(update={"station": name, "time_ns": self.states_made})
-
-
-@contextlib.asynccontextmanager
-async def served(station: FakeStation, access: Access | None = None) -> AsyncIterator[int]:
-    """Serve a station's application on a free port of loopback."""
-    async with serving(application(station, access=access)) as port:
-        yield port
-
-
-@contextlib.asynccontextmanager
-async def serving(app: ASGIApp) -> AsyncIterator[int]:
-    """Serve an application on a free port of loopback, with the station's own connections."""
-    listening = socket.create_server(("127.0.0.1", 0))
-    config = uvicorn.Config(
-        app,
-        log_level="error",
-        lifespan="off",
-        http=HttpConnection,
-        ws=StreamConnection,
-    )
-    server = uvicorn.Server(config)
-    task = asyncio.ensure_future(server._serve([listening]))
-    try:
-        yield int(listening.getsockname()[1])
-    finally:
-        server.should_exit = server.force_exit = True
-        await task
-        listening.close()
+from recon.api.security import PROTOCOL
 
 
 def test_a_fast_reader_gets_one_state_after_another() -> None:
     async def main() -> None:
-        async with asyncio.timeout(PATIENCE_S), served(FakeStation()) as port:
-            url = f"ws://127.0.0.1:{port}/api/stream"
+        async with asyncio.timeout(PATIENCE_S), streaming(FakeStation()) as address:
+            url = f"{address}/api/stream"
             async with websockets.connect(url, subprotocols=[PROTOCOL]) as reader:
                 for _ in range(5):
                     StationState.model_validate_json(await reader.recv())
@@ -73,10 +30,10 @@ def test_states_are_made_once_for_all_readers() -> None:
         station = FakeStation()
         async with (
             asyncio.timeout(PATIENCE_S),
-            served(station) as port,
+            streaming(station) as address,
             contextlib.AsyncExitStack() as stack,
         ):
-            url = f"ws://127.0.0.1:{port}/api/stream"
+            url = f"{address}/api/stream"
             readers = [await stack.enter_async_context(websockets.connect(url)) for _ in range(8)]
             for _ in range(10):
                 for reader in readers:
@@ -91,11 +48,11 @@ def test_a_reader_that_does_not_read_is_sent_the_present_not_the_past() -> None:
 
     async def main() -> None:
         station = BigStation()
-        async with asyncio.timeout(PATIENCE_S), served(station) as port:
-            url = f"ws://127.0.0.1:{port}/api/stream"
+        async with asyncio.timeout(PATIENCE_S), streaming(station) as address:
+            url = f"{address}/api/stream"
             async with (
                 websockets.connect(
-                    url, sock=small_socket(port), max_queue=1, compression=None, max_size=None
+                    url, sock=await connected(url), max_queue=1, compression=None, max_size=None
                 ) as slow,
                 websockets.connect(url, max_size=None) as fast,
             ):
@@ -112,18 +69,10 @@ def test_a_reader_that_does_not_read_is_sent_the_present_not_the_past() -> None:
     run_patiently(main())
 
 
-def small_socket(port: int) -> socket.socket:
-    """Return a client's socket whose kernel keeps little: systems differ, up to 32 MiB."""
-    sock = socket.socket()
-    sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 64 * 1024)
-    sock.connect(("127.0.0.1", port))
-    return sock
-
-
 def test_readers_beyond_the_limit_are_refused_and_places_come_free() -> None:
     async def main() -> None:
-        async with asyncio.timeout(PATIENCE_S), served(FakeStation()) as port:
-            url = f"ws://127.0.0.1:{port}/api/stream"
+        async with asyncio.timeout(PATIENCE_S), streaming(FakeStation()) as address:
+            url = f"{address}/api/stream"
             async with contextlib.AsyncExitStack() as stack:
                 for _ in range(stream_module.MAX_STATE_READERS):
                     reader = await stack.enter_async_context(websockets.connect(url))

@@ -10,15 +10,13 @@ from contextlib import asynccontextmanager
 from datetime import UTC, datetime, timedelta
 from hashlib import sha256
 from pathlib import Path
-from urllib.parse import urlsplit
 
 import httpx
 import pytest
 import websockets
 from cryptography import x509
 from tests.api.fake_station import FakeStation, application
-from tests.api.test_connections import until_closed
-from tests.api.test_stream import PATIENCE_S
+from tests.api.serving import PATIENCE_S, connected, until_closed
 from tests.patient_loop import run_patiently
 from tests.persons import TOKEN, user
 
@@ -59,14 +57,6 @@ def trusting() -> ssl.SSLContext:
     context.check_hostname = False
     context.verify_mode = ssl.CERT_NONE
     return context
-
-
-async def connected(url: str) -> socket.socket:
-    place = urlsplit(url)
-    peer = socket.socket()
-    peer.setblocking(False)
-    await asyncio.get_running_loop().sock_connect(peer, (place.hostname, place.port))
-    return peer
 
 
 def test_requests_and_streams_work_with_a_token_only(certificate: Certificate) -> None:

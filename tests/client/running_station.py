@@ -1,18 +1,15 @@
 """A real station on loopback sockets with simulated apps, in this process."""
 
 import asyncio
-import socket
 from collections.abc import AsyncIterator, Callable, Coroutine
 from contextlib import AsyncExitStack, asynccontextmanager
 from typing import Any
 
-import uvicorn
-from starlette.types import ASGIApp
+from tests.api.serving import serving
 from tests.persons import user
 from tests.ready import ready_profile, ready_site
 
 from recon.api.app import create_app
-from recon.api.connections import HttpConnection, StreamConnection
 from recon.api.login import Login
 from recon.api.security import Access, AccessCheck
 from recon.geo import point_from_enu
@@ -34,29 +31,6 @@ PADS = {
     serial: point_from_enu(LocalFrame(HOME), (20.0 * number, 0.0, 0.0))
     for number, serial in enumerate(SERIALS)
 }
-
-
-@asynccontextmanager
-async def serving(app: ASGIApp, port: int = 0) -> AsyncIterator[str]:
-    """Serve an application on loopback; yield its address."""
-    sock = socket.create_server(("127.0.0.1", port))
-    server = uvicorn.Server(
-        uvicorn.Config(
-            app,
-            log_level="critical",
-            http=HttpConnection,
-            ws=StreamConnection,
-            lifespan="off",
-            timeout_graceful_shutdown=1,
-        )
-    )
-    task = asyncio.create_task(server.serve(sockets=[sock]))
-    try:
-        yield f"http://127.0.0.1:{sock.getsockname()[1]}"
-    finally:
-        server.should_exit = True
-        await task
-        sock.close()
 
 
 @asynccontextmanager

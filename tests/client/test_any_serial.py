@@ -6,7 +6,8 @@ from contextlib import asynccontextmanager
 
 import httpx
 import pytest
-from tests.client.running_station import background, serving
+from tests.api.serving import serving
+from tests.client.running_station import background
 from tests.link.approved import core, extended
 from tests.patient_loop import run_patiently
 from tests.ready import ready_site

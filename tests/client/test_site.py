@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from tests.api.fake_station import FakeStation, application
-from tests.client.running_station import serving
+from tests.api.serving import serving
 from tests.patient_loop import run_patiently
 
 from recon.client import Refusal, SiteDrawing, SiteFeature, SiteVehicle, SiteVehicles, Station

@@ -8,9 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from starlette.types import Receive, Scope, Send
+from tests.api.serving import serving
 from tests.client import fake_state
 from tests.client.raw_server import server
-from tests.client.running_station import running_station, serving
+from tests.client.running_station import running_station
 from tests.patient_loop import run_patiently
 
 from recon.client import (

@@ -34,10 +34,12 @@ outer_scale_m = 2000.0
 speed_10m_mps = 4.0
 """
 
+CALM = SMALL.replace('faults = ["pilot-takes:1:40:30"]\n', "")
+"""The same without a fault."""
+
 BRIEF = (
-    SMALL.replace("limit_min = 10.0", "limit_min = 1.0")
+    CALM.replace("limit_min = 10.0", "limit_min = 1.0")
     .replace("survey_drones = 2", "survey_drones = 1")
-    .replace('faults = ["pilot-takes:1:40:30"]', "")
     .replace("radius_m = 160.0", "radius_m = 80.0")
 )
 """One drone over the field for a minute."""

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.score.scenes import SMALL, small
+from tests.score.scenes import CALM, small
 
 from recon.model.geo import GeoPoint
 from recon.model.units import NS_PER_S
@@ -24,11 +24,10 @@ from recon.sim.flight.aircraft import Aircraft
 from recon.sim.flight.flight_modes import PositionHold
 from recon.sim.flight.kinematics import AircraftMotion
 
-TINY = SMALL.replace("[200.0, 0.0],", "[90.0, 0.0],").replace(
+TINY = CALM.replace("[200.0, 0.0],", "[90.0, 0.0],").replace(
     "[200.0, 150.0], [0.0, 150.0]", "[90.0, 60.0], [0.0, 60.0]"
 )
-CALM = TINY.replace('faults = ["pilot-takes:1:40:30"]', "")
-CLEAR = CALM.partition("[[clouds]]")[0]
+CLEAR = TINY.partition("[[clouds]]")[0]
 DARK = CLEAR + "[[clouds]]\ncover = 1.0\nmodulation = 0.0\n"
 SHORT = "limit_min = 1.0"
 
@@ -51,12 +50,12 @@ def clear(folder: Path) -> RunScore:
 @pytest.fixture(scope="module")
 def cumulus(folder: Path) -> RunScore:
     """With forecasts scored at 1, 3 and 5 min; the limit cuts the watching after the survey."""
-    return run(small(folder, CALM.replace("limit_min = 10.0", "limit_min = 7.0")), 3)
+    return run(small(folder, TINY.replace("limit_min = 10.0", "limit_min = 7.0")), 3)
 
 
 @pytest.fixture(scope="module")
 def short(folder: Path) -> tuple[Scenario, RunScore]:
-    scenario = small(folder, CALM.replace("limit_min = 10.0", SHORT))
+    scenario = small(folder, TINY.replace("limit_min = 10.0", SHORT))
     return scenario, run(scenario, 5)
 
 
@@ -108,7 +107,7 @@ def test_an_overcast_survey_ends_at_the_limit_and_all_return(folder: Path) -> No
 
 
 def test_flying_again_images_no_less_in_sun_than_once(folder: Path, cumulus: RunScore) -> None:
-    scenario, again = guidance_alone(small(folder, CALM)), cumulus
+    scenario, again = guidance_alone(small(folder, TINY)), cumulus
     assert scenario.survey.planner == "lawnmower_again"
     once = run(replace(scenario, survey=replace(scenario.survey, planner="lawnmower_once")), 3)
     assert once.to_95_imaged_s == again.to_95_imaged_s
@@ -163,7 +162,7 @@ def test_methods_are_compared_on_the_same_maps_and_cells(short: tuple[Scenario, 
 
 
 def test_a_detector_reads_rendered_frames_with_errors(folder: Path) -> None:
-    scenario = replace(small(folder, CALM), methods=Methods("otsu", "persistence"))
+    scenario = replace(small(folder, TINY), methods=Methods("otsu", "persistence"))
     flown = StationRun(scenario, 2)
     for _ in range(32):
         flown.advance_a_second()
@@ -179,7 +178,7 @@ def test_a_detector_reads_rendered_frames_with_errors(folder: Path) -> None:
 
 def test_frames_that_stop_leave_maps_unknown(folder: Path) -> None:
     faults = 'faults = ["camera-stops:SIM-IMAGER:30:120"]\n[site]'
-    text = CALM.replace("[site]", faults).replace("limit_min = 10.0", SHORT)
+    text = TINY.replace("[site]", faults).replace("limit_min = 10.0", SHORT)
     found = run(small(folder, text), 0).shade
     assert 0 < found.unknown < found.cells
 
@@ -259,7 +258,7 @@ def test_an_imaging_drone_told_to_goes_upwind_and_sees_what_comes(folder: Path) 
 def test_two_imaging_drones_make_one_map(folder: Path) -> None:
     """Each sees 150 m around itself, 200 m apart: all of the scored ground is known."""
     two = "[imager]\nalso_over_m = [[245.0, 30.0]]\nreach_m = 400.0\ncell_m = 8.0"
-    text = CALM.replace("[imager]", two).replace("limit_min = 10.0", SHORT)
+    text = TINY.replace("[imager]", two).replace("limit_min = 10.0", SHORT)
     run_ = StationRun(small(folder, text), 5)
     while run_.now_s < 50.0:
         run_.advance_a_second()

@@ -104,7 +104,10 @@ class _HttpOperator:
                 self._report(f"survey {survey.id}: {survey.phase}, {survey.reason}; operator stops")
                 return
             if survey is not None and survey.phase == "done":
-                self._report(f"survey {survey.id}: done, {survey.reason}")
+                self._report(
+                    f"survey {survey.id}: done, {survey.reason}; "
+                    "another one begins when all batteries are full"
+                )
             view = await self._view(survey)
             for action in self._operator.decide(view, clock.time()):
                 refusal = await self._carry_out(action)

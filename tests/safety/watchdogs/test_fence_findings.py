@@ -70,6 +70,12 @@ class TestWhole:
         about_to_enter = finding("zone_ahead:wall", Severity.ERROR, text)
         assert looks(fences, coming, airspace=site(WALL)) == [replace(about_to_enter, holds="A")]
 
+    def test_one_that_leaves_is_found_beside_one_without_a_bound(self) -> None:
+        landing = in_context(aircraft("B"), intent=Intent(Commanded.LAND))
+        looked_at = picture(LEAVING, landing, airspace=SITE)
+        assert looked_at.reaches is None
+        assert [each.serial for each in fences(looked_at)] == ["A"]
+
     @pytest.mark.parametrize(
         ("height_m", "text"),
         [

@@ -166,14 +166,6 @@ def test_a_vehicle_without_a_bound_is_predicted_and_so_are_all() -> None:
     assert picture(aircraft("A"), aircraft("B", age_s=30.0)).reaches is None
 
 
-def test_a_vehicle_that_leaves_is_found_beside_one_without_a_bound() -> None:
-    leaving = in_context(aircraft("A", (490.0, 0.0), velocity=(10.0, 0.0, 0.0)), intent=NOTHING)
-    unbounded = in_context(aircraft("B"), intent=Intent(Commanded.LAND))
-    looked_at = picture(leaving, unbounded, airspace=SITE)
-    assert looked_at.reaches is None
-    assert [each.serial for each in fences(looked_at)] == ["A"]
-
-
 def test_only_vehicles_near_each_other_or_near_a_limit_are_predicted() -> None:
     looked_at = picture(
         in_context(aircraft("A", (0.0, -200.0)), intent=NOTHING),
