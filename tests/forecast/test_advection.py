@@ -11,7 +11,7 @@ from tests.detection.shaded_field import FIELD, DriftingShade, centres
 from tests.forecast.moving_shade import SEEN, drawn_velocity, forecasts, noisy_map, shade_map
 
 from recon.forecast import ForecastSettings, ForecastState
-from recon.forecast.likeness import shade_scale_m, with_likeness
+from recon.forecast.likeness import shade_scale_m, soft_edge_share, with_likeness
 from recon.forecast.state import with_map
 from recon.model.geo import GroundGrid
 from recon.model.shade import SUNLIT_TRANSMITTANCE, ShadeMap
@@ -203,3 +203,32 @@ def test_a_clear_sky_does_not_change_the_usual_scale_much() -> None:
     assert after.likeness is not None
     assert state.likeness is not None
     assert after.likeness.alone < state.likeness.alone
+
+
+def after_a_map(transmittance: np.ndarray) -> float:
+    """The chance of sun in the middle of a view, two minutes after its first map."""
+    (found,) = forecasts("advection", [shade_map(transmittance, 0.0)], SETTINGS)
+    middle = np.unravel_index(np.argmin(np.hypot(EAST_M, NORTH_M)), EAST_M.shape)
+    return float(found.sun_probability[SETTINGS.lead_s.index(120.0)][middle]) / 255.0
+
+
+def test_under_thin_even_cloud_what_is_in_sun_stays_so() -> None:
+    """Either middle lies in sun by as little; one near an edge, one where all is the same."""
+    even = np.full(EAST_M.shape, 0.58)
+    edge = np.clip(0.58 + EAST_M / 400.0, 0.0, 1.0)
+    assert 0.5 < after_a_map(edge) < 0.55
+    assert after_a_map(even) > 0.62
+    shaded = np.full(EAST_M.shape, 0.42)
+    assert after_a_map(shaded) < 0.42
+
+
+def test_edges_are_as_soft_as_usual_under_broken_cloud() -> None:
+    shares = []
+    for seed in range(960, 976):
+        state = ForecastState()
+        for each in true_maps(seed)[0]:
+            state = with_likeness(with_map(state, each, SETTINGS), each, SETTINGS)
+        shares.append(soft_edge_share(state, SETTINGS))
+    assert soft_edge_share(ForecastState(), SETTINGS) == pytest.approx(1.0)
+    assert 0.8 < np.mean(shares) < 1.5
+    assert max(shares) < 3.0

@@ -8,8 +8,10 @@ Theory of operation, per forecast:
    less it shows: its deviation from the prior counts by 1 / (1 + distance / scale), where the scale
    follows from how alike shade is at a distance in this flight (`likeness`). Of seen shade it is
    at most `most_scale_of_shade_m`.
-3. Followed shadows change their shape: deviations fade with `shade_memory_s`.
-4. Without a velocity the shade above each cell is the guide, as far off as shadows usually move.
+3. From shade to sun the probability rises over an edge that is the softer, the later and the
+   farther off; under thin even cloud, which changes little with distance, it stays sharp.
+4. Followed shadows change their shape: deviations fade with `shade_memory_s`.
+5. Without a velocity the shade above each cell is the guide, as far off as shadows usually move.
 """
 
 from dataclasses import dataclass, replace
@@ -20,7 +22,7 @@ import numpy as np
 
 from recon.forecast.followed import with_followed, with_recent
 from recon.forecast.forecaster import Forecaster
-from recon.forecast.likeness import shade_scale_m, with_likeness
+from recon.forecast.likeness import shade_scale_m, soft_edge_share, with_likeness
 from recon.forecast.motion import ShadowMotion
 from recon.forecast.pooled_motion import pooled_motion, with_agreement
 from recon.forecast.settings import ForecastSettings
@@ -51,7 +53,13 @@ def _forecast(state: ForecastState, settings: ForecastSettings) -> SunForecast:
     horizon_s = np.where(shade.valid, np.float32(0.0), np.float32(np.nan))
     if shade.valid.any():
         seen = _Seen.of(shade)
-        scaled = replace(settings, shade_scale_m=shade_scale_m(state, settings))
+        edges = soft_edge_share(state, settings)
+        scaled = replace(
+            settings,
+            shade_scale_m=shade_scale_m(state, settings),
+            soft_edge_per_s=edges * settings.soft_edge_per_s,
+            soft_edge_per_m=edges * settings.soft_edge_per_m,
+        )
         for number, lead in enumerate(settings.lead_s):
             probability[number] = seen.sun_after(lead, motion, prior, scaled)
         if motion is not None:

@@ -1,17 +1,20 @@
 """How alike sun and shade are at a distance, measured in this flight's maps.
 
 It decides how much the nearest seen shade shows of places that are not seen. Large clouds shade
-alike over a kilometre, small ones not over a hundred metres. Until much has been seen, the usual
-skies count more than what was measured.
+alike over a kilometre, small ones not over a hundred metres. And half shade may be the edge of a
+cloud, or thin even cloud that is half shade everywhere. Until much has been seen, the usual skies
+count more than what was measured.
 """
 
+from collections.abc import Iterator
 from dataclasses import replace
+from math import exp, sqrt
 
 import numpy as np
 
 from recon.forecast.settings import ForecastSettings
 from recon.forecast.state import ForecastState, Likeness, prior_sunlit, sunlit_now
-from recon.model.shade import FloatMap, MaskMap, ShadeMap
+from recon.model.shade import ShadeMap
 from recon.model.units import ns_to_seconds
 
 
@@ -23,16 +26,16 @@ def with_likeness(
     passed_s = settings.keep_every_s if before is None else ns_to_seconds(at_ns - before.at_ns)
     if passed_s < settings.keep_every_s:
         return state
-    prior = prior_sunlit(state, settings)
-    deviation = sunlit_now(shade, prior, settings) - np.float32(prior)
-    apart = max(1, round(settings.likeness_apart_m / shade.grid.cell_m))
-    together, alone = _products(deviation, shade.valid, apart)
-    kept = np.exp(-passed_s / settings.cover_memory_s)
+    kept = exp(-passed_s / settings.cover_memory_s)
     # Weighted by time, so that the frame rate does not matter; gaps do not count more.
     weight = min(passed_s, 2.0 * settings.keep_every_s)
-    old = before or Likeness(at_ns, 0.0, 0.0)
+    old, seen = before or Likeness(at_ns), _likeness(shade, prior_sunlit(state, settings), settings)
     found = Likeness(
-        at_ns, kept * old.together + weight * together, kept * old.alone + weight * alone
+        at_ns,
+        together=kept * old.together + weight * seen.together,
+        alone=kept * old.alone + weight * seen.alone,
+        changed=kept * old.changed + weight * seen.changed,
+        partly=kept * old.partly + weight * seen.partly,
     )
     return replace(state, likeness=found)
 
@@ -49,17 +52,40 @@ def shade_scale_m(state: ForecastState, settings: ForecastSettings) -> float:
     return settings.shade_scale_m * (alike / (1.0 - alike)) / (usual / (1.0 - usual))
 
 
-def _products(deviation: FloatMap, seen: MaskMap, apart: int) -> tuple[float, float]:
-    """Return the mean product of cells so far apart along rows and columns, and their mean square;
-    0 where no two are seen."""
-    products, squares, pairs = 0.0, 0.0, 0
-    for one, other in (
-        ((slice(apart, None), slice(None)), (slice(None, -apart), slice(None))),
-        ((slice(None), slice(apart, None)), (slice(None), slice(None, -apart))),
-    ):
-        both = seen[one] & seen[other]
+def soft_edge_share(state: ForecastState, settings: ForecastSettings) -> float:
+    """Return how wide soft edges are in this flight, as a share of the usual ones: by how much
+    transmittance changes with distance where it is neither full sun nor full shade."""
+    changed, partly = settings.usual_change**2 * settings.usual_change_s, settings.usual_change_s
+    if state.likeness is not None:
+        changed, partly = changed + state.likeness.changed, partly + state.likeness.partly
+    return sqrt(changed / partly) / settings.usual_change
+
+
+def _likeness(shade: ShadeMap, prior: float, settings: ForecastSettings) -> Likeness:
+    """Return the means over a map's pairs of cells along rows and columns; 0 where no two are
+    seen."""
+    deviation = sunlit_now(shade, prior, settings) - np.float32(prior)
+    apart = max(1, round(settings.likeness_apart_m / shade.grid.cell_m))
+    sums, pairs = np.zeros(4), 0
+    for one, other in _apart(apart):
+        both = shade.valid[one] & shade.valid[other]
         first, second = deviation[one][both], deviation[other][both]
-        products += float((first * second).sum(dtype=np.float64))
-        squares += float((first**2 + second**2).sum(dtype=np.float64)) / 2.0
+        direct, there = shade.transmittance[one][both], shade.transmittance[other][both]
+        middle = (direct + there) / 2.0
+        partly = 4.0 * middle * (1.0 - middle)
+        found = (
+            first * second,
+            (first**2 + second**2) / 2.0,
+            partly * (direct - there) ** 2,
+            partly,
+        )
+        sums += [each.sum(dtype=np.float64) for each in found]
         pairs += int(both.sum())
-    return (products / pairs, squares / pairs) if pairs else (0.0, 0.0)
+    return Likeness(shade.captured_at_ns, *(sums / max(1, pairs)).tolist())
+
+
+def _apart(cells: int) -> Iterator[tuple[tuple[slice, slice], tuple[slice, slice]]]:
+    """Yield where both cells of all pairs are: down the columns, then along the rows."""
+    everywhere, first, second = slice(None), slice(None, -cells), slice(cells, None)
+    yield (second, everywhere), (first, everywhere)
+    yield (everywhere, second), (everywhere, first)

@@ -32,13 +32,18 @@ class Agreement:
 
 @dataclass(frozen=True, slots=True)
 class Likeness:
-    """Faded sums over the maps so far, of their cells' deviation from the prior; in seconds."""
+    """Faded sums over the maps so far, of pairs of cells a fixed distance apart; in seconds."""
 
     at_ns: int
-    together: float
-    """Of the mean product of two cells a fixed distance apart."""
-    alone: float
-    """Of the mean square of these cells."""
+    together: float = 0.0
+    """Of the mean product of their deviations from the prior."""
+    alone: float = 0.0
+    """Of the mean square of these."""
+    changed: float = 0.0
+    """Of the mean square of their difference in transmittance, the more the nearer they are to
+    half shade."""
+    partly: float = 0.0
+    """Of how near to half shade they are: 1 there, 0 in full sun and in full shade."""
 
 
 @dataclass(frozen=True, slots=True)

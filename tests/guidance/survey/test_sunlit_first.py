@@ -1,5 +1,6 @@
 """The planner that flies what is in sun first: whole surveys, and single decisions."""
 
+import math
 from dataclasses import replace
 from itertools import combinations, pairwise
 
@@ -224,6 +225,22 @@ class TestSurveys:
         done = replace(here[0], ended_mission=1), here[1]
         later = replace(forecast(half, 9.0), velocity_mps=None)
         assert len(decided(later, *done, state=state, now_s=9.0)[1]) == 1
+
+    @pytest.mark.parametrize(("shaded_m", "waits"), [(-math.inf, False), (60.0, True)])
+    def test_a_view_without_an_edge_of_shade_shows_no_motion_to_wait_for(
+        self, shaded_m: float, waits: bool
+    ) -> None:
+        """All lies in sun now, and most of it in shade when a round would pass: nothing in view
+        says from where that comes, unless an edge of it does."""
+
+        def fading(east_m: np.ndarray, _north_m: np.ndarray, lead_s: float) -> np.ndarray:
+            return (east_m >= shaded_m) & (lead_s < 60.0)
+
+        here = Surveyor("S-1", (0.0, 60.0)), Surveyor("S-2", (0.0, 180.0))
+        still = replace(forecast(fading), velocity_mps=None)
+        state, missions = decided(still, *here, now_s=1.0)
+        assert (state.reason == "waiting: how shadows move is not known yet") is waits
+        assert bool(missions) is not waits
 
     def test_until_any_light_is_known_rows_are_flown_and_then_decided_on(self) -> None:
         here, unseen = Surveyor("S-1", (0.0, 0.0)), np.full((GRID.rows, GRID.cols), np.nan)

@@ -208,6 +208,10 @@ class SurveySettings:
     """A round of which this much is expected in sun is flown before the shadows' motion is known:
     what is in sun without any shade near stays so."""
 
+    clear_view: float = 0.99
+    """With this much of what is seen in sun no edge of shade is in view that could show a motion:
+    nothing is waited for, as under thin even cloud."""
+
     motion_within_s: float = 9.0
     """From the start on, the first forecast with motion comes within this where there are shadows:
     three maps or more show it."""

@@ -78,7 +78,7 @@ from recon.guidance.survey.vehicle_choice import (
     missing_pieces,
     named,
 )
-from recon.model.shade import SunForecast
+from recon.model.shade import SURE, SunForecast
 from recon.model.survey import CellState, MissionAssignment, SurveyPhase
 from recon.model.units import seconds_to_ns
 
@@ -230,6 +230,9 @@ def _awaits_motion(
         return False
     settings = state.plan.settings
     if whole is not None and whole.lit_share >= settings.sure_round:
+        return False
+    now = sun.sun_probability[0][np.isfinite(sun.horizon_s)]
+    if np.mean(now > SURE / 2) >= settings.clear_view:
         return False
     began_ns = state.started_at_ns if state.started_at_ns is not None else now_ns
     return now_ns < began_ns + seconds_to_ns(settings.motion_within_s)
