@@ -216,7 +216,7 @@ def test_under_thin_even_cloud_what_is_in_sun_stays_so() -> None:
     """Either middle lies in sun by as little; one near an edge, one where all is the same."""
     even = np.full(EAST_M.shape, 0.58)
     edge = np.clip(0.58 + EAST_M / 400.0, 0.0, 1.0)
-    assert 0.5 < after_a_map(edge) < 0.55
+    assert 0.5 < after_a_map(edge) < 0.57
     assert after_a_map(even) > 0.62
     shaded = np.full(EAST_M.shape, 0.42)
     assert after_a_map(shaded) < 0.42
