@@ -44,6 +44,16 @@ def bands(places_m: FloatArray, time_s: float) -> BoolArray:
     return np.asarray(np.mod(along_m, 270.0) < 140.0)
 
 
+def flights_under_bands() -> Flights:
+    """Return three vehicles at the beginning of a survey under the bands."""
+    budget = SurveyBudget(rounds=20)
+    survey = survey_of(
+        rectangle(EAST_M, NORTH_M), planner="sunlit_first", bearing_deg=90.0, budget=budget
+    )
+    flyers = fleet(len(COLOURS))
+    return Flights(begun(survey, flyers), flyers, sky=bands, foresees=True)
+
+
 def panel(flights: Flights) -> Picture:
     """Return one moment, (H, W, 3) u8."""
     high, wide = round((NORTH_M + 2 * EDGE_M) * PX_PER_M), round((EAST_M + 2 * EDGE_M) * PX_PER_M)
@@ -55,14 +65,14 @@ def panel(flights: Flights) -> Picture:
         flight = flights.state.flights.get(flyer.serial)
         for leg in () if flight is None else flight.route:
             ends = plan.lattice.east_north_m(leg.ends_m(plan.lattice, 0.0))
-            cv2.polylines(canvas, [_px(ends)], False, colour, 3, cv2.LINE_AA)
-        (place,) = _px(np.array([flyer.place_m]))
+            cv2.polylines(canvas, [to_px(ends)], False, colour, 3, cv2.LINE_AA)
+        (place,) = to_px(np.array([flyer.place_m]))
         cv2.circle(canvas, place.tolist(), 8, PAPER, -1, cv2.LINE_AA)
         cv2.circle(canvas, place.tolist(), 6, colour, -1, cv2.LINE_AA)
         decision = flights.state.decisions.get(flyer.serial)
         words = "" if decision is None else decision.text
-        _write(canvas, f"{index + 1}: {words}", (10, high + 18 + 22 * index), colour)
-    _write(canvas, f"{flights.time_s:.0f} s", (10, 22), INK)
+        write(canvas, f"{index + 1}: {words}", (10, high + 18 + 22 * index), colour)
+    write(canvas, f"{flights.time_s:.0f} s", (10, 22), INK)
     return canvas
 
 
@@ -77,19 +87,27 @@ def _draw_ground(canvas: Picture, flights: Flights) -> None:
     for wanted, colour in ((CellState.IN_SHADE, IN_SHADE), (CellState.IN_SUN, IN_SUN)):
         chosen = (cells.is_inside & (state == wanted)).ravel()
         half_px = max(1, round(cells.grid.cell_m * PX_PER_M / 2.0 - 1.0))
-        for col, row in _px(middles_m(cells.grid)[chosen]).tolist():
+        for col, row in to_px(middles_m(cells.grid)[chosen]).tolist():
             canvas[row - half_px : row + half_px, col - half_px : col + half_px] = colour
-    outline = _px(flights.plan.survey.region.outline_m)
+    outline = to_px(flights.plan.survey.region.outline_m)
     cv2.polylines(canvas, [outline], True, INK, 1, cv2.LINE_AA)
 
 
-def _px(points_m: FloatArray) -> np.typing.NDArray[np.int32]:
+def to_px(points_m: FloatArray) -> np.typing.NDArray[np.int32]:
+    """Return pixels (N, 2), right and down, of places (N, 2) east-north."""
     east_m, down_m = points_m[:, 0] + EDGE_M, NORTH_M + EDGE_M - points_m[:, 1]
     return np.round(np.column_stack([east_m, down_m]) * PX_PER_M).astype(np.int32)
 
 
-def _write(canvas: Picture, text: str, at: tuple[int, int], colour: tuple[int, int, int]) -> None:
-    cv2.putText(canvas, text, at, cv2.FONT_HERSHEY_SIMPLEX, 0.45, colour, 1, cv2.LINE_AA)
+def write(
+    canvas: Picture,
+    text: str,
+    at: tuple[int, int],
+    colour: tuple[int, int, int],
+    size: float = 0.45,
+) -> None:
+    """Write a line from `at` on, its lower left corner."""
+    cv2.putText(canvas, text, at, cv2.FONT_HERSHEY_SIMPLEX, size, colour, 1, cv2.LINE_AA)
 
 
 def main() -> None:
@@ -99,12 +117,7 @@ def main() -> None:
     )
     parser.add_argument("--out", default="survey-decisions.png", help="where the picture goes")
     out = parser.parse_args().out
-    budget = SurveyBudget(rounds=20)
-    survey = survey_of(
-        rectangle(EAST_M, NORTH_M), planner="sunlit_first", bearing_deg=90.0, budget=budget
-    )
-    flyers = fleet(len(COLOURS))
-    flights = Flights(begun(survey, flyers), flyers, sky=bands, foresees=True)
+    flights = flights_under_bands()
     panels: list[Picture] = []
     for moment_s in MOMENTS_S:
         flights.run(moment_s - flights.time_s)

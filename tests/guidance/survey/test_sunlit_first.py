@@ -150,6 +150,18 @@ class TestSurveys:
         )
         assert 0.0 < figures(flights.state).in_sun_m2 < figures(flights.state).region_m2
 
+    @pytest.mark.parametrize("left_s", [None, 200.0, 300.0])
+    def test_the_decision_names_the_rows_that_the_battery_lasts_for(
+        self, left_s: float | None
+    ) -> None:
+        sun = forecast(clear_sky)
+        state, missions = decided(sun, Surveyor("S-1", (0.0, 0.0), time_left_s=left_s))
+        assert len(missions) == 1
+        rows = [row + 1 for row in flown_rows(state, "S-1")]
+        assert (len(rows) == 8) is (left_s is None)
+        what = f"rows {min(rows)} to {max(rows)}"
+        assert state.decisions["S-1"].text == f"flies {what}: probability of sun 1.0"
+
     def test_when_all_missions_are_refused_it_pauses_with_the_reason(self) -> None:
         def refuse(flights: Flights) -> None:
             for serial, flight in flights.state.flights.items():

@@ -93,7 +93,7 @@ class VehicleChoice:
         if flight.waits_s > 0.0:
             return self._stands_by(flight)
         legs = self.committed(flight)
-        return self.flies(self._allowed(self.long_enough(legs)), flown_text(legs))
+        return self.flies(self._allowed(self.long_enough(legs)), mean_probability(legs))
 
     def begun_at_once(self, share: BoolArray) -> tuple[PlannedLeg, ...]:
         """Return the first legs of the best flight over a share; none if that would wait."""
@@ -125,21 +125,26 @@ class VehicleChoice:
         return share if is_worth else free
 
     def _is_time_to_swap(self, free: BoolArray) -> bool:
-        """Whether a change of battery costs less sun now than later.
-
-        Now it costs the sun expected on free ground until the vehicle is back, the more the fewer
-        others stay: with all of them away sun would come in vain. Later it costs that time in sun,
-        but only if it is needed at all.
-        """
+        """Whether its battery can be changed, and that costs less sun now than later."""
         surveyor, settings = self.surveyor, self.settings
         if self.plan.survey.when_done is not WhenDone.RETURN_HOME or not surveyor.is_flying:
             return False
         if surveyor.charge_share is None or surveyor.charge_share > 1.0 - settings.swapped_from:
             return False
-        missing_m2 = self.expected.missing_m2[free]
+        now, later = self.swap_costs(free)
+        return now < later
+
+    def swap_costs(self, free: BoolArray) -> tuple[float, float]:
+        """Return what a change of battery costs now and later, as shares of its time in sun.
+
+        Now it costs the sun expected on free ground until the vehicle is back, the more the fewer
+        others stay: with all of them away sun would come in vain. Later it costs that time in sun,
+        but only if it is needed at all.
+        """
+        settings, missing_m2 = self.settings, self.expected.missing_m2[free]
         sun = missing_m2 @ self.expected.probability[free] / missing_m2.sum()
         now = float(sun[self.expected.moments_s <= settings.swap_s].mean()) * self._scarcity
-        return now < settings.swap_later * self._swap_probability(float(missing_m2.sum()))
+        return now, settings.swap_later * self._swap_probability(float(missing_m2.sum()))
 
     def _swap_probability(self, missing_m2: float) -> float:
         """Return how probably its battery does not last: for its part of the missing ground, or for
@@ -182,7 +187,7 @@ class VehicleChoice:
         route = self._allowed(route)
         passed = self.passing(route)
         sun = passed.lit_m2(self.expected) / max(passed.missing_m2, 1.0)
-        return self.flies(route, f"flies {named(route)}: probability of sun {sun:.1f}")
+        return self.flies(route, sun)
 
     def best(self, share: BoolArray) -> Flight:
         """Return the best flight over the segments (S,) of a share."""
@@ -229,14 +234,21 @@ class VehicleChoice:
         until_s = self.settings.committed_s
         return first, *takewhile(lambda leg: leg.until_s <= until_s, others)
 
-    def flies(self, route: Route, text: str) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
-        """Fly these rows, as far as the battery lasts and no lost vehicle may be; else wait."""
+    def flies(
+        self, route: Route, sun: float | None, why: str = ""
+    ) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
+        """Fly these rows, as far as the battery lasts and no lost vehicle may be; else wait.
+
+        The decision's sentence begins with `why` and ends with their probability of `sun`.
+        """
         state = self.state
         may_fly = partial(is_open, closed_ground(state.closed)) if state.closed else None
         track, count = sortie(self.plan, route, self.surveyor, may_fly)
         if track is None:
             text = "waits: its battery lasts for no row, the way there and the return"
             return self.waits(text, self.settings.retry_s)
+        text = f"{why}flies {named(route[:count])}"
+        text += "" if sun is None else f": probability of sun {sun:.1f}"
         speed_mps, stops_s = self.plan.survey.speed_mps, self._pace.stop_s * len(track.corners_m)
         climbing_s = track.climbing_s(speed_mps, self.settings.climb_mps)
         ends_s = self._starts_s + track.length_m / speed_mps + stops_s + climbing_s
@@ -333,11 +345,9 @@ class VehicleChoice:
         return self.state.with_decision(self.surveyor.serial, decision)
 
 
-def flown_text(legs: Sequence[PlannedLeg]) -> str:
-    """Return what a vehicle flies and why."""
-    sun = sum(leg.probability for leg in legs) / len(legs)
-    rows = named([leg.route for leg in legs])
-    return f"flies {rows}: probability of sun {sun:.1f}"
+def mean_probability(legs: Sequence[PlannedLeg]) -> float:
+    """Return the probability of sun on the ground of these legs."""
+    return sum(leg.probability for leg in legs) / len(legs)
 
 
 def named(route: Sequence[RowLeg]) -> str:
