@@ -1,7 +1,8 @@
 """The pictures of the decisions: what they show is what was decided."""
 
-from studies import survey_steps
 from studies.survey_decisions import COLOURS, PAPER, flights_under_bands
+
+from studies import survey_steps
 
 
 def test_the_steps_lead_to_the_mission_that_was_given() -> None:
