@@ -7,6 +7,13 @@ unexport PYTHONDONTWRITEBYTECODE
 # As `recon` does for itself.
 export OPENBLAS_NUM_THREADS := 1
 
+# A distribution's own Python is built with profile-guided optimisation; one compiled by hand often is not, and
+# takes a quarter longer. Where that is too old, uv looks for another.
+SYSTEM_PYTHON := $(shell /usr/bin/python3 -c 'import sys; sys.version_info >= (3, 11) and print(sys.executable)' 2>/dev/null)
+ifneq ($(SYSTEM_PYTHON),)
+export UV_PYTHON ?= $(SYSTEM_PYTHON)
+endif
+
 UV_VERSION := 0.13.9
 UV := $(shell command -v uv 2>/dev/null || echo .tools/bin/uv)
 RUN := $(UV) run --locked --quiet
