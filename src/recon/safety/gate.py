@@ -38,7 +38,7 @@ _KEY: Final = object()
 """Held by this module alone: an `ApprovedCommand` cannot be made without it."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class ApprovedCommand:
     """A command that may be sent, to these links and no others. Made by `approve` only.
 
@@ -47,6 +47,9 @@ class ApprovedCommand:
     `altitude_offset_m` is what every waypoint's height above takeoff is raised by on the wire; None
     when heights go out as they are.
     """
+
+    # Not `slots=True`: until Python 3.11.4 that puts a `__setstate__` of its own in place of ours.
+    __slots__ = ("altitude_offset_m", "approved_at_ns", "command", "link_ids", "profile")
 
     command: Command
     link_ids: tuple[int, ...]
