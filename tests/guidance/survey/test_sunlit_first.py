@@ -254,6 +254,17 @@ class TestSurveys:
         assert (state.reason == "waiting: how shadows move is not known yet") is waits
         assert bool(missions) is not waits
 
+    def test_a_forecast_that_sees_nothing_now_shows_no_motion_to_wait_for(self) -> None:
+        """What a shade map showed before still counts."""
+        here = Surveyor("S-1", (0.0, 60.0)), Surveyor("S-2", (0.0, 180.0))
+        flights = Flights(started(fleet(2)), fleet(2), sky=in_bands)
+        seen = observe_shade(flights.state, flights.shade_map())
+        unseen = np.full((GRID.rows, GRID.cols), np.nan, dtype=np.float32)
+        blind = replace(forecast(clear_sky), horizon_s=unseen, velocity_mps=None)
+        state, missions = decided(blind, *here, state=seen, now_s=1.0)
+        assert len(missions) == 2
+        assert state.reason == "under way"
+
     def test_until_any_light_is_known_rows_are_flown_and_then_decided_on(self) -> None:
         here, unseen = Surveyor("S-1", (0.0, 0.0)), np.full((GRID.rows, GRID.cols), np.nan)
         blind = replace(lit_west(10.0), horizon_s=unseen.astype(np.float32), velocity_mps=None)

@@ -231,8 +231,9 @@ def _awaits_motion(
     settings = state.plan.settings
     if whole is not None and whole.lit_share >= settings.sure_round:
         return False
-    now = sun.sun_probability[0][np.isfinite(sun.horizon_s)]
-    if np.mean(now > SURE / 2) >= settings.clear_view:
+    in_view = np.isfinite(sun.horizon_s)
+    is_lit = in_view & (sun.sun_probability[0] > SURE / 2)
+    if is_lit.sum() >= settings.clear_view * in_view.sum():
         return False
     began_ns = state.started_at_ns if state.started_at_ns is not None else now_ns
     return now_ns < began_ns + seconds_to_ns(settings.motion_within_s)
