@@ -110,13 +110,24 @@ def write(
     cv2.putText(canvas, text, at, cv2.FONT_HERSHEY_SIMPLEX, size, colour, 1, cv2.LINE_AA)
 
 
+def out_path(about: str | None, usual: str) -> str:
+    """Return where the picture goes, by the command's only option."""
+    parser = argparse.ArgumentParser(
+        description=about, formatter_class=argparse.RawTextHelpFormatter
+    )
+    parser.add_argument("--out", default=usual, help="where the picture goes")
+    return str(parser.parse_args().out)
+
+
+def save(panels: list[Picture], columns: int, out: str) -> None:
+    """Write panels of one size into one picture, row by row."""
+    rows = [np.hstack(panels[at : at + columns]) for at in range(0, len(panels), columns)]
+    cv2.imwrite(out, np.vstack(rows))
+
+
 def main() -> None:
     """Draw all moments into one file."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawTextHelpFormatter
-    )
-    parser.add_argument("--out", default="survey-decisions.png", help="where the picture goes")
-    out = parser.parse_args().out
+    out = out_path(__doc__, "survey-decisions.png")
     flights = flights_under_bands()
     panels: list[Picture] = []
     for moment_s in MOMENTS_S:
@@ -124,8 +135,7 @@ def main() -> None:
         for serial, decision in flights.state.decisions.items():
             print(f"{flights.time_s:4.0f} s, {serial}: {decision.text}")
         panels.append(panel(flights))
-    rows = [np.hstack(panels[at : at + COLUMNS]) for at in range(0, len(panels), COLUMNS)]
-    cv2.imwrite(out, np.vstack(rows))
+    save(panels, COLUMNS, out)
 
 
 if __name__ == "__main__":

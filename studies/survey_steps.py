@@ -6,7 +6,6 @@ Steps 1 to 5 are one decision in the flight of `survey_decisions`. The others ha
 own: a sky that closes, a vehicle without telemetry, rows that come into shade.
 """
 
-import argparse
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -38,6 +37,8 @@ from studies.survey_decisions import (
     SHADE,
     Picture,
     flights_under_bands,
+    out_path,
+    save,
     to_px,
     write,
 )
@@ -282,11 +283,7 @@ def _choice(state: SurveyState, sun: SunForecast, *vehicles: Surveyor) -> Vehicl
 
 def main() -> None:
     """Draw all steps into one file."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawTextHelpFormatter
-    )
-    parser.add_argument("--out", default="survey-steps.png", help="where the picture goes")
-    out = parser.parse_args().out
+    out = out_path(__doc__, "survey-steps.png")
     flights = flights_under_bands()
     flights.run(FROM_S)
     choice, given = next_choice(flights)
@@ -302,8 +299,7 @@ def main() -> None:
         closed_panel(),
         replaced_panel(),
     ]
-    rows = [np.hstack(panels[at : at + COLUMNS]) for at in range(0, len(panels), COLUMNS)]
-    cv2.imwrite(out, np.vstack(rows))
+    save(panels, COLUMNS, out)
 
 
 if __name__ == "__main__":

@@ -73,7 +73,8 @@ class TestHandingOn:
         assert own == rows[1 : 1 + len(own)]
         assert sorted(own + others) == sorted(rows[1:])
         assert abs(len(own) - len(others)) <= 1
-        text = f"hands on half of its rows; flies rows {min(own) + 1} to {max(own) + 1}"
+        what = f"rows {min(own) + 1} to {max(own) + 1}: probability of sun 1.0"
+        text = f"hands on half of its rows; flies {what}"
         assert state.decisions["S-1"].text == text
         assert state.flown_m == pytest.approx(sum(m.length_m for m in missions), rel=0.4)
 

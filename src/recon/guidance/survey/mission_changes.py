@@ -36,7 +36,7 @@ from recon.guidance.survey.state import (
     SurveyState,
     flown_just_now,
 )
-from recon.guidance.survey.vehicle_choice import VehicleChoice, mean_probability, named
+from recon.guidance.survey.vehicle_choice import VehicleChoice, named
 from recon.model.survey import MissionAssignment
 from recon.model.units import seconds_to_ns
 
@@ -116,7 +116,7 @@ def off_closed_ground(choice: VehicleChoice) -> Replaced:
         rows = alone.rows(share) if is_clear else alone.long_enough(alone.begun_at_once(share))
     if rows:
         names = ", ".join(each.name for each in state.closed)
-        replaced = _instead(choice, rows, None, f"keeps clear of {names}, without telemetry; ")
+        replaced = _instead(choice, rows, f"keeps clear of {names}, without telemetry; ")
         if replaced is not None:
             return replaced
     again_ns = choice.now_ns + seconds_to_ns(settings.decided_again_s)
@@ -190,7 +190,7 @@ def _handed_on(
     state = choice.state
     for serial in others & state.decisions.keys():
         state = state.with_decision(serial, replace(state.decisions[serial], again_ns=0))
-    return _instead(replace(choice, state=state), kept, None, "hands on half of its rows; ")
+    return _instead(replace(choice, state=state), kept, "hands on half of its rows; ")
 
 
 def _in_want_of_sun(choice: VehicleChoice, able: Mapping[str, Surveyor], lit_m2: float) -> set[str]:
@@ -239,15 +239,14 @@ def _in_more_sun(choice: VehicleChoice, left: Passing) -> Replaced | None:
     flown_m2 = plan.survey.speed_mps * plan.lattice.spacing_m * until_s
     if gained_m2 < plan.settings.replaced_from * flown_m2:
         return None
-    sun = mean_probability(legs)
-    return _instead(choice, alone.long_enough(legs), sun, "leaves its rows; ")
+    return _instead(choice, alone.long_enough(legs), "leaves its rows; ")
 
 
-def _instead(choice: VehicleChoice, rows: Route, sun: float | None, why: str) -> Replaced | None:
+def _instead(choice: VehicleChoice, rows: Route, why: str) -> Replaced | None:
     """Fly these rows instead of the mission's; None if the battery lasts for none of them."""
     serial = choice.surveyor.serial
     flight = choice.state.flights[serial]
-    state, missions = _alone(choice).flies(rows, sun, why)
+    state, missions = _alone(choice).flies(rows, why)
     new = state.flights.get(serial)
     if new is None or not new.route:
         return None

@@ -8,7 +8,8 @@ once. One call of `sunlit_first`:
 2. Without known light it is `lawnmower_once`: rows are flown in whatever light, until it is known.
    A vehicle that is still on its way to its first row by then is decided on as at the end of a row.
 3. Before the first mission it waits some seconds until a forecast knows how the shadows move:
-   without that, what lies in sun now seems to stay there. Where all is in sun it does not wait.
+   without that, what lies in sun now seems to stay there. Where most will be in sun, or nothing in
+   view is in shade, it does not wait.
 4. The survey is done when enough is imaged in sun, or its budget is spent, and all have ended.
 5. For each vehicle without a mission: its **share** of the missing ground is what it would fly if
    all finished at the same time, in rows side by side, so that vehicles keep apart. Over its share

@@ -93,7 +93,7 @@ class VehicleChoice:
         if flight.waits_s > 0.0:
             return self._stands_by(flight)
         legs = self.committed(flight)
-        return self.flies(self._allowed(self.long_enough(legs)), mean_probability(legs))
+        return self.flies(self._allowed(self.long_enough(legs)))
 
     def begun_at_once(self, share: BoolArray) -> tuple[PlannedLeg, ...]:
         """Return the first legs of the best flight over a share; none if that would wait."""
@@ -184,10 +184,7 @@ class VehicleChoice:
 
     def flies_all(self, route: Route) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
         """Fly these rows one after the other: most of their ground is in sun by then."""
-        route = self._allowed(route)
-        passed = self.passing(route)
-        sun = passed.lit_m2(self.expected) / max(passed.missing_m2, 1.0)
-        return self.flies(route, sun)
+        return self.flies(self._allowed(route))
 
     def best(self, share: BoolArray) -> Flight:
         """Return the best flight over the segments (S,) of a share."""
@@ -235,11 +232,11 @@ class VehicleChoice:
         return first, *takewhile(lambda leg: leg.until_s <= until_s, others)
 
     def flies(
-        self, route: Route, sun: float | None, why: str = ""
+        self, route: Route, why: str = ""
     ) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
         """Fly these rows, as far as the battery lasts and no lost vehicle may be; else wait.
 
-        The decision's sentence begins with `why` and ends with their probability of `sun`.
+        The decision's sentence begins with `why`, and states the sun expected on what is flown.
         """
         state = self.state
         may_fly = partial(is_open, closed_ground(state.closed)) if state.closed else None
@@ -247,8 +244,9 @@ class VehicleChoice:
         if track is None:
             text = "waits: its battery lasts for no row, the way there and the return"
             return self.waits(text, self.settings.retry_s)
-        text = f"{why}flies {named(route[:count])}"
-        text += "" if sun is None else f": probability of sun {sun:.1f}"
+        passed = self.passing(route[:count])
+        sun = passed.lit_m2(self.expected) / max(passed.missing_m2, 1.0)
+        text = f"{why}flies {named(route[:count])}: probability of sun {sun:.1f}"
         speed_mps, stops_s = self.plan.survey.speed_mps, self._pace.stop_s * len(track.corners_m)
         climbing_s = track.climbing_s(speed_mps, self.settings.climb_mps)
         ends_s = self._starts_s + track.length_m / speed_mps + stops_s + climbing_s
@@ -343,11 +341,6 @@ class VehicleChoice:
     def _decided(self, text: str, again_ns: int = 0, returns: bool = False) -> SurveyState:
         decision = Decision(text, again_ns, returns)
         return self.state.with_decision(self.surveyor.serial, decision)
-
-
-def mean_probability(legs: Sequence[PlannedLeg]) -> float:
-    """Return the probability of sun on the ground of these legs."""
-    return sum(leg.probability for leg in legs) / len(legs)
 
 
 def named(route: Sequence[RowLeg]) -> str:
