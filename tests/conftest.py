@@ -7,8 +7,6 @@ import pytest
 from hypothesis import HealthCheck, settings
 from tests.examples import examples
 
-from recon.station.kernel.driver import collect_garbage_rarely
-
 settings.register_profile(
     "untimed", max_examples=examples(100), deadline=None, derandomize="CI" in os.environ
 )
@@ -28,11 +26,6 @@ settings.register_profile(
     suppress_health_check=[HealthCheck.differing_executors, HealthCheck.too_slow],
 )
 """For `make mutants`: every mutant meets the same few examples, and one process runs them all."""
-
-
-def pytest_collection_finish() -> None:
-    """Thousands of tests are objects that stay."""
-    collect_garbage_rarely()
 
 
 @pytest.fixture(scope="session", autouse=True)

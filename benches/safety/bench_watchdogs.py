@@ -29,7 +29,7 @@ from recon.safety.prediction.trajectory import Samples
 from recon.safety.rules.separation import separation as rule
 from recon.safety.watchdogs import WATCHDOGS, TrafficPicture, WatchedVehicle, build_traffic_picture
 from recon.safety.watchdogs.closest_approach import closeness, near_pairs
-from recon.station.kernel.driver import collect_garbage_rarely
+from recon.station.kernel.driver import freeze_loaded_objects
 
 VEHICLES = 64
 ZONES = 20
@@ -176,7 +176,7 @@ def judge_ms(air: PreparedAirspace, watched: list[WatchedVehicle], body: Body, t
 
 
 def main() -> int:
-    collect_garbage_rarely()
+    freeze_loaded_objects()
     rng = Random(7)
     air, watched = airspace(rng), fleet(rng)
 

@@ -37,7 +37,7 @@ from recon.model.vehicle import AltitudeReference, Failsafe, VehicleProfile
 from recon.site import Site, demo_site_folder, load_site
 from recon.station.imaging.frames import LAY_FRAME
 from recon.station.kernel.build import first_state
-from recon.station.kernel.driver import AsyncioDriver, collect_garbage_rarely, station_clock
+from recon.station.kernel.driver import AsyncioDriver, freeze_loaded_objects, station_clock
 from recon.station.kernel.worker import JobRunner, ThreadWorker
 from recon.station.state.imaging import LayFrame
 from recon.station.state.steps import Job, JobDropped
@@ -83,7 +83,7 @@ async def measure(apps: int, seconds: float, *, is_worker_busy: bool) -> Jitter:
     ticking = asyncio.create_task(driver.run())
     laid = [0]
     worker = _busy_worker(laid) if is_worker_busy else None
-    collect_garbage_rarely()
+    freeze_loaded_objects()
     scheduled_ns = ran_and_waited_ns()
     flying = asyncio.create_task(_apps(links.port, apps, seconds))
     await asyncio.sleep(SETTLING_S)

@@ -19,7 +19,7 @@ from recon.model.report import CoreReport, ExtendedReport, ImageReport
 from recon.site import default_site
 from recon.station.api_views.service import Service
 from recon.station.kernel.build import first_state
-from recon.station.kernel.driver import AsyncioDriver, collect_garbage_rarely, station_clock
+from recon.station.kernel.driver import AsyncioDriver, freeze_loaded_objects, station_clock
 from recon.station.state.steps import StepTaken
 
 CONSOLE_PERIOD_S = 0.1
@@ -112,7 +112,7 @@ async def measure_station(load: Load) -> Outcome:
     await links.start("127.0.0.1", 0)
     state_ms: list[float] = []
     tasks = [asyncio.create_task(driver.run()), asyncio.create_task(_console(service, state_ms))]
-    collect_garbage_rarely()
+    freeze_loaded_objects()
     scheduled = ran_and_waited_ns()
     cpu_s, wall_s = time.process_time(), time.monotonic()
     sending = asyncio.create_task(_send(links.port, load, received.stamps_from_s))

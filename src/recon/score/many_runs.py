@@ -19,7 +19,6 @@ from recon.score.run import Report, run
 from recon.score.run_score import RunScore
 from recon.score.scenario import Scenario
 from recon.score.scenario_schema import ScenarioError
-from recon.station.kernel.driver import collect_garbage_rarely
 
 CONNECT_WITHIN_S, WORKERS_WITHIN_S = 10.0, 60.0
 
@@ -28,7 +27,6 @@ def one_by_one(
     scenario: Scenario, seeds: Sequence[int], report: Report | None = None
 ) -> Iterator[RunScore]:
     """Yield the runs, flown here; `report` is called every few minutes of each."""
-    collect_garbage_rarely()
     for seed in seeds:
         yield run(scenario, seed, report)
 
@@ -42,7 +40,7 @@ def on_cores(
     """
     # Forked processes would inherit threads of the linear algebra in any state.
     context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(jobs, context, initializer=_begin_process) as pool:
+    with ProcessPoolExecutor(jobs, context, initializer=_end_with_parent) as pool:
         waiting = [pool.submit(run, scenario, seed, report) for seed in seeds]
         try:
             for done in as_completed(waiting):
@@ -55,11 +53,6 @@ def on_cores(
         finally:
             for each in waiting:
                 each.cancel()
-
-
-def _begin_process() -> None:
-    collect_garbage_rarely()
-    _end_with_parent()
 
 
 def _end_with_parent() -> None:
@@ -122,7 +115,6 @@ def _run_of(scenario: Scenario, seed: int, digest: str) -> RunScore:
             "--cluster: expected workers with this version of Recon and of its libraries, got"
             f" another on {socket.gethostname()}: install the same there"
         )
-    collect_garbage_rarely()
     return run(scenario, seed)
 
 

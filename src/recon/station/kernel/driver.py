@@ -54,20 +54,14 @@ def _sleep_counting_ns() -> Callable[[], int]:
     return time.monotonic_ns
 
 
-YOUNG_OBJECTS = 50_000
-"""Made between two searches for garbage in cycles, 700 by default. The step's values are in none:
-the searches found nothing and took an eighth of the time."""
-
-
-def collect_garbage_rarely() -> None:
-    """Exclude everything loaded so far from garbage collection, and search the rest rarely.
+def freeze_loaded_objects() -> None:
+    """Exclude everything loaded so far from garbage collection.
 
     Libraries are hundreds of thousands of objects that live as long as the process. Scanning them
     stopped the event loop for 40 ms every few seconds, and delayed emergency orders by as much.
     """
     gc.collect()
     gc.freeze()
-    gc.set_threshold(YOUNG_OBJECTS)
 
 
 class AsyncioDriver:

@@ -23,7 +23,7 @@ from recon.model.units import ns_to_seconds, seconds_to_ns
 from recon.station.api_views.service import Service
 from recon.station.imaging.mosaic import mosaic, newest_images
 from recon.station.kernel.base_maps import maps_of
-from recon.station.kernel.driver import collect_garbage_rarely
+from recon.station.kernel.driver import freeze_loaded_objects
 from recon.station.kernel.http_servers import (
     listen,
     loopback_server,
@@ -195,7 +195,7 @@ async def run_replay(
         server = loopback_server(app, Login(report=replay.handle), HOST)
         playing = asyncio.create_task(replay.run())
         stack.callback(playing.cancel)
-        collect_garbage_rarely()
+        freeze_loaded_objects()
         stop_on_signals([server])
         serving = asyncio.create_task(server.serve(sockets=[sock]))
         await on_start(url_of(HOST, sock), replay.view())

@@ -14,7 +14,7 @@ from recon.api.login import Login
 from recon.api.servers import HttpServer
 from recon.station.api_views.service import Service
 from recon.station.kernel.base_maps import maps_of
-from recon.station.kernel.driver import AsyncioDriver, collect_garbage_rarely
+from recon.station.kernel.driver import AsyncioDriver, freeze_loaded_objects
 from recon.station.kernel.flight_archive import RecordedFlights
 from recon.station.kernel.http_servers import (
     listen,
@@ -65,7 +65,7 @@ async def serve(
     ticking = asyncio.create_task(driver.run())
     stack.callback(ticking.cancel)
     servers = _servers(config, driver, service, doors, stack)
-    collect_garbage_rarely()
+    freeze_loaded_objects()
     stop_on_signals([server for server, _ in servers])
     serving = [asyncio.create_task(server.serve(sockets=[sock])) for server, sock in servers]
     await on_start()
