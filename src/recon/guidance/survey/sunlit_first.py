@@ -248,7 +248,8 @@ def _in_any_light(state: SurveyState, positions: Sequence[Surveyor], now_ns: int
         state, missions = fly_rounds(state, positions, now_ns, CellState.IN_SHADE)
         for serial in {mission.serial for mission in missions}:
             flight = replace(state.flights[serial], is_in_any_light=True)
-            text = f"flies {named(flight.route)} in any light: sun and shade are not known yet"
+            # It is shown for minutes, and stays true when light is known meanwhile.
+            text = f"flies {named(flight.route)} in any light: unknown when this was decided"
             state = state.with_flight(serial, flight).with_decision(serial, Decision(text))
         return state, missions
     if state.flights:
