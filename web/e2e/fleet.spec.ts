@@ -1,4 +1,4 @@
-import { expect, test } from "@playwright/test";
+import { expect, type Page, test } from "@playwright/test";
 import { fleetState } from "./fake/fleetState";
 import { FakeStation } from "./fake/station";
 
@@ -41,3 +41,46 @@ test("64 drones stay readable: list, alarms by cause, clusters", async ({ page }
   });
   await page.screenshot({ path: "screens/fleet-64-clusters.png" });
 });
+
+test("a height on the map is in sight as a whole or not shown, wherever the map is moved", async ({
+  page,
+}) => {
+  await page.setViewportSize({ width: 390, height: 844 });
+  await FakeStation.behind(page, fleetState(12, 0));
+  await page.goto("/");
+  const map = page.getByRole("region", { name: "Map" }).first();
+  await expect(page.locator("button.craft")).toHaveCount(12);
+  await page.getByRole("button", { name: "Zoom in" }).click();
+  let shown = 0;
+  for (const key of ["ArrowLeft", "ArrowUp", "ArrowRight", "ArrowRight", "ArrowDown"]) {
+    await map.locator("canvas").first().press(key);
+    await expect(async () => {
+      const { count, cut } = await cutLabels(page);
+      expect(cut).toEqual([]);
+      shown += count;
+    }).toPass();
+  }
+  expect(shown).toBeGreaterThan(5);
+});
+
+/** The heights on the map, and those of them that the window's edge or a panel or button cuts. */
+function cutLabels(page: Page): Promise<{ count: number; cut: string[] }> {
+  return page.evaluate(() => {
+    const boxes = (selector: string) =>
+      [...document.querySelectorAll<HTMLElement>(selector)].filter((one) => one.checkVisibility());
+    const covers = boxes(".card, .map-tools .button, .map-notes > *").map((one) =>
+      one.getBoundingClientRect(),
+    );
+    const labels = boxes(".craft-label");
+    const isCut = ({ left, top, right, bottom }: DOMRect) =>
+      left < 0 ||
+      top < 0 ||
+      right > innerWidth ||
+      bottom > innerHeight ||
+      covers.some((c) => left < c.right && c.left < right && top < c.bottom && c.top < bottom);
+    return {
+      count: labels.length,
+      cut: labels.filter((one) => isCut(one.getBoundingClientRect())).map((one) => one.innerText),
+    };
+  });
+}

@@ -28,6 +28,7 @@ import { SurveyRowsLayer } from "./surveyRowsLayer";
 import { TargetLayer } from "./targetLayer";
 import { TargetMarkers } from "./targetMarkers";
 import { TemporaryZoneLayer } from "./temporaryZoneLayer";
+import { middleOf, paddingOf } from "./uncovered";
 import { VehicleLayer } from "./vehicleLayer";
 
 // Under Vite MapLibre does not find its worker and stays blank.
@@ -83,7 +84,7 @@ export function MapView() {
     });
     // The middle of what nothing covers: the operator sees where an order goes.
     setMapCentre(() => {
-      const [x, y] = middleOf(made, free);
+      const [x, y] = middleOf(holder, free);
       const half_px = free.clientWidth / 2;
       const { lng: lon, lat } = made.unproject([x, y]);
       const width_m = made.unproject([x - half_px, y]).distanceTo(made.unproject([x + half_px, y]));
@@ -160,7 +161,7 @@ export function MapView() {
   const fit = (isFirst: boolean) => {
     const [box, shown] = [whole(), map()];
     if (box === null || shown === null) return;
-    const options = { ...view(isFirst), padding: paddingOf(shown, free) };
+    const options = { ...view(isFirst), padding: paddingOf(holder, free) };
     shown.fitBounds([box.west, box.south, box.east, box.north], options);
   };
   createEffect(on(fitRequests, () => fit(false), { defer: true }));
@@ -253,26 +254,6 @@ function FitIcon() {
       <path d="M4 9V4h5M15 4h5v5M20 15v5h-5M9 20H4v-5" />
     </svg>
   );
-}
-
-/** Space around what is fitted: the covered edges of the map, and a rim. */
-function paddingOf(map: MapLibre, free: HTMLElement) {
-  const frame = map.getContainer().getBoundingClientRect();
-  const { left, top, right, bottom } = free.getBoundingClientRect();
-  const rim = 24;
-  return {
-    left: Math.max(0, left - frame.left) + rim,
-    top: Math.max(0, top - frame.top) + rim,
-    right: Math.max(0, frame.right - right) + rim,
-    bottom: Math.max(0, frame.bottom - bottom) + rim,
-  };
-}
-
-/** The middle of the uncovered part, in pixels of the map. */
-function middleOf(map: MapLibre, free: HTMLElement): [number, number] {
-  const frame = map.getContainer().getBoundingClientRect();
-  const { left, top, width, height } = free.getBoundingClientRect();
-  return [left - frame.left + width / 2, top - frame.top + height / 2];
 }
 
 function createMap(

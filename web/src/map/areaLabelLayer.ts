@@ -5,6 +5,7 @@ import { areaText, extent, type LabelPlace, labelPlaces } from "./areas";
 import { type Frame, placeFrames } from "./labels";
 import type { LonLat } from "./localGrid";
 import type { Layer, Scene } from "./scene";
+import { isInSight, uncoveredOf } from "./uncovered";
 
 /** Areas of the site narrower than this on the screen get no label. */
 const LEAST_WIDTH_PX = 90;
@@ -88,16 +89,21 @@ export class AreaLabelLayer implements Layer {
     this.shown.set(wanted.key, measure({ marker, wanted, width_px: 0, height_px: 0 }));
   }
 
-  /** Gives each label a free place on the screen; one without is hidden. */
+  /** Gives each label a free place, in sight if there is one; a label without a free place is hidden. */
   private arrange(): void {
     const { map } = this;
     if (map === null) return;
+    const uncovered = uncoveredOf(map.getContainer());
+    const isCut = ([, frame]: readonly [LabelPlace, Frame]) => !isInSight(frame, uncovered);
     const labels = [...this.shown.values()]
       .filter(({ wanted }) => isWideEnough(map, wanted))
       .map((label) => ({
         key: label.wanted.key,
         rank: label.wanted.rank,
-        places: label.wanted.places.map((place) => [place, frameAt(map, place, label)] as const),
+        // Rather cut by the window's edge than not there: what it names keeps vehicles out.
+        places: label.wanted.places
+          .map((place) => [place, frameAt(map, place, label)] as const)
+          .sort((a, b) => Number(isCut(a)) - Number(isCut(b))),
       }));
     const places = placeFrames(labels);
     for (const [key, { marker, height_px }] of this.shown) {

@@ -1,5 +1,6 @@
 import { describe, expect, it } from "vitest";
-import { type Frame, type LabelSpot, placeFrames, placeLabels, SIDES } from "./labels";
+import { type Frame, type LabelSpot, placeFrames, placeLabels, SIDES, type Side } from "./labels";
+import { isInSight } from "./uncovered";
 
 const at = (key: number, x_px: number, y_px: number, rank = key): LabelSpot => ({
   key,
@@ -34,6 +35,24 @@ describe("labels", () => {
     expect(placeLabels(alone, alone, new Map(), [target]).get(1)).toBe("below");
     const low = { ...target, y_px: 80 };
     expect(placeLabels(alone, alone, new Map([[1, "below"]]), [low]).get(1)).toBe("right");
+  });
+
+  it("are not cut by the window's edge, and stand under no panel or button", () => {
+    const seen = {
+      window: { left: 0, top: 0, right: 400, bottom: 800 },
+      covers: [{ left: 340, top: 300, right: 390, bottom: 344 }],
+    };
+    const sideOf = (x: number, y: number, before = new Map<number, Side>()) =>
+      placeLabels([at(1, x, y)], [at(1, x, y)], before, [], (frame) => isInSight(frame, seen)).get(
+        1,
+      );
+    expect(sideOf(200, 400)).toBe("right");
+    expect(sideOf(390, 400)).toBe("left");
+    expect(sideOf(30, 400, new Map([[1, "left"]]))).toBe("right");
+    expect(sideOf(300, 320)).toBe("left");
+    expect(sideOf(300, 280)).toBe("right");
+    expect(sideOf(365, 322)).toBe("below");
+    expect(sideOf(-30, 400)).toBeUndefined();
   });
 
   it("keep their side while it is free", () => {

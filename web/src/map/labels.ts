@@ -33,14 +33,16 @@ export interface Frame {
 export type FixedLabel = Pick<LabelSpot, "x_px" | "y_px" | "text">;
 
 /**
- * A side for each label at which it covers no symbol and no other label, also none of the fixed ones; a label without
- * such a side has none. A label keeps its side for as long as that is free.
+ * A side for each label at which it is in sight as a whole (of a height cut in half the rest reads as another height)
+ * and covers no symbol and no other label, also none of the fixed ones; a label without such a side has none. A label
+ * keeps its side for as long as that is free.
  */
 export function placeLabels(
   wanted: readonly LabelSpot[],
   symbols: readonly { readonly key: number; readonly x_px: number; readonly y_px: number }[],
   before: ReadonlyMap<number, Side>,
   fixed: readonly FixedLabel[] = [],
+  isInSight: (frame: Frame) => boolean = () => true,
 ): Map<number, Side> {
   const taken = symbols.map(({ key, x_px, y_px }) => ({ key, ...around(x_px, y_px, SYMBOL_PX) }));
   const labels = wanted.map((spot) => ({
@@ -49,7 +51,7 @@ export function placeLabels(
     places: SIDES.map((side) => [side, frameOf(spot, side)] as const),
   }));
   const isBlocked = (key: number, frame: Frame) =>
-    taken.some((symbol) => symbol.key !== key && meets(frame, symbol));
+    taken.some((symbol) => symbol.key !== key && meets(frame, symbol)) || !isInSight(frame);
   return placeFrames(
     labels,
     before,
@@ -106,6 +108,6 @@ function around(x: number, y: number, half: number): Frame {
   return { left: x - half, right: x + half, top: y - half, bottom: y + half };
 }
 
-function meets(a: Frame, b: Frame): boolean {
+export function meets(a: Frame, b: Frame): boolean {
   return a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
 }

@@ -5,11 +5,12 @@ import { text } from "../text/catalogue";
 import { agedBy, formatAge } from "../text/quantities";
 import { formatHeight } from "../text/units";
 import { clustersOf, type Spot } from "./clusters";
-import { type LabelSpot, placeLabels, type Side } from "./labels";
+import { type Frame, type LabelSpot, placeLabels, type Side } from "./labels";
 import type { LonLat } from "./localGrid";
 import { type Layer, positionOf, type Scene } from "./scene";
 import { targetOf } from "./targetLayer";
 import type { Target } from "./targetMarkers";
+import { isInSight, uncoveredOf } from "./uncovered";
 import { type MarkerPress, VehicleMarker } from "./vehicleMarker";
 
 /** Below this zoom heights are left out, except of the selected vehicles. */
@@ -78,7 +79,9 @@ export class VehicleLayer implements Layer {
     // On the ground a height means nothing, and a cluster has its own number.
     const wanted = alone.filter((spot) => spot.isMarked || (isNear && !spot.isOnGround));
     const fixed = this.targets.map((one) => ({ text: one.text, ...onScreen(map, one.at) }));
-    this.sides = placeLabels(wanted, alone, this.sides, fixed);
+    const uncovered = uncoveredOf(map.getContainer());
+    const isShown = (frame: Frame) => isInSight(frame, uncovered);
+    this.sides = placeLabels(wanted, alone, this.sides, fixed, isShown);
     for (const { key, text: label, isStale } of spots)
       this.markers.get(key)?.setLabel(label, this.sides.get(key), isStale);
   }

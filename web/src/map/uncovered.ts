@@ -1,0 +1,48 @@
+import { type Frame, meets } from "./labels";
+
+/** What stands over the map: panels, notes and buttons. */
+const OVER_THE_MAP = ".card, .map-tools .button, .map-notes > *";
+
+/** The map's window and what stands over it, in pixels of the map. */
+export interface Uncovered {
+  readonly window: Frame;
+  readonly covers: readonly Frame[];
+}
+
+/** Measures what of the map is in sight now. */
+export function uncoveredOf(map: HTMLElement): Uncovered {
+  const { left: x, top: y, width, height } = map.getBoundingClientRect();
+  const covers = [...document.querySelectorAll(OVER_THE_MAP)].map((element) => {
+    const { left, top, right, bottom } = element.getBoundingClientRect();
+    return { left: left - x, top: top - y, right: right - x, bottom: bottom - y };
+  });
+  return { window: { left: 0, top: 0, right: width, bottom: height }, covers };
+}
+
+/** Whether all of a frame is inside the map's window, and nothing stands over it. */
+export function isInSight(frame: Frame, { window, covers }: Uncovered): boolean {
+  const { left, top, right, bottom } = window;
+  const isInside =
+    frame.left >= left && frame.right <= right && frame.top >= top && frame.bottom <= bottom;
+  return isInside && !covers.some((cover) => meets(frame, cover));
+}
+
+/** Space around what is fitted: the covered edges of the map, and a rim. */
+export function paddingOf(map: HTMLElement, free: HTMLElement) {
+  const frame = map.getBoundingClientRect();
+  const { left, top, right, bottom } = free.getBoundingClientRect();
+  const rim = 24;
+  return {
+    left: Math.max(0, left - frame.left) + rim,
+    top: Math.max(0, top - frame.top) + rim,
+    right: Math.max(0, frame.right - right) + rim,
+    bottom: Math.max(0, frame.bottom - bottom) + rim,
+  };
+}
+
+/** The middle of the uncovered part, in pixels of the map. */
+export function middleOf(map: HTMLElement, free: HTMLElement): [number, number] {
+  const frame = map.getBoundingClientRect();
+  const { left, top, width, height } = free.getBoundingClientRect();
+  return [left - frame.left + width / 2, top - frame.top + height / 2];
+}
