@@ -59,6 +59,16 @@ class TestLawnmowerWaits:
             assert state.reason.startswith(reason)
             assert bool(flights.given) == (budget.time_s is None)
 
+    def test_its_last_round_ends_it_in_shade_too(self) -> None:
+        def shade_after_20_s(places_m: FloatArray, time_s: float) -> BoolArray:
+            return np.full(len(places_m), time_s < 20.0)
+
+        flyers = fleet(1)
+        survey = replace(SURVEY, planner="lawnmower_waits", budget=SurveyBudget(rounds=1))
+        state = Flights(begun(survey, flyers), flyers, sky=shade_after_20_s).run(3_000.0)
+        assert (state.phase, state.round) == (SurveyPhase.DONE, 1)
+        assert state.reason.startswith("The only round flown")
+
 
 class TestNearestSunlit:
     def test_each_flies_the_nearest_row_in_sun_one_at_a_time(self) -> None:

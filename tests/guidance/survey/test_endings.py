@@ -1,12 +1,15 @@
 """The end of a survey without sun, and its reason."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from tests.guidance.survey.fields import rectangle, survey_of
+from tests.guidance.survey.fields import FRAME, rectangle, region, survey_of
 from tests.guidance.survey.flyers import BoolArray, Flights, FloatArray, clear, fleet
 from tests.guidance.survey.test_flown import begun
 
-from recon.guidance.survey import figures
+from recon.guidance.survey import figures, plan_survey
+from recon.model.command import Refusal
 from recon.model.survey import SurveyBudget, SurveyPhase
 
 
@@ -101,3 +104,78 @@ def test_what_the_imaging_drone_loses_from_view_for_a_while_is_flown_for_sun() -
     end = flights.run(3_000.0)
     assert end.reason == "Complete: all reachable ground photographed in sun"
     assert end.round == 2
+
+
+def test_flat_light_does_not_make_known_shade_unknown() -> None:
+    """A method that decides a corner of the field alone shows nothing about the rest."""
+
+    def corner_from_200_to_600_s(places_m: FloatArray, time_s: float) -> BoolArray:
+        in_corner = (places_m < 14.0).all(axis=1)
+        return in_corner if 200.0 < time_s < 600.0 else np.ones_like(in_corner)
+
+    def sun_from_700_s(places_m: FloatArray, time_s: float) -> BoolArray:
+        return np.full(len(places_m), time_s > 700.0)
+
+    flyers = fleet(1)
+    survey = survey_of(rectangle(240.0, 120.0), bearing_deg=90.0, planner="sunlit_first")
+    view = corner_from_200_to_600_s
+    flights = Flights(begun(survey, flyers), flyers, sun_from_700_s, view=view)
+    end = flights.run(3_000.0)
+    assert end.reason == "Complete: all reachable ground photographed in sun"
+    assert figures(end).in_sun_m2 > 0.98 * figures(end).reached_m2
+    assert flights.time_s > 700.0
+
+
+@pytest.mark.parametrize("rounds", [1, 2])
+def test_losing_the_light_uses_up_no_round_of_a_planner_that_has_none(rounds: int) -> None:
+    def away_each_second_400_s(flights: Flights) -> None:
+        flights.tells_shade = (flights.time_s // 400.0) % 2 == 0
+
+    flyers = fleet(1)
+    budget = SurveyBudget(rounds=rounds)
+    survey = survey_of(
+        rectangle(800.0, 300.0), bearing_deg=90.0, planner="sunlit_first", budget=budget
+    )
+    flights = Flights(begun(survey, flyers), flyers)
+    end = flights.run(8_000.0, away_each_second_400_s)
+    assert end.reason == "Complete: all reachable ground photographed in sun"
+    assert figures(end).not_yet_m2 <= 0.01 * figures(end).reached_m2
+
+
+def test_a_row_that_the_nearest_battery_does_not_last_for_is_another_vehicles() -> None:
+    flyers = fleet(2)
+    flyers[0] = replace(flyers[0], place_m=(0.0, -20.0), home_m=(0.0, -20.0), endurance_s=15.0)
+    flyers[1] = replace(flyers[1], place_m=(300.0, -20.0), home_m=(300.0, -20.0))
+    flyers[1].endurance_s = 6_000.0
+    survey = survey_of(rectangle(45.0, 25.0), bearing_deg=90.0)
+    flights = Flights(begun(survey, flyers), flyers)
+    end = flights.run(600.0)
+    assert end.phase is SurveyPhase.DONE
+    assert {mission.serial for mission in flights.given} == {flyers[1].serial}
+
+
+def test_a_region_without_a_cell_is_refused() -> None:
+    """Between two columns of the cells' middles."""
+    strip = region([(2.1, 0.0), (5.9, 0.0), (5.9, 300.0), (2.1, 300.0)])
+    refusal = plan_survey(survey_of(strip), FRAME)
+    assert isinstance(refusal, Refusal)
+    assert "choose smaller cells" in refusal.reason
+
+
+@pytest.mark.parametrize("planner", ["lawnmower_once", "lawnmower_again", "sunlit_first"])
+@pytest.mark.parametrize("budget", [{"flown_m": 10.0}, {"time_s": 60.0}])
+def test_photos_of_the_last_row_count_before_a_budget_ends_it(
+    planner: str, budget: dict[str, float]
+) -> None:
+    def last_counted(**limits: float) -> float:
+        flyers = fleet(1)
+        survey = survey_of(
+            rectangle(200.0, 20.0),
+            bearing_deg=90.0,
+            planner=planner,
+            budget=SurveyBudget(**limits),  # type: ignore[arg-type]
+        )
+        end = Flights(begun(survey, flyers), flyers).run(600.0)
+        return figures(end).not_yet_m2
+
+    assert last_counted(**budget) == pytest.approx(last_counted(), abs=1.0)

@@ -1,5 +1,7 @@
 """What a survey will take, against what vehicles then fly and against sums by hand."""
 
+from dataclasses import replace
+
 import pytest
 from tests.guidance.survey.fields import (
     holed,
@@ -89,3 +91,19 @@ def test_a_region_too_far_for_any_battery_is_a_sentence() -> None:
     assert made.reason.startswith("a full battery gives 240 s for rows, and row ")
     assert ", with the flights there and back, takes " in made.reason
     assert "take off nearer to it, divide the region, or turn the rows" in made.reason
+
+
+@pytest.mark.parametrize(("left_s", "changes"), [(1200.0, 0), (30.0, 1), (0.0, 1)])
+def test_a_first_battery_that_lasts_for_no_row_is_changed_before(
+    left_s: float, changes: int
+) -> None:
+    plan = planned(survey_of(rectangle(200.0, 100.0)))
+    drone = Surveyor("A", (0.0, -20.0), home_m=(0.0, -20.0), time_left_s=left_s)
+    made, full = (
+        estimate(plan, [replace(drone, time_left_s=each)], Batteries(1200.0, swap_s=180.0))
+        for each in (left_s, 1200.0)
+    )
+    assert isinstance(made, SurveyEstimate)
+    assert isinstance(full, SurveyEstimate)
+    assert made.time_s == pytest.approx(full.time_s + 180.0 * changes)
+    assert made.batteries == 1

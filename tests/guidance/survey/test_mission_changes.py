@@ -11,6 +11,7 @@ from tests.guidance.survey.flyers import BoolArray, Flights, FloatArray, Flyer, 
 
 from recon.guidance.survey import ClosedArea, Surveyor, SurveyState, refused
 from recon.guidance.survey.closed_areas import closed_ground
+from recon.guidance.survey.mission_changes import with_ends_passed
 from recon.guidance.survey.segments import segments_of
 from recon.model.shade import SunForecast
 from recon.model.survey import MissionAssignment, SurveyBudget, SurveyPhase
@@ -58,6 +59,24 @@ class TestEnds:
         flight = flown_to(state, 4)[0].flights["S-1"]
         assert (flight.rows_left, flight.rows_taken) == (rows[2:], rows[1:])
         assert flight.unflown_m < 0.8 * flight.length_m
+
+    def test_none_is_passed_during_takeoff(self) -> None:
+        """Its pad lies beside a first row so short that both ends are near."""
+        state, _given = decided(lit(), HERE)
+        flight, lattice = state.flights["S-1"], state.plan.lattice
+        first = flight.route[0]
+        middle_m = first.piece.start_m + 8.0
+        short = replace(first, piece=replace(first.piece, end_m=first.piece.start_m + 16.0))
+        ((east_m, north_m),) = lattice.east_north_m(
+            [(middle_m, lattice.row_across_m(first.piece.row))]
+        ).tolist()
+        state = state.with_flight("S-1", replace(flight, route=(short, *flight.route[1:])))
+        pad = replace(HERE, place_m=(east_m, north_m), height_above_takeoff_m=0.0, is_flying=False)
+        assert with_ends_passed(state, {"S-1": pad}) == (state, ())
+        climbing = replace(pad, height_above_takeoff_m=1.0, is_flying=True)
+        assert with_ends_passed(state, {"S-1": climbing}) == (state, ())
+        up = replace(climbing, height_above_takeoff_m=60.0)
+        assert with_ends_passed(state, {"S-1": up})[1] == ("S-1",)
 
 
 class TestHandingOn:

@@ -41,6 +41,7 @@ from recon.guidance.survey import (
     refused,
     returning,
     start,
+    step,
 )
 from recon.guidance.survey.closed_areas import closed_ground
 from recon.guidance.survey.own_share import finished_together_s
@@ -289,6 +290,36 @@ class TestSurveys:
             f"flies on with rows {min(rows)} to {max(rows)}: probability of sun 1.0"
         )
 
+    def test_other_rows_that_are_refused_on_the_way_are_asked_for_once(self) -> None:
+        here, unseen = Surveyor("S-1", (0.0, 0.0)), np.full((GRID.rows, GRID.cols), np.nan)
+        blind = replace(lit_west(10.0), horizon_s=unseen.astype(np.float32), velocity_mps=None)
+        state, _given = decided(blind, here, now_s=10.0)
+        state, (instead,) = decided(lit_west(13.0), here, state=state, now_s=13.0)
+        state = refused(state, "S-1", instead.number, "a zone", seconds_to_ns(13.0))
+        for now_s in range(14, 30):
+            state, again = decided(lit_west(now_s), here, state=state, now_s=float(now_s))
+            assert again == ()
+            assert "flies on" in state.decisions["S-1"].text
+
+    def test_decisions_in_any_light_are_in_the_order_of_their_missions(self) -> None:
+        """A record's digest of the state depends on it."""
+        unseen = np.full((GRID.rows, GRID.cols), np.nan)
+        blind = replace(lit_west(10.0), horizon_s=unseen.astype(np.float32), velocity_mps=None)
+        here = [Surveyor(f"S-{n}", (40.0 * n, -40.0)) for n in range(8)]
+        state, missions = decided(blind, *here, now_s=10.0)
+        assert list(state.decisions) == [mission.serial for mission in missions]
+
+    def test_without_a_vehicle_that_can_fly_it_says_so(self) -> None:
+        here = Surveyor("S-1", (180.0, -40.0), height_above_takeoff_m=60.0)
+        sun = forecast(clear_sky)
+        state, _given = decided(sun, here)
+        out = replace(here, is_able=False, ended_mission=1)
+        state, _none = decided(sun, out, state=state, now_s=50.0)
+        assert state.reason == "waiting: no vehicle can fly now"
+        back = replace(out, is_able=True)
+        state, missions = decided(forecast(clear_sky, 60.0), back, state=state, now_s=60.0)
+        assert (len(missions), state.reason) == (1, "under way")
+
     def test_where_all_is_in_sun_none_waits_for_its_motion(self) -> None:
         here = Surveyor("S-1", (0.0, 60.0)), Surveyor("S-2", (0.0, 180.0))
         still = replace(forecast(lambda _east, _north, _lead: True), velocity_mps=None)
@@ -495,6 +526,18 @@ class TestDecisions:
             asked += [now_s] * len(missions)
             assert "S-1" not in state.decisions or "waits" in state.decisions["S-1"].text
         assert asked == [19]
+
+    def test_a_place_aside_that_is_refused_leaves_no_share_behind(self) -> None:
+        """Light is lost then: rows are flown in any light, and no empty share waits for ever."""
+        here = Surveyor("S-1", (40.0, 100.0), height_above_takeoff_m=60.0)
+        other = Surveyor("S-2", (0.0, -40.0), is_flying=False)
+        state, (aside,) = decided(forecast(lambda _east, _north, _lead: False), here, other)
+        state = refused(
+            state, "S-1", aside.number, "no room", 0, may_end=aside.stands_by, in_the_way=True
+        )
+        assert state.waiting == {}
+        state, missions = step(state, (here, other), seconds_to_ns(9.0))
+        assert len(missions) == 2
 
     def test_alone_it_waits_where_it_is(self) -> None:
         sun = forecast(lambda _east, _north, _lead: False)

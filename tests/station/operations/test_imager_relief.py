@@ -298,7 +298,7 @@ class TestNotByItself:
         world.runs(2.0)
         text = world.alarms()["imager_relief:refused"]
         assert "wall" in text
-        assert "no other height is free" in text
+        assert "every other height was refused as well" in text
         assert "imager_relief:leaves:CAM-1" in world.alarms()
         assert world.holder(SPARE) is AuthorityHolder.OPERATOR
         assert not world.surveyed.fleet.flies(SPARE)
@@ -535,3 +535,16 @@ class TestRefused:
         assert record.command.role is AuthorityHolder.GUIDANCE
         assert record.phase in (Phase.STARTED, Phase.CONFIRMED)
         assert record.command.issued_by == "ann: relief"
+
+
+class TestPermissionOfTheSpare:
+    def test_a_vehicle_that_joins_in_the_air_does_not_take_it_away(self) -> None:
+        world = surveying()
+        world.surveyed.starts("SIM-1")
+        assert world.surveyed.record().spare_may_take_off
+
+    def test_a_vehicle_that_joins_from_the_ground_does_not_give_it_again(self) -> None:
+        world = surveying(first=SHORT)
+        assert world.runs_until(lambda: world.station.reliefs.newest is not None, 60.0)
+        world.surveyed.starts("SIM-1", takeoff=True)
+        assert not world.surveyed.record().spare_may_take_off

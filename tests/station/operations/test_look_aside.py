@@ -113,7 +113,7 @@ class TestTheDirection:
         why = refusal(world.station, LookAsideOrdered("ann"), world.surveyed.driver.now_ns)
         world.ordered()
         assert why is not None
-        assert "no other direction" in why.reason
+        assert "every other direction" in why.reason
         assert world.station.look_asides.newest is None
         assert len(world.station.orders.records) == orders
         assert world.holder() is AuthorityHolder.OPERATOR

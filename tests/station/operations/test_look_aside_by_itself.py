@@ -5,9 +5,12 @@ from math import hypot
 from tests.station.looking_world import IMAGER, LookingWorld, looking_world
 from tests.station.surveyed_world import asked
 
+from recon.guidance.look_aside import LOOK_ASIDE_SETTINGS
 from recon.model.control import AuthorityHolder
 from recon.model.event import AuthorityTaken
 from recon.model.survey import SurveyPhase
+from recon.station.kernel.keyframe import without_recorded
+from recon.station.operations.look_aside.by_itself import begin_if_due, unknown_for_long
 from recon.station.state.imager_motion import MotionStage
 
 
@@ -134,3 +137,14 @@ def test_a_pilot_ends_it_and_it_does_not_begin_again() -> None:
     assert world.newest().stage is MotionStage.STOPPED
     assert world.holder() is AuthorityHolder.PILOT
     assert world.alarms() == {}
+
+
+def test_a_record_is_played_on_from_a_keyframe_which_holds_no_maps() -> None:
+    world = surveying()
+    reads(world, 0.2, 30.0, 10.0, 0.0)
+    station = without_recorded(world.station)
+    assert station.look_asides.unknown_since_ns
+    assert not station.shade.own
+    now_ns = world.surveyed.driver.now_ns
+    assert unknown_for_long(station, now_ns, LOOK_ASIDE_SETTINGS) is None
+    assert begin_if_due(station, now_ns, LOOK_ASIDE_SETTINGS)[1] == ()

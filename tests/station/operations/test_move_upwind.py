@@ -11,7 +11,7 @@ from tests.station.surveyed_world import SURVEY_ID, asked
 
 from recon.forecast import ForecastState
 from recon.model.airspace import Region, Zone, ZoneKind
-from recon.model.command import GoTo, Hover, Phase, issued_by_station
+from recon.model.command import GoTo, Hover, Phase, StartCamera, issued_by_station
 from recon.model.control import AuthorityHolder
 from recon.model.event import (
     AllStopped,
@@ -412,3 +412,19 @@ def test_a_hold_of_the_station_does_not_decide_where_it_stays() -> None:
     better_for_long(world)
     blowing(world, 2.0)
     assert newest(world).stage is MotionStage.UPWIND
+
+
+def test_a_persons_hold_counts_for_longer_than_its_order_is_kept() -> None:
+    world = surveying()
+    world.surveyed.driver.handle(OperatorOrder(9001, Hover(), **PERSON))
+    blowing(world, 3.0)
+    number = 9100
+    while 9001 in world.station.orders.records:
+        photo = OperatorOrder(number, StartCamera(1.0), "bob", "SIM-2", person="ann")
+        world.surveyed.driver.handle(photo)
+        number += 1
+        assert number < 9100 + 2 * world.station.settings.orders_kept
+    blowing(world, 5.0)
+    better_for_long(world)
+    blowing(world, 3.0)
+    assert not has_begun(world)

@@ -9,6 +9,9 @@ from recon.model.command import FlyMission, LandNow, Phase
 from recon.model.control import AuthorityHolder
 from recon.model.event import AuthorityTaken, SurveyStarted
 from recon.model.survey import SurveyPhase, WhenDone
+from recon.station.operations.survey.execution import STEP_SURVEY, advance
+from recon.station.operations.survey.planning import step_survey
+from recon.station.state.steps import Job, JobDone
 
 
 def two_ends() -> SurveyedWorld:
@@ -168,6 +171,20 @@ class TestStopped:
         assert flying.runs_until(SurveyPhase.DONE, 500.0)
         assert flying.figures().not_yet_m2 < 0.02 * flying.figures().region_m2
 
+    def test_a_paused_survey_leaves_its_vehicles_to_the_next_one(
+        self, flying: SurveyedWorld
+    ) -> None:
+        """It still counts their positions, which are on the way to the other survey's rows."""
+        flying.pauses()
+        flying.runs(5.0)
+        flying.asks(asked(field(200.0, 80.0), id=2, name="other"))
+        flying.starts("SIM-1", number=2)
+        for _ in range(20):
+            flying.runs(1.0)
+            assert flying.holder("SIM-1") is AuthorityHolder.GUIDANCE
+        assert flying.state(2).reason == "round 1"
+        assert [each.phase for each in flying.missions("SIM-1")][-1] is Phase.STARTED
+
     def test_an_abort_is_for_good(self, flying: SurveyedWorld) -> None:
         imaged = flying.figures().not_yet_m2
         flying.aborts()
@@ -205,6 +222,42 @@ class TestFailures:
         world.runs(60.0)
         assert [each.phase for each in world.missions()] == [Phase.TIMED_OUT]
         assert ("survey", "SIM-1") in world.fleet.alarms()
+
+    def test_one_that_was_stopped_and_still_hovers_at_the_end_is_an_alarm(self) -> None:
+        world = surveyed_world(2, faults=("ack-then-nothing:SIM-1:1:900",))
+        world.asks()
+        world.starts("SIM-1", "SIM-2")
+        assert world.runs_until(SurveyPhase.DONE, 400.0)
+        world.runs(90.0)
+        assert world.fleet.flies("SIM-1")
+        assert not world.fleet.flies("SIM-2")
+        assert ("survey_over", "SIM-1") in world.fleet.alarms()
+        (text,) = [
+            each.condition.text
+            for each in world.driver.station.alarms.alarms.values()
+            if each.condition.rule == "survey_over" and each.is_active
+        ]
+        assert "it had stopped: mission timed out" in text
+        world.fleet.world.order("SIM-1", LandNow())
+        world.runs(1.0)
+        assert ("survey_over", "SIM-1") not in world.fleet.alarms()
+
+    def test_one_taken_from_guidance_during_a_step_flies_when_it_is_given_back(self) -> None:
+        world = surveyed_world()
+        world.asks()
+        world.starts("SIM-1")
+        station, (job,) = advance(world.driver.station, world.driver.now_ns)
+        assert isinstance(job, Job)
+        result = step_survey(job.input)
+        assert len(result.missions) == 1
+        world.driver.station = station
+        world.driver.handle(AuthorityTaken("SIM-1", AuthorityHolder.OPERATOR, "bob"))
+        world.driver.handle(JobDone(job.id, STEP_SURVEY, result))
+        world.runs(5.0)
+        assert world.phase() is SurveyPhase.RUNNING
+        world.driver.handle(AuthorityTaken("SIM-1", AuthorityHolder.GUIDANCE, "bob"))
+        world.runs(5.0)
+        assert world.missions()[-1].times_sent == 1
 
     def test_a_refused_mission_pauses_the_survey_with_the_reason(self) -> None:
         world = surveyed_world(max_height_m=30.0, height_m=20.0, go_home_height_m=25.0)

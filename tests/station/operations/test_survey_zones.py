@@ -160,3 +160,36 @@ class TestFleetReturn:
         assert world.member("SIM-1").stage is Stage.LEFT_OUT
         assert "station: zone_ahead" in world.member("SIM-1").reason
         assert ("fleet_return", "SIM-1") in world.alarms()
+
+
+def by_itself(world: SurveyedWorld) -> list[str]:
+    found = world.driver.station.alarms.alarms.values()
+    return [
+        each.condition.text for each in found if each.condition.rule == "survey" and each.is_active
+    ]
+
+
+class TestOverTheWholeField:
+    def test_the_survey_pauses_and_the_alarm_outlives_the_zone(self) -> None:
+        """An operator starts it again when the zone has ended."""
+        world = surveying()
+        world.driver.handle(person(world, radius_m=300.0))
+        world.runs(4.0)
+        assert world.phase() is SurveyPhase.PAUSED
+        assert world.holder("SIM-1") is AuthorityHolder.OPERATOR
+        world.driver.handle(ZoneEnded(1, "Ann"))
+        world.runs(3.0)
+        (text,) = by_itself(world)
+        assert "has paused by itself: no row" in text
+        assert text.endswith("Start it again, or abort it")
+        world.starts("SIM-1")
+        world.runs(3.0)
+        assert by_itself(world) == []
+
+    def test_a_pause_that_was_commanded_is_none_by_itself(self) -> None:
+        world = surveying()
+        world.pauses()
+        world.runs(3.0)
+        world.driver.handle(person(world, radius_m=300.0))
+        world.runs(4.0)
+        assert by_itself(world) == []

@@ -7,6 +7,7 @@
 from recon.guidance.survey.closed_areas import ClosedArea
 from recon.guidance.survey.life import (
     NO_BATTERY,
+    PAUSED_BY_COMMAND,
     abort,
     create,
     observe,
@@ -31,6 +32,7 @@ from recon.guidance.survey.state import (
 
 __all__ = [
     "NO_BATTERY",
+    "PAUSED_BY_COMMAND",
     "PLANNERS",
     "AssignedMission",
     "ClosedArea",

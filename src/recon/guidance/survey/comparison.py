@@ -11,7 +11,12 @@ from dataclasses import replace
 from recon.guidance.survey.rounds import Step, fly_rounds
 from recon.guidance.survey.route import route_of
 from recon.guidance.survey.segments import expected_sun, segments_of
-from recon.guidance.survey.state import Surveyor, SurveyState, is_enough, spent_budget
+from recon.guidance.survey.state import (
+    Surveyor,
+    SurveyState,
+    end_between_rounds,
+    spent_budget,
+)
 from recon.guidance.survey.sunlit_first import PlanningMoment, vehicle_by_vehicle
 from recon.guidance.survey.vehicle_choice import WANTED, missing_pieces
 from recon.model.shade import SunForecast
@@ -26,7 +31,8 @@ def lawnmower_waits(
 ) -> Step:
     """Fly rounds over what is missing, each once most of that is in sun, until all is."""
     is_between = not state.flights and not state.waiting
-    is_over = is_enough(state, WANTED) or spent_budget(state, WANTED, now_ns) is not None
+    is_over = spent_budget(state, WANTED, now_ns) is not None
+    is_over = is_over or end_between_rounds(state, WANTED) is not None
     if is_between and not is_over and not _is_mostly_in_sun(state, sun, now_ns):
         return replace(state, reason="waiting: most of what is missing lies in shade"), ()
     return fly_rounds(state, positions, now_ns, WANTED)

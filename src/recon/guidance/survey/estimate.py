@@ -116,11 +116,11 @@ def estimate(
     for surveyor in surveyors:
         if surveyor.serial not in given:
             continue
-        flights = _flights(plan, given[surveyor.serial], surveyor, batteries)
-        if isinstance(flights, Refusal):
-            return flights
-        swaps_s = batteries.swap_s * (len(flights) - 1)
-        time_s = sum(flight.time_s for flight in flights) + swaps_s
+        found = _flights(plan, given[surveyor.serial], surveyor, batteries)
+        if isinstance(found, Refusal):
+            return found
+        flights, swaps = found
+        time_s = sum(flight.time_s for flight in flights) + swaps * batteries.swap_s
         drones.append(DroneEstimate(surveyor.serial, flights, time_s))
     interval_s = plan.survey.camera.interval_s
     return SurveyEstimate(tuple(drones), interval_s, batteries.level_s is not None)
@@ -216,12 +216,13 @@ def _warnings(plan: SurveyPlan, limit: SpeedLimit) -> list[str]:
 
 def _flights(
     plan: SurveyPlan, route: Route, surveyor: Surveyor, batteries: Batteries
-) -> tuple[PlannedFlight, ...] | Refusal:
-    """Fly a share battery by battery; the first may be too empty for any row."""
+) -> tuple[tuple[PlannedFlight, ...], int] | Refusal:
+    """Fly a share battery by battery, the first may be too empty for any row; also return how often
+    the battery is changed."""
     home_m = surveyor.home_m or surveyor.place_m
     fresh = replace(surveyor, place_m=home_m, time_left_s=batteries.level_s)
     flights: list[PlannedFlight] = []
-    vehicle = surveyor
+    vehicle, swaps = surveyor, 0
     if surveyor.time_left_s is None:
         vehicle = replace(surveyor, time_left_s=batteries.level_s)
     while route:
@@ -233,7 +234,8 @@ def _flights(
         if len(flights) > MOST_FLIGHTS:
             return Refusal(RULE, f"the survey takes more than {MOST_FLIGHTS} flights of a drone")
         vehicle, route = fresh, rest
-    return tuple(flights)
+        swaps += bool(route)
+    return tuple(flights), swaps
 
 
 def _flight(

@@ -53,6 +53,9 @@ from recon.model.shade import ShadeMap, SunForecast
 from recon.model.survey import SurveyPhase
 from recon.model.units import seconds_to_ns
 
+PAUSED_BY_COMMAND = "paused"
+"""The reason of a pause that was commanded; any other is why a survey has paused by itself."""
+
 
 def create(plan: SurveyPlan) -> SurveyState | Refusal:
     """Return a survey ready to start, or a refusal."""
@@ -85,7 +88,7 @@ def pause(state: SurveyState, now_ns: int) -> SurveyState | Refusal:
     if state.phase is not SurveyPhase.RUNNING:
         return _wrong_phase(state, "paused")
     was_flying = bool(state.flights or state.waiting)
-    paused = ended(state, SurveyPhase.PAUSED, "paused", now_ns)
+    paused = ended(state, SurveyPhase.PAUSED, PAUSED_BY_COMMAND, now_ns)
     return replace(paused, round=state.round - was_flying, refusals=MappingProxyType({}))
 
 
@@ -127,10 +130,12 @@ def refused(
     wait_s = settings.retry_soon_s if may_end or flight.is_chosen else settings.retry_s
     again_ns = now_ns if rows_most else now_ns + seconds_to_ns(wait_s)
     decisions = {key: each for key, each in state.decisions.items() if key != serial}
+    others = {key: each for key, each in state.waiting.items() if key != serial}
+    waiting = {**others, serial: route} if route else others
     is_barred = not (state.flights or may_end or finds_others)
     return replace(
         state,
-        waiting=MappingProxyType({**state.waiting, serial: route}),
+        waiting=MappingProxyType(waiting),
         refusals=MappingProxyType({**state.refusals, serial: Refused(reason, again_ns, rows_most)}),
         barred=state.barred | {serial} if is_barred else state.barred,
         decisions=MappingProxyType(decisions),
@@ -144,6 +149,8 @@ def _flown_on(
     """The survey with the mission that a refused one was to replace."""
     text = f"flies on with {named(kept.rows_left)}: other rows were refused"
     again_ns = now_ns + seconds_to_ns(state.plan.settings.retry_soon_s)
+    # What was asked once, when light became known, is not asked again.
+    kept = replace(kept, is_in_any_light=False)
     state = state.with_flight(serial, kept).with_decision(serial, Decision(text, again_ns))
     return replace(state, flown_m=state.flown_m - refused.length_m + kept.unflown_m)
 

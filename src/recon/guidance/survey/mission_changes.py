@@ -50,7 +50,7 @@ def with_ends_passed(
     that have just flown a row and have others left."""
     at_end = []
     for serial, flight in state.flights.items():
-        if serial not in able:
+        if serial not in able or _takes_off(flight, able[serial], state.plan):
             continue
         passed = _ends_passed(flight, able[serial].place_m, state.plan)
         if passed == flight.ends_passed:

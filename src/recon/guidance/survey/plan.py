@@ -259,6 +259,12 @@ def plan_survey(
         return Refusal(RULE, terrain)
     ways = RegionPaths(flyable)
     cells = cells_over(area, frame, survey.cell_m, lattice, pieces, swath)
+    if not cells.is_reached.any():
+        return Refusal(
+            RULE,
+            f"no cell of {survey.cell_m:g} m of the region {survey.name} is on photos of its rows: "
+            "choose smaller cells, or a larger region",
+        )
     counted = _counted(survey, swath, lattice, settings)
     ground_m = ground_range_m(area, air.elevation, settings.terrain_cell_m)
     plan = SurveyPlan(

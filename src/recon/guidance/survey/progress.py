@@ -70,16 +70,17 @@ class LightShown:
     until_ns: int | None = None
 
     def after(self, shade: ShadeMap, plan: SurveyPlan) -> "LightShown":
-        """Return it with one more map. One that knows no light at all, as while a detection is
-        learning the ground, changes nothing."""
+        """Return it with one more map. One that knows next to no light of what was shown, as while
+        a detection is learning the ground or the light is flat, changes nothing."""
         settings, grid, at_ns = plan.settings, plan.cells.grid, shade.captured_at_ns
-        if not shade.valid.any():
-            return self
         # Without maps, as during a change of battery, what was in view is not forgotten.
         since_s = 0.0 if self.until_ns is None else ns_to_seconds(at_ns - self.until_ns)
         since_s = min(max(since_s, 0.0), settings.shade_age_s)
         whole = Window(0, grid.rows, 0, grid.cols)
         _, is_known = sunlit_cells(shade, grid, whole, settings.least_transmittance)
+        shown = plan.cells.is_reached & (self.share >= settings.light_shown_from)
+        if not is_known.any() or is_known[shown].sum() < settings.decided_least * shown.sum():
+            return self
         kept = np.float32(exp(-since_s / settings.light_shown_s))
         share = np.where(is_known, 1.0 - kept * (1.0 - self.share), kept * self.share)
         return LightShown(share, max(at_ns, self.until_ns or at_ns))

@@ -38,11 +38,11 @@ from recon.guidance.survey.state import (
     Surveyor,
     SurveyState,
     end_between_rounds,
+    has_settled,
     spent_budget,
 )
 from recon.model.shade import SunForecast
 from recon.model.survey import PLANNER_GOALS, CellState, MissionAssignment, SurveyPhase
-from recon.model.units import seconds_to_ns
 
 Step = tuple[SurveyState, tuple[MissionAssignment, ...]]
 
@@ -57,17 +57,18 @@ def fly_rounds(
     if spent is None:
         state, missions = _given(state, able, now_ns)
         if missions:
-            return state, missions
+            return replace(state, reason=f"round {state.round}"), missions
     if state.flights:
         return state, ()
     if spent is not None:
-        return ended(state, SurveyPhase.DONE, spent, now_ns), ()
+        is_over = has_settled(state, now_ns)
+        return (ended(state, SurveyPhase.DONE, spent, now_ns) if is_over else state), ()
     free = {serial: each for serial, each in able.items() if serial not in state.barred}
     if not free:
         return without_able(state, able, now_ns), ()
     if state.waiting:
         return _shared_anew(state, free, now_ns)
-    if now_ns < state.quiet_since_ns + seconds_to_ns(state.plan.settings.settle_s):
+    if not has_settled(state, now_ns):
         return state, ()
     end = end_between_rounds(state, wanted)
     if end is not None:
@@ -132,11 +133,17 @@ def _begun(
 def _handed_out(
     state: SurveyState, pieces: Sequence[Piece], free: Mapping[str, Surveyor], now_ns: int
 ) -> Step:
-    """Share pieces and give the first missions; without any, change the reason only."""
-    shared_out = MappingProxyType(shares(state.plan, pieces, list(free.values())))
-    given, missions = _given(replace(state, waiting=shared_out), free, now_ns)
-    if missions:
-        return replace(given, reason=f"round {state.round}"), missions
+    """Share pieces and give the first missions; without any, change the reason only.
+
+    If no battery lasts for a share, each vehicle alone is tried, the longest lasting first: the
+    nearest of several may be the one that cannot fly a row.
+    """
+    by_battery = sorted(free.values(), key=lambda each: -(each.time_left_s or 0.0))
+    for vehicles in (list(free.values()), *([each] for each in by_battery)):
+        shared_out = MappingProxyType(shares(state.plan, pieces, vehicles))
+        given, missions = _given(replace(state, waiting=shared_out), free, now_ns)
+        if missions:
+            return replace(given, reason=f"round {state.round}"), missions
     reason = "waiting: no battery lasts for the next row, the way there and the return"
     return replace(state, reason=reason), ()
 

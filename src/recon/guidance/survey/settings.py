@@ -74,6 +74,10 @@ class SurveySettings:
     """A cell that fewer maps show lies outside the imaging drone's view, or at its edge: it cannot
     count in sun. One that no map shows is known as such after 208 s."""
 
+    decided_least: float = 0.02
+    """Of the ground whose light was shown: a map that knows less of it shows nothing of the view, as
+    in flat light, when a method decides single spots."""
+
     least_transmittance: float = 0.55
     """In a shade map, for a cell to count in sun: half of the beam is sun, and maps err. Ground is
     chosen by the forecast from a half on: what lies between is photographed, and does not count.

@@ -219,6 +219,11 @@ def _after_s(state: SurveyState, at_ns: int | None) -> float | None:
 HECTARE_M2 = 10_000.0
 
 
+def has_settled(state: SurveyState, now_ns: int) -> bool:
+    """Return whether the photos of the mission that ended last have counted."""
+    return now_ns >= state.quiet_since_ns + seconds_to_ns(state.plan.settings.settle_s)
+
+
 def spent_budget(state: SurveyState, wanted: CellState, now_ns: int) -> str | None:
     """Return which budget is spent; None while there is budget left."""
     budget = state.plan.survey.budget

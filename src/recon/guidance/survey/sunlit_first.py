@@ -69,6 +69,7 @@ from recon.guidance.survey.state import (
     SurveyState,
     end_between_rounds,
     flown_just_now,
+    has_settled,
     is_enough,
     spent_budget,
 )
@@ -127,11 +128,15 @@ def vehicle_by_vehicle(
     """Fly until all is in sun, without waiting for one another; `begun` gives the missions."""
     able = {each.serial: each for each in positions if each.is_able}
     state = _with_just_flown(state, without_ended(state, able, now_ns), now_ns)
-    spent = spent_budget(state, WANTED, now_ns)
-    end = end_between_rounds(state, WANTED) if is_enough(state, WANTED) else spent
+    # One that could not fly meanwhile is decided on anew.
+    decided = {key: each for key, each in state.decisions.items() if key in able}
+    state = replace(state, decisions=MappingProxyType(decided))
+    is_done, spent = is_enough(state, WANTED), spent_budget(state, WANTED, now_ns)
+    end = end_between_rounds(state, WANTED) if is_done else spent
     if end is not None:
-        return (state if state.flights else ended(state, SurveyPhase.DONE, end, now_ns)), ()
-    if able and not state.flights and able.keys() <= state.barred:
+        is_over = not state.flights and (is_done or has_settled(state, now_ns))
+        return (ended(state, SurveyPhase.DONE, end, now_ns) if is_over else state), ()
+    if not state.flights and able.keys() <= state.barred:
         return without_able(state, able, now_ns), ()
     state, at_end = with_ends_passed(state, able)
     closed = on_closed_ground(state, able, now_ns)
@@ -244,17 +249,19 @@ def _in_any_light(state: SurveyState, positions: Sequence[Surveyor], now_ns: int
     """Fly what is not imaged yet; then wait for light to become known, if it ever was."""
     kept = {key: each for key, each in state.decisions.items() if key in state.flights}
     state = replace(state, decisions=MappingProxyType(kept))
+    # This planner has no rounds: however often light is lost, none is used up.
+    uncounted = replace(state, round=int(bool(state.flights or state.waiting)))
     if not is_enough(state, CellState.IN_SHADE):
-        state, missions = fly_rounds(state, positions, now_ns, CellState.IN_SHADE)
-        for serial in {mission.serial for mission in missions}:
+        state, missions = fly_rounds(uncounted, positions, now_ns, CellState.IN_SHADE)
+        for serial in dict.fromkeys(mission.serial for mission in missions):
             flight = replace(state.flights[serial], is_in_any_light=True)
             # It is shown for minutes, and stays true when light is known meanwhile.
             text = f"flies {named(flight.route)} in any light: unknown when this was decided"
             state = state.with_flight(serial, flight).with_decision(serial, Decision(text))
-        return state, missions
+        return replace(state, reason="under way") if missions else state, missions
     if state.flights:
         return state, ()
-    end = end_between_rounds(state, WANTED)
+    end = end_between_rounds(uncounted, WANTED)
     if end is not None:
         return ended(state, SurveyPhase.DONE, end, now_ns), ()
     return replace(state, reason="waiting: the light over the field is not known now"), ()

@@ -10,10 +10,11 @@ from recon.api import schema
 from recon.geo import geo_from_enu
 from recon.guidance.survey import SurveyState, figures
 from recon.model.geo import LocalFrame
-from recon.model.units import ns_to_seconds
+from recon.model.units import ns_to_seconds, seconds_to_ns
 from recon.station.api_views.imaging_views import corners_lon_lat, upwind_place_view
 from recon.station.api_views.relief_views import light_view
 from recon.station.operations.fleet_return.conditions import in_turn
+from recon.station.operations.settings import SURVEY_TIMES
 from recon.station.operations.survey.availability import hindrance, is_flown, is_on_ground
 from recon.station.operations.survey.return_to_home import is_under_way
 from recon.station.state.fleet_return_record import ReturningVehicle
@@ -86,6 +87,15 @@ def survey_ways(record: SurveyRecord) -> schema.SurveyWays | None:
     )
 
 
+def _refused(state: SurveyState, serial: str, now_ns: int) -> str | None:
+    """The refusal that a vehicle waits for now, not one of a mission that was flown since."""
+    found = state.refusals.get(serial)
+    if found is None:
+        return None
+    until_ns = found.again_ns + seconds_to_ns(SURVEY_TIMES.asked_again_within_s)
+    return found.reason if serial in state.barred or now_ns < until_ns else None
+
+
 def _member(
     station: Station, record: SurveyRecord, member: SurveyMember, now_ns: int
 ) -> schema.SurveyingView:
@@ -96,14 +106,14 @@ def _member(
     waits = hindrance(station, member, now_ns) if is_active else None
     decision = state.decisions.get(member.serial) if is_active and waits is None else None
     flies = is_flown(station, member)
-    refused = None if record.is_over or flies else state.refusals.get(member.serial)
+    refused = None if record.is_over or flies else _refused(state, member.serial, now_ns)
     return schema.SurveyingView(
         serial=member.serial,
         vehicle_name=member.serial if vehicle is None else vehicle.display_name,
         is_flying_rows=flies,
         not_flying_reason=waits,
         decision=None if decision is None else decision.text,
-        refused=None if refused is None else refused.reason,
+        refused=refused,
         has_come_home=member.return_reason is not None and is_on_ground(station, member),
         mission_command_id=member.command_id,
     )

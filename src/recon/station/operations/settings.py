@@ -71,6 +71,9 @@ class SurveyTimes:
     """A vehicle whose missions could not be sent for so long, for reasons that time ends otherwise,
     is stopped: its telemetry or link needs attention, and no takeoff comes as a surprise."""
 
+    asked_again_within_s: float = 5.0
+    """A planner that still wants a refused mission asks within a step or two after it may."""
+
     home_waits_s: float = 60.0
     """A turn to fly home comes within a minute; a vehicle that waits longer raises an alarm."""
 

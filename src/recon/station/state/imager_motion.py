@@ -133,12 +133,14 @@ class UpwindMoves(ByItself):
 
     `survey_id` is that survey, which runs since `allowed_since_ns`. A job of number `job_id` was
     asked for a proposal at `asked_at_ns`; `proposal` is the newest one, better than the present
-    place since `better_since_ns`.
+    place since `better_since_ns`. Since the survey runs, a person has moved or stopped the imaging
+    drones in `placed`.
     """
 
     newest: MoveUpwind | None = None
     survey_id: int | None = None
     allowed_since_ns: int = 0
+    placed: frozenset[str] = frozenset()
     job_id: int | None = None
     next_job_id: int = 1
     asked_at_ns: int | None = None

@@ -93,11 +93,14 @@ class SurveyRecord:
     shade_maps: NumberedBuffer[ShadeMap] = field(default_factory=NumberedBuffer)
     zone_changes: int = 0
     """Of `TemporaryZones.changes`: after how many of them its rows were planned."""
-    is_shut: bool = False
-    """Whether zones have left it no row."""
     flown: Mapping[tuple[str, int], tuple[EastNorth, ...]] = field(
         default_factory=lambda: MappingProxyType({})
     )
+
+    @property
+    def issuer(self) -> str:
+        """The `issued_by` of its orders."""
+        return f"{self.started_by}: survey {self.survey.name}"
 
     @property
     def phase(self) -> tuple[PhaseWord, str]:

@@ -49,14 +49,16 @@ def updated(
     return _stopping(member, vehicle, settings, now_ns)
 
 
-def newest_motion(station: Station, serial: str) -> OrderRecord | None:
+def newest_motion(station: Station, serial: str, *, own: bool = True) -> OrderRecord | None:
     """Return the newest accepted order to move or stop of a vehicle.
 
-    The station's own neutral setpoint does not count.
+    The station's own neutral setpoint does not count; without `own` no order of its own does.
     """
     for record in reversed(tuple(station.orders.records.values())):
         command = record.command
         if command.serial != serial or record.phase is Phase.REFUSED_BY_STATION:
+            continue
+        if command.is_own and not own:
             continue
         if lane_of(command) is not Lane.CAMERA and command.issued_by != neutral_setpoint.ISSUER:
             return record

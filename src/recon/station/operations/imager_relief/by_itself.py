@@ -83,7 +83,7 @@ def call_home_if_due(
 
 def by_survey(record: SurveyRecord) -> str:
     """Return for whom a survey's imaging drone flies."""
-    return f"{record.started_by}: survey {record.survey.name}"
+    return record.issuer
 
 
 def relief_takes_s(station: Station, relieved: str, spare: str) -> float | None:

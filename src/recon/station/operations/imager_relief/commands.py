@@ -181,7 +181,7 @@ def _begun(
         first = first or why
     if first is None:
         first = Refusal(RULE, f"{name}: no height beside the other one is below the ceiling")
-    others = "; no other height is free" if len(ups_m) > 1 else ""
+    others = "; every other height was refused as well" if len(ups_m) > 1 else ""
     return replace(first, reason=f"{first.reason}{others}")
 
 

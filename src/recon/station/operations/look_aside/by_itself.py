@@ -26,7 +26,7 @@ def begin_if_due(station: Station, now_ns: int, settings: LookAsideSettings) -> 
         return replace(station, look_asides=asides.not_refused()), ()
     if now_ns < asides.due_ns or motion_under_way(station) is not None:
         return station, ()
-    by = f"{record.started_by}: survey {record.survey.name}"
+    by = record.issuer
     event = LookAsideOrdered(by, person=record.person, survey_id=record.survey.id, serial=serial)
     begun = begin(station, event, now_ns)
     refusal = begun if isinstance(begun, Refusal) else None
@@ -39,7 +39,10 @@ def begin_if_due(station: Station, now_ns: int, settings: LookAsideSettings) -> 
 def unknown_for_long(station: Station, now_ns: int, settings: LookAsideSettings) -> str | None:
     """Return an imaging drone with a recent shade map, and light mostly unknown for long."""
     for serial, since_ns in station.look_asides.unknown_since_ns.items():
-        captured_at_ns = station.shade.own[serial].shade.captured_at_ns
+        own = station.shade.own.get(serial)
+        if own is None:
+            continue  # a keyframe of a record holds no maps
+        captured_at_ns = own.shade.captured_at_ns
         is_recent = now_ns - captured_at_ns <= seconds_to_ns(settings.map_within_s)
         if is_recent and captured_at_ns - since_ns >= seconds_to_ns(settings.unknown_for_s):
             return serial

@@ -98,7 +98,9 @@ def _begun(drone: Claimed, event: LookAsideOrdered, now_ns: int) -> Stepped | Re
         station = put(replace(station, look_asides=asides), motion)
         return station, (*drone.outputs, *outputs)
     assert first is not None, "a refused order has its refusal"
-    return replace(first, reason=f"{first.reason}; no other direction of 25 m is free")
+    return replace(
+        first, reason=f"{first.reason}; every other direction of 25 m was refused as well"
+    )
 
 
 def _sun_azimuth_deg(station: Station, place: LatLon, now_ns: int) -> float | None:

@@ -52,7 +52,7 @@ def advance(
         return _go_on(station, current, settings, now_ns)
     records = station.surveys.records.values()
     allowing = [each for each in records if each.is_running and each.survey.upwind_allowed]
-    station = _for_survey(station, allowing[0] if allowing else None, now_ns)
+    station = _with_placed(_for_survey(station, allowing[0] if allowing else None, now_ns))
     if not allowing:
         return station, ()
     regions = [each.survey.region for each in allowing]
@@ -101,7 +101,7 @@ def _begin_if_due(
     if is_early or now_ns < moves.due_ns or motion_under_way(station) is not None:
         return station, ()
     every_s, again_s = settings.every_s, settings.refused_again_s
-    if _is_placed(station, found.serial):
+    if found.serial in moves.placed:
         moves = moves.after_try(None, again_s, again_s, now_ns)
         return replace(station, upwind_moves=moves), ()
     begun = _begin(station, record, found, now_ns)
@@ -115,7 +115,7 @@ def _begin(
     station: Station, record: SurveyRecord, found: UpwindProposal, now_ns: int
 ) -> Stepped | Refusal:
     """Return the station with a move begun, or why the imaging drone or the gate refuses it."""
-    by = f"{record.started_by}: survey {record.survey.name}"
+    by = record.issuer
     drone = claimed(station, MoveUpwind.rule, found.serial, by, record.person, now_ns)
     if isinstance(drone, Refusal):
         return drone
@@ -144,17 +144,22 @@ def _begin(
     return station, (*drone.outputs, *outputs)
 
 
-def _is_placed(station: Station, serial: str) -> bool:
-    """Whether a person has decided where it hovers, since the survey was started."""
+def _with_placed(station: Station) -> Station:
+    """Note the imaging drones of which a person has decided where they hover, since the survey was
+    started: orders are forgotten sooner than a survey ends."""
     moves = station.upwind_moves
     newest, since_ns = moves.newest, moves.allowed_since_ns
-    if newest is not None and newest.stage is MotionStage.STOPPED and newest.since_ns >= since_ns:
-        return True
-    return any(
-        each.command.serial == serial and each.command.issued_at_ns >= since_ns
-        for each in station.orders.records.values()
-        if _is_a_persons(each)
-    )
+    is_stopped = newest is not None and newest.stage is MotionStage.STOPPED
+    placed = {newest.serial} if newest and is_stopped and newest.since_ns >= since_ns else set()
+    persons = [each.command for each in station.orders.records.values() if _is_a_persons(each)]
+    placed |= {
+        serial
+        for serial in station.imaging.imagers
+        if any(each.serial == serial and each.issued_at_ns >= since_ns for each in persons)
+    }
+    if placed <= moves.placed:
+        return station
+    return replace(station, upwind_moves=replace(moves, placed=moves.placed | placed))
 
 
 def _is_a_persons(record: OrderRecord) -> bool:

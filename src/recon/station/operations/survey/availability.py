@@ -116,8 +116,9 @@ def after_mission(
 
     Such a mission is not flown again by itself: an operator must check and start it again.
     """
-    order = _order(station, member)
-    if order is not None and order.times_sent:
+    order, unsent_since_ns = _order(station, member), member.unsent_since_ns
+    sent = None if order is None else order.sent
+    if unsent_since_ns is not None and sent is not None and sent.sent_at_ns >= unsent_since_ns:
         member = replace(member, unsent_since_ns=None)
     if order is None or member.stop_reason is not None or not order.phase.is_final:
         return member, None

@@ -81,7 +81,8 @@ def start_survey(station: Station, event: SurveyStarted, now_ns: int) -> Stepped
         started_by=event.by,
         person=event.person,
         members=MappingProxyType({**kept, **fresh}),
-        spare_may_take_off=event.takeoff,
+        # For vehicles that join it later, it is their own takeoff that is allowed or not.
+        spare_may_take_off=record.spare_may_take_off if record.is_running else event.takeoff,
         step_due_ns=now_ns,
     )
     surveys = station.surveys.without_pending(event.survey_id)

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
+from recon.guidance.survey import PAUSED_BY_COMMAND
 from recon.model.survey import SurveyPhase
 from recon.station.operations.fleet_return.progress import newest_motion
 from recon.station.operations.settings import SURVEY_TIMES
@@ -23,7 +24,7 @@ def conditions(station: Station) -> Iterator[Condition]:
     for record in station.surveys.records.values():
         state = record.state
         is_paused = state is not None and state.phase is SurveyPhase.PAUSED
-        if is_paused and state is not None and (state.refusals or record.is_shut):
+        if is_paused and state is not None and state.reason != PAUSED_BY_COMMAND:
             text = f"survey {record.survey.name} has paused by itself: {state.reason}"
             key = f"{RULE}:{record.survey.id}"
             yield Condition(key, Severity.WARNING, RULE, "", f"{text}. Start it again, or abort it")
@@ -50,8 +51,9 @@ def _of_vehicle(
         )
         again = f"recon survey start {record.survey.id} {member.serial} --takeoff"
         yield _about(station, member, RULE, f"{text} {name} again ({again})")
-    elif record.is_over and _hovers_since(station, member):
-        text = f"hovers: survey {name} is over. Call it home, or give it an order"
+    elif record.is_over and _hovers_since(station, record, member):
+        why = "" if member.stop_reason is None else f"; it had stopped: {member.stop_reason}"
+        text = f"hovers: survey {name} is over{why}. Call it home, or give it an order"
         yield _about(station, member, RULE_LEFT, text)
 
 
@@ -65,12 +67,16 @@ def _waits_long(station: Station, member: SurveyMember) -> Iterator[Condition]:
         yield replace(condition, after_s=SURVEY_TIMES.home_waits_s)
 
 
-def _hovers_since(station: Station, member: SurveyMember) -> bool:
-    """Whether a vehicle is in the air, and a mission of the survey is its newest order."""
+def _hovers_since(station: Station, record: SurveyRecord, member: SurveyMember) -> bool:
+    """Whether a vehicle is in the air, and got its newest order from the survey.
+
+    The station's own holds do not count: after one it hovers as well.
+    """
     vehicle = station.fleet.vehicles.get(member.serial)
-    newest = newest_motion(station, member.serial)
-    is_up = vehicle is not None and vehicle.is_flying.value is True
-    return is_up and newest is not None and newest.command.id == member.command_id
+    if vehicle is None or vehicle.is_flying.value is not True:
+        return False
+    newest = newest_motion(station, member.serial, own=False)
+    return newest is not None and newest.command.issued_by == record.issuer
 
 
 def _about(station: Station, member: SurveyMember, rule: str, text: str) -> Condition:

@@ -21,7 +21,7 @@ an operator starts, pauses or aborts it; it becomes done, or pauses itself, by i
 from math import hypot
 from types import MappingProxyType
 
-from recon.guidance.survey import NO_BATTERY, PositionSample, refused
+from recon.guidance.survey import NO_BATTERY, PositionSample, SurveyState, refused
 from recon.model.command import Hover, Phase, issued_by_station
 from recon.model.control import AuthorityHolder
 from recon.model.event import OperatorOrder
@@ -31,22 +31,22 @@ from recon.model.survey import MissionAssignment, SurveyPhase
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleState
 from recon.safety.datum import places_m, takeoff_up_m
+from recon.safety.rules.authority import RULE as AUTHORITY
 from recon.safety.rules.battery import RULE as BATTERY
 from recon.safety.rules.separation import RULE as SEPARATION
-from recon.station.control import authority, order_gateway
+from recon.station.control import order_gateway
 from recon.station.operations.settings import SURVEY_TIMES, SurveyTimes
 from recon.station.operations.survey.availability import (
     after_mission,
     available_vehicles,
     closed_areas,
+    hindrance,
     is_flown,
 )
 from recon.station.operations.survey.mission_dispatch import dispatch
 from recon.station.operations.survey.planning import StepSurvey, SurveyStepped, step_survey
 from recon.station.operations.survey.return_to_home import (
-    IS_DONE,
-    is_done_and_returns,
-    is_under_way,
+    release_vehicles,
     returns_home,
     send_home,
 )
@@ -150,7 +150,7 @@ def _stepped(station: Station, job_id: int, result: SurveyStepped, now_ns: int) 
     station, record = _without_pending(station, job_id)
     if record is None:
         return station, ()
-    survey_id = record.survey.id
+    survey_id, was_running = record.survey.id, record.is_running
     record = replace(record, state=result.state, trouble=None)
     station = replace(station, surveys=station.surveys.put(record))
     outputs: tuple[Output, ...] = ()
@@ -161,8 +161,10 @@ def _stepped(station: Station, job_id: int, result: SurveyStepped, now_ns: int) 
         for serial, why in result.returning.items():
             station, sent = send_home(station, survey_id, serial, why, now_ns)
             outputs += sent
-    station, sent = _release_vehicles(station, survey_id, now_ns)
-    return station, (*outputs, *sent)
+    if was_running:
+        station, sent = release_vehicles(station, survey_id, now_ns)
+        outputs += sent
+    return station, outputs
 
 
 def _not_stepped(station: Station, job_id: int, error: str, _now_ns: int) -> Stepped:
@@ -223,7 +225,8 @@ def _read_missions(
         if order is not None and may_be_sent_later(order):
             record = given_back(record, member, order, now_ns)
             continue
-        record = record.put(stopped_if_overdue(record, updated, now_ns, settings))
+        could_fly = hindrance(station, updated, now_ns) is None
+        record = record.put(stopped_if_overdue(record, updated, could_fly, now_ns, settings))
         if order is not None and order.phase is Phase.TIMED_OUT and record.is_running:
             station, number = take_id(station)
             why = f"the mission of order {order.command.id} was ignored"
@@ -282,30 +285,23 @@ def _order_mission(
         record = asked_again(record, member, given.number, why, now_ns)
         return replace(station, surveys=station.surveys.put(record)), sent
     record = record.put(replace(member, unsent_since_ns=None))
-    waits = given.stands_by
-    in_the_way = refusal.rule == SEPARATION
+    # One taken from guidance during the step is not able until it is given back; then it may fly.
+    waits = given.stands_by or refusal.rule == AUTHORITY
+    # Fewer rows may last for what is in the battery, as they may keep clear of another vehicle.
+    takes_fewer = refusal.rule == BATTERY and _may_take_fewer(state, given.serial)
+    in_the_way = refusal.rule == SEPARATION or takes_fewer
     state = refused(
         state, given.serial, given.number, why, now_ns, may_end=waits, in_the_way=in_the_way
     )
     record = replace(record, state=state)
     station = replace(station, surveys=station.surveys.put(record))
-    flies_on = given.serial in state.flights
+    flies_on = given.serial in state.flights or takes_fewer
     if returns_home(record) and refusal.rule == BATTERY and not flies_on:
         return send_home(station, survey_id, given.serial, NO_BATTERY, now_ns)
     return station, sent
 
 
-def _release_vehicles(station: Station, survey_id: int, now_ns: int) -> Stepped:
-    """After the end of a survey send its vehicles home, if it returns, or else release them."""
-    record = station.surveys.records[survey_id]
-    if record.is_running or record.state is None:
-        return station, ()
-    outputs: tuple[Output, ...] = ()
-    why = f"survey {record.survey.name} is {record.state.phase.value}: {record.state.reason}"
-    for member in record.members.values():
-        if is_done_and_returns(record) and member.stop_reason is None:
-            station, sent = send_home(station, survey_id, member.serial, IS_DONE, now_ns)
-            outputs += sent
-        if not is_under_way(station, station.surveys.records[survey_id].members[member.serial]):
-            station = authority.hand_back(station, member.serial, record.started_by, why, now_ns)
-    return station, outputs
+def _may_take_fewer(state: SurveyState, serial: str) -> bool:
+    """Whether a vehicle's mission was chosen for it alone, and has several rows."""
+    flight = state.flights.get(serial)
+    return flight is not None and flight.is_chosen and len(flight.route) > 1

@@ -183,7 +183,7 @@ def _order(record: SurveyRecord, given: MissionAssignment, vehicle: VehicleState
     return OperatorOrder(
         0,
         FlyMission(given.mission),
-        f"{record.started_by}: survey {record.survey.name}",
+        record.issuer,
         serial=given.serial,
         takeoff=member.may_take_off and vehicle.is_flying.value is False,
         role=AuthorityHolder.GUIDANCE,

@@ -15,7 +15,7 @@ from recon.station.control import authority
 from recon.station.operations.fleet_return import commands
 from recon.station.state.fleet_return_record import ENDED
 from recon.station.state.station import Station, take_id
-from recon.station.state.steps import Stepped
+from recon.station.state.steps import Output, Stepped
 from recon.station.state.survey_record import SurveyMember, SurveyRecord
 
 IS_DONE = "the survey is done"
@@ -56,7 +56,7 @@ def send_home(station: Station, survey_id: int, serial: str, why: str, now_ns: i
     if refusal is not None:
         return _hand_back(station, record, serial, refusal.reason, now_ns), ()
     station, number = take_id(station)
-    by = f"{record.started_by}: survey {record.survey.name}"
+    by = record.issuer
     hold = OperatorOrder(
         number, Hover(), f"{by}: {why}", serial=serial, role=AuthorityHolder.GUIDANCE
     )
@@ -66,6 +66,25 @@ def send_home(station: Station, survey_id: int, serial: str, why: str, now_ns: i
         return _hand_back(station, record, serial, placed.note, now_ns), sent
     record = record.put(replace(member, return_reason=why, may_take_off=False))
     return replace(station, surveys=station.surveys.put(record)), sent
+
+
+def release_vehicles(station: Station, survey_id: int, now_ns: int) -> Stepped:
+    """Give back the vehicles of a survey that has just ended or paused, or send them home.
+
+    To be called once, when it stops running: later they may fly for another survey.
+    """
+    record = station.surveys.records[survey_id]
+    if record.is_running or record.state is None:
+        return station, ()
+    outputs: tuple[Output, ...] = ()
+    why = f"survey {record.survey.name} is {record.state.phase.value}: {record.state.reason}"
+    for member in record.members.values():
+        if is_done_and_returns(record) and member.stop_reason is None:
+            station, sent = send_home(station, survey_id, member.serial, IS_DONE, now_ns)
+            outputs += sent
+        if not is_under_way(station, station.surveys.records[survey_id].members[member.serial]):
+            station = authority.hand_back(station, member.serial, record.started_by, why, now_ns)
+    return station, outputs
 
 
 def _hand_back(

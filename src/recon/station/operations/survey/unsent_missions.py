@@ -7,7 +7,8 @@ be nearer than a second ago. The vehicle has not moved for such a mission, so:
 - The mission goes back to the planner, which requests the next one after `retry_soon_s`. Meanwhile
   the survey's view states the reason. A permission to take off that was not used is kept.
 - After `SurveyTimes.unsent_within_s` of such reasons without a mission sent, the vehicle is stopped
-  with the last one, until an operator starts it again.
+  with the last one, until an operator starts it again. The time ends with a mission that is sent,
+  and while the vehicle could fly and the planner wants nothing of it.
 - Any other refusal, and every mission that was sent, is handled as before: see `execution`.
 """
 
@@ -15,7 +16,7 @@ from dataclasses import replace
 
 from recon.guidance.survey import refused
 from recon.model.command import Phase, Refusal
-from recon.model.units import ns_to_seconds
+from recon.model.units import ns_to_seconds, seconds_to_ns
 from recon.safety.rules.link_age import RULE as LINK_AGE
 from recon.safety.rules.separation import RULE as SEPARATION
 from recon.station.operations.settings import SurveyTimes
@@ -69,16 +70,22 @@ def asked_again(
 
 
 def stopped_if_overdue(
-    record: SurveyRecord, member: SurveyMember, now_ns: int, settings: SurveyTimes
+    record: SurveyRecord, member: SurveyMember, could_fly: bool, now_ns: int, settings: SurveyTimes
 ) -> SurveyMember:
-    """Return the vehicle, stopped if no mission could be sent to it for too long."""
+    """Return the vehicle, stopped if no mission could be sent to it for too long.
+
+    If it `could_fly` and its planner asks for nothing, as when it waits for sun, that time ends.
+    """
     since_ns, state = member.unsent_since_ns, record.state
     if since_ns is None or state is None or member.stop_reason is not None:
         return member
+    last = state.refusals.get(member.serial)
+    asked_until_ns = since_ns if last is None else last.again_ns
+    if could_fly and now_ns > asked_until_ns + seconds_to_ns(settings.asked_again_within_s):
+        return replace(member, unsent_since_ns=None)
     waited_s = ns_to_seconds(now_ns - since_ns)
     if waited_s < settings.unsent_within_s:
         return member
-    last = state.refusals.get(member.serial)
     why = "" if last is None else f": {last.reason.removesuffix(ASKS_AGAIN)}"
     text = f"no mission could be sent to it for {waited_s:.0f} s{why}"
     return replace(member, stop_reason=text, unsent_since_ns=None)

@@ -34,6 +34,7 @@ from recon.safety.airspace import PreparedZone
 from recon.safety.datum import places_m
 from recon.station.control import order_gateway
 from recon.station.operations.survey.availability import is_flown
+from recon.station.operations.survey.return_to_home import release_vehicles
 from recon.station.state.station import Station, take_id
 from recon.station.state.steps import Job, JobKind, Output, Stepped
 from recon.station.state.survey_record import PendingStep, SurveyMember, SurveyRecord
@@ -53,10 +54,9 @@ class SurveyReplanRequest:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SurveyReplanned:
-    """The survey after the zone changes up to `changes`; `is_shut` when no row is left."""
+    """The survey after the zone changes up to `changes`."""
 
     state: SurveyState
-    is_shut: bool
     changes: int
 
 
@@ -64,7 +64,7 @@ def replan(work: SurveyReplanRequest) -> SurveyReplanned:
     """Plan a survey anew: the worker's part."""
     plan: SurveyPlan | Refusal = plan_survey(work.state.plan.survey, work.frame, work.surroundings)
     state = replanned(work.state, plan, work.flying, work.now_ns)
-    return SurveyReplanned(state, isinstance(plan, Refusal), work.changes)
+    return SurveyReplanned(state, work.changes)
 
 
 def is_outdated(station: Station, record: SurveyRecord) -> bool:
@@ -141,14 +141,14 @@ def _waypoints_left(station: Station, member: SurveyMember) -> Iterator[Waypoint
         yield from part.waypoints
 
 
-def _replanned(station: Station, job_id: int, result: SurveyReplanned, _now_ns: int) -> Stepped:
+def _replanned(station: Station, job_id: int, result: SurveyReplanned, now_ns: int) -> Stepped:
     station, record = _without_pending(station, job_id)
     if record is None:
         return station, ()
-    record = replace(
-        record, state=result.state, is_shut=result.is_shut, zone_changes=result.changes
-    )
-    return replace(station, surveys=station.surveys.put(record)), ()
+    was_running = record.is_running
+    record = replace(record, state=result.state, zone_changes=result.changes)
+    station = replace(station, surveys=station.surveys.put(record))
+    return release_vehicles(station, record.survey.id, now_ns) if was_running else (station, ())
 
 
 def _not_replanned(station: Station, job_id: int, error: str, _now_ns: int) -> Stepped:
