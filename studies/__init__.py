@@ -1,1 +1,4 @@
-"""Long runs that show what a test's few seconds cannot: `make study`. Each has a short test."""
+"""Long runs that show what a test's few seconds cannot.
+
+`make study` runs those that check something; some have a short run in `tests/studies`.
+"""

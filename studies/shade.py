@@ -23,10 +23,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
+from typing import NamedTuple
 
 import cv2
 import numpy as np
-import numpy.typing as npt
 
 from recon.camera import GroundProjector
 from recon.detection import (
@@ -42,6 +42,7 @@ from recon.model.shade import SUNLIT_TRANSMITTANCE, FloatMap, MaskMap, ShadeMap
 from recon.model.units import seconds_to_ns
 from recon.score.scenario import Scenario
 from recon.score.scenario_file import load_scenario
+from recon.score.shade_figures import ShadeFigures, map_figures
 from recon.score.simulation import rig_of, simulation_of
 from recon.sim.camera.field import FieldRenderer
 from recon.sim.camera.frames import CameraView
@@ -49,8 +50,6 @@ from recon.sim.fleet import IMAGER_SERIAL
 
 IMAGE_CELL_M, FIELD_CELL_M = 2.0, 4.0
 FULL_COLS, FULL_ROWS = 1280, 720
-MIXED = (0.05, 0.95)
-"""Shade share of the frames that the percentile is taken over."""
 CEILING_AT: tuple[float, ...] = tuple(np.arange(0.2, 0.82, 0.02).tolist())
 """Transmittances at which a map may be divided to show the ceiling."""
 SERIAL = "SIM-IMAGER"
@@ -96,58 +95,43 @@ class Moment:
     transmittance: FloatMap
 
 
-@dataclass(slots=True)
-class Tally:
-    """Sums over the frames of a flight."""
+class Figures(NamedTuple):
+    """A method's figures over the frames of a flight, or of one flight for each seed."""
 
-    both: int = 0
-    either: int = 0
-    cells: int = 0
-    false: int = 0
-    missed: int = 0
-    unknown: int = 0
-    error: float = 0.0
-    known: int = 0
-    mixed_iou: list[float] | None = None
-    ms: list[float] | None = None
-    first_right_s: float = float("inf")
-    is_ceiling: bool = False
+    shade: ShadeFigures
+    mixed_iou: float
+    mixed_p10: float
+    """Mean and 10th percentile over frames with 5 to 95 % shade."""
+    first_right_min: float
+    """When 90 % of the cells were first known and right; infinite if never."""
+    mean_ms: float
+    most_ms: float
+    """Processor time of a frame."""
 
-    def add(self, found: ShadeMap | None, truth: FloatMap, counted: MaskMap, at_s: float) -> None:
-        """Add a frame; a rejected one is unknown throughout."""
-        is_shade = truth < SUNLIT_TRANSMITTANCE
-        valid = np.zeros_like(counted) if found is None else found.valid
-        called = np.zeros_like(counted)
-        if found is not None:
-            called = valid & (found.transmittance < self._divided_at(found, is_shade & counted))
-        wrong = counted & (~valid | (called != is_shade))
-        both = int((called & is_shade & counted).sum())
-        either = int(((called | is_shade | wrong) & counted).sum())
-        self.both += both
-        self.either += either
-        self.cells += int(counted.sum())
-        self.false += int((called & ~is_shade & counted).sum())
-        self.missed += int((valid & ~called & is_shade & counted).sum())
-        self.unknown += int((~valid & counted).sum())
-        if found is not None:
-            known = valid & counted
-            self.error += float(np.abs(found.transmittance - truth)[known].sum())
-            self.known += int(known.sum())
-        if MIXED[0] <= is_shade[counted].mean() <= MIXED[1]:
-            self.mixed_iou = [*(self.mixed_iou or []), both / max(1, either)]
-        if wrong.sum() <= 0.1 * counted.sum():
-            self.first_right_s = min(self.first_right_s, at_s)
 
-    def _divided_at(self, found: ShadeMap, is_shade: MaskMap) -> float:
-        """Return the transmittance below which a cell counts as in shade."""
-        if not self.is_ceiling:
-            return SUNLIT_TRANSMITTANCE
+def frame_figures(
+    found: ShadeMap | None, truth: FloatMap, counted: MaskMap, *, is_ceiling: bool
+) -> ShadeFigures:
+    """Return the figures of a frame's map; a rejected frame is unknown throughout."""
+    if found is None:
+        return map_figures(truth, np.zeros_like(counted), truth, counted, FIELD_CELL_M)
+    read = map_figures(found.transmittance, found.valid, truth, counted, FIELD_CELL_M)
+    if not is_ceiling:
+        return read
+    least = _best_division(found, (truth < SUNLIT_TRANSMITTANCE) & counted)
+    moved = found.transmittance + np.float32(SUNLIT_TRANSMITTANCE - least)
+    divided = map_figures(moved, found.valid, truth, counted, FIELD_CELL_M)
+    return replace(divided, transmittance_error=read.transmittance_error)
 
-        def agreement(least: float) -> float:
-            called = found.valid & (found.transmittance < least)
-            return float((called & is_shade).sum() / max(1, (called | is_shade).sum()))
 
-        return max(CEILING_AT, key=agreement)
+def _best_division(found: ShadeMap, is_shade: MaskMap) -> float:
+    """Return the transmittance that divides a map into sun and shade most as in truth."""
+
+    def agreement(least: float) -> float:
+        called = found.valid & (found.transmittance < least)
+        return float((called & is_shade).sum() / max(1, (called | is_shade).sum()))
+
+    return max(CEILING_AT, key=agreement)
 
 
 def main() -> int:
@@ -161,7 +145,7 @@ def main() -> int:
     cv2.setNumThreads(1)
     print(HEAD)
     for name in names:
-        sums: dict[str, list[tuple[float, ...]]] = {}
+        sums: dict[str, list[Figures]] = {}
         for seed in _numbers(options.seeds):
             flight = Flight(
                 name, seed, options.minutes, options.exposure, options.pose, options.cols,
@@ -176,7 +160,7 @@ def main() -> int:
     return 0
 
 
-def _rows(flight: Flight, options: argparse.Namespace) -> Iterator[tuple[str, tuple[float, ...]]]:
+def _rows(flight: Flight, options: argparse.Namespace) -> Iterator[tuple[str, Figures]]:
     """Yield each method's name and figures."""
     if options.earlier > 0.0:
         start_s = 60.0 * options.earlier
@@ -211,37 +195,36 @@ def score(
     begins_s: float = 0.0,
     state: DetectionState | None = None,
     is_ceiling: bool = False,
-) -> tuple[float, ...]:
+) -> Figures:
     """Return the figures of a method on a flight, over the frames after a time.
 
     The flight begins at a moment of what was rendered, in a state: by default, of knowing nothing.
     """
-    tally = Tally(ms=[], is_ceiling=is_ceiling)
     name, _, window_s = method.partition(":")
     state, settings = state or DetectionState(), _settings(flight)
     if window_s:
         seconds = float(window_s)
         samples = round(seconds / settings.window_s * settings.samples)
         settings = replace(settings, window_s=seconds, samples=samples)
+    total, ms, first_right_s = ShadeFigures(), list[float](), float("inf")
     for moment in moments(flight):
-        if moment.image.captured_at_ns < seconds_to_ns(begins_s):
+        at_ns = moment.image.captured_at_ns
+        if at_ns < seconds_to_ns(begins_s):
             continue
         started = time.process_time()
         state, found = DETECTORS[name](state, moment.image, settings)
-        assert tally.ms is not None
-        tally.ms.append(1e3 * (time.process_time() - started))
-        if moment.image.captured_at_ns < seconds_to_ns(after_s):
+        ms.append(1e3 * (time.process_time() - started))
+        if at_ns < seconds_to_ns(after_s):
             continue
         shade = None if isinstance(found, RejectedFrame) else found
-        at_s = moment.image.captured_at_ns / 1e9 - begins_s
-        tally.add(shade, moment.transmittance, _counted(moment), at_s)
-    mixed, ms = tally.mixed_iou or [], tally.ms or [0.0]
-    return (
-        tally.both, tally.either, tally.cells, tally.false, tally.missed, tally.unknown,
-        tally.error, tally.known, float(np.mean(mixed)) if mixed else np.nan,
-        float(np.quantile(mixed, 0.1)) if mixed else np.nan, tally.first_right_s / 60.0,
-        float(np.mean(ms)), float(np.max(ms)),
-    )  # fmt: skip
+        counted = _counted(moment)
+        figures = frame_figures(shade, moment.transmittance, counted, is_ceiling=is_ceiling)
+        total += figures
+        if figures.unknown + figures.wrong <= 0.1 * figures.cells:
+            first_right_s = min(first_right_s, at_ns / 1e9 - begins_s)
+    mixed, ms = total.mixed_ious or (np.nan,), ms or [0.0]
+    mean, p10 = float(np.mean(mixed)), float(np.quantile(mixed, 0.1))
+    return Figures(total, mean, p10, first_right_s / 60.0, float(np.mean(ms)), max(ms))
 
 
 HEAD = (
@@ -250,24 +233,27 @@ HEAD = (
 )
 
 
-def _row(label: str, method: str, row: tuple[float, ...]) -> str:
-    both, either, cells, false, missed, unknown, error, known, mixed, p10, first, ms, most = row
+def _row(label: str, method: str, row: Figures) -> str:
+    found, cells = row.shade, row.shade.cells
+    iou = found.shade.both / max(1, found.shade.either)
+    error = found.transmittance_error / max(1, found.known)
     return (
-        f"{label:22} {method:18} {both / max(1, either):5.3f} {mixed:5.3f} {p10:5.3f} "
-        f"{false / cells:6.1%} {missed / cells:6.1%} {(false + missed) / cells:6.1%} "
-        f"{unknown / cells:6.1%} {error / max(1.0, known):6.3f} {first:7.1f} {ms:5.1f} {most:5.1f}"
+        f"{label:22} {method:18} {iou:5.3f} {row.mixed_iou:5.3f} {row.mixed_p10:5.3f} "
+        f"{found.false / cells:6.1%} {found.missed / cells:6.1%} {found.wrong / cells:6.1%} "
+        f"{found.unknown / cells:6.1%} {error:6.3f} {row.first_right_min:7.1f} "
+        f"{row.mean_ms:5.1f} {row.most_ms:5.1f}"
     )
 
 
-def _pooled(rows: Sequence[tuple[float, ...]]) -> tuple[float, ...]:
-    """Return sums of the counts and means of the rest."""
-    table = np.array(rows)
-    with np.errstate(all="ignore"):
-        means = [
-            float(np.nanmean(column)) if np.isfinite(column).any() else float("nan")
-            for column in table[:, 8:11].T
-        ]
-    return (*table[:, :8].sum(axis=0), *means, table[:, 11].mean(), table[:, 12].max())
+def _pooled(rows: Sequence[Figures]) -> Figures:
+    """Return the sum of the counts, the means of the rest, and the longest time of a frame."""
+    counts = sum((row.shade for row in rows), ShadeFigures())
+    means = (_mean(each) for each in zip(*(row[1:5] for row in rows), strict=True))
+    return Figures(counts, *means, max(row.most_ms for row in rows))
+
+
+def _mean(values: Sequence[float]) -> float:
+    return float(np.nanmean(values)) if np.isfinite(values).any() else np.nan
 
 
 def moments(flight: Flight) -> Iterator[Moment]:
@@ -289,18 +275,9 @@ def _write(path: Path, moment: Moment) -> None:
     np.savez(
         path, rgb=png, valid=np.packbits(image.valid), at_ns=image.captured_at_ns,
         number=image.frame_id, rotation=image.pose.rotation_enu_camera,
-        position=image.pose.position_enu_m, sun=_sun(image), locked=_locked(image),
+        position=image.pose.position_enu_m, sun=image.toward_sun_enu, locked=image.exposure_locked,
         truth=moment.transmittance.astype(np.float16),
     )  # fmt: skip
-
-
-def _sun(image: GroundImage) -> npt.NDArray[np.float64]:
-    found = getattr(image, "toward_sun_enu", None)
-    return np.zeros(3) if found is None else np.asarray(found)
-
-
-def _locked(image: GroundImage) -> bool:
-    return bool(getattr(image, "exposure_locked", False))
 
 
 def _read(path: Path, grid: GroundGrid) -> Moment:

@@ -17,8 +17,9 @@ from tests.guidance.survey.flyers import BoolArray, Flights, FloatArray
 
 from recon.guidance.survey import ClosedArea, Surveyor, SurveyState
 from recon.guidance.survey.closed_areas import closed_ground
+from recon.guidance.survey.lattice import EastNorth
 from recon.guidance.survey.own_share import own_share
-from recon.guidance.survey.route import Place, Route
+from recon.guidance.survey.route import Route
 from recon.guidance.survey.segments import Segments, expected_sun, segments_of
 from recon.guidance.survey.vehicle_choice import VehicleChoice
 from recon.model.shade import SunForecast
@@ -92,14 +93,14 @@ class Panel:
             ends = state.plan.lattice.east_north_m(leg.ends_m(state.plan.lattice, 0.0))
             cv2.polylines(self.canvas, [to_px(ends)], False, colour, thick, cv2.LINE_AA)
 
-    def way(self, places_m: Sequence[Place], colour: object) -> None:
+    def way(self, places_m: Sequence[EastNorth], colour: object) -> None:
         """Draw a way, with a dot at each corner."""
         points = to_px(np.array(places_m))
         cv2.polylines(self.canvas, [points], False, colour, 1, cv2.LINE_AA)
         for point in points.tolist():
             cv2.circle(self.canvas, point, 3, colour, -1, cv2.LINE_AA)
 
-    def vehicle(self, place_m: Place, colour: object) -> None:
+    def vehicle(self, place_m: EastNorth, colour: object) -> None:
         """Draw a vehicle."""
         (at,) = to_px(np.array([place_m])).tolist()
         cv2.circle(self.canvas, at, 8, PAPER, -1, cv2.LINE_AA)

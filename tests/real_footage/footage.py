@@ -17,8 +17,9 @@ from tests.real_footage.light import levels_of, relit
 from tests.real_footage.places import SOURCE_FINER, Place
 
 from recon.camera import GroundProjector, ImageCircle
+from recon.model.arrays import FloatArray
 from recon.model.geo import GroundGrid
-from recon.model.imagery import CameraPose, FloatArray, Frame, GroundImage
+from recon.model.imagery import CameraPose, Frame, GroundImage
 from recon.model.units import NS_PER_S
 
 GREEN = 1

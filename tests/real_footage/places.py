@@ -17,8 +17,9 @@ from recon.camera import (
     pose_from_points,
 )
 from recon.geo import enu_from_points
+from recon.model.arrays import FloatArray
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
-from recon.model.imagery import CameraPose, FloatArray
+from recon.model.imagery import CameraPose
 
 PLACES = ("becker-1", "elgin-5", "grand-meadow-7")
 MARKED_SIZE_PX = (3840, 2160)

@@ -12,9 +12,10 @@ from tests.examples import examples
 from tests.safety.traffic import SETTINGS
 from tests.safety.trajectories import NEED, standing, trajectories, writer_at
 
+from recon.model.arrays import FloatArray
 from recon.safety.prediction import Conflict, FlightPart, Trajectory, first_conflict
 from recon.safety.prediction.conflicts import segments_apart_m
-from recon.safety.prediction.trajectory import FloatArray, TrajectoryWriter
+from recon.safety.prediction.trajectory import TrajectoryWriter
 from recon.safety.settings import PredictionSettings
 
 OTHER = standing(0.0)

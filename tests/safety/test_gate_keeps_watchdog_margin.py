@@ -11,12 +11,13 @@ import numpy as np
 import pytest
 from tests.safety.traffic import AIR, NOW, SETTINGS, S, aircraft, flies, judged, route, seen
 
+from recon.model.arrays import FloatArray
 from recon.model.control import Commanded, Intent
 from recon.model.mission import Mission
 from recon.model.vehicle import FlightMode, VehicleState
 from recon.safety import Traffic
 from recon.safety.prediction import Predictor, Trajectory
-from recon.safety.prediction.trajectory import END_S, PART, FloatArray, sample
+from recon.safety.prediction.trajectory import END_S, PART, sample
 from recon.safety.separation_minima import gate_minima, watchdog_minima
 from recon.safety.settings import SafetySettings
 from recon.safety.watchdogs import Finding, WatchedVehicle, build_traffic_picture

@@ -9,13 +9,13 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from recon.forecast import NextChange
+from recon.model.arrays import FloatArray
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.shade import SunForecast
 from recon.score.change_figures import ChangeScore, score_change
 from recon.score.forecast_figures import (
     BINS,
     Calibration,
-    FloatArray,
     LeadScore,
     SeenCells,
     score_cells,

@@ -42,7 +42,7 @@ MOST_FAILURES = 10
 """In a row: the server is gone, or refuses."""
 USER_AGENT = f"Recon/{version()} (ground control station; offline map of one field)"
 PLACES = ("{z}", "{x}", "{y}")
-OK, NO_CONTENT, NOT_FOUND, GONE, BUSY = 200, 204, 404, 410, 429
+OK, NO_CONTENT, NOT_FOUND, GONE = 200, 204, 404, 410
 REFUSED = frozenset({401, 402, 403})
 
 Key = tuple[int, int, int]

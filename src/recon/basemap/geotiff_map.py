@@ -27,13 +27,13 @@ from rasterio.windows import Window
 from recon.basemap.map_file import BaseMapError, MapInfo, Tile, checked_bounds, one_line, plain_text
 from recon.basemap.web_mercator import (
     TILE_PX,
-    FloatArray,
     MapArea,
     globe_from_world,
     metres_per_pixel,
     world_from_globe,
     zoom_for,
 )
+from recon.model.arrays import FloatArray
 
 STARTS = frozenset({b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"})
 """Of either byte order, plain and large."""

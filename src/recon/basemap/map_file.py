@@ -11,7 +11,8 @@ from typing import Protocol
 
 import numpy as np
 
-from recon.basemap.web_mercator import DEEPEST_ZOOM, IntArray, MapArea
+from recon.basemap.web_mercator import DEEPEST_ZOOM, MapArea
+from recon.model.arrays import IntArray
 from recon.model.errors import ReconError
 
 LARGEST_TILE_BYTES = 2 * 1024 * 1024

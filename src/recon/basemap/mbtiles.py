@@ -25,7 +25,8 @@ from recon.basemap.map_file import (
     share_of_tiles,
     within_s,
 )
-from recon.basemap.web_mercator import DEEPEST_ZOOM, IntArray, MapArea, tile_bounds_deg
+from recon.basemap.web_mercator import DEEPEST_ZOOM, MapArea, tile_bounds_deg
+from recon.model.arrays import IntArray
 
 INSTRUCTIONS_BETWEEN_LOOKS = 10_000
 MOST_FACTS = 100

@@ -35,7 +35,8 @@ from recon.basemap.map_file import (
     plain_text,
     share_of_tiles,
 )
-from recon.basemap.web_mercator import IntArray, MapArea
+from recon.basemap.web_mercator import MapArea
+from recon.model.arrays import IntArray
 
 HEADER_BYTES = 127
 LARGEST_DIRECTORY_BYTES = 2 * 1024 * 1024

@@ -15,10 +15,8 @@ import shapely  # type: ignore[import-untyped, unused-ignore]
 
 from recon.geo import geo_from_enu, shape_of
 from recon.model.airspace import Region
+from recon.model.arrays import FloatArray, IntArray
 from recon.model.geo import LocalFrame
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
 
 DEEPEST_ZOOM = 24
 """Pixels of a centimetre."""

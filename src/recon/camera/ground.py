@@ -22,10 +22,10 @@ from recon.camera.errors import PoseError
 from recon.camera.image_circle import ImageCircle, find_image_circle
 from recon.camera.omnidirectional import OmnidirectionalCamera
 from recon.camera.sight import COARSEST_M, farthest_sight_m, sight2_m2
+from recon.model.arrays import FloatArray
 from recon.model.geo import GroundGrid
 from recon.model.imagery import CameraPose, Frame, GroundImage, Registration, RgbImage
 
-FloatArray = npt.NDArray[np.float64]
 MapArray = npt.NDArray[np.float32]
 
 LARGEST_LATTICE_STEP = 16

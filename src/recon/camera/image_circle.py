@@ -11,9 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from recon.camera.omnidirectional import OmnidirectionalCamera
+from recon.model.arrays import FloatArray
 from recon.model.imagery import RgbImage
-
-FloatArray = npt.NDArray[np.float64]
 
 DIRECTIONS = 180
 LIT_LEVEL = 32

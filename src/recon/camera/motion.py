@@ -7,12 +7,10 @@ What remains (drift of barometer, GNSS and compass) is unknown here: a moved pos
 from math import cos, hypot, radians, sin
 
 import numpy as np
-import numpy.typing as npt
 
+from recon.model.arrays import FloatArray
 from recon.model.imagery import CameraPose, TelemetryReference
 from recon.model.vehicle import Mount
-
-FloatArray = npt.NDArray[np.float64]
 
 POSITION_ERROR_M, HEADING_ERROR_DEG, TILT_ERROR_DEG = 3.0, 2.0, 1.0
 """Standard errors of an aircraft's GNSS, of its compass, and of a gimbal's straight down."""

@@ -19,8 +19,7 @@ import numpy.typing as npt
 
 from recon.camera.errors import CalibrationError, FrameSizeError
 from recon.camera.radial_profile import RadialProfile
-
-FloatArray = npt.NDArray[np.float64]
+from recon.model.arrays import FloatArray
 
 INVERSE_MISMATCH_SHARE = 0.005
 """Allowed difference of the two polynomials, as a share of the image's width."""

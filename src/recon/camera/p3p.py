@@ -6,9 +6,8 @@ are rays, not image points, so fields of view over 180 degrees work as well.
 """
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from recon.model.arrays import FloatArray
 
 LARGEST_IMAGINARY_PART = 1e-3
 """Roots this near the real axis count as real: under marking noise a double root splits into a

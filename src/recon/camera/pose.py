@@ -4,15 +4,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from recon.camera.errors import PoseError
 from recon.camera.omnidirectional import OmnidirectionalCamera, scale_between
 from recon.camera.pose_fit import PoseFit, fit_pose, residuals_px
 from recon.camera.text_files import ControlPoint
+from recon.model.arrays import FloatArray
 from recon.model.imagery import CameraPose
-
-FloatArray = npt.NDArray[np.float64]
 
 FEWEST_POINTS = 4
 LARGEST_RMS_SHARE = 0.03

@@ -11,15 +11,13 @@ from itertools import combinations, islice
 from math import comb
 
 import numpy as np
-import numpy.typing as npt
 from scipy.optimize import least_squares
 from scipy.spatial.transform import Rotation
 
 from recon.camera.errors import PoseError
 from recon.camera.omnidirectional import OmnidirectionalCamera
 from recon.camera.p3p import solve_p3p
-
-FloatArray = npt.NDArray[np.float64]
+from recon.model.arrays import FloatArray
 
 MOST_TRIPLES = 1_500
 """All triples of 21 points; of more points an even selection, to bound the time of loading."""

@@ -10,11 +10,9 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
-import numpy.typing as npt
 
 from recon.camera.errors import CalibrationError
-
-FloatArray = npt.NDArray[np.float64]
+from recon.model.arrays import FloatArray
 
 TABLE_ROWS = 4096
 """Radii in the table: linear interpolation alone is accurate to about 0.0001 px."""

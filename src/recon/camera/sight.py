@@ -7,15 +7,13 @@ and height h count: a pixel shows d / p of the ground across the view, and d^2 /
 from math import sqrt
 
 import numpy as np
-import numpy.typing as npt
 
+from recon.model.arrays import FloatArray
 from recon.model.geo import GroundGrid
 
 COARSEST_M = 12.0
 """Ground that a pixel may show along its longer side; a tilted camera sees to the horizon. Of shade
 read in pixels of 10 to 12 m one cell in nine is wrong, of coarser ones more and more."""
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def sight2_m2(grid: GroundGrid, camera_enu_m: FloatArray) -> FloatArray:

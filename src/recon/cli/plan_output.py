@@ -11,12 +11,11 @@ from recon.geo import geojson_geometry, shape_of
 from recon.guidance.survey import Surveyor, SurveyPlan
 from recon.guidance.survey.estimate import PlannedFlight, SurveyEstimate, plan_figures
 from recon.guidance.survey.imaging import SpeedLimit, exposure_text
+from recon.guidance.survey.lattice import EastNorth
 from recon.guidance.survey.missions import NADIR_DEG
-from recon.guidance.survey.route import Place
 from recon.model.survey import SurveyCamera, height_text
 from recon.model.survey_camera import CameraModel
-
-HECTARE_M2 = 10_000.0
+from recon.model.units import HECTARE_M2
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,7 +175,7 @@ def geojson_of(plan: SurveyPlan, needs: SurveyEstimate) -> bytes:
     return json.dumps(collection, indent=1).encode()
 
 
-def row_ends_m(plan: SurveyPlan, flight: PlannedFlight) -> list[tuple[Place, ...]]:
+def row_ends_m(plan: SurveyPlan, flight: PlannedFlight) -> list[tuple[EastNorth, ...]]:
     """Return where each row of a flight begins and ends, lead-in and all, east-north metres."""
     legs = [leg.ends_m(plan.lattice, plan.swath.lead_m) for leg in flight.route]
     return [tuple(map(tuple, plan.lattice.east_north_m(ends).tolist())) for ends in legs]

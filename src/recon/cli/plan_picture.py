@@ -11,6 +11,7 @@ from recon.cli.plan_output import counted, flights_in_order, minutes, row_ends_m
 from recon.geo import round_length_m
 from recon.guidance.survey import SurveyPlan
 from recon.guidance.survey.estimate import SurveyEstimate
+from recon.model.arrays import FloatArray
 from recon.model.imagery import RgbImage
 
 SIDE_PX, MARGIN_PX, HEAD_PX, LINE_PX = 1000, 40, 56, 26
@@ -28,7 +29,6 @@ PAPER = {Theme.LIGHT: (255, 255, 255), Theme.DARK: (24, 26, 30)}
 INK = {Theme.LIGHT: (40, 40, 40), Theme.DARK: (225, 228, 232)}
 FIELD = {Theme.LIGHT: (226, 238, 226), Theme.DARK: (44, 56, 46)}
 
-FloatArray = np.typing.NDArray[np.float64]
 PixelArray = np.typing.NDArray[np.int32]
 
 

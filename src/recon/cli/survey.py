@@ -24,8 +24,8 @@ from recon.cli.output import print_json, print_line, print_table
 from recon.client import ClientError, Refusal, Station, SurveyCommands, SurveyStatus
 from recon.model.geo import GeoPoint
 from recon.model.survey import PLANNER_GOALS, WhenDone, height_text, unknown_survey
+from recon.model.units import HECTARE_M2
 
-HECTARE_M2 = 10_000.0
 PHASES = {"created": "planned"}
 """Words that differ from the API's."""
 NO_ORIGIN = "the station's site has no origin: start the station with --site FOLDER"

@@ -16,6 +16,7 @@ from recon import version
 from recon.cli.output import printable
 from recon.cli.progress import progress_over, usable_cores
 from recon.model.errors import RecordError
+from recon.model.units import HECTARE_M2
 from recon.product.flight import FlightData, read_flight
 from recon.product.photo import SUFFIXES, Photo, PhotoError, read_photo_facts, unique_names
 from recon.product.sun_at import SunHistory
@@ -260,7 +261,7 @@ def _print_summary(
         f"they show {in_sun:.1f} % of the ground in sun, on {selection.views} photos where there "
         "are as many"
     )
-    area_ha = sum(each.area for each in selection.again) / 10_000.0
+    area_ha = sum(each.area for each in selection.again) / HECTARE_M2
     if selection.again:
         print(f"to fly again: {area_ha:.2f} ha in {len(selection.again)} regions")
     else:

@@ -19,7 +19,6 @@ MAX_ENTRIES = 256
 """Of the list, and of a session: four times the vehicles of the largest site."""
 
 NOT_LISTED = "its serial is not on the list"
-ADDRESS_NOT_LISTED = "its address is not on the list"
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,7 +26,7 @@ from recon.forecast.likeness import shade_scale_m, soft_edge_share, with_likenes
 from recon.forecast.motion import ShadowMotion
 from recon.forecast.pooled_motion import pooled_motion, with_agreement
 from recon.forecast.settings import ForecastSettings
-from recon.forecast.state import ForecastState, prior_sunlit, with_map
+from recon.forecast.state import ForecastState, forecast_of, prior_sunlit, with_map
 from recon.forecast.upwind import Cells, nearest_seen, visible_upwind_s, without_single_gaps
 from recon.model.geo import GroundGrid
 from recon.model.shade import (
@@ -48,9 +48,9 @@ def _forecast(state: ForecastState, settings: ForecastSettings) -> SunForecast:
     newest, prior = state.newest, prior_sunlit(state, settings)
     shade = state.followed or newest
     motion = pooled_motion(state, settings)
-    lead_s = np.array(settings.lead_s, dtype=np.float64)
-    probability = np.full((len(lead_s), *shade.valid.shape), prior, dtype=np.float32)
-    horizon_s = np.where(shade.valid, np.float32(0.0), np.float32(np.nan))
+    shape = len(settings.lead_s), *shade.valid.shape
+    probability = np.full(shape, prior, dtype=np.float32)
+    horizon_s: FloatMap | float = 0.0
     if shade.valid.any():
         seen = _Seen.of(shade)
         edges = soft_edge_share(state, settings)
@@ -64,18 +64,10 @@ def _forecast(state: ForecastState, settings: ForecastSettings) -> SunForecast:
             probability[number] = seen.sun_after(lead, motion, prior, scaled)
         if motion is not None:
             closed = without_single_gaps(shade.valid)
-            upwind_s = visible_upwind_s(closed, shade.grid, motion, settings)
-            horizon_s = np.where(shade.valid, upwind_s, horizon_s)
-    return SunForecast(
-        grid=shade.grid,
-        issued_at_ns=shade.captured_at_ns,
-        lead_s=lead_s,
-        sun_probability=np.rint(probability * SURE).astype(np.uint8),
-        horizon_s=horizon_s,
-        prior_sunlit=prior,
-        method="advection",
-        velocity_mps=None if motion is None else (motion.east_mps, motion.north_mps),
-    )
+            horizon_s = visible_upwind_s(closed, shade.grid, motion, settings)
+    levels = np.rint(probability * SURE).astype(np.uint8)
+    velocity_mps = None if motion is None else (motion.east_mps, motion.north_mps)
+    return forecast_of(shade, settings, prior, "advection", levels, horizon_s, velocity_mps)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -17,7 +17,7 @@ from recon.forecast.followed import with_recent
 from recon.forecast.forecaster import Forecaster
 from recon.forecast.persistence import persisting
 from recon.forecast.settings import ForecastSettings
-from recon.forecast.state import ForecastState, prior_sunlit, sunlit_now, with_map
+from recon.forecast.state import ForecastState, forecast_of, prior_sunlit, sunlit_now, with_map
 from recon.forecast.upwind import nearest_seen, without_single_gaps
 from recon.model.shade import SURE, FloatMap, ShadeMap, SunForecast
 from recon.model.units import ns_to_seconds, seconds_to_ns
@@ -44,9 +44,9 @@ def _forecast(state: ForecastState, settings: ForecastSettings) -> SunForecast:
         return persisting(shade, prior, settings)
     now = sunlit_now(shade, prior, settings)
     seen = without_single_gaps(shade.valid)
-    lead_s = np.array(settings.lead_s, dtype=np.float64)
-    probability = np.full((len(lead_s), *now.shape), round(prior * SURE), dtype=np.uint8)
-    horizon_s = np.where(shade.valid, np.float32(0.0), np.float32(np.nan))
+    shape = len(settings.lead_s), *now.shape
+    probability = np.full(shape, round(prior * SURE), dtype=np.uint8)
+    horizon_s = np.zeros(now.shape, dtype=np.float32)
     alive = shade.valid.copy()
     for number, (lead, rows, cols) in enumerate(_upwind(flow, settings)):
         there = _read(seen.astype(np.float32), rows, cols, nowhere=0.0) > 0.5
@@ -55,15 +55,7 @@ def _forecast(state: ForecastState, settings: ForecastSettings) -> SunForecast:
         later = prior + np.exp(-lead / settings.shape_memory_s) * (later - prior)
         probability[number][alive] = np.rint(later[alive] * SURE).astype(np.uint8)
         horizon_s[alive] = lead
-    return SunForecast(
-        grid=shade.grid,
-        issued_at_ns=shade.captured_at_ns,
-        lead_s=lead_s,
-        sun_probability=probability,
-        horizon_s=horizon_s,
-        prior_sunlit=prior,
-        method="dense_flow",
-    )
+    return forecast_of(shade, settings, prior, "dense_flow", probability, horizon_s)
 
 
 def _flow_of(state: ForecastState, settings: ForecastSettings) -> Flow | None:

@@ -21,7 +21,7 @@ from recon.forecast.forecaster import Forecaster
 from recon.forecast.motion import ShadowMotion, motion_of, with_pairs
 from recon.forecast.persistence import persisting
 from recon.forecast.settings import ForecastSettings
-from recon.forecast.state import ForecastState, prior_sunlit, sunlit_now, with_map
+from recon.forecast.state import ForecastState, forecast_of, prior_sunlit, sunlit_now, with_map
 from recon.forecast.upwind import upwind, visible_upwind_s, without_single_gaps
 from recon.model.geo import GroundGrid
 from recon.model.shade import SURE, FloatMap, MaskMap, ShadeMap, SunForecast
@@ -50,12 +50,11 @@ GLOBAL_SHIFT = Forecaster(_observed, _forecast)
 def _moving_on(
     shade: ShadeMap, motion: ShadowMotion, prior: float, settings: ForecastSettings
 ) -> SunForecast:
-    lead_s = np.array(settings.lead_s, dtype=np.float64)
     closed = without_single_gaps(shade.valid)
     upwind_s = visible_upwind_s(closed, shade.grid, motion, settings)
     horizon_s = np.where(shade.valid, upwind_s, np.float32(np.nan))
     now = _filled(sunlit_now(shade, prior, settings), shade.valid, closed)
-    shape = (len(lead_s), *now.shape)
+    shape = len(settings.lead_s), *now.shape
     probability = np.full(shape, round(prior * SURE), dtype=np.uint8)
     for i, lead in enumerate(settings.lead_s):
         known = horizon_s >= lead
@@ -64,16 +63,8 @@ def _moving_on(
             # Shapes decorrelate: fade to the prior even where the motion is known.
             later = prior + np.exp(-lead / settings.shape_memory_s) * (later - prior)
             probability[i][known] = np.rint(later[known] * SURE).astype(np.uint8)
-    return SunForecast(
-        grid=shade.grid,
-        issued_at_ns=shade.captured_at_ns,
-        lead_s=lead_s,
-        sun_probability=probability,
-        horizon_s=horizon_s,
-        prior_sunlit=prior,
-        method="global_shift",
-        velocity_mps=(motion.east_mps, motion.north_mps),
-    )
+    velocity_mps = motion.east_mps, motion.north_mps
+    return forecast_of(shade, settings, prior, "global_shift", probability, upwind_s, velocity_mps)
 
 
 def moved_on(shade: ShadeMap, velocity_mps: tuple[float, float] | None, seconds: float) -> ShadeMap:

@@ -17,9 +17,8 @@ import numpy.typing as npt
 
 from recon.forecast.settings import ForecastSettings
 from recon.forecast.upwind import Cells, nearest_seen
+from recon.model.arrays import FloatArray
 from recon.model.shade import SUNLIT_TRANSMITTANCE, FloatMap, MaskMap, ShadeMap, SunForecast
-
-FloatArray = npt.NDArray[np.float64]
 
 MEMBERS = 20
 STEP_S = 5.0

@@ -9,7 +9,7 @@ import numpy as np
 
 from recon.forecast.forecaster import Forecaster
 from recon.forecast.settings import ForecastSettings
-from recon.forecast.state import ForecastState, prior_sunlit, sunlit_now, with_map
+from recon.forecast.state import ForecastState, forecast_of, prior_sunlit, sunlit_now, with_map
 from recon.model.shade import SURE, ShadeMap, SunForecast
 
 
@@ -25,32 +25,16 @@ def persisting(shade: ShadeMap, prior: float, settings: ForecastSettings) -> Sun
     now = sunlit_now(shade, prior, settings)
     # Relaxation of a two-state process towards its mean.
     probability = prior + kept[:, np.newaxis, np.newaxis] * (now - prior)
-    return SunForecast(
-        grid=shade.grid,
-        issued_at_ns=shade.captured_at_ns,
-        lead_s=lead_s,
-        sun_probability=np.rint(probability * SURE).astype(np.uint8),
-        horizon_s=np.where(
-            shade.valid, np.float32(settings.persistence_horizon_s), np.float32(np.nan)
-        ),
-        prior_sunlit=prior,
-        method="persistence",
-    )
+    levels = np.rint(probability * SURE).astype(np.uint8)
+    horizon_s = settings.persistence_horizon_s
+    return forecast_of(shade, settings, prior, "persistence", levels, horizon_s)
 
 
 def _climatology(state: ForecastState, settings: ForecastSettings) -> SunForecast:
     shade, prior = state.newest, prior_sunlit(state, settings)
-    lead_s = np.array(settings.lead_s, dtype=np.float64)
-    cells = shade.valid.shape
-    return SunForecast(
-        grid=shade.grid,
-        issued_at_ns=shade.captured_at_ns,
-        lead_s=lead_s,
-        sun_probability=np.full((len(lead_s), *cells), round(prior * SURE), dtype=np.uint8),
-        horizon_s=np.where(shade.valid, np.float32(0.0), np.float32(np.nan)),
-        prior_sunlit=prior,
-        method="climatology",
-    )
+    shape = len(settings.lead_s), *shade.valid.shape
+    levels = np.full(shape, round(prior * SURE), dtype=np.uint8)
+    return forecast_of(shade, settings, prior, "climatology", levels, 0.0)
 
 
 PERSISTENCE = Forecaster(with_map, _persistence)

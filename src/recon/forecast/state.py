@@ -4,11 +4,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+import numpy.typing as npt
 
 from recon.forecast.phase_correlation import ShadeSpectrum
 from recon.forecast.settings import ForecastSettings
 from recon.model.geo import GroundGrid
-from recon.model.shade import SUNLIT_TRANSMITTANCE, FloatMap, MaskMap, ShadeMap
+from recon.model.shade import SUNLIT_TRANSMITTANCE, FloatMap, MaskMap, ShadeMap, SunForecast
 from recon.model.units import ns_to_seconds
 
 
@@ -150,6 +151,29 @@ def sunlit_now(shade: ShadeMap, prior: float, settings: ForecastSettings) -> Flo
     probability = np.clip(probability, 1.0 - settings.surest, settings.surest)
     mixed = np.where(shade.valid, prior + shade.confidence * (probability - prior), prior)
     return mixed.astype(np.float32)
+
+
+def forecast_of(
+    shade: ShadeMap,
+    settings: ForecastSettings,
+    prior: float,
+    method: str,
+    probability: npt.NDArray[np.uint8],
+    horizon_s: npt.ArrayLike,
+    velocity_mps: tuple[float, float] | None = None,
+) -> SunForecast:
+    """Return a map's forecast: `probability` (L, R, C) in 255ths; `horizon_s` (R, C) or one number,
+    for the cells that the map knows: NaN elsewhere."""
+    return SunForecast(
+        grid=shade.grid,
+        issued_at_ns=shade.captured_at_ns,
+        lead_s=np.array(settings.lead_s, dtype=np.float64),
+        sun_probability=probability,
+        horizon_s=np.where(shade.valid, np.asarray(horizon_s, np.float32), np.float32(np.nan)),
+        prior_sunlit=prior,
+        method=method,
+        velocity_mps=velocity_mps,
+    )
 
 
 def _with_share(

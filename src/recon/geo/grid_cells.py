@@ -6,9 +6,9 @@ from math import floor
 import numpy as np
 import numpy.typing as npt
 
+from recon.model.arrays import FloatArray
 from recon.model.geo import GroundGrid
 
-FloatArray = npt.NDArray[np.float64]
 IndexArray = npt.NDArray[np.intp]
 MaskArray = npt.NDArray[np.bool_]
 

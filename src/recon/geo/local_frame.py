@@ -15,9 +15,8 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
+from recon.model.arrays import FloatArray
 from recon.model.geo import GeoPoint, LocalFrame
-
-FloatArray = npt.NDArray[np.float64]
 
 SEMI_MAJOR_AXIS_M = 6_378_137.0
 FLATTENING = 1.0 / 298.257223563

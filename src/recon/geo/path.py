@@ -12,9 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from recon.geo.polygon import FARTHEST_M
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+from recon.model.arrays import FloatArray, IntArray
 
 DEFAULT_CHORD_ERROR_M = 0.05
 """Far below GNSS accuracy, and a 1 km corner still takes only about a hundred points."""

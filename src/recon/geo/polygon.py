@@ -14,11 +14,9 @@ import shapely  # type: ignore[import-untyped, unused-ignore]
 
 from recon.geo.local_frame import geo_from_enu
 from recon.model.airspace import Region
+from recon.model.arrays import BoolArray, FloatArray, IntArray
 from recon.model.geo import LocalFrame
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
-IntArray = npt.NDArray[np.int64]
 ShapeArray = npt.NDArray[np.object_]
 
 DECIMALS = 7

@@ -14,12 +14,8 @@ import numpy as np
 import numpy.typing as npt
 
 from recon.geo.polygon import Box
+from recon.model.arrays import BoolArray, FloatArray, IntArray
 from recon.model.geo import GroundGrid
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
-BoolArray = npt.NDArray[np.bool_]
-
 
 ROUNDING_M = 1e-6
 

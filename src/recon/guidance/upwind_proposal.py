@@ -12,8 +12,6 @@ import numpy as np
 
 from recon.geo import Polygon, enu_from_point, point_from_enu
 from recon.guidance.upwind_place import (
-    BoolArray,
-    FloatArray,
     GroundView,
     UpwindPlace,
     best_place,
@@ -21,6 +19,7 @@ from recon.guidance.upwind_place import (
     seen_from,
 )
 from recon.model.airspace import Region
+from recon.model.arrays import BoolArray, FloatArray
 from recon.model.geo import GeoPoint, LatLon, LocalFrame
 from recon.model.units import wrap_degrees
 

@@ -4,13 +4,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum, StrEnum
 
-import numpy as np
-import numpy.typing as npt
-
+from recon.model.arrays import FloatArray
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.mission import DJI
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 NS_PER_S = 1_000_000_000
+HECTARE_M2 = 10_000.0
 
 
 def seconds_to_ns(seconds: float) -> int:

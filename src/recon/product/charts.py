@@ -14,13 +14,13 @@ import numpy.typing as npt
 import shapely  # type: ignore[import-untyped, unused-ignore]
 from markupsafe import Markup, escape
 
+from recon.model.arrays import FloatArray
 from recon.model.geo import GroundGrid
 from recon.model.units import NS_PER_S
 from recon.product.coverage import ENOUGH_VIEWS
 from recon.product.report import AlarmSpan, Covered, FlightReport
 from recon.record.tracks import utc_text
 
-FloatArray = npt.NDArray[np.float64]
 ByteMap = npt.NDArray[np.uint8]
 
 COLOURS = 6

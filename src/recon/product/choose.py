@@ -12,11 +12,9 @@ from math import ceil
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from scipy.optimize import linprog
 
-BoolArray = npt.NDArray[np.bool_]
-IntArray = npt.NDArray[np.int64]
+from recon.model.arrays import BoolArray, IntArray
 
 TRIES = 150
 """To shorten the list; each takes one neighbourhood apart."""

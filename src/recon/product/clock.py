@@ -21,14 +21,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from recon.model.arrays import BoolArray, FloatArray, IntArray
 from recon.model.units import NS_PER_S
 from recon.product.flight import RecordedTrack
-
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
-IntArray = npt.NDArray[np.int64]
 
 LARGEST_OFFSET_S = 15 * 3600.0
 """Zones reach from -12 to +14 hours, daylight saving adds one; a clock 12 hours off is within."""

@@ -6,20 +6,16 @@ from math import ceil, floor
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import shapely  # type: ignore[import-untyped, unused-ignore]
 from scipy.sparse import csr_array
 
 from recon.geo import cell_centres_m
+from recon.model.arrays import BoolArray, FloatArray, IntArray
 from recon.model.geo import GroundGrid, LocalFrame
 from recon.model.shade import SUNLIT_TRANSMITTANCE
 from recon.product.flight import FlownSurvey
 from recon.product.footprint import PhotoView
 from recon.product.sun_at import Sunshine
-
-BoolArray = npt.NDArray[np.bool_]
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
 
 CELL_M = 4.0
 """As surveys count: finer than shadows' edges are known."""

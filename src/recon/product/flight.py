@@ -20,6 +20,7 @@ from google.protobuf.message import DecodeError
 
 from recon.geo import enu_from_geo, geo_from_enu
 from recon.model.airspace import Region
+from recon.model.arrays import FloatArray, IntArray
 from recon.model.errors import RecordError
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.survey import Survey, SurveyCamera
@@ -29,8 +30,6 @@ from recon.record.mcap_file import ABOUT_NAME, STEPS_TOPIC
 from recon.record.mcap_read import McapReading, RecordAttachment, RecordMessage
 from recon.record.tracks import utc_text
 
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
 ByteMap = npt.NDArray[np.uint8]
 
 UNKNOWN = 255

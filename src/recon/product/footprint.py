@@ -11,10 +11,10 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
+from recon.model.arrays import FloatArray
 from recon.model.geo import GroundGrid
 from recon.product.sun_at import Sunshine
 
-FloatArray = npt.NDArray[np.float64]
 FloatMap = npt.NDArray[np.float32]
 
 LOWEST_PITCH_DEG = -30.0

@@ -22,13 +22,14 @@ from recon.geo import cell_centres_m
 from recon.guidance.survey import SurveySettings
 from recon.guidance.survey.lattice import axes
 from recon.guidance.survey.plan import row_bearing_deg, survey_fault
-from recon.guidance.survey.progress import is_photographed
+from recon.guidance.survey.progress import is_flown_as_planned
+from recon.model.arrays import IntArray
 from recon.model.errors import RecordError
 from recon.model.severity import Severity
 from recon.model.survey import Survey
 from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.product.coverage import ENOUGH_VIEWS, region_of
-from recon.product.flight import UNKNOWN, FlightData, FlownSurvey, IntArray, RecordedTrack
+from recon.product.flight import UNKNOWN, FlightData, FlownSurvey, RecordedTrack
 from recon.product.flight_log import FlightLog, LogLine
 from recon.product.shadow_record import (
     SUNLIT,
@@ -194,9 +195,9 @@ def _estimated_part(
     survey: FlownSurvey, track: RecordedTrack, part: slice
 ) -> Iterator[tuple[int, shapely.Polygon]]:
     request, settings = survey.request(), SurveySettings()
-    if survey_fault(request, settings) is not None:
+    if survey_fault(request) is not None:
         return
-    turn = axes(row_bearing_deg(request, settings)).T
+    turn = axes(row_bearing_deg(request)).T
     every_ns = seconds_to_ns(survey.camera.interval_s)
     values = np.column_stack([track.east_m, track.north_m, track.height_m])
     for a, b in pairwise(_thinned(track.at_ns, part, seconds_to_ns(settings.least_step_s))):
@@ -204,7 +205,9 @@ def _estimated_part(
         along_m, across_m = ((values[b, :2] - values[a, :2]) @ turn).tolist()
         # What the height above ground was is not known here: such a survey's is taken as flown.
         off_m = 0.0 if request.is_above_ground else _off_height_m(request, values[[a, b], 2])
-        if not is_photographed(request, settings, (begin_ns, end_ns), (along_m, across_m), off_m):
+        if not is_flown_as_planned(
+            request, settings, (begin_ns, end_ns), (along_m, across_m), off_m
+        ):
             continue
         yaw_deg = float(track.yaw_deg[b])
         for at_ns in range(-(-begin_ns // every_ns) * every_ns, end_ns, every_ns):

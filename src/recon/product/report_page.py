@@ -11,7 +11,7 @@ from jinja2 import Environment, StrictUndefined
 
 from recon import version
 from recon.model.severity import Severity
-from recon.model.units import NS_PER_S
+from recon.model.units import HECTARE_M2, NS_PER_S
 from recon.product import charts
 from recon.product.coverage import ENOUGH_VIEWS
 from recon.product.flight import FlightData
@@ -75,7 +75,7 @@ def _figures(report: FlightReport) -> Sequence[tuple[str, str, str]]:
     if covered is not None and covered.region.any():
         unit = "%, estimated" if covered.is_estimated else "%"
         rows += [
-            ("Region", f"{covered.area_m2 / 10_000.0:.1f}", "ha"),
+            ("Region", f"{covered.area_m2 / HECTARE_M2:.1f}", "ha"),
             ("Photographed", f"{100.0 * covered.share(0):.0f}", unit),
             ("In sun on a photo", f"{100.0 * covered.share(1):.0f}", unit),
             (f"In sun on {ENOUGH_VIEWS} photos", f"{100.0 * covered.enough:.0f}", unit),

@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 import shapely  # type: ignore[import-untyped, unused-ignore]
 
+from recon.model.arrays import IntArray
 from recon.model.errors import RecordError
 from recon.model.shade import SUNLIT_TRANSMITTANCE
 from recon.product.choose import choose, views_for
@@ -27,7 +28,6 @@ from recon.product.sun_at import SunHistory
 from recon.product.timing import TimedPhoto
 
 ByteMap = npt.NDArray[np.uint8]
-IntArray = npt.NDArray[np.int64]
 
 SUNLIT_SHARE = 0.9
 """Of a photo's known ground, for the photo to be called sunlit."""

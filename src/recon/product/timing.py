@@ -8,9 +8,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
 from recon.geo import enu_from_geo
+from recon.model.arrays import FloatArray, IntArray
 from recon.model.units import NS_PER_S
 from recon.product.clock import (
     ClockFit,
@@ -24,9 +24,6 @@ from recon.product.clock import (
 from recon.product.flight import FlightData, RecordedTrack
 from recon.product.footprint import LOWEST_PITCH_DEG, Aim, PhotoView
 from recon.product.photo import Photo
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
 
 LOWEST_M = 5.0
 """Above takeoff: a photo on the ground shows a pad."""

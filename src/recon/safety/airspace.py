@@ -7,13 +7,10 @@ from math import isfinite
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from recon.geo import Box, Footprints, Polygon, Surface
 from recon.model.airspace import Airspace, Zone, ZoneKind
-
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
+from recon.model.arrays import BoolArray, FloatArray
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -13,15 +13,13 @@ from collections.abc import Iterable, Sequence
 from functools import lru_cache
 
 import numpy as np
-import numpy.typing as npt
 
 from recon.geo import OnGlobe, enu_from_geo, tangent_plane
 from recon.geo.distance import horizontal_distance_m
+from recon.model.arrays import FloatArray
 from recon.model.geo import GeoPoint, LatLon, LocalFrame
 from recon.model.vehicle import VehicleState
 from recon.safety.airspace import PreparedAirspace
-
-FloatArray = npt.NDArray[np.float64]
 
 NEAR_PAD_M = 10.0
 """Where a vehicle took off and where its pad is are both known by GNSS: twice 2.5 m off, and a

@@ -1,16 +1,13 @@
 """Whether pieces of a path stay above or below a height, and heights in words."""
 
 import numpy as np
-import numpy.typing as npt
 
 from recon.model.airspace import HeightDatum, Zone
+from recon.model.arrays import BoolArray, FloatArray
 from recon.safety.airspace import PreparedAirspace
 from recon.safety.datum import places_m
 from recon.safety.path.pieces import PathVolume
 from recon.safety.situation import Situation
-
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
 
 
 def stays_above(

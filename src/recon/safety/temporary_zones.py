@@ -4,7 +4,6 @@ from collections.abc import Iterator
 from math import cos, pi
 
 import numpy as np
-import numpy.typing as npt
 
 from recon.geo import region_fault
 from recon.model.airspace import HeightDatum, Region, Zone, ZoneKind
@@ -12,8 +11,6 @@ from recon.model.geo import LatLon, LocalFrame
 from recon.model.temporary_zone import Circle, DrawnZone, TemporaryZone
 from recon.safety.airspace import PreparedZone, prepared_zone
 from recon.safety.datum import places_m
-
-FloatArray = npt.NDArray[np.float64]
 
 MOST_ZONES = 32
 """In force at the same time: the watchdogs look at all of them ten times a second."""

@@ -7,11 +7,10 @@ alarm is shade that was predicted and does not come until `GRACE_S` after the ho
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from recon.forecast import NextChange
+from recon.model.arrays import FloatArray
 
-FloatArray = npt.NDArray[np.float64]
 BIN_S, BINS = 5.0, 30
 GRACE_S = 15.0
 

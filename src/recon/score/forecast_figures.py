@@ -4,14 +4,13 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 import numpy as np
-import numpy.typing as npt
 
 from recon.geo import nearest_cells
+from recon.model.arrays import FloatArray
 from recon.model.geo import GroundGrid
 from recon.model.shade import SURE, MaskMap, SunForecast
 from recon.score.shade_figures import Overlap, overlap
 
-FloatArray = npt.NDArray[np.float64]
 BINS = 10
 """Of the probability, of equal width."""
 

@@ -13,11 +13,12 @@ import numpy as np
 from recon.forecast import FORECASTERS, ForecastSettings, ForecastState, next_change
 from recon.forecast.next_change import STEP_S
 from recon.geo import nearest_cells
+from recon.model.arrays import FloatArray
 from recon.model.geo import GroundGrid
 from recon.model.shade import SUNLIT_TRANSMITTANCE, MaskMap, ShadeMap, SunForecast
 from recon.model.units import NS_PER_S
 from recon.score.change_figures import GRACE_S, ChangeScore, score_change
-from recon.score.forecast_figures import FloatArray, LeadScore, SeenCells, score_cells
+from recon.score.forecast_figures import LeadScore, SeenCells, score_cells
 from recon.score.forecast_figures import sun_probability as probability_on
 from recon.score.scenario import PERFECT, TRUE_MOTION
 from recon.score.settings import SCORE

@@ -2,50 +2,16 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 
+from recon.model.arrays import FloatArray
 from recon.score.change_figures import ChangeScore
 from recon.score.forecast_figures import LeadScore
 from recon.score.forecast_scoring import ForecastKey
 from recon.score.shade_figures import ShadeFigures
 
-FloatArray = npt.NDArray[np.float64]
 ENOUGH = 0.95
-
-
-class ScoredMaps(Protocol):
-    """Figures of a run's maps and forecasts, whether or not a survey was flown with it."""
-
-    @property
-    def seed(self) -> int:
-        """Of the sky."""
-
-    @property
-    def shade(self) -> ShadeFigures:
-        """Of the maps."""
-
-    @property
-    def to_right_s(self) -> float | None:
-        """Until most of the scored cells were first known and right."""
-
-    @property
-    def registration_m(self) -> tuple[float, float] | None:
-        """Median and 95th percentile of the ground images' errors."""
-
-    @property
-    def forecasts(self) -> Mapping[ForecastKey, LeadScore]:
-        """Sums by method, lead and cells."""
-
-    @property
-    def changes(self) -> ChangeScore:
-        """Of the times to shade."""
-
-    @property
-    def simulated_s(self) -> float:
-        """How long the run took."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,6 +60,22 @@ class RunScore:
     def shaded_share(self) -> float | None:
         """Of the photos on rows, taken in shade."""
         return self.shaded_photos / self.photos if self.photos else None
+
+
+@dataclass(slots=True)
+class MapsScore:
+    """The figures of a `RunScore` that maps and forecasts have; without a survey's."""
+
+    seed: int = 0
+    shade: ShadeFigures = field(default_factory=ShadeFigures)
+    to_right_s: float | None = None
+    registration_m: tuple[float, float] | None = None
+    forecasts: dict[ForecastKey, LeadScore] = field(default_factory=dict)
+    changes: ChangeScore = field(default_factory=ChangeScore)
+    simulated_s: float = 0.0
+
+
+ScoredMaps = RunScore | MapsScore
 
 
 def time_to_share(first_s: FloatArray, share: float, limit_s: float) -> float | None:

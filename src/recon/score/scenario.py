@@ -98,7 +98,7 @@ class Methods:
 
     @property
     def is_guidance_alone(self) -> bool:
-        """Whether neither detection nor forecast is scored: a run then ends with the survey."""
+        """Whether no method of detection or forecast is scored: a run then ends with the survey."""
         is_true = self.detection == IDEAL and self.forecast == NO_FORECAST
         return is_true or not self.scores_maps
 

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from recon.model.shade import SUNLIT_TRANSMITTANCE
 from recon.score.scenario import CloudRanges, Scenario
 from recon.score.scenario_conditions import conditions_of, range_of, utc_s_at_elevation
 from recon.score.scenario_schema import CloudsTable, ScenarioErrors, ShiftTable
@@ -94,8 +95,6 @@ def sky_of(scenario: Scenario, seed: int) -> Sky:
 
 SEARCH_STEP_S, SEARCHED_S = 30.0, 36_000.0
 POINTS_ACROSS = 9
-SHADED_BELOW = 0.5
-"""Transmittance of shade, as in the score."""
 
 
 def _from_shade(sky: Sky, scenario: Scenario) -> Sky:
@@ -110,7 +109,7 @@ def _from_shade(sky: Sky, scenario: Scenario) -> Sky:
     east_m, north_m = east_m[is_seen] + imager.over_m[0], north_m[is_seen] + imager.over_m[1]
     for ahead_s in np.arange(0.0, SEARCHED_S, SEARCH_STEP_S).tolist():
         later = Sky(replace(sky.settings, clouds_ahead_s=ahead_s))
-        if float(later.transmittance(east_m, north_m, 0.0).max()) < SHADED_BELOW:
+        if float(later.transmittance(east_m, north_m, 0.0).max()) < SUNLIT_TRANSMITTANCE:
             return later
     raise SimulationError(
         f"{scenario.name}: expected clouds that shade the whole view, got none in"

@@ -14,7 +14,6 @@ from recon.model.geo import GroundGrid
 from recon.model.shade import MaskMap
 from recon.score.scenario import Scenario
 
-FloatArray = npt.NDArray[np.float64]
 IndexArray = npt.NDArray[np.intp]
 
 

@@ -6,8 +6,9 @@ import numpy as np
 
 from recon.forecast import ForecastSettings
 from recon.geo import nearest_cells
+from recon.model.arrays import FloatArray
 from recon.model.geo import GroundGrid
-from recon.model.imagery import FloatArray, GroundImage
+from recon.model.imagery import GroundImage
 from recon.model.shade import MaskMap, ShadeMap
 from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.score.change_figures import ChangeScore

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from recon.model.imagery import CameraPose, FloatArray, GroundImage
+from recon.model.arrays import FloatArray
+from recon.model.imagery import CameraPose, GroundImage
 from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.model.vehicle import VehicleProfile
 from recon.score.scenario import Scenario

@@ -11,11 +11,11 @@ from math import ceil
 from random import Random
 
 import numpy as np
-import numpy.typing as npt
 
 from recon.geo import Polygon, enu_from_point
 from recon.guidance.survey import SurveyPlan
 from recon.model.airspace import ZoneKind
+from recon.model.arrays import BoolArray, FloatArray, IntArray
 from recon.model.geo import LocalFrame
 from recon.model.shade import SUNLIT_TRANSMITTANCE
 from recon.model.units import NS_PER_S
@@ -23,9 +23,6 @@ from recon.score.settings import SCORE
 from recon.sim.app.app import SimulatedApp
 from recon.sim.world import Sky
 from recon.site import Site
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
 
 STEEPEST_COURSE = 0.27
 """Largest ratio of motion across to along a row that counts as flown along it, as in surveys."""
@@ -116,8 +113,6 @@ def _middles_m(plan: SurveyPlan, cells: IntArray) -> tuple[FloatArray, FloatArra
     row, col = np.divmod(cells, grid.cols)
     return grid.west_m + (col + 0.5) * grid.cell_m, grid.north_m - (row + 0.5) * grid.cell_m
 
-
-BoolArray = npt.NDArray[np.bool_]
 
 AT_HEIGHT_WITHIN_M = 3.0
 """Of the survey's height: cruise heights to and from rows are 10 m away from it."""

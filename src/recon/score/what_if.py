@@ -19,12 +19,12 @@ from recon.model.errors import ReconError
 from recon.model.event import Event
 from recon.model.shade import ShadeMap
 from recon.model.units import NS_PER_S, ns_to_seconds
-from recon.score.change_figures import ChangeScore
 from recon.score.forecast_figures import LeadScore
 from recon.score.forecast_scoring import ForecastKey, ForecastScoring
 from recon.score.forecast_tables import forecast_tables, leads_table
+from recon.score.run_score import MapsScore
 from recon.score.settings import SCORE
-from recon.score.shade_figures import Overlap, ShadeFigures, overlap
+from recon.score.shade_figures import Overlap, overlap
 from recon.score.shade_scoring import ScoredGround, scored_ground
 from recon.score.table_rows import NOTHING, fine, percent, table
 from recon.score.tables import shade_table
@@ -41,19 +41,6 @@ MAPS_FOR_STEP = 8
 
 
 @dataclass(slots=True)
-class MethodScore:
-    """The sums of one pair of methods over a flight against the truth: a run without a survey."""
-
-    seed: int = 0
-    shade: ShadeFigures = field(default_factory=ShadeFigures)
-    to_right_s: float | None = None
-    registration_m: tuple[float, float] | None = None
-    forecasts: dict[ForecastKey, LeadScore] = field(default_factory=dict)
-    changes: ChangeScore = field(default_factory=ChangeScore)
-    simulated_s: float = 0.0
-
-
-@dataclass(slots=True)
 class MethodPair:
     """One pair of methods, the maps they gave, and their score."""
 
@@ -62,7 +49,7 @@ class MethodPair:
     maps: int = 0
     rejected: int = 0
     newest: ShadeMap | None = None
-    score: MethodScore = field(default_factory=MethodScore)
+    score: MapsScore = field(default_factory=MapsScore)
     _truth: Truth | None = None
     _ground: ScoredGround | None = None
     _forecasts: ForecastScoring | None = None

@@ -11,11 +11,12 @@ import numpy as np
 
 from recon.geo import Polygon, cell_centres_m, enu_from_points
 from recon.model.airspace import FlightLimits, HeightDatum, Zone, ZoneKind
+from recon.model.arrays import FloatArray
 from recon.model.errors import SiteError
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.vehicle import VehicleProfile
 from recon.site.elevation import LARGEST_GAP_M, ground_heights_m
-from recon.site.geojson import FARTHEST_M, FloatArray
+from recon.site.geojson import FARTHEST_M
 from recon.site.site import Site
 
 _LAYERS = {ZoneKind.KEEP_OUT: "keep_out", ZoneKind.HEIGHT: "height_zones"}

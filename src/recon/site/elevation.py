@@ -8,19 +8,17 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import numpy as np
-import numpy.typing as npt
 from msgspec import Meta, Struct
 from scipy import ndimage
 
 from recon.geo import Surface, cell_centres_m, enu_from_points
 from recon.model.airspace import Airspace, ElevationModel
+from recon.model.arrays import FloatArray
 from recon.model.errors import SiteError
 from recon.model.geo import GroundGrid, LocalFrame
 from recon.site.height_file import HeightFile, opened
 from recon.site.reading import file_inside
 from recon.site.schema import FileName
-
-FloatArray = npt.NDArray[np.float64]
 
 MOST_CELLS = 1_000_000
 FINEST_CELL_M = 1.0

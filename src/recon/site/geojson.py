@@ -17,11 +17,10 @@ from msgspec import Meta
 
 from recon.geo import enu_from_geo, region_fault
 from recon.model.airspace import Region
+from recon.model.arrays import FloatArray
 from recon.model.errors import SiteError
 from recon.model.geo import LatLon, LocalFrame
 from recon.site.reading import convert, read_bounded, refuse_non_finite, shown_value
-
-FloatArray = npt.NDArray[np.float64]
 
 LARGEST_LAYER_BYTES = 4 * 1024 * 1024
 MOST_FEATURES = 1_000

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 import pyproj
 import rasterio
 from pyproj.exceptions import ProjError
@@ -24,11 +23,10 @@ from rasterio.transform import Affine
 from rasterio.windows import Window
 
 from recon.geo import geo_from_enu
+from recon.model.arrays import FloatArray
 from recon.model.errors import SiteError
 from recon.model.geo import LocalFrame
 from recon.site.reading import read_bounded
-
-FloatArray = npt.NDArray[np.float64]
 
 LARGEST_FILE_BYTES = 64 * 1024 * 1024
 MOST_PIXELS = 16_000_000

@@ -21,8 +21,6 @@ DRIVERS = frozenset({"KML", "LIBKML", "ESRI Shapefile", "GPKG", "GeoJSON"})
 DECIMALS = 8
 """Of a degree: a millimetre."""
 
-ImportedShape = tuple[str, dict[str, Any]]
-
 
 class ImportedFileError(Exception):
     """What is wrong with the file, as the end of a sentence that begins with its name."""

@@ -25,10 +25,10 @@ from recon.guidance.survey import (
     step,
 )
 from recon.guidance.survey.progress import (
+    count_settled,
+    first_progress,
     missing_cells,
-    no_progress,
-    settled,
-    with_seen,
+    with_positions,
     with_shade,
 )
 from recon.guidance.survey.view import crossing
@@ -59,10 +59,10 @@ def row_flown(speed_mps: float = 8.0, hz: float = 1.0, **changes: float) -> list
 def counted(
     seen: list[PositionSample], *shade: ShadeMap, plan: SurveyPlan = PLAN
 ) -> CoverageProgress:
-    progress = no_progress(plan.cells)
+    progress = first_progress(plan.cells)
     for each in shade:
         progress = with_shade(progress, each, plan)
-    return settled(with_seen(progress, "A", seen, plan), plan, LATE_NS)
+    return count_settled(with_positions(progress, "A", seen, plan), plan, LATE_NS)
 
 
 def shade(at_s: float, is_lit: bool = True, valid: bool = True) -> ShadeMap:
@@ -107,11 +107,11 @@ class TestImaged:
 
     def test_counting_bit_by_bit_is_counting_at_once(self) -> None:
         seen = row_flown(hz=2.0)
-        progress = no_progress(PLAN.cells)
+        progress = first_progress(PLAN.cells)
         for each in seen:
-            progress = with_seen(progress, "A", [each], PLAN)
-            progress = settled(progress, PLAN, each.at_ns + seconds_to_ns(1.3))
-        progress = settled(progress, PLAN, LATE_NS)
+            progress = with_positions(progress, "A", [each], PLAN)
+            progress = count_settled(progress, PLAN, each.at_ns + seconds_to_ns(1.3))
+        progress = count_settled(progress, PLAN, LATE_NS)
         assert np.array_equal(progress.state, counted(seen).state)
 
     def test_what_is_in_view_for_less_than_an_interval_is_not_imaged(self) -> None:
@@ -153,9 +153,9 @@ class TestImaged:
         """When the buffer overflows the oldest are dropped, and the path to the next is unknown."""
         plan = replace(PLAN, settings=replace(PLAN.settings, positions_kept=4))
         seen = row_flown()
-        progress = with_seen(no_progress(plan.cells), "A", seen[:15], plan)
-        progress = settled(progress, plan, LATE_NS)
-        few = settled(with_seen(progress, "A", seen[15:], plan), plan, LATE_NS)
+        progress = with_positions(first_progress(plan.cells), "A", seen[:15], plan)
+        progress = count_settled(progress, plan, LATE_NS)
+        few = count_settled(with_positions(progress, "A", seen[15:], plan), plan, LATE_NS)
         alone = [seen[11:15], seen[-4:]]
         expected = imaged(counted(alone[0])) | imaged(counted(alone[1]))
         assert np.array_equal(imaged(few), expected)
@@ -170,14 +170,14 @@ class TestImaged:
         assert np.array_equal(imaged(counted(bursts)), imaged(counted(seen[9::10])))
 
     def test_a_position_waits_for_the_shade_of_its_time(self) -> None:
-        progress = with_seen(no_progress(PLAN.cells), "A", row_flown(), PLAN)
-        assert settled(progress, PLAN, seconds_to_ns(13.5)) is progress
-        later = settled(progress, PLAN, seconds_to_ns(30.0))
-        assert 0 < imaged(later).sum() < imaged(settled(later, PLAN, LATE_NS)).sum()
+        progress = with_positions(first_progress(PLAN.cells), "A", row_flown(), PLAN)
+        assert count_settled(progress, PLAN, seconds_to_ns(13.5)) is progress
+        later = count_settled(progress, PLAN, seconds_to_ns(30.0))
+        assert 0 < imaged(later).sum() < imaged(count_settled(later, PLAN, LATE_NS)).sum()
 
     def test_what_waits_is_bounded(self) -> None:
         many = [PositionSample(seconds_to_ns(i), 1.0 * i, 0.0, 60.0) for i in range(3_000)]
-        progress = with_seen(no_progress(PLAN.cells), "A", many, PLAN)
+        progress = with_positions(first_progress(PLAN.cells), "A", many, PLAN)
         assert len(progress.waiting["A"]) == PLAN.settings.positions_kept
         for second in range(100):
             progress = with_shade(progress, shade(float(second)), PLAN)
@@ -267,7 +267,7 @@ class TestLight:
         again = [replace(s, at_ns=s.at_ns + LATE_NS) for s in row_flown()]
         for t in (1012.0, 1020.0, 1028.0, 1036.0, 1044.0):
             first = with_shade(first, shade(t, is_lit=False), PLAN)
-        second = settled(with_seen(first, "A", again, PLAN), PLAN, 3 * LATE_NS)
+        second = count_settled(with_positions(first, "A", again, PLAN), PLAN, 3 * LATE_NS)
         assert np.array_equal(second.state, first.state)
 
 
@@ -322,8 +322,8 @@ class TestGroundOutOfView:
     WEST = PLAN.cells.along_m < 150.0
 
     def missing_after(self, *maps: ShadeMap) -> BoolArray:
-        progress = settled(
-            with_seen(no_progress(PLAN.cells), "A", row_flown(), PLAN), PLAN, LATE_NS
+        progress = count_settled(
+            with_positions(first_progress(PLAN.cells), "A", row_flown(), PLAN), PLAN, LATE_NS
         )
         for each in maps:
             progress = with_shade(progress, each, PLAN)
@@ -410,7 +410,7 @@ class TestFigures:
         assert observe(created, "A", row_flown()) is created
 
     def test_the_moment_of_95_percent_is_that_of_the_position(self) -> None:
-        progress = no_progress(PLAN.cells)
+        progress = first_progress(PLAN.cells)
         rows = [
             float(PLAN.lattice.east_north_m([(0.0, PLAN.lattice.row_across_m(row))])[0, 1])
             for row in range(PLAN.lattice.rows)
@@ -426,9 +426,9 @@ class TestFigures:
                 )
                 for each in row_flown()
             ]
-            progress = with_seen(progress, "A", flown, PLAN)
+            progress = with_positions(progress, "A", flown, PLAN)
             for a, b in pairwise(range(100 * index, 100 * index + 101, 10)):
-                progress = settled(progress, PLAN, seconds_to_ns(b + 3.0))
+                progress = count_settled(progress, PLAN, seconds_to_ns(b + 3.0))
                 share = imaged(progress)[PLAN.cells.is_reached].mean()
                 at_s += [(a, b, share)]
         after = next(b for _, b, share in at_s if share >= 0.95)

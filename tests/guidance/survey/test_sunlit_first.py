@@ -186,7 +186,7 @@ class TestSurveys:
         state, plan = flights.state, flights.plan
         assert state.phase is SurveyPhase.RUNNING
         assert {each.text for each in state.decisions.values()} == {
-            "waits: Drone 3 may be where rows are left, without telemetry"
+            "waits: Drone 3, without telemetry, may be where rows are left"
         }
         ways = [shapely.linestrings(east_north(m.mission, plan)) for m in flights.given]
         assert not shapely.intersects(ground, ways).any()

@@ -18,8 +18,7 @@ from recon.camera.calibration.linear_start import POWERS, linear_start, turning_
 from recon.camera.errors import CalibrationError
 from recon.camera.omnidirectional import COMPARED_ANGLES_RAD, OmnidirectionalCamera
 from recon.camera.radial_profile import RadialProfile
-
-FloatArray = npt.NDArray[np.float64]
+from recon.model.arrays import FloatArray
 
 FEWEST_PHOTOS = 3
 """Fewer leave the centre and the coefficients undetermined."""

@@ -7,9 +7,8 @@ import numpy as np
 import numpy.typing as npt
 
 from recon.camera.errors import CalibrationError
+from recon.model.arrays import FloatArray
 from recon.model.imagery import RgbImage
-
-FloatArray = npt.NDArray[np.float64]
 
 FEWEST_CORNERS = 3
 """Along a side: OpenCV's search needs as many."""

@@ -7,8 +7,7 @@ import numpy.typing as npt
 
 from recon.camera.calibration.calibrate import LensCalibration
 from recon.camera.image_circle import ImageCircle
-
-FloatArray = npt.NDArray[np.float64]
+from recon.model.arrays import FloatArray
 
 CELLS_ACROSS = 18
 """Cells of the frame's width: about one for each corner of a board in the middle distance."""

@@ -17,8 +17,7 @@ from scipy.sparse import csr_matrix
 from scipy.spatial.transform import Rotation
 
 from recon.camera.calibration.linear_start import POWERS, BoardPose
-
-FloatArray = npt.NDArray[np.float64]
+from recon.model.arrays import FloatArray
 
 CENTRE = len(POWERS)
 """Index of the centre's column in the parameters; then its row, c - 1, and d."""

@@ -16,9 +16,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from recon.model.arrays import FloatArray
 
 POWERS = (0, 2, 3, 4)
 """Of the radius, in the depth: a lens is smooth at its centre, so there is no first power."""

@@ -2,14 +2,12 @@
 
 import cv2
 import numpy as np
-import numpy.typing as npt
 
 from recon.camera.calibration.calibrate import LensCalibration, PhotoResiduals
 from recon.camera.calibration.coverage import Coverage
 from recon.camera.image_circle import ImageCircle
 from recon.model.imagery import RgbImage
 
-FloatArray = npt.NDArray[np.float64]
 Color = tuple[int, int, int]
 
 WIDTH_PX = 1280

@@ -20,9 +20,9 @@ from recon.camera.ground import source_mask
 from recon.camera.image_circle import ImageCircle
 from recon.camera.omnidirectional import OmnidirectionalCamera
 from recon.camera.registration.settings import RegistrationSettings
+from recon.model.arrays import FloatArray
 from recon.model.imagery import CameraPose, RgbImage
 
-FloatArray = npt.NDArray[np.float64]
 GreyImage = npt.NDArray[np.uint8]
 MapArray = npt.NDArray[np.float32]
 

@@ -10,10 +10,8 @@ from recon.camera.registration.lens_view import GreyImage, LensView, homography
 from recon.camera.registration.robust_fit import fit_to_rays
 from recon.camera.registration.settings import RegistrationSettings
 from recon.camera.registration.tracking import choose_features, coarse_places, track
+from recon.model.arrays import BoolArray, FloatArray
 from recon.model.imagery import CameraPose
-
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
 
 ENOUGH_SHARE = 0.7
 """Of the features in view as inliers: another round of tracking would not find many more."""

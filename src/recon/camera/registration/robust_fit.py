@@ -10,13 +10,11 @@ Nothing is drawn at random: the same input gives the same pose.
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
 from recon.camera.registration.settings import RegistrationSettings
+from recon.model.arrays import FloatArray
 from recon.model.imagery import CameraPose
-
-FloatArray = npt.NDArray[np.float64]
 
 MOST_ROUNDS, CONVERGED_PX = 10, 0.01
 CAUCHY, TUKEY = 2.385, 4.685

@@ -11,9 +11,7 @@ import numpy.typing as npt
 
 from recon.camera.registration.lens_view import GreyImage, LensView
 from recon.camera.registration.settings import RegistrationSettings
-
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
+from recon.model.arrays import BoolArray, FloatArray
 
 MIDDLE_LEVEL, LEVELS_PER_DEVIATION = 128, 40.0
 """Grey of the mean, and of one standard deviation: three fit on each side."""

@@ -7,9 +7,8 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
+from recon.model.arrays import FloatArray
 from recon.model.shade import FloatMap
-
-FloatArray = npt.NDArray[np.float64]
 
 LIGHT_SPAN, LIGHT_STEP = (-2.4, 0.8), 0.04
 COLOUR_SPAN, COLOUR_STEP = (-0.8, 1.6), 0.03

@@ -12,15 +12,13 @@ from math import expm1
 
 import cv2
 import numpy as np
-import numpy.typing as npt
 
 from recon.detection.sunlit.colour import CellColour
 from recon.detection.sunlit.keyframes import SunlitLand
 from recon.detection.sunlit.levels import LEAST_CELLS, UNCHANGED, Level
+from recon.model.arrays import FloatArray
 from recon.model.shade import FloatMap, MaskMap
 from recon.model.units import NS_PER_S, seconds_to_ns
-
-FloatArray = npt.NDArray[np.float64]
 
 LONGEST_GAP_S = 20.0
 """Over a longer one most cells may have changed."""

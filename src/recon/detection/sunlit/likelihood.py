@@ -22,8 +22,8 @@ from recon.detection.sunlit.contrast import (
     curve,
 )
 from recon.detection.sunlit.levels import Values
+from recon.model.arrays import FloatArray
 
-FloatArray = npt.NDArray[np.float64]
 FloatGrid = npt.NDArray[np.float32]
 Spectra = npt.NDArray[np.complex64]
 

@@ -6,16 +6,12 @@ from itertools import pairwise
 from math import ceil, floor
 
 import numpy as np
-import numpy.typing as npt
 import shapely  # type: ignore[import-untyped, unused-ignore]
 
 from recon.guidance.survey.lattice import RowLattice, Swath
 from recon.guidance.survey.rows import Piece
+from recon.model.arrays import BoolArray, FloatArray, IntArray
 from recon.model.geo import GroundGrid, LocalFrame
-
-BoolArray = npt.NDArray[np.bool_]
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
 
 NO_STRETCH = -1
 """For cells that no row is certain to photograph."""
@@ -82,7 +78,7 @@ def cells_over(
     stretches = tuple(_stretches(pieces, lattice))
     stretch = np.full(is_inside.shape, NO_STRETCH, dtype=np.int64)
     inside = np.nonzero(is_inside)
-    stretch[inside] = _answering(
+    stretch[inside] = _stretch_of_cells(
         along_m[inside], lattice.row_of(across_m[inside]), pieces, stretches, swath
     )
     return CoverageCells(grid, is_inside, along_m, across_m, stretch, stretches)
@@ -103,7 +99,7 @@ def _stretches(pieces: Sequence[Piece], lattice: RowLattice) -> Iterator[Stretch
             yield Stretch(index, start_m, end_m)
 
 
-def _answering(
+def _stretch_of_cells(
     along_m: FloatArray,
     row: IntArray,
     pieces: Sequence[Piece],

@@ -10,27 +10,24 @@ from dataclasses import dataclass
 import numpy as np
 import shapely  # type: ignore[import-untyped, unused-ignore]
 
-from recon.guidance.survey.cells import BoolArray
+from recon.guidance.survey.lattice import EastNorth
 from recon.guidance.survey.missions import Track
 from recon.guidance.survey.plan import SurveyPlan
-from recon.guidance.survey.route import Place
 from recon.guidance.survey.segments import Segments
+from recon.model.arrays import BoolArray
 
 
 @dataclass(frozen=True, slots=True)
 class ClosedArea:
-    """A circle, and the way home of a vehicle that may return; the gate's margins are included.
-
-    Places are east-north metres of the site.
-    """
+    """A circle, and the way home of a vehicle that may return; the gate's margins are included."""
 
     name: str
     """Of the vehicle, for operators."""
     serial: str | None
     """None while it has not reported one."""
-    place_m: Place
+    place_m: EastNorth
     radius_m: float
-    home_m: Place | None
+    home_m: EastNorth | None
     """None where it is not expected to return, or its home is unknown."""
     corridor_half_m: float
     lost_s: float = 0.0

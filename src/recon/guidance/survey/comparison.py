@@ -27,7 +27,7 @@ IN_SUN = 0.5
 
 
 def lawnmower_waits(
-    state: SurveyState, positions: Sequence[Surveyor], sun: SunForecast | None, now_ns: int
+    state: SurveyState, vehicles: Sequence[Surveyor], sun: SunForecast | None, now_ns: int
 ) -> Step:
     """Fly rounds over what is missing, each once most of that is in sun, until all is."""
     is_between = not state.flights and not state.waiting
@@ -35,14 +35,14 @@ def lawnmower_waits(
     is_over = is_over or end_between_rounds(state, WANTED) is not None
     if is_between and not is_over and not _is_mostly_in_sun(state, sun, now_ns):
         return replace(state, reason="waiting: most of what is missing lies in shade"), ()
-    return fly_rounds(state, positions, now_ns, WANTED)
+    return fly_rounds(state, vehicles, now_ns, WANTED)
 
 
 def nearest_sunlit(
-    state: SurveyState, positions: Sequence[Surveyor], sun: SunForecast | None, now_ns: int
+    state: SurveyState, vehicles: Sequence[Surveyor], sun: SunForecast | None, now_ns: int
 ) -> Step:
     """Fly the nearest row in sun, until all is imaged in sun."""
-    return vehicle_by_vehicle(state, positions, sun, now_ns, _nearest)
+    return vehicle_by_vehicle(state, vehicles, sun, now_ns, _give_nearest)
 
 
 def _is_mostly_in_sun(state: SurveyState, sun: SunForecast | None, now_ns: int) -> bool:
@@ -55,7 +55,7 @@ def _is_mostly_in_sun(state: SurveyState, sun: SunForecast | None, now_ns: int) 
     return lit_m2 >= state.plan.settings.round_from * float(expected.missing_m2.sum())
 
 
-def _nearest(state: SurveyState, moment: PlanningMoment) -> Step:
+def _give_nearest(state: SurveyState, moment: PlanningMoment) -> Step:
     """Give each idle vehicle the nearest row in sun; without one it waits."""
     missions: tuple[MissionAssignment, ...] = ()
     for serial in moment.idle(state):
@@ -63,6 +63,6 @@ def _nearest(state: SurveyState, moment: PlanningMoment) -> Step:
         is_lit = choice.free() & (moment.expected.probability[:, 0] >= IN_SUN)
         pieces = missing_pieces(state, moment.segments, is_lit)
         row = route_of(pieces, state.plan.lattice, choice.start_m)[:1]
-        state, new = choice.flies_all(row) if row else choice.waits("waits: no free row is in sun")
+        state, new = choice.fly_all(row) if row else choice.wait("waits: no free row is in sun")
         missions += new
     return state, missions

@@ -6,17 +6,19 @@ row once, as under a clear sky. Ground flown again for sun comes on top.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import ceil, floor, hypot
+from math import ceil, dist, floor
 
 from recon.geo import shape_of
 from recon.guidance.survey.imaging import SpeedLimit, blur_px
+from recon.guidance.survey.lattice import EastNorth
 from recon.guidance.survey.missions import Track, flight_time_s
 from recon.guidance.survey.plan import RULE, SurveyPlan
-from recon.guidance.survey.rounds import shares, sortie
-from recon.guidance.survey.route import Place, Route
+from recon.guidance.survey.rounds import longest_mission, shares
+from recon.guidance.survey.route import Route
 from recon.guidance.survey.state import Surveyor
 from recon.guidance.survey.terrain import LEAST_CLIMB_M
 from recon.model.command import Refusal
+from recon.model.units import HECTARE_M2
 
 SWAP_S = 180.0
 """From touchdown to takeoff with a fresh battery, by a person at the pad."""
@@ -41,8 +43,8 @@ class PlannedFlight:
     """One flight on one battery, from takeoff to landing; usually one mission."""
 
     route: Route
-    tracks_m: tuple[tuple[Place, ...], ...]
-    """The corners of each mission, east-north metres of the site."""
+    tracks_m: tuple[tuple[EastNorth, ...], ...]
+    """The corners of each mission."""
     rows_m: float
     """Length of its rows, lead-in included."""
     missions_s: float
@@ -126,7 +128,7 @@ def estimate(
     return SurveyEstimate(tuple(drones), interval_s, batteries.level_s is not None)
 
 
-def corner_of(plan: SurveyPlan) -> Place:
+def corner_of(plan: SurveyPlan) -> EastNorth:
     """Return the region's south-west corner: where drones take off whose place is not known."""
     west_m, south_m = plan.survey.region.outline_m.min(axis=0).tolist()
     return west_m, south_m
@@ -206,7 +208,7 @@ def _warnings(plan: SurveyPlan, limit: SpeedLimit) -> list[str]:
     inside = int(cells.is_inside.sum())
     skipped = inside - int(cells.is_reached.sum())
     if skipped > MOST_SKIPPED * inside:
-        ha = cells.cell_m2 / 10_000.0
+        ha = cells.cell_m2 / HECTARE_M2
         found.append(
             f"{skipped * ha:.2f} ha of {inside * ha:.2f} ha cannot be reached inside the site's "
             "boundary and off its keep-out zones: move the region or the zones"
@@ -246,40 +248,60 @@ def _flight(
     As in flight: a mission is planned with a share of what is left, and what it did not use gives
     another one. It also ends where no way leads on to the next row.
     """
-    settings, speed_mps = plan.settings, plan.survey.speed_mps
-    home_m, flown, missions_s = vehicle.home_m or vehicle.place_m, 0, 0.0
+    vehicle = replace(vehicle, home_m=vehicle.home_m or vehicle.place_m)
     tracks: list[Track] = []
+    flown, missions_s = 0, 0.0
     while flown < len(route):
-        track, count = sortie(plan, route[flown:], vehicle)
+        track, count = longest_mission(plan, route[flown:], vehicle)
         if track is None:
             break
-        end_m = track.corners_m[-1]
-        used_s = flight_time_s(track, speed_mps, vehicle.place_m, end_m, settings)
-        used_s += settings.corner_s * len(track.corners_m)
+        used_s = _mission_s(plan, track, vehicle.place_m)
+        vehicle = _after_mission(vehicle, track, used_s)
         missions_s += used_s
-        left_s = vehicle.time_left_s
-        if left_s is not None:
-            left_s = max(0.0, left_s - used_s)
-        vehicle = replace(vehicle, place_m=end_m, home_m=home_m, time_left_s=left_s)
         tracks.append(track)
         flown += count
     if not tracks:
         return None, route
-    legs = route[:flown]
-    end_m = tracks[-1].corners_m[-1]
-    return_m = hypot(end_m[0] - home_m[0], end_m[1] - home_m[1])
-    first_m = plan.height_above_takeoff_m(tracks[0].corners_m[0], vehicle.takeoff_up_m)
+    return _planned(plan, route[:flown], tracks, missions_s, vehicle, batteries), route[flown:]
+
+
+def _mission_s(plan: SurveyPlan, track: Track, start_m: EastNorth) -> float:
+    """How long a mission takes with the way to it, standing at corners included."""
+    settings, speed_mps = plan.settings, plan.survey.speed_mps
+    end_m = track.corners_m[-1]
+    used_s = flight_time_s(track, speed_mps, start_m, end_m, settings)
+    return used_s + settings.corner_s * len(track.corners_m)
+
+
+def _after_mission(vehicle: Surveyor, track: Track, used_s: float) -> Surveyor:
+    left_s = vehicle.time_left_s
+    if left_s is not None:
+        left_s = max(0.0, left_s - used_s)
+    return replace(vehicle, place_m=track.corners_m[-1], time_left_s=left_s)
+
+
+def _planned(
+    plan: SurveyPlan,
+    legs: Route,
+    tracks: Sequence[Track],
+    missions_s: float,
+    landed: Surveyor,
+    batteries: Batteries,
+) -> PlannedFlight:
+    """The flight of these missions, with takeoff, return and landing."""
+    settings, home_m = plan.settings, landed.home_m or landed.place_m
+    first_m = plan.height_above_takeoff_m(tracks[0].corners_m[0], landed.takeoff_up_m)
     climb_m = plan.survey.height_m if first_m is None else max(first_m, 0.0)
     up_s = settings.takeoff_s + climb_m / settings.climb_mps
-    flight = PlannedFlight(
+    return_s = dist(tracks[-1].corners_m[-1], home_m) / plan.survey.speed_mps
+    return PlannedFlight(
         legs,
         tuple(track.corners_m for track in tracks),
         sum(leg.piece.length_m + 2.0 * plan.swath.lead_m for leg in legs),
         missions_s,
-        up_s + missions_s + return_m / speed_mps + batteries.landing_s,
+        up_s + missions_s + return_s + batteries.landing_s,
         sum(_photos(plan, leg.piece.length_m) for leg in legs),
     )
-    return flight, route[flown:]
 
 
 def _photos(plan: SurveyPlan, row_m: float) -> int:
@@ -288,7 +310,7 @@ def _photos(plan: SurveyPlan, row_m: float) -> int:
 
 
 def _too_far(plan: SurveyPlan, first: Route, vehicle: Surveyor) -> str:
-    track, _ = sortie(plan, first, replace(vehicle, time_left_s=None))
+    track, _ = longest_mission(plan, first, replace(vehicle, time_left_s=None))
     home_m = vehicle.home_m or vehicle.place_m
     assert track is not None  # one row has no way between rows
     speed_mps, settings = plan.survey.speed_mps, plan.settings

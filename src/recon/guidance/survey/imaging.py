@@ -5,7 +5,7 @@ All of it for a camera that looks straight down, over ground that lies `height_m
 
 from dataclasses import dataclass
 
-from recon.guidance.survey.settings import DEFAULT, SurveySettings
+from recon.guidance.survey.settings import DEFAULT
 from recon.model.mission import DJI
 from recon.model.survey import SurveyCamera
 from recon.model.survey_camera import CameraModel
@@ -35,9 +35,8 @@ def longest_photo_m(
     camera: SurveyCamera,
     height_m: float,
     front_overlap: float,
-    settings: SurveySettings = DEFAULT,
     *,
-    stops_in_rows: bool = False,
+    stops_in_rows: bool,
 ) -> float:
     """Return how far apart two photos of a row may be for its front overlap.
 
@@ -45,7 +44,7 @@ def longest_photo_m(
     gets there, or after it has left: what it sees standing does not count.
     """
     along_m = camera.along_m(height_m)
-    seen_m = along_m - 2.0 * settings.place_slack_m
+    seen_m = along_m - 2.0 * DEFAULT.place_slack_m
     return min(along_m * (1.0 - front_overlap), seen_m / 2.0 if stops_in_rows else seen_m)
 
 

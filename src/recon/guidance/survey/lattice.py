@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from recon.guidance.survey.settings import SurveySettings
+from recon.model.arrays import FloatArray, IntArray
 from recon.model.survey import Survey
 
 
@@ -58,8 +59,11 @@ def swath_of(survey: Survey, settings: SurveySettings) -> Swath:
     )
 
 
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+EastNorth = tuple[float, float]
+"""East and north metres of the site."""
+AlongAcross = tuple[float, float]
+"""Metres along the rows and across them, from the origin of the site."""
+
 
 ROUNDING = 1e-6
 """Of a mark's distance: a place this near to a mark is on it."""
@@ -83,6 +87,11 @@ class RowLattice:
     def along_across_m(self, east_north_m: npt.ArrayLike) -> FloatArray:
         """Return (N, 2) metres along and across of (N, 2) east-north places."""
         return np.asarray(east_north_m, dtype=np.float64) @ axes(self.bearing_deg).T
+
+    def along_across_of(self, place_m: EastNorth) -> AlongAcross:
+        """Return one place along and across."""
+        ((along_m, across_m),) = self.along_across_m([place_m]).tolist()
+        return along_m, across_m
 
     def east_north_m(self, along_across_m: npt.ArrayLike) -> FloatArray:
         """Return (N, 2) east-north metres: `along_across_m` undone."""

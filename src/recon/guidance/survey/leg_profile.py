@@ -12,14 +12,14 @@ the limits, and not lower.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import ceil, hypot
+from math import ceil, dist
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
-Place = tuple[float, float]
-Vertex = tuple[Place, float]
+from recon.guidance.survey.lattice import EastNorth
+from recon.model.arrays import FloatArray
+
+Vertex = tuple[EastNorth, float]
 """East-north metres, and the height there."""
 
 FINEST_M = 0.5
@@ -54,8 +54,8 @@ class ProfileLimits:
 
 
 def leg_profile(
-    start_m: Place,
-    end_m: Place,
+    start_m: EastNorth,
+    end_m: EastNorth,
     ends_up_m: tuple[float, float],
     wanted_m: Callable[[FloatArray], FloatArray],
     limits: ProfileLimits,
@@ -64,7 +64,7 @@ def leg_profile(
 
     `wanted_m` returns the heights (N,) wanted at (N, 2) places.
     """
-    length_m = hypot(end_m[0] - start_m[0], end_m[1] - start_m[1])
+    length_m = dist(start_m, end_m)
     steps = ceil(length_m / limits.step_m)
     if steps < 2:
         return ()
@@ -142,7 +142,8 @@ class _Vertices:
         return np.asarray(costs + price)
 
     def _funnel(self, step: int, height_m: float) -> tuple[FloatArray, FloatArray]:
-        """The least and the largest slope to each later step, until none is left but one step."""
+        """The least and the largest allowed slope to each later step, up to the first that no slope
+        reaches; at least one step."""
         ahead_m = self._wanted_m[step * self._each + 1 :] - height_m
         far_m = self._apart_m * np.arange(1, len(ahead_m) + 1)
         below_m, above_m = self._limits.below_m - BETWEEN_M, self._limits.above_m - BETWEEN_M

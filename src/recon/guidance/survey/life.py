@@ -25,20 +25,20 @@ Pausing and aborting do not command vehicles: the caller also sends hover to tho
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from math import dist
 from types import MappingProxyType
 
 from recon.guidance.survey.closed_areas import ClosedArea
-from recon.guidance.survey.missions import apart_m
 from recon.guidance.survey.plan import RULE, SurveyPlan
 from recon.guidance.survey.planners import PLANNERS
 from recon.guidance.survey.progress import (
     PositionSample,
-    no_progress,
-    settled,
-    with_seen,
+    count_settled,
+    first_progress,
+    with_positions,
     with_shade,
 )
-from recon.guidance.survey.rounds import Step, ended, lasts
+from recon.guidance.survey.rounds import Step, battery_lasts, ended
 from recon.guidance.survey.route import Route, route_of
 from recon.guidance.survey.state import (
     AssignedMission,
@@ -63,7 +63,7 @@ def create(plan: SurveyPlan) -> SurveyState | Refusal:
     if name not in PLANNERS:
         known = " or ".join(PLANNERS)
         return Refusal(RULE, f"Unknown planner {name}: choose {known}")
-    return SurveyState(plan, no_progress(plan.cells))
+    return SurveyState(plan, first_progress(plan.cells))
 
 
 def start(state: SurveyState, serials: Sequence[str], now_ns: int) -> SurveyState | Refusal:
@@ -111,39 +111,56 @@ def refused(
 ) -> SurveyState:
     """Return the survey after the gate refused a mission; its rows stay with the vehicle.
 
-    While others fly, the mission is requested again after `retry_s`; otherwise the vehicle is
-    barred and its rows go to others. Without a vehicle left the survey pauses. If the refusal may
-    end by itself, the mission is requested again after `retry_soon_s`, whether others fly or not;
-    so it is if another vehicle is `in_the_way` and the mission was chosen for this one alone: then
-    half of its rows are asked for at once.
+    `may_end`: the reason may end by itself. `in_the_way`: another vehicle is in its way.
+
+    - A mission that was to replace another one: the other one is flown on.
+    - `may_end`: the next one is requested after `retry_soon_s`.
+    - `in_the_way`, and chosen for this vehicle alone: half of its rows are requested at once.
+    - Otherwise, while others fly, the next one is requested after `retry_s`, or `retry_soon_s` if
+      it was chosen for this vehicle alone. If none flies, the vehicle is barred and its rows go to
+      others; with all barred the survey pauses.
     """
     flight = state.flights.get(serial)
     if flight is None or flight.number != number:
         return state
     if flight.replaces is not None:
-        return _flown_on(state, serial, flight, flight.replaces, now_ns)
+        return _fly_on(state, serial, flight, flight.replaces, now_ns)
     state = state.without_flight(serial)
-    route = (*flight.route, *state.waiting.get(serial, ()))
-    settings, half = state.plan.settings, len(flight.route) // 2
     finds_others = in_the_way and flight.is_chosen
-    rows_most = half if finds_others and half else None
-    wait_s = settings.retry_soon_s if may_end or flight.is_chosen else settings.retry_s
-    again_ns = now_ns if rows_most else now_ns + seconds_to_ns(wait_s)
+    is_barred = not (state.flights or may_end or finds_others)
+    route = (*flight.route, *state.waiting.get(serial, ()))
+    refusal = _refusal(state, flight, reason, now_ns, may_end=may_end, finds_others=finds_others)
     decisions = {key: each for key, each in state.decisions.items() if key != serial}
     others = {key: each for key, each in state.waiting.items() if key != serial}
     waiting = {**others, serial: route} if route else others
-    is_barred = not (state.flights or may_end or finds_others)
     return replace(
         state,
         waiting=MappingProxyType(waiting),
-        refusals=MappingProxyType({**state.refusals, serial: Refused(reason, again_ns, rows_most)}),
+        refusals=MappingProxyType({**state.refusals, serial: refusal}),
         barred=state.barred | {serial} if is_barred else state.barred,
         decisions=MappingProxyType(decisions),
         flown_m=state.flown_m - flight.length_m,
     )
 
 
-def _flown_on(
+def _refusal(
+    state: SurveyState,
+    flight: AssignedMission,
+    reason: str,
+    now_ns: int,
+    *,
+    may_end: bool,
+    finds_others: bool,
+) -> Refused:
+    """The refusal of a mission: when the next one may be requested, and of how many rows."""
+    settings, half = state.plan.settings, len(flight.route) // 2
+    if finds_others and half:
+        return Refused(reason, now_ns, half)
+    wait_s = settings.retry_soon_s if may_end or flight.is_chosen else settings.retry_s
+    return Refused(reason, now_ns + seconds_to_ns(wait_s))
+
+
+def _fly_on(
     state: SurveyState, serial: str, refused: AssignedMission, kept: AssignedMission, now_ns: int
 ) -> SurveyState:
     """The survey with the mission that a refused one was to replace."""
@@ -162,7 +179,7 @@ def observe(state: SurveyState, serial: str, seen: Sequence[PositionSample]) -> 
     """
     if serial not in state.serials or state.phase.is_final:
         return state
-    return replace(state, progress=with_seen(state.progress, serial, seen, state.plan))
+    return replace(state, progress=with_positions(state.progress, serial, seen, state.plan))
 
 
 def observe_shade(state: SurveyState, shade: ShadeMap) -> SurveyState:
@@ -174,7 +191,7 @@ def observe_shade(state: SurveyState, shade: ShadeMap) -> SurveyState:
 
 def step(
     state: SurveyState,
-    positions: Sequence[Surveyor],
+    vehicles: Sequence[Surveyor],
     now_ns: int,
     sun: SunForecast | None = None,
     closed: Sequence[ClosedArea] = (),
@@ -186,11 +203,11 @@ def step(
     """
     if state.phase not in (SurveyPhase.RUNNING, SurveyPhase.PAUSED):
         return state, ()
-    progress = settled(state.progress, state.plan, now_ns)
+    progress = count_settled(state.progress, state.plan, now_ns)
     state = replace(state, progress=progress, closed=tuple(closed))
     if state.phase is SurveyPhase.PAUSED:
         return state, ()
-    own = [_as_able(each, state.plan) for each in positions if each.serial in state.serials]
+    own = [_as_able(each, state.plan) for each in vehicles if each.serial in state.serials]
     return PLANNERS[state.plan.survey.planner](state, own, sun, now_ns)
 
 
@@ -209,7 +226,7 @@ def _wrong_phase(state: SurveyState, asked: str) -> Refusal:
 NO_BATTERY = "its battery is too low for any row that is left"
 
 
-def returning(state: SurveyState, positions: Sequence[Surveyor]) -> Mapping[str, str]:
+def returning(state: SurveyState, vehicles: Sequence[Surveyor]) -> Mapping[str, str]:
     """Return the serials of idle, able vehicles that should fly home, each with the reason.
 
     Those that their planner decided to change the battery of, and those whose battery does not last
@@ -219,7 +236,7 @@ def returning(state: SurveyState, positions: Sequence[Surveyor]) -> Mapping[str,
     if state.phase is not SurveyPhase.RUNNING:
         return {}
     reasons: dict[str, str] = {}
-    for each in positions:
+    for each in vehicles:
         if not each.is_able or each.serial in state.flights or each.serial not in state.serials:
             continue
         decision = state.decisions.get(each.serial)
@@ -236,27 +253,27 @@ def _has_a_row(state: SurveyState, surveyor: Surveyor) -> bool:
     if own:
         return _lasts_for_any(state, own[:1], surveyor)
     # While others fly, the rows they will leave are unknown: wait for them.
-    legs = () if state.flights else _left(state, surveyor)
+    legs = () if state.flights else _rows_left(state, surveyor)
     if legs:
         return _lasts_for_any(state, legs, surveyor)
     assert surveyor.time_left_s is not None  # asked only with a known flight time
-    way_m = apart_m(surveyor.place_m, surveyor.home_m or surveyor.place_m)
+    way_m = dist(surveyor.place_m, surveyor.home_m or surveyor.place_m)
     needed_s = way_m / plan.survey.speed_mps + plan.settings.way_home_waits_s
     return needed_s <= surveyor.time_left_s * plan.settings.flight_time_share
 
 
-def _left(state: SurveyState, surveyor: Surveyor) -> Route:
+def _rows_left(state: SurveyState, surveyor: Surveyor) -> Route:
     """Return the rows left for any vehicle; between rounds those of the next one."""
     waiting = tuple(leg for route in state.waiting.values() for leg in route)
     if waiting:
         return waiting
     plan = state.plan
     pieces = plan.pieces_over(state.missing())
-    ((along_m, across_m),) = plan.lattice.along_across_m([surveyor.place_m]).tolist()
-    return route_of(pieces, plan.lattice, (along_m, across_m)) if pieces else ()
+    start_m = plan.lattice.along_across_of(surveyor.place_m)
+    return route_of(pieces, plan.lattice, start_m) if pieces else ()
 
 
 def _lasts_for_any(state: SurveyState, legs: Route, surveyor: Surveyor) -> bool:
     plan = state.plan
     tracks = (plan.track((leg,)) for leg in legs)
-    return any(lasts(plan, track, surveyor) for track in tracks)
+    return any(battery_lasts(plan, track, surveyor) for track in tracks)

@@ -21,14 +21,16 @@ during takeoff: an aircraft may ignore the new one then.
 from collections.abc import Mapping
 from dataclasses import replace
 from itertools import accumulate
+from math import dist
 from types import MappingProxyType
 
 from recon.guidance.survey.closed_areas import closed_ground, is_open
-from recon.guidance.survey.missions import Track, apart_m
+from recon.guidance.survey.lattice import EastNorth
+from recon.guidance.survey.missions import Track
 from recon.guidance.survey.passing import Passing
 from recon.guidance.survey.plan import SurveyPlan
-from recon.guidance.survey.rounds import may_ask
-from recon.guidance.survey.route import Place, Route
+from recon.guidance.survey.rounds import Step, may_ask
+from recon.guidance.survey.route import Route
 from recon.guidance.survey.state import (
     AssignedMission,
     Decision,
@@ -37,10 +39,7 @@ from recon.guidance.survey.state import (
     flown_just_now,
 )
 from recon.guidance.survey.vehicle_choice import VehicleChoice, named
-from recon.model.survey import MissionAssignment
 from recon.model.units import seconds_to_ns
-
-Replaced = tuple[SurveyState, tuple[MissionAssignment, ...]]
 
 
 def with_ends_passed(
@@ -50,7 +49,7 @@ def with_ends_passed(
     that have just flown a row and have others left."""
     at_end = []
     for serial, flight in state.flights.items():
-        if serial not in able or _takes_off(flight, able[serial], state.plan):
+        if serial not in able or _is_taking_off(flight, able[serial], state.plan):
             continue
         passed = _ends_passed(flight, able[serial].place_m, state.plan)
         if passed == flight.ends_passed:
@@ -62,16 +61,16 @@ def with_ends_passed(
     return state, tuple(at_end)
 
 
-def _ends_passed(flight: AssignedMission, place_m: Place, plan: SurveyPlan) -> int:
+def _ends_passed(flight: AssignedMission, place_m: EastNorth, plan: SurveyPlan) -> int:
     passed = flight.ends_passed
     for end_m in _ends_left_m(flight, plan):
-        if apart_m(end_m, place_m) > plan.settings.at_end_m:
+        if dist(end_m, place_m) > plan.settings.at_end_m:
             break
         passed += 1
     return passed
 
 
-def _ends_left_m(flight: AssignedMission, plan: SurveyPlan) -> list[Place]:
+def _ends_left_m(flight: AssignedMission, plan: SurveyPlan) -> list[EastNorth]:
     """East-north: the beginnings and ends of rows that the vehicle has not come to yet."""
     ends = [end for leg in flight.route for end in leg.ends_m(plan.lattice, plan.swath.lead_m)]
     left = ends[flight.ends_passed :]
@@ -95,7 +94,7 @@ def on_closed_ground(
         is_lost = serial not in able or serial in lost
         if is_lost or decision is None or now_ns < decision.again_ns:
             continue
-        if _takes_off(flight, able[serial], state.plan):
+        if _is_taking_off(flight, able[serial], state.plan):
             continue
         way_m = tuple(_ends_left_m(flight, state.plan))
         is_out = is_open(ground, Track((able[serial].place_m,)))
@@ -104,10 +103,10 @@ def on_closed_ground(
     return tuple(found)
 
 
-def off_closed_ground(choice: VehicleChoice) -> Replaced:
+def leave_closed_ground(choice: VehicleChoice) -> Step:
     """Fly rows over open ground instead of a mission that leads over closed ground."""
     state, serial, settings = choice.state, choice.surveyor.serial, choice.settings
-    alone = _alone(choice)
+    alone = _without_mission(choice)
     free = alone.free()
     rows: Route = ()
     if free.any():
@@ -116,14 +115,14 @@ def off_closed_ground(choice: VehicleChoice) -> Replaced:
         rows = alone.rows(share) if is_clear else alone.long_enough(alone.begun_at_once(share))
     if rows:
         names = ", ".join(each.name for each in state.closed)
-        replaced = _instead(choice, rows, f"keeps clear of {names}, without telemetry; ")
+        replaced = _replace_mission(choice, rows, f"keeps clear of {names}, without telemetry; ")
         if replaced is not None:
             return replaced
     again_ns = choice.now_ns + seconds_to_ns(settings.decided_again_s)
     return state.with_decision(serial, replace(state.decisions[serial], again_ns=again_ns)), ()
 
 
-def at_row_end(choice: VehicleChoice, able: Mapping[str, Surveyor]) -> Replaced:
+def decide_at_row_end(choice: VehicleChoice, able: Mapping[str, Surveyor]) -> Step:
     """Replace the mission of a vehicle at the end of a row, if that is worth it."""
     rows = choice.state.flights[choice.surveyor.serial].rows_left
     left = choice.passing(rows, 0.0)
@@ -131,9 +130,9 @@ def at_row_end(choice: VehicleChoice, able: Mapping[str, Surveyor]) -> Replaced:
     is_in_sun = lit_m2 >= choice.settings.kept_from * left.missing_m2
     replaced = None
     if not is_in_sun or _has_opened(choice):
-        replaced = _in_more_sun(choice, left)
+        replaced = _fly_in_more_sun(choice, left)
     if replaced is None and is_in_sun:
-        replaced = _handed_on(choice, able, _nearer_half(rows, choice.plan), lit_m2)
+        replaced = _hand_on_half(choice, able, _nearer_half(rows, choice.plan), lit_m2)
     return (choice.state, ()) if replaced is None else replaced
 
 
@@ -142,7 +141,9 @@ def _has_opened(choice: VehicleChoice) -> bool:
     return state.flights[choice.surveyor.serial].is_beside_closed and not state.closed
 
 
-def on_the_way_in_any_light(state: SurveyState, able: Mapping[str, Surveyor]) -> tuple[str, ...]:
+def before_first_row_in_any_light(
+    state: SurveyState, able: Mapping[str, Surveyor]
+) -> tuple[str, ...]:
     """Return the vehicles on the way to the first row of a mission given in unknown light."""
     return tuple(
         serial
@@ -150,11 +151,11 @@ def on_the_way_in_any_light(state: SurveyState, able: Mapping[str, Surveyor]) ->
         if serial in able
         and flight.is_in_any_light
         and flight.ends_passed == 0
-        and not _takes_off(flight, able[serial], state.plan)
+        and not _is_taking_off(flight, able[serial], state.plan)
     )
 
 
-def _takes_off(flight: AssignedMission, surveyor: Surveyor, plan: SurveyPlan) -> bool:
+def _is_taking_off(flight: AssignedMission, surveyor: Surveyor, plan: SurveyPlan) -> bool:
     """Whether a vehicle is on the ground, or before its first row not higher than it takes off to.
 
     Rows over low ground may be far below the takeoff point: there it is not taking off.
@@ -166,9 +167,9 @@ def _takes_off(flight: AssignedMission, surveyor: Surveyor, plan: SurveyPlan) ->
     return is_low and flight.ends_passed == 0
 
 
-def when_light_is_known(choice: VehicleChoice, able: Mapping[str, Surveyor]) -> Replaced:
+def decide_in_known_light(choice: VehicleChoice, able: Mapping[str, Surveyor]) -> Step:
     """Decide once on a mission given in unknown light, as at the end of a row."""
-    state, missions = at_row_end(choice, able)
+    state, missions = decide_at_row_end(choice, able)
     if missions:
         return state, missions
     serial = choice.surveyor.serial
@@ -180,9 +181,9 @@ def when_light_is_known(choice: VehicleChoice, able: Mapping[str, Surveyor]) -> 
     return state.with_decision(serial, Decision(text)), ()
 
 
-def _handed_on(
+def _hand_on_half(
     choice: VehicleChoice, able: Mapping[str, Surveyor], kept: Route, lit_m2: float
-) -> Replaced | None:
+) -> Step | None:
     """Keep these rows alone, if there are vehicles for the others."""
     others = _in_want_of_sun(choice, able, lit_m2) if kept else set()
     if not others:
@@ -190,7 +191,7 @@ def _handed_on(
     state = choice.state
     for serial in others & state.decisions.keys():
         state = state.with_decision(serial, replace(state.decisions[serial], again_ns=0))
-    return _instead(replace(choice, state=state), kept, "hands on half of its rows; ")
+    return _replace_mission(replace(choice, state=state), kept, "hands on half of its rows; ")
 
 
 def _in_want_of_sun(choice: VehicleChoice, able: Mapping[str, Surveyor], lit_m2: float) -> set[str]:
@@ -221,9 +222,9 @@ def _nearer_half(rows: Route, plan: SurveyPlan) -> Route:
     return rows[: min(kept, len(rows) - 1)]
 
 
-def _in_more_sun(choice: VehicleChoice, left: Passing) -> Replaced | None:
+def _fly_in_more_sun(choice: VehicleChoice, left: Passing) -> Step | None:
     """Fly what is in sun instead of what is left, if that is worth a new mission."""
-    alone, expected, plan = _alone(choice), choice.expected, choice.plan
+    alone, expected, plan = _without_mission(choice), choice.expected, choice.plan
     free = alone.free()
     legs = alone.begun_at_once(alone.share(free)) if free.any() else ()
     if not legs:
@@ -239,14 +240,14 @@ def _in_more_sun(choice: VehicleChoice, left: Passing) -> Replaced | None:
     flown_m2 = plan.survey.speed_mps * plan.lattice.spacing_m * until_s
     if gained_m2 < plan.settings.replaced_from * flown_m2:
         return None
-    return _instead(choice, alone.long_enough(legs), "leaves its rows; ")
+    return _replace_mission(choice, alone.long_enough(legs), "leaves its rows; ")
 
 
-def _instead(choice: VehicleChoice, rows: Route, why: str) -> Replaced | None:
+def _replace_mission(choice: VehicleChoice, rows: Route, why: str) -> Step | None:
     """Fly these rows instead of the mission's; None if the battery lasts for none of them."""
     serial = choice.surveyor.serial
     flight = choice.state.flights[serial]
-    state, missions = _alone(choice).flies(rows, why)
+    state, missions = _without_mission(choice).fly(rows, why)
     new = state.flights.get(serial)
     if new is None or not new.route:
         return None
@@ -254,7 +255,7 @@ def _instead(choice: VehicleChoice, rows: Route, why: str) -> Replaced | None:
     return replace(state, flown_m=state.flown_m - flight.unflown_m), missions
 
 
-def _alone(choice: VehicleChoice) -> VehicleChoice:
+def _without_mission(choice: VehicleChoice) -> VehicleChoice:
     """The choice of a vehicle without its mission; what it has flown counts as just flown."""
     state, serial = choice.state, choice.surveyor.serial
     flight = state.flights[serial]

@@ -7,22 +7,21 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from heapq import heappop, heappush
 from itertools import pairwise
-from math import hypot
+from math import dist
 
 import numpy as np
 import numpy.typing as npt
 import shapely  # type: ignore[import-untyped, unused-ignore]
 
 from recon.geo import geo_from_enu
-from recon.guidance.survey.lattice import RowLattice
-from recon.guidance.survey.route import Place, Route
+from recon.guidance.survey.lattice import AlongAcross, EastNorth, RowLattice
+from recon.guidance.survey.route import Route
 from recon.guidance.survey.settings import SurveySettings
 from recon.guidance.survey.terrain import Terrain, vertices_of
+from recon.model.arrays import FloatArray
 from recon.model.geo import LatLon, LocalFrame
 from recon.model.mission import Mission, Waypoint
 from recon.model.survey import Survey
-
-FloatArray = npt.NDArray[np.float64]
 
 CLEARANCE_M = 0.25
 """Corners of a way stand this far off the edge, so that rounding never crosses it."""
@@ -46,13 +45,13 @@ class RegionPaths:
         self._seen: dict[int, list[tuple[int, float]]] = {}
         shapely.prepare(area)
 
-    def between(self, start_m: Place, end_m: Place) -> tuple[Place, ...] | None:
+    def between(self, start_m: EastNorth, end_m: EastNorth) -> tuple[EastNorth, ...] | None:
         """Return the corners on the way, none where it is straight; None where there is no way."""
         if self._is_open(np.array([start_m]), end_m)[0]:
             return ()
         return self._around(start_m, end_m)
 
-    def inside(self, place_m: Place) -> Place:
+    def inside(self, place_m: EastNorth) -> EastNorth:
         """Return the place, or the nearest one `CLEARANCE_M` inside the area if it is not far off.
 
         Rows end on the edge, and a vehicle stops some way beyond it.
@@ -65,7 +64,7 @@ class RegionPaths:
         is_far = shapely.distance(nearest, place) > OFF_PLACE_M
         return place_m if is_far else (float(nearest.x), float(nearest.y))
 
-    def _around(self, start_m: Place, end_m: Place) -> tuple[Place, ...] | None:
+    def _around(self, start_m: EastNorth, end_m: EastNorth) -> tuple[EastNorth, ...] | None:
         """Dijkstra's search over the corners, from the start to the first that sees the end."""
         sees_end = self._is_open(self._corners, end_m)
         waiting = [(far_m, corner, -1) for corner, far_m in self._visible_from(start_m)]
@@ -80,15 +79,15 @@ class RegionPaths:
                 continue
             before[corner] = previous
             if sees_end[corner]:
-                total_m = far_m + _apart_m(self._corners[corner], end_m)
+                total_m = far_m + dist(self._corners[corner], end_m)
                 best = min(best or (total_m, corner), (total_m, corner))
             for neighbour, leg_m in self._neighbours(corner):
                 if neighbour not in before:
                     heappush(waiting, (far_m + leg_m, neighbour, corner))
         return None if best is None else self._back(best[1], before)
 
-    def _back(self, corner: int, before: dict[int, int]) -> tuple[Place, ...]:
-        way: list[Place] = []
+    def _back(self, corner: int, before: dict[int, int]) -> tuple[EastNorth, ...]:
+        way: list[EastNorth] = []
         while corner >= 0:
             way.append((float(self._corners[corner][0]), float(self._corners[corner][1])))
             corner = before[corner]
@@ -100,11 +99,11 @@ class RegionPaths:
             self._seen[corner] = self._visible_from((float(place[0]), float(place[1])))
         return self._seen[corner]
 
-    def _visible_from(self, place_m: Place) -> list[tuple[int, float]]:
+    def _visible_from(self, place_m: EastNorth) -> list[tuple[int, float]]:
         open_to = np.flatnonzero(self._is_open(self._corners, place_m))
-        return [(int(each), _apart_m(self._corners[each], place_m)) for each in open_to]
+        return [(int(each), dist(self._corners[each], place_m)) for each in open_to]
 
-    def _is_open(self, places_m: FloatArray, end_m: Place) -> npt.NDArray[np.bool_]:
+    def _is_open(self, places_m: FloatArray, end_m: EastNorth) -> npt.NDArray[np.bool_]:
         """Which of N places see one straight, (N,)."""
         ends = np.broadcast_to(np.array(end_m), places_m.shape)
         legs = shapely.linestrings(np.stack([places_m, ends], axis=1))
@@ -126,10 +125,6 @@ def _corners(area: shapely.Geometry) -> FloatArray:
     return corners
 
 
-def _apart_m(a: Sequence[float] | FloatArray, b: Place) -> float:
-    return hypot(float(a[0]) - b[0], float(a[1]) - b[1])
-
-
 NADIR_DEG = -90.0
 LEAST_LEG_M = 1.0
 """DJI refuses waypoints nearer than 0.5 m."""
@@ -143,19 +138,19 @@ class Track:
     height at each, up of the frame; empty: all are at the survey's height above takeoff.
     """
 
-    corners_m: tuple[Place, ...]
+    corners_m: tuple[EastNorth, ...]
     up_m: tuple[float, ...] = ()
 
     @property
     def length_m(self) -> float:
         """From the first corner to the last."""
-        return sum(apart_m(a, b) for a, b in pairwise(self.corners_m))
+        return sum(dist(a, b) for a, b in pairwise(self.corners_m))
 
     def climbing_s(self, speed_mps: float, climb_mps: float) -> float:
         """Return how much longer its legs take than on the level: steep ones are flown slower."""
         legs = zip(pairwise(self.corners_m), pairwise(self.up_m), strict=False)
         return sum(
-            max(0.0, abs(up_b - up_a) / climb_mps - apart_m(a, b) / speed_mps)
+            max(0.0, abs(up_b - up_a) / climb_mps - dist(a, b) / speed_mps)
             for (a, b), (up_a, up_b) in legs
         )
 
@@ -171,7 +166,7 @@ def track_of(
 
     With a terrain it follows that.
     """
-    corners: list[Place] = []
+    corners: list[EastNorth] = []
     for leg in route:
         start_m, end_m = _east_north(leg.ends_m(lattice, lead_m), lattice)
         if corners:
@@ -185,18 +180,18 @@ def track_of(
 
 
 def flight_time_s(
-    track: Track, speed_mps: float, start_m: Place, home_m: Place, settings: SurveySettings
+    track: Track, speed_mps: float, start_m: EastNorth, home_m: EastNorth, settings: SurveySettings
 ) -> float:
     """Return how long a track takes with the way to it and the way home, stops included."""
     stops = len(track.corners_m) + 1
-    way_m = apart_m(start_m, track.corners_m[0]) + apart_m(track.corners_m[-1], home_m)
+    way_m = dist(start_m, track.corners_m[0]) + dist(track.corners_m[-1], home_m)
     climbing_s = track.climbing_s(speed_mps, settings.climb_mps)
     moving_s = (track.length_m + way_m) / speed_mps + climbing_s
     return moving_s + stops * speed_mps / settings.turning_mps2
 
 
 def approach_of(
-    track: Track, start_m: Place, ways: RegionPaths, frame: LocalFrame
+    track: Track, start_m: EastNorth, ways: RegionPaths, frame: LocalFrame
 ) -> tuple[LatLon, ...]:
     """Return the corners on the way from a place to a track, as far as the ways' area has one."""
     corners_m = ways.between(ways.inside(start_m), ways.inside(track.corners_m[0]))
@@ -248,20 +243,15 @@ def _heights_above_takeoff_m(
     return [round(up_m - takeoff_up_m, 2) for up_m in track.up_m]
 
 
-def apart_m(a: Place, b: Place) -> float:
-    """Return how far two places are from each other."""
-    return hypot(a[0] - b[0], a[1] - b[1])
-
-
-def _east_north(ends: Sequence[Place], lattice: RowLattice) -> tuple[Place, Place]:
+def _east_north(ends: Sequence[AlongAcross], lattice: RowLattice) -> tuple[EastNorth, EastNorth]:
     start, end = lattice.east_north_m(np.array(ends)).tolist()
     return (start[0], start[1]), (end[0], end[1])
 
 
-def _thinned(corners: Sequence[Place]) -> tuple[Place, ...]:
+def _thinned(corners: Sequence[EastNorth]) -> tuple[EastNorth, ...]:
     """Without the corners that are too near to the one before."""
-    kept: list[Place] = []
+    kept: list[EastNorth] = []
     for corner in corners:
-        if not kept or apart_m(kept[-1], corner) >= LEAST_LEG_M:
+        if not kept or dist(kept[-1], corner) >= LEAST_LEG_M:
             kept.append(corner)
     return tuple(kept)

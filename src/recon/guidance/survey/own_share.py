@@ -4,10 +4,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from recon.guidance.survey.cells import BoolArray, FloatArray
 from recon.guidance.survey.plan import SurveyPlan
 from recon.guidance.survey.segments import ExpectedSun
 from recon.guidance.survey.state import AssignedMission, Surveyor
+from recon.model.arrays import BoolArray, FloatArray
 from recon.model.units import ns_to_seconds
 
 
@@ -45,8 +45,7 @@ def _next_across_m(
 ) -> float:
     flight = flights.get(surveyor.serial)
     place_m = surveyor.place_m if flight is None else flight.corners_m[-1]
-    ((_, across_m),) = plan.lattice.along_across_m([place_m]).tolist()
-    return float(across_m)
+    return plan.lattice.along_across_of(place_m)[1]
 
 
 def _busy_s(flight: AssignedMission | None, now_ns: int) -> float:

@@ -2,13 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import hypot
+from math import dist
 from typing import NamedTuple
 
 import numpy as np
 
-from recon.guidance.survey.lattice import RowLattice
-from recon.guidance.survey.route import Place, Route
+from recon.guidance.survey.lattice import AlongAcross, RowLattice
+from recon.guidance.survey.route import Route
 from recon.guidance.survey.search import Pace
 from recon.guidance.survey.segments import ExpectedSun, Segments
 
@@ -46,7 +46,7 @@ def passing(
     expected: ExpectedSun,
     lattice: RowLattice,
     pace: Pace,
-    start_m: Place,
+    start_m: AlongAcross,
     starts_s: float,
 ) -> Passing:
     """Return what a vehicle passes that leaves a place (along, across) then."""
@@ -54,7 +54,7 @@ def passing(
     at_s, place_m = starts_s, start_m
     for leg in route:
         begins_m, ends_m = leg.ends_m(lattice, 0.0)
-        way_m = hypot(begins_m[0] - place_m[0], begins_m[1] - place_m[1])
+        way_m = dist(begins_m, place_m)
         at_s += way_m / pace.speed_mps + pace.stop_s
         for number in np.flatnonzero(segments.under([leg])).tolist():
             part = segments.parts[number]

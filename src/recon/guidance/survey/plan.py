@@ -2,21 +2,22 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
-from math import hypot
+from math import dist, hypot
 
 import numpy as np
 import shapely  # type: ignore[import-untyped, unused-ignore]
 
 from recon.geo import region_fault, shape_of
-from recon.guidance.survey.cells import BoolArray, CoverageCells, cells_over
+from recon.guidance.survey.cells import CoverageCells, cells_over
 from recon.guidance.survey.imaging import longest_photo_m
-from recon.guidance.survey.lattice import RowLattice, Swath, swath_of
+from recon.guidance.survey.lattice import EastNorth, RowLattice, Swath, swath_of
 from recon.guidance.survey.missions import RegionPaths, Track, track_of
-from recon.guidance.survey.route import Place, Route, RowLeg
+from recon.guidance.survey.route import Route, RowLeg
 from recon.guidance.survey.rows import Piece, best_bearing_deg, lattice_over, row_pieces
 from recon.guidance.survey.settings import DEFAULT, SurveySettings
 from recon.guidance.survey.terrain import Terrain, ground_range_m, terrain_over
 from recon.model.airspace import Airspace, ElevationModel, FlightLimits, Region, ZoneKind
+from recon.model.arrays import BoolArray
 from recon.model.command import Refusal
 from recon.model.geo import LocalFrame
 from recon.model.mission import DJI
@@ -39,19 +40,19 @@ HEIGHT_FAULT = (
 )
 
 
-def survey_fault(survey: Survey, settings: SurveySettings = DEFAULT) -> str | None:
+def survey_fault(survey: Survey) -> str | None:
     """Return why a survey cannot be flown and what to change; None when it can."""
-    return next(_faults(survey, settings), None)
+    return next(_faults(survey), None)
 
 
-def _faults(survey: Survey, settings: SurveySettings) -> Iterator[str]:
+def _faults(survey: Survey) -> Iterator[str]:
     fault = region_fault(survey.region)
     if fault is not None:
         yield f"the region {survey.name} cannot be surveyed: {fault}"
         return
     yield from _number_faults(survey)
-    yield from _overlap_faults(survey, settings)
-    yield from _size_faults(survey, settings)
+    yield from _overlap_faults(survey)
+    yield from _size_faults(survey)
 
 
 def _number_faults(survey: Survey) -> Iterator[str]:
@@ -77,9 +78,9 @@ def _number_faults(survey: Survey) -> Iterator[str]:
         yield f"{survey.budget.rounds} rounds are allowed: at least 1 is needed"
 
 
-def _overlap_faults(survey: Survey, settings: SurveySettings) -> Iterator[str]:
+def _overlap_faults(survey: Survey) -> Iterator[str]:
     camera, height_m = survey.camera, survey.height_m
-    slack_m = 2.0 * settings.place_slack_m
+    slack_m = 2.0 * DEFAULT.place_slack_m
     across_m, along_m = camera.across_m(height_m), camera.along_m(height_m)
     if min(across_m, along_m) < 2.0 * slack_m:
         yield (
@@ -89,7 +90,7 @@ def _overlap_faults(survey: Survey, settings: SurveySettings) -> Iterator[str]:
         return
     photo_m = survey.speed_mps * camera.interval_s
     longest_m = longest_photo_m(
-        camera, height_m, survey.front_overlap, settings, stops_in_rows=survey.is_above_ground
+        camera, height_m, survey.front_overlap, stops_in_rows=survey.is_above_ground
     )
     if photo_m > longest_m * (1.0 + 1e-9):
         yield (
@@ -99,7 +100,7 @@ def _overlap_faults(survey: Survey, settings: SurveySettings) -> Iterator[str]:
         )
 
 
-def _size_faults(survey: Survey, settings: SurveySettings) -> Iterator[str]:
+def _size_faults(survey: Survey) -> Iterator[str]:
     outline_m = survey.region.outline_m
     wide_m, high_m = outline_m.max(axis=0) - outline_m.min(axis=0)
     if wide_m * high_m / survey.cell_m**2 > MOST_CELLS:
@@ -113,7 +114,7 @@ def _size_faults(survey: Survey, settings: SurveySettings) -> Iterator[str]:
             f"the region {survey.name} is {area_m2:.2g} m², less than a cell of {survey.cell_m:g} "
             "m: draw its outline again"
         )
-    spacing_m = swath_of(survey, settings).widest_spacing_m
+    spacing_m = swath_of(survey, DEFAULT).widest_spacing_m
     if max(wide_m, high_m) / spacing_m > MOST_ROWS:
         yield f"rows {spacing_m:.1f} m apart are more than {MOST_ROWS} in this region"
 
@@ -167,7 +168,9 @@ class SurveyPlan:
         """Return where a route leads; None where no way leads from a row to the next."""
         return track_of(route, self.lattice, self.swath.lead_m, self.ways, self.terrain)
 
-    def height_above_takeoff_m(self, place_m: Place, takeoff_up_m: float | None) -> float | None:
+    def height_above_takeoff_m(
+        self, place_m: EastNorth, takeoff_up_m: float | None
+    ) -> float | None:
         """Return the wanted height at a place above a takeoff point; None: where that is, counts
         and is not known."""
         if self.terrain is None:
@@ -175,11 +178,22 @@ class SurveyPlan:
         return None if takeoff_up_m is None else self.terrain.up_at_m(place_m) - takeoff_up_m
 
     def height_off_m(
-        self, place_m: Place, height_above_takeoff_m: float, takeoff_up_m: float | None
+        self, place_m: EastNorth, height_above_takeoff_m: float, takeoff_up_m: float | None
     ) -> float | None:
         """Return how far a height is above the wanted one; negative: below it."""
         wanted_m = self.height_above_takeoff_m(place_m, takeoff_up_m)
         return None if wanted_m is None else height_above_takeoff_m - wanted_m
+
+    def is_at_rows_height(
+        self, place_m: EastNorth, height_above_takeoff_m: float, takeoff_up_m: float | None
+    ) -> bool:
+        """Return whether a height is that of rows there; waypoints that follow the ground may be
+        off the wanted height."""
+        off_m = self.height_off_m(place_m, height_above_takeoff_m, takeoff_up_m)
+        slack_m = self.settings.level_m
+        if self.terrain is not None:
+            slack_m += self.settings.terrain_above_m
+        return off_m is not None and abs(off_m) < slack_m
 
     def above_ground_m(self, takeoff_up_m: float) -> tuple[float, float] | None:
         """Return the least and the largest height above the region's ground that a vehicle of this
@@ -192,7 +206,7 @@ class SurveyPlan:
         return up_m - self.ground_range_m[1], up_m - self.ground_range_m[0]
 
     @property
-    def rows_m(self) -> tuple[tuple[Place, Place], ...]:
+    def rows_m(self) -> tuple[tuple[EastNorth, EastNorth], ...]:
         """From where to where each row is flown, lead and all, in east-north metres; to show."""
         lattice, lead_m = self.lattice, self.swath.lead_m
         legs = [RowLeg(piece, False).ends_m(lattice, lead_m) for piece in self.pieces]
@@ -236,17 +250,16 @@ def plan_survey(
     survey: Survey,
     frame: LocalFrame,
     surroundings: SurveySurroundings | None = None,
-    settings: SurveySettings = DEFAULT,
 ) -> SurveyPlan | Refusal:
     """Return the plan of a survey, or a refusal with the reason. Takes tens of milliseconds."""
-    fault = survey_fault(survey, settings)
+    fault, settings = survey_fault(survey), DEFAULT
     if fault is not None:
         return Refusal(RULE, fault)
     area, swath = shape_of(survey.region), swath_of(survey, settings)
-    lattice = lattice_over(area, row_bearing_deg(survey, settings), swath, settings)
+    lattice = lattice_over(area, row_bearing_deg(survey), swath, settings)
     flyable = shapely.buffer(area, row_reach_m(lattice, swath) + settings.kept_off_m)
     if surroundings is not None:
-        flyable = _left(flyable, surroundings, settings)
+        flyable = _without_closed(flyable, surroundings, settings)
     limits = None if surroundings is None else flyable
     pieces = row_pieces(area, lattice, swath, settings, limits)
     if not pieces:
@@ -265,7 +278,7 @@ def plan_survey(
             f"no cell of {survey.cell_m:g} m of the region {survey.name} is on photos of its rows: "
             "choose smaller cells, or a larger region",
         )
-    counted = _counted(survey, swath, lattice, settings)
+    counted = _counted_swath(survey, swath, lattice, settings)
     ground_m = ground_range_m(area, air.elevation, settings.terrain_cell_m)
     plan = SurveyPlan(
         survey, frame, settings, lattice, swath, counted, pieces, ways, cells, terrain, ground_m
@@ -275,17 +288,16 @@ def plan_survey(
 
 def _stops_per_m(plan: SurveyPlan, terrain: Terrain) -> float:
     stops = sum(len(terrain.between(*ends)) for ends in plan.rows_m)
-    rows_m = sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in plan.rows_m)
+    rows_m = sum(dist(a, b) for a, b in plan.rows_m)
     return stops / max(rows_m, 1.0)
 
 
-def row_bearing_deg(survey: Survey, settings: SurveySettings = DEFAULT) -> float:
+def row_bearing_deg(survey: Survey) -> float:
     """Return the bearing of the rows, 0 to 180, of a survey without a `survey_fault`."""
     bearing_deg = survey.row_bearing_deg
     if bearing_deg is None:
-        bearing_deg = best_bearing_deg(
-            shape_of(survey.region), swath_of(survey, settings), settings
-        )
+        swath = swath_of(survey, DEFAULT)
+        bearing_deg = best_bearing_deg(shape_of(survey.region), swath, DEFAULT)
     return bearing_deg % 180.0
 
 
@@ -295,7 +307,9 @@ def row_reach_m(lattice: RowLattice, swath: Swath) -> float:
     return hypot(lattice.spacing_m / 2.0, along_m)
 
 
-def _counted(survey: Survey, swath: Swath, lattice: RowLattice, settings: SurveySettings) -> Swath:
+def _counted_swath(
+    survey: Survey, swath: Swath, lattice: RowLattice, settings: SurveySettings
+) -> Swath:
     if survey.counts_neighbours:
         return swath
     # A vehicle that is as far off its row as it may be still counts for the whole band.
@@ -303,7 +317,7 @@ def _counted(survey: Survey, swath: Swath, lattice: RowLattice, settings: Survey
     return replace(swath, half_across_m=min(swath.half_across_m, own_m))
 
 
-def _left(
+def _without_closed(
     flyable: shapely.Geometry, surroundings: SurveySurroundings, settings: SurveySettings
 ) -> shapely.Geometry:
     margin_m = surroundings.margin_m + settings.kept_off_m

@@ -23,10 +23,11 @@ from types import MappingProxyType
 import numpy as np
 import numpy.typing as npt
 
-from recon.guidance.survey.cells import BoolArray, CoverageCells, IntArray
+from recon.guidance.survey.cells import CoverageCells
 from recon.guidance.survey.plan import SurveyPlan
 from recon.guidance.survey.settings import SurveySettings
 from recon.guidance.survey.view import Crossing, Window, crossing, nearest_map, sunlit_cells
+from recon.model.arrays import BoolArray, IntArray
 from recon.model.shade import ShadeMap
 from recon.model.survey import CellState, Survey
 from recon.model.units import ns_to_seconds, seconds_to_ns
@@ -107,7 +108,7 @@ class CoverageProgress:
     in_sun_95_at_ns: int | None = None
 
 
-def no_progress(cells: CoverageCells) -> CoverageProgress:
+def first_progress(cells: CoverageCells) -> CoverageProgress:
     """Return the progress of a survey that has not begun."""
     shape = (cells.grid.rows, cells.grid.cols)
     state = np.full(shape, CellState.NOT_YET, dtype=np.uint8)
@@ -137,7 +138,7 @@ def with_shade(progress: CoverageProgress, shade: ShadeMap, plan: SurveyPlan) ->
     return replace(progress, shade=kept, light_shown=progress.light_shown.after(shade, plan))
 
 
-def with_seen(
+def with_positions(
     progress: CoverageProgress, serial: str, seen: Sequence[PositionSample], plan: SurveyPlan
 ) -> CoverageProgress:
     """Return the progress with more of a vehicle's way, oldest first; it counts when settled.
@@ -158,7 +159,7 @@ def with_seen(
     return replace(progress, waiting=MappingProxyType({**progress.waiting, serial: kept}))
 
 
-def settled(progress: CoverageProgress, plan: SurveyPlan, now_ns: int) -> CoverageProgress:
+def count_settled(progress: CoverageProgress, plan: SurveyPlan, now_ns: int) -> CoverageProgress:
     """Return the progress with all that has waited long enough counted."""
     until_ns = now_ns - seconds_to_ns(plan.settings.settle_s)
     due = {
@@ -168,16 +169,18 @@ def settled(progress: CoverageProgress, plan: SurveyPlan, now_ns: int) -> Covera
     }
     if not due:
         return progress
-    counting = _Count(progress, plan)
+    counting = _Counter(progress, plan)
     waiting = dict(progress.waiting)
     for serial, number in due.items():
         for a, b in pairwise(waiting[serial][:number]):
             counting.way(serial, a, b)
         waiting[serial] = waiting[serial][number - 1 :]
-    return _timed(replace(counting.result(), waiting=MappingProxyType(waiting)), plan, until_ns)
+    return _with_95_times(
+        replace(counting.result(), waiting=MappingProxyType(waiting)), plan, until_ns
+    )
 
 
-def _timed(progress: CoverageProgress, plan: SurveyPlan, at_ns: int) -> CoverageProgress:
+def _with_95_times(progress: CoverageProgress, plan: SurveyPlan, at_ns: int) -> CoverageProgress:
     reached = plan.cells.is_reached
     states = progress.state[reached]
     enough = 0.95 * max(1, len(states))
@@ -188,7 +191,7 @@ def _timed(progress: CoverageProgress, plan: SurveyPlan, at_ns: int) -> Coverage
     return progress
 
 
-class _Count:
+class _Counter:
     """Counts ways on a copy of the progress."""
 
     def __init__(self, progress: CoverageProgress, plan: SurveyPlan) -> None:
@@ -218,7 +221,7 @@ class _Count:
         start, end = ((float(along), float(across)) for along, across in lying)
         moved_m = end[0] - start[0], end[1] - start[1]
         off_m = _off_height_m(plan, (a, b))
-        if off_m is None or not is_photographed(
+        if off_m is None or not is_flown_as_planned(
             plan.survey, plan.settings, (a.at_ns, b.at_ns), moved_m, off_m
         ):
             return
@@ -239,7 +242,7 @@ class _Count:
         known: BoolArray,
         at_ns: int,
     ) -> InView:
-        since_ns, lit_since_ns = _carried(before, cross.window)
+        since_ns, lit_since_ns = _carried_over(before, cross.window)
         since_ns = _since(cross, since_ns)
         lit_since_ns = _since(cross, lit_since_ns)
         inside = self._plan.cells.is_inside[cross.window.index] & cross.is_in_view
@@ -274,7 +277,7 @@ def _off_height_m(plan: SurveyPlan, ends: Sequence[PositionSample]) -> float | N
     return farthest_m
 
 
-def is_photographed(
+def is_flown_as_planned(
     survey: Survey,
     settings: SurveySettings,
     times_ns: tuple[int, int],
@@ -295,7 +298,7 @@ def is_photographed(
     return off_m <= settings.height_slack_m and is_along and is_moving and is_slow
 
 
-def _carried(before: InView | None, window: Window) -> tuple[IntArray, IntArray]:
+def _carried_over(before: InView | None, window: Window) -> tuple[IntArray, IntArray]:
     """What was in view at the end of the way before, in another window."""
     carried = (np.full(window.shape, NEVER, np.int64), np.full(window.shape, NEVER, np.int64))
     if before is None:

@@ -7,7 +7,7 @@ Theory of operation. One call of `fly_rounds` does the first of these that appli
 
 1. Missions of vehicles that ended or dropped out are removed. Rows they did not image are missing.
 2. Each able vehicle without a mission gets the longest start of its share that its battery allows
-   (`sortie`, flight time times `flight_time_share`).
+   (`longest_mission`, flight time times `flight_time_share`).
 3. While any vehicle flies, wait: its rows may still be imaged.
 4. Budget spent: DONE.
 5. No vehicle can fly: wait, or pause when all missions were refused.
@@ -28,9 +28,10 @@ from types import MappingProxyType
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
+from recon.guidance.survey.lattice import AlongAcross
 from recon.guidance.survey.missions import Track, approach_of, flight_time_s, mission_of
 from recon.guidance.survey.plan import SurveyPlan
-from recon.guidance.survey.route import Cost, Place, Route, between_m, route_of, shared
+from recon.guidance.survey.route import Cost, Route, between_m, route_of, shared
 from recon.guidance.survey.rows import Piece
 from recon.guidance.survey.state import (
     NO_ROUTES,
@@ -48,14 +49,14 @@ Step = tuple[SurveyState, tuple[MissionAssignment, ...]]
 
 
 def fly_rounds(
-    state: SurveyState, positions: Sequence[Surveyor], now_ns: int, wanted: CellState
+    state: SurveyState, vehicles: Sequence[Surveyor], now_ns: int, wanted: CellState
 ) -> Step:
     """Return the next state and the missions to give, for cells up to the `wanted` state."""
-    able = {each.serial: each for each in positions if each.is_able}
-    state = without_ended(state, able, now_ns)
+    able = {each.serial: each for each in vehicles if each.is_able}
+    state = without_ended_missions(state, able, now_ns)
     spent = spent_budget(state, wanted, now_ns)
     if spent is None:
-        state, missions = _given(state, able, now_ns)
+        state, missions = _give_missions(state, able, now_ns)
         if missions:
             return replace(state, reason=f"round {state.round}"), missions
     if state.flights:
@@ -65,16 +66,16 @@ def fly_rounds(
         return (ended(state, SurveyPhase.DONE, spent, now_ns) if is_over else state), ()
     free = {serial: each for serial, each in able.items() if serial not in state.barred}
     if not free:
-        return without_able(state, able, now_ns), ()
+        return wait_or_pause(state, able, now_ns), ()
     if state.waiting:
-        return _shared_anew(state, free, now_ns)
+        return _share_again(state, free, now_ns)
     if not has_settled(state, now_ns):
         return state, ()
     end = end_between_rounds(state, wanted)
     if end is not None:
         return ended(state, SurveyPhase.DONE, end, now_ns), ()
     pieces = state.plan.pieces_over(state.missing(wanted))
-    return _begun(state, pieces, free, now_ns)
+    return _begin_round(state, pieces, free, now_ns)
 
 
 def ended(state: SurveyState, phase: SurveyPhase, reason: str, now_ns: int) -> SurveyState:
@@ -91,7 +92,9 @@ def ended(state: SurveyState, phase: SurveyPhase, reason: str, now_ns: int) -> S
     )
 
 
-def without_ended(state: SurveyState, able: Mapping[str, Surveyor], now_ns: int) -> SurveyState:
+def without_ended_missions(
+    state: SurveyState, able: Mapping[str, Surveyor], now_ns: int
+) -> SurveyState:
     """Return the survey without missions that have ended or whose vehicle has dropped out."""
     flights = {
         serial: flight
@@ -102,7 +105,7 @@ def without_ended(state: SurveyState, able: Mapping[str, Surveyor], now_ns: int)
     return replace(state, flights=MappingProxyType(flights), quiet_since_ns=quiet_ns)
 
 
-def without_able(state: SurveyState, able: Mapping[str, Surveyor], now_ns: int) -> SurveyState:
+def wait_or_pause(state: SurveyState, able: Mapping[str, Surveyor], now_ns: int) -> SurveyState:
     """Wait for an able vehicle, or pause when the missions of all were refused."""
     if not able:
         return replace(state, reason="waiting: no vehicle can fly now")
@@ -111,26 +114,26 @@ def without_able(state: SurveyState, able: Mapping[str, Surveyor], now_ns: int) 
     return ended(state, SurveyPhase.PAUSED, reason, now_ns)
 
 
-def _shared_anew(state: SurveyState, free: Mapping[str, Surveyor], now_ns: int) -> Step:
+def _share_again(state: SurveyState, free: Mapping[str, Surveyor], now_ns: int) -> Step:
     """Share left-over rows among able vehicles; wait while one is to be asked for again."""
     if any(serial in free and now_ns < each.again_ns for serial, each in state.refusals.items()):
         return state, ()
     pieces = [leg.piece for route in state.waiting.values() for leg in route]
-    return _handed_out(state, pieces, free, now_ns)
+    return _hand_out(state, pieces, free, now_ns)
 
 
-def _begun(
+def _begin_round(
     state: SurveyState, pieces: Sequence[Piece], free: Mapping[str, Surveyor], now_ns: int
 ) -> Step:
     """Begin the next round over these pieces; without any mission it does not count as begun."""
     begun = replace(state, round=state.round + 1, reason=f"round {state.round + 1}")
-    after, missions = _handed_out(begun, pieces, free, now_ns)
+    after, missions = _hand_out(begun, pieces, free, now_ns)
     if missions:
         return after, missions
     return replace(state, reason=after.reason), ()
 
 
-def _handed_out(
+def _hand_out(
     state: SurveyState, pieces: Sequence[Piece], free: Mapping[str, Surveyor], now_ns: int
 ) -> Step:
     """Share pieces and give the first missions; without any, change the reason only.
@@ -141,7 +144,7 @@ def _handed_out(
     by_battery = sorted(free.values(), key=lambda each: -(each.time_left_s or 0.0))
     for vehicles in (list(free.values()), *([each] for each in by_battery)):
         shared_out = MappingProxyType(shares(state.plan, pieces, vehicles))
-        given, missions = _given(replace(state, waiting=shared_out), free, now_ns)
+        given, missions = _give_missions(replace(state, waiting=shared_out), free, now_ns)
         if missions:
             return replace(given, reason=f"round {state.round}"), missions
     reason = "waiting: no battery lasts for the next row, the way there and the return"
@@ -158,26 +161,26 @@ def shares(
     middle_along_m, middle_across_m = lying.mean(axis=0).tolist()
     route = route_of(pieces, plan.lattice, (middle_along_m, middle_across_m))
     runs = shared(route, len(surveyors), plan.lattice, cost)
-    places: list[Place] = [(along_m, across_m) for along_m, across_m in lying.tolist()]
+    places: list[AlongAcross] = [(along_m, across_m) for along_m, across_m in lying.tolist()]
     far_m = np.array([[between_m(run[:1], plan.lattice, at) for run in runs] for at in places])
     vehicle, run = linear_sum_assignment(far_m)
     return {surveyors[int(i)].serial: runs[int(j)] for i, j in zip(vehicle, run, strict=True)}
 
 
-def _given(state: SurveyState, able: Mapping[str, Surveyor], now_ns: int) -> Step:
+def _give_missions(state: SurveyState, able: Mapping[str, Surveyor], now_ns: int) -> Step:
     """Give each idle vehicle as much of its share as its battery allows."""
     missions: list[MissionAssignment] = []
     for serial, route in state.waiting.items():
         if not may_ask(state, serial, able, now_ns):
             continue
-        track, count = sortie(state.plan, route, able[serial])
+        track, count = longest_mission(state.plan, route, able[serial])
         if track is None:
             continue
         number = state.missions + 1
         flight = AssignedMission(
             number, route[:count], track.corners_m, track.length_m, up_m=track.up_m
         )
-        state, mission = flying(state, able[serial], flight, route[count:])
+        state, mission = assign(state, able[serial], flight, route[count:])
         missions.append(mission)
     return state, tuple(missions)
 
@@ -190,7 +193,7 @@ def may_ask(state: SurveyState, serial: str, able: Mapping[str, Surveyor], now_n
     return refused is None or now_ns >= refused.again_ns
 
 
-def flying(
+def assign(
     state: SurveyState, surveyor: Surveyor, flight: AssignedMission, rest: Route
 ) -> tuple[SurveyState, MissionAssignment]:
     """Return the survey with a vehicle on a mission, and that mission; `rest` waits for it."""
@@ -211,7 +214,7 @@ def flying(
     return state, MissionAssignment(serial, flight.number, mission, flight.length_m, approach)
 
 
-def sortie(
+def longest_mission(
     plan: SurveyPlan,
     route: Route,
     surveyor: Surveyor,
@@ -231,13 +234,13 @@ def sortie(
     def is_too_many(count: int) -> bool:
         found = track(count)
         is_flown = found is not None and (may_fly is None or may_fly(found))
-        return not (is_flown and lasts(plan, found, surveyor))
+        return not (is_flown and battery_lasts(plan, found, surveyor))
 
     count = bisect_left(too_many, True, key=is_too_many)
     return (track(count) if count else None), count
 
 
-def lasts(plan: SurveyPlan, track: Track | None, surveyor: Surveyor) -> bool:
+def battery_lasts(plan: SurveyPlan, track: Track | None, surveyor: Surveyor) -> bool:
     """Return whether there is a track and the battery lasts for it, and the ways there and home."""
     if track is None or surveyor.time_left_s is None:
         return track is not None
@@ -248,17 +251,17 @@ def lasts(plan: SurveyPlan, track: Track | None, surveyor: Surveyor) -> bool:
 
 
 def lawnmower_once(
-    state: SurveyState, positions: Sequence[Surveyor], _sun: SunForecast | None, now_ns: int
+    state: SurveyState, vehicles: Sequence[Surveyor], _sun: SunForecast | None, now_ns: int
 ) -> Step:
     """Fly all rows once, in whatever light; again only what was not imaged, as by a dropout."""
-    return fly_rounds(state, positions, now_ns, PLANNER_GOALS["lawnmower_once"])
+    return fly_rounds(state, vehicles, now_ns, PLANNER_GOALS["lawnmower_once"])
 
 
 def lawnmower_again(
-    state: SurveyState, positions: Sequence[Surveyor], _sun: SunForecast | None, now_ns: int
+    state: SurveyState, vehicles: Sequence[Surveyor], _sun: SunForecast | None, now_ns: int
 ) -> Step:
     """Fly all rows, and again what was imaged in shade, until all is imaged in sun.
 
     It does not wait for sun: the survey's budget ends it under a closed sky.
     """
-    return fly_rounds(state, positions, now_ns, PLANNER_GOALS["lawnmower_again"])
+    return fly_rounds(state, vehicles, now_ns, PLANNER_GOALS["lawnmower_again"])

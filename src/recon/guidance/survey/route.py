@@ -8,12 +8,10 @@ order of the shortest tour among those that always go on to the nearest end of a
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from math import hypot
+from math import dist
 
-from recon.guidance.survey.lattice import RowLattice
+from recon.guidance.survey.lattice import AlongAcross, RowLattice
 from recon.guidance.survey.rows import Piece
-
-Place = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +21,7 @@ class RowLeg:
     piece: Piece
     is_reversed: bool
 
-    def ends_m(self, lattice: RowLattice, lead_m: float) -> tuple[Place, Place]:
+    def ends_m(self, lattice: RowLattice, lead_m: float) -> tuple[AlongAcross, AlongAcross]:
         """Return where it begins and ends, in metres along and across, with its lead."""
         across_m = lattice.row_across_m(self.piece.row)
         low = (self.piece.start_m - lead_m, across_m)
@@ -36,7 +34,7 @@ Chain = tuple[Piece, ...]
 
 
 def route_of(
-    pieces: Sequence[Piece], lattice: RowLattice, start_m: Place | None, direction: int = 0
+    pieces: Sequence[Piece], lattice: RowLattice, start_m: AlongAcross | None, direction: int = 0
 ) -> Route:
     """Return the legs in the order they are flown, beginning near `start_m` (along, across).
 
@@ -68,11 +66,11 @@ def chains(pieces: Sequence[Piece]) -> list[Chain]:
     return [tuple(_followed(first, ahead)) for first in firsts]
 
 
-def between_m(route: Sequence[RowLeg], lattice: RowLattice, start_m: Place | None) -> float:
+def between_m(route: Sequence[RowLeg], lattice: RowLattice, start_m: AlongAcross | None) -> float:
     """Return how far it is from the start to the first piece, and from each to the next."""
     ends = [leg.ends_m(lattice, 0.0) for leg in route]
-    first_m = _apart_m(start_m, ends[0][0]) if ends and start_m is not None else 0.0
-    return first_m + sum(_apart_m(a[1], b[0]) for a, b in pairwise(ends))
+    first_m = dist(start_m, ends[0][0]) if ends and start_m is not None else 0.0
+    return first_m + sum(dist(a[1], b[0]) for a, b in pairwise(ends))
 
 
 def _facing(here: Sequence[Piece], there: Sequence[Piece]) -> dict[Piece, Piece]:
@@ -110,7 +108,7 @@ MOST_TOURS = 16
 
 
 def _tours(
-    entries: Sequence[tuple[Route, ...]], lattice: RowLattice, start_m: Place | None
+    entries: Sequence[tuple[Route, ...]], lattice: RowLattice, start_m: AlongAcross | None
 ) -> Iterator[Route]:
     """Tours that go on to the nearest chain, begun at each of the entries nearest to the start."""
     firsts = [(index, first) for index, entry in enumerate(entries) for first in entry]
@@ -124,17 +122,13 @@ def _nearest_on(tour: Route, entries: list[tuple[Route, ...]], lattice: RowLatti
     while entries:
         here_m = tour[-1].ends_m(lattice, 0.0)[1]
 
-        def far_m(route: Route, here_m: Place = here_m) -> float:
-            return _apart_m(here_m, route[0].ends_m(lattice, 0.0)[0])
+        def far_m(route: Route, here_m: AlongAcross = here_m) -> float:
+            return dist(here_m, route[0].ends_m(lattice, 0.0)[0])
 
         nearest = min(entries, key=lambda entry: min(far_m(route) for route in entry))
         entries.remove(nearest)
         tour += min(nearest, key=far_m)
     return tour
-
-
-def _apart_m(a: Place, b: Place) -> float:
-    return hypot(a[0] - b[0], a[1] - b[1])
 
 
 CLOSE_M = 1.0
@@ -224,4 +218,4 @@ def _length_m(route: Route, lattice: RowLattice, cost: Cost) -> float:
 def _between_m(a: RowLeg, b: RowLeg, lattice: RowLattice) -> float:
     """How far it is from the end of a leg to the beginning of the next."""
     (_, end_m), (start_m, _) = a.ends_m(lattice, 0.0), b.ends_m(lattice, 0.0)
-    return hypot(start_m[0] - end_m[0], start_m[1] - end_m[1])
+    return dist(start_m, end_m)

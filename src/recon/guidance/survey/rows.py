@@ -15,8 +15,8 @@ import shapely  # type: ignore[import-untyped, unused-ignore]
 
 from recon.guidance.survey.lattice import RowLattice, Swath, axes
 from recon.guidance.survey.settings import SurveySettings
+from recon.model.arrays import FloatArray
 
-FloatArray = npt.NDArray[np.float64]
 Span = tuple[float, float]
 ROUNDING_M = 1e-6
 
@@ -75,7 +75,7 @@ def row_pieces(
     pieces = tuple(_pieces(lying, lattice, swath, settings))
     if flyable is None:
         return pieces
-    return tuple(_kept(pieces, turned(flyable, lattice.bearing_deg), lattice, swath))
+    return tuple(_inside(pieces, turned(flyable, lattice.bearing_deg), lattice, swath))
 
 
 def _pieces(
@@ -108,7 +108,7 @@ def _piece(row: int, span: Span, chords: Sequence[Span], swath: Swath) -> Piece:
     return Piece(row, start_m, end_m)
 
 
-def _kept(
+def _inside(
     pieces: Sequence[Piece], flyable: shapely.Geometry, lattice: RowLattice, swath: Swath
 ) -> Iterator[Piece]:
     """The parts of pieces whose flown way, lead and all, stays in what may be flown over."""

@@ -17,12 +17,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from recon.guidance.survey.cells import BoolArray, FloatArray
-from recon.guidance.survey.lattice import RowLattice
-from recon.guidance.survey.route import Place, RowLeg
+from recon.guidance.survey.lattice import AlongAcross, RowLattice
+from recon.guidance.survey.route import RowLeg
 from recon.guidance.survey.rows import Piece
 from recon.guidance.survey.segments import NONE, ExpectedSun, Segment, Segments
 from recon.guidance.survey.settings import SurveySettings
+from recon.model.arrays import BoolArray, FloatArray
 
 AHEAD, BACK, WAITS = 1, -1, 0
 
@@ -32,8 +32,7 @@ class Node(NamedTuple):
 
     value_m2: float
     at_s: float
-    place_m: Place
-    """Along and across."""
+    place_m: AlongAcross
     taken: int
     """A bit for each segment."""
     segment: int
@@ -107,7 +106,7 @@ class Search:
             by_row.setdefault(self._parts[number].row, []).append(number)
         return {row: tuple(numbers) for row, numbers in by_row.items()}
 
-    def best(self, place_m: Place, starts_s: float) -> Flight:
+    def best(self, place_m: AlongAcross, starts_s: float) -> Flight:
         """Return the best flight of a vehicle that can start on its way from a place then."""
         best = start = Node(0.0, starts_s, place_m, 0, NONE, WAITS, 0.0, None)
         self._steps = {0: [start]}

@@ -7,11 +7,11 @@ from itertools import pairwise
 import numpy as np
 
 from recon.geo import nearest_cells
-from recon.guidance.survey.cells import BoolArray, FloatArray, IntArray
 from recon.guidance.survey.plan import SurveyPlan
 from recon.guidance.survey.progress import CoverageProgress, missing_cells
 from recon.guidance.survey.route import RowLeg
 from recon.guidance.survey.settings import SurveySettings
+from recon.model.arrays import BoolArray, FloatArray, IntArray
 from recon.model.geo import GroundGrid
 from recon.model.shade import SUNLIT_TRANSMITTANCE, ShadeMap, SunForecast
 from recon.model.survey import CellState

@@ -75,13 +75,13 @@ class SurveySettings:
     count in sun. One that no map shows is known as such after 208 s."""
 
     decided_least: float = 0.02
-    """Of the ground whose light was shown: a map that knows less of it shows nothing of the view, as
-    in flat light, when a method decides single spots."""
+    """Of the ground whose light was shown: a map that knows less of it shows nothing of the view,
+    as in flat light, when a method decides single spots."""
 
     least_transmittance: float = 0.55
-    """In a shade map, for a cell to count in sun: half of the beam is sun, and maps err. Ground is
-    chosen by the forecast from a half on: what lies between is photographed, and does not count.
-    With 0.6 that was wide under thin cloud."""
+    """A cell counts in sun from this share of the direct beam, more than half, because shade maps
+    have errors. Forecasts call a cell sunlit from half on: ground between the two is photographed
+    and does not count. With 0.6 too much ground lay between them under thin cloud."""
 
     terrain_below_m: float = 1.5
     """Below the height wanted above ground, between two waypoints: rows are this much narrower for
@@ -127,7 +127,7 @@ class SurveySettings:
     """Between two moments at which the expected sun is looked up: an edge of shade takes 15 s."""
 
     patience_s: float = 150.0
-    """Ground in sun this much later counts for a third: what is forecast so far may not come."""
+    """A gain this much later counts for a third: a forecast that far ahead is uncertain."""
 
     beam_step_s: float = 5.0
     beam_width: int = 24
@@ -137,7 +137,7 @@ class SurveySettings:
     """Nearest rows with something left in sun on which a flight may go on."""
 
     way_s: float = 40.0
-    """To the rows looked at: so much later they must be in sun."""
+    """Time to reach one of these rows: it must be in sun within this."""
 
     expected_rate: float = 0.8
     """Of flying rows without a stop, to compare flights that end at different moments."""
@@ -152,7 +152,7 @@ class SurveySettings:
     """Of a segment's ground; a row is not flown for less."""
 
     near_m: float = 90.0
-    """A row this near is flown to at the rows' height, where the gate sees room."""
+    """To a row within this distance a vehicle flies at the rows' height, if the gate approves."""
 
     near_rows: float = 2.6
     """Rows this far apart are within one mission; farther ones cost the way in a layer."""
@@ -188,10 +188,10 @@ class SurveySettings:
     mission, take half of it."""
 
     little_free: float = 0.2
-    """Rows are handed on if what is free has no more ground in sun than this share of theirs."""
+    """Rows are handed on only if the free ground in sun is at most this share of the mission's."""
 
     in_want_below: float = 0.3
-    """A vehicle flies in shade if no more of the rest of its mission is expected in sun."""
+    """A mission is flown in shade if less than this share of its rest is expected in sun."""
 
     kept_from: float = 0.6
     """With this share of its missing ground expected in sun, what is left of a mission is flown."""
@@ -213,8 +213,8 @@ class SurveySettings:
     what is in sun without any shade near stays so."""
 
     clear_view: float = 0.99
-    """With this much of what is seen in sun no edge of shade is in view that could show a motion:
-    nothing is waited for, as under thin even cloud."""
+    """With this share of the view in sun no edge of shade can show a motion: the planner does not
+    wait for one. It is so under thin even cloud."""
 
     motion_within_s: float = 9.0
     """From the start on, the first forecast with motion comes within this where there are shadows:
@@ -242,7 +242,7 @@ class SurveySettings:
     """Share used of a battery from which it is worth a change while little sun is expected."""
 
     swap_later: float = 0.5
-    """Share of a later change that costs sun: the sun's share of broken skies."""
+    """A later change costs this share of its time in sun: half of it under broken cloud."""
 
     shade_lasts_s: float = 250.0
     """How long it lasts on average: longer than that with a probability of 1 / e."""

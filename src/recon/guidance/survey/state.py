@@ -4,14 +4,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 
-from recon.guidance.survey.cells import BoolArray
 from recon.guidance.survey.closed_areas import ClosedArea
+from recon.guidance.survey.lattice import EastNorth
 from recon.guidance.survey.plan import SurveyPlan
 from recon.guidance.survey.progress import CoverageProgress, missing_cells, not_shown_cells
-from recon.guidance.survey.route import Place, Route
+from recon.guidance.survey.route import Route
 from recon.guidance.survey.settings import SurveySettings
+from recon.model.arrays import BoolArray
 from recon.model.survey import PLANNER_GOALS, CellState, SurveyPhase
-from recon.model.units import ns_to_seconds, seconds_to_ns
+from recon.model.units import HECTARE_M2, ns_to_seconds, seconds_to_ns
 
 Routes = Mapping[str, Route]
 NO_ROUTES: Routes = MappingProxyType({})
@@ -21,21 +22,20 @@ NO_ROUTES: Routes = MappingProxyType({})
 class Surveyor:
     """One of the survey's vehicles, as the planner needs it now.
 
-    `is_able`: it can take a mission or continue its present one (telemetry live, controlled by
-    guidance, not returning). `ended_mission` is the number of its newest mission of this survey
-    that has ended, in whatever way. `time_left_s` is its remaining flight time without the reserve;
-    None if unknown: then only the gate checks the battery.
+    `is_able`: it can take a mission (telemetry live, controlled by guidance, not returning), or
+    flies its present one, with or without telemetry. `ended_mission` is the number of its newest
+    mission of this survey that has ended, in whatever way. `time_left_s` is its remaining flight
+    time without the reserve; None if unknown: then only the gate checks the battery.
     """
 
     serial: str
-    place_m: Place
-    """East-north metres of the site."""
+    place_m: EastNorth
     is_able: bool = True
     ended_mission: int = 0
     time_left_s: float | None = None
     charge_share: float | None = None
     """`time_left_s` over that of a full battery; None if unknown."""
-    home_m: Place | None = None
+    home_m: EastNorth | None = None
     """Where it lands; None: at its present place."""
     is_flying: bool = True
     height_above_takeoff_m: float | None = None
@@ -49,8 +49,8 @@ class AssignedMission:
 
     number: int
     route: Route
-    corners_m: tuple[Place, ...]
-    """East-north metres of the site, for display."""
+    corners_m: tuple[EastNorth, ...]
+    """For display."""
     length_m: float
     ends_at_ns: int = 0
     """As planned, for planners that share rows by it."""
@@ -214,9 +214,6 @@ def _after_s(state: SurveyState, at_ns: int | None) -> float | None:
     if at_ns is None or state.started_at_ns is None:
         return None
     return ns_to_seconds(at_ns - state.started_at_ns)
-
-
-HECTARE_M2 = 10_000.0
 
 
 def has_settled(state: SurveyState, now_ns: int) -> bool:

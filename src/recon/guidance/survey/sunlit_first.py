@@ -39,11 +39,11 @@ import numpy as np
 
 from recon.guidance.survey.closed_areas import closed_ground, closed_segments
 from recon.guidance.survey.mission_changes import (
-    at_row_end,
-    off_closed_ground,
+    before_first_row_in_any_light,
+    decide_at_row_end,
+    decide_in_known_light,
+    leave_closed_ground,
     on_closed_ground,
-    on_the_way_in_any_light,
-    when_light_is_known,
     with_ends_passed,
 )
 from recon.guidance.survey.rounds import (
@@ -52,8 +52,8 @@ from recon.guidance.survey.rounds import (
     fly_rounds,
     may_ask,
     shares,
-    without_able,
-    without_ended,
+    wait_or_pause,
+    without_ended_missions,
 )
 from recon.guidance.survey.segments import (
     ExpectedSun,
@@ -95,6 +95,24 @@ class PlanningMoment:
     sun: SunForecast | None
     now_ns: int
 
+    @classmethod
+    def of(
+        cls,
+        state: SurveyState,
+        able: Mapping[str, Surveyor],
+        sun: SunForecast | None,
+        now_ns: int,
+    ) -> "PlanningMoment | None":
+        """Return what is expected now, nothing on closed ground; None if light is unknown."""
+        segments = segments_of(state.plan)
+        expected = expected_sun(segments, state.plan, state.progress, sun, now_ns)
+        if expected is None:
+            return None
+        if state.closed:
+            is_closed = closed_segments(closed_ground(state.closed), segments, state.plan)
+            expected = replace(expected, missing_m2=np.where(is_closed, 0.0, expected.missing_m2))
+        return cls(segments, expected, able, sun, now_ns)
+
     def choice(self, state: SurveyState, serial: str) -> VehicleChoice:
         """Return what one vehicle may do."""
         able = tuple(self.able.values())
@@ -104,7 +122,7 @@ class PlanningMoment:
 
     def idle(self, state: SurveyState) -> list[str]:
         """Return the vehicles that are to be decided on."""
-        return [each for each in self.able if _is_asked(state, each, self.able, self.now_ns)]
+        return [each for each in self.able if _may_decide(state, each, self.able, self.now_ns)]
 
 
 Begun = Callable[[SurveyState, PlanningMoment], Step]
@@ -112,22 +130,22 @@ Begun = Callable[[SurveyState, PlanningMoment], Step]
 
 
 def sunlit_first(
-    state: SurveyState, positions: Sequence[Surveyor], sun: SunForecast | None, now_ns: int
+    state: SurveyState, vehicles: Sequence[Surveyor], sun: SunForecast | None, now_ns: int
 ) -> Step:
     """Fly what is in sun first, wait for the rest near where it will come, until all is in sun."""
-    return vehicle_by_vehicle(state, positions, sun, now_ns, _begun)
+    return vehicle_by_vehicle(state, vehicles, sun, now_ns, _decide_idle)
 
 
 def vehicle_by_vehicle(
     state: SurveyState,
-    positions: Sequence[Surveyor],
+    vehicles: Sequence[Surveyor],
     sun: SunForecast | None,
     now_ns: int,
     begun: Begun,
 ) -> Step:
     """Fly until all is in sun, without waiting for one another; `begun` gives the missions."""
-    able = {each.serial: each for each in positions if each.is_able}
-    state = _with_just_flown(state, without_ended(state, able, now_ns), now_ns)
+    able = {each.serial: each for each in vehicles if each.is_able}
+    state = _with_just_flown(state, without_ended_missions(state, able, now_ns), now_ns)
     # One that could not fly meanwhile is decided on anew.
     decided = {key: each for key, each in state.decisions.items() if key in able}
     state = replace(state, decisions=MappingProxyType(decided))
@@ -137,28 +155,23 @@ def vehicle_by_vehicle(
         is_over = not state.flights and (is_done or has_settled(state, now_ns))
         return (ended(state, SurveyPhase.DONE, end, now_ns) if is_over else state), ()
     if not state.flights and able.keys() <= state.barred:
-        return without_able(state, able, now_ns), ()
+        return wait_or_pause(state, able, now_ns), ()
     state, at_end = with_ends_passed(state, able)
     closed = on_closed_ground(state, able, now_ns)
-    in_any_light = on_the_way_in_any_light(state, able)
-    is_asked = any(_is_asked(state, serial, able, now_ns) for serial in able)
+    in_any_light = before_first_row_in_any_light(state, able)
+    is_asked = any(_may_decide(state, serial, able, now_ns) for serial in able)
     if not (is_asked or at_end or closed or in_any_light):
         return state, ()
-    segments = segments_of(state.plan)
-    expected = expected_sun(segments, state.plan, state.progress, sun, now_ns)
-    if expected is None:
-        return _in_any_light(state, positions, now_ns)
-    if state.closed:
-        is_closed = closed_segments(closed_ground(state.closed), segments, state.plan)
-        expected = replace(expected, missing_m2=np.where(is_closed, 0.0, expected.missing_m2))
-    moment = PlanningMoment(segments, expected, able, sun, now_ns)
+    moment = PlanningMoment.of(state, able, sun, now_ns)
+    if moment is None:
+        return _fly_in_any_light(state, vehicles, now_ns)
     state = replace(state, waiting=NO_ROUTES, round=max(1, state.round), reason="under way")
-    state, instead = _replaced(state, moment, closed, at_end, in_any_light)
+    state, instead = _replace_missions(state, moment, closed, at_end, in_any_light)
     state, missions = begun(state, moment)
     return state, (*instead, *missions)
 
 
-def _replaced(
+def _replace_missions(
     state: SurveyState,
     moment: PlanningMoment,
     closed: Sequence[str],
@@ -170,16 +183,16 @@ def _replaced(
     for serial in dict.fromkeys((*closed, *at_end, *in_any_light)):
         choice = moment.choice(state, serial)
         if serial in closed:
-            state, new = off_closed_ground(choice)
+            state, new = leave_closed_ground(choice)
         elif serial in at_end:
-            state, new = at_row_end(choice, moment.able)
+            state, new = decide_at_row_end(choice, moment.able)
         else:
-            state, new = when_light_is_known(choice, moment.able)
+            state, new = decide_in_known_light(choice, moment.able)
         missions += new
     return state, missions
 
 
-def _begun(state: SurveyState, moment: PlanningMoment) -> Step:
+def _decide_idle(state: SurveyState, moment: PlanningMoment) -> Step:
     """Begin a round that is worth it, or what is best for each vehicle by itself."""
     choices = [moment.choice(state, serial) for serial in moment.idle(state)]
     if not choices:
@@ -192,7 +205,7 @@ def _begun(state: SurveyState, moment: PlanningMoment) -> Step:
     for each in choices:
         choice = replace(each, state=state)
         own = rows.get(choice.surveyor.serial)
-        state, mission = choice.made() if own is None else choice.flies_all(own)
+        state, mission = choice.decide() if own is None else choice.fly_all(own)
         missions += mission
     return state, missions
 
@@ -231,7 +244,7 @@ def _round(choices: Sequence[VehicleChoice]) -> _Round | None:
 def _awaits_motion(
     state: SurveyState, whole: _Round | None, sun: SunForecast | None, now_ns: int
 ) -> bool:
-    """Whether some seconds more, before any vehicle flies, show how the shadows move."""
+    """Whether to wait some seconds for the shadows' motion, before any vehicle flies."""
     if state.missions > 0 or sun is None or sun.velocity_mps is not None:
         return False
     settings = state.plan.settings
@@ -245,14 +258,14 @@ def _awaits_motion(
     return now_ns < began_ns + seconds_to_ns(settings.motion_within_s)
 
 
-def _in_any_light(state: SurveyState, positions: Sequence[Surveyor], now_ns: int) -> Step:
+def _fly_in_any_light(state: SurveyState, vehicles: Sequence[Surveyor], now_ns: int) -> Step:
     """Fly what is not imaged yet; then wait for light to become known, if it ever was."""
     kept = {key: each for key, each in state.decisions.items() if key in state.flights}
     state = replace(state, decisions=MappingProxyType(kept))
     # This planner has no rounds: however often light is lost, none is used up.
     uncounted = replace(state, round=int(bool(state.flights or state.waiting)))
     if not is_enough(state, CellState.IN_SHADE):
-        state, missions = fly_rounds(uncounted, positions, now_ns, CellState.IN_SHADE)
+        state, missions = fly_rounds(uncounted, vehicles, now_ns, CellState.IN_SHADE)
         for serial in dict.fromkeys(mission.serial for mission in missions):
             flight = replace(state.flights[serial], is_in_any_light=True)
             # It is shown for minutes, and stays true when light is known meanwhile.
@@ -280,7 +293,7 @@ def _with_just_flown(before: SurveyState, state: SurveyState, now_ns: int) -> Su
     return replace(state, just_flown=MappingProxyType(kept))
 
 
-def _is_asked(state: SurveyState, serial: str, able: Mapping[str, Surveyor], now_ns: int) -> bool:
+def _may_decide(state: SurveyState, serial: str, able: Mapping[str, Surveyor], now_ns: int) -> bool:
     decision = state.decisions.get(serial)
     return may_ask(state, serial, able, now_ns) and (
         decision is None or now_ns >= decision.again_ns

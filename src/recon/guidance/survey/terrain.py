@@ -22,18 +22,16 @@ import shapely  # type: ignore[import-untyped, unused-ignore]
 from scipy import ndimage
 
 from recon.geo import Surface, cell_centres_m, geo_from_enu, shape_of
+from recon.guidance.survey.lattice import EastNorth
 from recon.guidance.survey.leg_profile import ProfileLimits, Vertex, leg_profile
-from recon.guidance.survey.route import Place
 from recon.guidance.survey.settings import SurveySettings
 from recon.model.airspace import ElevationModel, FlightLimits
+from recon.model.arrays import BoolArray, FloatArray
 from recon.model.geo import GroundGrid
 from recon.model.survey import Survey
-
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
+from recon.model.units import HECTARE_M2
 
 ROUNDING_M = 1e-6
-HECTARE_M2 = 10_000.0
 
 MOST_LEGS_KEPT = 4_096
 """Legs whose waypoints are remembered: a survey has up to some hundred rows and ways."""
@@ -78,17 +76,17 @@ class Terrain:
         most = np.array([self.grid.east_m, self.grid.north_m]) - half_m
         return self._surface.heights_m(np.clip(places, least, most))
 
-    def up_at_m(self, place_m: Place) -> float:
+    def up_at_m(self, place_m: EastNorth) -> float:
         """Return the wanted height at one place."""
         return float(self.up_m([place_m])[0])
 
-    def corner_up_m(self, place_m: Place) -> float:
+    def corner_up_m(self, place_m: EastNorth) -> float:
         """Return the height of a corner: the wanted one, and near steep ground higher, so that no
         leg from it begins too low."""
         wanted_m = self.up_m(np.array(place_m) + self._disc_m)
         return float((wanted_m - STEEPEST * np.hypot(*self._disc_m.T)).max())
 
-    def between(self, start_m: Place, end_m: Place) -> tuple[Vertex, ...]:
+    def between(self, start_m: EastNorth, end_m: EastNorth) -> tuple[Vertex, ...]:
         """Return the waypoints needed along a straight leg, without its ends: the fewest.
 
         They are the same to and fro.
@@ -107,7 +105,7 @@ class Terrain:
         return found
 
     @cached_property
-    def _profiles(self) -> dict[tuple[Place, Place], tuple[Vertex, ...]]:
+    def _profiles(self) -> dict[tuple[EastNorth, EastNorth], tuple[Vertex, ...]]:
         """What was worked out already; no field, since it is no part of the value."""
         return {}
 
@@ -307,10 +305,10 @@ def _filled(heights_m: FloatArray) -> FloatArray:
 
 
 def vertices_of(
-    corners_m: Sequence[Place], terrain: Terrain
-) -> tuple[tuple[Place, ...], tuple[float, ...]]:
+    corners_m: Sequence[EastNorth], terrain: Terrain
+) -> tuple[tuple[EastNorth, ...], tuple[float, ...]]:
     """Return a track's corners with the waypoints needed between them, and the height at each."""
-    places: list[Place] = []
+    places: list[EastNorth] = []
     up_m: list[float] = []
     for index, corner_m in enumerate(corners_m):
         if index:

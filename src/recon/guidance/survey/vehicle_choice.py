@@ -9,20 +9,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import takewhile
-from math import exp, hypot
+from math import dist, exp
 
 import numpy as np
 
-from recon.guidance.survey.cells import BoolArray
 from recon.guidance.survey.closed_areas import closed_ground, is_open
+from recon.guidance.survey.lattice import AlongAcross, EastNorth
 from recon.guidance.survey.own_share import own_share
 from recon.guidance.survey.passing import Passing, passing
 from recon.guidance.survey.plan import SurveyPlan
-from recon.guidance.survey.rounds import (
-    flying,
-    sortie,
-)
-from recon.guidance.survey.route import Place, Route, RowLeg, direction_of, route_of
+from recon.guidance.survey.rounds import Step, assign, longest_mission
+from recon.guidance.survey.route import Route, RowLeg, direction_of, route_of
 from recon.guidance.survey.rows import Piece
 from recon.guidance.survey.search import Flight, Pace, PlannedLeg, Search
 from recon.guidance.survey.segments import (
@@ -37,7 +34,8 @@ from recon.guidance.survey.state import (
     Surveyor,
     SurveyState,
 )
-from recon.model.survey import CellState, MissionAssignment, WhenDone
+from recon.model.arrays import BoolArray
+from recon.model.survey import CellState, WhenDone
 from recon.model.units import seconds_to_ns
 
 WANTED = CellState.IN_SUN
@@ -76,24 +74,24 @@ class VehicleChoice:
         """Its thresholds."""
         return self.state.plan.settings
 
-    def made(self) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
+    def decide(self) -> Step:
         """Return the survey with the decision, and the vehicle's mission if it gets one."""
         free = self.free()
         if not free.any():
-            return self.waits(self._why_none_is_free())
+            return self.wait(self._why_none_is_free())
         share = self.share(free)
         if self.expected.is_clear(share, self.settings.clear_from):
-            return self.flies_all(self.rows(share))
+            return self.fly_all(self.rows(share))
         flight = self.best(share)
         if (flight.waits_s > 0.0 or not flight.legs) and self._is_time_to_swap(free):
-            return self._returns()
+            return self._return_home()
         if not flight.legs:
             minutes = self.settings.planned_s / 60.0
-            return self.waits(f"waits: no sun is expected on its rows for {minutes:.0f} min")
+            return self.wait(f"waits: no sun is expected on its rows for {minutes:.0f} min")
         if flight.waits_s > 0.0:
-            return self._stands_by(flight)
+            return self._stand_by(flight)
         legs = self.committed(flight)
-        return self.flies(self._allowed(self.long_enough(legs)))
+        return self.fly(self._allowed(self.long_enough(legs)))
 
     def begun_at_once(self, share: BoolArray) -> tuple[PlannedLeg, ...]:
         """Return the first legs of the best flight over a share; none if that would wait."""
@@ -111,7 +109,7 @@ class VehicleChoice:
         if not self.state.closed:
             return "waits: others are on what is left"
         names = ", ".join(each.name for each in self.state.closed)
-        return f"waits: {names} may be where rows are left, without telemetry"
+        return f"waits: {names}, without telemetry, may be where rows are left"
 
     def share(self, free: BoolArray) -> BoolArray:
         """Return (S,): its own share of the free segments; all of them where that has no sun."""
@@ -138,7 +136,7 @@ class VehicleChoice:
         """Return what a change of battery costs now and later, as shares of its time in sun.
 
         Now it costs the sun expected on free ground until the vehicle is back, the more the fewer
-        others stay: with all of them away sun would come in vain. Later it costs that time in sun,
+        others stay: if all were away, none could use the sun. Later it costs that time in sun,
         but only if it is needed at all.
         """
         settings, missing_m2 = self.settings, self.expected.missing_m2[free]
@@ -158,17 +156,16 @@ class VehicleChoice:
 
     @property
     def _scarcity(self) -> float:
-        """How many of the survey's other vehicles there are for each one that stays; with none
-        left, twice as many as with one."""
+        """The survey's other vehicles divided by those that stay; if none stays, by one half."""
         others = set(self.state.serials) - {self.surveyor.serial}
         returning = {serial for serial, each in self.state.decisions.items() if each.returns}
         staying = others & {each.serial for each in self.able} - returning
         return len(others) / max(len(staying), 0.5) if others else 1.0
 
-    def _returns(self) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
+    def _return_home(self) -> Step:
         minutes = self.settings.swap_s / 60.0
         text = f"returns to change its battery: little sun is expected for {minutes:.0f} min"
-        state = self._decided(text, self.now_ns + seconds_to_ns(self.settings.retry_s), True)
+        state = self._with_decision(text, self.now_ns + seconds_to_ns(self.settings.retry_s), True)
         return state, ()
 
     def rows(self, share: BoolArray) -> Route:
@@ -182,9 +179,9 @@ class VehicleChoice:
         direction = others.pop() if len(others) == 1 else 0
         return route_of(pieces, self.plan.lattice, self.start_m, direction)
 
-    def flies_all(self, route: Route) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
+    def fly_all(self, route: Route) -> Step:
         """Fly these rows one after the other: most of their ground is in sun by then."""
-        return self.flies(self._allowed(route))
+        return self.fly(self._allowed(route))
 
     def best(self, share: BoolArray) -> Flight:
         """Return the best flight over the segments (S,) of a share."""
@@ -219,11 +216,9 @@ class VehicleChoice:
         return self.settings.start_s + self.settings.takeoff_s + climb_s
 
     @property
-    def start_m(self) -> Place:
-        """Where it is, along and across."""
-        place_m = self.surveyor.place_m
-        ((along_m, across_m),) = self.plan.lattice.along_across_m([place_m]).tolist()
-        return along_m, across_m
+    def start_m(self) -> AlongAcross:
+        """Where it is."""
+        return self.plan.lattice.along_across_of(self.surveyor.place_m)
 
     def committed(self, flight: Flight) -> tuple[PlannedLeg, ...]:
         """Return the legs of a flight flown before it is decided anew; the first one always."""
@@ -231,19 +226,17 @@ class VehicleChoice:
         until_s = self.settings.committed_s
         return first, *takewhile(lambda leg: leg.until_s <= until_s, others)
 
-    def flies(
-        self, route: Route, why: str = ""
-    ) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
+    def fly(self, route: Route, why: str = "") -> Step:
         """Fly these rows, as far as the battery lasts and no lost vehicle may be; else wait.
 
         The decision's sentence begins with `why`, and states the sun expected on what is flown.
         """
         state = self.state
         may_fly = partial(is_open, closed_ground(state.closed)) if state.closed else None
-        track, count = sortie(self.plan, route, self.surveyor, may_fly)
+        track, count = longest_mission(self.plan, route, self.surveyor, may_fly)
         if track is None:
             text = "waits: its battery lasts for no row, the way there and the return"
-            return self.waits(text, self.settings.retry_s)
+            return self.wait(text, self.settings.retry_s)
         passed = self.passing(route[:count])
         sun = passed.lit_m2(self.expected) / max(passed.missing_m2, 1.0)
         text = f"{why}flies {named(route[:count])}: probability of sun {sun:.1f}"
@@ -260,7 +253,7 @@ class VehicleChoice:
             is_chosen=True,
             is_beside_closed=bool(state.closed),
         )
-        state, given = flying(self._decided(text), self.surveyor, mission, ())
+        state, given = assign(self._with_decision(text), self.surveyor, mission, ())
         return state, (replace(given, straight_within_m=self.settings.near_m),)
 
     def _allowed(self, route: Route) -> Route:
@@ -279,30 +272,28 @@ class VehicleChoice:
         piece = self.segments.parts[leg.segments[0]].piece
         return replace(leg.route, piece=self.plan.long_enough(piece, leg.route.piece))
 
-    def _stands_by(self, flight: Flight) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
+    def _stand_by(self, flight: Flight) -> Step:
         plan, surveyor = self.plan, self.surveyor
         first = flight.legs[0]
         entry, _ = first.route.ends_m(plan.lattice, plan.swath.lead_m)
         ((east_m, north_m),) = plan.lattice.east_north_m([entry]).tolist()
-        far_m = hypot(east_m - surveyor.place_m[0], north_m - surveyor.place_m[1])
+        far_m = dist((east_m, north_m), surveyor.place_m)
         row = first.route.piece.row + 1
         sun = f"row {row} in {first.from_s:.0f} s, probability {first.probability:.1f}"
         if surveyor.is_flying and far_m <= self.settings.standby_m:
-            return self.waits(f"waits: sun is expected on {sun}")
+            return self.wait(f"waits: sun is expected on {sun}")
         if not surveyor.is_flying and flight.waits_s > self._starts_s + self.settings.standby_s:
-            return self.waits(f"waits on the ground: sun is expected on {sun}")
+            return self.wait(f"waits on the ground: sun is expected on {sun}")
         there_ns = self.now_ns + seconds_to_ns(first.from_s)
         text = f"goes to row {row} and stands by: sun is expected on {sun}"
-        return self._goes((east_m, north_m), there_ns, text)
+        return self._go_and_wait((east_m, north_m), there_ns, text)
 
-    def waits(
-        self, text: str, again_s: float | None = None
-    ) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
+    def wait(self, text: str, again_s: float | None = None) -> Step:
         """Wait where it is; out of the others' rows if there is a place."""
         if self._is_among_rows:
-            return self._steps_aside(text)
+            return self._step_aside(text)
         again_s = self.settings.decided_again_s if again_s is None else again_s
-        return self._decided(text, self.now_ns + seconds_to_ns(again_s)), ()
+        return self._with_decision(text, self.now_ns + seconds_to_ns(again_s)), ()
 
     @property
     def _is_among_rows(self) -> bool:
@@ -314,31 +305,22 @@ class VehicleChoice:
         surveyor, height_m = self.surveyor, self.surveyor.height_above_takeoff_m
         if height_m is None or not surveyor.is_flying or len(self.able) == 1:
             return False
-        off_m = self.plan.height_off_m(surveyor.place_m, height_m, surveyor.takeoff_up_m)
-        return off_m is not None and abs(off_m) < self._level_m
+        return self.plan.is_at_rows_height(surveyor.place_m, height_m, surveyor.takeoff_up_m)
 
-    @property
-    def _level_m(self) -> float:
-        """Waypoints that follow the ground may be off the wanted height."""
-        is_above_ground = self.plan.terrain is not None
-        return self.settings.level_m + self.settings.terrain_above_m * is_above_ground
-
-    def _steps_aside(self, text: str) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
+    def _step_aside(self, text: str) -> Step:
         aside_ns = self.now_ns + seconds_to_ns(self._starts_s + self.settings.layer_s / 2.0)
-        return self._goes(self.surveyor.place_m, aside_ns, text)
+        return self._go_and_wait(self.surveyor.place_m, aside_ns, text)
 
-    def _goes(
-        self, place_m: Place, there_ns: int, text: str
-    ) -> tuple[SurveyState, tuple[MissionAssignment, ...]]:
+    def _go_and_wait(self, place_m: EastNorth, there_ns: int, text: str) -> Step:
         """Stand by in its layer over a place, without rows."""
         terrain = self.plan.terrain
         up_m = () if terrain is None else (terrain.up_at_m(place_m),)
         number = self.state.missions + 1
         mission = AssignedMission(number, (), (place_m,), 0.0, there_ns, up_m, is_chosen=True)
-        state, given = flying(self._decided(text), self.surveyor, mission, ())
+        state, given = assign(self._with_decision(text), self.surveyor, mission, ())
         return state, (replace(given, stands_by=True),)
 
-    def _decided(self, text: str, again_ns: int = 0, returns: bool = False) -> SurveyState:
+    def _with_decision(self, text: str, again_ns: int = 0, returns: bool = False) -> SurveyState:
         decision = Decision(text, again_ns, returns)
         return self.state.with_decision(self.surveyor.serial, decision)
 

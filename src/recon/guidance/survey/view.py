@@ -7,13 +7,13 @@ from math import ceil, cos, floor, radians, sin
 import numpy as np
 
 from recon.geo import nearest_cells
-from recon.guidance.survey.cells import BoolArray, CoverageCells, FloatArray, IntArray
-from recon.guidance.survey.lattice import RowLattice, Swath
+from recon.guidance.survey.cells import CoverageCells
+from recon.guidance.survey.lattice import AlongAcross, RowLattice, Swath
+from recon.model.arrays import BoolArray, FloatArray, IntArray
 from recon.model.geo import GroundGrid
 from recon.model.shade import ShadeMap
 from recon.model.units import seconds_to_ns
 
-Place = tuple[float, float]
 STANDING_M = 1e-6
 
 
@@ -57,7 +57,7 @@ def crossing(
     cells: CoverageCells,
     lattice: RowLattice,
     swath: Swath,
-    way: tuple[Place, Place],
+    way: tuple[AlongAcross, AlongAcross],
     times_ns: tuple[int, int],
 ) -> Crossing:
     """Return what is in view on a way in metres along and across; the footprint lies along."""
@@ -102,7 +102,7 @@ def _shares(
 
 
 def _window(
-    grid: GroundGrid, lattice: RowLattice, swath: Swath, way: tuple[Place, Place]
+    grid: GroundGrid, lattice: RowLattice, swath: Swath, way: tuple[AlongAcross, AlongAcross]
 ) -> Window:
     """The cells round all that the footprint passes over."""
     (one_along, one_across), (other_along, other_across) = way
@@ -138,7 +138,7 @@ def nearest_map(maps: Sequence[ShadeMap], at_ns: int, age_s: float) -> ShadeMap 
 def sunlit_cells(
     shade: ShadeMap | None, grid: GroundGrid, window: Window, least_transmittance: float
 ) -> tuple[BoolArray, BoolArray]:
-    """Return which cells of a window of `grid` surely were sunlit, and of which anything is known.
+    """Return which cells of a window of `grid` were certainly sunlit, and which have a value.
 
     Each cell is looked up at its centre.
     """

@@ -6,17 +6,13 @@ from functools import cached_property
 from math import inf, isfinite
 
 import numpy as np
-import numpy.typing as npt
 
 from recon.geo import Footprints, OnGlobe
+from recon.model.arrays import BoolArray, FloatArray, IntArray
 from recon.model.geo import LocalFrame
 from recon.model.vehicle import Failsafe, VehicleProfile, VehicleState
 from recon.safety import datum
 from recon.safety.situation import Situation
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
-BoolArray = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True)

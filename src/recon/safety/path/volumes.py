@@ -10,9 +10,9 @@ from math import ceil, cos, radians
 from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
 from recon.geo import corner_hulls
+from recon.model.arrays import FloatArray
 from recon.model.command import Command, StickFrame
 from recon.model.mission import Mission
 from recon.model.vehicle import Failsafe
@@ -38,8 +38,6 @@ from recon.safety.path.pieces import (
 )
 from recon.safety.settings import FenceSettings, SafetySettings
 from recon.safety.situation import Situation
-
-FloatArray = npt.NDArray[np.float64]
 
 FAN_STEP_DEG: Final = 30.0
 """A circle of what a stick may reach is drawn as a polygon round it, 4 % larger at most."""

@@ -15,10 +15,10 @@ grows with its last speed, the ground below, and its way home; if it was sent a 
 counts as well. A hazard area ends with new telemetry or by an operator's dismissal.
 """
 
+from recon.model.arrays import BoolArray
 from recon.safety.prediction.conflicts import Conflict, first_conflict
 from recon.safety.prediction.hazard_area import HazardArea, hazard_area_of, hazard_trajectories
 from recon.safety.prediction.motion import (
-    BoolArray,
     Plane,
     VehicleMotion,
     height_drift_m,

@@ -4,22 +4,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-from recon.safety.prediction.protected_volumes import IntArray, ProtectedVolumes, cut
+from recon.model.arrays import BoolArray, FloatArray, IntArray
+from recon.safety.prediction.protected_volumes import ProtectedVolumes, cut
 from recon.safety.prediction.trajectory import (
     EAST_0,
     FOREVER_S,
     NORTH_0,
     FlightPart,
-    FloatArray,
     Trajectory,
     sample,
 )
 from recon.safety.separation_minima import SeparationMinima
 from recon.safety.settings import PredictionSettings
-
-BoolArray = npt.NDArray[np.bool_]
 
 _APART_S = 4.0 * FOREVER_S
 """Trajectories' times are laid one behind the other on one axis, this far apart."""

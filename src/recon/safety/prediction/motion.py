@@ -4,10 +4,10 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from recon.geo import OnGlobe
 from recon.geo.distance import offset_north_east_m
+from recon.model.arrays import BoolArray
 from recon.model.geo import LatLon
 from recon.model.units import NS_PER_S, Stamped, wrap_degrees
 from recon.model.vehicle import Failsafe, VehicleState, VelocityNed
@@ -16,8 +16,6 @@ from recon.safety.datum import home, is_takeoff_height_known, takeoff_up_m_at
 from recon.safety.go_home import seen_height_m
 from recon.safety.prediction.trajectory import ALL_HEIGHTS_M
 from recon.safety.settings import PredictionSettings
-
-BoolArray = npt.NDArray[np.bool_]
 
 S_PER_HOUR = 3_600.0
 

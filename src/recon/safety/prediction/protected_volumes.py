@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from recon.model.arrays import FloatArray, IntArray
 from recon.safety.prediction.trajectory import (
     CURVE,
     EAST_0,
@@ -23,12 +23,9 @@ from recon.safety.prediction.trajectory import (
     RADIUS_1,
     START_S,
     FlightPart,
-    FloatArray,
     Trajectory,
 )
 from recon.safety.settings import PredictionSettings
-
-IntArray = npt.NDArray[np.int64]
 
 MOST_PIECES = 400
 """Of one row: enough for 2 km at a walking pace; a slower one is cut coarser, never shortened."""

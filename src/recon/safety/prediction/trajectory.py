@@ -15,7 +15,7 @@ from enum import IntEnum
 import numpy as np
 import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from recon.model.arrays import FloatArray
 
 FOREVER_S = 1.0e6
 """Longer than any battery; times never go beyond, so that sums stay finite."""

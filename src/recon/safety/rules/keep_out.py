@@ -1,9 +1,9 @@
 """Keep-out zones are kept out of along the whole path, the way home included."""
 
 import numpy as np
-import numpy.typing as npt
 
 from recon.model.airspace import Zone, ZoneKind
+from recon.model.arrays import BoolArray, FloatArray, IntArray
 from recon.model.command import Command, Refusal
 from recon.safety.airspace import PreparedZone
 from recon.safety.heights import (
@@ -19,9 +19,6 @@ from recon.safety.path.volumes import path_volume
 from recon.safety.situation import Situation
 
 RULE = "keep_out"
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
-IntArray = npt.NDArray[np.int64]
 
 
 def keep_out(command: Command, situation: Situation) -> Refusal | None:

@@ -3,8 +3,8 @@
 from math import inf
 
 import numpy as np
-import numpy.typing as npt
 
+from recon.model.arrays import IntArray
 from recon.model.command import Command, Refusal, VirtualStick
 from recon.safety.datum import is_ground_assumed_flat
 from recon.safety.heights import stays_below
@@ -14,7 +14,6 @@ from recon.safety.path.volumes import path_volume
 from recon.safety.situation import Situation
 
 RULE = "max_height"
-IntArray = npt.NDArray[np.int64]
 
 
 def max_height(command: Command, situation: Situation) -> Refusal | None:

@@ -10,14 +10,11 @@ from math import inf
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
-from recon.safety.prediction import BoolArray, HazardArea
-from recon.safety.prediction.trajectory import FloatArray, Samples
+from recon.model.arrays import BoolArray, FloatArray, IntArray
+from recon.safety.prediction import HazardArea
+from recon.safety.prediction.trajectory import Samples
 from recon.safety.separation_minima import SeparationMinima
-
-IntArray = npt.NDArray[np.int64]
-
 
 DEPTH_WEIGHT = 0.1
 """How much depth counts beside the gaps: enough to tell which of two ways leads deeper in."""

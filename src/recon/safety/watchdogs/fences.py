@@ -11,10 +11,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
 from recon.geo import Footprints, Polygon
 from recon.model.airspace import ZoneKind
+from recon.model.arrays import BoolArray, FloatArray, IntArray
 from recon.model.failsafe_matrix import FailsafeCondition
 from recon.model.geo import LocalFrame
 from recon.model.severity import Severity
@@ -22,12 +22,9 @@ from recon.safety.airspace import PreparedAirspace, PreparedZone
 from recon.safety.datum import places_m
 from recon.safety.heights import height_text, stays_above, stays_below, zone_datum
 from recon.safety.prediction.motion import VehicleMotion
-from recon.safety.prediction.trajectory import ALL_HEIGHTS_M, FloatArray
+from recon.safety.prediction.trajectory import ALL_HEIGHTS_M
 from recon.safety.watchdogs.reach import last_known_place, near_limits, way_ahead_s
 from recon.safety.watchdogs.traffic_picture import Finding, TrafficPicture, WatchedVehicle
-
-BoolArray = npt.NDArray[np.bool_]
-IntArray = npt.NDArray[np.int64]
 
 NEAR_HOME_M = 15.0
 """Takeoffs and landings are low by nature: a vehicle this near to its home is on one."""

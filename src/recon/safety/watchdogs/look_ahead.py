@@ -8,6 +8,7 @@ from math import hypot
 
 import numpy as np
 
+from recon.model.arrays import FloatArray
 from recon.model.control import Commanded, Intent
 from recon.model.mission import DJI
 from recon.model.units import NS_PER_S
@@ -15,7 +16,7 @@ from recon.model.vehicle import FlightMode
 from recon.safety.go_home import is_off_track
 from recon.safety.prediction import PredictionSettings, Predictor, VehicleMotion
 from recon.safety.prediction.legs import VERTICAL_BRAKING_MPS2, Point
-from recon.safety.prediction.trajectory import FlightPart, FloatArray, Row, Samples, sample
+from recon.safety.prediction.trajectory import FlightPart, Row, Samples, sample
 from recon.safety.settings import WatchdogSettings
 
 ASIDE_COSINE = 0.64

@@ -22,12 +22,13 @@ import numpy as np
 
 from recon.geo import TangentPlane, tangent_plane
 from recon.model.airspace import ZoneKind
+from recon.model.arrays import BoolArray
 from recon.model.control import Commanded, Intent
 from recon.model.geo import LatLon, LocalFrame
 from recon.model.vehicle import VehicleState
 from recon.safety.airspace import Cylinder, PreparedAirspace
 from recon.safety.heights import stays_above, stays_below
-from recon.safety.prediction import BoolArray, PredictionSettings, VehicleMotion
+from recon.safety.prediction import PredictionSettings, VehicleMotion
 from recon.safety.prediction.legs import LEAST_M, VERTICAL_BRAKING_MPS2
 from recon.safety.prediction.motion import last_place
 from recon.safety.separation_minima import SeparationMinima

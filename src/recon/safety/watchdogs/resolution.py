@@ -19,8 +19,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from recon.model.arrays import BoolArray
 from recon.model.failsafe_matrix import FailsafeCondition
-from recon.safety.prediction import BoolArray
 from recon.safety.separation_minima import SeparationMinima
 from recon.safety.settings import WatchdogSettings
 from recon.safety.watchdogs.closest_approach import Approach, approach, closeness

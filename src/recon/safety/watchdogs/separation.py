@@ -22,9 +22,10 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from recon.model.arrays import BoolArray
 from recon.model.control import AuthorityHolder
 from recon.model.severity import Severity
-from recon.safety.prediction import BoolArray, HazardArea, unknown_heights
+from recon.safety.prediction import HazardArea, unknown_heights
 from recon.safety.separation_minima import SeparationMinima
 from recon.safety.watchdogs.closest_approach import (
     Approach,

@@ -11,13 +11,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from recon.geo import Footprints
+from recon.model.arrays import FloatArray
 from recon.model.geo import LocalFrame
 from recon.model.severity import Severity
 from recon.model.vehicle import VehicleState
 from recon.safety.airspace import PreparedAirspace, PreparedZone
 from recon.safety.datum import home, places_m, takeoff_up_m
 from recon.safety.heights import stays_above, zone_datum
-from recon.safety.prediction.trajectory import FloatArray
 from recon.safety.watchdogs.reach import last_known_place
 from recon.safety.watchdogs.traffic_picture import Finding, TrafficPicture
 

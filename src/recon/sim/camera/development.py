@@ -11,12 +11,13 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
+from recon.model.arrays import FloatArray
 from recon.model.imagery import RgbImage
 from recon.sim.camera.lens import GroundRays, Lens
 from recon.sim.camera.settings import CameraSettings, ImageSensorSettings, ToneSettings
 from recon.sim.camera.tone import STEPS, light_of_value, lightest, value_of_light
 from recon.sim.land.land_tiles import LandImage
-from recon.sim.world.keyframes import FloatArray, FloatImage
+from recon.sim.world.keyframes import FloatImage
 from recon.sim.world.light import GroundLight
 
 HAZE = (0.48, 0.55, 0.61)

@@ -8,11 +8,12 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
+from recon.model.arrays import FloatArray
 from recon.model.imagery import CameraPose
 from recon.sim.camera.settings import ExposureSettings, ToneSettings
 from recon.sim.camera.tone import light_at_level, light_of_value
 from recon.sim.land.land_tiles import LandSquare
-from recon.sim.world.keyframes import FloatArray, gaussian
+from recon.sim.world.keyframes import gaussian
 
 EXPOSURE, RED, BLUE = 130, 131, 132
 """Random streams of the imaging drone's camera."""

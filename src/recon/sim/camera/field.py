@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from recon.camera import ImageCircle, OmnidirectionalCamera
+from recon.model.arrays import FloatArray
 from recon.model.imagery import CameraPose, RgbImage
 from recon.sim.camera.development import Scene, develop
 from recon.sim.camera.exposure import GREEN, exposure_stops, highlight_gain, white_balance
@@ -22,7 +23,7 @@ from recon.sim.camera.settings import CameraSettings
 from recon.sim.errors import FrameSourceError
 from recon.sim.land.land_tiles import CELLS_M, LandImage, LandSquare, land_of
 from recon.sim.world import LightSettings, Sky, SkySettings
-from recon.sim.world.keyframes import FloatArray, FloatImage
+from recon.sim.world.keyframes import FloatImage
 from recon.sim.world.light import beam_share, light_under, metered_light
 from recon.sim.world.relief import Relief
 

@@ -8,9 +8,10 @@ import cv2
 import numpy as np
 
 from recon.camera import ImageCircle, OmnidirectionalCamera
+from recon.model.arrays import FloatArray
 from recon.model.imagery import CameraPose
 from recon.sim.camera.settings import LensSettings
-from recon.sim.world.keyframes import FloatArray, FloatImage
+from recon.sim.world.keyframes import FloatImage
 from recon.sim.world.relief import Relief
 
 LATTICE_PX = 4

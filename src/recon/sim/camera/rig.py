@@ -7,11 +7,12 @@ import numpy as np
 
 from recon.camera import OmnidirectionalCamera, TelemetryReference, displaced_pose
 from recon.geo import shift_east_north_m
+from recon.model.arrays import FloatArray
 from recon.model.geo import LocalFrame
 from recon.model.imagery import CameraPose
 from recon.model.vehicle import Mount
 from recon.sim.camera.settings import HoverSettings
-from recon.sim.world.keyframes import FloatArray, gaussian, number
+from recon.sim.world.keyframes import gaussian, number
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -9,8 +9,9 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
+from recon.model.arrays import FloatArray
 from recon.sim.camera.settings import ToneSettings
-from recon.sim.world.keyframes import FloatArray, FloatImage
+from recon.sim.world.keyframes import FloatImage
 
 DISPLAY_GAMMA = 2.2
 STEPS = 65_535

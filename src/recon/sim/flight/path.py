@@ -11,12 +11,10 @@ from dataclasses import dataclass
 from math import ceil, inf, sqrt
 
 import numpy as np
-import numpy.typing as npt
 
 from recon.geo.path import corner_reaches_m
+from recon.model.arrays import FloatArray
 from recon.sim.flight.kinematics import Limits
-
-FloatArray = npt.NDArray[np.float64]
 
 SPACING_M = 0.5
 SIDEWAYS_SHARE = 0.6

@@ -9,9 +9,9 @@ from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from recon.model.arrays import FloatArray
+
 Colour = tuple[float, float, float]
 Box = tuple[float, float, float, float]
 """West, south, east, north in metres."""

@@ -12,18 +12,9 @@ import numpy as np
 import numpy.typing as npt
 
 from recon.geo.sun import SunPosition
+from recon.model.arrays import FloatArray
 from recon.model.imagery import RgbImage
-from recon.sim.land.farmland import (
-    MEADOW,
-    POND_EDGE_M,
-    Box,
-    Building,
-    Farmland,
-    FloatArray,
-    Plot,
-    Pond,
-    Tree,
-)
+from recon.sim.land.farmland import MEADOW, POND_EDGE_M, Box, Building, Farmland, Plot, Pond, Tree
 from recon.sim.land.land_part import (
     FRACTION_BITS,
     MARGIN_PX,

@@ -12,7 +12,8 @@ from typing import Generic, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from recon.sim.land.farmland import Box, Building, Farmland, FloatArray, Plot, Pond, Tree
+from recon.model.arrays import FloatArray
+from recon.sim.land.farmland import Box, Building, Farmland, Plot, Pond, Tree
 
 LONGEST_SHADOW_M = 75.0
 """Longest shadow of a tree or barn at `LOWEST_SHADOW_SUN_DEG`."""

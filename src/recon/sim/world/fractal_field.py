@@ -15,7 +15,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.fft import ifft, irfft
 
-from recon.sim.world.keyframes import FloatArray, FloatImage, blend, generator, phase
+from recon.model.arrays import FloatArray
+from recon.sim.world.keyframes import FloatImage, blend, generator, phase
 
 BAND_RATIO = 4.0
 TILE_CELLS = 256

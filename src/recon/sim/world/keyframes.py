@@ -12,7 +12,8 @@ from math import inf
 import numpy as np
 import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from recon.model.arrays import FloatArray
+
 FloatImage = npt.NDArray[np.float32]
 
 PERIODS_PER_LIFETIME = 1.0 / 0.90017

@@ -7,8 +7,9 @@ from statistics import NormalDist
 
 import numpy as np
 
+from recon.model.arrays import FloatArray
 from recon.sim.world.fractal_field import AT_ONCE, ROW_POINTS, FractalField, IndexArray
-from recon.sim.world.keyframes import FloatArray, FloatImage, gaussian, generator
+from recon.sim.world.keyframes import FloatImage, gaussian, generator
 from recon.sim.world.penumbra import Penumbra, extinction_table, look_up, spread
 from recon.sim.world.settings import LayerSettings
 from recon.sim.world.wind import velocity

@@ -14,7 +14,8 @@ import numpy as np
 import numpy.typing as npt
 
 from recon.geo.sun import SunPosition
-from recon.sim.world.keyframes import FloatArray, FloatImage
+from recon.model.arrays import FloatArray
+from recon.sim.world.keyframes import FloatImage
 from recon.sim.world.relief import Relief
 from recon.sim.world.settings import LightSettings
 from recon.sim.world.sky import Sky

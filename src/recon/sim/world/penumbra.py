@@ -15,8 +15,9 @@ import numpy as np
 import numpy.typing as npt
 
 from recon.geo.sun import SunPosition
+from recon.model.arrays import FloatArray
 from recon.sim.world.fractal_field import FieldSample
-from recon.sim.world.keyframes import FloatArray, FloatImage
+from recon.sim.world.keyframes import FloatImage
 
 SUN_DIAMETER_RAD = 0.0093
 LOWEST_ELEVATION_DEG = 5.0

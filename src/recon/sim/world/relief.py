@@ -6,7 +6,8 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from recon.sim.world.keyframes import FloatArray, FloatImage
+from recon.model.arrays import FloatArray
+from recon.sim.world.keyframes import FloatImage
 from recon.sim.world.settings import expect
 
 WAVES = 9

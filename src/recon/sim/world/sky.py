@@ -12,9 +12,10 @@ import numpy.typing as npt
 
 from recon.geo import cell_centres_m
 from recon.geo.sun import SunPosition, sun_position
+from recon.model.arrays import FloatArray
 from recon.model.geo import GroundGrid
 from recon.sim.world.fractal_field import AT_ONCE, IndexArray
-from recon.sim.world.keyframes import FloatArray, FloatImage
+from recon.sim.world.keyframes import FloatImage
 from recon.sim.world.layer import CloudLayer
 from recon.sim.world.penumbra import penumbra
 from recon.sim.world.settings import SkySettings

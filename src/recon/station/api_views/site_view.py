@@ -11,15 +11,14 @@ from itertools import accumulate
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from recon.api import schema
 from recon.geo import geo_from_enu, thinned_ring
 from recon.model.airspace import LandingPad, Region, Zone
+from recon.model.arrays import FloatArray
 from recon.model.geo import LocalFrame
 from recon.site import Site
 
-FloatArray = npt.NDArray[np.float64]
 AreaKind = Literal["boundary", "keep_out", "height", "survey"]
 
 MAX_CORNERS = 500

@@ -113,10 +113,6 @@ def _commands(before: Station, event: Event, after: Station, now_ns: int) -> Ite
             yield from _refused(after, "preflight", preflight.refusal(before, event), by, serial)
         case AppAdmitted() | AppRefused():
             yield pairing_entry(before, event)
-        case AppListFailed(problem):
-            text = problem or "the list of apps is written again"
-            is_troubled = {"is_troubled": problem is not None}
-            yield AuditEntry("app.list_trouble", text, details=is_troubled)
         case AllStopped(by):
             text = "all stop: nothing moves a vehicle until a person releases it"
             yield AuditEntry("all_stop.latched", text, by)
@@ -137,24 +133,36 @@ def _commands(before: Station, event: Event, after: Station, now_ns: int) -> Ite
             word = "on" if is_on else "off"
             text = f"separation holds switched {word}"
             yield AuditEntry("separation_hold.switched", text, by, details={"is_on": is_on})
+        case _:
+            yield from _own_events(event)
+
+
+def _own_events(event: Event) -> Iterator[AuditEntry]:
+    """The station's own events: logins, and trouble with its files and links."""
+    match event:
+        case AppListFailed(problem):
+            yield _trouble("app.list_trouble", problem, "the list of apps is written again")
         case AuditFailed(problem):
-            text = problem or "audit and recovery snapshot are written again"
-            yield AuditEntry("audit.trouble", text, details={"is_troubled": problem is not None})
+            text = "audit and recovery snapshot are written again"
+            yield _trouble("audit.trouble", problem, text)
         case RecordFailed(problem):
-            text = problem or "everything is recorded again"
-            yield AuditEntry("record.trouble", text, details={"is_troubled": problem is not None})
+            yield _trouble("record.trouble", problem, "everything is recorded again")
+        case UsersChanged(change, problem):
+            yield _trouble("users.changed", problem, change)
         case LoginAccepted(by, role):
             yield AuditEntry("login.accepted", f"logged in as {role}", by, details={"role": role})
         case LoginRefused(address, failures):
             text = f"wrong token from {address}, number {failures} within a minute"
             yield AuditEntry("login.refused", text, details={"address": address})
-        case UsersChanged(change, problem):
-            text = problem or change
-            yield AuditEntry("users.changed", text, details={"is_troubled": problem is not None})
         case LinkLimitReached(limit, problem):
             text = problem or f"link server: limit of {limit} no longer reached"
             details = {"limit": limit, "is_reached": problem is not None}
             yield AuditEntry("link.limit", text, details=details)
+
+
+def _trouble(kind: str, problem: str | None, ended: str) -> AuditEntry:
+    """Return the entry of a trouble: what it is, or that it has ended."""
+    return AuditEntry(kind, problem or ended, details={"is_troubled": problem is not None})
 
 
 def _released(before: Station, event: StopReleased) -> AuditEntry:

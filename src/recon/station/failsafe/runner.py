@@ -54,8 +54,6 @@ ORDERED_BODIES: Mapping[Reaction, Hover | ReturnHome | LandNow] = {
 _RANKS: Mapping[type, int] = {
     type(body): reaction.rank for reaction, body in ORDERED_BODIES.items()
 }
-_OLD = "so before the restart, nothing is ordered for it"
-_NEWER = "an operator's order stands"
 _PENDING = (ReactionOutcome.PENDING, ReactionOutcome.REFUSED)
 
 

@@ -15,9 +15,10 @@ from recon.camera.registration import (
     view_of,
 )
 from recon.geo import shift_east_north_m, sun_position
+from recon.model.arrays import FloatArray
 from recon.model.errors import ReconError
 from recon.model.geo import LatLon, LocalFrame
-from recon.model.imagery import CameraPose, FloatArray, GroundImage, Registration, RgbImage
+from recon.model.imagery import CameraPose, GroundImage, Registration, RgbImage
 from recon.model.replacing import replace
 from recon.model.units import ns_to_seconds
 from recon.model.vehicle import VehicleProfile

@@ -12,12 +12,13 @@ either:
 
 from collections.abc import Callable
 
-from recon.model.command import Body, Hover, Phase, issued_by_station
+from recon.model.command import Body, Phase, issued_by_station
 from recon.model.control import AuthorityHolder
 from recon.model.event import OperatorOrder
 from recon.model.replacing import replace
 from recon.model.units import seconds_to_ns
 from recon.station.control import authority, order_gateway
+from recon.station.operations.guidance_hold import guidance_hold
 from recon.station.state.imager_motion import (
     ImagerMotion,
     LookAside,
@@ -122,7 +123,5 @@ def put(station: Station, motion: ImagerMotion) -> Station:
 
 
 def _ordered_hold(station: Station, motion: ImagerMotion, why: str, now_ns: int) -> Stepped:
-    station, number = take_id(station)
-    by = issued_by_station(why)
-    hold = OperatorOrder(number, Hover(), by, serial=motion.serial, role=AuthorityHolder.GUIDANCE)
+    station, hold = guidance_hold(station, motion.serial, issued_by_station(why))
     return order_gateway.submit(station, hold, now_ns)

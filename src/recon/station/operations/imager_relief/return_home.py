@@ -1,11 +1,12 @@
 """An imaging drone is called home under guidance, for the person who ordered it or the survey."""
 
-from recon.model.command import Hover, Phase, Refusal
+from recon.model.command import Phase, Refusal
 from recon.model.control import AuthorityHolder
-from recon.model.event import AuthorityTaken, OperatorOrder
+from recon.model.event import AuthorityTaken
 from recon.station.control import handover
 from recon.station.operations.fleet_return import commands
-from recon.station.state.station import Station, take_id
+from recon.station.operations.guidance_hold import guidance_hold
+from recon.station.state.station import Station
 from recon.station.state.steps import Stepped
 
 
@@ -24,12 +25,9 @@ def call_home(
         return why
     taken = AuthorityTaken(serial, AuthorityHolder.GUIDANCE, by, person)
     called, withdrawn = handover.take(station, taken, now_ns)
-    called, number = take_id(called)
-    hold = OperatorOrder(
-        number, Hover(), f"{by}: relief", serial=serial, role=AuthorityHolder.GUIDANCE
-    )
+    called, hold = guidance_hold(called, serial, f"{by}: relief")
     called, sent = commands.join(called, hold, by, now_ns)
-    placed = called.orders.records[number]
+    placed = called.orders.records[hold.command_id]
     if placed.phase is Phase.REFUSED_BY_STATION:
         assert placed.refusal is not None, "a refused order has its refusal"
         return placed.refusal

@@ -10,13 +10,11 @@ from itertools import pairwise
 from math import ceil, hypot, isfinite
 
 import numpy as np
-import numpy.typing as npt
 
 from recon.guidance.survey.terrain import Terrain
 from recon.model.airspace import LAYER_SPACING_M, FlightLimits
+from recon.model.arrays import FloatArray
 from recon.safety.airspace import PreparedAirspace
-
-FloatArray = npt.NDArray[np.float64]
 
 SPARE_M = 5.0
 """Under the site's ceiling: the ground under an approach may lie higher than the takeoff point."""

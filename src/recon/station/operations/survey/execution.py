@@ -18,13 +18,11 @@ an operator starts, pauses or aborts it; it becomes done, or pauses itself, by i
    over, or has paused itself, otherwise hover and go back to the operator.
 """
 
-from math import hypot
+from math import dist
 from types import MappingProxyType
 
 from recon.guidance.survey import NO_BATTERY, PositionSample, SurveyState, refused
-from recon.model.command import Hover, Phase, issued_by_station
-from recon.model.control import AuthorityHolder
-from recon.model.event import OperatorOrder
+from recon.model.command import Phase, issued_by_station
 from recon.model.replacing import replace
 from recon.model.shade import ShadeMap
 from recon.model.survey import MissionAssignment, SurveyPhase
@@ -35,7 +33,8 @@ from recon.safety.rules.authority import RULE as AUTHORITY
 from recon.safety.rules.battery import RULE as BATTERY
 from recon.safety.rules.separation import RULE as SEPARATION
 from recon.station.control import order_gateway
-from recon.station.operations.settings import SURVEY_TIMES, SurveyTimes
+from recon.station.operations.guidance_hold import guidance_hold
+from recon.station.operations.settings import SURVEY_TIMES
 from recon.station.operations.survey.availability import (
     after_mission,
     available_vehicles,
@@ -44,7 +43,12 @@ from recon.station.operations.survey.availability import (
     is_flown,
 )
 from recon.station.operations.survey.mission_dispatch import dispatch
-from recon.station.operations.survey.planning import StepSurvey, SurveyStepped, step_survey
+from recon.station.operations.survey.planning import (
+    StepSurvey,
+    SurveyStepped,
+    step_ended,
+    step_survey,
+)
 from recon.station.operations.survey.return_to_home import (
     release_vehicles,
     returns_home,
@@ -65,9 +69,7 @@ from recon.station.state.survey_record import EastNorth, PendingStep, SurveyReco
 _OPEN = (SurveyPhase.RUNNING, SurveyPhase.PAUSED)
 
 
-def on_position(
-    station: Station, vehicle: VehicleState, now_ns: int, settings: SurveyTimes = SURVEY_TIMES
-) -> Station:
+def on_position(station: Station, vehicle: VehicleState, now_ns: int) -> Station:
     """Keep a vehicle's new position for the surveys it belongs to."""
     surveys, serial = station.surveys, vehicle.serial
     frame = station.airspace.airspace.frame
@@ -80,19 +82,19 @@ def on_position(
         east_m, north_m = (float(metres) for metres in places_m(frame, [at.value])[0])
         takeoff_m = takeoff_up_m(station.airspace, vehicle)
         sample = PositionSample(now_ns, east_m, north_m, height_m.value, takeoff_m)
-        kept = record.positions.with_one((serial, sample), settings.positions_kept)
+        kept = record.positions.with_one((serial, sample), SURVEY_TIMES.positions_kept)
         record = replace(record, positions=kept)
-        record = _with_path(station, record, serial, (east_m, north_m), settings)
+        record = _with_path(station, record, serial, (east_m, north_m))
         surveys = surveys.put(record)
     return station if surveys is station.surveys else replace(station, surveys=surveys)
 
 
-def on_shade(station: Station, shade: ShadeMap, settings: SurveyTimes = SURVEY_TIMES) -> Station:
+def on_shade(station: Station, shade: ShadeMap) -> Station:
     """Keep a new shade map for every running or paused survey."""
     surveys = station.surveys
     for record in surveys.records.values():
         if _is_open(record):
-            kept = record.shade_maps.with_one(shade, settings.shade_maps_kept)
+            kept = record.shade_maps.with_one(shade, SURVEY_TIMES.shade_maps_kept)
             surveys = surveys.put(replace(record, shade_maps=kept))
     return station if surveys is station.surveys else replace(station, surveys=surveys)
 
@@ -106,7 +108,6 @@ def _with_path(
     record: SurveyRecord,
     serial: str,
     place_m: EastNorth,
-    settings: SurveyTimes,
 ) -> SurveyRecord:
     """Extend the flown path of the vehicle's mission, if it flies one."""
     member = record.members[serial]
@@ -114,15 +115,15 @@ def _with_path(
         return record
     key = serial, member.number
     path = record.flown.get(key, ())
-    if len(path) >= settings.track_corners:
+    if len(path) >= SURVEY_TIMES.track_corners:
         return record
-    if path and hypot(path[-1][0] - place_m[0], path[-1][1] - place_m[1]) < settings.track_step_m:
+    if path and dist(path[-1], place_m) < SURVEY_TIMES.track_step_m:
         return record
     flown = MappingProxyType({**record.flown, key: (*path, place_m)})
     return replace(record, flown=flown)
 
 
-def advance(station: Station, now_ns: int, settings: SurveyTimes = SURVEY_TIMES) -> Stepped:
+def advance(station: Station, now_ns: int) -> Stepped:
     """Start the step of the survey that has waited longest, if one is due and none is pending."""
     surveys = station.surveys
     if not surveys.records:
@@ -132,7 +133,7 @@ def advance(station: Station, now_ns: int, settings: SurveyTimes = SURVEY_TIMES)
     if outdated is not None and (pending is None or not pending.is_replan):
         return start_replan(station, outdated, now_ns)
     if pending is not None:
-        if now_ns - pending.asked_at_ns < seconds_to_ns(settings.answered_within_s):
+        if now_ns - pending.asked_at_ns < seconds_to_ns(SURVEY_TIMES.answered_within_s):
             return station, ()
         surveys = replace(surveys, pending=None)
     due = [r for r in surveys.records.values() if _needs_steps(r) and now_ns >= r.step_due_ns]
@@ -140,14 +141,14 @@ def advance(station: Station, now_ns: int, settings: SurveyTimes = SURVEY_TIMES)
         return replace(station, surveys=surveys), ()
     record = min(due, key=lambda each: each.step_due_ns)
     station = replace(station, surveys=surveys)
-    station, held = _read_missions(station, record, settings, now_ns)
-    station, job = _start_step(station, record.survey.id, settings, now_ns)
+    station, held = _read_missions(station, record, now_ns)
+    station, job = _start_step(station, record.survey.id, now_ns)
     return station, (*held, *job)
 
 
 def _stepped(station: Station, job_id: int, result: SurveyStepped, now_ns: int) -> Stepped:
     """Take the survey's new state, and order its missions as far as the gate approves them."""
-    station, record = _without_pending(station, job_id)
+    station, record = step_ended(station, job_id)
     if record is None:
         return station, ()
     survey_id, was_running = record.survey.id, record.is_running
@@ -168,7 +169,7 @@ def _stepped(station: Station, job_id: int, result: SurveyStepped, now_ns: int) 
 
 
 def _not_stepped(station: Station, job_id: int, error: str, _now_ns: int) -> Stepped:
-    station, record = _without_pending(station, job_id)
+    station, record = step_ended(station, job_id)
     if record is None:
         return station, ()
     return replace(station, surveys=station.surveys.put(replace(record, trouble=error))), ()
@@ -188,36 +189,13 @@ STEP_SURVEY: JobKind[StepSurvey, SurveyStepped] = JobKind(
 """Counts observations and decides which vehicle flies what next."""
 
 
-def _without_pending(station: Station, job_id: int) -> tuple[Station, SurveyRecord | None]:
-    """End the pending step: return its survey without the observations that the step counted.
-
-    None if the job is not the pending one. A step that failed drops its observations too: they
-    might make the next one fail again.
-    """
-    surveys, pending = station.surveys, station.surveys.pending
-    if pending is None or pending.job_id != job_id:
-        return station, None
-    surveys = replace(surveys, pending=None)
-    record = surveys.records.get(pending.survey_id)
-    if record is None or record.state is None:
-        return replace(station, surveys=surveys), None
-    record = replace(
-        record,
-        positions=record.positions.from_number(pending.positions_end),
-        shade_maps=record.shade_maps.from_number(pending.shade_maps_end),
-    )
-    return replace(station, surveys=surveys.put(record)), record
-
-
 def _needs_steps(record: SurveyRecord) -> bool:
     """Whether it runs, or is paused with positions that are not counted yet."""
     is_paused = record.state is not None and record.state.phase is SurveyPhase.PAUSED
     return record.is_running or (is_paused and bool(record.positions.items))
 
 
-def _read_missions(
-    station: Station, record: SurveyRecord, settings: SurveyTimes, now_ns: int
-) -> Stepped:
+def _read_missions(station: Station, record: SurveyRecord, now_ns: int) -> Stepped:
     """Read the outcome of each vehicle's mission; hold a vehicle that might begin one late."""
     outputs: tuple[Output, ...] = ()
     for member in record.members.values():
@@ -226,20 +204,17 @@ def _read_missions(
             record = given_back(record, member, order, now_ns)
             continue
         could_fly = hindrance(station, updated, now_ns) is None
-        record = record.put(stopped_if_overdue(record, updated, could_fly, now_ns, settings))
+        record = record.put(stopped_if_overdue(record, updated, could_fly, now_ns))
         if order is not None and order.phase is Phase.TIMED_OUT and record.is_running:
-            station, number = take_id(station)
             why = f"the mission of order {order.command.id} was ignored"
             by = issued_by_station(f"survey {record.survey.name}: {why}")
-            hold = OperatorOrder(
-                number, Hover(), by, serial=member.serial, role=AuthorityHolder.GUIDANCE
-            )
+            station, hold = guidance_hold(station, member.serial, by)
             station, sent = order_gateway.submit(station, hold, now_ns)
             outputs += sent
     return replace(station, surveys=station.surveys.put(record)), outputs
 
 
-def _start_step(station: Station, survey_id: int, settings: SurveyTimes, now_ns: int) -> Stepped:
+def _start_step(station: Station, survey_id: int, now_ns: int) -> Stepped:
     surveys = station.surveys
     record = surveys.records[survey_id]
     assert record.state is not None  # or it would not be due
@@ -251,7 +226,7 @@ def _start_step(station: Station, survey_id: int, settings: SurveyTimes, now_ns:
     )
     job = Job(surveys.next_job_id, STEP_SURVEY, work)
     pending = PendingStep(job.id, survey_id, now_ns, positions.end, shade_maps.end)
-    record = replace(record, step_due_ns=now_ns + seconds_to_ns(settings.step_every_s))
+    record = replace(record, step_due_ns=now_ns + seconds_to_ns(SURVEY_TIMES.step_every_s))
     surveys = replace(surveys.put(record), pending=pending, next_job_id=job.id + 1)
     return replace(station, surveys=surveys), (job,)
 

@@ -16,7 +16,6 @@ import numpy as np
 
 from recon.geo.distance import horizontal_distance_m
 from recon.guidance.survey import SurveyPlan
-from recon.model.airspace import FlightLimits
 from recon.model.command import FlyMission, Refusal
 from recon.model.control import AuthorityHolder
 from recon.model.event import OperatorOrder
@@ -120,8 +119,8 @@ def _is_at_rows_height(
     if plan is None or plan.terrain is None or frame is None:
         return abs(height_m - first.height_above_takeoff_m) < LEVEL_M
     east_m, north_m = places_m(frame, [here])[0].tolist()
-    off_m = plan.height_off_m((east_m, north_m), height_m, takeoff_up_m(station.airspace, vehicle))
-    return off_m is not None and abs(off_m) < LEVEL_M + plan.settings.terrain_above_m
+    takeoff_m = takeoff_up_m(station.airspace, vehicle)
+    return plan.is_at_rows_height((east_m, north_m), height_m, takeoff_m)
 
 
 def _plan_of(record: SurveyRecord) -> SurveyPlan | None:
@@ -136,42 +135,34 @@ def _refusal(station: Station, order: OperatorOrder, now_ns: int) -> Refusal | N
 def _orders(
     station: Station, record: SurveyRecord, given: MissionAssignment, vehicle: VehicleState
 ) -> tuple[OperatorOrder, ...]:
-    number, count = tuple(record.members).index(given.serial), len(record.members)
-    limits = station.airspace.airspace.limits
-    order = _order(record, given, vehicle)
-    layers_m = _layers_over_terrain_m(station, record, given, vehicle)
+    """The order with each possible approach, the nearest of the vehicle's layers first."""
+    layers_m = _own_layers_m(station, record, given, vehicle)
     if given.stands_by:
-        missions = standing_by(
-            given.mission, vehicle, number, count, limits, given.approach, layers_m=layers_m
-        )
+        missions = standing_by(given.mission, vehicle, layers_m, given.approach)
     else:
+        ends_in_layer = len(record.members) > 1 and given.straight_within_m is None
         missions = with_approaches(
-            given.mission,
-            vehicle,
-            number,
-            count,
-            limits,
-            given.approach,
-            ends_in_layer=given.straight_within_m is None,
-            layers_m=layers_m,
+            given.mission, vehicle, layers_m, given.approach, ends_in_layer=ends_in_layer
         )
+    order = _order(record, given, vehicle)
     return tuple(replace(order, body=FlyMission(mission)) for mission in missions)
 
 
-def _layers_over_terrain_m(
+def _own_layers_m(
     station: Station, record: SurveyRecord, given: MissionAssignment, vehicle: VehicleState
 ) -> Sequence[float]:
-    """The vehicle's layers above its takeoff point in a survey above ground; else none.
+    """The vehicle's own layers, metres above its takeoff point, at least one.
 
-    Where none is free of ground and rows, it is the height of its first row: the gate judges.
+    Where none over terrain is free of ground and rows, it is the height of its first row: the gate
+    judges.
     """
-    plan, air = _plan_of(record), station.airspace
-    here, takeoff_m = vehicle.position.value, takeoff_up_m(air, vehicle)
-    frame = air.airspace.frame
-    if plan is None or plan.terrain is None or frame is None or here is None or takeoff_m is None:
-        return ()
     number, count = tuple(record.members).index(given.serial), len(record.members)
     first, last = given.mission.waypoints[0], given.mission.waypoints[-1]
+    plan, air = _plan_of(record), station.airspace
+    frame, limits = air.airspace.frame, air.airspace.limits
+    here, takeoff_m = vehicle.position.value, takeoff_up_m(air, vehicle)
+    if plan is None or plan.terrain is None or frame is None or here is None or takeoff_m is None:
+        return layers_above_takeoff_m(first.height_above_takeoff_m, number, count, limits)
     *way_m, end_m = places_m(frame, [here, *given.approach, first, last])
     up_m = layers_over_terrain_m(plan.terrain, air, np.array(way_m), end_m, number, count)
     layers_m = [round(each - takeoff_m, 2) for each in up_m]
@@ -193,17 +184,12 @@ def _order(record: SurveyRecord, given: MissionAssignment, vehicle: VehicleState
 def standing_by(
     mission: Mission,
     vehicle: VehicleState,
-    number: int,
-    count: int,
-    limits: FlightLimits,
+    layers_m: Sequence[float],
     corners: tuple[LatLon, ...] = (),
-    *,
-    layers_m: Sequence[float] = (),
 ) -> tuple[Mission, ...]:
-    """Return the mission to the mission's first waypoint, at each of the vehicle's own heights.
+    """Return the mission to the mission's first waypoint, in each of the vehicle's own layers.
 
-    `layers_m` are these above terrain. Where it is there already it climbs or sinks on the spot;
-    none where there is no other height.
+    Where it is there already it climbs or sinks on the spot; none where there is no other height.
     """
     here, height_m = vehicle.position.value, vehicle.height_above_takeoff_m.value
     first = replace(mission.waypoints[0], gimbal_pitch_deg=None)
@@ -212,8 +198,7 @@ def standing_by(
     far_m = horizontal_distance_m(here, LatLon(first.latitude_deg, first.longitude_deg))
     is_there = far_m < NEAR_M and abs(height_m - first.height_above_takeoff_m) < LEVEL_M
     flown = []
-    rows_m = first.height_above_takeoff_m
-    for layer_m in layers_m or layers_above_takeoff_m(rows_m, number, count, limits):
+    for layer_m in layers_m:
         if is_there and abs(layer_m - first.height_above_takeoff_m) < LEVEL_M:
             continue
         there = replace(first, height_above_takeoff_m=layer_m)
@@ -233,27 +218,21 @@ def _turns(waypoint: Waypoint, places: Iterable[LatLon]) -> tuple[Waypoint, ...]
 def with_approaches(
     mission: Mission,
     vehicle: VehicleState,
-    number: int,
-    count: int,
-    limits: FlightLimits,
+    layers_m: Sequence[float],
     corners: tuple[LatLon, ...] = (),
     *,
     ends_in_layer: bool = True,
-    layers_m: Sequence[float] = (),
 ) -> tuple[Mission, ...]:
-    """Return the mission with each possible approach: straight up or down, across, onto the first
-    row; and off the last row to the same height, if it `ends_in_layer`.
+    """Return the mission with an approach in each of the vehicle's own layers: straight up or down,
+    across, onto the first row; and off the last row to the same height, if it `ends_in_layer`.
 
-    One for each of the vehicle's heights, the nearest to the rows first; `layers_m` are these above
-    terrain. `number` counts the
-    survey's `count` vehicles from 0: no two share a height, as long as there are enough; beyond,
-    they share the last one. The way across turns at `corners`; zones are left to the gate.
+    The way across turns at `corners`; zones are left to the gate.
     """
-    rows_m = mission.waypoints[0].height_above_takeoff_m
-    own_m = layers_m or layers_above_takeoff_m(rows_m, number, count, limits)
-    flown = tuple(_with_approach(mission, vehicle, layer_m, corners) for layer_m in own_m)
-    if count > 1 and ends_in_layer:
-        flown = tuple(_with_end(each, layer_m) for each, layer_m in zip(flown, own_m, strict=True))
+    flown = tuple(_with_approach(mission, vehicle, layer_m, corners) for layer_m in layers_m)
+    if ends_in_layer:
+        flown = tuple(
+            _with_end(each, layer_m) for each, layer_m in zip(flown, layers_m, strict=True)
+        )
     return tuple(dict.fromkeys(flown))
 
 

@@ -139,6 +139,27 @@ def _put(station: Station, record: SurveyRecord) -> Station:
     return replace(station, surveys=station.surveys.put(record))
 
 
+def step_ended(station: Station, job_id: int) -> tuple[Station, SurveyRecord | None]:
+    """End the pending step: return its survey without the observations that the step counted.
+
+    None if the job is not the pending one. A step that failed drops its observations too: they
+    might make the next one fail again.
+    """
+    surveys, pending = station.surveys, station.surveys.pending
+    if pending is None or pending.job_id != job_id:
+        return station, None
+    surveys = replace(surveys, pending=None)
+    record = surveys.records.get(pending.survey_id)
+    if record is None or record.state is None:
+        return replace(station, surveys=surveys), None
+    record = replace(
+        record,
+        positions=record.positions.from_number(pending.positions_end),
+        shade_maps=record.shade_maps.from_number(pending.shade_maps_end),
+    )
+    return replace(station, surveys=surveys.put(record)), record
+
+
 def _by_vehicle(
     samples: Sequence[tuple[str, PositionSample]],
 ) -> Mapping[str, list[PositionSample]]:

@@ -7,14 +7,14 @@ gate. It ends when an operator or a pilot takes control of the vehicle.
 
 from dataclasses import replace
 
-from recon.model.command import Hover, Phase
+from recon.model.command import Phase
 from recon.model.control import AuthorityHolder
-from recon.model.event import OperatorOrder
 from recon.model.survey import SurveyPhase, WhenDone
 from recon.station.control import authority
 from recon.station.operations.fleet_return import commands
+from recon.station.operations.guidance_hold import guidance_hold
 from recon.station.state.fleet_return_record import ENDED
-from recon.station.state.station import Station, take_id
+from recon.station.state.station import Station
 from recon.station.state.steps import Output, Stepped
 from recon.station.state.survey_record import SurveyMember, SurveyRecord
 
@@ -55,13 +55,10 @@ def send_home(station: Station, survey_id: int, serial: str, why: str, now_ns: i
     refusal = commands.refusal(station, serial)
     if refusal is not None:
         return _hand_back(station, record, serial, refusal.reason, now_ns), ()
-    station, number = take_id(station)
     by = record.issuer
-    hold = OperatorOrder(
-        number, Hover(), f"{by}: {why}", serial=serial, role=AuthorityHolder.GUIDANCE
-    )
+    station, hold = guidance_hold(station, serial, f"{by}: {why}")
     station, sent = commands.join(station, hold, by, now_ns)
-    placed = station.orders.records[number]
+    placed = station.orders.records[hold.command_id]
     if placed.phase is Phase.REFUSED_BY_STATION:
         return _hand_back(station, record, serial, placed.note, now_ns), sent
     record = record.put(replace(member, return_reason=why, may_take_off=False))

@@ -19,7 +19,7 @@ from recon.model.command import Phase, Refusal
 from recon.model.units import ns_to_seconds, seconds_to_ns
 from recon.safety.rules.link_age import RULE as LINK_AGE
 from recon.safety.rules.separation import RULE as SEPARATION
-from recon.station.operations.settings import SurveyTimes
+from recon.station.operations.settings import SURVEY_TIMES
 from recon.station.state.orders import OrderRecord
 from recon.station.state.survey_record import SurveyMember, SurveyRecord
 
@@ -70,7 +70,7 @@ def asked_again(
 
 
 def stopped_if_overdue(
-    record: SurveyRecord, member: SurveyMember, could_fly: bool, now_ns: int, settings: SurveyTimes
+    record: SurveyRecord, member: SurveyMember, could_fly: bool, now_ns: int
 ) -> SurveyMember:
     """Return the vehicle, stopped if no mission could be sent to it for too long.
 
@@ -81,10 +81,10 @@ def stopped_if_overdue(
         return member
     last = state.refusals.get(member.serial)
     asked_until_ns = since_ns if last is None else last.again_ns
-    if could_fly and now_ns > asked_until_ns + seconds_to_ns(settings.asked_again_within_s):
+    if could_fly and now_ns > asked_until_ns + seconds_to_ns(SURVEY_TIMES.asked_again_within_s):
         return replace(member, unsent_since_ns=None)
     waited_s = ns_to_seconds(now_ns - since_ns)
-    if waited_s < settings.unsent_within_s:
+    if waited_s < SURVEY_TIMES.unsent_within_s:
         return member
     why = "" if last is None else f": {last.reason.removesuffix(ASKS_AGAIN)}"
     text = f"no mission could be sent to it for {waited_s:.0f} s{why}"

@@ -25,17 +25,18 @@ from recon.guidance.survey import (
     surroundings_of,
 )
 from recon.guidance.survey.replan import replanned
-from recon.model.command import Hover, Refusal, issued_by_station
+from recon.model.command import Refusal, issued_by_station
 from recon.model.control import AuthorityHolder
-from recon.model.event import OperatorOrder
 from recon.model.geo import LocalFrame
 from recon.model.mission import Waypoint
 from recon.safety.airspace import PreparedZone
 from recon.safety.datum import places_m
 from recon.station.control import order_gateway
+from recon.station.operations.guidance_hold import guidance_hold
 from recon.station.operations.survey.availability import is_flown
+from recon.station.operations.survey.planning import step_ended
 from recon.station.operations.survey.return_to_home import release_vehicles
-from recon.station.state.station import Station, take_id
+from recon.station.state.station import Station
 from recon.station.state.steps import Job, JobKind, Output, Stepped
 from recon.station.state.survey_record import PendingStep, SurveyMember, SurveyRecord
 
@@ -97,12 +98,9 @@ def _hold_crossing(station: Station, record: SurveyRecord, now_ns: int) -> Stepp
         zone = _zone_on_the_way(station, member)
         if zone is None:
             continue
-        station, number = take_id(station)
         why = f"survey {record.survey.name}: its rows lead through {zone.zone.name}"
         by = issued_by_station(why)
-        hold = OperatorOrder(
-            number, Hover(), by, serial=member.serial, role=AuthorityHolder.GUIDANCE
-        )
+        station, hold = guidance_hold(station, member.serial, by)
         station, sent = order_gateway.submit(station, hold, now_ns)
         outputs += sent
         # Its mission is over for the survey, and no reason to leave the vehicle out.
@@ -142,7 +140,7 @@ def _waypoints_left(station: Station, member: SurveyMember) -> Iterator[Waypoint
 
 
 def _replanned(station: Station, job_id: int, result: SurveyReplanned, now_ns: int) -> Stepped:
-    station, record = _without_pending(station, job_id)
+    station, record = step_ended(station, job_id)
     if record is None:
         return station, ()
     was_running = record.is_running
@@ -154,7 +152,7 @@ def _replanned(station: Station, job_id: int, result: SurveyReplanned, now_ns: i
 def _not_replanned(station: Station, job_id: int, error: str, _now_ns: int) -> Stepped:
     """Keep the old rows: the gate refuses those that lead through a zone."""
     changes = station.temporary_zones.changes
-    station, record = _without_pending(station, job_id)
+    station, record = step_ended(station, job_id)
     if record is None:
         return station, ()
     trouble = f"its rows could not be planned round the temporary zones: {error}"
@@ -164,20 +162,10 @@ def _not_replanned(station: Station, job_id: int, error: str, _now_ns: int) -> S
 
 def _dropped(station: Station, job_id: int, _now_ns: int) -> Stepped:
     """Plan it again with the next tick."""
-    return _without_pending(station, job_id)[0], ()
+    return step_ended(station, job_id)[0], ()
 
 
 REPLAN_SURVEY: JobKind[SurveyReplanRequest, SurveyReplanned] = JobKind(
     "replan_survey", lambda _site: replan, _replanned, _not_replanned, _dropped
 )
 """Plans a survey's rows again after zones have changed."""
-
-
-def _without_pending(station: Station, job_id: int) -> tuple[Station, SurveyRecord | None]:
-    """End the pending job; None if a command to the survey has made it count for nothing."""
-    surveys, pending = station.surveys, station.surveys.pending
-    if pending is None or pending.job_id != job_id:
-        return station, None
-    record = surveys.records.get(pending.survey_id)
-    station = replace(station, surveys=replace(surveys, pending=None))
-    return station, None if record is None or record.state is None else record
