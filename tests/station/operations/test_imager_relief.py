@@ -24,11 +24,13 @@ from recon.model.control import AuthorityHolder
 from recon.model.event import AllStopped, AuthorityTaken, OperatorOrder, ReliefOrdered
 from recon.model.imagery import Outlook
 from recon.model.survey import SurveyPhase
+from recon.model.units import seconds_to_ns
 from recon.station.api_views.operation_views import survey_view
 from recon.station.api_views.relief_views import unknown_from_s
 from recon.station.imaging.at_work import imagers_at_work
 from recon.station.imaging.upwind import upwind_question
 from recon.station.operations.imager_relief.commands import audit_entries, refusal
+from recon.station.operations.imager_relief.conditions import conditions
 from recon.station.operations.look_aside.commands import meant
 from recon.station.state.fleet_return_record import Stage
 from recon.station.state.imager_motion import MotionStage
@@ -284,6 +286,28 @@ def light_of(world: RelievedWorld) -> SurveyLightView:
     view = survey_view(world.station, world.surveyed.record(), world.surveyed.driver.now_ns)
     assert view.light is not None
     return view.light
+
+
+class TestAnotherShowsTheField:
+    """The first one's battery wants it home soon; another one hovers over the field too."""
+
+    @staticmethod
+    def texts(world: RelievedWorld, maps_are_old_s: float) -> list[str]:
+        station = world.station
+        other, own = station.fleet.vehicles[SPARE], station.shade.own[FIRST]
+        flying = replace(other, is_flying=replace(other.is_flying, value=True))
+        fleet = replace(station.fleet, vehicles={**station.fleet.vehicles, SPARE: flying})
+        shade = replace(station.shade, own={**station.shade.own, SPARE: own})
+        checked_ns = own.shade.captured_at_ns + seconds_to_ns(maps_are_old_s)
+        reliefs = replace(station.reliefs, checked_at_ns=checked_ns)
+        station = replace(station, fleet=fleet, shade=shade, reliefs=reliefs)
+        return [each.text for each in conditions(station) if "wants it home" in each.text]
+
+    def test_its_maps_of_now_are_light_and_old_ones_are_not(self) -> None:
+        world = surveying(allowed=False, first=SHORT)
+        assert self.texts(world, 2.0) == []
+        (text,) = self.texts(world, 60.0)
+        assert "light is unknown from then on" in text
 
 
 class TestNotByItself:

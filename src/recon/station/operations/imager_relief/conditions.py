@@ -70,9 +70,9 @@ def _must_leave(station: Station, record: SurveyRecord) -> Iterator[Condition]:
 
 def _shows_too(station: Station, serial: str) -> bool:
     """Whether another imaging drone at work has a shade map of now."""
-    newest_ns = 0 if station.shade.shade is None else station.shade.shade.captured_at_ns
+    now_ns = station.reliefs.checked_at_ns or 0
     return any(
-        newest_ns - own.shade.captured_at_ns <= seconds_to_ns(TOGETHER_WITHIN_S)
+        now_ns - own.shade.captured_at_ns <= seconds_to_ns(TOGETHER_WITHIN_S)
         for other, own in station.shade.own.items()
         if other != serial and other in imagers_at_work(station)
     )
