@@ -4,7 +4,7 @@
     python -m studies.closed_loop --seed 17 --verbose
 
 The first prints progress, a table of violations by kind and class, the latency of holds, and a
-short story of each violation of the station's own; it exits with 1 when there is one, or when the
+short history of each violation of the station's own; it exits with 1 when there is one, or when the
 station's code raised. The second flies one seed again, with a trace. Results do not depend on
 `--jobs`. What a violation is and how it is classed: `studies/closed_loop/__init__.py`.
 """
@@ -73,15 +73,15 @@ def stop_line(results: list[RunResult]) -> str:
     )
 
 
-def told(violation: Violation) -> str:
-    """Return a violation with its story."""
+def violation_text(violation: Violation) -> str:
+    """Return a violation with its history."""
     head = (
         f"seed {violation.seed}, {violation.at_s:.1f} s, {violation.until_s - violation.at_s:.1f} s"
         f" long: {violation.breach.kind} {' and '.join(violation.breach.serials)}:"
         f" {violation.breach.text}; at worst {violation.worst} ({violation.kind.value}:"
         f" {violation.why})"
     )
-    return "\n".join([head, *(f"    {line}" for line in violation.story)])
+    return "\n".join([head, *(f"    {line}" for line in violation.history)])
 
 
 def main() -> int:
@@ -90,7 +90,7 @@ def main() -> int:
     seconds = 60.0 * options.minutes
     if options.seed is not None:
         result = ClosedLoopRun(options.seed, seconds, verbose=options.verbose).run()
-        print("\n".join(told(violation) for violation in result.violations))
+        print("\n".join(violation_text(violation) for violation in result.violations))
         print(summary([result]))
         return _exit_code([result])
     seeds = range(options.first_seed, options.first_seed + options.runs)
@@ -100,7 +100,7 @@ def main() -> int:
         results.append(result)
         for violation in result.violations:
             if violation.kind is ViolationClass.STATION or options.verbose:
-                print(told(violation), flush=True)
+                print(violation_text(violation), flush=True)
         if result.error:
             print(f"seed {result.seed}: the station's code raised {result.error}", flush=True)
         if len(results) % REPORT_EVERY == 0:

@@ -12,7 +12,7 @@ from tests.oracles.flown_air import Breach
 
 PILOT_S = FAULT_S = 12.0
 """From 15 m/s a vehicle needs 6 s to stand still, and the other one as long after it."""
-FRESH_S = PUSHED_S = 8.0
+FRESH_S = GUST_S = 8.0
 ALARMED_S = 20.0
 BRAKES_S = 3.0
 """A landing that an order ends goes on down while the descent is braked."""
@@ -32,11 +32,11 @@ class Mark(Enum):
     """Something that was so of a vehicle."""
 
     PILOT_FLIES = "its pilot flew it"
-    BLIND = "no telemetry arrived for 1 s"
-    DEAF = "it received or obeyed nothing"
-    LYING = "its heights were wrong"
-    SELF_WILLED = "it landed or fell by itself"
-    PUSHED = "wind pushed it"
+    NO_TELEMETRY = "no telemetry arrived for 1 s"
+    NO_COMMANDS = "it received or obeyed nothing"
+    WRONG_HEIGHT = "its heights were wrong"
+    FORCED_LANDING = "it landed or fell by itself"
+    GUST = "wind pushed it"
     DAMAGED = "bytes of it were changed on their way"
 
 
@@ -88,7 +88,7 @@ class StationMarks:
 
 
 PLACES = ("fence", "keep-out zone", "height zone", "too high", "too low", "home distance")
-FAULTS = (Mark.BLIND, Mark.DEAF, Mark.LYING, Mark.SELF_WILLED)
+FAULTS = (Mark.NO_TELEMETRY, Mark.NO_COMMANDS, Mark.WRONG_HEIGHT, Mark.FORCED_LANDING)
 
 
 def classify(
@@ -109,8 +109,8 @@ def classify(
         for mark in FAULTS:
             if vehicle.was(mark, now_s, FAULT_S):
                 return ViolationClass.FAULT, f"{mark.value} ({vehicle.why[mark]})"
-    if any(v.was(Mark.PUSHED, now_s, PUSHED_S) for v in vehicles):
-        return ViolationClass.PHYSICS, Mark.PUSHED.value
+    if any(v.was(Mark.GUST, now_s, GUST_S) for v in vehicles):
+        return ViolationClass.PHYSICS, Mark.GUST.value
     if now_s - station.started_s < FRESH_S or any(_is_fresh(v, now_s) for v in vehicles):
         return ViolationClass.PHYSICS, "known to the station too shortly"
     return _of_persons(breach, vehicles, station, now_s)
@@ -139,8 +139,8 @@ def _of_persons(
 
 def _of_takeoff(vehicles: Sequence[VehicleMarks], now_s: float) -> tuple[ViolationClass, str]:
     vehicle = vehicles[0]
-    if vehicle.was(Mark.BLIND, now_s, 3.0):
-        return ViolationClass.FAULT, Mark.BLIND.value
+    if vehicle.was(Mark.NO_TELEMETRY, now_s, 3.0):
+        return ViolationClass.FAULT, Mark.NO_TELEMETRY.value
     if vehicle.landed_s is not None and now_s - vehicle.landed_s < 1.0:
         return ViolationClass.PHYSICS, "it had landed only just"
     return ViolationClass.STATION, "nothing else explains it"
@@ -153,7 +153,7 @@ def _of_shown_place(vehicle: VehicleMarks, now_s: float) -> tuple[ViolationClass
 
 
 def _of_hold(vehicles: Sequence[VehicleMarks], now_s: float) -> tuple[ViolationClass, str]:
-    for mark in (Mark.BLIND, Mark.DEAF):
+    for mark in (Mark.NO_TELEMETRY, Mark.NO_COMMANDS):
         if vehicles[0].was(mark, now_s, 1.0):
             return ViolationClass.FAULT, f"{mark.value} ({vehicles[0].why[mark]})"
     return ViolationClass.STATION, "nothing else explains it"

@@ -1,4 +1,4 @@
-"""One run: the station, its apps and all parties in virtual time, and the oracles at every step."""
+"""One run: the station, its apps and all who give orders in virtual time, and the oracles at every step."""
 
 from collections import deque
 from dataclasses import replace
@@ -39,11 +39,11 @@ from recon.station.state.station import Station
 from recon.station.state.steps import StepTaken
 from studies.closed_loop.links import LinkedApps
 from studies.closed_loop.marks import Mark, StationMarks, VehicleMarks
-from studies.closed_loop.parties import BATTERY_RULES, Parties
+from studies.closed_loop.order_generator import BATTERY_RULES, OrderGenerator
 from studies.closed_loop.pilots import Pilot
 from studies.closed_loop.scene import Scene, draw
 from studies.closed_loop.truth import STEP_S, TrueFleet
-from studies.closed_loop.violations import Casebook, RunResult
+from studies.closed_loop.violations import RunResult, ViolationLog
 
 DOWN_S = 3.0
 """From a station's death to the next one's start."""
@@ -67,7 +67,7 @@ class ClosedLoopRun:
         self.apps = {app.settings.serial: app for app in self.scene.apps}
         self.marks = {serial: VehicleMarks() for serial in self.apps}
         self.result = RunResult(seed, seconds, vehicles=len(self.apps))
-        self.book = Casebook(self.result, self.marks, lambda: self.now_s, verbose)
+        self.log = ViolationLog(self.result, self.marks, lambda: self.now_s, verbose)
         self.stops, self.permits = StopClock(), TakeoffPermits()
         self.guard, self.ages = PilotGuard(), ShownAges()
         settings, random = self.scene.settings, Random(f"{seed}/links")
@@ -80,11 +80,11 @@ class ClosedLoopRun:
             self._damaged,
         )
         self.fleet = TrueFleet(
-            self.scene, self.apps, self.links, self.book, self.stops, self.permits
+            self.scene, self.apps, self.links, self.log, self.stops, self.permits
         )
         random = Random(f"{seed}/parties")
         place, is_flying = self.fleet.place, self.fleet.is_flying
-        self.parties = Parties(self.scene, random, self._handle, place, is_flying)
+        self.orders = OrderGenerator(self.scene, random, self._handle, place, is_flying)
         self.pilots = self._pilots() if settings.has_pilots else {}
         self._next_link_s = {serial: self.rng.uniform(8.0, 120.0) for serial in self.apps}
         self._arrivals: dict[str, deque[tuple[int, float]]] = {
@@ -135,7 +135,7 @@ class ClosedLoopRun:
             if done is not None:
                 self._pilot_acted(serial, pilot, done)
         if self._died_s is None:
-            self.parties.act(self.driver.station, now_s)
+            self.orders.act(self.driver.station, now_s)
         self.fleet.mark_all(now_s)
         self._check(now_s)
 
@@ -163,7 +163,7 @@ class ClosedLoopRun:
                 if not is_pilots:
                     self.guard.ends(serial)
             case SeparationHoldSwitched(is_on=is_on):
-                self.book.station_marks = replace(self.book.station_marks, are_holds_off=not is_on)
+                self.log.station_marks = replace(self.log.station_marks, are_holds_off=not is_on)
             case SurveyStarted(survey_id=number, serials=serials, takeoff=True):
                 for serial in serials:
                     self.permits.allow(serial, now_s, float("inf"))
@@ -177,7 +177,7 @@ class ClosedLoopRun:
 
     def _note_answer(self, event: Event) -> None:
         if not isinstance(event, OperatorOrder):
-            self.book.note(
+            self.log.note(
                 getattr(event, "serial", "") or "", f"{type(event).__name__} {_said(event)}"
             )
             return
@@ -185,16 +185,16 @@ class ClosedLoopRun:
         record = self.driver.station.orders.records.get(event.command_id)
         answer = "no record" if record is None else f"{record.phase.value} {record.note}"
         if record is not None and record.refusal is not None and record.refusal.rule == RULE_FAULT:
-            self.book.found(Breach("code fault", (), RULE_FAULT, 0.0, record.refusal.reason))
+            self.log.found(Breach("code fault", (), RULE_FAULT, 0.0, record.refusal.reason))
         what = f"order {event.command_id} {_body_text(event)} -> {answer}"
-        self.book.note(event.serial or "", what[:260])
+        self.log.note(event.serial or "", what[:260])
 
     def _expects_stop(self, serial: str) -> bool:
         is_known = self.links.link_of(serial) in self._named_links
         return is_known and self.apps[serial].aircraft.is_flying and self.links.has_downlink(serial)
 
     def _pilot_acted(self, serial: str, pilot: Pilot, done: str) -> None:
-        self.book.note(serial, done)
+        self.log.note(serial, done)
         if not pilot.is_flying:
             self.guard.ends(serial)
         elif pilot.has_just_taken and pilot.aircraft.has_pilot_control:
@@ -208,7 +208,7 @@ class ClosedLoopRun:
             # A hold leaves low what it stops on its way down.
             is_landing = isinstance(self.apps[serial].aircraft.active_mode, Land)
             marks.is_coming_down |= packet.action in (1, 2) or is_landing
-            self.book.note(serial, f"received {('hover', 'land', 'return')[packet.action]}")
+            self.log.note(serial, f"received {('hover', 'land', 'return')[packet.action]}")
             if packet.action == 0:
                 self.stops.arrived(serial, now_s)
         if moves:
@@ -216,10 +216,10 @@ class ClosedLoopRun:
                 marks.landing_ended_s = now_s
             marks.is_coming_down = marks.left_by_pilot = False
             if isinstance(packet, wire.ExecuteWaypointMission):
-                self.book.note(serial, f"received a mission of {len(packet.waypoints)}")
+                self.log.note(serial, f"received a mission of {len(packet.waypoints)}")
             found = self.guard.motion_arrived(serial, now_s, delay_s, type(packet).__name__)
             if found is not None:
-                self.book.found(found)
+                self.log.found(found)
 
     def _core_made(self, serial: str, place: tuple[float, float]) -> None:
         self.ages.made(serial, self.now_s, place)
@@ -258,18 +258,18 @@ class ClosedLoopRun:
             old = self.driver.station
             self._snapshot = encode_snapshot(take_snapshot(old, self.driver.now_ns))
             self.links.drop_all()
-            self.book.note("", "the station dies")
+            self.log.note("", "the station dies")
         elif self._died_s is not None and now_s >= self._died_s + DOWN_S:
             self._died_s = None
             fresh = replace(first_state(self.scene.site), clock=self.driver.station.clock)
             last = LastRun(decode_snapshot(self._snapshot))
             self.driver.station = restored(fresh, last, self.driver.now_ns)
-            self.book.station_marks = StationMarks(now_s)
+            self.log.station_marks = StationMarks(now_s)
             self._alarm_ids.clear()
             for marks in self.marks.values():
                 marks.known_since_s = None
             self.links.return_all()
-            self.book.note("", "the station starts again")
+            self.log.note("", "the station starts again")
 
     def _disturb_links(self, now_s: float) -> None:
         if not self.scene.settings.has_bad_links or self._died_s is not None:
@@ -277,7 +277,7 @@ class ClosedLoopRun:
         for serial, at_s in self._next_link_s.items():
             if now_s >= at_s:
                 self._next_link_s[serial] = now_s + self.rng.uniform(20.0, 200.0)
-                self.book.note(serial, self.links.disturb(serial))
+                self.log.note(serial, self.links.disturb(serial))
 
     def _check(self, now_s: float) -> None:
         station = self.driver.station
@@ -285,13 +285,13 @@ class ClosedLoopRun:
             self._note_alarms(station)
             self._check_ages(station, now_s)
         for late in list(self.stops.late(now_s)):
-            self.book.found(late)
+            self.log.found(late)
         places = {
             s: self.fleet.true_place(s) for s, app in self.apps.items() if app.aircraft.is_flying
         }
         for breach in breaches(self.scene.truth, places):
-            self.book.found(breach)
-        self.book.end_old()
+            self.log.found(breach)
+        self.log.end_old()
         self._check_alarms(station, now_s)
 
     def _check_ages(self, station: Station, now_s: float) -> None:
@@ -306,7 +306,7 @@ class ClosedLoopRun:
             delay_s = self._delay_at_arrival_s(serial, place.received_at_ns)
             found = self.ages.shown(serial, now_s, where, age_s, delay_s)
             if found is not None:
-                self.book.found(found)
+                self.log.found(found)
 
     def _delay_at_arrival_s(self, serial: str, received_at_ns: int | None) -> float:
         """The link's longest delay when a packet arrived; the link may have recovered since."""
@@ -314,9 +314,9 @@ class ClosedLoopRun:
         return max(delays_s, default=self.links.delay_s(serial))
 
     def _check_alarms(self, station: Station, now_s: float) -> None:
-        if self._died_s is not None or now_s - self.book.station_marks.started_s < 12.0:
+        if self._died_s is not None or now_s - self.log.station_marks.started_s < 12.0:
             return
-        waiting = {k: v for k, v in self.book.episodes.items() if k not in self.book.alarmed}
+        waiting = {k: v for k, v in self.log.episodes.items() if k not in self.log.alarmed}
         if not waiting:
             return
         alarms = {
@@ -330,16 +330,16 @@ class ClosedLoopRun:
                 continue  # it is over, or interrupted
             found = missing_alarm(violation.breach, lasted_s, alarms)
             if found is not None:
-                self.book.alarmed.add(key)
-                self.book.found(found)
+                self.log.alarmed.add(key)
+                self.log.found(found)
 
     def _note_alarms(self, station: Station) -> None:
         for number, alarm in station.alarms.alarms.items():
             if number not in self._alarm_ids:
                 self._alarm_ids.add(number)
-                self.book.note(alarm.condition.serial or "", f"ALARM {alarm.condition.text[:200]}")
+                self.log.note(alarm.condition.serial or "", f"ALARM {alarm.condition.text[:200]}")
                 if alarm.condition.rule == CODE_FAULT:
-                    self.book.found(
+                    self.log.found(
                         Breach("code fault", (), alarm.condition.key, 0.0, alarm.condition.text)
                     )
         battery = {

@@ -63,7 +63,7 @@ class RunSettings:
     has_faults: bool
     has_bad_links: bool
     has_pilots: bool
-    has_hostile: bool
+    sends_invalid_orders: bool
     has_survey: bool
     restart_at_s: float | None
     switches_holds: bool
@@ -116,7 +116,7 @@ def _settings(rng: Random, seconds: float) -> RunSettings:
         has_faults=not is_calm and rng.random() < 0.7,
         has_bad_links=not is_calm and rng.random() < 0.7,
         has_pilots=rng.random() < 0.5,
-        has_hostile=rng.random() < 0.4,
+        sends_invalid_orders=rng.random() < 0.4,
         has_survey=rng.random() < 0.35,
         restart_at_s=rng.uniform(30.0, seconds) if rng.random() < 0.15 else None,
         switches_holds=rng.random() < 0.05,

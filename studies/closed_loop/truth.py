@@ -16,11 +16,11 @@ from studies.closed_loop.links import LinkedApps
 from studies.closed_loop.marks import Mark, VehicleMarks
 from studies.closed_loop.pilots import PilotFlight
 from studies.closed_loop.scene import Scene
-from studies.closed_loop.violations import Casebook
+from studies.closed_loop.violations import ViolationLog
 
 STEP_S = 0.1
 """Everything is looked at so often."""
-DEAF_FAULTS = (
+NO_COMMANDS_FAULTS = (
     FaultKind.ACK_THEN_NOTHING,
     FaultKind.NEGATIVE_ACK,
     FaultKind.IGNORED_MISSIONS,
@@ -28,7 +28,7 @@ DEAF_FAULTS = (
     FaultKind.FALLS_SILENT,
 )
 HEIGHT_FAULTS = (FaultKind.TAKEOFF_ALTITUDE_LOST, FaultKind.TAKEOFF_ALTITUDE_STALE)
-PUSHED_MPS = 1.0
+GUST_MPS = 1.0
 LANDS_BELOW_M = 1.0
 
 
@@ -39,7 +39,7 @@ class TrueFleet:
     scene: Scene
     apps: Mapping[str, SimulatedApp]
     links: LinkedApps
-    book: Casebook
+    log: ViolationLog
     stops: StopClock
     permits: TakeoffPermits
     core_s: dict[str, float] = field(default_factory=dict)
@@ -65,25 +65,25 @@ class TrueFleet:
     def mark_all(self, now_s: float) -> None:
         """Bring the marks of all vehicles up to date; find takeoffs and empty batteries."""
         for serial, app in self.apps.items():
-            self._mark(serial, app, self.book.marks[serial], now_s)
+            self._mark(serial, app, self.log.marks[serial], now_s)
 
     def _mark(self, serial: str, app: SimulatedApp, marks: VehicleMarks, now_s: float) -> None:
         aircraft = app.aircraft
         if self._was_flying[serial] and not aircraft.is_flying:
-            self.book.result.landings += 1
+            self.log.result.landings += 1
             marks.landed_s, marks.left_by_pilot = now_s, False
-            self.book.note(serial, f"landed with {aircraft.battery.fraction:.0%}")
+            self.log.note(serial, f"landed with {aircraft.battery.fraction:.0%}")
         if self._was_grounded[serial] and not aircraft.is_on_ground:
-            self.book.note(serial, "takes off")
+            self.log.note(serial, "takes off")
             self._home_m[serial] = self.place(serial)[:2]
             found = self.permits.took_off(serial, now_s)
             if found is not None:
-                self.book.found(found)
+                self.log.found(found)
         self._was_flying[serial] = aircraft.is_flying
         self._was_grounded[serial] = aircraft.is_on_ground
         if not aircraft.is_flying:
             return
-        self.book.result.flight_s += STEP_S
+        self.log.result.flight_s += STEP_S
         mode = aircraft.active_mode
         if (
             isinstance(mode, PilotFlight)
@@ -92,10 +92,10 @@ class TrueFleet:
             marks.mark(Mark.PILOT_FLIES, now_s)
             marks.left_by_pilot = True
         if now_s - self.core_s.get(serial, 0.0) > 1.0:
-            marks.mark(Mark.BLIND, now_s)
+            marks.mark(Mark.NO_TELEMETRY, now_s)
         marks.has_wrong_plane |= self._is_off_its_plane(serial)
         if marks.has_wrong_plane:
-            marks.mark(Mark.LYING, now_s, "landed on a slope")
+            marks.mark(Mark.WRONG_HEIGHT, now_s, "landed on a slope")
         self._mark_faults(serial, app, marks, now_s)
 
     def _mark_faults(
@@ -103,24 +103,24 @@ class TrueFleet:
     ) -> None:
         aircraft = app.aircraft
         if not self.links.has_downlink(serial):
-            marks.mark(Mark.DEAF, now_s, "no downlink")
+            marks.mark(Mark.NO_COMMANDS, now_s, "no downlink")
             self.stops.excuse(serial)
         if not aircraft.has_gnss:
-            marks.mark(Mark.DEAF, now_s, "no GNSS")
+            marks.mark(Mark.NO_COMMANDS, now_s, "no GNSS")
         for fault in app.settings.faults:
             if not fault.is_active(round(now_s * NS_PER_S)):
                 continue
-            if fault.kind in DEAF_FAULTS:
-                marks.mark(Mark.DEAF, now_s, fault.kind.value)
+            if fault.kind in NO_COMMANDS_FAULTS:
+                marks.mark(Mark.NO_COMMANDS, now_s, fault.kind.value)
             if fault.kind in HEIGHT_FAULTS and serial in self.scene.wgs84:
-                marks.mark(Mark.LYING, now_s, fault.kind.value)
+                marks.mark(Mark.WRONG_HEIGHT, now_s, fault.kind.value)
             if fault.kind is FaultKind.SLOW_READER:
                 self.stops.excuse(serial)
         if aircraft.battery.fraction < FORCED_LANDING_FRACTION:
             self._forced_landing(serial, app, now_s)
-            marks.mark(Mark.SELF_WILLED, now_s, "empty battery")
-        if max(abs(v) for v in aircraft.air.push) > PUSHED_MPS:
-            marks.mark(Mark.PUSHED, now_s)
+            marks.mark(Mark.FORCED_LANDING, now_s, "empty battery")
+        if max(abs(v) for v in aircraft.air.push) > GUST_MPS:
+            marks.mark(Mark.GUST, now_s)
 
     def _is_off_its_plane(self, serial: str) -> bool:
         """Whether it comes down away from home on a slope: the simulator's ground is the plane of
@@ -137,15 +137,15 @@ class TrueFleet:
     def _forced_landing(self, serial: str, app: SimulatedApp, now_s: float) -> None:
         low = [f for f in app.settings.faults if f.kind is FaultKind.LOW_BATTERY]
         if any(now_s >= fault.start_s for fault in low):
-            self.book.marks[serial].mark(Mark.SELF_WILLED, now_s, "a cell failed")
-        self.book.found(Breach("forced landing", (serial,), "", 0.0, "its battery is empty"))
+            self.log.marks[serial].mark(Mark.FORCED_LANDING, now_s, "a cell failed")
+        self.log.found(Breach("forced landing", (serial,), "", 0.0, "its battery is empty"))
 
     def true_place(self, serial: str) -> TruePlace:
         """Return where a vehicle truly is, and whether it may be low there."""
-        mode, marks = self.apps[serial].aircraft.active_mode, self.book.marks[serial]
+        mode, marks = self.apps[serial].aircraft.active_mode, self.log.marks[serial]
         here = self.place(serial)
         is_low = isinstance(mode, Land | TakeOff | GoHome) or marks.is_coming_down
-        is_low = is_low or marks.brakes_descent(self.book.now_s())
+        is_low = is_low or marks.brakes_descent(self.log.now_s())
         home = self._home_m.get(serial, self.scene.homes_m[serial][:2])
         # Low over its home or any pad is allowed; what hovers at the rim of it drifts out and in.
         pads = (home, *(pad[:2] for pad in self.scene.homes_m.values()))

@@ -1,4 +1,4 @@
-"""The violations of one run: episodes, each classed at its beginning, with its story."""
+"""The violations of one run: episodes, each classed at its beginning, with its history."""
 
 from collections import deque
 from collections.abc import Callable, Mapping
@@ -14,7 +14,7 @@ from studies.closed_loop.marks import (
 )
 
 EPISODE_ENDS_S = 3.0
-STORY_LINES = 14
+HISTORY_LINES = 14
 LOG_LINES = 3_000
 
 EpisodeKey = tuple[str, tuple[str, ...], str]
@@ -29,7 +29,7 @@ class Violation:
     breach: Breach
     kind: ViolationClass
     why: str
-    story: list[str]
+    history: list[str]
     until_s: float = 0.0
     worst: str = ""
     worst_size: float = 0.0
@@ -53,7 +53,7 @@ class RunResult:
 
 
 @dataclass(slots=True)
-class Casebook:
+class ViolationLog:
     """Writes down what happens, and turns breaches into episodes."""
 
     result: RunResult
@@ -65,12 +65,12 @@ class Casebook:
     """Those that have not ended."""
     alarmed: set[EpisodeKey] = field(default_factory=set)
     """Those whose missing alarm was found already."""
-    log: deque[tuple[float, str, str]] = field(default_factory=lambda: deque(maxlen=LOG_LINES))
+    lines: deque[tuple[float, str, str]] = field(default_factory=lambda: deque(maxlen=LOG_LINES))
     """When, which vehicle (or ""), what."""
 
     def note(self, serial: str, text: str) -> None:
-        """Write a line of the run's story."""
-        self.log.append((self.now_s(), serial, text))
+        """Write a line of the run's history."""
+        self.lines.append((self.now_s(), serial, text))
         if self.is_verbose:
             print(f"{self.now_s():8.2f} {serial:<7} {text}", flush=True)
 
@@ -90,7 +90,7 @@ class Casebook:
             breach,
             kind,
             why,
-            self._story(breach.serials),
+            self._history(breach.serials),
             now_s,
             breach.text,
             breach.size,
@@ -104,9 +104,9 @@ class Casebook:
                 flush=True,
             )
 
-    def _story(self, serials: tuple[str, ...]) -> list[str]:
-        lines = [item for item in self.log if item[1] in (*serials, "")]
-        return [f"{at_s:.1f} {who} {text}"[:200] for at_s, who, text in lines[-STORY_LINES:]]
+    def _history(self, serials: tuple[str, ...]) -> list[str]:
+        lines = [item for item in self.lines if item[1] in (*serials, "")]
+        return [f"{at_s:.1f} {who} {text}"[:200] for at_s, who, text in lines[-HISTORY_LINES:]]
 
     def end_old(self) -> None:
         """End the episodes that have not been seen for a while."""

@@ -78,7 +78,7 @@ def flown_by_a_pilot() -> ClosedLoopRun:
     run.guard.takes("SIM-1", run.now_s)
     run_for(run, 3.0)
     for _ in range(3):
-        run.parties.order("SIM-1", Nudge(2.0, 0.0, 0.0), owner="stream")
+        run.orders.order("SIM-1", Nudge(2.0, 0.0, 0.0), owner="stream")
         run_for(run, 1.0)
     return run
 
@@ -105,7 +105,7 @@ def test_a_takeoff_without_such_an_order_is_found(monkeypatch: Patch) -> None:
     run = ClosedLoopRun(46)
     run.start()
     run_for(run, 5.0)
-    run.parties.order("SIM-1", run.parties.drawn_mission("SIM-1"))
+    run.orders.order("SIM-1", run.orders.drawn_mission("SIM-1"))
     run_for(run, 3.0)
     assert "takeoff" in own_kinds(run.result)
 

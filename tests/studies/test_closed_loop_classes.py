@@ -41,11 +41,11 @@ def test_without_any_mark_it_is_the_stations() -> None:
     ("mark", "expected", "window_s"),
     [
         (Mark.PILOT_FLIES, ViolationClass.PILOT, 12.0),
-        (Mark.BLIND, ViolationClass.FAULT, 12.0),
-        (Mark.DEAF, ViolationClass.FAULT, 12.0),
-        (Mark.LYING, ViolationClass.FAULT, 12.0),
-        (Mark.SELF_WILLED, ViolationClass.FAULT, 12.0),
-        (Mark.PUSHED, ViolationClass.PHYSICS, 8.0),
+        (Mark.NO_TELEMETRY, ViolationClass.FAULT, 12.0),
+        (Mark.NO_COMMANDS, ViolationClass.FAULT, 12.0),
+        (Mark.WRONG_HEIGHT, ViolationClass.FAULT, 12.0),
+        (Mark.FORCED_LANDING, ViolationClass.FAULT, 12.0),
+        (Mark.GUST, ViolationClass.PHYSICS, 8.0),
     ],
 )
 def test_a_mark_counts_for_a_while(mark: Mark, expected: ViolationClass, window_s: float) -> None:
@@ -91,7 +91,7 @@ def test_what_has_no_excuse() -> None:
     pilots = Breach("pilot's vehicle", ("A",), "", 1.0, "a mission")
     assert class_of(pilots, marked(Mark.PILOT_FLIES, 0.0)) is ViolationClass.STATION
     shown = Breach("shown age", ("A",), "", 1.0, "shown live")
-    assert class_of(shown, marked(Mark.BLIND, 0.0)) is ViolationClass.STATION
+    assert class_of(shown, marked(Mark.NO_TELEMETRY, 0.0)) is ViolationClass.STATION
 
 
 def test_takeoffs_and_holds() -> None:
@@ -99,10 +99,10 @@ def test_takeoffs_and_holds() -> None:
     landed = known()
     landed.landed_s = NOW_S - 0.4
     assert class_of(takeoff, landed) is ViolationClass.PHYSICS
-    assert class_of(takeoff, marked(Mark.BLIND, 1.0)) is ViolationClass.FAULT
+    assert class_of(takeoff, marked(Mark.NO_TELEMETRY, 1.0)) is ViolationClass.FAULT
     assert class_of(takeoff, known()) is ViolationClass.STATION
     hold = Breach("hold", ("A",), "", 0.0, "")
-    assert class_of(hold, marked(Mark.DEAF, 0.5)) is ViolationClass.FAULT
+    assert class_of(hold, marked(Mark.NO_COMMANDS, 0.5)) is ViolationClass.FAULT
     assert class_of(hold, known()) is ViolationClass.STATION
 
 

@@ -50,7 +50,7 @@ RECKLESS_SHARE = 0.25
 
 
 @dataclass(slots=True)
-class Parties:
+class OrderGenerator:
     """Everyone who gives orders in one run; `handle` gives an event to the station."""
 
     scene: Scene
@@ -124,8 +124,8 @@ class Parties:
             (2.0, lambda: self.order(serial, rng.choice((StartCamera(1.0), StopCamera())))),
             (3.0, lambda: self._acknowledge(station)),
         ]
-        if settings.has_hostile:
-            actions.append((20.0, lambda: self._nonsense(serial, now_s)))
+        if settings.sends_invalid_orders:
+            actions.append((20.0, lambda: self._invalid_order(serial, now_s)))
         if settings.has_survey:
             actions.append((10.0, lambda: self._survey(station)))
         if settings.switches_holds:
@@ -290,7 +290,7 @@ class Parties:
                 self._battery_since_s[serial] = now_s + 20.0
                 self.order(serial, ReturnHome())
 
-    def _nonsense(self, serial: str, now_s: float) -> None:
+    def _invalid_order(self, serial: str, now_s: float) -> None:
         rng = self.rng
         spot = degrees(0.0, 0.0)
         bad = rng.choice((nan, inf, -inf, 1e30, -1.0, 0.0, 1e9, 600.0))
