@@ -40,7 +40,7 @@ def flown(scenario: Scenario, seed: int, *, upwind: bool) -> Flown:
     survey = replace(scenario.survey, upwind_allowed=upwind)
     run = StationRun(replace(scenario, survey=survey), seed)
     moves: dict[int, MoveUpwind] = {}
-    while run.now_s < SCORE.watch_s:
+    while run.now_s < SCORE.least_run_s:
         run.advance_a_second()
         newest = run.driver.station.upwind_moves.newest
         if newest is not None:

@@ -1,4 +1,4 @@
-"""One run: the station, its apps and all who give orders in virtual time, and the oracles at every step."""
+"""One run: station, apps and all who give orders in virtual time, and the oracles at each step."""
 
 from collections import deque
 from dataclasses import replace

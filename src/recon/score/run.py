@@ -96,10 +96,10 @@ class StationRun:
 
     def score(self, report: Report | None = None) -> RunScore:
         """Run to the end and sum up; `report` is called every few minutes."""
-        watch_s = 0.0 if self.scenario.methods.is_guidance_alone else SCORE.watch_s
-        watch_s = min(watch_s, self.scenario.limit_s)
+        least_run_s = 0.0 if self.scenario.methods.is_guidance_alone else SCORE.least_run_s
+        least_run_s = min(least_run_s, self.scenario.limit_s)
         landed_s: float | None = None
-        while landed_s is None or self.now_s < watch_s:
+        while landed_s is None or self.now_s < least_run_s:
             self.advance_a_second()
             if landed_s is None and self._is_over():
                 landed_s = self.now_s

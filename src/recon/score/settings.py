@@ -26,7 +26,7 @@ class ScoreSettings:
     coarse_cell_m: float = 12.0
     """For that time every map is scored, not one of six: on a ninth of the cells."""
 
-    watch_s: float = 1_200.0
+    least_run_s: float = 1_200.0
     """Least length of a run in which detection or forecast is scored: otherwise a sky under which
     the survey ends early would be scored on fewer maps."""
 

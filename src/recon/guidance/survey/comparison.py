@@ -52,7 +52,7 @@ def _is_mostly_in_sun(state: SurveyState, sun: SunForecast | None, now_ns: int) 
     if expected is None:
         return True
     lit_m2 = float(expected.missing_m2 @ expected.probability[:, 0])
-    return lit_m2 >= state.plan.settings.round_from * float(expected.missing_m2.sum())
+    return lit_m2 >= state.plan.settings.round_sun_share * float(expected.missing_m2.sum())
 
 
 def _give_nearest(state: SurveyState, moment: PlanningMoment) -> Step:

@@ -111,7 +111,7 @@ def leave_closed_ground(choice: VehicleChoice) -> Step:
     rows: Route = ()
     if free.any():
         share = alone.share(free)
-        is_clear = alone.expected.is_clear(share, settings.clear_from)
+        is_clear = alone.expected.is_clear(share, settings.clear_sky_probability)
         rows = alone.rows(share) if is_clear else alone.long_enough(alone.begun_at_once(share))
     if rows:
         names = ", ".join(each.name for each in state.closed)
@@ -127,7 +127,7 @@ def decide_at_row_end(choice: VehicleChoice, able: Mapping[str, Surveyor]) -> St
     rows = choice.state.flights[choice.surveyor.serial].rows_left
     left = choice.passing(rows, 0.0)
     lit_m2 = left.lit_m2(choice.expected)
-    is_in_sun = lit_m2 >= choice.settings.kept_from * left.missing_m2
+    is_in_sun = lit_m2 >= choice.settings.mission_kept_sun_share * left.missing_m2
     replaced = None
     if not is_in_sun or _has_opened(choice):
         replaced = _fly_in_more_sun(choice, left)
@@ -200,14 +200,14 @@ def _in_want_of_sun(choice: VehicleChoice, able: Mapping[str, Surveyor], lit_m2:
     free = choice.free()
     soon = expected.moments_s <= settings.way_s
     sun = expected.probability[free][:, soon].mean(axis=1)
-    if float(expected.missing_m2[free] @ sun) > settings.little_free * lit_m2:
+    if float(expected.missing_m2[free] @ sun) > settings.hand_on_free_share * lit_m2:
         return set()
     found = {serial for serial in able if may_ask(state, serial, able, choice.now_ns)}
     found -= {serial for serial, each in state.decisions.items() if each.returns}
     for serial, flight in state.flights.items():
         if serial in able and serial != choice.surveyor.serial:
             left = replace(choice, surveyor=able[serial]).passing(flight.rows_left, 0.0)
-            if left.lit_m2(expected) < settings.in_want_below * left.missing_m2:
+            if left.lit_m2(expected) < settings.in_shade_below_sun_share * left.missing_m2:
                 found.add(serial)
     return found
 
@@ -238,7 +238,7 @@ def _fly_in_more_sun(choice: VehicleChoice, left: Passing) -> Step | None:
         if each.at_s <= until_s
     )
     flown_m2 = plan.survey.speed_mps * plan.lattice.spacing_m * until_s
-    if gained_m2 < plan.settings.replaced_from * flown_m2:
+    if gained_m2 < plan.settings.replacement_gain_share * flown_m2:
         return None
     return _replace_mission(choice, alone.long_enough(legs), "leaves its rows; ")
 

@@ -201,7 +201,7 @@ class Search:
         likely be so again a moment later.
         """
         sun = self._sun[segment][moment]
-        if taken >> segment & 1 or sun < self._settings.taken_from:
+        if taken >> segment & 1 or sun < self._settings.least_sun_probability:
             return 0.0
         part, gain_m2 = self._parts[segment], self._missing_m2[segment] * sun
         least_m2 = self._settings.least_gain * part.length_m * self._lattice.spacing_m
@@ -264,7 +264,7 @@ class Search:
 
 def _soon(probability: FloatArray, settings: SurveySettings) -> BoolArray:
     """(S, K): whether flying over a segment is worth it at a moment, or within `way_s` of it."""
-    is_worth = probability >= settings.taken_from
+    is_worth = probability >= settings.least_sun_probability
     soon = is_worth.copy()
     for later in range(1, 1 + int(settings.way_s / settings.moment_s)):
         soon[:, :-later] |= is_worth[:, later:]

@@ -145,7 +145,7 @@ class SurveySettings:
     gap_costs_s: float = 6.0
     """What a gap left in a row costs: a stop at both of its ends, later."""
 
-    taken_from: float = 0.15
+    least_sun_probability: float = 0.15
     """Probability of sun from which flying over ground is worth it."""
 
     least_gain: float = 0.02
@@ -187,28 +187,28 @@ class SurveySettings:
     """Rows are handed on to a vehicle without any if that saves as much: its way there, and another
     mission, take half of it."""
 
-    little_free: float = 0.2
+    hand_on_free_share: float = 0.2
     """Rows are handed on only if the free ground in sun is at most this share of the mission's."""
 
-    in_want_below: float = 0.3
+    in_shade_below_sun_share: float = 0.3
     """A mission is flown in shade if less than this share of its rest is expected in sun."""
 
-    kept_from: float = 0.6
+    mission_kept_sun_share: float = 0.6
     """With this share of its missing ground expected in sun, what is left of a mission is flown."""
 
-    replaced_from: float = 0.25
+    replacement_gain_share: float = 0.25
     """It is replaced if that brings so much more ground into sun, as a share of what is flown
     meanwhile."""
 
-    clear_from: float = 0.85
+    clear_sky_probability: float = 0.85
     """With this mean probability of sun for as long as is planned, nothing is gained by choosing:
     a share is flown row by row."""
 
-    round_from: float = 0.6
+    round_sun_share: float = 0.6
     """With this share of the missing ground expected in sun when a round would pass it, the round
     is flown: choosing takes longer than it gains."""
 
-    sure_round: float = 0.8
+    round_without_motion_sun_share: float = 0.8
     """A round of which this much is expected in sun is flown before the shadows' motion is known:
     what is in sun without any shade near stays so."""
 
@@ -235,7 +235,7 @@ class SurveySettings:
     decided_again_s: float = 3.0
     """A waiting vehicle looks for a flight again after this."""
 
-    swap_s: float = 300.0
+    battery_change_away_s: float = 300.0
     """The way home, landing, another battery, takeoff and the way back."""
 
     swapped_from: float = 0.2

@@ -237,7 +237,7 @@ def _round(choices: Sequence[VehicleChoice]) -> _Round | None:
         sum(each.lit_m2(expected, wait_s) for each in passed) - lit_m2 > wait_s * flown_m2ps
         for wait_s in expected.moments_s.tolist()
     )
-    is_worth = lit_m2 >= settings.round_from * missing_m2 and not gained_by_waiting
+    is_worth = lit_m2 >= settings.round_sun_share * missing_m2 and not gained_by_waiting
     return _Round(rows, lit_m2 / missing_m2, is_worth)
 
 
@@ -248,7 +248,7 @@ def _awaits_motion(
     if state.missions > 0 or sun is None or sun.velocity_mps is not None:
         return False
     settings = state.plan.settings
-    if whole is not None and whole.lit_share >= settings.sure_round:
+    if whole is not None and whole.lit_share >= settings.round_without_motion_sun_share:
         return False
     in_view = np.isfinite(sun.horizon_s)
     is_lit = in_view & (sun.sun_probability[0] > SURE / 2)

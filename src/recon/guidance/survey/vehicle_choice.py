@@ -80,7 +80,7 @@ class VehicleChoice:
         if not free.any():
             return self.wait(self._why_none_is_free())
         share = self.share(free)
-        if self.expected.is_clear(share, self.settings.clear_from):
+        if self.expected.is_clear(share, self.settings.clear_sky_probability):
             return self.fly_all(self.rows(share))
         flight = self.best(share)
         if (flight.waits_s > 0.0 or not flight.legs) and self._is_time_to_swap(free):
@@ -141,7 +141,10 @@ class VehicleChoice:
         """
         settings, missing_m2 = self.settings, self.expected.missing_m2[free]
         sun = missing_m2 @ self.expected.probability[free] / missing_m2.sum()
-        now = float(sun[self.expected.moments_s <= settings.swap_s].mean()) * self._scarcity
+        now = (
+            float(sun[self.expected.moments_s <= settings.battery_change_away_s].mean())
+            * self._scarcity
+        )
         return now, settings.swap_later * self._swap_probability(float(missing_m2.sum()))
 
     def _swap_probability(self, missing_m2: float) -> float:
@@ -163,7 +166,7 @@ class VehicleChoice:
         return len(others) / max(len(staying), 0.5) if others else 1.0
 
     def _return_home(self) -> Step:
-        minutes = self.settings.swap_s / 60.0
+        minutes = self.settings.battery_change_away_s / 60.0
         text = f"returns to change its battery: little sun is expected for {minutes:.0f} min"
         state = self._with_decision(text, self.now_ns + seconds_to_ns(self.settings.retry_s), True)
         return state, ()
