@@ -11,7 +11,7 @@ from tests.detection.shaded_field import FIELD, DriftingShade, centres
 from tests.forecast.moving_shade import SEEN, drawn_velocity, forecasts, noisy_map, shade_map
 
 from recon.forecast import ForecastSettings, ForecastState
-from recon.forecast.likeness import shade_scale_m, soft_edge_share, with_likeness
+from recon.forecast.spatial_correlation import shade_scale_m, soft_edge_share, with_correlation
 from recon.forecast.state import with_map
 from recon.model.geo import GroundGrid
 from recon.model.shade import SUNLIT_TRANSMITTANCE, ShadeMap
@@ -124,7 +124,7 @@ def test_what_lies_upwind_of_the_view_is_shown_by_its_rim() -> None:
 def kept_behind_an_edge(transmittance: float) -> float:
     """Of what the ground behind an edge that crosses the view from the west deviates from the
     prior: the share forecast five minutes later, by the usual scale."""
-    settings, maps = replace(SETTINGS, usual_likeness_s=1e6), []
+    settings, maps = replace(SETTINGS, usual_correlation_s=1e6), []
     for at_s in np.arange(0.0, 60.0, 5.0):
         is_behind = 6.0 * (at_s - 20.0) - 0.5 * np.abs(NORTH_M) > EAST_M
         maps.append(shade_map(np.where(is_behind, transmittance, 1.0 - transmittance), at_s))
@@ -179,7 +179,7 @@ def measured_scale_m(period_m: float) -> float:
     for at_s in np.arange(0.0, 600.0, 5.0):
         bands = (EAST_M - 7.0 * at_s) % period_m < period_m / 2.0
         maps = shade_map(np.where(bands, 0.0, 1.0), at_s)
-        state = with_likeness(with_map(state, maps, SETTINGS), maps, SETTINGS)
+        state = with_correlation(with_map(state, maps, SETTINGS), maps, SETTINGS)
     return shade_scale_m(state, SETTINGS)
 
 
@@ -195,14 +195,14 @@ def test_a_clear_sky_does_not_change_the_usual_scale_much() -> None:
     state = ForecastState()
     for at_s in np.arange(0.0, 120.0, 5.0):
         clear = shade_map(np.ones(EAST_M.shape), at_s)
-        state = with_likeness(with_map(state, clear, SETTINGS), clear, SETTINGS)
+        state = with_correlation(with_map(state, clear, SETTINGS), clear, SETTINGS)
     usual_m = shade_scale_m(ForecastState(), SETTINGS)
     assert usual_m <= shade_scale_m(state, SETTINGS) < 3.0 * usual_m
     nothing = shade_map(np.ones(EAST_M.shape), 200.0, np.zeros(EAST_M.shape, dtype=np.bool_))
-    after = with_likeness(with_map(state, nothing, SETTINGS), nothing, SETTINGS)
-    assert after.likeness is not None
-    assert state.likeness is not None
-    assert after.likeness.alone < state.likeness.alone
+    after = with_correlation(with_map(state, nothing, SETTINGS), nothing, SETTINGS)
+    assert after.correlation is not None
+    assert state.correlation is not None
+    assert after.correlation.variance_s < state.correlation.variance_s
 
 
 def after_a_map(transmittance: np.ndarray) -> float:
@@ -227,7 +227,7 @@ def test_edges_are_as_soft_as_usual_under_broken_cloud() -> None:
     for seed in range(960, 976):
         state = ForecastState()
         for each in true_maps(seed)[0]:
-            state = with_likeness(with_map(state, each, SETTINGS), each, SETTINGS)
+            state = with_correlation(with_map(state, each, SETTINGS), each, SETTINGS)
         shares.append(soft_edge_share(state, SETTINGS))
     assert soft_edge_share(ForecastState(), SETTINGS) == pytest.approx(1.0)
     assert 0.8 < np.mean(shares) < 1.5

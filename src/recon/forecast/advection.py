@@ -6,7 +6,7 @@ Theory of operation, per forecast:
 2. At each lead, what will be over a cell is now upwind of it. If that place is seen, its shade is
    the best estimate; else that of the seen place nearest to it is. The farther off that is, the
    less it shows: its deviation from the prior counts by 1 / (1 + distance / scale), where the scale
-   follows from how alike shade is at a distance in this flight (`likeness`). Of seen shade it is
+   follows from its spatial correlation in this flight (`spatial_correlation`). Of seen shade it is
    at most `most_scale_of_shade_m`.
 3. From shade to sun the probability rises over an edge that is the softer, the later and the
    farther off; under thin even cloud, which changes little with distance, it stays sharp.
@@ -22,10 +22,10 @@ import numpy as np
 
 from recon.forecast.followed import with_followed, with_recent
 from recon.forecast.forecaster import Forecaster
-from recon.forecast.likeness import shade_scale_m, soft_edge_share, with_likeness
 from recon.forecast.motion import ShadowMotion
 from recon.forecast.pooled_motion import pooled_motion, with_agreement
 from recon.forecast.settings import ForecastSettings
+from recon.forecast.spatial_correlation import shade_scale_m, soft_edge_share, with_correlation
 from recon.forecast.state import ForecastState, forecast_of, prior_sunlit, with_map
 from recon.forecast.upwind import Cells, nearest_seen, visible_upwind_s, without_single_gaps
 from recon.model.geo import GroundGrid
@@ -39,7 +39,7 @@ from recon.model.shade import (
 
 
 def _observed(state: ForecastState, shade: ShadeMap, settings: ForecastSettings) -> ForecastState:
-    state = with_likeness(with_map(state, shade, settings), shade, settings)
+    state = with_correlation(with_map(state, shade, settings), shade, settings)
     state = with_recent(with_agreement(state, shade, settings), shade, settings)
     return with_followed(state, pooled_motion(state, settings), settings)
 

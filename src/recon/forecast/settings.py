@@ -122,26 +122,26 @@ class ForecastSettings:
 
     shade_scale_m: float = 2_500.0
     """Distance at which the nearest seen shade shows half as much of the sun as shade that is
-    followed. Fitted, as the likeness, to Brier scores under the scenarios' skies, seeds 0 to 7."""
+    followed. Fitted, as the correlation, to Brier scores of the scenarios' skies, seeds 0 to 7."""
 
     most_scale_of_shade_m: float = 700.0
-    """The same at most, of seen shade: a view all in shade is alike throughout, and does not show
-    that the shade ends beyond it. Fitted likewise, seeds 0 to 19."""
+    """The same at most, of seen shade: a view all in shade is correlated throughout, and does not
+    show that the shade ends beyond it. Fitted likewise, seeds 0 to 19."""
 
-    likeness_apart_m: float = 160.0
-    """Distance at which the likeness of shade is measured: a third of a view."""
+    correlation_lag_m: float = 160.0
+    """Distance at which the correlation of shade is measured: a third of a view."""
 
-    usual_likeness: float = 0.8
+    usual_correlation: float = 0.8
     """Of a cell's deviation from the prior to that of a cell so far away, under usual skies."""
 
-    usual_likeness_s: float = 6.0
-    """Weight of the usual likeness: half a minute of maps with as much sun as shade."""
+    usual_correlation_s: float = 6.0
+    """Weight of the usual correlation: half a minute of maps with as much sun as shade."""
 
-    least_likeness: float = 0.02
-    most_likeness: float = 0.9
+    least_correlation: float = 0.02
+    most_correlation: float = 0.9
 
     usual_change: float = 0.15
-    """Of the transmittance between partly shaded cells `likeness_apart_m` apart, under usual skies.
+    """Of the transmittance between partly shaded cells `correlation_lag_m` apart in usual skies.
     Soft edges are so much wider or narrower than these as it is larger or smaller in this flight:
     0.02 under even thin cloud. Fitted to Brier scores likewise, seeds 0 to 39."""
 

@@ -32,18 +32,18 @@ class Agreement:
 
 
 @dataclass(frozen=True, slots=True)
-class Likeness:
+class SpatialCorrelation:
     """Faded sums over the maps so far, of pairs of cells a fixed distance apart; in seconds."""
 
     at_ns: int
-    together: float = 0.0
+    covariance_s: float = 0.0
     """Of the mean product of their deviations from the prior."""
-    alone: float = 0.0
+    variance_s: float = 0.0
     """Of the mean square of these."""
-    changed: float = 0.0
+    change_s: float = 0.0
     """Of the mean square of their difference in transmittance, the more the nearer they are to
     half shade."""
-    partly: float = 0.0
+    partly_shaded_s: float = 0.0
     """Of how near to half shade they are: 1 there, 0 in full sun and in full shade."""
 
 
@@ -90,7 +90,7 @@ class ForecastState:
     """Oldest first."""
     agreement: Agreement | None = None
     """Of all recent pairs of maps."""
-    likeness: Likeness | None = None
+    correlation: SpatialCorrelation | None = None
     recent: tuple[ShadeMap, ...] = ()
     """Whole maps, oldest first."""
     in_view: MaskMap | None = None
