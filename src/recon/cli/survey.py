@@ -90,7 +90,10 @@ def create_command(
         typer.Option("--interval", help="Seconds between photos, as set in the camera's timer."),
     ] = 2.0,
     rounds: Annotated[
-        int, typer.Option("--rounds", help="Most rounds over ground that is still missing.")
+        int,
+        typer.Option(
+            "--rounds", help="Most rounds of a lawnmower over ground that is still missing."
+        ),
     ] = 6,
     minutes: Annotated[
         float | None, typer.Option("--minutes", min=0.1, help="No new mission after this many.")

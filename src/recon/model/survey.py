@@ -45,7 +45,7 @@ class SurveyBudget:
     """Limits after which a survey ends incomplete; None: no limit."""
 
     rounds: int = 6
-    """Rounds of flights over the missing ground, the first included."""
+    """Of flights over the missing ground, the first included, by planners that have rounds."""
     time_s: float | None = None
     """From the start to the beginning of the last flight, pauses included."""
     flown_m: float | None = None
