@@ -298,6 +298,8 @@ def test_the_cameras_are_listed_with_their_sources() -> None:
         (("--height", "60", "--front-overlap", "nan"), 1, "the front overlap is nan"),
         (("--height", "60", "--exposure", "1"), 1, "(blur of 0.5 pixel at an exposure of 1 s)"),
         (("--height", "60", "--speed", "nan"), 1, "the speed is nan m/s"),
+        (("--height", "60", "--interval", "0.1"), 1, "has no 0.1 s: choose one of 0.7, 1, 2,"),
+        (("--height", "60", "--interval", "4"), 1, "has no 4 s: choose one of 0.7, 1, 2,"),
     ],
 )
 def test_wrong_options_are_a_sentence(
@@ -306,6 +308,24 @@ def test_wrong_options_are_a_sentence(
     got, out = recon(field, *options)
     assert (got, len(out.splitlines())) == (code, 1), out
     assert words in out
+
+
+def test_no_output_is_written_over_the_field_or_another_output(field: Path, tmp_path: Path) -> None:
+    boundary, both = field.read_bytes(), tmp_path / "both"
+    for options in (("--geojson", field), ("--png", field), ("--png", both, "--geojson", both)):
+        code, out = recon(field, "--height", 60, *options)
+        assert (code, len(out.splitlines())) == (2, 1), out
+        assert "expected a file of its own" in out
+    assert field.read_bytes() == boundary
+    assert not both.exists()
+
+
+def test_rows_above_the_sites_height_limit_are_refused() -> None:
+    region = ("south-east field", "--site", demo_site_folder())
+    code, out = recon(*region, "--height", 140)
+    assert (code, len(out.splitlines())) == (1, 1), out
+    assert "the rows are at 140 m, and the site allows 130 m above ground at most" in out
+    assert recon(*region, "--height", 100)[0] == 0
 
 
 def test_a_speed_above_the_limit_is_warned_of(field: Path) -> None:

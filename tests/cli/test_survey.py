@@ -194,3 +194,17 @@ def test_an_unknown_survey_number_lists_the_known_ones(station: StationProcess) 
     for text in (looked.err, paused.out):
         assert "Survey 9999 not found; available: " in text
         assert f"{made} west field (created)" in text
+
+
+def test_a_refusal_is_json_too_where_that_is_asked_for(station: StationProcess) -> None:
+    refused = station.recon("survey", "pause", 9_999, "--json")
+    assert refused.code == 1
+    assert refused.json["rule"] == "survey"
+    assert "Survey 9999 not found" in refused.json["reason"]
+
+
+def test_numbers_that_are_not_finite_are_a_sentence(station: StationProcess) -> None:
+    made = station.recon("survey", "create", "west field", "--height", "nan")
+    assert made.code == 2
+    assert "expected finite numbers" in made.err
+    assert len(made.err.splitlines()) == 1

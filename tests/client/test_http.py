@@ -1,6 +1,7 @@
 """Requests to faulty servers: one request each, and one error that states what is certain."""
 
 import socket
+from math import inf, nan
 
 import pytest
 from tests.client.raw_server import server
@@ -106,6 +107,19 @@ def test_an_invalid_order_raises_its_own_error() -> None:
     problem = problem_of("POST", response("422 Unprocessable", b'{"error": "speed: too fast"}'))
     assert isinstance(problem, OrderInvalidError)
     assert str(problem) == "speed: too fast"
+
+
+def test_numbers_that_are_not_finite_are_not_sent() -> None:
+    async def main() -> None:
+        http = Http(parse_address("http://127.0.0.1:9"), PROMPT_S)
+        try:
+            for value in (nan, inf):
+                with pytest.raises(OrderInvalidError, match="expected finite numbers"):
+                    await http.post("/x", {"height_m": value}, OrderMessage, "an answer")
+        finally:
+            await http.close()
+
+    run_patiently(main())
 
 
 @pytest.mark.parametrize("answer", [b"", b"SSH-2.0-x\r\n", None])

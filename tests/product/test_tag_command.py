@@ -274,3 +274,13 @@ def test_sidecars_are_xml_that_states_the_table(tagged) -> None:
     description = ElementTree.fromstring(text.split("?>", 1)[1].rsplit("<?xpacket", 1)[0])[0][0]
     assert description.attrib["{urn:recon:photo:1}SunlitFraction"] == row["sunlit"]
     assert description.attrib["{urn:recon:photo:1}CapturedUTC"] == row["utc"]
+
+
+@pytest.mark.parametrize("option", ["--overlap", "--sunlit", "--field", "--clock-offset"])
+def test_what_is_no_number_is_refused_and_leaves_no_folder(
+    tmp_path: Path, record: Path, option: str
+) -> None:
+    result = run(tmp_path / "card", record, tmp_path / "out", option, "nan")
+    assert isinstance(result.exception, RecordError)
+    assert str(result.exception) == f"{option}: expected a number, got nan"
+    assert not (tmp_path / "out").exists()

@@ -143,6 +143,7 @@ def plan_command(
         if region is None:
             raise PlanError("name a region: a GeoJSON file, or a survey region of --site")
         _refuse_non_finite({"--endurance-min": endurance, "--cost-per-hour": hourly})
+        _refuse_same_file({"the region": Path(region), "--png": png, "--geojson": geojson})
         model = camera_named(camera, known.values())
         name, area, frame = _region(region, feature, home)
         lens = model.at_interval(model.timer_s[0] if interval is None else interval)
@@ -202,6 +203,9 @@ def _imaging(
         raise RefusedPlanError(f"refused: {fault}")
     known = (draft.height_m, draft.front_overlap, exposure_s)
     fastest_mps, stops = site.limits.max_speed_mps, draft.is_above_ground
+    wrong = None if interval_s is None else model.interval_fault(interval_s)
+    if wrong is not None:
+        raise RefusedPlanError(f"refused: {wrong}")
     if interval_s is None:
         interval_s = best_interval_s(model, *known, fastest_mps, stops_in_rows=stops)
     lens = model.at_interval(interval_s)
@@ -237,6 +241,17 @@ def _refuse_non_finite(options: dict[str, float | None]) -> None:
     for name, value in options.items():
         if value is not None and not is_finite(value):
             raise PlanError(f"{name}: expected a number, got {value:g}")
+
+
+def _refuse_same_file(files: dict[str, Path | None]) -> None:
+    """A picture or rows written over the field's boundary would destroy it."""
+    named: dict[Path, str] = {}
+    for name, path in files.items():
+        if path is None:
+            continue
+        other = named.setdefault(path.resolve(), name)
+        if other != name:
+            raise PlanError(f"{name}: expected a file of its own, got that of {other}: {path}")
 
 
 def _height_m(model: CameraModel, gsd: str | None, height_m: float | None) -> float:

@@ -302,15 +302,14 @@ async def _area(
 
 
 def _print_answer(answer: SurveyStatus | Refusal, as_json: bool) -> int:
-    if isinstance(answer, Refusal):
-        print_line(f"refused ({answer.rule}): {answer.reason}")
-        return REFUSED
     if as_json:
         print_json(msgspec.to_builtins(answer))
+    elif isinstance(answer, Refusal):
+        print_line(f"refused ({answer.rule}): {answer.reason}")
     else:
         print_line(_sentence(answer))
         _print_surveys([answer])
-    return DONE
+    return REFUSED if isinstance(answer, Refusal) else DONE
 
 
 def _sentence(survey: SurveyStatus) -> str:
@@ -337,7 +336,7 @@ def _print_surveys(surveys: list[SurveyStatus]) -> None:
     ]
     columns = (
         *("number", "name", "phase", "rows", "height", "region"),
-        *("not yet", "light unknown", "in shade", "in sun", "reason"),
+        *("not reached", "not yet", "light unknown", "in shade", "in sun", "reason"),
     )
     print_table("surveys", columns, rows)
     members = [
@@ -355,9 +354,10 @@ def _print_surveys(surveys: list[SurveyStatus]) -> None:
 def _areas(survey: SurveyStatus) -> tuple[str, ...]:
     figures = survey.figures
     if figures is None:
-        return "", "", "", "", ""
+        return "", "", "", "", "", ""
     areas = {
         "": figures.region_m2,
+        "not reached ": figures.region_m2 - figures.reached_m2,
         "not yet ": figures.not_yet_m2,
         "light unknown ": figures.sun_unknown_m2,
         "in shade ": figures.in_shade_m2,

@@ -16,7 +16,7 @@ from recon import version
 from recon.cli.output import printable
 from recon.cli.progress import progress_over, usable_cores
 from recon.model.errors import RecordError
-from recon.model.units import HECTARE_M2
+from recon.model.units import HECTARE_M2, is_finite
 from recon.product.flight import FlightData, read_flight
 from recon.product.photo import SUFFIXES, Photo, PhotoError, read_photo_facts, unique_names
 from recon.product.sun_at import SunHistory
@@ -44,6 +44,8 @@ MOST_NAMED = 5
 AHEAD = 8
 """Photos waiting for each thread."""
 PROGRESS = "progress.jsonl"
+MOST_OFF_S = 1e9
+"""Of a camera's clock: thirty years, as after its battery was empty."""
 NO_PHOTO_TAGGED = 1
 
 
@@ -66,10 +68,18 @@ def tag_command(
     ] = None,
     clock_offset: Annotated[
         float | None,
-        typer.Option(help="Seconds to add to the camera's clock for UTC; default: estimated."),
+        typer.Option(
+            min=-MOST_OFF_S,
+            max=MOST_OFF_S,
+            help="Seconds to add to the camera's clock for UTC; default: estimated.",
+        ),
     ] = None,
 ) -> None:
     """Tag the photos of a flight: sunlit share, masks, the photos to keep, what to fly again."""
+    numbers = {"--overlap": overlap, "--sunlit": sunlit, "--field": field}
+    for name, value in {**numbers, "--clock-offset": clock_offset}.items():
+        if value is not None and not is_finite(value):  # NaN is within any bounds
+            raise RecordError(f"{name}: expected a number, got {value:g}")
     paths = _photo_files(images)
     flown = opened_flight(flight)
     photos, refused = _read(paths)

@@ -66,7 +66,12 @@ class Http:
         Raises `StationUnreachableError` (nothing was sent), `RequestRefusedError` (not executed),
         or `MaybeSentError` (anything else).
         """
-        content = None if body is None else json.dumps(body, allow_nan=False).encode()
+        try:
+            content = None if body is None else json.dumps(body, allow_nan=False).encode()
+        except ValueError as problem:
+            raise OrderInvalidError(
+                "expected finite numbers, got NaN or an infinite one; nothing was sent"
+            ) from problem
         try:
             status, data = await self._send("POST", path, content)
         except (httpx.ConnectError, httpx.ConnectTimeout) as problem:

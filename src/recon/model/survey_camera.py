@@ -45,6 +45,13 @@ class CameraModel:
     shutter: Shutter
     source: str
 
+    def interval_fault(self, interval_s: float) -> str | None:
+        """Return why the camera's timer cannot be set to an interval, else None."""
+        if any(abs(each - interval_s) < 1e-6 for each in self.timer_s):
+            return None
+        known = ", ".join(f"{each:g}" for each in self.timer_s)
+        return f"the timer of {self.title} has no {interval_s:g} s: choose one of {known} s"
+
     def at_interval(self, interval_s: float) -> SurveyCamera:
         """Return the camera as a survey needs it, its timer set to an interval."""
         return SurveyCamera(self.across_deg, self.along_deg, interval_s, self.across_px)

@@ -8,9 +8,10 @@ from tests.guidance.survey.fields import FRAME, rectangle, region, survey_of
 from tests.guidance.survey.flyers import BoolArray, Flights, FloatArray, clear, fleet
 from tests.guidance.survey.test_flown import begun
 
-from recon.guidance.survey import figures, plan_survey
+from recon.guidance.survey import SurveyState, figures, pause, plan_survey, start, step
 from recon.model.command import Refusal
 from recon.model.survey import SurveyBudget, SurveyPhase
+from recon.model.units import seconds_to_ns
 
 
 def closed(places_m: FloatArray, time_s: float) -> BoolArray:
@@ -179,3 +180,25 @@ def test_photos_of_the_last_row_count_before_a_budget_ends_it(
         return figures(end).not_yet_m2
 
     assert last_counted(**budget) == pytest.approx(last_counted(), abs=1.0)
+
+
+@pytest.mark.parametrize("budget", [{"time_s": -1.0}, {"flown_m": 0.0}, {"time_s": float("nan")}])
+def test_a_budget_of_nothing_is_refused(budget: dict[str, float]) -> None:
+    survey = survey_of(rectangle(), budget=SurveyBudget(**budget))  # type: ignore[arg-type]
+    refusal = plan_survey(survey, FRAME)
+    assert isinstance(refusal, Refusal)
+    assert "expected more than 0, or none" in refusal.reason
+
+
+def test_a_pause_gives_back_the_metres_that_were_not_flown() -> None:
+    flyers = fleet(1)
+    state = begun(survey_of(rectangle()), flyers)
+    for n in range(5):
+        state, (mission,) = step(state, [flyers[0].surveyor()], seconds_to_ns(10.0 * n + 5.0))
+        assert state.flown_m == pytest.approx(mission.length_m)
+        paused = pause(state, seconds_to_ns(10.0 * n + 6.0))
+        assert isinstance(paused, SurveyState)
+        assert paused.flown_m == pytest.approx(0.0, abs=1e-6)
+        again = start(paused, ["S-1"], seconds_to_ns(10.0 * n + 7.0))
+        assert isinstance(again, SurveyState)
+        state = again

@@ -260,12 +260,13 @@ class TestFailures:
         assert world.missions()[-1].times_sent == 1
 
     def test_a_refused_mission_pauses_the_survey_with_the_reason(self) -> None:
-        world = surveyed_world(max_height_m=30.0, height_m=20.0, go_home_height_m=25.0)
+        wires = Zone("wires", ZoneKind.HEIGHT, field(), None, 30.0, HeightDatum.GROUND)
+        world = surveyed_world(zones=(wires,))
         world.asks()
         world.starts("SIM-1")
         world.runs(20.0)
         assert world.phase() is SurveyPhase.PAUSED
-        assert [each.refusal.rule for each in world.missions() if each.refusal] == ["max_height"]
+        assert [each.refusal.rule for each in world.missions() if each.refusal] == ["height_zones"]
         assert "every mission was refused; SIM-1: " in world.state().reason
         assert world.holder("SIM-1") is AuthorityHolder.OPERATOR
         assert ("survey", None) in world.fleet.alarms()

@@ -54,3 +54,15 @@ def test_area_and_rows_are_those_that_a_plan_without_a_station_has() -> None:
     assert len({piece.row for piece in plan.pieces}) < len(plan.pieces)
     assert preview().rows == len({piece.row for piece in plan.pieces})
     assert preview().region_m2 == pytest.approx(201.0 * 121.0 - 40.0 * 40.0)
+
+
+def test_a_drone_that_is_named_twice_counts_once() -> None:
+    world = surveyed_world()
+    world.asks(asked(field(120.0, 60.0)))
+    once, twice = (
+        survey_preview(world.driver.station, world.record(), serials)
+        for serials in (("SIM-1",), ("SIM-1", "SIM-1"))
+    )
+    assert once is not None
+    assert twice is not None
+    assert once() == twice()

@@ -88,6 +88,8 @@ def pause(state: SurveyState, now_ns: int) -> SurveyState | Refusal:
     if state.phase is not SurveyPhase.RUNNING:
         return _wrong_phase(state, "paused")
     was_flying = bool(state.flights or state.waiting)
+    unflown_m = sum(flight.unflown_m for flight in state.flights.values())
+    state = replace(state, flown_m=max(0.0, state.flown_m - unflown_m))
     paused = ended(state, SurveyPhase.PAUSED, PAUSED_BY_COMMAND, now_ns)
     return replace(paused, round=state.round - was_flying, refusals=MappingProxyType({}))
 
@@ -139,7 +141,7 @@ def refused(
         refusals=MappingProxyType({**state.refusals, serial: refusal}),
         barred=state.barred | {serial} if is_barred else state.barred,
         decisions=MappingProxyType(decisions),
-        flown_m=state.flown_m - flight.length_m,
+        flown_m=max(0.0, state.flown_m - flight.length_m),
     )
 
 

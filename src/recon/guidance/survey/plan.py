@@ -74,8 +74,12 @@ def _number_faults(survey: Survey) -> Iterator[str]:
     for name, value, least, most, unit in numbers:
         if not (is_finite(value) and least <= value <= most):
             yield f"the {name} is {value:g}{unit}: {least:g} to {most:g}{unit} are possible"
-    if survey.budget.rounds < 1:
-        yield f"{survey.budget.rounds} rounds are allowed: at least 1 is needed"
+    budget = survey.budget
+    if budget.rounds < 1:
+        yield f"{budget.rounds} rounds are allowed: at least 1 is needed"
+    for name, limit, unit in (("time", budget.time_s, "s"), ("distance", budget.flown_m, "m")):
+        if limit is not None and not (is_finite(limit) and limit > 0.0):
+            yield f"the {name} budget is {limit:g} {unit}: expected more than 0, or none"
 
 
 def _overlap_faults(survey: Survey) -> Iterator[str]:
@@ -265,6 +269,14 @@ def plan_survey(
     if not pieces:
         return Refusal(RULE, _no_rows(survey, surroundings))
     air = surroundings or SurveySurroundings()
+    most_m = air.limits.max_height_above_ground_m
+    if surroundings is not None and survey.height_m > most_m:
+        # Above takeoff too: the climb to the rows begins over the ground of the takeoff point.
+        return Refusal(
+            RULE,
+            f"the rows are at {survey.height_m:g} m, and the site allows {most_m:g} m above ground "
+            "at most: fly lower, or change the limit in the site's folder",
+        )
     terrain: Terrain | str | None = None
     if survey.is_above_ground:
         terrain = terrain_over(survey, flyable, air.elevation, air.limits, settings)

@@ -147,7 +147,7 @@ class SurveyState:
     """Where vehicles without telemetry may be, as of the newest step."""
     missions: int = 0
     flown_m: float = 0.0
-    """Planned metres of all missions given and not refused."""
+    """Planned metres of all missions given, and neither refused nor broken off by a pause."""
     started_at_ns: int | None = None
     ended_at_ns: int | None = None
     quiet_since_ns: int = 0

@@ -295,8 +295,9 @@ def _waiting_for(record: OrderRecord) -> str | None:
         return None
     if record.follows is not None:
         what = "not confirmed" if is_sent else "not sent yet, it is on the ground"
-        order = record.follows
-        return f"stop {what}: it follows order {order} until telemetry shows it holding"
+        return (
+            f"stop {what}: it is sent as soon as it is in the air, until telemetry shows it holding"
+        )
     if not record.waits_for_telemetry:
         return None
     if is_sent:

@@ -37,6 +37,7 @@ def survey_preview(
     if state is None:
         return None
     plan, air = state.plan, station.airspace
+    serials = tuple(dict.fromkeys(serials))
     found = [station.fleet.vehicles.get(serial) for serial in serials]
     vehicles = [vehicle for vehicle in found if vehicle is not None]
     problem = _problem(station, serials, vehicles)

@@ -137,7 +137,11 @@ class SurveyService:
 def _camera(asked: schema.SurveyCameraRequest, site: Site) -> SurveyCamera:
     if asked.model is None:
         return SurveyCamera(asked.across_deg, asked.along_deg, asked.interval_s, asked.across_px)
-    return camera_named(asked.model, site.cameras.values()).at_interval(asked.interval_s)
+    model = camera_named(asked.model, site.cameras.values())
+    fault = model.interval_fault(asked.interval_s)
+    if fault is not None:
+        raise SurveyCameraError(fault)
+    return model.at_interval(asked.interval_s)
 
 
 def _camera_view(model: CameraModel) -> schema.SurveyCameraView:

@@ -18,10 +18,15 @@ import "./survey.css";
 export function SurveyPanel() {
   const { fleet } = useConsole();
   const [problem, setProblem] = createSignal<string | null>(null);
+  /** What flies, or may go on, comes before what is planned or over. */
+  const surveys = () => {
+    const rank = ({ phase }: SurveyView) => (phase === "running" ? 0 : phase === "paused" ? 1 : 2);
+    return [...fleet.surveys].sort((a, b) => rank(a) - rank(b));
+  };
   const showProblem = (outcome: Outcome<SurveyResponse>) => setProblem(problemOf(outcome));
   return (
     <Panel title={text.panels.titles.survey} name="survey">
-      <For each={fleet.surveys}>
+      <For each={surveys()}>
         {(survey) => <SurveySection survey={survey} onResult={showProblem} />}
       </For>
       <Problem text={problem()} />

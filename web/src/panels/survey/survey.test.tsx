@@ -47,6 +47,16 @@ describe("a survey in the list", () => {
     expect(text(9)).not.toContain("shade maps");
   });
 
+  it("that flies stands above those that are planned or over", () => {
+    show(survey(9, { phase: "created" }), survey(8, { phase: "paused" }), survey(7));
+    const shown = [...page.root.querySelectorAll("[data-testid^=survey-]")];
+    expect(shown.map((each) => each.getAttribute("data-testid"))).toEqual([
+      "survey-7",
+      "survey-8",
+      "survey-9",
+    ]);
+  });
+
   it("is started by a long press with the selected vehicles, and takes off only if allowed", () => {
     show(survey(7, { phase: "created", vehicles: [] }));
     hold("Start with selected", 2000);
