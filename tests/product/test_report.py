@@ -32,6 +32,7 @@ from recon.cli.report import BROWSERS, print_pdf
 from recon.geo import cell_centres_m
 from recon.model.errors import RecordError
 from recon.model.units import NS_PER_S
+from recon.product.exports import figures as figures_of
 from recon.product.flight import RecordedTrack, read_flight
 from recon.product.flight_log import FORECAST_TOPIC, FlightLog, LogReader, read_log
 from recon.product.report import FlightReport, flight_report
@@ -228,6 +229,14 @@ def test_the_page_states_what_the_report_holds(report: FlightReport) -> None:
     assert report.covered is not None
     assert f"In sun on 3 photos{100.0 * report.covered.enough:.0f} %, estimated" in text
     assert page.tags.count("svg") == 5
+
+
+def test_light_that_few_maps_know_is_not_that_of_the_flight(report: FlightReport) -> None:
+    few = replace(report, cover=report.cover[:2])
+    text = " ".join(Page(report_html(few)).text.split())
+    assert f"%, known in 2 of {len(report.flight.maps)} shade maps" in text
+    assert figures_of(few)["shade_maps_of_the_region"] == 2
+    assert "share of the shade maps that show the place" in text
 
 
 def test_hostile_text_stays_text(tmp_path: Path) -> None:

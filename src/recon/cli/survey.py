@@ -22,6 +22,7 @@ from recon.cli.connection import (
 )
 from recon.cli.output import print_json, print_line, print_table
 from recon.client import ClientError, Refusal, Station, SurveyCommands, SurveyStatus
+from recon.client.surveys import SurveyVehicle
 from recon.model.geo import GeoPoint
 from recon.model.survey import PLANNER_GOALS, WhenDone, height_text, unknown_survey
 from recon.model.units import HECTARE_M2
@@ -340,15 +341,18 @@ def _print_surveys(surveys: list[SurveyStatus]) -> None:
     )
     print_table("surveys", columns, rows)
     members = [
-        (
-            v.vehicle_name,
-            "flying rows" if v.is_flying_rows else v.not_flying_reason or v.refused or "idle",
-        )
+        (f"survey {survey.id}", v.vehicle_name, _activity(v))
         for survey in surveys
         for v in survey.vehicles
     ]
     if members:
-        print_table("vehicles", ("vehicle", "activity"), members)
+        print_table("vehicles", ("survey", "vehicle", "activity"), members)
+
+
+def _activity(vehicle: SurveyVehicle) -> str:
+    """What it does for its survey; a reason against flying counts more than a mission not ended."""
+    flies = "flying rows" if vehicle.is_flying_rows else None
+    return vehicle.not_flying_reason or flies or vehicle.refused or "idle"
 
 
 def _areas(survey: SurveyStatus) -> tuple[str, ...]:

@@ -202,7 +202,7 @@ def coverage_png(covered: Covered) -> bytes:
 
 
 def sun_map(report: FlightReport, covered: Covered) -> Markup:
-    """Return the share of the flight that each place was in sun, dark to bright."""
+    """Return the share of the maps of each place that show it in sun, dark to bright."""
     share = covered.sun.share
     is_known = np.isfinite(share) & covered.region
     mixed = DARKEST + (BRIGHTEST - DARKEST) * np.nan_to_num(share)[..., np.newaxis]

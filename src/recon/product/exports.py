@@ -104,6 +104,7 @@ def figures(report: FlightReport) -> dict[str, Any]:
         **_coverage(report.covered),
         "mean_sun_share": report.mean_sun,
         "shade_maps": len(flight.maps),
+        "shade_maps_of_the_region": len(report.cover),
         "alarms": len(report.alarms),
         "trouble": flight.trouble,
     }

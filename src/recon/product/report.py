@@ -107,7 +107,7 @@ class FlightReport:
     area: shapely.Geometry | None
     """Of the surveys, in east-north metres."""
     cover: tuple[tuple[int, float], ...] = ()
-    """Time, and the share of the region in sun, for each shade map."""
+    """Time, and the share of the region in sun, for each shade map that shows any of it."""
     photo_states: Mapping[str, int] = field(default_factory=dict)
     airborne: Mapping[str, Sequence[tuple[int, int]]] = field(default_factory=dict)
     """By vehicle's name."""

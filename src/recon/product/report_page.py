@@ -84,7 +84,9 @@ def _figures(report: FlightReport) -> Sequence[tuple[str, str, str]]:
         sunlit = f"{report.photo_states.get('sunlit', 0)} sunlit"
         rows.append(("Photos", f"{sum(report.photo_states.values())}", sunlit))
     if report.mean_sun is not None:
-        rows.append(("Mean sun on the region", f"{100.0 * report.mean_sun:.0f}", "%"))
+        known, maps = len(report.cover), len(report.flight.maps)
+        unit = "%" if known == maps else f"%, known in {known} of {maps} shade maps"
+        rows.append(("Mean sun on the region", f"{100.0 * report.mean_sun:.0f}", unit))
     rows.append(("Duration", _minutes((report.end_ns - report.begin_ns) / NS_PER_S), "min"))
     rows.append(("In the air, together", _minutes(report.airborne_s), "min"))
     return rows

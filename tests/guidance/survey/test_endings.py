@@ -160,7 +160,7 @@ def test_a_region_without_a_cell_is_refused() -> None:
     strip = region([(2.1, 0.0), (5.9, 0.0), (5.9, 300.0), (2.1, 300.0)])
     refusal = plan_survey(survey_of(strip), FRAME)
     assert isinstance(refusal, Refusal)
-    assert "choose smaller cells" in refusal.reason
+    assert "draw it larger" in refusal.reason
 
 
 @pytest.mark.parametrize("planner", ["lawnmower_once", "lawnmower_again", "sunlit_first"])

@@ -110,13 +110,13 @@ def _size_faults(survey: Survey) -> Iterator[str]:
     if wide_m * high_m / survey.cell_m**2 > MOST_CELLS:
         yield (
             f"the region is {wide_m / 1000:.1f} x {high_m / 1000:.1f} km: too large for cells of "
-            f"{survey.cell_m:g} m"
+            f"{survey.cell_m:g} m: divide it"
         )
     area_m2 = shape_of(survey.region).area
     if area_m2 < survey.cell_m**2:
         yield (
-            f"the region {survey.name} is {area_m2:.2g} m², less than a cell of {survey.cell_m:g} "
-            "m: draw its outline again"
+            f"the region {survey.name} is {area_m2:.2g} m², less than a cell of "
+            f"{survey.cell_m**2:g} m²: draw its outline again"
         )
     spacing_m = swath_of(survey, DEFAULT).widest_spacing_m
     if max(wide_m, high_m) / spacing_m > MOST_ROWS:
@@ -288,7 +288,7 @@ def plan_survey(
         return Refusal(
             RULE,
             f"no cell of {survey.cell_m:g} m of the region {survey.name} is on photos of its rows: "
-            "choose smaller cells, or a larger region",
+            "draw it larger (or choose smaller cells, `cell_m` of the API)",
         )
     counted = _counted_swath(survey, swath, lattice, settings)
     ground_m = ground_range_m(area, air.elevation, settings.terrain_cell_m)
