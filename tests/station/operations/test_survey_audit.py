@@ -1,7 +1,8 @@
 """Audit entries of surveys: commands with their user, and changes of phase."""
 
-from tests.station.surveyed_world import SURVEY_ID, SurveyedWorld, asked, surveyed_world
+from tests.station.surveyed_world import SURVEY_ID, SurveyedWorld, asked, field, surveyed_world
 
+from recon.model.airspace import HeightDatum, Zone, ZoneKind
 from recon.model.survey import SurveyPhase
 from recon.record.audit import AuditEntry
 from recon.station.audit.entries import Auditing, audit
@@ -79,7 +80,8 @@ def test_a_survey_that_cannot_be_flown_is_audited() -> None:
 
 
 def test_a_change_of_phase_without_a_command_is_audited() -> None:
-    world = surveyed_world(max_height_m=30.0, height_m=20.0, go_home_height_m=25.0)
+    wires = Zone("wires", ZoneKind.HEIGHT, field(), None, 30.0, HeightDatum.GROUND)
+    world = surveyed_world(zones=(wires,))
     entries = audited(world)
     world.asks()
     world.starts("SIM-1")

@@ -1923,7 +1923,7 @@ export interface components {
             end_utc: string;
             /**
              * Mean Sun Share
-             * @description of the region in sun, over the flight
+             * @description of the region in sun, mean over the shade maps that show any of it
              */
             mean_sun_share: number | null;
             /** Photographed Share */
@@ -1934,6 +1934,11 @@ export interface components {
             region_m2: number | null;
             /** Shade Maps */
             shade_maps: number;
+            /**
+             * Shade Maps Of The Region
+             * @description those that show any of it
+             */
+            shade_maps_of_the_region: number;
             /** Site */
             site: string;
             /**

@@ -282,6 +282,7 @@ export const FIGURES: FlightFiguresView = {
   well_sunlit_share: 0.87,
   mean_sun_share: null,
   shade_maps: 97,
+  shade_maps_of_the_region: 97,
   alarms: 2,
   trouble: "The file was cut",
 };

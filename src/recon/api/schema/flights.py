@@ -43,7 +43,10 @@ class FlightFiguresView(Message):
     photographed_share: float | None
     sunlit_share: float | None = Field(description="of the region, in sun on a photo")
     well_sunlit_share: float | None = Field(description="in sun on photos enough for a mosaic")
-    mean_sun_share: float | None = Field(description="of the region in sun, over the flight")
+    mean_sun_share: float | None = Field(
+        description="of the region in sun, mean over the shade maps that show any of it"
+    )
     shade_maps: int
+    shade_maps_of_the_region: int = Field(description="those that show any of it")
     alarms: int
     trouble: str = Field(description="why the record ends early; empty if it does not")
