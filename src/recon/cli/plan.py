@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from recon.cli.connection import REFUSED, WRONG_USE, JsonOption
+from recon.cli.connection import REFUSED, WRONG_USE, JsonOption, refuse_non_finite
 from recon.cli.output import print_json, print_table, printable
 from recon.cli.plan_output import ImagingFigures, figures_of, geojson_of, plan_rows_of
 from recon.cli.plan_picture import Theme, picture_png
@@ -40,7 +40,6 @@ from recon.model.errors import ReconError
 from recon.model.geo import LocalFrame
 from recon.model.survey import Survey
 from recon.model.survey_camera import CAMERAS, CameraModel, camera_named
-from recon.model.units import is_finite
 from recon.model.vehicle import VehicleProfile
 from recon.safety.energy import Consumption, profile_consumption
 from recon.safety.settings import EnergySettings
@@ -142,7 +141,7 @@ def plan_command(
             return
         if region is None:
             raise PlanError("name a region: a GeoJSON file, or a survey region of --site")
-        _refuse_non_finite({"--endurance-min": endurance, "--cost-per-hour": hourly})
+        refuse_non_finite(PlanError, {"--endurance-min": endurance, "--cost-per-hour": hourly})
         _refuse_same_file({"the region": Path(region), "--png": png, "--geojson": geojson})
         model = camera_named(camera, known.values())
         name, area, frame = _region(region, feature, home)
@@ -234,13 +233,6 @@ def _most_mps(limit: SpeedLimit) -> float:
             f"{SLOWEST_MPS:g} m/s is the least: expose shorter or fly higher"
         )
     return int(limit.speed_mps / SPEED_STEP_MPS + 1e-9) * SPEED_STEP_MPS
-
-
-def _refuse_non_finite(options: dict[str, float | None]) -> None:
-    """The bounds of an option let NaN pass."""
-    for name, value in options.items():
-        if value is not None and not is_finite(value):
-            raise PlanError(f"{name}: expected a number, got {value:g}")
 
 
 def _refuse_same_file(files: dict[str, Path | None]) -> None:

@@ -13,10 +13,11 @@ from typing import Annotated
 import typer
 
 from recon import version
+from recon.cli.connection import refuse_non_finite
 from recon.cli.output import printable
 from recon.cli.progress import progress_over, usable_cores
 from recon.model.errors import RecordError
-from recon.model.units import HECTARE_M2, is_finite
+from recon.model.units import HECTARE_M2
 from recon.product.flight import FlightData, read_flight
 from recon.product.photo import SUFFIXES, Photo, PhotoError, read_photo_facts, unique_names
 from recon.product.sun_at import SunHistory
@@ -77,9 +78,7 @@ def tag_command(
 ) -> None:
     """Tag the photos of a flight: sunlit share, masks, the photos to keep, what to fly again."""
     numbers = {"--overlap": overlap, "--sunlit": sunlit, "--field": field}
-    for name, value in {**numbers, "--clock-offset": clock_offset}.items():
-        if value is not None and not is_finite(value):  # NaN is within any bounds
-            raise RecordError(f"{name}: expected a number, got {value:g}")
+    refuse_non_finite(RecordError, {**numbers, "--clock-offset": clock_offset})
     paths = _photo_files(images)
     flown = opened_flight(flight)
     photos, refused = _read(paths)

@@ -7,6 +7,6 @@ from recon.station.state.station import Station, take_id
 
 
 def guidance_hold(station: Station, serial: str, by: str) -> tuple[Station, OperatorOrder]:
-    """Return the station with one number less, and the order of guidance to hold a vehicle."""
+    """Return the station with a number taken, and the order of guidance to hold a vehicle."""
     station, number = take_id(station)
     return station, OperatorOrder(number, Hover(), by, serial=serial, role=AuthorityHolder.GUIDANCE)
