@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import cv2
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -17,6 +18,13 @@ from typer.testing import CliRunner
 
 from recon.cli.commands import app
 from recon.cli.plan import PlanError, _exposure_s, _gsd_m, least_enduring
+from recon.cli.plan_picture import INK, Theme, picture_png
+from recon.guidance.survey import Surveyor, SurveyPlan, SurveySurroundings, plan_survey
+from recon.guidance.survey.estimate import Batteries, SurveyEstimate, estimate
+from recon.model.airspace import Region
+from recon.model.arrays import FloatArray
+from recon.model.geo import GeoPoint, LocalFrame
+from recon.model.survey import Survey
 from recon.model.units import Stamped
 from recon.model.vehicle import VehicleProfile, VehicleState
 from recon.safety import PreparedAirspace
@@ -64,7 +72,7 @@ def test_a_field_is_planned_by_pixel_size(field: Path) -> None:
     assert code == 0
     assert "area  12.0" in out
     assert "height  75 m above takeoff" in out
-    assert "speed limit  10.0 m/s: blur of 0.5 pixel at an exposure of 1/1000 s" in out
+    assert "speed limit  10.00 m/s: blur of 0.5 pixel at an exposure of 1/1000 s" in out
     assert "batteries  1, full, of 25 min hovering each" in out
     found = figures(field, "--camera", "mavic3m", "--gsd", "2cm")
     assert found["gsd_m"] == pytest.approx(0.02, rel=0.001)
@@ -119,6 +127,62 @@ def test_more_drones_take_less_time_and_as_many_photos_but_for_cut_rows(field: P
     assert one["photos"] <= three["photos"] <= one["photos"] + 4
 
 
+def test_drones_for_which_no_rows_are_left_are_named(tmp_path: Path) -> None:
+    small = written(tmp_path, (0, 0), (100, 0), (100, 60), (0, 60))
+    found = figures(small, "--height", 60, "--drones", 16)
+    assert found["drones_without_rows"] == 16 - len(found["drones"]) > 0
+    idle, out = found["drones_without_rows"], recon(small, "--height", 60, "--drones", 16)[1]
+    assert f"not needed  {idle} drones: no rows are left" in out
+    assert "not needed" not in recon(small, "--height", 60)[1]
+
+
+KML = """<?xml version="1.0" encoding="UTF-8"?>
+<kml xmlns="http://www.opengis.net/kml/2.2"><Document>
+<Placemark><name>gate</name><Point><coordinates>-93.6,41.9</coordinates></Point></Placemark>
+<Placemark><name>north 40</name><Polygon><outerBoundaryIs><LinearRing><coordinates>
+{corners}
+</coordinates></LinearRing></outerBoundaryIs></Polygon></Placemark>
+</Document></kml>
+"""
+
+
+def test_a_field_from_kml_or_with_a_mark_of_utf_8_is_the_same_plan(field: Path) -> None:
+    ring = json.loads(field.read_text())["features"][0]["geometry"]["coordinates"][0]
+    kml, marked = field.with_name("field.kml"), field.with_name("marked.geojson")
+    corners = " ".join(f"{east},{north},0" for east, north in ring)
+    kml.write_text(KML.format(corners=corners))
+    marked.write_bytes(b"\xef\xbb\xbf" + field.read_bytes())
+    plans = [figures(path, "--height", 60) for path in (field, kml, marked)]
+    assert plans[0]["title"] == "north 40"
+    assert plans[0]["rows"] > 5
+    for other in plans[1:]:
+        assert (other["title"], other["rows"], other["photos"]) == (
+            plans[0]["title"],
+            plans[0]["rows"],
+            plans[0]["photos"],
+        )
+        assert other["time_s"] == pytest.approx(plans[0]["time_s"])
+
+
+@pytest.mark.parametrize(
+    ("data", "words"),
+    [
+        (b"", "expected KML, KMZ, Shapefile (zip), GeoPackage or GeoJSON, got another kind"),
+        (b"PK\x03\x04", "field.kml: "),
+        (
+            b'{"type": "Polygon", "coordinates": [[[41.9, -93.6], [41.9, -93.5], [42.0, -93.5],'
+            b" [41.9, -93.6]]]}",
+            "look swapped: GeoJSON writes the longitude first",
+        ),
+    ],
+)
+def test_a_file_without_a_field_is_a_sentence(tmp_path: Path, data: bytes, words: str) -> None:
+    (tmp_path / "field.kml").write_bytes(data)
+    code, out = recon(tmp_path / "field.kml", "--height", 60)
+    assert (code, len(out.splitlines())) == (2, 1), out
+    assert words in out
+
+
 def test_geojson_has_the_rows_of_each_drone_in_their_order(field: Path, tmp_path: Path) -> None:
     out, png = tmp_path / "out.geojson", tmp_path / "out.png"
     found = figures(field, "--height", 60, "--drones", 2, "--geojson", out, "--png", png)
@@ -165,6 +229,45 @@ def test_the_picture_stands_out_on_its_ground(field: Path, tmp_path: Path, theme
     shown = cv2.imread(str(png)).astype(int).sum(axis=2)
     assert (shown[0, 0] > 380) == (theme == "light")
     assert (abs(shown - shown[0, 0]) > 150).sum() > 2_000
+
+
+def test_a_name_is_drawn_in_letters_of_its_own(field: Path, tmp_path: Path) -> None:
+    heads = []
+    for name in ("北の畑", "???"):
+        text = json.dumps(json.loads(field.read_text())).replace("north 40", name)
+        (tmp_path / "named.geojson").write_text(text, encoding="utf-8")
+        png = tmp_path / "named.png"
+        assert recon(tmp_path / "named.geojson", "--height", 60, "--png", png)[0] == 0
+        heads.append(cv2.imread(str(png))[:48])
+    assert heads[0].min() < 60
+    assert (heads[0] != heads[1]).any()
+
+
+def test_the_picture_shows_keep_out_zones_boundary_and_takeoff(tmp_path: Path) -> None:
+    region = Region(np.array([(0.0, 0.0), (400.0, 0.0), (400.0, 300.0), (0.0, 300.0)]))
+    survey = Survey(1, "field", region, 60.0, 5.0)
+    plan = plan_survey(survey, LocalFrame(GeoPoint(LATITUDE, LONGITUDE, 0.0)))
+    assert isinstance(plan, SurveyPlan)
+    fleet = [Surveyor(f"drone {number}", (0.0, -100.0)) for number in range(1, 14)]
+    needs = estimate(plan, fleet, Batteries(1200.0))
+    assert isinstance(needs, SurveyEstimate)
+    zone = Region(np.array([(50.0, -60.0), (150.0, -60.0), (150.0, -20.0), (50.0, -20.0)]))
+    around = SurveySurroundings(None, (zone,), 5.0)
+
+    def drawn(site: SurveySurroundings | None, theme: Theme) -> FloatArray:
+        png = picture_png(plan, needs, fleet, site, "field", theme)
+        return cv2.imdecode(np.frombuffer(png, np.uint8), cv2.IMREAD_COLOR).astype(float)
+
+    for theme in Theme:
+        plain, shown = drawn(None, theme), drawn(around, theme)
+        differs = np.abs(plain - shown).sum(axis=2) > 30.0
+        rows, columns = np.nonzero(differs[:-300])
+        scale = (1000.0 - 2.0 * 48.0) / 400.0
+        assert columns.min() == pytest.approx(48 + 50 * scale, abs=2)
+        assert columns.max() == pytest.approx(48 + 150 * scale, abs=2)
+        assert rows.max() - rows.min() == pytest.approx(40 * scale, abs=3)
+        takeoff = (48 + 48 + round(400 * scale), 48)
+        assert shown[takeoff].tolist() == list(INK[theme][::-1])
 
 
 @pytest.mark.parametrize(
@@ -274,7 +377,7 @@ def test_the_cameras_are_listed_with_their_sources() -> None:
     assert "p1-35mm  Zenmuse P1, 35 mm  8192 x 5460" in out
     assert recon("--height", 60) == (
         2,
-        "recon plan: name a region: a GeoJSON file, or a survey region of --site\n",
+        "recon plan: name a region: a file, or a survey region of --site\n",
     )
 
 
@@ -331,7 +434,7 @@ def test_rows_above_the_sites_height_limit_are_refused() -> None:
 def test_a_speed_above_the_limit_is_warned_of(field: Path) -> None:
     code, out = recon(field, "--height", 60, "--speed", 9)
     assert code == 1
-    assert "warning  9 m/s is more than 8.0 m/s: blur of 0.5 pixel" in out
+    assert "warning  9 m/s is more than 7.99 m/s: blur of 0.5 pixel" in out
 
 
 @given(st.text(max_size=12))

@@ -41,6 +41,10 @@ def test_a_camera_is_read(tmp_path: Path) -> None:
             f"[[cameras]]\n{GOOD}diagonal_deg = 84.0\nfocal_mm = 8.0",
             "expected sensor_mm and focal_mm, or",
         ),
+        (
+            f"[[cameras]]\n{GOOD}sensor_mm = [17.3, 13.0]\nfocal_mm = 8.0",
+            "expected square pixels, got 2.88 x 3.25 micrometres",
+        ),
         (f"[[cameras]]\n{GOOD}diagonal_deg = nan", "expected a finite number, got nan"),
         (f"[[cameras]]\n{GOOD}diagonal_deg = 200.0", "a number of 5 to 150, got 200.0"),
         (f"[[cameras]]\n{GOOD}diagonal_deg = 84.0\n" * 2, "each name once, got 'mine' again"),

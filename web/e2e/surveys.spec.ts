@@ -38,6 +38,7 @@ test("plans a survey of a site region, flies it with two vehicles, pauses and ab
     await test.step("planned, nothing moves", async () => {
       await panel.getByLabel("Region").selectOption("south-east field");
       await panel.getByLabel("Height, m").fill("40");
+      await panel.getByLabel("Rows").selectOption("lawnmower_once");
       await panel.getByRole("button", { name: "Plan survey" }).click();
       await expect(panel.getByText("Planned, not started")).toBeVisible();
       await expect(page.getByTestId("status-count")).toHaveText("1 of 4");

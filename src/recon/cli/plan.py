@@ -17,6 +17,7 @@ from recon.cli.plan_picture import Theme, picture_png
 from recon.cli.region_file import file_origin, region_in
 from recon.cli.site import opened_site
 from recon.cli.survey import (
+    REGION_FILES,
     AboveGroundOption,
     BearingOption,
     FeatureOption,
@@ -66,7 +67,9 @@ def plan_command(
     region: Annotated[
         str | None,
         typer.Argument(
-            metavar="REGION", help="GeoJSON file, or the name of a survey region of --site."
+            metavar="REGION",
+            help="GeoJSON, KML, KMZ, Shapefile (zip) or GeoPackage file, or the name of a survey "
+            "region of --site.",
         ),
     ] = None,
     camera: Annotated[
@@ -140,7 +143,7 @@ def plan_command(
             _print_cameras({**CAMERAS, **known})
             return
         if region is None:
-            raise PlanError("name a region: a GeoJSON file, or a survey region of --site")
+            raise PlanError("name a region: a file, or a survey region of --site")
         refuse_non_finite(PlanError, {"--endurance-min": endurance, "--cost-per-hour": hourly})
         _refuse_same_file({"the region": Path(region), "--png": png, "--geojson": geojson})
         model = camera_named(camera, known.values())
@@ -163,7 +166,8 @@ def plan_command(
         else:
             print_table(f"plan of {name}", ("what", "value"), plan_rows_of(figures))
         if png is not None:
-            _write(png, picture_png(plan, needs, figures["title"], theme))
+            around = None if home.frame is None else surroundings_of(home.airspace)
+            _write(png, picture_png(plan, needs, fleet, around, figures["title"], theme))
         if geojson is not None:
             _write(geojson, geojson_of(plan, needs))
     except ReconError as problem:
@@ -182,7 +186,7 @@ def _region(name: str, feature: str | None, site: Site) -> tuple[str, Region, Lo
     path = Path(name)
     if site.frame is not None and name in site.layers.survey_regions:
         return name, site.layers.survey_regions[name], site.frame
-    if not path.is_file() and path.suffix.lower() not in (".geojson", ".json"):
+    if not path.is_file() and path.suffix.lower() not in REGION_FILES:
         known = ", ".join(site.layers.survey_regions) or "none; name a site with --site"
         raise PlanError(f"Survey region {name!a} not found, nor a file; available: {known}")
     frame = site.frame or LocalFrame(file_origin(path, feature))

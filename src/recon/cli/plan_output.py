@@ -72,6 +72,7 @@ def figures_of(
             }
             for drone in needs.drones
         ],
+        "drones_without_rows": len(fleet) - len(needs.drones),
     }
 
 
@@ -91,7 +92,7 @@ def rows_of(
     return [
         ("area", f"{figures['region_m2'] / HECTARE_M2:.2f} ha"),
         ("pixel on the ground", gsd),
-        ("speed limit", f"{figures['speed_limit_mps']:.1f} m/s: {figures['speed_limited_by']}"),
+        ("speed limit", f"{figures['speed_limit_mps']:.2f} m/s: {figures['speed_limited_by']}"),
         ("rows", f"{figures['rows']}"),
         *flown,
         *_above_ground(figures),
@@ -107,8 +108,13 @@ def rows_of(
             )
             for drone in figures["drones"]
         ),
+        *_without_rows(figures.get("drones_without_rows", 0)),
         *(("warning", text) for text in figures["warnings"]),
     ]
+
+
+def _without_rows(drones: int) -> list[tuple[str, str]]:
+    return [("not needed", f"{counted(drones, 'drone')}: no rows are left")] if drones else []
 
 
 def _above_ground(figures: dict[str, Any]) -> list[tuple[str, str]]:

@@ -1,4 +1,4 @@
-"""One region to survey from a GeoJSON file, checked before any request to the station."""
+"""One region to survey from a file, checked before any request to the station."""
 
 from pathlib import Path
 from typing import Any
@@ -7,7 +7,9 @@ from recon.client import ClientError
 from recon.model.airspace import Region
 from recon.model.errors import SiteError
 from recon.model.geo import GeoPoint, LocalFrame
-from recon.site.geojson import Feature, first_corner_of, read_features, regions_of
+from recon.site.geojson import Feature, first_corner_of, is_json, read_features, regions_of
+from recon.site.imports import FORMATS, LARGEST_IMPORT_BYTES, read_import
+from recon.site.reading import read_bounded
 
 Rings = list[list[list[float]]]
 
@@ -22,8 +24,7 @@ def read_region(path: Path, feature: str | None, origin: GeoPoint) -> tuple[str,
     Raises `RegionFileError`, also for a region far from `origin`, the site's.
     """
     try:
-        features = read_features(path)
-        chosen = _chosen(path, features, feature)
+        chosen = _chosen(path, feature)
         regions = regions_of(chosen, LocalFrame(origin))
     except SiteError as problem:
         raise RegionFileError(str(problem)) from problem
@@ -37,7 +38,7 @@ def region_in(path: Path, feature: str | None, frame: LocalFrame) -> tuple[str, 
     Raises `RegionFileError`.
     """
     try:
-        chosen = _chosen(path, read_features(path), feature)
+        chosen = _chosen(path, feature)
         regions = regions_of(chosen, frame)
     except SiteError as problem:
         raise RegionFileError(str(problem)) from problem
@@ -51,7 +52,7 @@ def file_origin(path: Path, feature: str | None) -> GeoPoint:
     Raises `RegionFileError`.
     """
     try:
-        chosen = _chosen(path, read_features(path), feature)
+        chosen = _chosen(path, feature)
         place = first_corner_of(chosen)
     except SiteError as problem:
         raise RegionFileError(str(problem)) from problem
@@ -66,7 +67,21 @@ def _refuse_several(chosen: Feature, polygons: int) -> None:
         )
 
 
-def _chosen(path: Path, features: tuple[Feature, ...], name: str | None) -> Feature:
+def _features(path: Path) -> tuple[Feature, ...]:
+    """Return what a GeoJSON file holds, or the polygons of a KML, a Shapefile or the like."""
+    data = read_bounded(path, LARGEST_IMPORT_BYTES, f"a file with a region: {FORMATS}")
+    if is_json(data) or path.suffix.lower() in (".geojson", ".json"):
+        return read_features(path)
+    found = read_import(path.name, data)
+    return tuple(
+        Feature(f"{path}: feature {number}", number, {"name": each.name or None}, each.geometry)
+        for number, each in enumerate(found.features, start=1)
+        if each.geometry["type"] != "Point"
+    )
+
+
+def _chosen(path: Path, name: str | None) -> Feature:
+    features = _features(path)
     named = [each for each in features if name is None or _name(each) == name]
     if len(named) == 1:
         return named[0]

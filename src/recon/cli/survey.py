@@ -29,6 +29,8 @@ from recon.model.units import HECTARE_M2
 
 PHASES = {"created": "planned"}
 """Words that differ from the API's."""
+REGION_FILES = (".geojson", ".json", ".kml", ".kmz", ".zip", ".gpkg")
+"""Ends of a file's name; a region that ends otherwise and is no file is one of the site's."""
 NO_ORIGIN = "the station's site has no origin: start the station with --site FOLDER"
 
 survey_app = new_app(
@@ -66,7 +68,9 @@ def create_command(
     region: Annotated[
         str,
         typer.Argument(
-            metavar="REGION", help="Name of a survey region of the site, or a GeoJSON file."
+            metavar="REGION",
+            help="Name of a survey region of the site, or a GeoJSON, KML, KMZ, Shapefile (zip) or "
+            "GeoPackage file.",
         ),
     ],
     height: Annotated[
@@ -84,7 +88,11 @@ def create_command(
     bearing: BearingOption = None,
     camera: Annotated[
         str | None,
-        typer.Option("--camera", help="Name of a camera; `recon plan --camera list`."),
+        typer.Option(
+            "--camera",
+            help="Name of a camera; `recon plan --camera list`. Default: a common one, 4:3, of "
+            "unknown pixels.",
+        ),
     ] = None,
     interval: Annotated[
         float,
@@ -287,9 +295,9 @@ def _status(number: int | None, as_json: bool) -> Work:
 async def _area(
     station: Station, region: str, feature: str | None, name: str | None
 ) -> dict[str, Any]:
-    """Return the region of a GeoJSON file as rings, or the name of a region of the site."""
+    """Return the region of a file as rings, or the name of a region of the site."""
     path = Path(region)
-    if not path.is_file() and path.suffix.lower() not in (".geojson", ".json"):
+    if not path.is_file() and path.suffix.lower() not in REGION_FILES:
         return {"region": region, "name": name}
     # Imported here: geometry takes longer to load than a pause may wait.
     from recon.cli.region_file import read_region

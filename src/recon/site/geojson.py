@@ -5,6 +5,7 @@ latitude the two differ by 2 cm in the middle of an edge of 1 km, by 2 m in one 
 """
 
 import json
+from codecs import BOM_UTF8
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -39,6 +40,7 @@ ACCEPTED_CRS = frozenset(
     }
 )
 """Names of WGS84 that programs write; the coordinates are longitude, latitude under each."""
+SWAPPED = "latitude and longitude look swapped: GeoJSON writes the longitude first"
 
 Position = Annotated[
     list[float],
@@ -118,15 +120,22 @@ def first_corner_of(feature: Feature) -> LatLon:
         corner = corner[0]
     longitude_deg, latitude_deg = convert(feature.place, corner, Position, "coordinates")[:2]
     if abs(latitude_deg) > 90.0 or abs(longitude_deg) > 180.0:
+        is_swapped = abs(longitude_deg) <= 90.0 and abs(latitude_deg) <= 180.0
         raise SiteError(
             f"{feature.place}: expected longitude and latitude in degrees, got "
-            f"{longitude_deg:.6g}, {latitude_deg:.6g}; export the layer as EPSG:4326"
+            f"{longitude_deg:.6g}, {latitude_deg:.6g}; "
+            + (SWAPPED if is_swapped else "export the layer as EPSG:4326")
         )
     return LatLon(latitude_deg, longitude_deg)
 
 
+def is_json(data: bytes) -> bool:
+    """Return whether a file begins as a JSON object does, after a mark of UTF-8 or without."""
+    return data.removeprefix(BOM_UTF8).lstrip().startswith(b"{")
+
+
 def _read_json(path: Path) -> object:
-    data = read_bounded(path, LARGEST_LAYER_BYTES, "a GeoJSON file")
+    data = read_bounded(path, LARGEST_LAYER_BYTES, "a GeoJSON file").removeprefix(BOM_UTF8)
     try:
         return msgspec.json.decode(data)
     except (msgspec.DecodeError, UnicodeDecodeError) as problem:
@@ -240,10 +249,7 @@ def _is_far(
 
 def _far_away(place: str, degrees: FloatArray, enu_m: FloatArray, looks_swapped: bool) -> str:
     got = f"longitude {degrees[0]:.6g}, latitude {degrees[1]:.6g}"
-    if looks_swapped:
-        hint = "latitude and longitude look swapped: GeoJSON writes the longitude first"
-    else:
-        hint = "is the origin in site.toml right?"
+    hint = SWAPPED if looks_swapped else "is the origin in site.toml right?"
     distance_km = float(np.linalg.norm(enu_m)) / 1_000.0
     return (
         f"{place}: expected corners within {FARTHEST_M / 1_000.0:g} km of the site's origin, got "

@@ -13,6 +13,7 @@ import subprocess
 import sys
 import zipfile
 import zlib
+from codecs import BOM_UTF8
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
@@ -21,7 +22,7 @@ from typing import Any, NoReturn
 from xml.parsers import expat
 
 from recon.model.errors import SiteError
-from recon.site.geojson import MOST_CORNERS, MOST_FEATURES
+from recon.site.geojson import MOST_CORNERS, MOST_FEATURES, is_json
 
 LARGEST_IMPORT_BYTES = 8 * 1024 * 1024
 LARGEST_UNPACKED_BYTES = 32 * 1024 * 1024
@@ -37,7 +38,6 @@ _SHP_MAGIC = b"\x00\x00\x27\x0a"
 _SQLITE_MAGIC = b"SQLite format 3\x00"
 _ZIP_MAGIC = b"PK\x03\x04"
 _ZIP_ENTRY = b"PK\x01\x02"
-_BOM = b"\xef\xbb\xbf"
 _PACKINGS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 """Python unpacks the others without a limit of size."""
 
@@ -95,10 +95,9 @@ def _put_safely(shown: str, data: bytes, folder: Path) -> Path:
             f"{shown}: expected a Shapefile as a zip with its .shp, .shx, .dbf and .prj, got the "
             ".shp alone"
         )
-    text = data.removeprefix(_BOM).lstrip()
-    if text.startswith(b"<"):
+    if data.removeprefix(BOM_UTF8).lstrip().startswith(b"<"):
         return _written(folder / "import.kml", _plain_kml(shown, data))
-    if text.startswith(b"{"):
+    if is_json(data):
         return _written(folder / "import.geojson", data)
     raise SiteError(f"{shown}: expected {FORMATS}, got another kind of file")
 

@@ -21,6 +21,8 @@ from recon.site.schema import Pixels
 
 CAMERAS_FILE = "cameras.toml"
 LARGEST_BYTES = 64 * 1024
+MOST_OBLONG = 1.03
+"""One side of a pixel over the other: makers round a sensor's size to a tenth of a millimetre."""
 MOST_CAMERAS = 50
 
 Millimetres = Annotated[float, Meta(ge=0.1, le=1_000.0)]
@@ -81,9 +83,19 @@ def _model(path: Path, key: str, table: SurveyCameraTable) -> CameraModel:
     if by_sensor == (table.diagonal_deg is not None) or has_part != by_sensor:
         raise SiteError(f"{path}: {key}: expected sensor_mm and focal_mm, or diagonal_deg alone")
     if table.sensor_mm is not None and table.focal_mm is not None:
+        _refuse_oblong(f"{path}: {key}", table.image_px, table.sensor_mm)
         optics = of_sensor(*table.image_px, table.sensor_mm, table.focal_mm)
     else:
         assert table.diagonal_deg is not None
         optics = of_diagonal(*table.image_px, table.diagonal_deg)
     timer_s = tuple(sorted(set(table.timer_s)))
     return CameraModel(table.name, table.name, *optics, timer_s, table.shutter, path.name)
+
+
+def _refuse_oblong(place: str, image_px: tuple[int, int], sensor_mm: tuple[float, float]) -> None:
+    across_um, along_um = (1000.0 * mm / px for mm, px in zip(sensor_mm, image_px, strict=True))
+    if max(across_um, along_um) > MOST_OBLONG * min(across_um, along_um):
+        raise SiteError(
+            f"{place}: expected square pixels, got {across_um:.2f} x {along_um:.2f} micrometres by "
+            "image_px and sensor_mm; of a cropped photo, give the part of the sensor that it shows"
+        )

@@ -174,7 +174,7 @@ def plan_figures(
         reached_m2=min(cells.area_m2(cells.is_reached), region_m2),
         least_height_above_ground_m=min((low for low, _ in above_m), default=None),
         most_height_above_ground_m=max((high for _, high in above_m), default=None),
-        rows=len({piece.row for piece in plan.pieces}),
+        rows=plan.row_count,
         gsd_m=survey.camera.gsd_m(height_m),
         blur_px=blur_px(survey.camera, height_m, survey.speed_mps, exposure_s),
         speed_limit_mps=limit.speed_mps,
@@ -198,7 +198,8 @@ def _warnings(plan: SurveyPlan, limit: SpeedLimit) -> list[str]:
     found: list[str] = []
     speed_mps, cells = plan.survey.speed_mps, plan.cells
     if speed_mps > limit.speed_mps * (1.0 + 1e-9):
-        found.append(f"{speed_mps:g} m/s is more than {limit.speed_mps:.1f} m/s: {limit.reason}")
+        allowed_mps = floor(100.0 * limit.speed_mps) / 100.0
+        found.append(f"{speed_mps:g} m/s is more than {allowed_mps:g} m/s: {limit.reason}")
     if plan.terrain is not None and plan.terrain.is_near_height_limits:
         found.append(
             f"{plan.survey.height_m:g} m above ground leaves rows over this ground less than "

@@ -210,6 +210,11 @@ class SurveyPlan:
         return up_m - self.ground_range_m[1], up_m - self.ground_range_m[0]
 
     @property
+    def row_count(self) -> int:
+        """Return the number of rows; one that is cut by a hole or a zone is one row."""
+        return len({piece.row for piece in self.pieces})
+
+    @property
     def rows_m(self) -> tuple[tuple[EastNorth, EastNorth], ...]:
         """From where to where each row is flown, lead and all, in east-north metres; to show."""
         lattice, lead_m = self.lattice, self.swath.lead_m

@@ -60,7 +60,7 @@ def survey_view(station: Station, record: SurveyRecord, now_ns: int) -> schema.S
         vehicles=[_member(station, record, each, now_ns) for each in record.members.values()],
         figures=None if state is None else _figures(state),
         cells=None if state is None else _cells(state),
-        rows=0 if state is None else len(state.plan.pieces),
+        rows=0 if state is None else state.plan.row_count,
         ways=sum(len(way) for way in record.flown.values()),
     )
 

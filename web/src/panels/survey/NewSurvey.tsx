@@ -1,4 +1,4 @@
-import { createResource, createSignal, For, Show } from "solid-js";
+import { createMemo, createResource, createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { SurveyResponse } from "../../protocol";
 import type { Outcome } from "../../source/stationSource";
@@ -38,6 +38,8 @@ export function NewSurvey(props: {
   };
   const isGroundKnown = () => fleet.site?.terrain === "model";
   const imagers = () => fleet.vehicles.filter(({ is_imager }) => is_imager);
+  /** Without an imaging drone no shade is known, and rows flown once are all that can be done. */
+  const usualPlanner = createMemo(() => (imagers().length > 0 ? "sunlit_first" : "lawnmower_once"));
   const regions = () => (fleet.site?.areas ?? []).filter(({ kind }) => kind === "survey");
   const plan = async (form: HTMLFormElement) => {
     const height_m = height.metres();
@@ -126,7 +128,7 @@ export function NewSurvey(props: {
           </label>
           <label class="survey-wide">
             {text.newSurvey.rows}
-            <select name="planner">
+            <select name="planner" value={usualPlanner()}>
               <For each={PLANNERS}>
                 {(name) => <option value={name}>{text.newSurvey.planners[name]}</option>}
               </For>

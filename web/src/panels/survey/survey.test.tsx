@@ -253,7 +253,7 @@ describe("a new survey", () => {
       );
     }
     expect(page.requests).toMatchObject([
-      { plannedSurvey: { relief_allowed: true, spare_serial: null } },
+      { plannedSurvey: { planner: "sunlit_first", relief_allowed: true, spare_serial: null } },
       { plannedSurvey: { relief_allowed: true, spare_serial: "SN-004" } },
     ]);
   });
