@@ -74,7 +74,6 @@ def test_a_slower_sequence_counts_in_its_own_seconds(tmp_path: Path) -> None:
         (("--leads", "0"), "--leads: expected seconds"),
         (("--method", "guess"), "--method: expected advection or"),
         (("--out", "{maps}"), "expected a new or empty folder, got one in use"),
-        (("--step-s", "nan"), "--step-s: expected 0.1 to"),
     ],
 )
 def test_what_does_not_fit_is_one_sentence(

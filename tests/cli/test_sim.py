@@ -33,7 +33,6 @@ command.command()(sim_command)
         (["--home", "north pole"], "--home: expected LAT,LON"),
         (["--home", "91,0"], "--home: expected LAT,LON"),
         (["--fps", "0"], "--fps: expected a positive number"),
-        (["--fps", "nan"], "--fps: expected a positive number"),
         (["--latency-s", "-1"], "--latency-s: expected"),
         (["--endurance-min", "-5"], "--endurance-min: expected a positive number"),
         (["--fault", "gremlins"], "expected one of ack-then-nothing"),

@@ -20,7 +20,7 @@ LIMIT_S = 120.0
         (["--station", "host:0"], "--station: expected HOST:PORT"),
         (["--delay-ms", "-1"], "delay: expected 0 to 60 seconds"),
         (["--rate-kb-s", "0"], "rate: expected 10 to inf bytes per second"),
-        (["--corruption-per-mb", "nan"], "corruption: expected"),
+        (["--corruption-per-mb", "1e9"], "corruption: expected"),
         (["--resets-per-min", "1e9"], "resets: expected"),
     ],
 )

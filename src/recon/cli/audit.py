@@ -12,7 +12,7 @@ from typing import Annotated
 import msgspec
 import typer
 
-from recon.cli.commands import new_app
+from recon.cli.commands import App
 from recon.cli.connection import WRONG_USE
 from recon.cli.output import print_json, print_line, printable
 from recon.model.errors import RecordError
@@ -20,7 +20,7 @@ from recon.record.audit import AuditLine, decode_line
 from recon.record.audit_check import AuditCheck, check_audit
 from recon.record.audit_files import audit_files, raw_lines
 
-audit_app = new_app(help="Read a station's audit and verify its integrity.", no_args_is_help=True)
+audit_app = App(help="Read a station's audit and verify its integrity.", no_args_is_help=True)
 
 _UNITS_S = {"s": 1, "min": 60, "m": 60, "h": 3_600, "d": 86_400}
 _AGO = re.compile(r"(?P<count>\d{1,9}(?:\.\d+)?) ?(?P<unit>s|min|m|h|d)")

@@ -5,11 +5,16 @@ for them, nor `recon --help`.
 """
 
 import re
+from collections.abc import Callable
 from importlib import import_module
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import typer
 from typer.core import TyperCommand, TyperGroup
+
+from recon.model.units import is_finite
+
+Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 class CommandSource(NamedTuple):
@@ -183,7 +188,20 @@ class LazyGroup(TyperGroup):
 NUMBER = re.compile(r"-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 
 
-class TakesNegativeNumbers(TyperCommand):
+class Command(TyperCommand):
+    """A command that refuses NaN and infinity: the bounds of an option let NaN pass."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Check every number that was read."""
+        rest: list[str] = super().parse_args(ctx, args)
+        for param in self.params:
+            value = ctx.params.get(param.name)
+            if isinstance(value, float) and not is_finite(value):
+                raise typer.BadParameter(f"expected a number, got {value:g}", ctx, param)
+        return rest
+
+
+class TakesNegativeNumbers(Command):
     """A command whose arguments may be negative numbers, without a `--` before them.
 
     Western longitudes look like options to a shell. Any other word that begins with a hyphen and
@@ -199,21 +217,27 @@ class TakesNegativeNumbers(TyperCommand):
         return super().parse_args(ctx, args)
 
 
-def new_app(**options: Any) -> typer.Typer:
-    """Return a `typer.Typer` with plain help pages: formatted ones take longer to load than a
-    stop may wait."""
-    return typer.Typer(
-        rich_markup_mode=None, pretty_exceptions_enable=False, add_completion=False, **options
-    )
+class App(typer.Typer):
+    """Commands with plain help pages: formatted ones take longer to load than a stop may wait."""
+
+    def __init__(self, **options: Any) -> None:
+        """Take the options of `typer.Typer`."""
+        super().__init__(
+            rich_markup_mode=None, pretty_exceptions_enable=False, add_completion=False, **options
+        )
+
+    def command(self, name: str | None = None, **options: Any) -> Callable[[Function], Function]:
+        """Register a function as a command whose numbers are finite."""
+        return super().command(name, **{"cls": Command, **options})
 
 
 def _app_of(function: Any, source: CommandSource) -> typer.Typer:
-    app = new_app()
-    app.command(cls=TakesNegativeNumbers if source.takes_negative_numbers else None)(function)
+    app = App()
+    app.command(cls=TakesNegativeNumbers if source.takes_negative_numbers else Command)(function)
     return app
 
 
-app = new_app(name="recon", cls=LazyGroup, no_args_is_help=True)
+app = App(name="recon", cls=LazyGroup, no_args_is_help=True)
 
 
 @app.callback()

@@ -6,7 +6,7 @@ Exit codes: 0 done; 1 refused, or not confirmed by telemetry; 2 wrong use, or no
 import asyncio
 import os
 import time
-from collections.abc import Awaitable, Callable, Mapping, Sequence
+from collections.abc import Awaitable, Callable, Sequence
 from pathlib import Path
 from typing import Annotated, TypeVar
 
@@ -14,8 +14,6 @@ import typer
 
 from recon.client import ClientError, Station, Telemetry
 from recon.client.errors import AddressError
-from recon.model.errors import ReconError
-from recon.model.units import is_finite
 
 DONE, REFUSED, WRONG_USE = 0, 1, 2
 
@@ -37,13 +35,6 @@ TokenOption = Annotated[
     ),
 ]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON.")]
-
-
-def refuse_non_finite(error: type[ReconError], options: Mapping[str, float | None]) -> None:
-    """Raise an error for the first option that is NaN or infinite: its bounds let NaN pass."""
-    for name, value in options.items():
-        if value is not None and not is_finite(value):
-            raise error(f"{name}: expected a number, got {value:g}")
 
 
 WaitOption = Annotated[

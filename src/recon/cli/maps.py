@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from recon.cli.commands import new_app
+from recon.cli.commands import App
 from recon.cli.output import print_line
 from recon.cli.site import FolderArgument, opened_site
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from recon.basemap.web_mercator import MapArea
     from recon.site import Site
 
-maps_app = new_app(
+maps_app = App(
     help="Bring base maps for the console: fetch tiles, check coverage.", no_args_is_help=True
 )
 INCOMPLETE = 1

@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from recon.cli.connection import REFUSED, WRONG_USE, JsonOption, refuse_non_finite
+from recon.cli.connection import REFUSED, WRONG_USE, JsonOption
 from recon.cli.output import print_json, print_table, printable
 from recon.cli.plan_output import ImagingFigures, figures_of, geojson_of, plan_rows_of
 from recon.cli.plan_picture import Theme, picture_png
@@ -144,7 +144,6 @@ def plan_command(
             return
         if region is None:
             raise PlanError("name a region: a file, or a survey region of --site")
-        refuse_non_finite(PlanError, {"--endurance-min": endurance, "--cost-per-hour": hourly})
         _refuse_same_file({"the region": Path(region), "--png": png, "--geojson": geojson})
         model = camera_named(camera, known.values())
         name, area, frame = _region(region, feature, home)

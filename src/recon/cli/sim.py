@@ -9,7 +9,7 @@ from typing import Annotated, NamedTuple
 
 import typer
 
-from recon.cli.commands import new_app
+from recon.cli.commands import App
 from recon.cli.foreground import print_now, until_stopped
 from recon.cli.sim_options import (
     AirborneOption,
@@ -66,7 +66,7 @@ from recon.site import Imager, Site, SiteError, demo_site_folder, load_site
 
 MAX_FPS_HZ = 30.0
 
-sim_app = new_app()
+sim_app = App()
 
 
 class ImagerWorld(NamedTuple):

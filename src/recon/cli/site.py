@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from recon.cli.commands import new_app
+from recon.cli.commands import App
 from recon.cli.output import print_line, printable
 from recon.model.errors import SiteError
 from recon.model.geo import GeoPoint
@@ -16,7 +16,7 @@ from recon.model.geo import GeoPoint
 if TYPE_CHECKING:
     from recon.site import Site
 
-site_app = new_app(help="Make, check and import into a site's folder.", no_args_is_help=True)
+site_app = App(help="Make, check and import into a site's folder.", no_args_is_help=True)
 
 FolderArgument = Annotated[Path, typer.Argument(help="The site's folder.")]
 

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 import msgspec
 import typer
 
-from recon.cli.commands import new_app
+from recon.cli.commands import App
 from recon.cli.connection import (
     DEFAULT_ADDRESS,
     DONE,
@@ -33,7 +33,7 @@ REGION_FILES = (".geojson", ".json", ".kml", ".kmz", ".zip", ".gpkg")
 """Ends of a file's name; a region that ends otherwise and is no file is one of the site's."""
 NO_ORIGIN = "the station's site has no origin: start the station with --site FOLDER"
 
-survey_app = new_app(
+survey_app = App(
     help="Survey a region: create, estimate, start, pause, abort, status.", no_args_is_help=True
 )
 

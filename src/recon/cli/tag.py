@@ -13,7 +13,6 @@ from typing import Annotated
 import typer
 
 from recon import version
-from recon.cli.connection import refuse_non_finite
 from recon.cli.output import printable
 from recon.cli.progress import progress_over, usable_cores
 from recon.model.errors import RecordError
@@ -77,8 +76,6 @@ def tag_command(
     ] = None,
 ) -> None:
     """Tag the photos of a flight: sunlit share, masks, the photos to keep, what to fly again."""
-    numbers = {"--overlap": overlap, "--sunlit": sunlit, "--field": field}
-    refuse_non_finite(RecordError, {**numbers, "--clock-offset": clock_offset})
     paths = _photo_files(images)
     flown = opened_flight(flight)
     photos, refused = _read(paths)

@@ -5,7 +5,7 @@ from typing import Annotated
 import msgspec
 import typer
 
-from recon.cli.commands import new_app
+from recon.cli.commands import App
 from recon.cli.connection import (
     DEFAULT_ADDRESS,
     DONE,
@@ -20,7 +20,7 @@ from recon.client import ClientError, Refusal, Station, TemporaryZoneStatus
 from recon.model.geo import LatLon
 from recon.model.temporary_zone import Circle, TemporaryZoneKind
 
-zone_app = new_app(
+zone_app = App(
     help="Keep drones out of a place at once: add, end and list temporary zones.",
     no_args_is_help=True,
 )

@@ -1,4 +1,4 @@
-"""Coordinates south and west are numbers, not options."""
+"""Coordinates south and west are numbers, not options; NaN and infinity are none."""
 
 from typing import Annotated
 
@@ -8,9 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
-from recon.cli.commands import TakesNegativeNumbers
+from recon.cli.commands import COMMANDS, App, Command, TakesNegativeNumbers
+from recon.cli.commands import app as recon
 
-app = typer.Typer()
+app = App()
 
 
 @app.command(cls=TakesNegativeNumbers)
@@ -52,3 +53,22 @@ def test_what_is_no_number_is_refused_as_ever(odd: str) -> None:
     code, output = run("41.9", "-93.6", odd)
     assert code == 2
     assert "Usage" in output
+
+
+@pytest.mark.parametrize("word", ["nan", "inf", "1e999"])
+def test_a_number_that_is_not_finite_is_refused_with_its_name(word: str) -> None:
+    for words, name in (
+        (("41.9", f"--height={word}", "-93.6"), "'--height'"),
+        ((word, "-93.6"), "'latitude'"),
+    ):
+        code, output = run(*words)
+        assert code == 2
+        assert f"{name}: expected a number, got {float(word):g}" in output
+
+
+def test_every_command_refuses_them() -> None:
+    group = typer.main.get_group(recon)
+    for name in COMMANDS:
+        loaded = group.get_command(None, name)
+        for command in getattr(loaded, "commands", {name: loaded}).values():
+            assert isinstance(command, Command), (name, command.name)
