@@ -27,7 +27,7 @@ from recon.model.shade import ShadeMap
 from recon.model.survey import SurveyCamera
 from recon.model.units import NS_PER_S
 from recon.record.tracks import utc_text
-from recon.score.imager import IdealDetection
+from recon.score.ideal_detection import IdealDetection
 from recon.score.run import StationRun
 from recon.score.scenario import Scenario
 from recon.score.scenario_conditions import conditions_of

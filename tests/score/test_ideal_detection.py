@@ -16,7 +16,7 @@ from recon.model.imagery import CameraPose, Frame
 from recon.model.shade import ShadeMap
 from recon.model.units import NS_PER_S
 from recon.score import Scenario
-from recon.score.imager import IdealDetection
+from recon.score.ideal_detection import IdealDetection
 from recon.score.simulation import rig_of
 from recon.score.true_frames import TrueFrames
 from recon.sim.app.camera_feed import CaptureTimes

@@ -12,7 +12,7 @@ from recon.model.shade import SUNLIT_TRANSMITTANCE, SURE, ShadeMap, SunForecast
 from recon.model.units import NS_PER_S
 from recon.score import Methods, Scenario, StationRun, run
 from recon.score.forecast_figures import SeenCells
-from recon.score.imager import settings_of
+from recon.score.methods import settings_of
 from recon.score.perfect_forecast import perfect_forecast
 from recon.score.scenario import PERFECT
 from recon.score.scenario_sky import sky_of

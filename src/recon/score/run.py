@@ -13,7 +13,7 @@ from recon.model.control import AuthorityHolder
 from recon.model.survey import CellState
 from recon.model.units import NS_PER_S
 from recon.score.connected_apps import ConnectedApps
-from recon.score.imager import config_of, jobs_of, renderers_of, sent_by, settings_of
+from recon.score.methods import config_of, jobs_of, renderers_of, sent_by, settings_of
 from recon.score.run_score import (
     ENOUGH,
     RunScore,

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from tests.examples import examples
 from tests.guidance.survey.fields import planned, star, survey_of
 
-from recon.guidance.survey.missions import MOST_CORNERS, RegionPaths
+from recon.guidance.survey.region_paths import MOST_CORNERS, RegionPaths
 
 Place = tuple[float, float]
 

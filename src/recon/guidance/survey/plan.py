@@ -11,7 +11,8 @@ from recon.geo import region_fault, shape_of
 from recon.guidance.survey.cells import CoverageCells, cells_over
 from recon.guidance.survey.imaging import longest_photo_m
 from recon.guidance.survey.lattice import EastNorth, RowLattice, Swath, swath_of
-from recon.guidance.survey.missions import RegionPaths, Track, track_of
+from recon.guidance.survey.missions import Track, track_of
+from recon.guidance.survey.region_paths import RegionPaths
 from recon.guidance.survey.route import Route, RowLeg
 from recon.guidance.survey.rows import Piece, best_bearing_deg, lattice_over, row_pieces
 from recon.guidance.survey.settings import DEFAULT, SurveySettings

@@ -23,7 +23,7 @@ from recon import version
 from recon.detection.cells import CellLight, CellSamples
 from recon.detection.sunlit.colour import CellColour
 from recon.fleet.step import CloseLink
-from recon.guidance.survey.missions import RegionPaths
+from recon.guidance.survey.region_paths import RegionPaths
 from recon.model.airspace import Airspace, Zone
 from recon.model.command import Command
 from recon.model.event import JobEnded
