@@ -92,7 +92,7 @@ class TestAsked:
         camera = {"model": "mini3pro", "interval_s": 2.0}
         survey = client.post("/api/surveys", json={**asked, "camera": camera}).json()["survey"]
         (warning,) = client.get(f"/api/surveys/{survey['id']}/estimate").json()["warnings"]
-        assert warning.startswith("8 m/s is more than 6.9 m/s: blur of 0.5 pixel")
+        assert warning.startswith("8 m/s is more than 6.91 m/s: blur of 0.5 pixel")
 
     def test_cameras_are_listed_and_an_unknown_one_is_refused(self, client: Client) -> None:
         cameras = {each["name"]: each for each in client.get("/api/cameras").json()}

@@ -9,6 +9,7 @@ from recon.model.command import FlyMission, LandNow, Phase
 from recon.model.control import AuthorityHolder
 from recon.model.event import AuthorityTaken, SurveyStarted
 from recon.model.survey import SurveyPhase, WhenDone
+from recon.station.operations.survey.commands import start_refusal
 from recon.station.operations.survey.execution import STEP_SURVEY, advance
 from recon.station.operations.survey.planning import step_survey
 from recon.station.state.steps import Job, JobDone
@@ -112,11 +113,15 @@ class TestStart:
     def test_a_vehicle_on_the_ground_takes_off_only_if_allowed(self) -> None:
         world = surveyed_world(height_m=0.0)
         world.asks()
-        world.starts("SIM-1")
+        start = SurveyStarted(SURVEY_ID, ("SIM-1",), "ann")
+        refused = start_refusal(world.driver.station, start, world.driver.now_ns)
+        assert refused is not None
+        assert refused.reason == "SIM-1 is on the ground; allow takeoff for this start"
+        world.driver.handle(start)
         world.runs(20.0)
-        assert world.missions() == []
+        assert world.phase() is SurveyPhase.CREATED
+        assert world.holder("SIM-1") is AuthorityHolder.OPERATOR
         assert not world.fleet.flies("SIM-1")
-        assert "waiting" in world.state().reason
         world.starts("SIM-1", takeoff=True)
         world.runs(20.0)
         assert [each.command.takeoff for each in world.missions()] == [True]

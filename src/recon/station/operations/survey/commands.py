@@ -181,7 +181,8 @@ def _vehicle_refusal(
     given = handover.refusal(station, taken, now_ns)
     if given is not None:
         return given
-    name = station.fleet.vehicles[serial].display_name
+    vehicle = station.fleet.vehicles[serial]
+    name = vehicle.display_name
     if station.is_stopped(serial):
         return Refusal(STOP_RULE, f"{name} is held by an all stop; release its stop first")
     if serial in station.imaging.imagers:
@@ -193,6 +194,8 @@ def _vehicle_refusal(
     member = None if running is None else running.members.get(serial)
     if member is not None and member.stage not in ENDED:
         return Refusal(RULE, f"{name} is on its way home; hold it first, or let it land")
+    if vehicle.is_flying.value is False and not event.takeoff:
+        return Refusal(RULE, f"{name} is on the ground; allow takeoff for this start")
     return None
 
 
