@@ -141,6 +141,7 @@ def test_every_registered_method_is_accepted(tmp_path: Path, kind: str, name: st
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
+        ("T16:00:00Z", "T06:00:00Z", "start_utc: expected a time at which the sun is 5 degrees"),
         ("cover = 0.4", "cover = 1.4", "clouds[0].cover: expected 0 to 1, got 1.4"),
         ("cover = 0.4", "covers = 0.4", "got 'covers'; did you mean 'cover'?"),
         ("cover = 0.4", 'cover = "much"', "clouds[0].cover: expected a number, got 'much'"),

@@ -9,6 +9,7 @@ from pathlib import Path
 import msgspec
 import numpy as np
 
+from recon.geo import sun_position
 from recon.guidance.survey import SurveyPlan, plan_survey
 from recon.model.airspace import Region
 from recon.model.geo import GeoPoint, LatLon
@@ -30,6 +31,8 @@ from recon.sim.world import SunSettings, WindSettings
 from recon.site.reading import validation_error
 
 LARGEST_BYTES = 1_000_000
+LOWEST_SUN_DEG = 5.0
+"""Lower, there is no shade to tell from sun."""
 AT_LINE = re.compile(r"at line (\d+)")
 
 
@@ -162,7 +165,14 @@ def _survey(name: str, task: TaskTable, planner: str) -> Survey:
 
 def _sun(file: ScenarioFile, origin: GeoPoint, errors: ScenarioErrors) -> SunSettings:
     place = LatLon(origin.latitude_deg, origin.longitude_deg)
-    return errors.made("site", lambda: SunSettings(place, file.start_utc.timestamp()))
+    sun = errors.made("site", lambda: SunSettings(place, file.start_utc.timestamp()))
+    elevation_deg = sun_position(place, sun.start_utc_s).elevation_deg
+    if elevation_deg < LOWEST_SUN_DEG and "sun_elevation_deg" not in file.conditions:
+        raise errors.error(
+            f"start_utc: expected a time at which the sun is {LOWEST_SUN_DEG:g} degrees high or "
+            f"more, got one at which it is at {elevation_deg:.0f} degrees"
+        )
+    return sun
 
 
 def _check_faults(scenario: Scenario, errors: ScenarioErrors) -> None:
