@@ -47,7 +47,7 @@ def test_named_paths_exist(page: Path) -> None:
     assert len(named) > {"ARCHITECTURE": 60, "SAFETY": 60}.get(page.stem, -1)
     if page.stem != "ARCHITECTURE":  # elsewhere folders may be those of a site
         named = [path for path in named if not path.endswith("/")]
-    folders = [ROOT, *(ROOT / "src/recon" / room for room in ("", "station", "sim"))]
+    folders = [ROOT, ROOT / "web", *(ROOT / "src/recon" / room for room in ("", "station", "sim"))]
     assert [path for path in named if not any((f / path).exists() for f in folders)] == []
 
 
