@@ -33,6 +33,7 @@ from recon.guidance.fleet_return import (
     ReturnPlan,
     Separation,
     mission_of,
+    plan_return,
 )
 from recon.guidance.fleet_return.turn import hindrance
 from recon.model.airspace import HeightDatum, Region, Zone, ZoneKind
@@ -195,6 +196,21 @@ class TestFlown:
         assert len(plan.waves) == 1
         assert flown.most_at_once == 5
         assert flown.nearest_m >= LEAST.horizontal_m
+
+    def test_layers_of_flights_under_way_are_left_to_them_while_others_are_free(self) -> None:
+        scene = scene_of(hovering_row(2, row_of_pads(2, 40.0)), ceiling_m=50.0)
+        lowest_m, second_m, third_m = scene.plan().layers_up_m
+
+        def layers_m(*taken_up_m: float) -> list[float]:
+            plan = plan_return(
+                scene.vehicles, scene.home, KEPT, SETTINGS, (), 2, taken_up_m=taken_up_m
+            )
+            assert plan.left_out == ()
+            return [flight.layer_up_m for flight in plan.flights]
+
+        assert layers_m() == [lowest_m, second_m]
+        assert layers_m(lowest_m + 0.5) == [second_m, third_m]
+        assert layers_m(lowest_m, second_m, third_m) == [lowest_m, second_m]
 
     def test_all_at_one_height_would_come_too_near(self) -> None:
         """The control: the same ways without layers, begun together, and the checker sees it."""

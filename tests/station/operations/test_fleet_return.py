@@ -360,6 +360,22 @@ class TestCalling:
         assert len(world.stages()) == 4
         assert world.nearest.level_m >= LEAST_LEVEL_M, world.nearest.who
 
+    def test_one_called_later_gets_a_free_layer_and_does_not_wait(self) -> None:
+        world = four_in_the_air()
+        world.call("SIM-1")
+        world.runs(10.0)
+        assert world.member("SIM-1").stage is Stage.FLYING
+        world.call("SIM-3")
+        world.runs(10.0)
+        first, second = (world.member(serial) for serial in ("SIM-1", "SIM-3"))
+        assert (first.stage, second.stage) == (Stage.FLYING, Stage.FLYING)
+        assert first.flight is not None
+        assert second.flight is not None
+        assert second.flight.layer_up_m == first.flight.layer_up_m + 10.0
+        assert world.runs_until_over(400.0)
+        assert set(world.stages().values()) == {Stage.LANDED}
+        assert world.nearest.level_m >= LEAST_LEVEL_M, world.nearest.who
+
     def test_a_mission_is_stopped_before_its_vehicle_is_planned_for(self) -> None:
         world = returning_world([(0, 100, 30)], [(0, 0)])
         world.world.order("SIM-1", FlyMission(square_mission(30.0, 200.0)))

@@ -10,6 +10,7 @@ on wind and on how long each landing takes.
    (column up or down, level path, column over the pad) is separated from all vehicles that still
    hover; a column that leads away from one that is too near already need not be. Paths avoid
    closed zones by a visibility graph and Dijkstra's search (`ways`).
+   Layers of flights that are under way are not free: a vehicle called home later need not wait.
 4. When no free layer is left or fits, the next wave begins with all layers free.
 5. A vehicle that fits in no layer while all layers are free is left out, with the reason.
 
@@ -68,16 +69,23 @@ def plan_return(
     settings: FleetReturnSettings,
     others: Sequence[Hovering] = (),
     first_wave: int = 1,
+    taken_up_m: Sequence[float] = (),
 ) -> ReturnPlan:
     """Return the plan for vehicles that hover. `others` hover too and are not called.
 
-    `separation` is the least one with its slack. Everyone named is in a flight or left out.
+    `separation` is the least one with its slack. `taken_up_m` are the layers of flights that are
+    under way. Everyone named is in a flight or left out.
     """
     layers_m = layers_up_m(home, settings, separation)
     search = _Search(vehicles, home, separation, layers_m, others)
     waiting = sorted(vehicles, key=_turn)
     flights: list[ReturnFlight] = []
-    wave, free_m = first_wave, list(layers_m)
+    wave = first_wave
+    free_m = [
+        layer_m
+        for layer_m in layers_m
+        if all(abs(layer_m - other_m) >= separation.vertical_m for other_m in taken_up_m)
+    ]
     while waiting:
         flight = search.next_flight(waiting, free_m, wave)
         if flight is not None:

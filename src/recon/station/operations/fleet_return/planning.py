@@ -145,6 +145,8 @@ class ReturnPlanRequest:
     separation: Separation
     settings: ReturnSettings
     first_wave: int
+    taken_up_m: tuple[float, ...]
+    """Layers of the flights that are under way."""
 
 
 def make_plan(work: ReturnPlanRequest) -> ReturnPlan:
@@ -160,6 +162,7 @@ def make_plan(work: ReturnPlanRequest) -> ReturnPlan:
         settings,
         work.others,
         work.first_wave,
+        work.taken_up_m,
     )
 
 
@@ -247,6 +250,7 @@ def _work(
         separation(station, settings, now_ns, PLAN_LASTS_S),
         settings,
         1 + max((_wave(member) for member in running.members.values()), default=0),
+        tuple(each.flight.layer_up_m for each in running.at(*UNDER_WAY) if each.flight is not None),
     )
 
 
