@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
-from recon.cli.commands import COMMANDS, App, Command, TakesNegativeNumbers
+from recon.cli.commands import COMMANDS, App, ShellCommand, TakesNegativeNumbers
 from recon.cli.commands import app as recon
 
 app = App()
@@ -71,4 +71,4 @@ def test_every_command_refuses_them() -> None:
     for name in COMMANDS:
         loaded = group.get_command(None, name)
         for command in getattr(loaded, "commands", {name: loaded}).values():
-            assert isinstance(command, Command), (name, command.name)
+            assert isinstance(command, ShellCommand), (name, command.name)

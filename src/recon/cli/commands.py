@@ -188,7 +188,7 @@ class LazyGroup(TyperGroup):
 NUMBER = re.compile(r"-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 
 
-class Command(TyperCommand):
+class ShellCommand(TyperCommand):
     """A command that refuses NaN and infinity: the bounds of an option let NaN pass."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
@@ -201,7 +201,7 @@ class Command(TyperCommand):
         return rest
 
 
-class TakesNegativeNumbers(Command):
+class TakesNegativeNumbers(ShellCommand):
     """A command whose arguments may be negative numbers, without a `--` before them.
 
     Western longitudes look like options to a shell. Any other word that begins with a hyphen and
@@ -228,12 +228,14 @@ class App(typer.Typer):
 
     def command(self, name: str | None = None, **options: Any) -> Callable[[Function], Function]:
         """Register a function as a command whose numbers are finite."""
-        return super().command(name, **{"cls": Command, **options})
+        return super().command(name, **{"cls": ShellCommand, **options})
 
 
 def _app_of(function: Any, source: CommandSource) -> typer.Typer:
     app = App()
-    app.command(cls=TakesNegativeNumbers if source.takes_negative_numbers else Command)(function)
+    app.command(cls=TakesNegativeNumbers if source.takes_negative_numbers else ShellCommand)(
+        function
+    )
     return app
 
 

@@ -85,8 +85,8 @@ def detect_command(
     height_m: Annotated[
         float | None, typer.Option(help="Without control points: height above ground, level mount.")
     ] = None,
-    latitude_deg: Annotated[float, typer.Option(help="With --height-m.")] = float("nan"),
-    longitude_deg: Annotated[float, typer.Option(help="With --height-m.")] = float("nan"),
+    latitude_deg: Annotated[float | None, typer.Option(help="With --height-m.")] = None,
+    longitude_deg: Annotated[float | None, typer.Option(help="With --height-m.")] = None,
     yaw_deg: Annotated[float, typer.Option(help="With --height-m: heading of the top.")] = 0.0,
     method: Annotated[str, typer.Option(help="Detection method.")] = DetectionSettings().method,
     step_s: Annotated[
@@ -141,14 +141,19 @@ def _start_by_points(
 
 
 def _start_by_height(
-    height_m: float | None, latitude_deg: float, longitude_deg: float, yaw_deg: float
+    height_m: float | None,
+    latitude_deg: float | None,
+    longitude_deg: float | None,
+    yaw_deg: float,
 ) -> Start:
-    is_place = LatLon(latitude_deg, longitude_deg).is_valid()
-    if height_m is None or not 1.0 <= height_m <= 1000.0 or not is_place:
-        raise PoseError(
-            "expected --gcps FILE, or --height-m of 1 to 1000 with --latitude-deg and "
-            "--longitude-deg of the camera"
-        )
+    missing = PoseError(
+        "expected --gcps FILE, or --height-m of 1 to 1000 with --latitude-deg and "
+        "--longitude-deg of the camera"
+    )
+    if height_m is None or latitude_deg is None or longitude_deg is None:
+        raise missing
+    if not 1.0 <= height_m <= 1000.0 or not LatLon(latitude_deg, longitude_deg).is_valid():
+        raise missing
     telemetry = TelemetryReference(latitude_deg, longitude_deg, height_m, yaw_deg)
     frame = LocalFrame(GeoPoint(latitude_deg, longitude_deg, 0.0))
     return Start(frame, mounted_pose(telemetry, np.array([0.0, 0.0, height_m])), None)
