@@ -189,7 +189,7 @@ NUMBER = re.compile(r"-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 
 
 class ShellCommand(TyperCommand):
-    """A command that refuses NaN and infinity: the bounds of an option let NaN pass."""
+    """A command that refuses NaN and infinity, also as a default: bounds let NaN pass."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Check every number that was read."""
