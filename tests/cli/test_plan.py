@@ -170,6 +170,11 @@ def test_a_field_from_kml_or_with_a_mark_of_utf_8_is_the_same_plan(field: Path) 
         (b"", "expected KML, KMZ, Shapefile (zip), GeoPackage or GeoJSON, got another kind"),
         (b"PK\x03\x04", "field.kml: "),
         (
+            b'<kml xmlns="http://www.opengis.net/kml/2.2"><Placemark><Point><coordinates>-93.6,41.9'
+            b"</coordinates></Point></Placemark></kml>",
+            "expected a polygon, got points alone",
+        ),
+        (
             b'{"type": "Polygon", "coordinates": [[[41.9, -93.6], [41.9, -93.5], [42.0, -93.5],'
             b" [41.9, -93.6]]]}",
             "look swapped: GeoJSON writes the longitude first",

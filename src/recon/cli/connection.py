@@ -35,8 +35,6 @@ TokenOption = Annotated[
     ),
 ]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON.")]
-
-
 WaitOption = Annotated[
     float,
     typer.Option(

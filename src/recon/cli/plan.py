@@ -14,15 +14,15 @@ from recon.cli.connection import REFUSED, WRONG_USE, JsonOption
 from recon.cli.output import print_json, print_table, printable
 from recon.cli.plan_output import ImagingFigures, figures_of, geojson_of, plan_rows_of
 from recon.cli.plan_picture import Theme, picture_png
-from recon.cli.region_file import file_origin, region_in
+from recon.cli.region_file import region_in
 from recon.cli.site import opened_site
 from recon.cli.survey import (
-    REGION_FILES,
     AboveGroundOption,
     BearingOption,
     FeatureOption,
     FrontOption,
     SideOption,
+    names_file,
 )
 from recon.geo import enu_from_points
 from recon.guidance.survey import Surveyor, SurveyPlan, plan_survey, surroundings_of
@@ -185,12 +185,10 @@ def _region(name: str, feature: str | None, site: Site) -> tuple[str, Region, Lo
     path = Path(name)
     if site.frame is not None and name in site.layers.survey_regions:
         return name, site.layers.survey_regions[name], site.frame
-    if not path.is_file() and path.suffix.lower() not in REGION_FILES:
+    if not names_file(path):
         known = ", ".join(site.layers.survey_regions) or "none; name a site with --site"
         raise PlanError(f"Survey region {name!a} not found, nor a file; available: {known}")
-    frame = site.frame or LocalFrame(file_origin(path, feature))
-    own_name, region = region_in(path, feature, frame)
-    return own_name, region, frame
+    return region_in(path, feature, site.frame)
 
 
 def _imaging(

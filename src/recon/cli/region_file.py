@@ -32,30 +32,26 @@ def read_region(path: Path, feature: str | None, origin: GeoPoint) -> tuple[str,
     return _name(chosen) or path.stem, _rings(chosen)
 
 
-def region_in(path: Path, feature: str | None, frame: LocalFrame) -> tuple[str, Region]:
+def region_in(
+    path: Path, feature: str | None, site_frame: LocalFrame | None
+) -> tuple[str, Region, LocalFrame]:
     """Return the name of the one region in a file, and the region in metres of a frame.
 
-    Raises `RegionFileError`.
+    Without a site's frame its own has the region's first corner as origin. Raises
+    `RegionFileError`.
     """
     try:
         chosen = _chosen(path, feature)
+        frame = site_frame or LocalFrame(_first_corner(chosen))
         regions = regions_of(chosen, frame)
     except SiteError as problem:
         raise RegionFileError(str(problem)) from problem
     _refuse_several(chosen, len(regions))
-    return _name(chosen) or path.stem, regions[0]
+    return _name(chosen) or path.stem, regions[0], frame
 
 
-def file_origin(path: Path, feature: str | None) -> GeoPoint:
-    """Return the first corner of the region in a file: an origin where there is no site.
-
-    Raises `RegionFileError`.
-    """
-    try:
-        chosen = _chosen(path, feature)
-        place = first_corner_of(chosen)
-    except SiteError as problem:
-        raise RegionFileError(str(problem)) from problem
+def _first_corner(chosen: Feature) -> GeoPoint:
+    place = first_corner_of(chosen)
     return GeoPoint(place.latitude_deg, place.longitude_deg, 0.0)
 
 
@@ -73,11 +69,14 @@ def _features(path: Path) -> tuple[Feature, ...]:
     if is_json(data) or path.suffix.lower() in (".geojson", ".json"):
         return read_features(path)
     found = read_import(path.name, data)
-    return tuple(
+    polygons = tuple(
         Feature(f"{path}: feature {number}", number, {"name": each.name or None}, each.geometry)
         for number, each in enumerate(found.features, start=1)
         if each.geometry["type"] != "Point"
     )
+    if not polygons:
+        raise RegionFileError(f"{path}: expected a polygon, got points alone")
+    return polygons
 
 
 def _chosen(path: Path, name: str | None) -> Feature:

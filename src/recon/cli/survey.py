@@ -29,8 +29,7 @@ from recon.model.units import HECTARE_M2
 
 PHASES = {"created": "planned"}
 """Words that differ from the API's."""
-REGION_FILES = (".geojson", ".json", ".kml", ".kmz", ".zip", ".gpkg")
-"""Ends of a file's name; a region that ends otherwise and is no file is one of the site's."""
+REGION_SUFFIXES = (".geojson", ".json", ".kml", ".kmz", ".zip", ".gpkg")
 NO_ORIGIN = "the station's site has no origin: start the station with --site FOLDER"
 
 survey_app = App(
@@ -292,12 +291,17 @@ def _status(number: int | None, as_json: bool) -> Work:
     return work
 
 
+def names_file(region: Path) -> bool:
+    """Return whether a region is named as a file, there or not; else it is one of the site's."""
+    return region.is_file() or region.suffix.lower() in REGION_SUFFIXES
+
+
 async def _area(
     station: Station, region: str, feature: str | None, name: str | None
 ) -> dict[str, Any]:
     """Return the region of a file as rings, or the name of a region of the site."""
     path = Path(region)
-    if not path.is_file() and path.suffix.lower() not in REGION_FILES:
+    if not names_file(path):
         return {"region": region, "name": name}
     # Imported here: geometry takes longer to load than a pause may wait.
     from recon.cli.region_file import read_region
