@@ -38,26 +38,27 @@ def flying_view(drone: DroneView) -> FieldView:
 
 def test_a_survey_is_requested_when_all_drones_have_been_ready_for_3_s() -> None:
     both = FieldView([READY, replace(READY, serial="SIM-2")])
-    assert actions(ScriptedOperator(SERIALS), both, 5) == [(3, RequestPlan())]
+    assert actions(ScriptedOperator(SERIALS, 0.5), both, 5) == [(3, RequestPlan())]
     for other in ([], [replace(READY, serial="SIM-2", is_ready=False)]):
-        assert actions(ScriptedOperator(SERIALS), FieldView([READY, *other]), 30) == []
+        assert actions(ScriptedOperator(SERIALS, 0.5), FieldView([READY, *other]), 30) == []
 
 
 def test_a_planned_survey_is_started_once_with_all_drones() -> None:
     view = FieldView([READY, replace(READY, serial="SIM-2")], SurveyStage.PLANNED)
-    assert actions(ScriptedOperator(SERIALS), view, 5) == [(0, StartDrones(SERIALS))]
+    assert actions(ScriptedOperator(SERIALS, 0.5), view, 5) == [(0, StartDrones(SERIALS))]
 
 
 @pytest.mark.parametrize(
     "drone",
     [
         replace(READY, is_called_home=True),
+        replace(READY, is_called_home=True, battery_fraction=0.5),
         replace(READY, is_stopped=True),
         replace(FLYING, is_stopped=True),
     ],
 )
 def test_a_drone_without_a_task_is_started_after_20_s(drone: DroneView) -> None:
-    found = actions(ScriptedOperator(SERIALS), flying_view(drone), 25)
+    found = actions(ScriptedOperator(SERIALS, 0.5), flying_view(drone), 25)
     assert found == [(20, StartDrones(("SIM-1",)))]
 
 
@@ -65,49 +66,53 @@ def test_a_drone_without_a_task_is_started_after_20_s(drone: DroneView) -> None:
     "drone",
     [
         FLYING,
-        replace(READY, is_called_home=True, battery_fraction=0.5),
+        replace(READY, is_called_home=True, battery_fraction=0.49),
+        replace(READY, is_called_home=True, battery_fraction=None),
         replace(READY, is_called_home=True, is_live=False),
         replace(FLYING, is_stopped=True, is_called_home=True),
         replace(FLYING, is_stopped=True, is_descending=True),
     ],
 )
 def test_a_busy_discharged_lost_or_returning_drone_is_left_alone(drone: DroneView) -> None:
-    assert actions(ScriptedOperator(SERIALS), flying_view(drone), 60) == []
+    assert actions(ScriptedOperator(SERIALS, 0.5), flying_view(drone), 60) == []
 
 
 def test_a_drone_lost_in_the_air_is_found_after_90_s() -> None:
     lost = replace(FLYING, is_live=False)
-    assert actions(ScriptedOperator(SERIALS), flying_view(lost), 100) == [
+    assert actions(ScriptedOperator(SERIALS, 0.5), flying_view(lost), 100) == [
         (90, DismissHazard("SIM-1"))
     ]
     landed = replace(READY, is_live=False)
-    assert actions(ScriptedOperator(SERIALS), flying_view(landed), 100) == []
+    assert actions(ScriptedOperator(SERIALS, 0.5), flying_view(landed), 100) == []
 
 
 def test_authority_is_taken_back_from_a_pilot_first() -> None:
     drone = replace(FLYING, is_stopped=True, is_under_pilot=True)
-    found = actions(ScriptedOperator(SERIALS), flying_view(drone), 21)
+    found = actions(ScriptedOperator(SERIALS, 0.5), flying_view(drone), 21)
     assert found == [(20, TakeAuthority("SIM-1")), (20, StartDrones(("SIM-1",)))]
 
 
 def test_a_low_battery_alarm_is_answered_by_return_to_home_and_again() -> None:
     view = flying_view(replace(FLYING, has_battery_alarm=True))
-    found = actions(ScriptedOperator(SERIALS), view, 45)
+    found = actions(ScriptedOperator(SERIALS, 0.5), view, 45)
     assert found == [(20, CallHome("SIM-1")), (41, CallHome("SIM-1"))]
     for change in ({"is_descending": True}, {"is_flying_home": True}):
         returning = flying_view(replace(FLYING, has_battery_alarm=True, **change))
-        assert actions(ScriptedOperator(SERIALS), returning, 60) == []
+        assert actions(ScriptedOperator(SERIALS, 0.5), returning, 60) == []
 
 
 def test_a_condition_that_lapses_starts_its_time_again() -> None:
-    operator, stopped = ScriptedOperator(SERIALS), flying_view(replace(FLYING, is_stopped=True))
+    operator, stopped = (
+        ScriptedOperator(SERIALS, 0.5),
+        flying_view(replace(FLYING, is_stopped=True)),
+    )
     assert actions(operator, stopped, 19) == []
     assert list(operator.decide(flying_view(FLYING), 19.0)) == []
     assert list(operator.decide(stopped, 20.0)) == []
 
 
 def test_at_the_limit_the_survey_is_aborted_and_all_return() -> None:
-    operator = ScriptedOperator(SERIALS, limit_s=10.0)
+    operator = ScriptedOperator(SERIALS, 0.5, limit_s=10.0)
     assert actions(operator, flying_view(FLYING), 12) == [(10, AbortSurvey()), (11, AbortSurvey())]
     over = FieldView([FLYING, replace(OTHER, is_descending=True)], SurveyStage.FINISHED)
     assert list(operator.decide(over, 12.0)) == [CallFleetHome(("SIM-1",))]
@@ -122,8 +127,8 @@ def test_at_the_limit_the_survey_is_aborted_and_all_return() -> None:
 
 def test_the_next_survey_follows_only_where_surveys_repeat() -> None:
     over = FieldView([READY, replace(READY, serial="SIM-2")], SurveyStage.FINISHED)
-    assert actions(ScriptedOperator(SERIALS), over, 60) == []
-    repeating = ScriptedOperator(SERIALS, repeats=True)
+    assert actions(ScriptedOperator(SERIALS, 0.5), over, 60) == []
+    repeating = ScriptedOperator(SERIALS, 0.5, repeats=True)
     assert actions(repeating, over, 21) == [(20, RequestPlan())]
     planned = replace(over, stage=SurveyStage.PLANNED)
     assert list(repeating.decide(planned, 22.0)) == [StartDrones(SERIALS)]

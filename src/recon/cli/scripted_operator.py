@@ -92,7 +92,8 @@ class _HttpOperator:
         self, station: Station, scenario: Scenario, planned: _PlannedSurvey, report: Report
     ) -> None:
         self._station, self._scenario, self._report = station, scenario, report
-        self._operator = ScriptedOperator(scenario.fleet.serials, repeats=True)
+        fleet = scenario.fleet
+        self._operator = ScriptedOperator(fleet.serials, fleet.kept_share, repeats=True)
         self._planned = planned
 
     async def run(self) -> None:
@@ -106,7 +107,7 @@ class _HttpOperator:
             if survey is not None and survey.phase == "done":
                 self._report(
                     f"survey {survey.id}: done, {survey.reason}; "
-                    "another one begins when all batteries are full"
+                    "another one begins when all batteries are good"
                 )
             view = await self._view(survey)
             for action in self._operator.decide(view, clock.time()):

@@ -83,7 +83,9 @@ class StationRun:
         self._paths = {
             app.settings.serial: true_path(app, scenario.frame) for app in self.apps.apps
         }
-        operator = ScriptedOperator(scenario.fleet.serials, scenario.limit_s)
+        operator = ScriptedOperator(
+            scenario.fleet.serials, scenario.fleet.kept_share, scenario.limit_s
+        )
         self._operator = StationOperator(scenario.survey, operator, scenario.imager.is_upwind)
         self._shade = ShadeScoring(scenario, self._sky, frames)
         self._refused: set[int] = set()

@@ -33,6 +33,8 @@ class ScenarioFleet:
     """Of the battery, never planned with."""
     swap_s: float
     """On the ground, to change the battery."""
+    kept_share: float
+    """A battery that is this full at landing is not changed."""
 
     @property
     def serials(self) -> tuple[str, ...]:

@@ -93,6 +93,8 @@ class FleetTable(Table, frozen=True):
     endurance_min: Annotated[float, Meta(ge=3.0, le=120.0)] = 25.0
     reserve_share: Share = 0.2
     swap_min: Annotated[float, Meta(ge=0.0, le=60.0)] = 3.0
+    kept_share: Share = 0.5
+    """A battery that is this full at landing is not changed."""
 
 
 class ScenarioImagerTable(Table, frozen=True):

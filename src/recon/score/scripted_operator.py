@@ -4,10 +4,10 @@ Theory of operation. `decide` is called about once a second with a `FieldView` a
 
     no survey    plan one when all drones have been ready for SETTLED_S
     planned      start it with all drones, takeoff allowed
-    flying       start a drone (again) that stands with a full battery, or hovers without a task;
+    flying       start a drone (again) that stands with a good battery, or hovers without a task;
                  command return to home where a low-battery alarm is active and it is not returning;
                  dismiss the hazard area of one that has been lost in the air for FOUND_AFTER_S
-    finished     nothing; with `repeats`, plan the next survey when all batteries are full again
+    finished     nothing; with `repeats`, plan the next survey when all batteries are good again
     past limit_s abort, then call the fleet home, and one by one drones stopped on the way
 
 An operator needs time to notice an alarm or a stopped drone, find out why, and press a button: a
@@ -26,7 +26,6 @@ SETTLED_S = 3.0
 REACTION_S = 20.0
 FOUND_AFTER_S = 90.0
 """Until an assistant has walked to where it came down: longer than any lost link of a scenario."""
-FULL_BATTERY_FRACTION = 0.9
 
 
 class SurveyStage(Enum):
@@ -54,7 +53,7 @@ class DroneView:
     is_stopped: bool = False
     """The survey gives it no missions until it is started again."""
     is_called_home: bool = False
-    """The survey called it home; after landing it is started again with a full battery."""
+    """The survey called it home; after landing it is started again with a good battery."""
     is_flying_home: bool = False
     """Called home, it flies its landing mission now."""
     is_in_fleet_return: bool = False
@@ -64,12 +63,10 @@ class DroneView:
     is_under_pilot: bool = False
     """A pilot holds control authority; the operator takes it back before a start."""
 
-    @property
-    def is_charged(self) -> bool:
-        """Whether it stands with a full battery."""
+    def stands_with(self, least_share: float) -> bool:
+        """Whether it stands with a battery at least this full."""
         share = self.battery_fraction
-        is_full = share is not None and share >= FULL_BATTERY_FRACTION
-        return self.is_live and self.is_flying is False and is_full
+        return self.is_live and self.is_flying is False and (share or 0.0) >= least_share
 
     @property
     def is_out(self) -> bool:
@@ -147,6 +144,8 @@ class ScriptedOperator:
 
     serials: tuple[str, ...]
     """The survey drones."""
+    kept_share: float
+    """A battery this full is good: it stays in; others are changed."""
     limit_s: float | None = None
     repeats: bool = False
     _is_started: bool = False
@@ -174,8 +173,8 @@ class ScriptedOperator:
             yield RequestPlan()
 
     def _repeat(self, drones: Sequence[DroneView], now_s: float) -> Iterator[OperatorAction]:
-        are_charged = all(each.is_charged and each.is_ready for each in drones)
-        if self._lasts("next survey", are_charged, now_s):
+        are_ready = all(each.is_ready and each.stands_with(self.kept_share) for each in drones)
+        if self._lasts("next survey", are_ready, now_s):
             self._is_started = False
             yield RequestPlan()
 
@@ -190,10 +189,19 @@ class ScriptedOperator:
             if self._lasts(f"{each.serial}: lost", is_lost, now_s, FOUND_AFTER_S):
                 yield DismissHazard(each.serial)
         for each in drones:
-            if self._lasts(f"{each.serial}: no task", _needs_start(each), now_s):
+            if self._lasts(f"{each.serial}: no task", self._needs_start(each), now_s):
                 if each.is_under_pilot:
                     yield TakeAuthority(each.serial)
                 yield StartDrones((each.serial,))
+
+    def _needs_start(self, drone: DroneView) -> bool:
+        """Whether a live drone has no task and could fly: it hovers, or stands with its battery."""
+        if not drone.is_live:
+            return False
+        if drone.is_flying is True:
+            return drone.is_stopped and not drone.is_called_home and not drone.is_descending
+        is_waiting = drone.is_stopped or drone.is_called_home
+        return is_waiting and drone.stands_with(self.kept_share)
 
     def _end(
         self, stage: SurveyStage, drones: Sequence[DroneView], now_s: float
@@ -220,12 +228,3 @@ class ScriptedOperator:
             return False
         del self._since_s[what]
         return True
-
-
-def _needs_start(drone: DroneView) -> bool:
-    """Whether a live drone has no task and could fly: it hovers, or stands with a full battery."""
-    if not drone.is_live:
-        return False
-    if drone.is_flying is True:
-        return drone.is_stopped and not drone.is_called_home and not drone.is_descending
-    return drone.is_charged and (drone.is_stopped or drone.is_called_home)

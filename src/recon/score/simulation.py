@@ -49,6 +49,7 @@ def simulation_of(
         endurance_s=fleet.endurance_s,
         endurances_s=dict.fromkeys(imagers, IMAGER_ENDURANCE_S),
         battery_swap_s=fleet.swap_s,
+        battery_kept_share=fleet.kept_share,
         drift=FIELD_DRIFT,
         sensors=TelemetrySensorSettings(yaw_error_deg=conditions.yaw_error_deg),
         wind=replace(scenario.wind, seed=seed),

@@ -20,7 +20,7 @@ from recon.score.scenario_schema import (
 from recon.sim.fleet import IMAGER_SERIAL
 from recon.site import Site, SiteError, load_site
 
-PADS_APART_M = 20.0
+PADS_APART_M = 25.0
 PADS_OFF_M = 30.0
 """South of the region."""
 USUAL_IMAGER_HEIGHT_M = 120.0
@@ -123,7 +123,11 @@ def _pads_m(table: FleetTable, region: Region, errors: ScenarioErrors) -> tuple[
 
 def _fleet(table: FleetTable, pads_m: tuple[EastNorth, ...]) -> ScenarioFleet:
     return ScenarioFleet(
-        pads_m, 60.0 * table.endurance_min, table.reserve_share, 60.0 * table.swap_min
+        pads_m,
+        60.0 * table.endurance_min,
+        table.reserve_share,
+        60.0 * table.swap_min,
+        table.kept_share,
     )
 
 

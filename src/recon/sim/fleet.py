@@ -70,6 +70,8 @@ class SimulationConfig:
     """By serial, where it differs from `endurance_s`."""
     battery_swap_s: float | None = None
     """From landing to a full battery; None: batteries are not changed."""
+    battery_kept_share: float = 1.0
+    """A battery that is this full at landing stays in."""
     sensors: TelemetrySensorSettings = field(default_factory=TelemetrySensorSettings)
     drift: DriftSettings = field(default_factory=DriftSettings)
     wind: WindSettings | None = None
@@ -141,6 +143,7 @@ def _build_app(
         go_home_height_m=config.go_home_heights_m.get(serial, _go_home_height_m(number)),
         endurance_s=endurance_s,
         battery_swap_s=config.battery_swap_s,
+        battery_kept_share=config.battery_kept_share,
     )
     motion = _imager_start(config, imager) if imager else _survey_start(config, number)
     active_mode: ActiveMode = Grounded() if motion.height_m == 0.0 else PositionHold()

@@ -50,6 +50,9 @@ from recon.model.shade import ShadeMap, SunForecast
 from recon.model.survey import CellState, MissionAssignment, SurveyBudget, SurveyPhase, WhenDone
 from recon.model.units import seconds_to_ns
 
+CHANGES = "returns to change its battery: little sun is expected for 5 min"
+WAITS_BELOW = "returns to wait on the ground: little sun is expected for 2.5 min"
+
 
 def started(flyers: list[Flyer], planner: str = "sunlit_first") -> SurveyState:
     return begun(replace(SURVEY, planner=planner, budget=SurveyBudget(rounds=20)), flyers)
@@ -390,6 +393,21 @@ class TestDecisions:
         _, (mission,) = decided(later, on_ground, state=state, now_s=120.0)
         assert mission.stands_by
 
+    @pytest.mark.parametrize(("percent", "takes_off"), [(25, False), (35, True)])
+    def test_sun_must_be_probable_enough_for_a_takeoff_and_not_for_a_flight(
+        self, percent: int, takes_off: bool
+    ) -> None:
+        sure = forecast(clear_sky)
+        little = np.full_like(sure.sun_probability, round(2.55 * percent))
+        sun = replace(sure, sun_probability=little)
+        on_ground = Surveyor("S-1", (0.0, -40.0), is_flying=False)
+        state, missions = decided(sun, on_ground)
+        assert bool(missions) == takes_off
+        if not takes_off:
+            why = "waits on the ground: little sun is expected on its rows"
+            assert state.decisions["S-1"].text == why
+        assert decided(sun, replace(on_ground, is_flying=True))[1]
+
     def test_under_a_closed_sky_nothing_takes_off(self) -> None:
         sun = forecast(lambda _east, _north, _lead: False)
         state, missions = decided(sun, Surveyor("S-1", (0.0, -40.0), is_flying=False))
@@ -397,23 +415,27 @@ class TestDecisions:
         assert state.decisions["S-1"].text == "waits: no sun is expected on its rows for 5 min"
 
     @pytest.mark.parametrize(
-        ("charge_share", "time_left_s", "shaded_s", "when_done", "returns"),
+        ("charge_share", "time_left_s", "shaded_s", "when_done", "purpose"),
         [
-            (0.5, 300.0, 290.0, WhenDone.RETURN_HOME, True),
-            (0.5, 300.0, 120.0, WhenDone.RETURN_HOME, False),  # sun comes while it is away
-            (0.5, 3_000.0, 290.0, WhenDone.RETURN_HOME, False),  # longer than any shade
-            (0.9, 300.0, 290.0, WhenDone.RETURN_HOME, False),
-            (0.5, 300.0, 290.0, WhenDone.HOVER, False),
-            (None, None, 290.0, WhenDone.RETURN_HOME, False),
+            (0.3, 300.0, 290.0, WhenDone.RETURN_HOME, CHANGES),
+            (0.3, 300.0, 120.0, WhenDone.RETURN_HOME, ""),  # sun comes while it is away
+            (0.3, 3_000.0, 290.0, WhenDone.RETURN_HOME, ""),  # longer than any shade
+            (0.3, 300.0, 290.0, WhenDone.HOVER, ""),
+            (0.5, 300.0, 290.0, WhenDone.RETURN_HOME, WAITS_BELOW),
+            (0.5, 300.0, 120.0, WhenDone.RETURN_HOME, ""),
+            (0.5, 300.0, 180.0, WhenDone.RETURN_HOME, WAITS_BELOW),  # it is back by then
+            (0.9, 3_000.0, 290.0, WhenDone.RETURN_HOME, WAITS_BELOW),
+            (0.9, 3_000.0, 290.0, WhenDone.HOVER, ""),
+            (None, None, 290.0, WhenDone.RETURN_HOME, ""),
         ],
     )
-    def test_a_battery_that_may_not_last_is_changed_while_little_sun_is_expected(
+    def test_one_that_would_wait_lands_where_that_costs_little_sun(
         self,
         charge_share: float | None,
         time_left_s: float | None,
         shaded_s: float,
         when_done: WhenDone,
-        returns: bool,
+        purpose: str,
     ) -> None:
         sun = forecast(lambda _east, _north, lead: lead >= shaded_s)
         made = create(planned(replace(SURVEY, when_done=when_done)))
@@ -423,11 +445,11 @@ class TestDecisions:
         here = Surveyor("S-1", (0.0, 100.0), charge_share=charge_share, time_left_s=time_left_s)
         state, missions = decided(sun, here, state=running)
         called = returning(state, [here])
-        assert bool(called) == returns
-        if returns:
+        if not purpose:
+            assert called == {}
+        else:
             assert missions == ()
-            why = "returns to change its battery: little sun is expected for 5 min"
-            assert called == {"S-1": why}
+            assert called == {"S-1": purpose}
             assert returning(state, [replace(here, is_able=False)]) == {}
 
     @pytest.mark.parametrize(("shaded_s", "called"), [(240.0, {"S-1"}), (290.0, {"S-1", "S-2"})])
@@ -436,7 +458,7 @@ class TestDecisions:
     ) -> None:
         sun = forecast(lambda _east, _north, lead: lead >= shaded_s)
         pair = [
-            Surveyor(f"S-{n}", (0.0, 80.0 * n), charge_share=0.5, time_left_s=300.0) for n in (1, 2)
+            Surveyor(f"S-{n}", (0.0, 80.0 * n), charge_share=0.3, time_left_s=300.0) for n in (1, 2)
         ]
         made = create(planned(replace(SURVEY, when_done=WhenDone.RETURN_HOME)))
         assert isinstance(made, SurveyState)

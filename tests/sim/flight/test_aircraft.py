@@ -208,6 +208,17 @@ def test_the_battery_is_changed_some_time_after_landing(flights) -> None:
     assert aircraft.battery.fraction > 0.99
 
 
+@pytest.mark.parametrize(("fraction", "is_kept"), [(0.55, True), (0.5, False)])
+def test_a_battery_that_is_good_at_landing_stays_in(flights, fraction, is_kept) -> None:
+    aircraft = flights.hovering(height_m=5.0)
+    aircraft.settings = AircraftSettings(battery_swap_s=30.0, battery_kept_share=0.5)
+    aircraft.battery = Battery(fraction, endurance_s=1500.0)
+    aircraft.land()
+    flights.fly_until(aircraft, lambda a: a.is_on_ground, 60.0)
+    flights.fly_on(aircraft, 60.0)
+    assert (aircraft.battery.fraction < fraction) == is_kept
+
+
 @pytest.mark.parametrize("swap_s", [None, 30.0])
 def test_the_battery_is_not_changed_after_a_crash_or_before_a_flight(flights, swap_s) -> None:
     for aircraft in (flights.hovering(), Aircraft(0)):

@@ -238,8 +238,17 @@ class SurveySettings:
     battery_change_away_s: float = 300.0
     """The way home, landing, another battery, takeoff and the way back."""
 
-    swapped_from: float = 0.2
-    """Share used of a battery from which it is worth a change while little sun is expected."""
+    battery_kept_share: float = 0.4
+    """Of the charge above the reserve: with as much a battery stays in at a landing."""
+
+    ground_wait_away_s: float = 150.0
+    """The way home, landing, takeoff with the same battery and the way back."""
+
+    saved_battery_gain: float = 0.25
+    """A wait in the air costs a quarter of it later, in a change of battery, if one is needed."""
+
+    takeoff_probability: float = 0.3
+    """One on the ground takes off for sun that is at least so probable somewhere on its flight."""
 
     swap_later: float = 0.5
     """A later change costs this share of its time in sun: half of it under broken cloud."""

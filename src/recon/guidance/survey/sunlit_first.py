@@ -17,7 +17,8 @@ once. One call of `sunlit_first`:
 6. If that begins at once, the vehicle gets its rows up to `committed_s` as a mission. If it begins
    later, the vehicle goes to its first row and stands by in its layer; one on the ground stays
    there until it is time to take off. If nothing is expected in sun, it waits where it is.
-7. One that would wait returns to home instead if a change of battery costs less sun now than later.
+7. One that would wait lands at home instead where that costs little sun: with a good battery to
+   wait on the ground, with a low one if a change of battery costs less sun now than later.
    One that waits at the rows' height climbs or sinks to its layer first, out of others' rows.
 8. Rows where a vehicle without telemetry may be are left out, and its own rows: the gate would
    refuse them. They are flown once it is in contact again, or dismissed by an operator.

@@ -1,8 +1,9 @@
 """What one vehicle without a mission does next, for the planner `sunlit_first`.
 
 Over its share of the missing ground the best flight is searched. If that begins at once, its first
-rows are flown; if later, the vehicle goes there and stands by, or waits where it is; a battery is
-changed when that costs least. Each decision leaves a sentence (`Decision`).
+rows are flown; if later, the vehicle goes there and stands by, or waits where it is; under a
+closed sky it waits on the ground, and a low battery is changed when that costs least. Each decision
+leaves a sentence (`Decision`).
 """
 
 from collections.abc import Sequence
@@ -83,15 +84,21 @@ class VehicleChoice:
         if self.expected.is_clear(share, self.settings.clear_sky_probability):
             return self.fly_all(self.rows(share))
         flight = self.best(share)
-        if (flight.waits_s > 0.0 or not flight.legs) and self._is_time_to_swap(free):
+        if (flight.waits_s > 0.0 or not flight.legs) and self._is_time_to_land(free):
             return self._return_home()
         if not flight.legs:
             minutes = self.settings.planned_s / 60.0
             return self.wait(f"waits: no sun is expected on its rows for {minutes:.0f} min")
+        if not (self.surveyor.is_flying or self._is_worth_taking_off(flight)):
+            return self.wait("waits on the ground: little sun is expected on its rows")
         if flight.waits_s > 0.0:
             return self._stand_by(flight)
         legs = self.committed(flight)
         return self.fly(self._allowed(self.long_enough(legs)))
+
+    def _is_worth_taking_off(self, flight: Flight) -> bool:
+        most = max(leg.probability for leg in flight.legs)
+        return most >= self.settings.takeoff_probability
 
     def begun_at_once(self, share: BoolArray) -> tuple[PlannedLeg, ...]:
         """Return the first legs of the best flight over a share; none if that would wait."""
@@ -122,30 +129,44 @@ class VehicleChoice:
         is_worth = lit_m2 > self.settings.share_worth * missing_m2.sum()
         return share if is_worth else free
 
-    def _is_time_to_swap(self, free: BoolArray) -> bool:
-        """Whether its battery can be changed, and that costs less sun now than later."""
-        surveyor, settings = self.surveyor, self.settings
+    def _is_time_to_land(self, free: BoolArray) -> bool:
+        """Whether it can fly home, and that costs less sun now than it gains."""
+        surveyor = self.surveyor
         if self.plan.survey.when_done is not WhenDone.RETURN_HOME or not surveyor.is_flying:
             return False
-        if surveyor.charge_share is None or surveyor.charge_share > 1.0 - settings.swapped_from:
+        if surveyor.charge_share is None:
             return False
-        now, later = self.swap_costs(free)
-        return now < later
+        cost, gain = self.landing_cost_and_gain(free)
+        return cost < gain
 
-    def swap_costs(self, free: BoolArray) -> tuple[float, float]:
-        """Return what a change of battery costs now and later, as shares of its time in sun.
+    @property
+    def _keeps_battery(self) -> bool:
+        """Whether its battery is good enough to stay in."""
+        share = self.surveyor.charge_share
+        return share is not None and share >= self.settings.battery_kept_share
 
-        Now it costs the sun expected on free ground until the vehicle is back, the more the fewer
-        others stay: if all were away, none could use the sun. Later it costs that time in sun,
-        but only if it is needed at all.
+    @property
+    def _away_s(self) -> float:
+        settings = self.settings
+        return (
+            settings.ground_wait_away_s if self._keeps_battery else settings.battery_change_away_s
+        )
+
+    def landing_cost_and_gain(self, free: BoolArray) -> tuple[float, float]:
+        """Return what landing now costs and gains, as shares of its time in sun.
+
+        It costs the sun expected on free ground until the vehicle is back. A low battery is
+        changed: that costs the more the fewer others stay, and gains what a change would cost
+        later, if it is needed at all. A good one stays in, and its change is needed later.
         """
         settings, missing_m2 = self.settings, self.expected.missing_m2[free]
         sun = missing_m2 @ self.expected.probability[free] / missing_m2.sum()
-        now = (
-            float(sun[self.expected.moments_s <= settings.battery_change_away_s].mean())
-            * self._scarcity
-        )
-        return now, settings.swap_later * self._swap_probability(float(missing_m2.sum()))
+        is_away = self.expected.moments_s <= self._away_s
+        cost = float(sun[is_away].mean())
+        probability = self._swap_probability(float(missing_m2.sum()))
+        if self._keeps_battery:
+            return cost, settings.saved_battery_gain * probability
+        return cost * self._scarcity, settings.swap_later * probability
 
     def _swap_probability(self, missing_m2: float) -> float:
         """Return how probably its battery does not last: for its part of the missing ground, or for
@@ -166,8 +187,9 @@ class VehicleChoice:
         return len(others) / max(len(staying), 0.5) if others else 1.0
 
     def _return_home(self) -> Step:
-        minutes = self.settings.battery_change_away_s / 60.0
-        text = f"returns to change its battery: little sun is expected for {minutes:.0f} min"
+        purpose = "wait on the ground" if self._keeps_battery else "change its battery"
+        minutes = self._away_s / 60.0
+        text = f"returns to {purpose}: little sun is expected for {minutes:g} min"
         state = self._with_decision(text, self.now_ns + seconds_to_ns(self.settings.retry_s), True)
         return state, ()
 

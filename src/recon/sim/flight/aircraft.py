@@ -74,6 +74,8 @@ class AircraftSettings:
     """From home: reported when reached; missions that lead farther are rejected."""
     battery_swap_s: float | None = None
     """From landing to a full battery; None: batteries are not changed."""
+    battery_kept_share: float = 1.0
+    """A battery that is this full at landing stays in."""
 
 
 @dataclass(slots=True)
@@ -340,7 +342,8 @@ class Aircraft:
         # Touchdown: without this a residual velocity would move the aircraft along the ground.
         if isinstance(following, Grounded):
             self._come_to_rest()
-            self._landed_at_ns = self.now_ns
+            is_kept = self.battery.fraction >= self.settings.battery_kept_share
+            self._landed_at_ns = None if is_kept else self.now_ns
 
     def _change_battery(self) -> None:
         swap_s, landed_at_ns = self.settings.battery_swap_s, self._landed_at_ns

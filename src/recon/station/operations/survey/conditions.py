@@ -47,7 +47,7 @@ def _of_vehicle(
         yield from _waits_long(station, member)
     elif record.is_running and member.return_reason is not None and is_on_ground(station, member):
         text = (
-            f"has flown home: {member.return_reason}. Change its battery, then let it join survey"
+            f"has flown home: {member.return_reason}. Change a low battery, then let it join survey"
         )
         again = f"recon survey start {record.survey.id} {member.serial} --takeoff"
         yield _about(station, member, RULE, f"{text} {name} again ({again})")
