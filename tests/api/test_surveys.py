@@ -61,6 +61,18 @@ class TestAsked:
         assert client.get("/api/surveys").json() == [survey]
         assert client.get(f"/api/surveys/{survey['id']}").json() == survey
 
+    def test_an_imaging_drone_decides_which_planner_is_usual(
+        self, client: Client, station: FakeStation
+    ) -> None:
+        def planner(**asked: str) -> str:
+            answer = client.post("/api/surveys", json={**ASKED, **asked}).json()
+            return str(answer["survey"]["planner"])
+
+        assert planner() == "lawnmower_once"
+        station.driver.station = with_imagers(station.driver.station, "IMAGER")
+        assert planner() == "sunlit_first"
+        assert planner(planner="lawnmower_again") == "lawnmower_again"
+
     def test_what_it_will_take_is_known_before_the_start(
         self, client: Client, station: FakeStation
     ) -> None:

@@ -96,7 +96,7 @@ def test_values_of_the_file_are_in_the_scenario(tmp_path: Path) -> None:
     scenario = small(tmp_path)
     assert scenario.sun.start_utc_s == 1_750_435_200.0
     assert scenario.frame.origin.ellipsoid_height_m == 280.0
-    assert scenario.fleet.pads_m == ((90.0, -30.0), (110.0, -30.0))
+    assert scenario.fleet.pads_m == ((87.5, -30.0), (112.5, -30.0))
     assert scenario.imager.over_m == (100.0, 75.0)
     assert [clouds.layer.cover for clouds in scenario.clouds] == [0.4]
     assert scenario.faults[0].start_s == 40.0

@@ -80,8 +80,13 @@ def create_command(
     feature: FeatureOption = None,
     name: Annotated[str | None, typer.Option("--name", help="Name of the survey.")] = None,
     planner: Annotated[
-        str, typer.Option("--planner", help=f"{' or '.join(PLANNER_GOALS)}.")
-    ] = "lawnmower_once",
+        str | None,
+        typer.Option(
+            "--planner",
+            help=f"{' or '.join(PLANNER_GOALS)}. Default: sunlit_first with an imaging drone, else "
+            "lawnmower_once.",
+        ),
+    ] = None,
     front: FrontOption = 0.7,
     side: SideOption = 0.6,
     bearing: BearingOption = None,

@@ -3770,9 +3770,9 @@ export interface components {
             name?: string | null;
             /**
              * Planner
-             * @default lawnmower_once
+             * @description null: sunlit_first on a site with an imaging drone, else lawnmower_once
              */
-            planner: string;
+            planner?: string | null;
             /**
              * Polygon
              * @description the rings of a GeoJSON polygon, longitude first: the outline, then its holes

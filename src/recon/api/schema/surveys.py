@@ -63,7 +63,10 @@ class SurveyRequest(StrictMessage):
     front_overlap: float = 0.7
     side_overlap: float = 0.6
     row_bearing_deg: float | None = None
-    planner: Annotated[str, Field(max_length=100)] = "lawnmower_once"
+    planner: Annotated[str, Field(max_length=100)] | None = Field(
+        default=None,
+        description="null: sunlit_first on a site with an imaging drone, else lawnmower_once",
+    )
     counts_neighbours: bool = False
     cell_m: float = 4.0
     when_done: WhenDoneName = Field(

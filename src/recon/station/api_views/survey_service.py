@@ -47,7 +47,10 @@ class SurveyService:
         except SurveyCameraError as problem:
             return _refused(Refusal(RULE, str(problem)))
         number = self.ids()
-        self.driver.handle(SurveyRequested(_survey(number, asked, region, camera), by.label))
+        # Without an imaging drone no shade is known, and all that can be done is flying rows once.
+        planner = asked.planner or ("sunlit_first" if imagers else "lawnmower_once")
+        survey = _survey(number, asked, region, camera, planner)
+        self.driver.handle(SurveyRequested(survey, by.label))
         return self._taken(number)
 
     def start(
@@ -159,7 +162,7 @@ def _camera_view(model: CameraModel) -> schema.SurveyCameraView:
 
 
 def _survey(
-    number: int, asked: schema.SurveyRequest, region: Region, camera: SurveyCamera
+    number: int, asked: schema.SurveyRequest, region: Region, camera: SurveyCamera, planner: str
 ) -> Survey:
     budget = asked.budget
     return Survey(
@@ -173,7 +176,7 @@ def _survey(
         front_overlap=asked.front_overlap,
         side_overlap=asked.side_overlap,
         row_bearing_deg=asked.row_bearing_deg,
-        planner=asked.planner,
+        planner=planner,
         budget=SurveyBudget(budget.rounds, budget.time_s, budget.flown_m),
         counts_neighbours=asked.counts_neighbours,
         cell_m=asked.cell_m,
