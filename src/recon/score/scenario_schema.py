@@ -19,6 +19,7 @@ from recon.camera.sight import COARSEST_M
 from recon.detection import DETECTORS
 from recon.forecast import FORECASTERS
 from recon.guidance.survey import PLANNERS
+from recon.guidance.survey.settings import DEFAULT as SURVEY_DEFAULT
 from recon.model.errors import ReconError
 from recon.score.scenario import IDEAL, NO_FORECAST, PERFECT
 from recon.sim.errors import SimulationError
@@ -93,7 +94,7 @@ class FleetTable(Table, frozen=True):
     endurance_min: Annotated[float, Meta(ge=3.0, le=120.0)] = 25.0
     reserve_share: Share = 0.2
     swap_min: Annotated[float, Meta(ge=0.0, le=60.0)] = 3.0
-    kept_share: Share = 0.5
+    kept_share: Share = SURVEY_DEFAULT.battery_kept_fraction
     """A battery that is this full at landing is not changed."""
 
 

@@ -22,6 +22,13 @@ def battery_of(world: SurveyedWorld, serial: str, fraction: float) -> None:
     world.runs(2.0)
 
 
+def alarm_text(world: SurveyedWorld, serial: str) -> str:
+    """The alarm of a survey's vehicle that has flown home."""
+    alarms = world.driver.station.alarms.alarms.values()
+    (text,) = [a.condition.text for a in alarms if a.is_active and a.condition.serial == serial]
+    return text
+
+
 def is_home(world: SurveyedWorld, serial: str) -> bool:
     east_m, north_m, up_m = world.fleet.place_m(serial)
     pad = world.fleet.pads_m[serial]
@@ -145,11 +152,12 @@ class TestWithoutBattery:
         first = world.figures().not_yet_m2
         assert 0.0 < first < world.figures().region_m2
         assert world.holder("SIM-1") is AuthorityHolder.OPERATOR
-        assert ("survey", "SIM-1") in world.fleet.alarms()
+        assert "Change its battery, then let it join survey" in alarm_text(world, "SIM-1")
 
         world.runs(30.0)
         assert not world.fleet.flies("SIM-1")
         battery_of(world, "SIM-1", 1.0)
+        assert "Its battery is good: let it join" in alarm_text(world, "SIM-1")
         world.starts("SIM-1", takeoff=True)
         world.runs(30.0)
         assert world.fleet.flies("SIM-1")

@@ -238,8 +238,8 @@ class SurveySettings:
     battery_change_away_s: float = 300.0
     """The way home, landing, another battery, takeoff and the way back."""
 
-    battery_kept_share: float = 0.4
-    """Of the charge above the reserve: with as much a battery stays in at a landing."""
+    battery_kept_fraction: float = 0.5
+    """A battery that is this full after a landing stays in; a lower one is changed."""
 
     ground_wait_away_s: float = 150.0
     """The way home, landing, takeoff with the same battery and the way back."""

@@ -33,8 +33,8 @@ class Surveyor:
     is_able: bool = True
     ended_mission: int = 0
     time_left_s: float | None = None
-    charge_share: float | None = None
-    """`time_left_s` over that of a full battery; None if unknown."""
+    landing_fraction: float | None = None
+    """Of a full battery, left after a landing at home now; None if unknown."""
     home_m: EastNorth | None = None
     """Where it lands; None: at its present place."""
     is_flying: bool = True

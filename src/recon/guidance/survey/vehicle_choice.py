@@ -134,16 +134,16 @@ class VehicleChoice:
         surveyor = self.surveyor
         if self.plan.survey.when_done is not WhenDone.RETURN_HOME or not surveyor.is_flying:
             return False
-        if surveyor.charge_share is None:
+        if surveyor.landing_fraction is None:
             return False
         cost, gain = self.landing_cost_and_gain(free)
         return cost < gain
 
     @property
     def _keeps_battery(self) -> bool:
-        """Whether its battery is good enough to stay in."""
-        share = self.surveyor.charge_share
-        return share is not None and share >= self.settings.battery_kept_share
+        """Whether its battery will be good enough to stay in."""
+        left = self.surveyor.landing_fraction
+        return left is not None and left >= self.settings.battery_kept_fraction
 
     @property
     def _away_s(self) -> float:

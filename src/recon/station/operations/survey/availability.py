@@ -10,7 +10,7 @@ from recon.model.control import AuthorityHolder
 from recon.model.vehicle import Staleness, VehicleState
 from recon.safety.airspace import PreparedAirspace
 from recon.safety.datum import frame_for, home_enu_m, takeoff_up_m, vehicle_enu_m
-from recon.safety.energy import consumption
+from recon.safety.energy import consumption, fraction_to_get_home
 from recon.safety.separation_minima import gate_minima
 from recon.safety.settings import EnergySettings
 from recon.station.state.orders import OrderRecord, mission_end_text
@@ -38,16 +38,15 @@ def available_vehicles(station: Station, record: SurveyRecord, now_ns: int) -> I
             continue
         home_m = home_enu_m(station.airspace, vehicle)
         energy = station.settings.safety.energy
-        left_s = time_left_s(vehicle, station.airspace, energy)
-        full = replace(vehicle, battery_fraction=replace(vehicle.battery_fraction, value=1.0))
-        full_s = time_left_s(full, station.airspace, energy)
+        has = vehicle.battery_fraction.value
+        takes = fraction_to_get_home(vehicle, station.airspace, energy)
         yield Surveyor(
             serial=member.serial,
             place_m=(float(place_m[0]), float(place_m[1])),
             is_able=hindrance(station, member, now_ns) is None,
             ended_mission=member.number - is_flown(station, member),
-            time_left_s=left_s,
-            charge_share=left_s / full_s if left_s is not None and full_s else None,
+            time_left_s=time_left_s(vehicle, station.airspace, energy),
+            landing_fraction=None if has is None or takes is None else has - takes,
             home_m=None if home_m is None else (float(home_m[0]), float(home_m[1])),
             is_flying=vehicle.is_flying.value is True,
             height_above_takeoff_m=vehicle.height_above_takeoff_m.value,

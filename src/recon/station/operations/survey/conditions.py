@@ -46,15 +46,24 @@ def _of_vehicle(
     elif is_under_way(station, member):
         yield from _waits_long(station, member)
     elif record.is_running and member.return_reason is not None and is_on_ground(station, member):
-        text = (
-            f"has flown home: {member.return_reason}. Change a low battery, then let it join survey"
-        )
         again = f"recon survey start {record.survey.id} {member.serial} --takeoff"
-        yield _about(station, member, RULE, f"{text} {name} again ({again})")
+        text = f"let it join survey {name} again ({again})"
+        advice = _battery_advice(station, record, member)
+        yield _about(
+            station, member, RULE, f"has flown home: {member.return_reason}. {advice} {text}"
+        )
     elif record.is_over and _hovers_since(station, record, member):
         why = "" if member.stop_reason is None else f"; it had stopped: {member.stop_reason}"
         text = f"hovers: survey {name} is over{why}. Call it home, or give it an order"
         yield _about(station, member, RULE_LEFT, text)
+
+
+def _battery_advice(station: Station, record: SurveyRecord, member: SurveyMember) -> str:
+    left = station.fleet.vehicles[member.serial].battery_fraction.value
+    if left is None or record.state is None:
+        return "Change its battery if it is low, then"
+    is_good = left >= record.state.plan.settings.battery_kept_fraction
+    return "Its battery is good:" if is_good else "Change its battery, then"
 
 
 def _waits_long(station: Station, member: SurveyMember) -> Iterator[Condition]:
