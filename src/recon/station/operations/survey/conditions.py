@@ -48,9 +48,9 @@ def _of_vehicle(
     elif record.is_running and member.return_reason is not None and is_on_ground(station, member):
         again = f"recon survey start {record.survey.id} {member.serial} --takeoff"
         text = f"let it join survey {name} again ({again})"
-        advice = _battery_advice(station, record, member)
+        of_battery = _about_battery(station, record, member)
         yield _about(
-            station, member, RULE, f"has flown home: {member.return_reason}. {advice} {text}"
+            station, member, RULE, f"has flown home: {member.return_reason}. {of_battery} {text}"
         )
     elif record.is_over and _hovers_since(station, record, member):
         why = "" if member.stop_reason is None else f"; it had stopped: {member.stop_reason}"
@@ -58,7 +58,7 @@ def _of_vehicle(
         yield _about(station, member, RULE_LEFT, text)
 
 
-def _battery_advice(station: Station, record: SurveyRecord, member: SurveyMember) -> str:
+def _about_battery(station: Station, record: SurveyRecord, member: SurveyMember) -> str:
     left = station.fleet.vehicles[member.serial].battery_fraction.value
     if left is None or record.state is None:
         return "Change its battery if it is low, then"
