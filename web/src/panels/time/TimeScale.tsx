@@ -95,14 +95,21 @@ export function nearestRight(forecast: ForecastView, lead_s: number): number | n
   return lead_s === 0 || nearest === undefined ? null : nearest.right_share;
 }
 
-/** Solid where the clouds to come are seen, fading to the hatch of the unknown where they are not. */
-export function gradient({ lead_s, predicted_share }: ForecastView): string {
+/**
+ * Between the colours of sun and of shade, by how much of the field will be in sun. Solid where the clouds to come are
+ * seen, fading to the hatch of the unknown where they are not.
+ */
+export function gradient({ lead_s, predicted_share, sun_share }: ForecastView): string {
   const last = Math.max(1, lead_s.length - 1);
   const stops = predicted_share.map((share, index) => {
-    const opacity = Math.round(100 * Math.min(1, Math.max(0, share)));
-    return `color-mix(in srgb, var(--sun) ${opacity}%, transparent) ${(100 * index) / last}%`;
+    const light = `color-mix(in srgb, var(--sun) ${percent(sun_share[index] ?? 0)}%, var(--shade))`;
+    return `color-mix(in srgb, ${light} ${percent(share)}%, transparent) ${(100 * index) / last}%`;
   });
   return `linear-gradient(to right, ${stops.join(", ")})`;
+}
+
+function percent(share: number): number {
+  return Math.round(100 * Math.min(1, Math.max(0, share)));
 }
 
 /** Between labels, as a share of the scale: what a wide one has room for, and what a narrow one has. */

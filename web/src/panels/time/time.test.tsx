@@ -48,7 +48,18 @@ describe("the time scale", () => {
   });
 
   it("fades with what is known", () => {
-    expect(gradient(forecast())).toContain("var(--sun) 20%, transparent) 100%");
+    expect(gradient(forecast())).toMatch(/ 20%, transparent\) 100%\)$/);
+  });
+
+  it("has the colour of shade where the field will be in shade", () => {
+    const leads = { lead_s: [0, 60], predicted_share: [1, 0.5] };
+    const closing = gradient({ ...forecast(), ...leads, sun_share: [0.9, 0.04] });
+    expect(closing).toContain(
+      "color-mix(in srgb, var(--sun) 90%, var(--shade)) 100%, transparent) 0%",
+    );
+    expect(closing).toContain(
+      "color-mix(in srgb, var(--sun) 4%, var(--shade)) 50%, transparent) 100%",
+    );
   });
 
   it("labels first and last leads, and none over another", () => {
