@@ -10,14 +10,30 @@ export function surveyStatus({ phase, vehicles }: SurveyView): string {
 }
 
 /** About how long a running survey still takes, from how fast it has imaged so far; null if unknown. */
-export function timeLeft({ phase, figures, age_s, vehicles }: SurveyView): string | null {
+export function timeLeft({ phase, planner, figures, age_s, vehicles }: SurveyView): string | null {
   const isFlown = phase === "running" && vehicles.some((vehicle) => vehicle.is_flying_rows);
   if (!isFlown || figures === null || age_s < LEAST_AGE_S) return null;
-  const imaged_m2 = figures.region_m2 - figures.not_yet_m2;
-  if (imaged_m2 < LEAST_SHARE * figures.region_m2 || figures.not_yet_m2 <= 0) return null;
-  const left_s = (figures.not_yet_m2 / imaged_m2) * age_s;
+  const [done_m2, left_m2] =
+    planner === ANY_LIGHT ? imagedAndLeft(figures) : imagedInSunAndLeft(figures);
+  if (done_m2 < LEAST_SHARE * figures.region_m2 || left_m2 <= 0) return null;
+  const left_s = (left_m2 / done_m2) * age_s;
   return left_s < 60 ? text.surveys.underMinute : text.surveys.minutesLeft(Math.round(left_s / 60));
 }
+
+type Figures = NonNullable<SurveyView["figures"]>;
+
+function imagedAndLeft({ region_m2, not_yet_m2 }: Figures): [number, number] {
+  return [region_m2 - not_yet_m2, not_yet_m2];
+}
+
+/** Ground outside all shade maps is imaged once, in whatever light. */
+function imagedInSunAndLeft({ reached_m2, in_sun_m2, not_shown_m2 }: Figures): [number, number] {
+  const done_m2 = in_sun_m2 + not_shown_m2;
+  return [done_m2, reached_m2 - done_m2];
+}
+
+/** The planner that flies all rows in whatever light; the others fly again what is in shade. */
+const ANY_LIGHT = "lawnmower_once";
 
 /** Before that a rate means nothing. */
 const LEAST_AGE_S = 60;

@@ -4,7 +4,7 @@ import { survey, surveyLight } from "../../testing/fakeField";
 import { area, station, vehicle } from "../../testing/fakeState";
 import { find, type RenderedPage, renderPage, settled } from "../../testing/renderPage";
 import { formatMinuteOfDay } from "../../text/replay";
-import { sharePercent, shownSurvey } from "../../text/survey";
+import { sharePercent, shownSurvey, timeLeft } from "../../text/survey";
 import { SurveyPanel } from "./SurveyPanel";
 
 let page: RenderedPage;
@@ -32,6 +32,16 @@ describe("a survey in the list", () => {
     expect(text).toContain("40 % in sun · 10 % in shade · 50 % to fly · 2.0\u00a0ha");
     expect(text).toContain("Alder flies rows");
     expect(text).toContain("battery too low");
+  });
+
+  it("needs longer for what is to be in sun than for rows in any light", () => {
+    const { figures } = survey(7);
+    if (figures === null) throw new Error("expected figures");
+    const flown = { age_s: 600, figures: { ...figures, not_yet_m2: 2_000, in_shade_m2: 10_000 } };
+    expect(timeLeft(survey(7, { ...flown, planner: "lawnmower_once" }))).toBe("≈ 1 min left");
+    expect(timeLeft(survey(7, { ...flown, planner: "sunlit_first" }))).toBe("≈ 15 min left");
+    const shaded = { ...figures, not_yet_m2: 2_000, in_shade_m2: 18_000, in_sun_m2: 0 };
+    expect(timeLeft(survey(7, { ...flown, planner: "sunlit_first", figures: shaded }))).toBeNull();
   });
 
   it("states how much of the region shade maps do not show, while it is flown", () => {
