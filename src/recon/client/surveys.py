@@ -39,7 +39,9 @@ class SurveyVehicle(msgspec.Struct, frozen=True):
     not_flying_reason: str | None
     refused: str | None
     has_come_home: bool
-    """Returned home for the survey and landed: after a battery change it can be added again."""
+    """Returned home for the survey and landed: it can be added again."""
+    takes_off_by_itself: bool
+    """It stands, and takes off as soon as there are rows for it."""
 
 
 class ImagerStay(msgspec.Struct, frozen=True):

@@ -22,10 +22,10 @@ def battery_of(world: SurveyedWorld, serial: str, fraction: float) -> None:
     world.runs(2.0)
 
 
-def alarm_text(world: SurveyedWorld, serial: str) -> str:
-    """The alarm of a survey's vehicle that has flown home."""
-    alarms = world.driver.station.alarms.alarms.values()
-    (text,) = [a.condition.text for a in alarms if a.is_active and a.condition.serial == serial]
+def alarm_text(world: SurveyedWorld, serial: str, rule: str = "survey") -> str:
+    """The text of the one active alarm of a rule about a vehicle."""
+    alarms = [a.condition for a in world.driver.station.alarms.alarms.values() if a.is_active]
+    (text,) = [each.text for each in alarms if (each.rule, each.serial) == (rule, serial)]
     return text
 
 
@@ -185,9 +185,17 @@ class TestWithoutBattery:
         world.asks()
         battery_of(world, "SIM-1", 0.24)
         world.starts("SIM-1", takeoff=True)
-        world.runs(30.0)
+        world.runs(8.0)
+        assert ("survey_takeoff", "SIM-1") not in world.fleet.alarms()
+        world.runs(22.0)
         assert not world.fleet.flies("SIM-1")
         assert world.missions() == [] or not world.fleet.stages()
+
+        # It would take off for a row that its battery lasts for: who stands there must know.
+        assert "Keep clear of it" in alarm_text(world, "SIM-1", "survey_takeoff")
+        world.pauses()
+        world.runs(2.0)
+        assert ("survey_takeoff", "SIM-1") not in world.fleet.alarms()
 
     def test_a_hovering_vehicle_with_that_setting_waits(self) -> None:
         world = surveyed_world(endurance_s=1_500.0)

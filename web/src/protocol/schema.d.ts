@@ -3672,6 +3672,11 @@ export interface components {
             refused: string | null;
             /** Serial */
             serial: string;
+            /**
+             * Takes Off By Itself
+             * @description on the ground: it takes off as soon as there are rows for it
+             */
+            takes_off_by_itself: boolean;
             /** Vehicle Name */
             vehicle_name: string;
         };

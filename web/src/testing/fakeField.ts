@@ -80,6 +80,7 @@ export function survey(id: number, changes: Partial<SurveyView> = {}): SurveyVie
         refused: null,
         mission_command_id: -3,
         has_come_home: false,
+        takes_off_by_itself: false,
       },
       {
         serial: "SN-002",
@@ -90,6 +91,7 @@ export function survey(id: number, changes: Partial<SurveyView> = {}): SurveyVie
         refused: null,
         mission_command_id: null,
         has_come_home: false,
+        takes_off_by_itself: false,
       },
     ],
     figures: {

@@ -23,6 +23,17 @@ describe("what a vehicle is doing", () => {
     expect(doing(vehicle(1, changes), null, 0)).toBe(text);
   });
 
+  it("may take off while it stands, with the permission to", () => {
+    const running = survey(1, { phase: "running" });
+    const [first, ...others] = running.vehicles;
+    if (first === undefined) throw new Error("expected a vehicle");
+    const vehicles = [{ ...first, takes_off_by_itself: true }, ...others];
+    const part = surveyPart([{ ...running, vehicles }], "SN-001");
+    const onGround = vehicle(1, { is_flying: { value: false, age_s: 0.1 } });
+    expect(doing(onGround, part, 0)).toBe("On the ground · may take off");
+    expect(doing({ ...onGround, is_stopped: true }, part, 0)).toBe("On the ground · all stop");
+  });
+
   it("is surveying while it flies rows of a survey that runs", () => {
     const part = surveyPart([survey(1, { phase: "running" })], "SN-001");
     expect(doing(vehicle(1), part, 0)).toContain("Surveying · ");

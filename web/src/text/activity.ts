@@ -28,7 +28,8 @@ export function doing(vehicle: VehicleView, part: SurveyingView | null, behindS:
     case "Unidentified":
       return text.activity.waitingForSerial;
     case "On the ground":
-      return vehicle.is_stopped ? text.activity.onGroundStopped : names[activity];
+      if (vehicle.is_stopped) return text.activity.onGroundStopped;
+      return part?.takes_off_by_itself === true ? text.activity.mayTakeOff : names[activity];
     case "Unknown":
       return text.activity.unknown;
     case "Landing":

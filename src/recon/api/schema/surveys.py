@@ -144,6 +144,9 @@ class SurveyingView(Message):
         description="why its newest mission was refused; null if it was not"
     )
     has_come_home: bool = Field(description="landed after the survey returned it home")
+    takes_off_by_itself: bool = Field(
+        description="on the ground: it takes off as soon as there are rows for it"
+    )
     mission_command_id: int | None
 
 

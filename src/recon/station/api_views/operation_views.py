@@ -15,7 +15,12 @@ from recon.station.api_views.imaging_views import corners_lon_lat, upwind_place_
 from recon.station.api_views.relief_views import light_view
 from recon.station.operations.fleet_return.conditions import in_turn
 from recon.station.operations.settings import SURVEY_TIMES
-from recon.station.operations.survey.availability import hindrance, is_flown, is_on_ground
+from recon.station.operations.survey.availability import (
+    hindrance,
+    is_flown,
+    is_on_ground,
+    takes_off_by_itself,
+)
 from recon.station.operations.survey.return_to_home import is_under_way
 from recon.station.state.fleet_return_record import ReturningVehicle
 from recon.station.state.imager_motion import ImagerMotion
@@ -114,6 +119,7 @@ def _member(
         not_flying_reason=waits,
         decision=None if decision is None else decision.text,
         refused=refused,
+        takes_off_by_itself=takes_off_by_itself(station, record, member),
         has_come_home=member.return_reason is not None and is_on_ground(station, member),
         mission_command_id=member.command_id,
     )

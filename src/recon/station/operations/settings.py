@@ -74,6 +74,10 @@ class SurveyTimes:
     asked_again_within_s: float = 5.0
     """A planner that still wants a refused mission asks within a step or two after it may."""
 
+    takeoff_waits_s: float = 10.0
+    """A person who starts a survey expects its vehicles to take off now. One that stands longer and
+    may still take off by itself is an alarm."""
+
     home_waits_s: float = 60.0
     """A turn to fly home comes within a minute; a vehicle that waits longer raises an alarm."""
 

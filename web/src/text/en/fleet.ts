@@ -18,6 +18,7 @@ export const activity = {
   } satisfies Record<VehicleActivity, string>,
   waitingForSerial: "Waiting for serial number",
   onGroundStopped: "On the ground · all stop",
+  mayTakeOff: "On the ground · may take off",
   unknown: "Flight state unknown",
   allStop: "All stop",
   surveying: "Surveying",

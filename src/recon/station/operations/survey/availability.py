@@ -102,6 +102,13 @@ def is_on_ground(station: Station, member: SurveyMember) -> bool:
     return vehicle is not None and vehicle.is_flying.value is False
 
 
+def takes_off_by_itself(station: Station, record: SurveyRecord, member: SurveyMember) -> bool:
+    """Return whether a vehicle stands, and takes off as soon as there are rows for it."""
+    is_guided = station.control(member.serial).authority.holder is AuthorityHolder.GUIDANCE
+    is_ready = member.may_take_off and member.stop_reason is None and member.return_reason is None
+    return record.is_running and is_ready and is_guided and is_on_ground(station, member)
+
+
 def is_flown(station: Station, member: SurveyMember) -> bool:
     """Return whether the vehicle's newest mission of its survey has not ended."""
     order = _order(station, member)

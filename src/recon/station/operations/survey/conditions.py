@@ -7,7 +7,7 @@ from recon.guidance.survey import PAUSED_BY_COMMAND
 from recon.model.survey import SurveyPhase
 from recon.station.operations.fleet_return.progress import newest_motion
 from recon.station.operations.settings import SURVEY_TIMES
-from recon.station.operations.survey.availability import is_on_ground
+from recon.station.operations.survey.availability import is_on_ground, takes_off_by_itself
 from recon.station.operations.survey.return_to_home import is_under_way
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.fleet_return_record import Stage
@@ -17,6 +17,7 @@ from recon.station.state.survey_record import SurveyMember, SurveyRecord
 RULE = "survey"
 RULE_LEFT = "survey_over"
 RULE_HOME = "survey_home"
+RULE_TAKEOFF = "survey_takeoff"
 
 
 def conditions(station: Station) -> Iterator[Condition]:
@@ -43,6 +44,13 @@ def _of_vehicle(
     if record.is_running and member.stop_reason is not None:
         text = f"stopped flying survey {name}: {member.stop_reason}"
         yield _about(station, member, RULE, f"{text}. Check it, then start it again")
+    elif takes_off_by_itself(station, record, member):
+        text = (
+            f"stands, and takes off by itself as soon as survey {name} has rows for it. Keep clear "
+            "of it, and pause the survey before anyone goes there"
+        )
+        condition = _about(station, member, RULE_TAKEOFF, text)
+        yield replace(condition, after_s=SURVEY_TIMES.takeoff_waits_s)
     elif is_under_way(station, member):
         yield from _waits_long(station, member)
     elif record.is_running and member.return_reason is not None and is_on_ground(station, member):
