@@ -205,7 +205,7 @@ def way_panel(choice: VehicleChoice, state: SurveyState, colour: object) -> Pict
 def battery_panel() -> Picture:
     """The sky closes in half a minute, for four; most of the battery is used."""
     closing = forecast(lambda east, _north, lead: (east < 120.0) & (lead > 240.0) | (lead < 30.0))
-    own = Surveyor("S-1", (60.0, 60.0), time_left_s=500.0, landing_fraction=0.45)
+    own = Surveyor("S-1", (60.0, 60.0), time_left_s=500.0, keeps_battery=False)
     others = Surveyor("S-2", (180.0, 120.0)), Surveyor("S-3", (300.0, 200.0))
     state, _missions = decided(closing, own, *others)
     choice = _choice(state, closing, own, *others)

@@ -415,23 +415,23 @@ class TestDecisions:
         assert state.decisions["S-1"].text == "waits: no sun is expected on its rows for 5 min"
 
     @pytest.mark.parametrize(
-        ("landing_fraction", "time_left_s", "shaded_s", "when_done", "purpose"),
+        ("keeps_battery", "time_left_s", "shaded_s", "when_done", "purpose"),
         [
-            (0.4, 300.0, 290.0, WhenDone.RETURN_HOME, CHANGES),
-            (0.4, 300.0, 120.0, WhenDone.RETURN_HOME, ""),  # sun comes while it is away
-            (0.4, 3_000.0, 290.0, WhenDone.RETURN_HOME, ""),  # longer than any shade
-            (0.4, 300.0, 290.0, WhenDone.HOVER, ""),
-            (0.65, 300.0, 290.0, WhenDone.RETURN_HOME, WAITS_BELOW),
-            (0.65, 300.0, 120.0, WhenDone.RETURN_HOME, ""),
-            (0.65, 300.0, 180.0, WhenDone.RETURN_HOME, WAITS_BELOW),  # it is back by then
-            (0.9, 3_000.0, 290.0, WhenDone.RETURN_HOME, WAITS_BELOW),
-            (0.9, 3_000.0, 290.0, WhenDone.HOVER, ""),
+            (False, 300.0, 290.0, WhenDone.RETURN_HOME, CHANGES),
+            (False, 300.0, 120.0, WhenDone.RETURN_HOME, ""),  # sun comes while it is away
+            (False, 3_000.0, 290.0, WhenDone.RETURN_HOME, ""),  # longer than any shade
+            (False, 300.0, 290.0, WhenDone.HOVER, ""),
+            (True, 300.0, 290.0, WhenDone.RETURN_HOME, WAITS_BELOW),
+            (True, 300.0, 120.0, WhenDone.RETURN_HOME, ""),
+            (True, 300.0, 180.0, WhenDone.RETURN_HOME, WAITS_BELOW),  # it is back by then
+            (True, 3_000.0, 290.0, WhenDone.RETURN_HOME, WAITS_BELOW),
+            (True, 3_000.0, 290.0, WhenDone.HOVER, ""),
             (None, None, 290.0, WhenDone.RETURN_HOME, ""),
         ],
     )
     def test_one_that_would_wait_lands_where_that_costs_little_sun(
         self,
-        landing_fraction: float | None,
+        keeps_battery: bool | None,
         time_left_s: float | None,
         shaded_s: float,
         when_done: WhenDone,
@@ -442,9 +442,7 @@ class TestDecisions:
         assert isinstance(made, SurveyState)
         running = start(made, ["S-1"], 0)
         assert isinstance(running, SurveyState)
-        here = Surveyor(
-            "S-1", (0.0, 100.0), landing_fraction=landing_fraction, time_left_s=time_left_s
-        )
+        here = Surveyor("S-1", (0.0, 100.0), keeps_battery=keeps_battery, time_left_s=time_left_s)
         state, missions = decided(sun, here, state=running)
         called = returning(state, [here])
         if not purpose:
@@ -460,7 +458,7 @@ class TestDecisions:
     ) -> None:
         sun = forecast(lambda _east, _north, lead: lead >= shaded_s)
         pair = [
-            Surveyor(f"S-{n}", (0.0, 80.0 * n), landing_fraction=0.4, time_left_s=300.0)
+            Surveyor(f"S-{n}", (0.0, 80.0 * n), keeps_battery=False, time_left_s=300.0)
             for n in (1, 2)
         ]
         made = create(planned(replace(SURVEY, when_done=WhenDone.RETURN_HOME)))

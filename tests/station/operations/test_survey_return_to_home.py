@@ -1,5 +1,6 @@
 """A survey's vehicles fly home when there is nothing left for them to fly, in virtual time."""
 
+from dataclasses import replace
 from random import Random
 
 import pytest
@@ -10,7 +11,10 @@ from recon.model.command import FlyMission, Hover, LandNow
 from recon.model.control import AuthorityHolder
 from recon.model.event import AuthorityTaken
 from recon.model.survey import SurveyBudget, SurveyPhase, WhenDone
+from recon.safety.airspace import PreparedAirspace
+from recon.station.operations.survey.availability import may_stay
 from recon.station.state.fleet_return_record import Stage
+from recon.station.state.station import Station
 
 LONG_FIELD = field(360.0)
 
@@ -258,3 +262,16 @@ def test_whatever_the_field_and_the_batteries_they_keep_apart_and_land(seed: int
     assert {world.holder(serial) for serial in serials} == {AuthorityHolder.OPERATOR}
     assert set(world.fleet.stages().values()) == {Stage.LANDED}
     assert world.fleet.nearest.level_m >= 15.0, world.fleet.nearest.who
+
+
+@pytest.mark.parametrize(
+    ("reserve", "fraction", "stays"),
+    [(0.25, 0.5, True), (0.25, 0.49, False), (0.4, 0.6, False), (0.4, 0.65, True)],
+)
+def test_a_battery_stays_in_with_half_of_its_charge_well_above_the_reserve(
+    reserve: float, fraction: float, stays: bool
+) -> None:
+    station = Station()
+    limits = replace(station.airspace.airspace.limits, battery_reserve_fraction=reserve)
+    airspace = PreparedAirspace(replace(station.airspace.airspace, limits=limits))
+    assert may_stay(replace(station, airspace=airspace), fraction) == stays

@@ -241,6 +241,9 @@ class SurveySettings:
     battery_kept_fraction: float = 0.5
     """A battery that is this full after a landing stays in; a lower one is changed."""
 
+    battery_kept_above_reserve: float = 0.25
+    """Under a site's large reserve more must be left: what flies rows is above the reserve."""
+
     ground_wait_away_s: float = 150.0
     """The way home, landing, takeoff with the same battery and the way back."""
 

@@ -33,8 +33,8 @@ class Surveyor:
     is_able: bool = True
     ended_mission: int = 0
     time_left_s: float | None = None
-    landing_fraction: float | None = None
-    """Of a full battery, left after a landing at home now; None if unknown."""
+    keeps_battery: bool | None = None
+    """Whether its battery could stay in after a landing at home now; None if unknown."""
     home_m: EastNorth | None = None
     """Where it lands; None: at its present place."""
     is_flying: bool = True

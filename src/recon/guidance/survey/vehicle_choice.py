@@ -134,23 +134,15 @@ class VehicleChoice:
         surveyor = self.surveyor
         if self.plan.survey.when_done is not WhenDone.RETURN_HOME or not surveyor.is_flying:
             return False
-        if surveyor.landing_fraction is None:
+        if surveyor.keeps_battery is None:
             return False
         cost, gain = self.landing_cost_and_gain(free)
         return cost < gain
 
     @property
-    def _keeps_battery(self) -> bool:
-        """Whether its battery will be good enough to stay in."""
-        left = self.surveyor.landing_fraction
-        return left is not None and left >= self.settings.battery_kept_fraction
-
-    @property
     def _away_s(self) -> float:
-        settings = self.settings
-        return (
-            settings.ground_wait_away_s if self._keeps_battery else settings.battery_change_away_s
-        )
+        settings, keeps = self.settings, self.surveyor.keeps_battery
+        return settings.ground_wait_away_s if keeps else settings.battery_change_away_s
 
     def landing_cost_and_gain(self, free: BoolArray) -> tuple[float, float]:
         """Return what landing now costs and gains, as shares of its time in sun.
@@ -164,7 +156,7 @@ class VehicleChoice:
         is_away = self.expected.moments_s <= self._away_s
         cost = float(sun[is_away].mean())
         probability = self._swap_probability(float(missing_m2.sum()))
-        if self._keeps_battery:
+        if self.surveyor.keeps_battery:
             return cost, settings.saved_battery_gain * probability
         return cost * self._scarcity, settings.swap_later * probability
 
@@ -187,7 +179,7 @@ class VehicleChoice:
         return len(others) / max(len(staying), 0.5) if others else 1.0
 
     def _return_home(self) -> Step:
-        purpose = "wait on the ground" if self._keeps_battery else "change its battery"
+        purpose = "wait on the ground" if self.surveyor.keeps_battery else "change its battery"
         minutes = self._away_s / 60.0
         text = f"returns to {purpose}: little sun is expected for {minutes:g} min"
         state = self._with_decision(text, self.now_ns + seconds_to_ns(self.settings.retry_s), True)

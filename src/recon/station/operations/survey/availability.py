@@ -5,6 +5,7 @@ from dataclasses import replace
 
 from recon.fleet.state import staleness
 from recon.guidance.survey import ClosedArea, Surveyor
+from recon.guidance.survey.settings import DEFAULT as SURVEY_DEFAULT
 from recon.model.command import Phase
 from recon.model.control import AuthorityHolder
 from recon.model.vehicle import Staleness, VehicleState
@@ -46,12 +47,19 @@ def available_vehicles(station: Station, record: SurveyRecord, now_ns: int) -> I
             is_able=hindrance(station, member, now_ns) is None,
             ended_mission=member.number - is_flown(station, member),
             time_left_s=time_left_s(vehicle, station.airspace, energy),
-            landing_fraction=None if has is None or takes is None else has - takes,
+            keeps_battery=None if has is None or takes is None else may_stay(station, has - takes),
             home_m=None if home_m is None else (float(home_m[0]), float(home_m[1])),
             is_flying=vehicle.is_flying.value is True,
             height_above_takeoff_m=vehicle.height_above_takeoff_m.value,
             takeoff_up_m=takeoff_up_m(station.airspace, vehicle),
         )
+
+
+def may_stay(station: Station, fraction: float) -> bool:
+    """Return whether a battery that is this full after a landing need not be changed."""
+    reserve = station.airspace.airspace.limits.battery_reserve_fraction
+    least = reserve + SURVEY_DEFAULT.battery_kept_above_reserve
+    return fraction >= max(SURVEY_DEFAULT.battery_kept_fraction, least)
 
 
 def closed_areas(station: Station, now_ns: int) -> Iterator[ClosedArea]:

@@ -7,7 +7,11 @@ from recon.guidance.survey import PAUSED_BY_COMMAND
 from recon.model.survey import SurveyPhase
 from recon.station.operations.fleet_return.progress import newest_motion
 from recon.station.operations.settings import SURVEY_TIMES
-from recon.station.operations.survey.availability import is_on_ground, takes_off_by_itself
+from recon.station.operations.survey.availability import (
+    is_on_ground,
+    may_stay,
+    takes_off_by_itself,
+)
 from recon.station.operations.survey.return_to_home import is_under_way
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.fleet_return_record import Stage
@@ -56,7 +60,7 @@ def _of_vehicle(
     elif record.is_running and member.return_reason is not None and is_on_ground(station, member):
         again = f"recon survey start {record.survey.id} {member.serial} --takeoff"
         text = f"let it join survey {name} again ({again})"
-        of_battery = _about_battery(station, record, member)
+        of_battery = _about_battery(station, member)
         yield _about(
             station, member, RULE, f"has flown home: {member.return_reason}. {of_battery} {text}"
         )
@@ -66,12 +70,11 @@ def _of_vehicle(
         yield _about(station, member, RULE_LEFT, text)
 
 
-def _about_battery(station: Station, record: SurveyRecord, member: SurveyMember) -> str:
+def _about_battery(station: Station, member: SurveyMember) -> str:
     left = station.fleet.vehicles[member.serial].battery_fraction.value
-    if left is None or record.state is None:
+    if left is None:
         return "Change its battery if it is low, then"
-    is_good = left >= record.state.plan.settings.battery_kept_fraction
-    return "Its battery is good:" if is_good else "Change its battery, then"
+    return "Its battery is good:" if may_stay(station, left) else "Change its battery, then"
 
 
 def _waits_long(station: Station, member: SurveyMember) -> Iterator[Condition]:
