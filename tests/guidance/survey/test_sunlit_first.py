@@ -408,6 +408,20 @@ class TestDecisions:
             assert state.decisions["S-1"].text == why
         assert decided(sun, replace(on_ground, is_flying=True))[1]
 
+    @pytest.mark.parametrize(("lit_from_s", "takes_off"), [(250.0, False), (60.0, True)])
+    def test_one_on_the_ground_saves_its_battery_for_sun_that_comes_later(
+        self, lit_from_s: float, takes_off: bool
+    ) -> None:
+        """Until then little sun is expected: enough for rows that one in the air would fly."""
+        surely = forecast(lambda _east, north, lead: (lead >= lit_from_s) & (north < 120.0))
+        sun = replace(surely, sun_probability=np.maximum(surely.sun_probability, 50))
+        on_ground = Surveyor("S-1", (0.0, -40.0), is_flying=False)
+        state, missions = decided(sun, on_ground)
+        assert bool(missions) == takes_off
+        assert takes_off or state.decisions["S-1"].text.startswith("waits on the ground")
+        _, (flown,) = decided(sun, replace(on_ground, is_flying=True))
+        assert not flown.stands_by
+
     def test_under_a_closed_sky_nothing_takes_off(self) -> None:
         sun = forecast(lambda _east, _north, _lead: False)
         state, missions = decided(sun, Surveyor("S-1", (0.0, -40.0), is_flying=False))
@@ -508,6 +522,25 @@ class TestDecisions:
             state, _missions = decided(sun, done, other, state=state, now_s=now_s)
         begin_m = state.flights["S-1"].corners_m[0]
         assert (np.hypot(*np.subtract(begin_m, done.place_m)) < 60.0) == begins_near
+
+    def test_of_pieces_that_lie_apart_a_long_one_comes_before_a_short_one_far_off(self) -> None:
+        """Also where another vehicle's rows lead from the short one's side to the long one's."""
+        here, other = Surveyor("S-1", (0.0, -40.0)), Surveyor("S-2", (20.0, -40.0))
+        state, _missions = decided(forecast(clear_sky), here, other)
+        rows = flown_rows(state, "S-1")
+        short, long = rows[0], rows[-1]
+        cells = PLAN.cells
+        row = PLAN.lattice.row_of(cells.across_m)
+        is_left = (row == long) | ((row == short) & (abs(cells.along_m - 180.0) < 30.0))
+        is_left |= np.isin(row, flown_rows(state, "S-2"))
+        light = np.where(is_left, CellState.NOT_YET, CellState.IN_SUN).astype(np.uint8)
+        state = replace(state, progress=replace(state.progress, state=light))
+        at_long_m = state.flights["S-1"].corners_m[-1]
+        done = replace(here, place_m=at_long_m, ended_mission=1)
+        for now_s in (200.0, 210.0):
+            sun = forecast(clear_sky, now_s)
+            state, _missions = decided(sun, done, other, state=state, now_s=now_s)
+        assert flown_rows(state, "S-1") == [long, short]
 
     @pytest.mark.parametrize(("lit_from_s", "is_round"), [(100.0, True), (600.0, False)])
     def test_a_round_is_flown_that_passes_most_ground_in_sun(

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import dist
+from math import dist, exp
 from typing import NamedTuple
 
 import numpy as np
@@ -37,6 +37,13 @@ class Passing:
         """Return the ground expected in sun when it is passed, if all begins so much later."""
         return sum(
             each.missing_m2 * expected.at(each.segment, each.at_s + later_s) for each in self.passes
+        )
+
+    def worth_m2(self, expected: ExpectedSun, patience_s: float) -> float:
+        """Return the ground expected in sun when it is passed, later ground counting less."""
+        return sum(
+            each.missing_m2 * expected.at(each.segment, each.at_s) * exp(-each.at_s / patience_s)
+            for each in self.passes
         )
 
 

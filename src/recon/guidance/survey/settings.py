@@ -251,7 +251,7 @@ class SurveySettings:
     """A wait in the air costs a quarter of it later, in a change of battery, if one is needed."""
 
     takeoff_probability: float = 0.3
-    """One on the ground takes off for sun that is at least so probable somewhere on its flight."""
+    """One on the ground takes off for sun at least so probable on what it flies first."""
 
     swap_later: float = 0.5
     """A later change costs this share of its time in sun: half of it under broken cloud."""

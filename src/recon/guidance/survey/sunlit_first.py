@@ -16,7 +16,8 @@ once. One call of `sunlit_first`:
    the best flight is searched (`search`): which parts of rows, in which order and direction, when.
 6. If that begins at once, the vehicle gets its rows up to `committed_s` as a mission. If it begins
    later, the vehicle goes to its first row and stands by in its layer; one on the ground stays
-   there until it is time to take off. If nothing is expected in sun, it waits where it is.
+   there until it is time to take off, and until sun is probable on what it flies first. If nothing
+   is expected in sun, it waits where it is.
 7. One that would wait lands at home instead where that costs little sun: with a good battery to
    wait on the ground, with a low one if a change of battery costs less sun now than later.
    One that waits at the rows' height climbs or sinks to its layer first, out of others' rows.

@@ -20,7 +20,7 @@ from recon.guidance.survey.own_share import own_share
 from recon.guidance.survey.passing import Passing, passing
 from recon.guidance.survey.plan import SurveyPlan
 from recon.guidance.survey.rounds import Step, assign, longest_mission
-from recon.guidance.survey.route import Route, RowLeg, direction_of, route_of
+from recon.guidance.survey.route import Route, RowLeg, chains, direction_of, route_of
 from recon.guidance.survey.rows import Piece
 from recon.guidance.survey.search import Flight, Pace, PlannedLeg, Search
 from recon.guidance.survey.segments import (
@@ -82,7 +82,7 @@ class VehicleChoice:
             return self.wait(self._why_none_is_free())
         share = self.share(free)
         if self.expected.is_clear(share, self.settings.clear_sky_probability):
-            return self.fly_all(self.rows(share))
+            return self.fly_all(self._clear_rows(share))
         flight = self.best(share)
         if (flight.waits_s > 0.0 or not flight.legs) and self._is_time_to_land(free):
             return self._return_home()
@@ -97,7 +97,9 @@ class VehicleChoice:
         return self.fly(self._allowed(self.long_enough(legs)))
 
     def _is_worth_taking_off(self, flight: Flight) -> bool:
-        most = max(leg.probability for leg in flight.legs)
+        """Whether what it flies first has sun: one that flies in shade until then has less of its
+        battery when sun comes, or stands at home."""
+        most = max(leg.probability for leg in self.committed(flight))
         return most >= self.settings.takeoff_probability
 
     def begun_at_once(self, share: BoolArray) -> tuple[PlannedLeg, ...]:
@@ -195,6 +197,17 @@ class VehicleChoice:
         others = {direction_of(flight.rows_left) for flight in self.state.flights.values()} - {0}
         direction = others.pop() if len(others) == 1 else 0
         return route_of(pieces, self.plan.lattice, self.start_m, direction)
+
+    def _clear_rows(self, share: BoolArray) -> Route:
+        """The missing ground of a share in sun: row by row, or of pieces that lie apart the best
+        flight over them, if it images more of them sooner."""
+        rows = self.rows(share)
+        if len(chains([leg.piece for leg in rows])) == 1:
+            return rows
+        return max(rows, self.long_enough(self.best(share).legs), key=self._worth_m2)
+
+    def _worth_m2(self, route: Route) -> float:
+        return self.passing(route).worth_m2(self.expected, self.settings.patience_s)
 
     def fly_all(self, route: Route) -> Step:
         """Fly these rows one after the other: most of their ground is in sun by then."""
