@@ -118,8 +118,8 @@ def test_go_home_heights_too_close_or_too_low_are_named() -> None:
 
 def test_pads_too_close_or_off_the_ground_are_named() -> None:
     layers = replace(load_site(demo_site_folder()).layers, landing_pads=())
-    vehicles = [complete("A", 40.0, pad(0.0, -6.0)), complete("B", 50.0, pad(17.7, 7.0))]
-    close = "pads A and B are 17.7 m apart, less than 18 m: vehicles land one at a time"
+    vehicles = [complete("A", 40.0, pad(0.0, -6.0)), complete("B", 50.0, pad(19.7, 7.0))]
+    close = "pads A and B are 19.7 m apart, less than 20 m: vehicles land one at a time"
     for elevation, ground in (
         (load_site(demo_site_folder()).elevation, "the model's ground"),
         (None, "the ground, assumed flat"),

@@ -85,6 +85,10 @@ LAYER_SPACING_M = 10.0
 rows, over the field. The gate keeps 7.5 m at first, and the watchdog holds below 7 m: two
 barometers may drift apart by a metre or two within a flight."""
 
+HOVER_DRIFT_M = 2.0
+"""What vehicles side by side keep beyond the gate's minimum: one that hovers drifts by a metre or
+two, and telemetry of one at 8 m/s is a few tenths of a second old."""
+
 
 @dataclass(frozen=True, slots=True)
 class FlightLimits:

@@ -7,7 +7,7 @@ import numpy as np
 
 from recon.camera import PoseSolution, placing_error_m
 from recon.geo import Polygon, cell_centres_m, enu_from_points
-from recon.model.airspace import FlightLimits, HeightDatum, Zone, ZoneKind
+from recon.model.airspace import HOVER_DRIFT_M, FlightLimits, HeightDatum, Zone, ZoneKind
 from recon.model.vehicle import VehicleProfile
 from recon.safety import SafetySettings
 from recon.safety.separation_minima import gate_minima
@@ -238,11 +238,11 @@ def _is_above(zone: Zone, height_m: float, site: Site) -> bool:
 
 
 def _close_pads(site: Site) -> Iterator[str]:
-    """Yield each pad that is too close to its nearest neighbour."""
+    """Yield each pad that is too close to its nearest neighbour for a fleet return to both."""
     assert site.frame is not None
     pads = site.airspace.landing_pads
     places_m = enu_from_points(site.frame, [pad.place for pad in pads])[:, :2]
-    least_m = gate_minima(site.limits, SETTINGS).horizontal_m
+    least_m = gate_minima(site.limits, SETTINGS).horizontal_m + HOVER_DRIFT_M
     named: set[frozenset[int]] = set()
     for one, place_m in enumerate(places_m):
         apart_m = np.linalg.norm(places_m - place_m, axis=1)

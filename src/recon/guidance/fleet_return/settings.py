@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from recon.model.airspace import LAYER_SPACING_M
+from recon.model.airspace import HOVER_DRIFT_M, LAYER_SPACING_M
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,9 +20,8 @@ class FleetReturnSettings:
     zone_margin_m: float = 6.0
     """Left above a zone that is flown over: as much as between two vehicles."""
 
-    horizontal_slack_m: float = 2.0
-    """Added to the gate's minimum: a hovering vehicle drifts by a metre or two, and telemetry of
-    a vehicle at 8 m/s is a few tenths of a second old."""
+    horizontal_slack_m: float = HOVER_DRIFT_M
+    """Added to the gate's minimum."""
 
     vertical_slack_m: float = 0.4
     """As above; less than the difference between the layers' spacing and the gate's 7.5 m."""
