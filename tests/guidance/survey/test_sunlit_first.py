@@ -542,6 +542,26 @@ class TestDecisions:
             state, _missions = decided(sun, done, other, state=state, now_s=now_s)
         assert flown_rows(state, "S-1") == [long, short]
 
+    def test_none_flies_off_for_a_crumb_before_its_last_rows_have_counted(self) -> None:
+        """One cell far off is known to be left; the rows that it has just flown were in shade."""
+        here, other = Surveyor("S-1", (0.0, -40.0)), Surveyor("S-2", (20.0, -40.0))
+        state, _missions = decided(forecast(clear_sky), here, other)
+        own, others = flown_rows(state, "S-1"), flown_rows(state, "S-2")
+        row = PLAN.lattice.row_of(PLAN.cells.across_m)
+        light = np.where(np.isin(row, own), CellState.IN_SHADE, CellState.IN_SUN).astype(np.uint8)
+        far = next(iter(np.argwhere(PLAN.cells.is_reached & (row == others[-1]))))
+        light[tuple(far)] = CellState.NOT_YET
+        state = replace(state, progress=replace(state.progress, state=light))
+        done = replace(here, place_m=state.flights["S-1"].corners_m[-1], ended_mission=1)
+        state = state.without_flight("S-2")
+        for now_s in (200.0, 202.0, 204.0):
+            state, missions = decided(forecast(clear_sky, now_s), done, state=state, now_s=now_s)
+            assert missions == ()
+        assert state.decisions["S-1"].text == "waits: its last rows are not counted yet"
+        state, missions = decided(forecast(clear_sky, 207.0), done, state=state, now_s=207.0)
+        assert len(missions) == 1
+        assert set(own) <= set(flown_rows(state, "S-1"))
+
     @pytest.mark.parametrize(("lit_from_s", "is_round"), [(100.0, True), (600.0, False)])
     def test_a_round_is_flown_that_passes_most_ground_in_sun(
         self, lit_from_s: float, is_round: bool

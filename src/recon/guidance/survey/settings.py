@@ -151,6 +151,10 @@ class SurveySettings:
     least_gain: float = 0.02
     """Of a segment's ground; a row is not flown for less."""
 
+    crumbs_share: float = 0.02
+    """Rows that image less in sun than this share of what is flown in their time are put off while
+    the vehicle's last rows are not counted: what they left is near, and known in seconds."""
+
     near_m: float = 90.0
     """To a row within this distance a vehicle flies at the rows' height, if the gate approves."""
 
@@ -203,6 +207,10 @@ class SurveySettings:
     clear_sky_probability: float = 0.85
     """With this mean probability of sun for as long as is planned, nothing is gained by choosing:
     a share is flown row by row."""
+
+    best_flight_worth: float = 1.1
+    """Under a clear sky the best flight is flown if it is worth so many times as much as the share
+    row by row: it comes to the first long row much sooner."""
 
     round_sun_share: float = 0.6
     """With this share of the missing ground expected in sun when a round would pass it, the round

@@ -20,7 +20,7 @@ from recon.guidance.survey.own_share import own_share
 from recon.guidance.survey.passing import Passing, passing
 from recon.guidance.survey.plan import SurveyPlan
 from recon.guidance.survey.rounds import Step, assign, longest_mission
-from recon.guidance.survey.route import Route, RowLeg, chains, direction_of, route_of
+from recon.guidance.survey.route import Route, RowLeg, direction_of, route_of
 from recon.guidance.survey.rows import Piece
 from recon.guidance.survey.search import Flight, Pace, PlannedLeg, Search
 from recon.guidance.survey.segments import (
@@ -93,8 +93,7 @@ class VehicleChoice:
             return self.wait("waits on the ground: little sun is expected on its rows")
         if flight.waits_s > 0.0:
             return self._stand_by(flight)
-        legs = self.committed(flight)
-        return self.fly(self._allowed(self.long_enough(legs)))
+        return self.fly_all(self.long_enough(self.committed(flight)))
 
     def _is_worth_taking_off(self, flight: Flight) -> bool:
         """Whether what it flies first has sun: one that flies in shade until then has less of its
@@ -199,19 +198,29 @@ class VehicleChoice:
         return route_of(pieces, self.plan.lattice, self.start_m, direction)
 
     def _clear_rows(self, share: BoolArray) -> Route:
-        """The missing ground of a share in sun: row by row, or of pieces that lie apart the best
-        flight over them, if it images more of them sooner."""
-        rows = self.rows(share)
-        if len(chains([leg.piece for leg in rows])) == 1:
-            return rows
-        return max(rows, self.long_enough(self.best(share).legs), key=self._worth_m2)
+        """The missing ground of a share in sun: row by row, which keeps vehicles apart, or the best
+        flight over it where that images much more soon, as of pieces here and there."""
+        rows, flown = self.rows(share), self.long_enough(self.best(share).legs)
+        is_better = self._worth_m2(flown) > self.settings.best_flight_worth * self._worth_m2(rows)
+        return flown if is_better else rows
 
     def _worth_m2(self, route: Route) -> float:
         return self.passing(route).worth_m2(self.expected, self.settings.patience_s)
 
     def fly_all(self, route: Route) -> Step:
-        """Fly these rows one after the other: most of their ground is in sun by then."""
+        """Fly these rows one after the other, unless they are crumbs and what its last rows left is
+        known within seconds."""
+        flown = self.state.just_flown.get(self.surveyor.serial)
+        if flown is not None and self.now_ns < flown.until_ns and self._is_crumbs(route):
+            again_ns = self.now_ns + seconds_to_ns(self.settings.decided_again_s)
+            return self._with_decision("waits: its last rows are not counted yet", again_ns), ()
         return self.fly(self._allowed(route))
+
+    def _is_crumbs(self, route: Route) -> bool:
+        """Whether nearly all the time of these rows would be for the way there."""
+        passed = self.passing(route)
+        rate_m2ps = self.plan.survey.speed_mps * self.plan.lattice.spacing_m
+        return passed.lit_m2(self.expected) < self.settings.crumbs_share * rate_m2ps * passed.ends_s
 
     def best(self, share: BoolArray) -> Flight:
         """Return the best flight over the segments (S,) of a share."""
