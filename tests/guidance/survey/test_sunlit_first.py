@@ -542,7 +542,7 @@ class TestDecisions:
             state, _missions = decided(sun, done, other, state=state, now_s=now_s)
         assert flown_rows(state, "S-1") == [long, short]
 
-    def test_none_flies_off_for_a_crumb_before_its_last_rows_have_counted(self) -> None:
+    def test_none_flies_off_for_one_cell_before_its_last_rows_have_counted(self) -> None:
         """One cell far off is known to be left; the rows that it has just flown were in shade."""
         here, other = Surveyor("S-1", (0.0, -40.0)), Surveyor("S-2", (20.0, -40.0))
         state, _missions = decided(forecast(clear_sky), here, other)

@@ -112,7 +112,9 @@ def leave_closed_ground(choice: VehicleChoice) -> Step:
     if free.any():
         share = alone.share(free)
         is_clear = alone.expected.is_clear(share, settings.clear_sky_probability)
-        rows = alone.rows(share) if is_clear else alone.long_enough(alone.begun_at_once(share))
+        rows = (
+            alone.clear_rows(share) if is_clear else alone.long_enough(alone.begun_at_once(share))
+        )
     if rows:
         names = ", ".join(each.name for each in state.closed)
         replaced = _replace_mission(choice, rows, f"keeps clear of {names}, without telemetry; ")

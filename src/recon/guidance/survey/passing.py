@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import dist, exp
+from math import dist, exp, inf
 from typing import NamedTuple
 
 import numpy as np
@@ -33,16 +33,15 @@ class Passing:
         """The missing ground that is passed."""
         return sum(each.missing_m2 for each in self.passes)
 
-    def lit_m2(self, expected: ExpectedSun, later_s: float = 0.0) -> float:
-        """Return the ground expected in sun when it is passed, if all begins so much later."""
-        return sum(
-            each.missing_m2 * expected.at(each.segment, each.at_s + later_s) for each in self.passes
-        )
+    def lit_m2(self, expected: ExpectedSun, later_s: float = 0.0, patience_s: float = inf) -> float:
+        """Return the ground expected in sun when it is passed, if all begins so much later.
 
-    def worth_m2(self, expected: ExpectedSun, patience_s: float) -> float:
-        """Return the ground expected in sun when it is passed, later ground counting less."""
+        With a patience, ground passed after that long counts for a third, as in a search.
+        """
         return sum(
-            each.missing_m2 * expected.at(each.segment, each.at_s) * exp(-each.at_s / patience_s)
+            each.missing_m2
+            * expected.at(each.segment, each.at_s + later_s)
+            * exp(-each.at_s / patience_s)
             for each in self.passes
         )
 

@@ -151,7 +151,7 @@ class SurveySettings:
     least_gain: float = 0.02
     """Of a segment's ground; a row is not flown for less."""
 
-    crumbs_share: float = 0.02
+    put_off_share: float = 0.02
     """Rows that image less in sun than this share of what is flown in their time are put off while
     the vehicle's last rows are not counted: what they left is near, and known in seconds."""
 

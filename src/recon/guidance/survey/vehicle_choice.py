@@ -82,7 +82,7 @@ class VehicleChoice:
             return self.wait(self._why_none_is_free())
         share = self.share(free)
         if self.expected.is_clear(share, self.settings.clear_sky_probability):
-            return self.fly_all(self._clear_rows(share))
+            return self.fly_all(self.clear_rows(share))
         flight = self.best(share)
         if (flight.waits_s > 0.0 or not flight.legs) and self._is_time_to_land(free):
             return self._return_home()
@@ -197,30 +197,32 @@ class VehicleChoice:
         direction = others.pop() if len(others) == 1 else 0
         return route_of(pieces, self.plan.lattice, self.start_m, direction)
 
-    def _clear_rows(self, share: BoolArray) -> Route:
-        """The missing ground of a share in sun: row by row, which keeps vehicles apart, or the best
-        flight over it where that images much more soon, as of pieces here and there."""
+    def clear_rows(self, share: BoolArray) -> Route:
+        """Return the missing ground of a share in sun: row by row, which keeps vehicles apart, or
+        the best flight over it where that images more soon, as of pieces here and there."""
         rows, flown = self.rows(share), self.long_enough(self.best(share).legs)
         is_better = self._worth_m2(flown) > self.settings.best_flight_worth * self._worth_m2(rows)
         return flown if is_better else rows
 
     def _worth_m2(self, route: Route) -> float:
-        return self.passing(route).worth_m2(self.expected, self.settings.patience_s)
+        return self.passing(route).lit_m2(self.expected, patience_s=self.settings.patience_s)
 
     def fly_all(self, route: Route) -> Step:
-        """Fly these rows one after the other, unless they are crumbs and what its last rows left is
-        known within seconds."""
+        """Fly these rows one after the other; put off what images little until it is known what its
+        last rows have left, a few seconds."""
         flown = self.state.just_flown.get(self.surveyor.serial)
-        if flown is not None and self.now_ns < flown.until_ns and self._is_crumbs(route):
+        if flown is not None and self.now_ns < flown.until_ns and self._images_little(route):
             again_ns = self.now_ns + seconds_to_ns(self.settings.decided_again_s)
             return self._with_decision("waits: its last rows are not counted yet", again_ns), ()
         return self.fly(self._allowed(route))
 
-    def _is_crumbs(self, route: Route) -> bool:
+    def _images_little(self, route: Route) -> bool:
         """Whether nearly all the time of these rows would be for the way there."""
         passed = self.passing(route)
         rate_m2ps = self.plan.survey.speed_mps * self.plan.lattice.spacing_m
-        return passed.lit_m2(self.expected) < self.settings.crumbs_share * rate_m2ps * passed.ends_s
+        return (
+            passed.lit_m2(self.expected) < self.settings.put_off_share * rate_m2ps * passed.ends_s
+        )
 
     def best(self, share: BoolArray) -> Flight:
         """Return the best flight over the segments (S,) of a share."""
