@@ -5,9 +5,10 @@
 
 Each claim is a scenario flown by `sunlit_first` and, under the same skies, by `lawnmower_again` or
 in another scenario. Its figure is the geometric mean of the ratios by seed, of the time to 95 % in
-sun or of the flight time, with a 95 % interval. All claims take days on one computer; `--cluster`
+sun or of the flight time, with a 95 % interval. All claims take hours on one computer; `--cluster`
 shares the runs with others. Finished runs are kept, as by `recon score`: a stopped study goes on
-where it was. At the end it states, by all landings, how probable one below the reserve is.
+where it was, and `--kept` sums up what has been flown so far. At the end it states, by all
+landings, how probable one below the reserve is.
 """
 
 import argparse
@@ -19,9 +20,10 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from recon.cli.score import Chosen, Flying
+from recon.cli.score import Chosen, Flying, runs_folder
 from recon.score import RunScore, Scenario
 from recon.score.interval import Interval, probability_at_most
+from recon.score.kept_runs import KeptRuns
 from recon.score.scenario import PERFECT
 from recon.score.survey_table import SurveyRatios, survey_ratios
 from recon.score.table_rows import NOTHING, bounds, fine, percent, table
@@ -65,6 +67,9 @@ HEAD = (
 )
 
 
+RunPairs = tuple[list[RunScore], list[RunScore]]
+
+
 @dataclass(frozen=True, slots=True)
 class Claim:
     """A ratio that guidance must reach: at most `most`, with an upper bound below `bound`."""
@@ -89,14 +94,24 @@ class Claim:
         """Name what it is compared with."""
         return self.over or BASELINE
 
-    def flown(
-        self, seeds: range, jobs: int | None, cluster: str | None
-    ) -> tuple[list[RunScore], list[RunScore], float]:
-        """Return its runs, the runs they are compared with, and the shorter limit, seconds."""
+    @property
+    def limit_s(self) -> float:
+        """The shorter one of the two scenarios' limits."""
+        return min(scenario.limit_s for _, scenario in self.compared())
+
+    def flown(self, seeds: range, jobs: int | None, cluster: str | None) -> RunPairs:
+        """Return its runs and the runs they are compared with."""
         flying = Flying(seeds, jobs, cluster, fresh=False)
         one, other = self.compared()
-        limit_s = min(one[1].limit_s, other[1].limit_s)
-        return flying.runs_of(*one), flying.runs_of(*other), limit_s
+        return flying.runs_of(*one), flying.runs_of(*other)
+
+    def kept(self) -> RunPairs:
+        """Return, of the seeds that both were flown with before, the same."""
+        one, other = (KeptRuns.of(runs_folder(), *each) for each in self.compared())
+        seeds = range(FIRST_SEED, FIRST_SEED + self.seeds)
+        pairs = [(one.found(seed), other.found(seed)) for seed in seeds]
+        both = [(run, against) for run, against in pairs if run and against]
+        return [run for run, _ in both], [against for _, against in both]
 
     def compared(self) -> tuple[tuple[Path, Scenario], tuple[Path, Scenario]]:
         """Return its scenario and the one that it is compared with, each with its file.
@@ -168,8 +183,9 @@ class Measured:
     low_landings: int
 
     @classmethod
-    def of(cls, claim: Claim, runs: Sequence[RunScore], ratios: SurveyRatios) -> "Measured":
-        """Sum up the runs of a claim."""
+    def of(cls, claim: Claim, runs: Sequence[RunScore], others: Sequence[RunScore]) -> "Measured":
+        """Sum up the runs of a claim, and those of the same seeds that they are compared with."""
+        ratios = survey_ratios(runs, others, claim.limit_s)
         violations = sum(run.encounters + run.low_landings + run.breaches for run in runs)
         missions = max(1, sum(run.missions for run in runs))
         refusals = sum(run.refusals for run in runs) / missions
@@ -220,8 +236,7 @@ def measured(
     for claim in claims:
         count = min(claim.seeds, most_seeds or claim.seeds)
         seeds = range(FIRST_SEED, FIRST_SEED + count)
-        runs, others, limit_s = claim.flown(seeds, jobs, cluster)
-        yield Measured.of(claim, runs, survey_ratios(runs, others, limit_s))
+        yield Measured.of(claim, *claim.flown(seeds, jobs, cluster))
 
 
 def landings_text(found: Sequence[Measured]) -> str:
@@ -239,7 +254,7 @@ def _file(scenario: str) -> Path:
 
 
 LINE_PX, LEFT_PX, WIDTH_PX, TOP_PX = 34, 330, 1000, 44
-LOWEST, HIGHEST = 0.4, 1.6
+LOWEST, HIGHEST = 0.0, 1.8
 INK, GREY, GOOD, SHORT = (40, 40, 40), (190, 190, 190), (60, 120, 20), (40, 60, 190)
 
 
@@ -276,6 +291,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--list", action="store_true", help="print the claims, fly nothing")
     parser.add_argument("--only", default="", help="claims whose name or scenario contains this")
+    parser.add_argument("--kept", action="store_true", help="sum up earlier runs, fly nothing")
     parser.add_argument("--references", action="store_true", help="fly what is compared with")
     parser.add_argument("--seeds", type=int, help="at most so many of each claim")
     parser.add_argument("--jobs", type=int, help="runs at once; default: one for each core")
@@ -290,7 +306,11 @@ def main() -> None:
         return
     found: list[Measured] = []
     print(table(HEAD, ()), flush=True)
-    for each in measured(claims, asked.seeds, asked.jobs, asked.cluster):
+    if asked.kept:
+        summed_up = (Measured.of(claim, *claim.kept()) for claim in claims)
+    else:
+        summed_up = measured(claims, asked.seeds, asked.jobs, asked.cluster)
+    for each in summed_up:
         found.append(each)
         print(f"| {' | '.join(each.row)} |", flush=True)
     print(f"\n{landings_text(found)}")

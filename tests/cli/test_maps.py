@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from shutil import copytree
 
 import pytest
 from tests.basemap.made_maps import keys_over, write_mbtiles
@@ -21,19 +22,25 @@ def run(*words: str) -> Result:
     return CliRunner().invoke(maps_app, words, catch_exceptions=False)
 
 
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A site of 166 by 111 m."""
-    made = tmp_path / "west field"
+    folder = tmp_path_factory.mktemp("made") / "west field"
     place = ("--at", "41.9015,-93.603", "--ground-altitude-m", "275")
-    CliRunner().invoke(site_app, ["new", str(made), *place], catch_exceptions=False)
-    layer = tmp_path / "boundary.geojson"
+    CliRunner().invoke(site_app, ["new", str(folder), *place], catch_exceptions=False)
+    layer = folder.parent / "boundary.geojson"
     shape = {"type": "Polygon", "coordinates": [[*RING, RING[0]]]}
     feature = {"type": "Feature", "properties": {"name": "b"}, "geometry": shape}
     layer.write_text(json.dumps({"type": "FeatureCollection", "features": [feature]}))
-    words = ["import", str(made), str(layer), "--as", "boundary"]
+    words = ["import", str(folder), str(layer), "--as", "boundary"]
     assert CliRunner().invoke(site_app, words, catch_exceptions=False).exit_code == 0
-    return made
+    return folder
+
+
+@pytest.fixture
+def folder(made: Path, tmp_path: Path) -> Path:
+    """The site, in a folder of the test's own."""
+    return copytree(made, tmp_path / made.name)
 
 
 def test_tiles_are_fetched_for_the_boundary_and_checked_without_the_server(folder: Path) -> None:

@@ -9,8 +9,7 @@ from studies.guidance import CLAIMS, FIRST_SEED, REFERENCES, Claim, Measured, dr
 from tests.score.test_survey_table import run_score
 
 from recon.score import RunScore, load_scenario
-from recon.score.kept_runs import runs_digest
-from recon.score.survey_table import survey_ratios
+from recon.score.kept_runs import KeptRuns, runs_digest
 
 CLAIM = Claim("40 %, wide view", "cumulus-40-wide", 0.9, 1.0, 30, lost_most=0.15)
 SEEDS = range(10)
@@ -20,7 +19,7 @@ SAFE = replace(run_score(0, None), missions=20)
 def found(ratio: float, claim: Claim = CLAIM, like: RunScore = SAFE) -> Measured:
     runs = [replace(like, seed=seed, to_95_in_sun_s=ratio * 1000.0) for seed in SEEDS]
     others = [run_score(seed, 1000.0) for seed in SEEDS]
-    return Measured.of(claim, runs, survey_ratios(runs, others, 3600.0))
+    return Measured.of(claim, runs, others)
 
 
 def test_what_is_fast_and_safe_is_reached() -> None:
@@ -74,9 +73,7 @@ def test_watchdogs_stop_vehicles_only_where_there_are_faults() -> None:
 def test_a_wide_interval_is_not_reached_whatever_its_mean() -> None:
     runs = [run_score(seed, 1600.0 if seed == 3 else 700.0 + seed) for seed in range(4)]
     others = [run_score(seed, 1000.0) for seed in range(4)]
-    measured = Measured.of(
-        replace(CLAIM, most=1.0, lost_most=1.0), runs, survey_ratios(runs, others, 3600.0)
-    )
+    measured = Measured.of(replace(CLAIM, most=1.0, lost_most=1.0), runs, others)
     assert measured.ratio is not None
     assert measured.ratio.mean < 1.0 < measured.ratio.high
     assert not measured.is_reached
@@ -96,9 +93,20 @@ FLOWN = (*CLAIMS, *REFERENCES)
 @pytest.mark.parametrize("claim", FLOWN, ids=[claim.name for claim in FLOWN])
 def test_every_claims_scenarios_and_methods_can_be_flown(claim: Claim) -> None:
     no_seeds = range(FIRST_SEED, FIRST_SEED)
-    runs, others, limit_s = claim.flown(no_seeds, jobs=1, cluster=None)
-    assert runs == others == []
-    assert limit_s > 0.0
+    assert claim.flown(no_seeds, jobs=1, cluster=None) == ([], [])
+    assert claim.limit_s > 0.0
+
+
+def test_what_is_kept_are_the_seeds_that_both_were_flown_with(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("studies.guidance.runs_folder", lambda: tmp_path)
+    one, other = (KeptRuns.of(tmp_path, *each) for each in CLAIM.compared())
+    for seed in (FIRST_SEED, FIRST_SEED + 2):
+        one.keep(run_score(seed, 700.0))
+    for seed in (FIRST_SEED + 1, FIRST_SEED + 2):
+        other.keep(run_score(seed, 1000.0))
+    assert CLAIM.kept() == ([run_score(FIRST_SEED + 2, 700.0)], [run_score(FIRST_SEED + 2, 1000.0)])
 
 
 def test_claims_of_one_scenario_share_the_runs_of_its_baseline() -> None:

@@ -15,7 +15,7 @@ from recon.forecast import FORECASTERS
 from recon.model.errors import ReconError
 from recon.record.users_file import state_folder
 from recon.score import RunScore, Scenario, ScenarioError, load_scenario, tables
-from recon.score.kept_runs import KeptRuns, code_digest, runs_digest
+from recon.score.kept_runs import KeptRuns
 from recon.score.many_runs import on_cluster, on_cores, one_by_one
 from recon.score.scenario import NO_FORECAST, TRUE_MOTION
 from recon.score.scenario_conditions import with_exposure
@@ -23,7 +23,6 @@ from recon.score.scenario_schema import METHOD_NAMES
 from recon.score.survey_table import survey_table
 
 MOST_SEEDS = 10_000
-DIGEST_LETTERS = 16
 SCENARIO_SUFFIX = ".toml"
 
 ScenarioArgument = Annotated[Path, typer.Argument(help="Scenario file, as in scenarios/.")]
@@ -135,6 +134,11 @@ class Chosen:
         return None
 
 
+def runs_folder() -> Path:
+    """Return where finished runs are kept."""
+    return state_folder() / "score"
+
+
 @dataclass(frozen=True, slots=True)
 class Flying:
     """Which runs of scenarios are wanted, and where they are flown."""
@@ -146,8 +150,7 @@ class Flying:
 
     def runs_of(self, path: Path, scenario: Scenario) -> list[RunScore]:
         """Return the runs of a file's scenario: those flown before, and the others, now kept."""
-        digest = runs_digest(path, scenario, code_digest())[:DIGEST_LETTERS]
-        kept = KeptRuns(state_folder() / "score" / f"{scenario.name}-{digest}")
+        kept = KeptRuns.of(runs_folder(), path, scenario)
         runs = [] if self.fresh else [run for seed in self.seeds if (run := kept.found(seed))]
         if runs:
             count = f"{len(runs)} of {len(self.seeds)}"

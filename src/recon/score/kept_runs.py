@@ -22,6 +22,7 @@ from recon.site.reading import site_digest
 COMPUTING = ("numpy", "opencv-python-headless", "scipy", "msgspec")
 CODE = (".py", ".so", ".pyd")
 LARGEST_BYTES = 50_000_000
+DIGEST_LETTERS = 16
 
 
 @cache
@@ -58,6 +59,12 @@ class KeptRuns:
     """The finished runs of one scenario in a folder of their own."""
 
     folder: Path
+
+    @classmethod
+    def of(cls, folder: Path, file: Path, scenario: Scenario) -> "KeptRuns":
+        """Return those of a scenario's file, below a folder. Raises `ScenarioError`."""
+        digest = runs_digest(file, scenario, code_digest())[:DIGEST_LETTERS]
+        return cls(folder / f"{scenario.name}-{digest}")
 
     def found(self, seed: int) -> RunScore | None:
         """Return a seed's run; None without one, or with a damaged file."""
