@@ -281,7 +281,8 @@ def drawn(path: Path, found: Sequence[Measured]) -> None:
         if each.ratio is not None:
             colour = GOOD if each.is_reached else SHORT
             ends = [across(end) for end in (each.ratio.low, each.ratio.high) if isfinite(end)]
-            cv2.line(image, (min(ends, default=0), y), (max(ends, default=0), y), colour, 2)
+            if ends:
+                cv2.line(image, (min(ends), y), (max(ends), y), colour, 2)
             cv2.circle(image, (across(each.ratio.mean), y), 6, colour, -1, cv2.LINE_AA)
     cv2.imwrite(str(path), image)
 
