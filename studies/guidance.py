@@ -12,8 +12,9 @@ landings, how probable one below the reserve is.
 """
 
 import argparse
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import compress
 from math import isfinite
 from pathlib import Path
 
@@ -65,7 +66,11 @@ HEAD = (
     "stopped by watchdogs",
     "reached",
 )
-
+SKY_HEAD = ("claim", "sky, by the runs compared with", "seeds", "ratio", "flight time")
+ONE_ROUND = 1.05
+"""Times the fastest seed: the sky was open as it was flown."""
+NEARLY_ALL = 0.94
+"""Of the limit: the sky was closed for nearly all of it."""
 
 RunPairs = tuple[list[RunScore], list[RunScore]]
 
@@ -105,10 +110,9 @@ class Claim:
         one, other = self.compared()
         return flying.runs_of(*one), flying.runs_of(*other)
 
-    def kept(self) -> RunPairs:
-        """Return, of the seeds that both were flown with before, the same."""
+    def kept(self, seeds: range) -> RunPairs:
+        """Return the same, of the seeds that both were flown with before."""
         one, other = (KeptRuns.of(runs_folder(), *each) for each in self.compared())
-        seeds = range(FIRST_SEED, FIRST_SEED + self.seeds)
         pairs = [(one.found(seed), other.found(seed)) for seed in seeds]
         both = [(run, against) for run, against in pairs if run and against]
         return [run for run, _ in both], [against for _, against in both]
@@ -173,6 +177,8 @@ class Measured:
     """A claim's runs, summed up."""
 
     claim: Claim
+    runs: Sequence[RunScore]
+    others: Sequence[RunScore]
     ratios: SurveyRatios
     violations: int
     """Encounters, landings below the reserve, and flights outside the fence."""
@@ -191,7 +197,7 @@ class Measured:
         refusals = sum(run.refusals for run in runs) / missions
         holds, landings = sum(run.holds for run in runs), sum(run.landings for run in runs)
         low = sum(run.low_landings for run in runs)
-        return cls(claim, ratios, violations, refusals, holds, landings, low)
+        return cls(claim, runs, others, ratios, violations, refusals, holds, landings, low)
 
     @property
     def ratio(self) -> Interval | None:
@@ -230,13 +236,40 @@ class Measured:
 
 
 def measured(
-    claims: Sequence[Claim], most_seeds: int | None, jobs: int | None, cluster: str | None
+    claims: Sequence[Claim], most_seeds: int | None, runs_of: Callable[[Claim, range], RunPairs]
 ) -> Iterator[Measured]:
-    """Fly the claims, one after the other."""
+    """Sum up the runs of the claims, one after the other."""
     for claim in claims:
         count = min(claim.seeds, most_seeds or claim.seeds)
-        seeds = range(FIRST_SEED, FIRST_SEED + count)
-        yield Measured.of(claim, *claim.flown(seeds, jobs, cluster))
+        yield Measured.of(claim, *runs_of(claim, range(FIRST_SEED, FIRST_SEED + count)))
+
+
+def rows_by_sky(each: Measured) -> Iterator[tuple[str, ...]]:
+    """Return a claim's figures by what the other runs met: one round, most of the limit, or less.
+
+    Flight times are those of all seeds together, also of those in which nothing flies.
+    """
+    limit_s = each.claim.limit_s
+    times_s = [other.to_95_in_sun_s or limit_s for other in each.others]
+    is_closed = [took_s >= NEARLY_ALL * limit_s for took_s in times_s]
+    is_quick = [took_s <= ONE_ROUND * min(times_s) for took_s in times_s]
+    skies = {
+        "one round is enough": [q and not c for q, c in zip(is_quick, is_closed, strict=True)],
+        "between": [not q and not c for q, c in zip(is_quick, is_closed, strict=True)],
+        "most of the limit": is_closed,
+        "all": [True for _ in times_s],
+    }
+    for sky, chosen in skies.items():
+        runs, others = list(compress(each.runs, chosen)), list(compress(each.others, chosen))
+        ratio = survey_ratios(runs, others, limit_s).time
+        flown_s, other_s = (sum(run.flight_s for run in every) for every in (runs, others))
+        yield (
+            each.claim.name,
+            sky,
+            f"{len(runs)}",
+            NOTHING if ratio is None else fine(ratio.mean),
+            NOTHING if other_s == 0.0 else fine(flown_s / other_s),
+        )
 
 
 def landings_text(found: Sequence[Measured]) -> str:
@@ -280,9 +313,9 @@ def drawn(path: Path, found: Sequence[Measured]) -> None:
         cv2.line(image, (limit, y - 12), (limit, y + 12), INK, 2)
         if each.ratio is not None:
             colour = GOOD if each.is_reached else SHORT
-            ends = [across(end) for end in (each.ratio.low, each.ratio.high) if isfinite(end)]
-            if ends:
-                cv2.line(image, (min(ends), y), (max(ends), y), colour, 2)
+            if isfinite(each.ratio.high):
+                low, high = across(each.ratio.low), across(each.ratio.high)
+                cv2.line(image, (low, y), (high, y), colour, 2)
             cv2.circle(image, (across(each.ratio.mean), y), 6, colour, -1, cv2.LINE_AA)
     cv2.imwrite(str(path), image)
 
@@ -293,6 +326,7 @@ def main() -> None:
     parser.add_argument("--list", action="store_true", help="print the claims, fly nothing")
     parser.add_argument("--only", default="", help="claims whose name or scenario contains this")
     parser.add_argument("--kept", action="store_true", help="sum up earlier runs, fly nothing")
+    parser.add_argument("--by-sky", action="store_true", help="ratios of open and closed skies too")
     parser.add_argument("--references", action="store_true", help="fly what is compared with")
     parser.add_argument("--seeds", type=int, help="at most so many of each claim")
     parser.add_argument("--jobs", type=int, help="runs at once; default: one for each core")
@@ -301,19 +335,23 @@ def main() -> None:
     asked = parser.parse_args()
     known = REFERENCES if asked.references else CLAIMS
     claims = [each for each in known if asked.only in f"{each.name} {each.scenario}"]
+    if not claims:
+        parser.error(f"--only: expected a part of a claim's name, as by --list, got {asked.only!a}")
     if asked.list:
         rows = [(e.name, e.scenario, e.against, f"{e.seeds}", fine(e.most)) for e in claims]
         print(table(("claim", "scenario", "over", "seeds", "must"), rows))
         return
     found: list[Measured] = []
     print(table(HEAD, ()), flush=True)
-    if asked.kept:
-        summed_up = (Measured.of(claim, *claim.kept()) for claim in claims)
-    else:
-        summed_up = measured(claims, asked.seeds, asked.jobs, asked.cluster)
-    for each in summed_up:
+
+    def runs_of(claim: Claim, seeds: range) -> RunPairs:
+        return claim.kept(seeds) if asked.kept else claim.flown(seeds, asked.jobs, asked.cluster)
+
+    for each in measured(claims, asked.seeds, runs_of):
         found.append(each)
         print(f"| {' | '.join(each.row)} |", flush=True)
+    if asked.by_sky:
+        print(f"\n{table(SKY_HEAD, [row for each in found for row in rows_by_sky(each)])}")
     print(f"\n{landings_text(found)}")
     if asked.picture is not None:
         drawn(asked.picture, found)

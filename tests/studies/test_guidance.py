@@ -5,7 +5,17 @@ from pathlib import Path
 
 import cv2
 import pytest
-from studies.guidance import CLAIMS, FIRST_SEED, REFERENCES, Claim, Measured, drawn, landings_text
+from studies.guidance import (
+    CLAIMS,
+    FIRST_SEED,
+    REFERENCES,
+    Claim,
+    Measured,
+    drawn,
+    landings_text,
+    main,
+    rows_by_sky,
+)
 from tests.score.test_survey_table import run_score
 
 from recon.score import RunScore, load_scenario
@@ -106,7 +116,9 @@ def test_what_is_kept_are_the_seeds_that_both_were_flown_with(
         one.keep(run_score(seed, 700.0))
     for seed in (FIRST_SEED + 1, FIRST_SEED + 2):
         other.keep(run_score(seed, 1000.0))
-    assert CLAIM.kept() == ([run_score(FIRST_SEED + 2, 700.0)], [run_score(FIRST_SEED + 2, 1000.0)])
+    both = ([run_score(FIRST_SEED + 2, 700.0)], [run_score(FIRST_SEED + 2, 1000.0)])
+    assert CLAIM.kept(range(FIRST_SEED, FIRST_SEED + 3)) == both
+    assert CLAIM.kept(range(FIRST_SEED, FIRST_SEED + 2)) == ([], [])
 
 
 def test_claims_of_one_scenario_share_the_runs_of_its_baseline() -> None:
@@ -117,6 +129,52 @@ def test_claims_of_one_scenario_share_the_runs_of_its_baseline() -> None:
     assert path == baseline_path
     assert runs_digest(path, baseline, "") == runs_digest(path, usual.compared()[1][1], "")
     assert runs_digest(path, flown, "") != runs_digest(path, usual.compared()[0][1], "")
+
+
+def test_by_sky_a_seed_counts_where_the_other_run_has_it_and_one_that_never_flew_counts() -> None:
+    times_s = ((270.0, 275.0, 1000.0), (280.0, 280.0, 1000.0), (500.0, 1000.0, 400.0))
+    flown = [replace(run_score(n, a), flight_s=f) for n, (a, _, f) in enumerate(times_s)]
+    others = [replace(run_score(n, b), flight_s=1000.0) for n, (_, b, _) in enumerate(times_s)]
+    flown.append(replace(run_score(3, None), flight_s=0.0))
+    others.append(replace(run_score(3, None), flight_s=1000.0))
+    rows = {row[1]: row[2:] for row in rows_by_sky(Measured.of(CLAIM, flown, others))}
+    assert rows == {
+        "one round is enough": ("2", "0.99", "1.00"),
+        "between": ("1", "0.50", "0.40"),
+        "most of the limit": ("1", "1.00", "0.00"),
+        "all": ("4", "0.84", "0.60"),
+    }
+
+
+def test_a_sky_that_is_closed_in_every_seed_is_no_open_one() -> None:
+    never = [run_score(seed, None) for seed in range(2)]
+    rows = {row[1]: row[2] for row in rows_by_sky(Measured.of(CLAIM, never, never))}
+    assert rows == {
+        "one round is enough": "0",
+        "between": "0",
+        "most of the limit": "2",
+        "all": "2",
+    }
+
+
+def test_of_one_seed_no_interval_is_drawn(tmp_path: Path) -> None:
+    alone = Measured.of(CLAIM, [run_score(0, 800.0)], [run_score(0, 1000.0)])
+    drawn(tmp_path / "one.png", [alone])
+    image = cv2.imread(str(tmp_path / "one.png"))
+    assert image is not None
+    coloured = (image.max(axis=2).astype(int) - image.min(axis=2) > 40).any(axis=0).nonzero()[0]
+    assert 0 < coloured[-1] - coloured[0] < 20
+
+
+def test_a_name_that_no_claim_has_is_a_sentence(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("sys.argv", ["guidance", "--only", "sunny"])
+    with pytest.raises(SystemExit):
+        main()
+    assert "--only: expected a part of a claim's name, as by --list, got 'sunny'" in (
+        capsys.readouterr().err
+    )
 
 
 def test_the_picture_has_a_line_for_each_claim(tmp_path: Path) -> None:
