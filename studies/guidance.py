@@ -4,11 +4,11 @@
     python -m studies.guidance --only wide --seeds 10 --picture docs/images/guidance.png
 
 Each claim is a scenario flown by `sunlit_first` and, under the same skies, by `lawnmower_again` or
-in another scenario. Its figure is the geometric mean of the ratios by seed, of the time to 95 % in
-sun or of the flight time, with a 95 % interval. All claims take hours on one computer; `--cluster`
-shares the runs with others. Finished runs are kept, as by `recon score`: a stopped study goes on
-where it was, and `--kept` sums up what has been flown so far. At the end it states, by all
-landings, how probable one below the reserve is.
+in another scenario. Its figure is the geometric mean of the seeds' ratios of the time to 95 % in
+sun, or the ratio of the flight times of all seeds together, with a 95 % interval. All claims take
+hours on one computer; `--cluster` shares the runs with others. Finished runs are kept, as by
+`recon score`: a stopped study goes on where it was, and `--kept` sums up what has been flown so
+far. At the end it states, by all landings, how probable one below the reserve is.
 """
 
 import argparse
@@ -245,10 +245,7 @@ def measured(
 
 
 def rows_by_sky(each: Measured) -> Iterator[tuple[str, ...]]:
-    """Return a claim's figures by what the other runs met: one round, most of the limit, or less.
-
-    Flight times are those of all seeds together, also of those in which nothing flies.
-    """
+    """Return a claim's figures by the other runs' skies: one round, most of the limit, or less."""
     limit_s = each.claim.limit_s
     times_s = [other.to_95_in_sun_s or limit_s for other in each.others]
     is_closed = [took_s >= NEARLY_ALL * limit_s for took_s in times_s]
@@ -261,15 +258,12 @@ def rows_by_sky(each: Measured) -> Iterator[tuple[str, ...]]:
     }
     for sky, chosen in skies.items():
         runs, others = list(compress(each.runs, chosen)), list(compress(each.others, chosen))
-        ratio = survey_ratios(runs, others, limit_s).time
-        flown_s, other_s = (sum(run.flight_s for run in every) for every in (runs, others))
-        yield (
-            each.claim.name,
-            sky,
-            f"{len(runs)}",
-            NOTHING if ratio is None else fine(ratio.mean),
-            NOTHING if other_s == 0.0 else fine(flown_s / other_s),
-        )
+        ratios = survey_ratios(runs, others, limit_s)
+        figures = [
+            NOTHING if figure is None else fine(figure.mean)
+            for figure in (ratios.time, ratios.flight_time)
+        ]
+        yield (each.claim.name, sky, f"{len(runs)}", *figures)
 
 
 def landings_text(found: Sequence[Measured]) -> str:

@@ -1,5 +1,7 @@
 """Two planners or detections compared seed by seed."""
 
+from dataclasses import replace
+
 from recon.score.run_score import RunScore
 from recon.score.shade_figures import ShadeFigures
 from recon.score.survey_table import survey_table
@@ -42,3 +44,11 @@ def test_it_pairs_the_seeds_and_counts_an_unfinished_survey_as_the_limit() -> No
     assert lines[2].startswith("| time to 95 % in sun | 0.62 |")
     assert lines[2].endswith("| 2 |")
     assert lines[3].startswith("| seeds lost by more than 5 %, % | 50.0 |")
+
+
+def test_the_flight_time_is_that_of_all_seeds_also_of_one_in_which_nothing_flies() -> None:
+    ours = [replace(run_score(seed, 500.0), flight_s=200.0 * seed) for seed in range(3)]
+    theirs = [run_score(seed, 500.0) for seed in range(3)]
+    lines = survey_table(ours, theirs, "lawnmower_again", 3_200.0).splitlines()
+    assert lines[4].startswith("| flight time | 0.20 |")
+    assert lines[4].endswith("| 3 |")

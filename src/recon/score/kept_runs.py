@@ -1,8 +1,8 @@
 """Finished runs on disk, one file per seed, so that a stopped command goes on where it was.
 
 The folder's name holds a digest of all that a run follows from beside its seed: the scenario's
-files, the methods, Recon's own code and the libraries that compute. Whatever changes, older runs
-are no longer found.
+files, the methods, the rooms of Recon that fly it and the libraries that compute. Whatever of
+these changes, older runs are no longer found.
 """
 
 from dataclasses import dataclass
@@ -21,18 +21,22 @@ from recon.site.reading import site_digest
 
 COMPUTING = ("numpy", "opencv-python-headless", "scipy", "msgspec")
 CODE = (".py", ".so", ".pyd")
+ROOMS_WITHOUT_RUNS = ("cli", "client", "product")
+"""No run imports them: with a change there, it is still the same."""
 LARGEST_BYTES = 50_000_000
 DIGEST_LETTERS = 16
 
 
 @cache
 def code_digest() -> str:
-    """Return SHA-256 over Recon's installed code and the versions of the libraries it computes
-    with."""
+    """Return SHA-256 over Recon's installed code that flies runs, and the versions of the libraries
+    it computes with."""
     total = sha256(" ".join(f"{name} {version(name)}" for name in COMPUTING).encode())
     package = Path(recon.__file__).parent
-    for path in sorted(path for path in package.rglob("*") if path.suffix in CODE):
-        total.update(path.relative_to(package).as_posix().encode() + path.read_bytes())
+    paths = {path.relative_to(package): path for path in package.rglob("*") if path.suffix in CODE}
+    for name, path in sorted(paths.items()):
+        if name.parts[0] not in ROOMS_WITHOUT_RUNS:
+            total.update(name.as_posix().encode() + path.read_bytes())
     return total.hexdigest()
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from recon.score.interval import Interval, interval, log_ratio
+from recon.score.interval import Interval, interval, log_ratio, ratio
 from recon.score.run_score import RunScore
 from recon.score.table_rows import fine, formatted, percent, table
 
@@ -13,17 +13,17 @@ LOST_FROM = 1.05
 
 @dataclass(frozen=True, slots=True)
 class SurveyRatios:
-    """Surveys over others of the same seeds; None without a seed that both have flown.
-
-    Geometric means, with 95 % intervals of the logarithms.
-    """
+    """Surveys over others of the same seeds; None without a seed that both have flown."""
 
     time: Interval | None
-    """To 95 % in sun. One that has not reached it within the limit counts as the limit."""
+    """To 95 % in sun, the geometric mean of the seeds' ratios. A survey that has not reached it
+    within the limit counts as the limit."""
     lost_share: Interval | None
     """Of the seeds, those that took longer by more than `LOST_FROM`."""
     flight_time: Interval | None
+    """Of all seeds together: a seed in which nothing flies counts too, and has no ratio."""
     missions: Interval | None
+    """Of all seeds together."""
 
 
 def survey_ratios(
@@ -40,8 +40,8 @@ def survey_ratios(
     return SurveyRatios(
         time=log_ratio(times),
         lost_share=interval([float(a > LOST_FROM * b) for a, b in times]),
-        flight_time=log_ratio([(a.flight_s, b.flight_s) for a, b in pairs]),
-        missions=log_ratio([(a.missions, b.missions) for a, b in pairs]),
+        flight_time=ratio([(a.flight_s, b.flight_s) for a, b in pairs]),
+        missions=ratio([(a.missions, b.missions) for a, b in pairs]),
     )
 
 
