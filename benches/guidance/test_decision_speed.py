@@ -45,9 +45,9 @@ def _decisions_s(
     took_s: list[float] = []
     plain = flyers.step
 
-    def timed(state, positions, now_ns, sun):  # type: ignore[no-untyped-def]
+    def timed(state, *given):  # type: ignore[no-untyped-def]
         began_s = process_time()
-        after, missions = plain(state, positions, now_ns, sun)
+        after, missions = plain(state, *given)
         lasted_s = process_time() - began_s
         new = [s for s, one in after.decisions.items() if one is not state.decisions.get(s)]
         decided = max(len(new), len(missions))
