@@ -248,22 +248,22 @@ def rows_by_sky(each: Measured) -> Iterator[tuple[str, ...]]:
     """Return a claim's figures by the other runs' skies: one round, most of the limit, or less."""
     limit_s = each.claim.limit_s
     times_s = [other.to_95_in_sun_s or limit_s for other in each.others]
-    is_closed = [took_s >= NEARLY_ALL * limit_s for took_s in times_s]
-    is_quick = [took_s <= ONE_ROUND * min(times_s) for took_s in times_s]
-    skies = {
-        "one round is enough": [q and not c for q, c in zip(is_quick, is_closed, strict=True)],
-        "between": [not q and not c for q, c in zip(is_quick, is_closed, strict=True)],
-        "most of the limit": is_closed,
-        "all": [True for _ in times_s],
-    }
-    for sky, chosen in skies.items():
+
+    def sky(took_s: float) -> str:
+        if took_s >= NEARLY_ALL * limit_s:
+            return "most of the limit"
+        return "one round is enough" if took_s <= ONE_ROUND * min(times_s) else "between"
+
+    skies = [sky(took_s) for took_s in times_s]
+    for name in ("one round is enough", "between", "most of the limit", "all"):
+        chosen = [name in (found, "all") for found in skies]
         runs, others = list(compress(each.runs, chosen)), list(compress(each.others, chosen))
         ratios = survey_ratios(runs, others, limit_s)
         figures = [
             NOTHING if figure is None else fine(figure.mean)
             for figure in (ratios.time, ratios.flight_time)
         ]
-        yield (each.claim.name, sky, f"{len(runs)}", *figures)
+        yield (each.claim.name, name, f"{len(runs)}", *figures)
 
 
 def landings_text(found: Sequence[Measured]) -> str:
