@@ -10,7 +10,7 @@ import numpy as np
 
 from recon.camera.ground import GroundProjector
 from recon.model.imagery import Frame
-from recon.record import write_ground_image
+from recon.record.raster.geotiff import write_ground_image
 from recon.site import demo_site_folder, load_site
 
 

@@ -12,8 +12,8 @@ from recon.client import Mission, Position, Refusal, Station, Waypoint
 from recon.sim.fleet import Airborne, SimulationConfig
 from recon.sim.run import run_fleet
 from recon.site import demo_site_folder, load_site
-from recon.station.kernel.run import run
-from recon.station.kernel.run_config import RunConfig, Started
+from recon.station.host.run import run
+from recon.station.host.run_config import RunConfig, Started
 
 LEG_DEG = 0.0001
 """About 11 m north."""

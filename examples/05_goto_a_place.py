@@ -15,8 +15,8 @@ from recon.model.vehicle import AltitudeReference, Failsafe, VehicleProfile
 from recon.sim.fleet import Airborne, SimulationConfig
 from recon.sim.run import run_fleet
 from recon.site import Site
-from recon.station.kernel.run import run
-from recon.station.kernel.run_config import RunConfig, Started
+from recon.station.host.run import run
+from recon.station.host.run_config import RunConfig, Started
 
 HOME = GeoPoint(41.9012, -93.6034, 275.0)
 

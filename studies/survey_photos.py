@@ -26,7 +26,7 @@ from recon.model.imagery import CameraPose, GroundImage, RgbImage
 from recon.model.shade import ShadeMap
 from recon.model.survey import SurveyCamera
 from recon.model.units import NS_PER_S
-from recon.record.tracks import utc_text
+from recon.record.mcap.tracks import utc_text
 from recon.score.ideal_detection import IdealDetection
 from recon.score.run import StationRun
 from recon.score.scenario import Scenario

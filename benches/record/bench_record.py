@@ -23,17 +23,17 @@ from typing import Any
 
 from recon.cli.demo import DEMO_SEED, demo_scenario_file
 from recon.cli.scripted_operator import fly_surveys
-from recon.record.mcap_file import compressor
-from recon.record.mcap_read import McapReading, RecordMessage
-from recon.record.record_process import RecordProcess
+from recon.record.mcap.mcap_file import compressor
+from recon.record.mcap.mcap_read import McapReading, RecordMessage
+from recon.record.mcap.record_process import RecordProcess
 from recon.score import load_scenario
 from recon.score.scenario_sky import sky_of
 from recon.sim.app.camera_feed import ImageFormat
 from recon.station.audit.start import AuditPlace
-from recon.station.kernel import run as station_run
-from recon.station.kernel.recording import Recorder
-from recon.station.kernel.run import run
-from recon.station.kernel.run_config import RunConfig, Started
+from recon.station.host import run as station_run
+from recon.station.host.run import run
+from recon.station.host.run_config import RunConfig, Started
+from recon.station.recording.recording import Recorder
 
 SETTLED_S = 20.0
 HOURS = 8.0

@@ -24,15 +24,15 @@ from benches.record.bench_record import Costs, fly, watch
 from foxglove_schemas_protobuf.Grid_pb2 import Grid
 
 from recon.cli.demo import demo_scenario_file
-from recon.record.foxglove import SHADE_TOPIC, SUN_TOPIC
-from recon.record.mcap_file import KEYFRAMES_TOPIC, STEPS_TOPIC, McapFile
-from recon.record.mcap_read import McapReading, RecordAttachment, RecordMessage
+from recon.record.mcap.foxglove import SHADE_TOPIC, SUN_TOPIC
+from recon.record.mcap.mcap_file import KEYFRAMES_TOPIC, STEPS_TOPIC, McapFile
+from recon.record.mcap.mcap_read import McapReading, RecordAttachment, RecordMessage
 from recon.score import load_scenario
 from recon.sim.app.camera_feed import ImageFormat
 from recon.station.audit.start import AuditPlace
-from recon.station.kernel.playback import Playback
-from recon.station.kernel.replay_run import ReplayStation, replay_service
-from recon.station.kernel.run_config import RunConfig
+from recon.station.host.replay_run import ReplayStation, replay_service
+from recon.station.host.run_config import RunConfig
+from recon.station.recording.playback import Playback
 
 RECORDED_S = 60.0
 LIMIT_S = 1.0

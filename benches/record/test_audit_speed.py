@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from recon.record.audit import AuditEntry, NumberedEntry, encode_line
-from recon.record.audit_log import AuditLog
+from recon.record.audit.audit import AuditEntry, NumberedEntry, encode_line
+from recon.record.audit.audit_log import AuditLog
 
 ENTRIES = 2_000
 SYNCED = 50

@@ -16,8 +16,8 @@ from recon.api.login import Login
 from recon.api.schema import AuditPage, TimelineView
 from recon.api.security import Access
 from recon.model.event import LinkOpened, PacketReceived
-from recon.record.audit import AuditEntry
-from recon.record.audit_log import KEPT_ENTRIES, AuditLog
+from recon.record.audit.audit import AuditEntry
+from recon.record.audit.audit_log import KEPT_ENTRIES, AuditLog
 from recon.station.audit.flight_entries import POSITION_KIND
 from recon.vehicles.reports import to_report
 

@@ -17,8 +17,8 @@ from tests.product.made_flight import flight, write_record
 from recon.api.app import create_app
 from recon.api.flight_routes import FlightBusyError, FlightFileError
 from recon.api.security import Access, AccessCheck
-from recon.station.kernel import flight_archive
-from recon.station.kernel.flight_archive import RecordedFlights
+from recon.station.host import flight_archive
+from recon.station.host.flight_archive import RecordedFlights
 
 Made = Callable[..., RecordedFlights]
 NAME = "recon-20250620T160000Z"

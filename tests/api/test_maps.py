@@ -19,8 +19,8 @@ from recon.basemap.map_reader import MapReader
 from recon.model.airspace import FlightLimits
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.site import Site, demo_site_folder
-from recon.station.kernel import base_maps
-from recon.station.kernel.base_maps import NO_FOLDER, SiteMaps, maps_of
+from recon.station.host import base_maps
+from recon.station.host.base_maps import NO_FOLDER, SiteMaps, maps_of
 
 SITE = Site(
     "field",

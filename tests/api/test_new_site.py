@@ -9,7 +9,7 @@ from tests.api.client import Client
 from recon.api.new_site_app import PAGE, create_new_site_app
 from recon.api.security import Access, AccessCheck
 from recon.site import load_site
-from recon.station.kernel.new_site import NewSite, awaits_site
+from recon.station.host.new_site import NewSite, awaits_site
 
 ASKED = {
     "name": "North field",

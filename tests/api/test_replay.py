@@ -16,8 +16,8 @@ from recon.api.app import create_app
 from recon.api.permissions import LEAST_ROLE, STREAM
 from recon.api.replay_routes import NO_ORDERS, NO_REPLAY, TRANSPORT
 from recon.api.security import Access, AccessCheck
-from recon.station.kernel.playback import Playback
-from recon.station.kernel.replay_run import ReplayStation, replay_service
+from recon.station.host.replay_run import ReplayStation, replay_service
+from recon.station.recording.playback import Playback
 
 FLIGHT = FOLDER / "survey.mcap"
 

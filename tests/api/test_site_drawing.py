@@ -17,7 +17,7 @@ from recon.model.command import Refusal
 from recon.model.event import SiteRedrawn
 from recon.model.geo import GeoPoint
 from recon.model.person import Person, Role
-from recon.record import file_set
+from recon.record.files import file_set
 from recon.site import load_site
 from recon.site.new_site import make_site
 from recon.station.control import site_drawing

@@ -26,7 +26,7 @@ from recon.api.login import Login
 from recon.api.security import Access
 from recon.api.servers import HandshakePace
 from recon.model.errors import RecordError
-from recon.station.kernel.http_servers import network_server
+from recon.station.host.http_servers import network_server
 
 NOW = datetime.now(UTC)
 HEADERS = {"Authorization": f"Bearer {TOKEN}"}

@@ -7,8 +7,8 @@ import pytest
 from typer.testing import CliRunner
 
 from recon.cli.audit import audit_app
-from recon.record.audit import AuditEntry
-from recon.record.audit_log import AuditLog
+from recon.record.audit.audit import AuditEntry
+from recon.record.audit.audit_log import AuditLog
 
 AGES_MIN = (300, 100, 30, 5)
 

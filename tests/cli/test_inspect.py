@@ -17,8 +17,8 @@ from hypothesis import strategies as st
 
 from recon import wire
 from recon.cli.inspect import inspect, inspect_command, printable_bytes
-from recon.record.link_bytes import LINKS_TOPIC, LinkMessage
-from recon.record.mcap_file import McapFile
+from recon.record.mcap.link_bytes import LINKS_TOPIC, LinkMessage
+from recon.record.mcap.mcap_file import McapFile
 
 ACK = wire.encode(wire.Acknowledgment(positive=1, source_pid=253))
 HOVER = wire.encode(wire.EmergencyCommand(action=0))

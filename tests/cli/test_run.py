@@ -16,12 +16,12 @@ from tests.cli.processes import PATIENCE_S, started
 from recon import wire
 from recon.model.errors import RecordError
 from recon.model.geo import GeoPoint
-from recon.record.link_bytes import LINKS_TOPIC, link_bytes
-from recon.record.mcap_repair import is_finished
+from recon.record.mcap.link_bytes import LINKS_TOPIC, link_bytes
+from recon.record.mcap.mcap_repair import is_finished
 from recon.site.new_site import make_site
 from recon.site.reading import MAPS_FOLDER
-from recon.station.kernel.playback import Playback
-from recon.station.kernel.replay import check
+from recon.station.recording.playback import Playback
+from recon.station.recording.replay import check
 
 FREE = ("--link-port", "0", "--http-port", "0", "--no-guard")
 HELLO = wire.encode(wire.MessageString(type=1, text=b"hello"))

@@ -12,8 +12,8 @@ from recon.cli.site import site_app
 from recon.model.airspace import SiteLayer
 from recon.model.errors import ReconError, SiteError
 from recon.model.event import SiteRedrawn
-from recon.record import file_set
-from recon.record.codec import Codec
+from recon.record.files import file_set
+from recon.record.mcap.codec import Codec
 from recon.site import load_site
 from recon.site.drawing import MOST_STAGED_FILES, read_drawing, stage_drawing
 from recon.site.reading import HISTORY_FOLDER, MAPS_FOLDER, site_digest

@@ -12,8 +12,8 @@ from tests.cli.station_process import StationProcess, addresses, run_options, st
 from tests.persons import user
 
 from recon.model.person import Role
-from recon.record.users_file import change_users
-from recon.station.kernel.http_servers import local_person
+from recon.record.files.users_file import change_users
+from recon.station.host.http_servers import local_person
 
 ROOT = Path(__file__).parents[2]
 

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from tests.cli.station_process import StationProcess, station_process
 
-from recon.station.kernel.http_servers import local_person
+from recon.station.host.http_servers import local_person
 
 FLOWN = ("--height", "40", "--speed", "5")
 

@@ -17,7 +17,7 @@ from tests.cli.processes import PATIENCE_S, started
 from recon.cli.audit import is_by
 from recon.cli.qr import qr_lines
 from recon.model.person import Role
-from recon.record.users_file import read_users
+from recon.record.files.users_file import read_users
 
 SHARED = ("--link-port", "0", "--http-port", "0", "--https-host", "127.0.0.1", "--https-port", "0")
 

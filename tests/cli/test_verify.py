@@ -13,7 +13,7 @@ from tests.forecast.moving_shade import noisy_map
 from typer.testing import CliRunner
 
 from recon.cli.commands import app
-from recon.record.shade_geotiff import shade_cog_bytes
+from recon.record.raster.shade_geotiff import shade_cog_bytes
 
 BEGIN = datetime(2025, 6, 20, 16, tzinfo=UTC)
 COUNT, EVERY_S = 26, 5.0

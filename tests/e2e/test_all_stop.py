@@ -18,7 +18,7 @@ from tests.persons import ANN
 from recon import wire
 from recon.link.server import LinkServer
 from recon.link.settings import LinkSettings
-from recon.record.audit_log import AuditLog
+from recon.record.audit.audit_log import AuditLog
 from recon.site import default_site
 from recon.station.api_views.service import Service
 from recon.station.audit.auditor import Auditor, LogPrinter

@@ -17,7 +17,7 @@ from tests.cli.station_process import StationProcess, addresses, run_options, si
 from tests.e2e.wire_tap import WireTap, tapped
 from tests.record.audits import until
 
-from recon.record.snapshot_file import read_snapshot
+from recon.record.files.snapshot_file import read_snapshot
 from recon.station.recovery.snapshot import decode_snapshot
 
 VEHICLES = 3

@@ -21,12 +21,12 @@ from recon.model.survey import Survey
 from recon.model.units import NS_PER_S
 from recon.model.vehicle import Attitude
 from recon.product.flight import FULL, FlightData, FlownSurvey, KeptMap, RecordedTrack
-from recon.record import foxglove
-from recon.record.flight_messages import MSGPACK
-from recon.record.mcap_file import ABOUT_NAME, STEPS_TOPIC, McapFile
-from recon.record.record_writer import Topics
-from recon.record.tracks import utc_text
-from recon.station.kernel.recorded_values import values_codec
+from recon.record.mcap import foxglove
+from recon.record.mcap.flight_messages import MSGPACK
+from recon.record.mcap.mcap_file import ABOUT_NAME, STEPS_TOPIC, McapFile
+from recon.record.mcap.record_writer import Topics
+from recon.record.mcap.tracks import utc_text
+from recon.station.recording.recorded_values import values_codec
 
 FloatArray = npt.NDArray[np.float64]
 

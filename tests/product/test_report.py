@@ -38,7 +38,7 @@ from recon.product.flight_log import FORECAST_TOPIC, FlightLog, LogReader, read_
 from recon.product.report import FlightReport, flight_report
 from recon.product.report_page import report_html
 from recon.product.tagged import tagged_photos
-from recon.record.mcap_read import RecordMessage
+from recon.record.mcap.mcap_read import RecordMessage
 
 HOSTILE = "\"><script>alert(1)</script><img src=//x.example onerror=alert(2)>{{ 7*7 }}' &<b>"
 PLACES = np.meshgrid(*cell_centres_m(GRID))

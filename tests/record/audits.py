@@ -5,9 +5,9 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from recon.record.audit import AuditEntry
-from recon.record.audit_files import audit_files, read_run_end
-from recon.record.audit_log import AuditLog
+from recon.record.audit.audit import AuditEntry
+from recon.record.audit.audit_files import audit_files, read_run_end
+from recon.record.audit.audit_log import AuditLog
 
 PATIENCE_S = 120.0
 

@@ -20,8 +20,8 @@ from tests.station.returning_world import FRAME
 from tests.station.surveyed_world import SURVEY_ID, asked, surveyed_world
 
 from recon.site import Site
-from recon.station.kernel.recorded_values import FlightStart, this_machine
 from recon.station.kernel.virtual import VirtualDriver
+from recon.station.recording.recorded_values import FlightStart, this_machine
 
 FOLDER = Path(__file__).parent / "flights"
 

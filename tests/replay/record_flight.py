@@ -6,12 +6,12 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from recon.record.audit import AuditEntry
-from recon.record.record_process import RecordProcess
+from recon.record.audit.audit import AuditEntry
+from recon.record.mcap.record_process import RecordProcess
 from recon.site import Site
 from recon.station.audit.entries import Auditing, audit
-from recon.station.kernel.recording import Recorder, record_process
 from recon.station.kernel.virtual import VirtualDriver
+from recon.station.recording.recording import Recorder, record_process
 from recon.station.state.steps import StepTaken
 
 FINISHES_WITHIN_S = 120.0

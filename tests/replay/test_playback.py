@@ -23,15 +23,16 @@ from recon.model.command import Hover
 from recon.model.errors import RecordError
 from recon.model.event import AllStopped
 from recon.model.units import ns_to_seconds, seconds_to_ns
-from recon.record.flight_messages import START_NAME
-from recon.record.foxglove import SHADE_TOPIC, SUN_TOPIC
-from recon.record.mcap_file import KEYFRAMES_TOPIC, STEPS_TOPIC, McapFile
-from recon.record.mcap_read import McapReading, RecordMessage
+from recon.record.mcap.flight_messages import START_NAME
+from recon.record.mcap.foxglove import SHADE_TOPIC, SUN_TOPIC
+from recon.record.mcap.mcap_file import KEYFRAMES_TOPIC, STEPS_TOPIC, McapFile
+from recon.record.mcap.mcap_read import McapReading, RecordMessage
 from recon.site import Site
 from recon.station.api_views.service import Service
-from recon.station.kernel import recording as recording_of_kernel
+from recon.station.host.replay_run import ReplayService, ReplayStation, replay_service
 from recon.station.kernel.driver import AsyncioDriver
-from recon.station.kernel.keyframe import (
+from recon.station.recording import recording as recording_of_kernel
+from recon.station.recording.keyframe import (
     KEYFRAME_S,
     DueKeyframe,
     MapMessages,
@@ -40,10 +41,9 @@ from recon.station.kernel.keyframe import (
     read_keyframe,
     restored,
 )
-from recon.station.kernel.playback import Playback
-from recon.station.kernel.recorded_values import values_codec
-from recon.station.kernel.replay import Replay, check
-from recon.station.kernel.replay_run import ReplayService, ReplayStation, replay_service
+from recon.station.recording.playback import Playback
+from recon.station.recording.recorded_values import values_codec
+from recon.station.recording.replay import Replay, check
 from recon.station.state.station import Station
 
 FLIGHTS = ("faults", "survey", "pictures")

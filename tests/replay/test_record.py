@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
-from tests.record.test_record_writer import until
+from tests.record.mcap.test_record_writer import until
 from tests.replay.flights import FOLDER, pictures_in_two, survey_in_two
 from tests.replay.record_flight import Audits, recording
 from tests.station.station_world import square_mission, world
@@ -31,8 +31,8 @@ from recon.model.report import ImageReport
 from recon.model.shade import ShadeMap, SunForecast
 from recon.model.units import seconds_to_ns
 from recon.product.flight import read_flight
-from recon.record import foxglove
-from recon.record.flight_messages import (
+from recon.record.mcap import foxglove
+from recon.record.mcap.flight_messages import (
     BULK_BYTES,
     HEAD,
     STEP_HEAD,
@@ -41,22 +41,22 @@ from recon.record.flight_messages import (
     Item,
     ItemKind,
 )
-from recon.record.link_bytes import LINKS_TOPIC, link_bytes
-from recon.record.mcap_file import STEPS_TOPIC
-from recon.record.mcap_read import MAGIC, McapReading, RecordMessage
-from recon.record.record_process import NICENESS, RecordProcess
-from recon.record.record_writer import RecordWriter
+from recon.record.mcap.link_bytes import LINKS_TOPIC, link_bytes
+from recon.record.mcap.mcap_file import STEPS_TOPIC
+from recon.record.mcap.mcap_read import MAGIC, McapReading, RecordMessage
+from recon.record.mcap.record_process import NICENESS, RecordProcess
+from recon.record.mcap.record_writer import RecordWriter
 from recon.site import Site
-from recon.station.kernel import recording as recording_of_kernel
-from recon.station.kernel import run
-from recon.station.kernel.recording import (
+from recon.station.host import run
+from recon.station.kernel.step import step
+from recon.station.recording import recording as recording_of_kernel
+from recon.station.recording.recording import (
     RESTART_AFTER_S,
     RESTART_WITHIN_S,
     Recorder,
     is_flying,
 )
-from recon.station.kernel.replay import check
-from recon.station.kernel.step import step
+from recon.station.recording.replay import check
 from recon.station.state.station import Station
 from recon.station.state.steps import StepTaken
 

@@ -9,8 +9,8 @@ import pytest
 from tests.replay.flights import FLIGHTS, FOLDER, skip_if_recorded_elsewhere
 
 from recon.cli.replay import lines
-from recon.station.kernel.recorded_values import this_machine
-from recon.station.kernel.replay import Difference, check
+from recon.station.recording.recorded_values import this_machine
+from recon.station.recording.replay import Difference, check
 
 
 def is_rounding(difference: Difference) -> bool:

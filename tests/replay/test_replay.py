@@ -18,11 +18,11 @@ from recon.cli.commands import app
 from recon.model.command import Hover
 from recon.model.errors import RecordError
 from recon.model.event import Event
-from recon.record.mcap_file import STEPS_TOPIC, McapFile
-from recon.record.mcap_read import McapReading, RecordAttachment, RecordMessage
+from recon.record.mcap.mcap_file import STEPS_TOPIC, McapFile
+from recon.record.mcap.mcap_read import McapReading, RecordAttachment, RecordMessage
 from recon.site import Site
-from recon.station.kernel import replay
-from recon.station.kernel.replay import Replay, check, differences
+from recon.station.recording import replay
+from recon.station.recording.replay import Replay, check, differences
 from recon.station.state.station import Station
 from recon.station.state.steps import SendCommand, Stepped
 

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from recon.model.units import seconds_to_ns
-from recon.station.kernel.transport import FASTEST, SLOWEST, Transport
+from recon.station.recording.transport import FASTEST, SLOWEST, Transport
 
 BEGIN, END = seconds_to_ns(100.0), seconds_to_ns(260.0)
 AT_BEGIN = Transport(BEGIN, END, BEGIN)

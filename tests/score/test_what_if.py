@@ -19,7 +19,7 @@ from recon.score.score_grid import score_grid
 from recon.score.truth import Truth, truth_of, world_text
 from recon.score.what_if import MethodPair, WhatIf
 from recon.station.imaging.shade import ShadeRead
-from recon.station.kernel.replay import check
+from recon.station.recording.replay import check
 from recon.station.state.imaging import SeenShade
 
 ZERO_NS = 1_750_000_000 * NS_PER_S

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 from tests.station.station_world import World
 
-from recon.record.audit import AuditEntry, AuditLine, NumberedEntry, decode_line, encode_line
+from recon.record.audit.audit import AuditEntry, AuditLine, NumberedEntry, decode_line, encode_line
 from recon.station.audit.entries import Auditing, audit
 from recon.station.state.steps import StepTaken
 

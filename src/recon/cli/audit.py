@@ -16,9 +16,9 @@ from recon.cli.commands import App
 from recon.cli.connection import WRONG_USE
 from recon.cli.output import print_json, print_line, printable
 from recon.model.errors import RecordError
-from recon.record.audit import AuditLine, decode_line
-from recon.record.audit_check import AuditCheck, check_audit
-from recon.record.audit_files import audit_files, raw_lines
+from recon.record.audit.audit import AuditLine, decode_line
+from recon.record.audit.audit_check import AuditCheck, check_audit
+from recon.record.audit.audit_files import audit_files, raw_lines
 
 audit_app = App(help="Read a station's audit and verify its integrity.", no_args_is_help=True)
 

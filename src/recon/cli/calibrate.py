@@ -25,7 +25,7 @@ from recon.cli.output import print_line, print_table, printable
 from recon.cli.picture import png_of
 from recon.cli.progress import progress_over
 from recon.model.errors import ReconError, RecordError
-from recon.record.atomic_file import replace_file
+from recon.record.files.atomic_file import replace_file
 
 MOST_PHOTOS = 200
 CIRCLE_PHOTOS = 5

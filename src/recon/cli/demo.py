@@ -16,16 +16,16 @@ from recon.cli.run import HAS_GUARD, console_folder, guard_port, print_started
 from recon.cli.scripted_operator import fly_surveys
 from recon.cli.site import opened_site
 from recon.model.errors import ReconError
-from recon.record.users_file import state_folder
+from recon.record.files.users_file import state_folder
 from recon.score import Scenario, ScenarioError, load_scenario
 from recon.score.scenario_sky import sky_of
 from recon.score.truth import world_text
 from recon.site import SiteError
 from recon.site.load import SITE_FILE
 from recon.station.audit.start import default_place
-from recon.station.kernel.new_site import awaits_site, make_in_browser
-from recon.station.kernel.run import run
-from recon.station.kernel.run_config import RunConfig, Started
+from recon.station.host.new_site import awaits_site, make_in_browser
+from recon.station.host.run import run
+from recon.station.host.run_config import RunConfig, Started
 
 SIMULATOR_ENDS_WITHIN_S = 3.0
 FPS_HZ = 2

@@ -40,7 +40,7 @@ from recon.model.geo import GeoPoint, GroundGrid, LatLon, LocalFrame
 from recon.model.imagery import CameraPose, GroundImage, RgbImage
 from recon.model.shade import ShadeMap
 from recon.model.units import seconds_to_ns
-from recon.record.shade_geotiff import shade_cog_bytes
+from recon.record.raster.shade_geotiff import shade_cog_bytes
 
 GROUND_PER_HEIGHT = 2.75
 """Side of the ground image by the camera's height: 330 m at 120 m, the real lens's field."""

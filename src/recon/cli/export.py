@@ -9,8 +9,8 @@ from recon.cli.output import print_line, printable
 from recon.cli.tag import opened_flight
 from recon.model.errors import RecordError
 from recon.product.exports import FLIGHT_FORMATS
-from recon.record.atomic_file import replace_file
-from recon.record.tracks import FORMATS, read_tracks
+from recon.record.files.atomic_file import replace_file
+from recon.record.mcap.tracks import FORMATS, read_tracks
 
 
 def export_command(

@@ -21,7 +21,7 @@ from recon.cli.recorded_maps import (
 from recon.forecast import FORECASTERS, ForecastSettings, ForecastState
 from recon.model.errors import ReconError, RecordError
 from recon.model.shade import SURE, SunForecast
-from recon.record.sun_geotiff import write_sun
+from recon.record.raster.sun_geotiff import write_sun
 from recon.score.table_rows import percent, plain, table
 
 USUAL_LEADS = "15,30,60,120,300"

@@ -128,7 +128,7 @@ def _reads(source: BinaryIO) -> Iterator[Read]:
 
 
 def _record_reads(source: BinaryIO) -> Iterator[Read]:
-    from recon.record.link_bytes import link_bytes
+    from recon.record.mcap.link_bytes import link_bytes
 
     for each in link_bytes(source):
         way = "from app" if each.is_from_app else "to app"

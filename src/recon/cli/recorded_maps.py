@@ -13,7 +13,7 @@ from recon.cli.progress import progress_over
 from recon.model.errors import RecordError
 from recon.model.shade import ShadeMap
 from recon.model.units import seconds_to_ns
-from recon.record.map_sequence import RecordedMap, captured_utc, map_files, read_map
+from recon.record.raster.map_sequence import RecordedMap, captured_utc, map_files, read_map
 from recon.score.verification import time_scale, unplaced_grid
 
 UNEVEN = 0.5

@@ -12,9 +12,9 @@ import numpy as np
 import typer
 
 from recon import version
-from recon.record.audit import shown
-from recon.station.kernel.recorded_values import FlightStart, this_machine
-from recon.station.kernel.replay import Checked, check
+from recon.record.audit.audit import shown
+from recon.station.recording.recorded_values import FlightStart, this_machine
+from recon.station.recording.replay import Checked, check
 
 DIFFERS, CUT_SHORT = 1, 3
 METHODS = ("detection", "forecast")
@@ -82,7 +82,7 @@ def _show(file: Path, http_port: int, site: Path | None) -> None:
     from recon.api.schema import ReplayView
     from recon.cli.foreground import print_now, run_in_loop
     from recon.cli.run import console_folder
-    from recon.station.kernel.replay_run import run_replay
+    from recon.station.host.replay_run import run_replay
 
     async def started(url: str, replay: ReplayView) -> None:
         minutes, seconds = divmod(round(replay.duration_s), 60)

@@ -14,16 +14,16 @@ from recon.cli.qr import qr_lines
 from recon.cli.site import opened_site
 from recon.cli.users import UsersOption
 from recon.link.settings import LinkSettings
-from recon.record.audit import shown
-from recon.record.users_file import state_folder
+from recon.record.audit.audit import shown
+from recon.record.files.users_file import state_folder
 from recon.site import Site, default_site, own_folder, site_report
 from recon.site.app_list import APPS_FILE, read_app_list
 from recon.station.api_views.service import Service
 from recon.station.audit.start import AuditPlace
+from recon.station.host.run import run
+from recon.station.host.run_config import RunConfig, Started
 from recon.station.kernel.build import first_state
 from recon.station.kernel.driver import AsyncioDriver
-from recon.station.kernel.run import run
-from recon.station.kernel.run_config import RunConfig, Started
 
 HAS_GUARD = hasattr(socket, "send_fds")
 """Windows hands no sockets to other processes."""

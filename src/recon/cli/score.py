@@ -13,7 +13,7 @@ import typer
 from recon.cli.progress import usable_cores
 from recon.forecast import FORECASTERS
 from recon.model.errors import ReconError
-from recon.record.users_file import state_folder
+from recon.record.files.users_file import state_folder
 from recon.score import RunScore, Scenario, ScenarioError, load_scenario, tables
 from recon.score.kept_runs import KeptRuns
 from recon.score.many_runs import on_cluster, on_cores, one_by_one

@@ -14,8 +14,8 @@ from recon.product.shadow_record import photos_by_cell, sun_by_cell, sun_cog
 from recon.product.sun_at import shade_map
 from recon.product.tag import sun_history
 from recon.product.tagged import tagged_photos
-from recon.record.atomic_file import replace_file
-from recon.record.shade_geotiff import shade_cog_bytes
+from recon.record.files.atomic_file import replace_file
+from recon.record.raster.shade_geotiff import shade_cog_bytes
 
 MAPS, SUN = "shade", "sun.tif"
 FILE_MODE = 0o644

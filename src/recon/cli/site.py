@@ -74,7 +74,7 @@ def import_command(
 ) -> None:
     """Import shapes as a layer of a site. A running station does not see it before its restart."""
     from recon.model.airspace import SiteLayer
-    from recon.record.file_set import replace_files
+    from recon.record.files.file_set import replace_files
     from recon.site.drawing import DrawnFeature, read_drawing, stage_drawing
     from recon.site.imports import LARGEST_IMPORT_BYTES, read_import
     from recon.site.reading import read_bounded
@@ -109,7 +109,7 @@ def opened_site(folder: Path) -> "Site":
 
     Raises `SiteError`, or `RecordError` for a change that was edited by hand.
     """
-    from recon.record.file_set import finish_interrupted
+    from recon.record.files.file_set import finish_interrupted
     from recon.site import load_site
 
     try:

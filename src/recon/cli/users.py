@@ -15,7 +15,7 @@ from recon.cli.output import print_line
 from recon.cli.qr import qr_lines
 from recon.model.errors import ReconError
 from recon.model.person import LONGEST_NAME, Role, User, is_name
-from recon.record.users_file import change_users, default_users_file, read_users
+from recon.record.files.users_file import change_users, default_users_file, read_users
 
 user_app = App(help="Manage the users of the console on other computers.", no_args_is_help=True)
 

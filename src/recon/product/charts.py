@@ -19,7 +19,7 @@ from recon.model.geo import GroundGrid
 from recon.model.units import NS_PER_S
 from recon.product.coverage import ENOUGH_VIEWS
 from recon.product.report import AlarmSpan, Covered, FlightReport
-from recon.record.tracks import utc_text
+from recon.record.mcap.tracks import utc_text
 
 ByteMap = npt.NDArray[np.uint8]
 

@@ -13,7 +13,7 @@ from recon.product.flight_log import FlightLog, read_log
 from recon.product.report import Covered, FlightReport, flight_report
 from recon.product.shadow_record import sun_by_cell, sun_cog
 from recon.product.tag import sun_history
-from recon.record.tracks import xml_text
+from recon.record.mcap.tracks import xml_text
 
 TRACK_EVERY_NS = NS_PER_S
 

@@ -25,10 +25,10 @@ from recon.model.errors import RecordError
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.survey import Survey, SurveyCamera
 from recon.model.units import NS_PER_S
-from recon.record.foxglove import SHADE_TOPIC
-from recon.record.mcap_file import ABOUT_NAME, STEPS_TOPIC
-from recon.record.mcap_read import McapReading, RecordAttachment, RecordMessage
-from recon.record.tracks import utc_text
+from recon.record.mcap.foxglove import SHADE_TOPIC
+from recon.record.mcap.mcap_file import ABOUT_NAME, STEPS_TOPIC
+from recon.record.mcap.mcap_read import McapReading, RecordAttachment, RecordMessage
+from recon.record.mcap.tracks import utc_text
 
 ByteMap = npt.NDArray[np.uint8]
 

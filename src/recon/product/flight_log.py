@@ -24,8 +24,8 @@ from recon.model.geo import GroundGrid
 from recon.model.units import NS_PER_S
 from recon.product.flight import UNKNOWN, FlightData, KeptMap
 from recon.product.shadow_record import SUNLIT
-from recon.record.mcap_file import ABOUT_NAME, STEPS_TOPIC
-from recon.record.mcap_read import McapReading, RecordAttachment, RecordMessage
+from recon.record.mcap.mcap_file import ABOUT_NAME, STEPS_TOPIC
+from recon.record.mcap.mcap_read import McapReading, RecordAttachment, RecordMessage
 
 FORECAST_TOPIC, LEAD_PREFIX = "/forecast", "sun_in_"
 MOST_LINES = 100_000

@@ -20,7 +20,7 @@ from recon.model.units import NS_PER_S
 from recon.product.coverage import LEAST_CONFIDENCE
 from recon.product.flight import FULL, MOST_CELLS, UNKNOWN, FlightData
 from recon.product.sun_at import SunHistory
-from recon.record.shade_geotiff import CogBand, cog_bytes
+from recon.record.raster.shade_geotiff import CogBand, cog_bytes
 
 IntMap = npt.NDArray[np.int32]
 

@@ -20,7 +20,7 @@ from recon.model.errors import RecordError
 from recon.product.flight import FlightData
 from recon.product.tag import PhotoTag, Selection
 from recon.product.timing import TimedPhoto
-from recon.record.atomic_file import replace_file
+from recon.record.files.atomic_file import replace_file
 
 ByteMap = npt.NDArray[np.uint8]
 FILE_MODE = 0o644

@@ -1,9 +1,5 @@
-"""Files that outlive the process: the audit, the recovery snapshot, ground images as GeoTIFF.
+"""Files that outlive the process; what is written, and when, is decided by the station.
 
-Formats, atomic writes and checks are here; what is written, and when, is decided by the station.
+`mcap` has flight records, `audit` the log of every order, `raster` maps and images as GeoTIFF,
+`files` everything that is replaced as a whole: snapshot, users, a site's layers with undo.
 """
-
-from recon.model.errors import RecordError
-from recon.record.geotiff import geotiff_bytes, write_ground_image
-
-__all__ = ["RecordError", "geotiff_bytes", "write_ground_image"]

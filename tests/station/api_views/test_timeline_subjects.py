@@ -29,7 +29,7 @@ def strings(node: ast.AST) -> Iterator[str]:
 
 def kinds() -> Iterator[str]:
     """Every kind in the modules that write entries, with braces where a value is filled in."""
-    for path in files("station", "record/audit.py", "record/audit_log.py"):
+    for path in files("station", "record/audit/audit.py", "record/audit/audit_log.py"):
         module = tree(path)
         names = {each.id for each in ast.walk(module) if isinstance(each, ast.Name)}
         if "AuditEntry" in names or path.name == "audit.py":

@@ -6,10 +6,10 @@ import pytest
 from tests.record.audits import entry, until, written
 
 from recon.model.errors import RecordError
-from recon.record.audit import FAILED_KIND, STOPPED_KIND
-from recon.record.audit_check import check_audit
-from recon.record.audit_files import audit_files
-from recon.record.audit_log import AuditLog
+from recon.record.audit.audit import FAILED_KIND, STOPPED_KIND
+from recon.record.audit.audit_check import check_audit
+from recon.record.audit.audit_files import audit_files
+from recon.record.audit.audit_log import AuditLog
 from recon.station.audit.start import (
     MAX_FILES_READ,
     AuditPlace,

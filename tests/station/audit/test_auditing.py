@@ -34,7 +34,7 @@ from recon.model.event import (
     Tick,
 )
 from recon.model.units import NS_PER_S
-from recon.record.audit import AuditEntry
+from recon.record.audit.audit import AuditEntry
 from recon.sim.fleet import Airborne
 from recon.station.audit.entries import Auditing, audit
 from recon.station.audit.link_entries import MAX_IN_A_WINDOW

@@ -7,7 +7,7 @@ import pytest
 from tests.record.audits import PATIENCE_S, entry, until
 
 from recon.model.event import LinkOpened, Tick
-from recon.record.audit_log import AuditLog
+from recon.record.audit.audit_log import AuditLog
 from recon.station.audit import auditor as log_module
 from recon.station.audit.auditor import WAITING_LINES, Auditor, LogPrinter
 from recon.station.kernel.driver import AsyncioDriver

@@ -31,7 +31,7 @@ from recon.model.event import (
 )
 from recon.model.survey import SurveyPhase
 from recon.model.vehicle import FlightMode
-from recon.record.audit import AuditEntry
+from recon.record.audit.audit import AuditEntry
 from recon.station.audit.entries import Auditing, audit
 from recon.station.control import handover, operator_lease
 from recon.station.state.station import Station

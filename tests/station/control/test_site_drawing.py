@@ -20,7 +20,7 @@ from recon.sim.fleet import Airborne
 from recon.site import Site
 from recon.station.audit.entries import Auditing, audit
 from recon.station.control import site_drawing
-from recon.station.kernel.replay import check
+from recon.station.recording.replay import check
 
 SMALL = Region(np.array([(-60.0, -60.0), (60.0, -60.0), (60.0, 60.0), (-60.0, 60.0)]))
 FARMYARD = Zone("farmyard", ZoneKind.KEEP_OUT, SMALL)

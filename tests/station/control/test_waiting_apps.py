@@ -19,7 +19,7 @@ from recon.model.event import (
 )
 from recon.model.geo import LatLon
 from recon.model.vehicle import FlightMode
-from recon.record.audit import AuditEntry
+from recon.record.audit.audit import AuditEntry
 from recon.station.alarms import app_conditions
 from recon.station.audit.entries import Auditing, audit
 from recon.station.traffic.known_traffic import in_the_air

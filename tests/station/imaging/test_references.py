@@ -13,13 +13,13 @@ from recon.detection import DetectionState
 from recon.model.imagery import GroundImage
 from recon.model.shade import ShadeMap, SunlitReference
 from recon.model.units import seconds_to_ns
-from recon.record.reference_file import FOLDER, read_references, write_reference
+from recon.record.raster.reference_file import FOLDER, read_references, write_reference
 from recon.site import Site, demo_site_folder
 from recon.station.alarms.conditions import conditions
 from recon.station.api_views.imaging_views import shade_view
+from recon.station.host.run import first_station
+from recon.station.host.run_config import RunConfig
 from recon.station.imaging.references import WRITE_EVERY_S, with_references, written
-from recon.station.kernel.run import first_station
-from recon.station.kernel.run_config import RunConfig
 from recon.station.kernel.step import step
 from recon.station.kernel.worker import JobRunner
 from recon.station.state.station import Station

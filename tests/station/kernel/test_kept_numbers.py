@@ -6,7 +6,7 @@ from pathlib import Path
 from recon.fleet.state import Fleet
 from recon.model.vehicle import VehicleProfile
 from recon.site.vehicle_numbers import read_numbers
-from recon.station.kernel.run import kept_numbers
+from recon.station.host.run import kept_numbers
 
 
 def fleet(*serials: str) -> Fleet:

@@ -9,8 +9,8 @@ from recon.guidance.look_aside import LOOK_ASIDE_SETTINGS
 from recon.model.control import AuthorityHolder
 from recon.model.event import AuthorityTaken
 from recon.model.survey import SurveyPhase
-from recon.station.kernel.keyframe import without_recorded
 from recon.station.operations.look_aside.by_itself import begin_if_due, unknown_for_long
+from recon.station.recording.keyframe import without_recorded
 from recon.station.state.imager_motion import MotionStage
 
 

@@ -4,7 +4,7 @@ from tests.station.surveyed_world import SURVEY_ID, SurveyedWorld, asked, field,
 
 from recon.model.airspace import HeightDatum, Zone, ZoneKind
 from recon.model.survey import SurveyPhase
-from recon.record.audit import AuditEntry
+from recon.record.audit.audit import AuditEntry
 from recon.station.audit.entries import Auditing, audit
 from recon.station.state.steps import StepTaken
 

@@ -25,15 +25,15 @@ from recon.model.geo import GroundGrid
 from recon.model.replacing import replace
 from recon.model.shade import ShadeMap
 from recon.model.survey import Survey, SurveyPhase, WhenDone
-from recon.record.codec import CodecError
-from recon.record.digest import digest
+from recon.record.mcap.codec import CodecError
+from recon.record.mcap.digest import digest
 from recon.safety import PreparedAirspace
 from recon.sim.flight.mission import MissionFlight
 from recon.station.api_views.operation_views import survey_view
 from recon.station.api_views.survey_preview import survey_preview
-from recon.station.kernel.recorded_values import values_codec
 from recon.station.operations.survey.availability import NO_TAKEOFF_HEIGHT
 from recon.station.operations.survey.execution import on_shade
+from recon.station.recording.recorded_values import values_codec
 
 HEIGHT_M = 40.0
 APART = ((0.0, -40.0), (240.0, -40.0))

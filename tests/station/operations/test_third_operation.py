@@ -13,7 +13,7 @@ REGISTER_AND_RUN = dedent(
 
     from recon import station
     from recon.model.event import Tick
-    from recon.record.audit import AuditEntry
+    from recon.record.audit.audit import AuditEntry
     from recon.site import Site
     from recon.station import operations
     from recon.station.operations.operation import Operation

@@ -14,7 +14,7 @@ from recon.model.command import Hover
 from recon.model.control import AuthorityHolder
 from recon.model.event import AuthorityTaken, Event, HazardDismissed, Tick
 from recon.model.geo import LatLon
-from recon.record.snapshot_file import CURRENT, read_snapshot
+from recon.record.files.snapshot_file import CURRENT, read_snapshot
 from recon.station.recovery import snapshot_writer
 from recon.station.recovery.restart import LastRun
 from recon.station.recovery.snapshot import RecoverySnapshot, decode_snapshot

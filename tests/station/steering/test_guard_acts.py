@@ -5,7 +5,7 @@ from tests.station.steered_world import SERIAL, steered
 
 from recon.model.command import Phase
 from recon.model.event import GuardActed
-from recon.station.kernel.guard_line import link_pictures
+from recon.station.host.guard_line import link_pictures
 
 WHY = "the station was silent for 1 s"
 

@@ -5,7 +5,7 @@ from typing import Protocol
 
 from recon.api import schema
 from recon.api.port import TimelineSubject
-from recon.record.audit import NumberedEntry, harmless
+from recon.record.audit.audit import NumberedEntry, harmless
 
 KINDS_OF: dict[TimelineSubject, tuple[str, ...]] = {
     "orders": ("order.", "all_stop.", "authority.", "lease.", "sticks."),

@@ -21,7 +21,7 @@ from recon.model.command import Refusal
 from recon.model.errors import ReconError, SiteError
 from recon.model.event import ImagerMarked, SiteRedrawn
 from recon.model.person import Person, Role
-from recon.record import file_set
+from recon.record.files import file_set
 from recon.site import Imager, Site, own_folder
 from recon.site.drawing import (
     FENCES,

@@ -35,7 +35,7 @@ from recon.model.person import Person
 from recon.model.shade import MaskMap, ShadeMap, SunForecast
 from recon.model.temporary_zone import DrawnZone
 from recon.model.units import ns_to_seconds
-from recon.record import geotiff_bytes
+from recon.record.raster.geotiff import geotiff_bytes
 from recon.site import Site
 from recon.station.api_views import RunningStation, outcome_of
 from recon.station.api_views.audit_service import KeptEntries, audit_page, timeline

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from recon.model.units import seconds_to_ns
-from recon.record.audit import AuditEntry
+from recon.record.audit.audit import AuditEntry
 from recon.station.state.alarm_book import Alarm, AlarmBook
 
 AGAIN_AFTER_S = 5.0

@@ -11,8 +11,8 @@ from collections.abc import Callable, Iterable
 import structlog
 
 from recon.model.event import AuditFailed, Event, Tick
-from recon.record.audit import AuditEntry, shown
-from recon.record.audit_log import AuditLog
+from recon.record.audit.audit import AuditEntry, shown
+from recon.record.audit.audit_log import AuditLog
 from recon.station.audit.entries import Auditing, audit
 from recon.station.audit.flight_entries import POSITION_KIND
 from recon.station.state.steps import StepTaken

@@ -7,8 +7,8 @@ flights, authority, orders, alarms. What would flood the file is reduced by a me
 steps (`Auditing`): a stick stream is its start and end, an alarm that begins and ends is written
 every five seconds at most, links 120 times a minute, positions every five seconds.
 
-The chain of hashes, numbers and UTC are added by `record/audit_log.py`; this module knows no clock
-and no file. Nothing reads the audit back into a station: a restart uses `station/recovery/`.
+The chain of hashes, numbers and UTC are added by `record/audit/audit_log.py`; this module knows no
+clock and no file. Nothing reads the audit back into a station: a restart uses `station/recovery/`.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -40,7 +40,7 @@ from recon.model.event import (
     ZoneDrawn,
     ZoneEnded,
 )
-from recon.record.audit import AuditEntry
+from recon.record.audit.audit import AuditEntry
 from recon.station.audit.alarm_entries import AlarmsLogged, acknowledged_entry, alarm_entries
 from recon.station.audit.flight_entries import FlightsLogged, flight_entries
 from recon.station.audit.link_entries import LinksLogged, link_entries, pairing_entry

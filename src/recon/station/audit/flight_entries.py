@@ -13,7 +13,7 @@ from recon.model.geo import LatLon
 from recon.model.report import CoreReport
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleState
-from recon.record.audit import AuditEntry
+from recon.record.audit.audit import AuditEntry
 from recon.safety.go_home import asked_height_m
 from recon.station.state.station import Station
 

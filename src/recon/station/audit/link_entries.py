@@ -21,7 +21,7 @@ from recon.model.event import (
 from recon.model.report import ImageReport
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleState
-from recon.record.audit import AuditEntry
+from recon.record.audit.audit import AuditEntry
 from recon.station.state.station import Station
 
 WINDOW_S = 60.0

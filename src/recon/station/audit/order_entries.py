@@ -12,7 +12,7 @@ import msgspec
 
 from recon.model.command import Command, Phase, VirtualStick
 from recon.model.units import ns_to_seconds, seconds_to_ns
-from recon.record.audit import AuditEntry
+from recon.record.audit.audit import AuditEntry
 from recon.station.state.orders import OrderBook, OrderRecord, PhaseChange
 
 STREAM_ENDS_AFTER_S = 2.0

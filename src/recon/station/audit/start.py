@@ -9,10 +9,10 @@ from typing import Any
 
 from recon import version
 from recon.model.errors import RecordError
-from recon.record.audit import FAILED_KIND, STARTED_KIND, STOPPED_KIND, AuditEntry
-from recon.record.audit_files import RunEnd, audit_files, read_run_end, run_number
-from recon.record.audit_log import AuditLog, refuse_other_writer
-from recon.record.users_file import state_folder
+from recon.record.audit.audit import FAILED_KIND, STARTED_KIND, STOPPED_KIND, AuditEntry
+from recon.record.audit.audit_files import RunEnd, audit_files, read_run_end, run_number
+from recon.record.audit.audit_log import AuditLog, refuse_other_writer
+from recon.record.files.users_file import state_folder
 from recon.station.audit.flight_entries import POSITION_KIND
 from recon.station.state.settings import StationSettings
 

@@ -24,7 +24,7 @@ from recon.model.geo import GeoPoint
 from recon.model.replacing import replace
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import VehicleProfile
-from recon.record.audit import AuditEntry
+from recon.record.audit.audit import AuditEntry
 from recon.safety import PreparedAirspace
 from recon.station.control import temporary_zones
 from recon.station.control.takeoff_stops import was_shown

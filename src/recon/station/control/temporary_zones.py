@@ -21,7 +21,7 @@ from recon.model.event import ZoneDrawn, ZoneEnded
 from recon.model.replacing import replace
 from recon.model.temporary_zone import TemporaryZone
 from recon.model.units import seconds_to_ns
-from recon.record.audit import AuditEntry
+from recon.record.audit.audit import AuditEntry
 from recon.safety.airspace import PreparedAirspace, PreparedZone
 from recon.safety.temporary_zones import MOST_ZONES, drawn_fault, prepared_temporary_zone
 from recon.station.state.alarm_book import Condition, Severity

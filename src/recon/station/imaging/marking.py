@@ -8,7 +8,7 @@ This moves no drone, so it is possible in flight, where the frame comes from.
 from recon.camera.registration import RegistrationState
 from recon.model.event import ImagerMarked
 from recon.model.replacing import replace
-from recon.record.audit import AuditEntry
+from recon.record.audit.audit import AuditEntry
 from recon.station.state.station import Station
 
 

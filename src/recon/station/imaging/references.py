@@ -12,7 +12,7 @@ from recon.detection import DetectionState, sunlit_reference_of
 from recon.model.imagery import GroundImage
 from recon.model.replacing import replace
 from recon.model.units import seconds_to_ns
-from recon.record.reference_file import read_references, write_reference
+from recon.record.raster.reference_file import read_references, write_reference
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.imaging import Imaging, ReferenceKeeping, ShadePipeline
 from recon.station.state.station import Station

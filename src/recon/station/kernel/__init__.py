@@ -2,5 +2,5 @@
 
 `step` has the table of event handlers and the parts of a tick; `fault_isolation` is for steps that
 raise. `driver` runs it all on real sockets and the real clock, `virtual` in virtual time; `worker`
-runs heavy jobs, and `run` starts and stops a real station.
+runs heavy jobs. Records are in `station/recording`, a real station's process in `station/host`.
 """

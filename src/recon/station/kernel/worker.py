@@ -12,7 +12,7 @@ import cv2
 
 from recon.model.errors import ReconError
 from recon.model.event import Event
-from recon.record.digest import digest
+from recon.record.mcap.digest import digest
 from recon.site import Site
 from recon.station.state.steps import (
     InputT,

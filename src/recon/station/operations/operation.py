@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from recon.model.event import Event
 from recon.model.shade import ShadeMap
 from recon.model.vehicle import VehicleState
-from recon.record.audit import AuditEntry
+from recon.record.audit.audit import AuditEntry
 from recon.station.state.alarm_book import Condition
 from recon.station.state.station import Station
 from recon.station.state.steps import Handled, Stepped

@@ -30,7 +30,7 @@ from recon.model.geo import LatLon
 from recon.model.trust import Trust
 from recon.model.units import Stamped, ns_to_seconds
 from recon.model.vehicle import VehicleProfile, VehicleState, VelocityNed
-from recon.record.audit import AuditEntry
+from recon.record.audit.audit import AuditEntry
 from recon.station.control import authority, stop_latch, temporary_zones
 from recon.station.recovery.snapshot import OrderSnapshot, RecoverySnapshot, restored_zone
 from recon.station.state.alarm_book import Condition, Severity

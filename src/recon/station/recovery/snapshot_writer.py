@@ -13,7 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from recon.model.errors import describe_fault
-from recon.record.snapshot_file import read_snapshot, write_snapshot
+from recon.record.files.snapshot_file import read_snapshot, write_snapshot
 from recon.station.recovery.restart import LastRun
 from recon.station.recovery.snapshot import (
     decode_snapshot,

@@ -6,7 +6,7 @@ from dataclasses import replace
 from recon.model.command import Hover, Phase, Refusal
 from recon.model.control import AuthorityHolder
 from recon.model.event import Event, FleetReturnOrdered, OperatorOrder
-from recon.record.audit import AuditEntry
+from recon.record.audit.audit import AuditEntry
 from recon.safety.datum import frame_for
 from recon.safety.rules.not_expired import given_refusal
 from recon.station.control import operator_lease, order_gateway

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 
 from recon.geo.distance import horizontal_distance_m
 from recon.model.control import AuthorityHolder
-from recon.record.audit import AuditEntry
+from recon.record.audit.audit import AuditEntry
 from recon.station.operations.fleet_return.progress import newest_motion
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.imager_motion import ImagerMotion, MotionStage

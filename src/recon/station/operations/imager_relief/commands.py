@@ -11,7 +11,7 @@ from recon.model.control import AuthorityHolder
 from recon.model.event import AuthorityTaken, Event, ReliefOrdered
 from recon.model.mission import DJI
 from recon.model.vehicle import Mount, VehicleState
-from recon.record.audit import AuditEntry
+from recon.record.audit.audit import AuditEntry
 from recon.safety.datum import takeoff_up_m
 from recon.safety.energy import consumption, need_of
 from recon.safety.rules.not_expired import given_refusal

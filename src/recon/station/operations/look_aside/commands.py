@@ -9,7 +9,7 @@ from recon.model.command import GoTo, Refusal
 from recon.model.event import Event, LookAsideOrdered
 from recon.model.geo import LatLon
 from recon.model.units import ns_to_seconds
-from recon.record.audit import AuditEntry
+from recon.record.audit.audit import AuditEntry
 from recon.safety.rules.not_expired import given_refusal
 from recon.station.imaging.at_work import imagers_at_work
 from recon.station.operations.imager_motion.claim import Claimed, claimed

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from recon.model.event import Event
-from recon.record.audit import AuditEntry
+from recon.record.audit.audit import AuditEntry
 from recon.station.operations.imager_motion.notices import (
     by_itself,
     cannot_begin,

@@ -5,7 +5,7 @@ from typing import Any
 
 from recon.model.command import Refusal
 from recon.model.event import Event, SurveyRequested, SurveyStarted, SurveyStopped
-from recon.record.audit import AuditEntry
+from recon.record.audit.audit import AuditEntry
 from recon.station.operations.survey.commands import start_refusal, stop_refusal
 from recon.station.operations.survey.planning import refusal_of
 from recon.station.state.station import Station

@@ -1,0 +1,1 @@
+"""The audit: lines chained by hashes, written as they happen, checked afterwards."""

@@ -1,0 +1,1 @@
+"""Files that are replaced as a whole, atomically: snapshot, users, a site's layers with undo."""

@@ -1,0 +1,1 @@
+"""Flight records as MCAP: values as bytes, messages, chunks, a writing process, and repair."""

@@ -1,0 +1,44 @@
+"""The announcement by mDNS of a station that is asked to make one, and listens beyond loopback."""
+
+import asyncio
+import socket
+from collections.abc import Iterable
+from contextlib import AsyncExitStack
+
+import structlog
+
+from recon.api.addresses import app_hosts, is_loopback
+from recon.link.announcement import Announcement, AnnouncementError
+from recon.station.host.http_servers import StartError
+
+_log = structlog.get_logger("recon")
+
+
+def require_announceable(link_host: str) -> None:
+    """Raise `StartError` if no phone could reach what is announced."""
+    if is_loopback(link_host):
+        raise StartError(
+            f"--announce needs an address that phones reach; {link_host} is reached from this "
+            "computer only: add --link-host 0.0.0.0"
+        )
+
+
+def announce(site: str, bound: Iterable[str], port: int, last: AsyncExitStack) -> None:
+    """Announce a site's station at the addresses that phones reach of those it is bound to.
+
+    It begins and ends beside the station, for each takes a second, and `last` must end after the
+    links. A failure is logged: apps connect by the address.
+    """
+    announcement = Announcement(f"{site} on {socket.gethostname()}", app_hosts(bound), port)
+    last.push_async_callback(asyncio.to_thread, announcement.stop)
+    starting = asyncio.create_task(asyncio.to_thread(_start, announcement))
+    last.push_async_callback(asyncio.wait, [starting])
+
+
+def _start(announcement: Announcement) -> None:
+    try:
+        announcement.start()
+    except AnnouncementError as problem:
+        _log.warning(str(problem))
+    else:
+        _log.info(f"announced by mDNS: {announcement.name}")
