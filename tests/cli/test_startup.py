@@ -15,7 +15,7 @@ from recon.cli.commands import COMMANDS, app
 HEAVY = frozenset(
     {
         *("numpy", "scipy", "cv2", "rasterio", "shapely", "pyproj"),
-        *("pydantic", "fastapi", "uvicorn", "httpx", "websockets", "rich", "structlog"),
+        *("pydantic", "fastapi", "uvicorn", "httpx", "websockets", "rich"),
     }
 )
 PROGRAM = """
@@ -57,6 +57,12 @@ def test_inspecting_a_stream_without_images_loads_no_heavy_library() -> None:
     stream = wire.encode(wire.Acknowledgment(positive=1, source_pid=253))
     loaded = loaded_by("inspect", "-", stdin=stream)
     assert loaded.isdisjoint(HEAVY)
+
+
+def test_a_station_starts_without_the_libraries_of_its_jobs() -> None:
+    program = "import sys, recon.cli.run; print(*{name.partition('.')[0] for name in sys.modules})"
+    ended = subprocess.run([sys.executable, "-c", program], capture_output=True, check=True)
+    assert not set(ended.stdout.decode().split()) & {"scipy", "rasterio", "pyproj", "rich"}
 
 
 @pytest.mark.parametrize("name", COMMANDS)

@@ -11,8 +11,6 @@ from itertools import combinations, islice
 from math import comb
 
 import numpy as np
-from scipy.optimize import least_squares
-from scipy.spatial.transform import Rotation
 
 from recon.camera.errors import PoseError
 from recon.camera.omnidirectional import OmnidirectionalCamera
@@ -134,6 +132,8 @@ def _moved(
     rotation: FloatArray, position: FloatArray, step: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Turn by the step's rotation vector (rad, ENU) and shift by its last three (m, ENU)."""
+    from scipy.spatial.transform import Rotation
+
     turn: FloatArray = Rotation.from_rotvec(step[:3]).as_matrix()
     return turn @ rotation, position + step[3:]
 
@@ -147,6 +147,8 @@ def _fit_step(
     step_sizes: FloatArray,
 ) -> tuple[FloatArray, FloatArray, float]:
     """Return the step (6,) to the least squares, the Jacobian (2N, 6), the sum of squares."""
+
+    from scipy.optimize import least_squares
 
     def cost(step: FloatArray) -> FloatArray:
         moved = _moved(rotation, position, step)

@@ -13,7 +13,6 @@ from typing import TypeAlias
 import cv2
 import numpy as np
 import numpy.typing as npt
-from scipy import fft
 
 from recon.forecast.settings import ForecastSettings
 from recon.model.geo import GroundGrid
@@ -62,6 +61,8 @@ def spectrum_of(
     shade: ShadeMap, settings: ForecastSettings, least_contrast: float
 ) -> ShadeSpectrum:
     """Return the spectrum of a map's details, without waves for a map of less contrast."""
+    from scipy import fft
+
     grid = shade.grid
     shape = fft.next_fast_len(2 * grid.rows, real=True), fft.next_fast_len(2 * grid.cols, real=True)
     waves: Waves | None = None
@@ -122,6 +123,8 @@ def _agreement(
     earlier: Waves, later: Waves, shape: tuple[int, int], smooth_cells: float
 ) -> FloatMap:
     """Return (rows, cols) of `shape`, zero shift in the middle: share of phases that agree."""
+    from scipy import fft
+
     both = np.conj(earlier) * later
     # Gaussian low-pass: details below `smooth_cells` are noise.
     by_row, by_col = (

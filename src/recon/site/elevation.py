@@ -5,20 +5,21 @@ vehicle may fly from home.
 """
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
 from msgspec import Meta, Struct
-from scipy import ndimage
 
 from recon.geo import Surface, cell_centres_m, enu_from_points
 from recon.model.airspace import Airspace, ElevationModel
 from recon.model.arrays import FloatArray
 from recon.model.errors import SiteError
 from recon.model.geo import GroundGrid, LocalFrame
-from recon.site.height_file import HeightFile, opened
 from recon.site.reading import file_inside
 from recon.site.schema import FileName
+
+if TYPE_CHECKING:
+    from recon.site.height_file import HeightFile
 
 MOST_CELLS = 1_000_000
 FINEST_CELL_M = 1.0
@@ -43,6 +44,8 @@ class ElevationTable(Struct, frozen=True, forbid_unknown_fields=True):
 
 def read_elevation(site_file: Path, table: ElevationTable, airspace: Airspace) -> ElevationModel:
     """Return the elevation model around an airspace that has a frame. Raises `SiteError`."""
+    from recon.site.height_file import opened
+
     frame = airspace.frame
     assert frame is not None
     raised_m = _raised_m(f"{site_file}: elevation", table)
@@ -72,7 +75,7 @@ def _raised_m(place: str, table: ElevationTable) -> float:
     return table.geoid_height_m or 0.0
 
 
-def _refuse_other_datum(file: HeightFile, table: ElevationTable) -> None:
+def _refuse_other_datum(file: "HeightFile", table: ElevationTable) -> None:
     """Raise `SiteError` when the file declares another vertical datum than site.toml."""
     vertical = next((crs for crs in file.crs.sub_crs_list if crs.is_vertical), None)
     if vertical is None and len(file.crs.axis_info) < 3:
@@ -89,7 +92,7 @@ def _refuse_other_datum(file: HeightFile, table: ElevationTable) -> None:
         raise SiteError(f"{file.place}: expected heights in metres, got {unit!a}; convert them")
 
 
-def _pixel_m(file: HeightFile, frame: LocalFrame) -> float:
+def _pixel_m(file: "HeightFile", frame: LocalFrame) -> float:
     """Return how wide the file's pixels are at the origin, along their narrower side."""
     corner, east, north = file.pixels(frame, np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]))
     # Rows are what rows and columns each change by for a metre; its largest stretch is the finest.
@@ -128,7 +131,7 @@ def _grid(frame: LocalFrame, area_m: tuple[FloatArray, FloatArray], pixel_m: flo
     return GroundGrid(frame, west_m, north_m, cell_m, rows, cols)
 
 
-def _resampled(file: HeightFile, grid: GroundGrid, pixel_m: float) -> FloatArray:
+def _resampled(file: "HeightFile", grid: GroundGrid, pixel_m: float) -> FloatArray:
     """Return the file's heights in the middles of the grid's cells, (rows, cols)."""
     pixels = file.pixels(grid.frame, _middles_m(grid))
     reach = _reach(grid.cell_m, pixel_m)
@@ -160,7 +163,7 @@ def _middles_m(grid: GroundGrid) -> FloatArray:
 
 
 def _window(
-    file: HeightFile, pixels: FloatArray, around: int
+    file: "HeightFile", pixels: FloatArray, around: int
 ) -> tuple[tuple[int, int], tuple[int, int]]:
     """Return the first row and column and the size of the part that holds the pixels."""
     shape = np.array([file.dataset.height, file.dataset.width], dtype=np.float64)
@@ -177,6 +180,8 @@ def _window(
 
 def _highest_around(heights_m: FloatArray, reach: int) -> FloatArray:
     """Return the highest height within `reach` pixels; unknown heights stay unknown."""
+    from scipy import ndimage
+
     is_unknown = np.isnan(heights_m)
     filled = np.where(is_unknown, -np.inf, heights_m)
     highest = ndimage.maximum_filter(filled, size=2 * reach + 1, mode="nearest")
@@ -185,6 +190,8 @@ def _highest_around(heights_m: FloatArray, reach: int) -> FloatArray:
 
 def _between(heights_m: FloatArray, pixels: FloatArray) -> FloatArray:
     """Return bilinear heights at (N, 2) rows and columns; NaN beyond the outermost middles."""
+    from scipy import ndimage
+
     places = np.where(np.isfinite(pixels), pixels, -9.0).T
     sampled: FloatArray = ndimage.map_coordinates(
         heights_m, places, order=1, mode="constant", cval=np.nan
@@ -206,7 +213,7 @@ def _refuse_other_ground(place: str, model: ElevationModel) -> None:
         )
 
 
-def _elsewhere(file: HeightFile) -> str:
+def _elsewhere(file: "HeightFile") -> str:
     return (
         f"{file.place}: expected heights around the site's origin, got none; does the file cover "
         "the site, and is its coordinate reference system right?"

@@ -64,17 +64,19 @@ class Terminal:
         self.is_reached = threading.Event()
         self.lines: list[str] = []
 
-    def info(self, text: str, by: str = "") -> None:
+    def print_line(self, text: str, _by: str = "") -> None:
         self.is_reached.set()
         assert self.goes_on.wait(PATIENCE_S)
         self.lines.append(text)
 
-    warning = info
+    def replace_in(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        for name in ("print_info", "print_warning"):
+            monkeypatch.setattr(log_module, name, self.print_line)
 
 
 def test_a_blocked_terminal_blocks_no_caller(monkeypatch: pytest.MonkeyPatch) -> None:
     terminal = Terminal()
-    monkeypatch.setattr(log_module, "_log", terminal)
+    terminal.replace_in(monkeypatch)
     printer = LogPrinter()
     printer.start()
     printer.put(entry("first"))
@@ -92,7 +94,7 @@ def test_a_blocked_terminal_blocks_no_caller(monkeypatch: pytest.MonkeyPatch) ->
 def test_text_from_the_wire_cannot_move_the_cursor(monkeypatch: pytest.MonkeyPatch) -> None:
     terminal = Terminal()
     terminal.goes_on.set()
-    monkeypatch.setattr(log_module, "_log", terminal)
+    terminal.replace_in(monkeypatch)
     printer = LogPrinter()
     printer.start()
     printer.put(entry("a\x1b[2Jb\u202ec\nd"))

@@ -10,7 +10,6 @@ Nothing is drawn at random: the same input gives the same pose.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from recon.camera.registration.settings import RegistrationSettings
 from recon.model.arrays import FloatArray
@@ -75,12 +74,16 @@ def fit_to_rays(
 
 def turned(rotation: FloatArray, vector_rad: FloatArray) -> FloatArray:
     """Return a rotation (3, 3) turned further by a rotation vector in ENU."""
+    from scipy.spatial.transform import Rotation
+
     turn: FloatArray = Rotation.from_rotvec(vector_rad).as_matrix()
     return turn @ rotation
 
 
 def _moved(prior: CameraPose, rotation: FloatArray, position: FloatArray) -> FloatArray:
     """Return rotation vector (rad, ENU) and shift (m, ENU) from the prior pose, (6,)."""
+    from scipy.spatial.transform import Rotation
+
     turn = Rotation.from_matrix(rotation @ prior.rotation_enu_camera.T).as_rotvec()
     return np.concatenate([turn, position - prior.position_enu_m])
 

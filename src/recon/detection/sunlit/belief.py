@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 from math import ceil
 
 import numpy as np
-from scipy.ndimage import grey_dilation
 
 from recon.detection.sunlit.contrast import Contrast
 from recon.detection.sunlit.levels import Level, Values
@@ -175,6 +174,8 @@ def _stepped(score: FloatGrid, axis: int, bins: float) -> FloatGrid:
 
 def _wide(score: FloatGrid, axis: int, bins: float) -> FloatGrid:
     """Return the best scores after a normal step of many bins."""
+    from scipy.ndimage import grey_dilation
+
     reach = min(ceil(4.0 * bins), max(REACH))
     taps = (-0.5 * (np.arange(-reach, reach + 1) / bins) ** 2).astype(np.float32)
     shaped = np.expand_dims(taps, 1 - axis)

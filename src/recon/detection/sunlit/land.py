@@ -9,8 +9,6 @@ from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
-from scipy.sparse import csr_array, eye_array
-from scipy.sparse.linalg import SuperLU, splu
 
 from recon.model.shade import FloatMap, MaskMap
 
@@ -47,6 +45,9 @@ class _Solver:
     """Least squares over one mask: factorised once."""
 
     def __init__(self, known: MaskMap) -> None:
+        from scipy.sparse import csr_array, eye_array
+        from scipy.sparse.linalg import splu
+
         number = np.cumsum(known.ravel()).reshape(known.shape) - 1
         self._across: MaskMap = known[:, 1:] & known[:, :-1]
         self._down: MaskMap = known[1:] & known[:-1]
@@ -64,7 +65,7 @@ class _Solver:
         )
         self._transposed = differences.T.tocsr()
         normal = self._transposed @ differences + GAUGE * eye_array(shape[1])
-        self._factors: SuperLU = splu(normal.tocsc(), permc_spec="MMD_AT_PLUS_A")
+        self._factors = splu(normal.tocsc(), permc_spec="MMD_AT_PLUS_A")
 
     def solve(self, across: FloatMap, down: FloatMap) -> npt.NDArray[np.float64]:
         """Return the values (N,) of the mask's cells."""

@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.fft import irfft2, next_fast_len, rfft2
 
 from recon.detection.sunlit.contrast import (
     COLOUR_NOISE,
@@ -59,12 +58,16 @@ def counted(light: Values, colour: Values) -> FloatGrid:
 
 def spectra_of(shown: Sequence[FloatGrid]) -> Spectra:
     """Return what `fits` takes of frames' counts, relative to the level in the middle."""
+    from scipy.fft import rfft2
+
     found: Spectra = np.conj(rfft2(np.stack(shown), PADDED))
     return found
 
 
 def fits(spectra: Spectra, contrast: Contrast, ends_share: float = ENDS_SHARE) -> FloatGrid:
     """Return (K, 2 REACH + 1): the mean log likelihood of each frame's cells for each level."""
+    from scipy.fft import irfft2
+
     # Rounded: few tables are ever made.
     light, colour = (0.04 * round(part / 0.04) for part in (contrast.light, contrast.colour))
     found = irfft2(spectra * _spectrum(light, colour, ends_share), PADDED)
@@ -72,13 +75,14 @@ def fits(spectra: Spectra, contrast: Contrast, ends_share: float = ENDS_SHARE) -
     return np.ascontiguousarray(found[:, 2 * REACH[0] :: -1, 2 * REACH[1] :: -1])
 
 
-PADDED = tuple(
-    next_fast_len(bins + 2 * reach, real=True) for bins, reach in zip(BINS, REACH, strict=True)
-)
+PADDED = 108, 96
+"""At least `BINS` and twice the `REACH`, and of small prime factors: such sizes transform fast."""
 
 
 @lru_cache(maxsize=256)
 def _spectrum(light: float, colour: float, ends_share: float) -> Spectra:
+    from scipy.fft import rfft2
+
     found: Spectra = rfft2(_log_likelihood(light, colour, ends_share), PADDED)
     return found
 

@@ -26,7 +26,6 @@ from dataclasses import replace
 from types import MappingProxyType
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from recon.guidance.survey.lattice import AlongAcross
 from recon.guidance.survey.missions import Track, approach_of, flight_time_s, mission_of
@@ -155,6 +154,8 @@ def shares(
     plan: SurveyPlan, pieces: Sequence[Piece], surveyors: Sequence[Surveyor]
 ) -> dict[str, Route]:
     """Return each vehicle's share of the pieces: runs of one route, by the nearest starts."""
+    from scipy.optimize import linear_sum_assignment
+
     survey, settings = plan.survey, plan.settings
     cost = Cost(survey.speed_mps**2 / settings.turning_mps2, settings.least_cut_m)
     lying = plan.lattice.along_across_m([each.place_m for each in surveyors])

@@ -19,7 +19,6 @@ from math import ceil, floor
 import numpy as np
 import numpy.typing as npt
 import shapely  # type: ignore[import-untyped, unused-ignore]
-from scipy import ndimage
 
 from recon.geo import Surface, cell_centres_m, geo_from_enu, shape_of
 from recon.guidance.survey.lattice import EastNorth
@@ -269,6 +268,8 @@ class _GroundAround:
 
     def mean_and_highest(self, lattice: GroundGrid) -> tuple[FloatArray, FloatArray]:
         """The mean ground around each node of a lattice, and the mean of the highest near it."""
+        from scipy import ndimage
+
         mean, highest = self._sizes
         means_m = ndimage.uniform_filter(self._heights_m, mean, mode="nearest")
         tops_m = ndimage.maximum_filter(self._heights_m, highest, mode="nearest")
@@ -297,6 +298,8 @@ def _filled(heights_m: FloatArray) -> FloatArray:
         return np.zeros_like(heights_m)
     if not is_unknown.any():
         return heights_m
+    from scipy import ndimage
+
     nearest = ndimage.distance_transform_edt(
         is_unknown, return_distances=False, return_indices=True
     )

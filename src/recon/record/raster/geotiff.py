@@ -10,9 +10,6 @@ import os
 from pathlib import Path
 
 import numpy as np
-from rasterio.enums import ColorInterp
-from rasterio.io import MemoryFile
-from rasterio.transform import Affine
 
 from recon.geo.local_frame import meridian_radius_m, prime_vertical_radius_m
 from recon.model.errors import RecordError
@@ -59,6 +56,10 @@ def geotiff_bytes(
     residual, cell size; `captured_utc` (ISO 8601) and the marked frame's `rms_px` when given.
     Raises `RecordError` when the image's arrays do not fit its grid.
     """
+    from rasterio.enums import ColorInterp
+    from rasterio.io import MemoryFile
+    from rasterio.transform import Affine
+
     _refuse_misfit(image)
     grid = image.grid
     profile = {

@@ -8,16 +8,13 @@ import queue
 import threading
 from collections.abc import Callable, Iterable
 
-import structlog
-
 from recon.model.event import AuditFailed, Event, Tick
 from recon.record.audit.audit import AuditEntry, shown
 from recon.record.audit.audit_log import AuditLog
 from recon.station.audit.entries import Auditing, audit
 from recon.station.audit.flight_entries import POSITION_KIND
+from recon.station.audit.log_line import print_info, print_warning
 from recon.station.state.steps import StepTaken
-
-_log = structlog.get_logger("recon")
 
 WAITING_LINES = 1000
 CLOSE_WITHIN_S = 1.0
@@ -56,10 +53,10 @@ class LogPrinter:
     def _print(self) -> None:
         while (entry := self._waiting.get()) is not None:
             if self.dropped:
-                _log.warning(f"{self.dropped} lines dropped: the terminal was blocked")
+                print_warning(f"{self.dropped} lines dropped: the terminal was blocked")
                 self.dropped = 0
-            print_line = _log.warning if entry.kind.startswith(_LOUD_KINDS) else _log.info
-            print_line(shown(entry.text), by=shown(entry.by))
+            print_line = print_warning if entry.kind.startswith(_LOUD_KINDS) else print_info
+            print_line(shown(entry.text), shown(entry.by))
 
 
 class Auditor:

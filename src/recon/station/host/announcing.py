@@ -5,13 +5,10 @@ import socket
 from collections.abc import Iterable
 from contextlib import AsyncExitStack
 
-import structlog
-
 from recon.api.addresses import app_hosts, is_loopback
 from recon.link.announcement import Announcement, AnnouncementError
+from recon.station.audit.log_line import print_info, print_warning
 from recon.station.host.http_servers import StartError
-
-_log = structlog.get_logger("recon")
 
 
 def require_announceable(link_host: str) -> None:
@@ -39,6 +36,6 @@ def _start(announcement: Announcement) -> None:
     try:
         announcement.start()
     except AnnouncementError as problem:
-        _log.warning(str(problem))
+        print_warning(str(problem))
     else:
-        _log.info(f"announced by mDNS: {announcement.name}")
+        print_info(f"announced by mDNS: {announcement.name}")

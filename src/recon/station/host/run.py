@@ -6,8 +6,6 @@ from contextlib import AsyncExitStack, ExitStack
 from pathlib import Path
 from tempfile import TemporaryFile
 
-import structlog
-
 from recon.api.addresses import app_hosts, app_url, in_url
 from recon.link.server import LinkServer
 from recon.model.errors import RecordError
@@ -19,6 +17,7 @@ from recon.site.vehicle_numbers import NUMBERS_FILE, numbers_text, read_numbers
 from recon.station.api_views.service import Service
 from recon.station.api_views.vehicle_numbers import VehicleNumbers
 from recon.station.audit.auditor import Auditor, LogPrinter
+from recon.station.audit.log_line import print_warning
 from recon.station.audit.start import (
     AuditPlace,
     Begun,
@@ -50,8 +49,6 @@ from recon.station.recovery.snapshot_writer import SnapshotWriter, load_last_run
 from recon.station.state.settings import StationSettings
 from recon.station.state.station import Station
 from recon.station.state.steps import StepTaken
-
-_log = structlog.get_logger("recon")
 
 Observe = Callable[[StepTaken], None]
 
@@ -133,7 +130,7 @@ def kept_numbers(
 
 def _log_numbers_problem(problem: str | None) -> None:
     if problem is not None:
-        _log.warning(f"vehicle numbers: {problem}")
+        print_warning(f"vehicle numbers: {problem}")
 
 
 async def _start_links_and_worker(

@@ -4,8 +4,10 @@ One job of each kind waits at most: a newer one drops the older that has not beg
 station learns as `JobDropped`. Results come back as events, so the step never waits.
 """
 
+import gc
 import threading
 from collections.abc import Callable
+from importlib import import_module
 from typing import Any, Protocol
 
 import cv2
@@ -25,6 +27,14 @@ from recon.station.state.steps import (
 )
 
 AnyJob = Job[Any, Any]
+
+JOB_LIBRARIES = (
+    *("scipy.fft", "scipy.ndimage", "scipy.optimize", "scipy.sparse.linalg"),
+    *("scipy.spatial.transform", "rasterio", "pyproj"),
+)
+"""Libraries that jobs import where they use them, so that a station starts without them."""
+LOAD_AFTER_S = 2.0
+"""An idle worker then loads them: a job does not wait, and the start is over."""
 
 
 class Worker(Protocol):
@@ -97,13 +107,21 @@ class ThreadWorker:
             self._deliver(JobDropped(older.id, older.kind))
 
     def _run(self) -> None:
+        with self._changed:
+            is_busy = self._changed.wait_for(self._has_work, LOAD_AFTER_S)
+        if not is_busy:
+            for name in JOB_LIBRARIES:
+                import_module(name)
+            gc.freeze()
         while (job := self._next()) is not None:
             self._deliver(self._runner.run(job))
 
+    def _has_work(self) -> bool:
+        return self._is_stopping or bool(self._waiting)
+
     def _next(self) -> AnyJob | None:
         with self._changed:
-            while not self._waiting and not self._is_stopping:
-                self._changed.wait()
+            self._changed.wait_for(self._has_work)
             if self._is_stopping:
                 return None
             return self._waiting.pop(next(iter(self._waiting)))
