@@ -9,8 +9,8 @@ reason stands there for nothing. A reason is found again by the function and the
 by mutmut's numbering.
 
 A mutant whose tests run out of time is not counted as noticed: on a busy machine any of them does,
-an unnoticed one too. It is run once more, by itself; what runs out of time again loops forever, or
-the machine is too busy to tell, and stands among the survivors until a reason is written.
+an unnoticed one too. It is run once more, automatically; what runs out of time again loops forever,
+or the machine is too busy to tell, and stands among the survivors until a reason is written.
 """
 
 import shutil

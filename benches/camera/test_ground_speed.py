@@ -35,7 +35,7 @@ def times_ms(*steps: Callable[[int], object]) -> np.ndarray:
 def maps_of_every_cell(
     grid: GroundGrid, camera: OmnidirectionalCamera, pose: CameraPose
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The maps as one would first write them: every cell projected by itself."""
+    """The maps as one would first write them: every cell projected automatically."""
     east = grid.west_m + (np.arange(grid.cols) + 0.5) * grid.cell_m
     north = grid.north_m - (np.arange(grid.rows) + 0.5) * grid.cell_m
     points = np.zeros((grid.rows, grid.cols, 3))

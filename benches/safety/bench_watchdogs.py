@@ -1,8 +1,8 @@
 """What a look of all watchdogs costs with 64 vehicles, and what judging separation does.
 
-The baseline, in the same run, asks each pair at each moment by itself, in plain Python. The ratio
-to it is asserted; the budget of 5 ms a look on one core is reported. All times are the processor's,
-so that what else runs on the machine does not count.
+The baseline, in the same run, asks each pair at each moment automatically, in plain Python. The
+ratio to it is asserted; the budget of 5 ms a look on one core is reported. All times are the
+processor's, so that what else runs on the machine does not count.
 
     python -m benches.safety.bench_watchdogs
 """

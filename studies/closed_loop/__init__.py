@@ -15,7 +15,7 @@ pilot
 fault
     For a vehicle of it, within the last 12 s and in flight: no telemetry reached the station for
     1 s; no downlink lived, or its app or aircraft ignored what it received (fault, no GNSS, reading
-    slowly, landing by itself on an empty battery); or its heights were wrong by a fault. A
+    slowly, landing automatically on an empty battery); or its heights were wrong by a fault. A
     shown place that was never sent is a fault when bytes of the vehicle were changed on their way
     within that time: the protocol has no checksum, and decimetres are no jump.
 physics

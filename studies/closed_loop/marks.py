@@ -35,7 +35,7 @@ class Mark(Enum):
     NO_TELEMETRY = "no telemetry arrived for 1 s"
     NO_COMMANDS = "it received or obeyed nothing"
     WRONG_HEIGHT = "its heights were wrong"
-    FORCED_LANDING = "it landed or fell by itself"
+    FORCED_LANDING = "it landed or fell automatically"
     GUST = "wind pushed it"
     DAMAGED = "bytes of it were changed on their way"
 

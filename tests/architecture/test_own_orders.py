@@ -1,4 +1,4 @@
-"""Whether the station gave an order by itself: worded and read in one place."""
+"""Whether the station gave an order automatically: worded and read in one place."""
 
 import ast
 

@@ -45,7 +45,7 @@ def cell_centres(grid: GroundGrid) -> np.ndarray:
 
 
 def worst_map_error_px(grid: GroundGrid, camera: OmnidirectionalCamera, pose: CameraPose) -> float:
-    """Largest distance between the maps and every cell projected by itself, where in range."""
+    """Largest distance between the maps and every cell projected separately, where in range."""
     exact = seen_pixels(camera, pose, cell_centres(grid).reshape(-1, 3))
     maps = np.stack([m.ravel() for m in ground_maps(grid, camera, pose)], axis=1)
     is_shown = np.isfinite(exact[:, 0]) & camera.is_in_frame(exact)

@@ -471,7 +471,7 @@ class TestBrightLand:
         assert found is None or found.scene is not FlatScene.SHADE
         plain = hot_spot(np.stack([each.light for each in frames]), shapes)
         assert plain is not None
-        assert plain.strength < 0.25, "what such land shows by itself"
+        assert plain.strength < 0.25, "what such land shows on its own"
 
 
 class TestParts:

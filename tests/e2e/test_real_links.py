@@ -55,7 +55,7 @@ class Field:
 @asynccontextmanager
 async def field(*sim_options: str, damage: Damage | None = None) -> AsyncIterator[Field]:
     """Run a station and a fleet of two that flies, perhaps over links with damage; all end."""
-    demo = load_site(demo_site_folder())  # where the simulator starts by itself
+    demo = load_site(demo_site_folder())  # where the simulator starts
     assert demo.frame is not None
     site = ready_site(demo.frame.origin, (demo.profiles[serial] for serial in SERIALS))
     driver = AsyncioDriver(first_state(site), station_clock())

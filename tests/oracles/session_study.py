@@ -326,7 +326,7 @@ class SessionStudy:
             self.tally.broken.append(text)
 
     def _station_made(self, vehicle: _Vehicle) -> int:
-        """Stops that the station sends by itself; only the latest of them are on record."""
+        """Stops that the station sends automatically; only the latest of them are on record."""
         return sum(
             MOST_SENDINGS
             for order in self._orders.values()

@@ -60,7 +60,7 @@ def run_command(
         ),
     ] = None,
     guard: Annotated[
-        bool, typer.Option(help="Run a guard: a process that can stop vehicles by itself.")
+        bool, typer.Option(help="Run a guard: a process that can stop vehicles automatically.")
     ] = HAS_GUARD,
     https_host: Annotated[
         str | None,

@@ -121,7 +121,7 @@ def release_stop_command(
 ) -> None:
     """Release vehicles from an all stop.
 
-    Nothing is sent to them, and nothing resumes by itself.
+    Nothing is sent to them, and nothing resumes automatically.
     """
     if bool(vehicles) is all_vehicles:
         raise VehicleNameError("Name the vehicles or use --all")

@@ -119,14 +119,14 @@ def create_command(
         bool,
         typer.Option(
             "--look-aside",
-            help="The imaging drone may look aside by itself while light is mostly unknown.",
+            help="The imaging drone may look aside automatically while light is mostly unknown.",
         ),
     ] = False,
     upwind: Annotated[
         bool,
         typer.Option(
             "--upwind",
-            help="The imaging drone may fly by itself to where it sees more of the shade to come.",
+            help="The imaging drone may fly to where it sees more of the shade to come.",
         ),
     ] = False,
     relief: Annotated[

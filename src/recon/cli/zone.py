@@ -96,7 +96,7 @@ def end_command(
 ) -> None:
     """End a zone.
 
-    Nothing is sent, and nothing that was held resumes by itself.
+    Nothing is sent, and nothing that was held resumes automatically.
     """
 
     async def work(station: Station) -> int:

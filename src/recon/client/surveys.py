@@ -40,7 +40,7 @@ class SurveyVehicle(msgspec.Struct, frozen=True):
     refused: str | None
     has_come_home: bool
     """Returned home for the survey and landed: it can be added again."""
-    takes_off_by_itself: bool
+    takes_off_automatically: bool
     """It stands, and takes off as soon as there are rows for it."""
 
 

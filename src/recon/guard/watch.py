@@ -11,7 +11,7 @@ link's vehicle, whether it flies, and whether the station steers it by sticks.
 A hold is a hover that the gate has approved by the last picture, and `repeats` more of them while
 the station stays silent. As pictures age, the gate refuses it: a hover on the ground would make
 apps in the field take off. Once the station has ended, the guard reads telemetry itself. A mission
-is not held for a silent station: the aircraft flies it by itself, and its pilot watches it.
+is not held for a silent station: the aircraft flies it on its own, and its pilot watches it.
 """
 
 from collections.abc import Mapping
@@ -91,7 +91,7 @@ GuardEvent: TypeAlias = Picture | StationEnded | CoreRead | LinkGone | AllStoppe
 
 @dataclass(frozen=True, slots=True)
 class Act:
-    """Something the guard did by itself; `by` is the person of an all stop.
+    """Something the guard did automatically; `by` is the person of an all stop.
 
     `serials` are of the vehicles that were to be held, `names` of those that a hover was sent to,
     `missed` of those to which the gate let none go: nothing recent shows them flying.

@@ -30,7 +30,7 @@ class ImagerReliefSettings:
     minutes."""
 
     early_s: float = 150.0
-    """A relief by itself begins so much before it must: for refusals, and for its shade method to
+    """An automatic relief begins so much before it must: for refusals, and for its shade method to
     learn the ground while both are there."""
 
     refused_again_s: float = 15.0

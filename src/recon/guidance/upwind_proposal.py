@@ -2,7 +2,7 @@
 
 The question is what the station knows at one moment; the answer is 12 ms of geometry for a field
 of 14 ha, and pure, so that a worker finds it. `MoveUpwindSettings` decides whether the drone flies
-there by itself: the wind as measured wavers, and each flight interrupts the view.
+there automatically: the wind as measured wavers, and each flight interrupts the view.
 """
 
 from dataclasses import dataclass
@@ -35,7 +35,8 @@ STATED_LEAD_S = 60.0
 
 @dataclass(frozen=True, slots=True)
 class MoveUpwindSettings:
-    """When an imaging drone flies to its place upwind by itself, for a survey that allows it."""
+    """When an imaging drone flies to its place upwind automatically, for a survey that allows
+    it."""
 
     asked_every_s: float = 10.0
     """Between two proposals: the wind turns in minutes, and one costs the worker 12 ms or more."""
@@ -52,7 +53,7 @@ class MoveUpwindSettings:
     anew. Velocities measured in the first half minute of shade still change."""
 
     every_s: float = 180.0
-    """Between two by itself: the wind turns in minutes, and a flight takes half of one."""
+    """Between two automatically: the wind turns in minutes, and a flight takes half of one."""
 
     refused_again_s: float = 60.0
     """After a refusal, before it is tried again."""

@@ -162,7 +162,7 @@ class Connection(asyncio.BufferedProtocol):
         self._check_session(self.session)
 
     def pump(self) -> None:
-        """Write packets that may go, each by itself, while the socket takes them."""
+        """Write packets that may go, one at a time, while the socket takes them."""
         while self.session is not None and self._transport is not None and self._is_clear():
             now_ns = self.server.now_ns()
             outgoing = self.session.next_packet(now_ns, self.server.objection)

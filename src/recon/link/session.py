@@ -39,7 +39,7 @@ from recon.vehicles.reports import to_report
 
 @dataclass(frozen=True, slots=True)
 class Outgoing:
-    """One packet to be written to the socket by itself, and the event that reports it."""
+    """One packet to be written to the socket separately, and the event that reports it."""
 
     data: bytes
     event: CommandSent

@@ -123,7 +123,7 @@ BODY_NAMES: dict[type, str] = {
 
 
 def issued_by_station(why: str) -> str:
-    """Return the `issued_by` of an order that the station gives by itself.
+    """Return the `issued_by` of an order that the station gives automatically.
 
     No person's begins so: a name has neither colon nor space, and its address follows it.
     """
@@ -159,7 +159,7 @@ class Command:
 
     @property
     def is_own(self) -> bool:
-        """Whether the station gave it by itself, not a person nor what a person has started."""
+        """Whether the station gave it automatically, not a person nor what a person has started."""
         return self.issued_by.startswith(issued_by_station(""))
 
     @property

@@ -435,7 +435,7 @@ class StationFaulted:
 
 @dataclass(frozen=True, slots=True)
 class GuardActed:
-    """The guard held vehicles by itself; `by` is the person of an all stop at its port.
+    """The guard held vehicles automatically; `by` is the person of an all stop at its port.
 
     `names` were sent a hover, `missed` may fly and were not; `serials` are of all of them.
     """

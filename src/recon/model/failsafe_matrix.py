@@ -1,6 +1,6 @@
 """The failsafe matrix: what the station does about a condition, by what the vehicle is doing.
 
-Not to be confused with `model.vehicle.Failsafe`, which is what the aircraft does by itself when it
+Not to be confused with `model.vehicle.Failsafe`, which is what the aircraft does on its own when it
 loses its controller. The rows and their defaults are in `safety/failsafe/`, one file each.
 """
 

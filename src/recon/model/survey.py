@@ -91,9 +91,10 @@ class Survey:
     """Progress is kept in cells of this size: finer than shadows' edges are known."""
     when_done: WhenDone = WhenDone.RETURN_HOME
     look_aside_allowed: bool = False
-    """Whether the imaging drone may look aside by itself while light is mostly unknown."""
+    """Whether the imaging drone may look aside automatically while light is mostly unknown."""
     upwind_allowed: bool = False
-    """Whether the imaging drone may fly by itself to where it sees more of the shade to come."""
+    """Whether the imaging drone may fly automatically to where it sees more of the shade to
+    come."""
     relief_allowed: bool = False
     """Whether the imaging drone may be relieved, or called home, when its battery wants it."""
     spare_serial: str | None = None

@@ -1,7 +1,7 @@
 """Whether an aircraft goes home as the site asks: its height, its way, its landing.
 
 The ICD carries neither the go-home height nor the home point that are set in an aircraft, so both
-are judged by what telemetry shows while it goes home by itself: ordered, or as its own failsafe. A
+are judged by what telemetry shows while it goes home: ordered, or as its own failsafe. A
 fleet return flies a mission, and is judged as one. What is asked: the go-home height of its profile
 unless it began higher, straight to the home that the station believes, a landing there.
 

@@ -418,7 +418,7 @@ class SafetySettings:
     max_stick_speed_mps: float = DJI.max_speed_mps
     max_stick_height_m: float = DJI.max_height_m
     max_stick_timeout_s: float = 5.0
-    """An app holds a stick's velocity this long by itself: at 15 m/s already 75 m."""
+    """An app holds a stick's velocity this long on its own: at 15 m/s already 75 m."""
 
     min_steering_mps: float = 0.1
     """Slower than GNSS velocity noise is no speed to steer at."""

@@ -78,9 +78,9 @@ class TaskTable(Table, frozen=True):
     photo_interval_s: Annotated[float, Meta(ge=0.1, le=60.0)] = 2.0
     rounds: Annotated[int, Meta(ge=1, le=100)] = 20
     look_aside: bool = True
-    """The operator allows the imaging drone to look aside by itself."""
+    """The operator allows the imaging drone to look aside automatically."""
     upwind: bool = False
-    """The operator allows the imaging drone to move upwind by itself."""
+    """The operator allows the imaging drone to move upwind automatically."""
 
 
 class FleetTable(Table, frozen=True):

@@ -11,7 +11,7 @@ from recon.model.shade import SUNLIT_TRANSMITTANCE, FloatMap, MaskMap
 from recon.score.boundary_error import EdgeError, edge_error
 
 LEAST_MIXED, MOST_MIXED = 0.05, 0.95
-"""Share of shade of a map whose IoU is compared by itself: with less, a few cells decide it."""
+"""Share of shade of a map whose IoU is compared separately: with less, a few cells decide it."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -64,7 +64,7 @@ def simulation_of(
 def _setup(
     scenario: Scenario, imager: Imager, number: int, seed: int, feed: FeedSettings
 ) -> ImagerSetup:
-    """Return one imaging drone's frames; all see the same land and sky, each wobbles by itself."""
+    """Return one imaging drone's frames; all see the same land and sky, each wobbles on its own."""
     rig, conditions = rig_of(scenario.frame, imager), conditions_of(scenario, seed)
     camera = replace(conditions.camera, seed=conditions.camera.seed + APART * number)
     source = FieldRenderer(

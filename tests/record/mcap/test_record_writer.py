@@ -105,7 +105,9 @@ def messages(path: Path) -> list[RecordMessage]:
 
 
 def test_what_was_put_is_in_the_file_without_an_end(tmp_path: Path) -> None:
-    """It writes by itself, more than twice a second; it does not wait for more, nor for the end."""
+    """It writes without a call, more than twice a second; it does not wait for more, nor for the
+    end.
+    """
     assert FLUSH_EVERY_S <= 0.5
     writing = Writing(tmp_path / "new" / "folder")
     writing.put(("/step", b"one"))

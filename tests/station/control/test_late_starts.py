@@ -35,7 +35,7 @@ def stopped_before_its_mission(stop: Body, shown: tuple[object, ...]) -> Command
 
 
 def again(scene: CommandedStation) -> list[Body]:
-    """The orders that the station gave by itself."""
+    """The orders that the station gave automatically."""
     return [
         record.command.body
         for record in scene.station.orders.records.values()

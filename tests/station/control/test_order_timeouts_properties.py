@@ -1,4 +1,5 @@
-"""Whatever happens: every order has one end, and nothing that starts motion goes by itself."""
+"""Whatever happens: every order has one end, and nothing that starts motion is sent
+automatically."""
 
 from dataclasses import replace
 

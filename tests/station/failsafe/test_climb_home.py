@@ -1,4 +1,4 @@
-"""A return that the station gives by itself does not climb into another vehicle."""
+"""A return that the station gives automatically does not climb into another vehicle."""
 
 import pytest
 from tests.fleet.reports import PLACE, core, extended

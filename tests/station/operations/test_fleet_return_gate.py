@@ -57,7 +57,7 @@ def on_flat_ground(scene: Scene) -> Scene:
 
 
 def hovering(flight: ReturnFlight) -> VehicleState:
-    """The state of a vehicle that hovers where its flight begins; it would hover by itself too."""
+    """The state of a vehicle that hovers where its flight begins; it would hover on its own too."""
     here = point_from_enu(FRAME, (*flight.start_m[:2], 0.0))
     pad = point_from_enu(FRAME, (*flight.pad.east_north_m, 0.0))
     home = GeoPoint(pad.latitude_deg, pad.longitude_deg, FRAME.origin.ellipsoid_height_m)

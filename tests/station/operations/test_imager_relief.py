@@ -98,7 +98,7 @@ def left_at_home(world: RelievedWorld) -> bool:
 
 @pytest.fixture(scope="module")
 def flown() -> tuple[RelievedWorld, list[tuple[str, str | None]], dict[str, str]]:
-    """A relief by itself from its beginning until the first one has landed; audit and alarms."""
+    """An automatic relief from its beginning until the first one has landed; audit and alarms."""
     world = surveying()
     entries: list[tuple[str, str | None]] = []
 
@@ -352,7 +352,7 @@ class TestNotByItself:
         world.charges(FIRST, AT_ONCE)
         world.runs(5.0)
         text = world.alarms()["imager_relief:leaves:CAM-1"]
-        assert "cannot be called home by itself: CAM-1 is controlled by the pilot" in text
+        assert "cannot be called home automatically: CAM-1 is controlled by the pilot" in text
         assert holds(world) == 0
 
 

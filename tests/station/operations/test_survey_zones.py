@@ -112,7 +112,7 @@ class TestDrawnOnItsRows:
         assert world.phase() is SurveyPhase.PAUSED
         assert "keep-out zones" in world.state().reason
         texts = [a.condition.text for a in world.driver.station.alarms.alarms.values()]
-        assert any("has paused by itself" in text for text in texts)
+        assert any("has paused automatically" in text for text in texts)
         world.driver.handle(ZoneEnded(1, "Ann"))
         world.runs(2.0)
         assert world.phase() is SurveyPhase.PAUSED
@@ -180,7 +180,7 @@ class TestOverTheWholeField:
         world.driver.handle(ZoneEnded(1, "Ann"))
         world.runs(3.0)
         (text,) = by_itself(world)
-        assert "has paused by itself: no row" in text
+        assert "has paused automatically: no row" in text
         assert text.endswith("Start it again, or abort it")
         world.starts("SIM-1")
         world.runs(3.0)

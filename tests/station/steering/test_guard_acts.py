@@ -1,4 +1,4 @@
-"""What the guard did by itself is an alarm here, and ends the orders that it held against."""
+"""What the guard did automatically is an alarm here, and ends the orders that it held against."""
 
 from tests.station.station_world import World
 from tests.station.steered_world import SERIAL, steered

@@ -68,7 +68,7 @@ class Two:
         return self
 
     def holds(self) -> list[tuple[str | None, str]]:
-        """The vehicles that the station has held by itself, and the reason."""
+        """The vehicles that the station has held automatically, and the reason."""
         return [
             (approved.command.serial, approved.command.issued_by)
             for approved in self.scene.handed

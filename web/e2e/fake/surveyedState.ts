@@ -27,7 +27,7 @@ export function surveyedState(elapsed_s: number): StationState {
     is_flying_rows: false,
     refused: null,
     has_come_home: false,
-    takes_off_by_itself: false,
+    takes_off_automatically: false,
     mission_command_id: null,
   };
   return {
@@ -70,7 +70,7 @@ export function surveyedState(elapsed_s: number): StationState {
             decision: null,
             refused: null,
             has_come_home: false,
-            takes_off_by_itself: false,
+            takes_off_automatically: false,
             mission_command_id: -3,
           },
           {

@@ -2286,7 +2286,7 @@ export interface components {
             stage: "aside" | "waiting" | "back" | "upwind" | "to_place" | "maps" | "done" | "stopped";
             /**
              * Survey Id
-             * @description the survey it began for by itself; null: ordered
+             * @description the survey that it serves; null: ordered
              */
             survey_id: number | null;
             /** Vehicle Name */
@@ -2479,7 +2479,7 @@ export interface components {
             stage: "aside" | "waiting" | "back" | "upwind" | "to_place" | "maps" | "done" | "stopped";
             /**
              * Survey Id
-             * @description the survey it began for by itself; null: ordered
+             * @description the survey that it serves; null: ordered
              */
             survey_id: number | null;
             /** Vehicle Name */
@@ -2553,7 +2553,7 @@ export interface components {
             stage: "aside" | "waiting" | "back" | "upwind" | "to_place" | "maps" | "done" | "stopped";
             /**
              * Survey Id
-             * @description the survey it began for by itself; null: ordered
+             * @description the survey that it serves; null: ordered
              */
             survey_id: number | null;
             /** Vehicle Name */
@@ -3673,10 +3673,10 @@ export interface components {
             /** Serial */
             serial: string;
             /**
-             * Takes Off By Itself
+             * Takes Off Automatically
              * @description on the ground: it takes off as soon as there are rows for it
              */
-            takes_off_by_itself: boolean;
+            takes_off_automatically: boolean;
             /** Vehicle Name */
             vehicle_name: string;
         };
@@ -3764,7 +3764,7 @@ export interface components {
             height_above_takeoff_m?: number | null;
             /**
              * Look Aside Allowed
-             * @description the imaging drone may look aside by itself while light is mostly unknown
+             * @description the imaging drone may look aside automatically while light is mostly unknown
              * @default false
              */
             look_aside_allowed: boolean;
@@ -3787,7 +3787,7 @@ export interface components {
             region?: string | null;
             /**
              * Relief Allowed
-             * @description the imaging drone may be relieved by itself, or called home, when its battery wants it
+             * @description the imaging drone may be relieved automatically, or called home, when its battery wants it
              * @default false
              */
             relief_allowed: boolean;
@@ -3807,7 +3807,7 @@ export interface components {
             speed_mps: number;
             /**
              * Upwind Allowed
-             * @description the imaging drone may fly by itself to where it sees more of the shade to come
+             * @description the imaging drone may fly automatically to where it sees more of the shade to come
              * @default false
              */
             upwind_allowed: boolean;

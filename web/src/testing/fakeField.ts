@@ -80,7 +80,7 @@ export function survey(id: number, changes: Partial<SurveyView> = {}): SurveyVie
         refused: null,
         mission_command_id: -3,
         has_come_home: false,
-        takes_off_by_itself: false,
+        takes_off_automatically: false,
       },
       {
         serial: "SN-002",
@@ -91,7 +91,7 @@ export function survey(id: number, changes: Partial<SurveyView> = {}): SurveyVie
         refused: null,
         mission_command_id: null,
         has_come_home: false,
-        takes_off_by_itself: false,
+        takes_off_automatically: false,
       },
     ],
     figures: {

@@ -27,7 +27,7 @@ describe("what a vehicle is doing", () => {
     const running = survey(1, { phase: "running" });
     const [first, ...others] = running.vehicles;
     if (first === undefined) throw new Error("expected a vehicle");
-    const vehicles = [{ ...first, takes_off_by_itself: true }, ...others];
+    const vehicles = [{ ...first, takes_off_automatically: true }, ...others];
     const part = surveyPart([{ ...running, vehicles }], "SN-001");
     const onGround = vehicle(1, { is_flying: { value: false, age_s: 0.1 } });
     expect(doing(onGround, part, 0)).toBe("On the ground · may take off");

@@ -29,7 +29,7 @@ export function doing(vehicle: VehicleView, part: SurveyingView | null, behindS:
       return text.activity.waitingForSerial;
     case "On the ground":
       if (vehicle.is_stopped) return text.activity.onGroundStopped;
-      return part?.takes_off_by_itself === true ? text.activity.mayTakeOff : names[activity];
+      return part?.takes_off_automatically === true ? text.activity.mayTakeOff : names[activity];
     case "Unknown":
       return text.activity.unknown;
     case "Landing":

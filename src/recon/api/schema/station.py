@@ -114,7 +114,7 @@ class ImagerMotionView(Message):
     begun_by: str
     begun_age_s: float
     reason: str | None = Field(description="why it waits beside its place, or has stopped")
-    survey_id: int | None = Field(description="the survey it began for by itself; null: ordered")
+    survey_id: int | None = Field(description="the survey that it serves; null: ordered")
 
 
 class LookAsideView(ImagerMotionView):

@@ -75,16 +75,16 @@ class SurveyRequest(StrictMessage):
     )
     look_aside_allowed: bool = Field(
         default=False,
-        description="the imaging drone may look aside by itself while light is mostly unknown",
+        description="the imaging drone may look aside automatically while light is mostly unknown",
     )
     upwind_allowed: bool = Field(
         default=False,
-        description="the imaging drone may fly by itself to where it sees more of the shade to "
+        description="the imaging drone may fly automatically to where it sees more of the shade to "
         "come",
     )
     relief_allowed: bool = Field(
         default=False,
-        description="the imaging drone may be relieved by itself, or called home, when its "
+        description="the imaging drone may be relieved automatically, or called home, when its "
         "battery wants it",
     )
     spare_serial: Annotated[str, Field(max_length=256)] | None = Field(
@@ -144,7 +144,7 @@ class SurveyingView(Message):
         description="why its newest mission was refused; null if it was not"
     )
     has_come_home: bool = Field(description="landed after the survey returned it home")
-    takes_off_by_itself: bool = Field(
+    takes_off_automatically: bool = Field(
         description="on the ground: it takes off as soon as there are rows for it"
     )
     mission_command_id: int | None

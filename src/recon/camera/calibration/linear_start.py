@@ -35,7 +35,7 @@ class BoardPose:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _HalfPose:
-    """What one photo gives by itself: two rows of the rotation, two offsets; the third row but for
+    """What one photo gives alone: two rows of the rotation, two offsets; the third row but for
     its sign."""
 
     rows: FloatArray

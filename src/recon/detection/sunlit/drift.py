@@ -23,8 +23,8 @@ from recon.model.units import NS_PER_S, seconds_to_ns
 LONGEST_GAP_S = 20.0
 """Over a longer one most cells may have changed."""
 LOCK_S = 60.0
-"""A camera that sets its exposure by itself does so within a minute under moving clouds; the errors
-of so many frames stay below the limits."""
+"""A camera that sets its exposure automatically does so within a minute under moving clouds; the
+errors of so many frames stay below the limits."""
 LOCKED_LIGHT, LOCKED_COLOUR = 0.15, 0.10
 """Changes within that time of a camera that is not locked."""
 CLOUD_COLOUR = 0.25

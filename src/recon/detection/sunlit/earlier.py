@@ -2,7 +2,7 @@
 
 Theory of operation: a reference is of one camera, at one place, with the sun in one direction: then
 the land's own light, the lens and the hot spot are the same. It is taken up with the first frame
-whose cells it explains, and is the land from there on, until the flight has seen enough by itself.
+whose cells it explains, and is the land from there on, until the flight has seen enough of its own.
 
 An edge of shade in the first frame is then seen as one at once. A frame without an edge is still
 all sun or all shade: its light shows nothing, because exposure is another one in each flight. Its

@@ -33,7 +33,7 @@ class FleetReturnSettings:
     """Between the layers' ends: half of what DJI allows, braking takes 13 m."""
 
     fastest_upright_mps: float = 5.0
-    """No survey aircraft climbs or sinks faster by itself: the least time of a flight."""
+    """No survey aircraft climbs or sinks faster on its own: the least time of a flight."""
 
     over_pad_m: float = 3.0
     """Nearer than this a vehicle counts as over its pad."""

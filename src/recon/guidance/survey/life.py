@@ -13,10 +13,11 @@ shade maps settle for `settle_s` before they count, as frames arrive and are rea
 while PAUSED too, since a vehicle may still be flying its row.
 
 - Timeouts: a refused mission is requested again after `retry_s` if other vehicles fly. If none
-  flies, the vehicle is barred until the next start, as nothing will change by itself. When all
-  are barred the survey pauses. A refusal that may end by itself bars none, and is requested again
-  after `retry_soon_s`; for how long, the caller decides. One for another vehicle in the way bars
-  none either where the planner decides vehicle by vehicle: that vehicle, or the decision, changes.
+  flies, the vehicle is barred until the next start, as nothing will change without a command. When
+  all are barred the survey pauses. A refusal that may end without a command bars none, and is
+  requested again after `retry_soon_s`; for how long, the caller decides. One for another vehicle in
+  the way bars none either where the planner decides vehicle by vehicle: that vehicle, or the
+  decision, changes.
 - A vehicle drops out by not being able in `step`; its unimaged rows belong to the next round.
 - A pause discards the round under way, since its shares fit the vehicles of that moment only.
 
@@ -54,7 +55,7 @@ from recon.model.survey import SurveyPhase
 from recon.model.units import seconds_to_ns
 
 PAUSED_BY_COMMAND = "paused"
-"""The reason of a pause that was commanded; any other is why a survey has paused by itself."""
+"""The reason of a pause that was commanded; any other is why a survey has paused automatically."""
 
 
 def create(plan: SurveyPlan) -> SurveyState | Refusal:
@@ -113,7 +114,7 @@ def refused(
 ) -> SurveyState:
     """Return the survey after the gate refused a mission; its rows stay with the vehicle.
 
-    `may_end`: the reason may end by itself. `in_the_way`: another vehicle is in its way.
+    `may_end`: the reason may end without a command. `in_the_way`: another vehicle is in its way.
 
     - A mission that was to replace another one: the other one is flown on.
     - `may_end`: the next one is requested after `retry_soon_s`.

@@ -114,8 +114,9 @@ class SurveySettings:
     elsewhere."""
 
     retry_soon_s: float = 3.0
-    """A mission refused for what may end by itself, such as late telemetry, is asked for again
-    after this: telemetry comes ten times a second, and a link is open again within seconds."""
+    """A mission refused for what may end without a command, such as late telemetry, is asked for
+    again after this: telemetry comes ten times a second, and a link is open again within
+    seconds."""
 
     segment_m: float = 60.0
     """Of a row, decided on at once: shorter ones take longer to plan, shade's edges are wider."""
@@ -166,7 +167,7 @@ class SurveySettings:
 
     takeoff_s: float = 5.0
     taken_off_m: float = 5.0
-    """An aircraft takes off to about 1.2 m by itself, and then flies its mission."""
+    """An aircraft takes off to about 1.2 m on its own, and then flies its mission."""
 
     climb_mps: float = 2.5
     corner_s: float = 0.8

@@ -126,7 +126,7 @@ class SurveyState:
 
     `waiting` is the rest of each vehicle's share of the round. `refusals` are the newest of each
     vehicle. A vehicle refused while no other flew is `barred` until the next start: the cause is
-    the vehicle or its rows, unless the refusal may end by itself.
+    the vehicle or its rows, unless the refusal may end without a command.
     """
 
     plan: SurveyPlan

@@ -195,7 +195,7 @@ def _replace_missions(
 
 
 def _decide_idle(state: SurveyState, moment: PlanningMoment) -> Step:
-    """Begin a round that is worth it, or what is best for each vehicle by itself."""
+    """Begin a round that is worth it, or what is best for each vehicle alone."""
     choices = [moment.choice(state, serial) for serial in moment.idle(state)]
     if not choices:
         return state, ()

@@ -2,7 +2,7 @@
 
 Frozen values count as none (`fleet/trust.py`). After 3 s the station treats a vehicle as lost, and
 others keep clear of a growing area: a hold keeps that area small. It goes out blind while no
-landing is possible, else when telemetry is back. A stream of sticks stops by itself, as early.
+landing is possible, else when telemetry is back. A stream of sticks stops on its own, as early.
 """
 
 from recon.model.failsafe_matrix import Activity, FailsafeCondition, Reaction

@@ -61,7 +61,7 @@ class VehicleMotion(NamedTuple):
     home_m: tuple[float, float] | None
     go_home_up_m: float | None
     goes_home: bool
-    """Whether it may go home by itself when it loses its controller."""
+    """Whether it may go home on its own when it loses its controller."""
     is_ground_known: bool = True
     """Whether the height of its takeoff point is that of a pad or of an elevation model."""
     drift_m: float = 0.0

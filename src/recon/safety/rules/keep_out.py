@@ -63,7 +63,7 @@ class _Judged:
         self.rounding_m = settings.not_worse_m
 
     def worse(self) -> int | None:
-        """The first piece that enters the zone, and does so more than the vehicle by itself."""
+        """The first piece that enters the zone, and does so more than the vehicle's position."""
         pieces, footprints = self.path.pieces, self.path.footprints
         entered = np.flatnonzero(~self.polygon.is_clear_of(footprints, self.gap_m))
         is_met = self._meets(

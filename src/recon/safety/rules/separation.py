@@ -82,9 +82,9 @@ def separation(command: Command, situation: Situation) -> Refusal | None:
 def in_way_of_climb_home(vehicle: VehicleState, situation: Situation) -> str | None:
     """Return the name of another vehicle that a climb to go home now would conflict with.
 
-    No rule: a person's return is never refused. It is for returns that the station gives by itself
-    and that have time, because an aircraft climbs where it is, also under another one. None where
-    that is unknown, and of a lost vehicle, which may be anywhere.
+    No rule: a person's return is never refused. It is for returns that the station gives
+    automatically and that have time, because an aircraft climbs where it is, also under another
+    one. None where that is unknown, and of a lost vehicle, which may be anywhere.
     """
     frame = frame_for(situation.airspace, vehicle)
     plane = None if frame is None else Plane(frame.origin)

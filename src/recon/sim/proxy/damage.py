@@ -159,7 +159,7 @@ class Channel:
             self._held_bytes += len(piece)
 
     def pop_due(self, now_ns: int) -> list[bytes]:
-        """Return the pieces due by now, each to be written by itself."""
+        """Return the pieces due by now, each to be written separately."""
         pieces = []
         while self._under_way and self._under_way[0][0] <= now_ns:
             pieces.append(self._under_way.popleft()[1])

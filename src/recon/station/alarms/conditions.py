@@ -199,7 +199,7 @@ def _resumed(station: Station, vehicle: VehicleState) -> Iterator[Condition]:
         return
     if interrupted_mission(station.orders, vehicle.serial or "") is not None:
         text = (
-            "flies a mission again although its pilot took control: it resumed by itself; the "
+            "flies a mission again although its pilot took control: it resumed automatically; the "
             "station does not control it: hold it, or let its pilot stop it"
         )
         yield _about(vehicle, "mission_resumed", Severity.CRITICAL, text)

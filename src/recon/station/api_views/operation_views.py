@@ -19,7 +19,7 @@ from recon.station.operations.survey.availability import (
     hindrance,
     is_flown,
     is_on_ground,
-    takes_off_by_itself,
+    takes_off_automatically,
 )
 from recon.station.operations.survey.return_to_home import is_under_way
 from recon.station.state.fleet_return_record import ReturningVehicle
@@ -119,7 +119,7 @@ def _member(
         not_flying_reason=waits,
         decision=None if decision is None else decision.text,
         refused=refused,
-        takes_off_by_itself=takes_off_by_itself(station, record, member),
+        takes_off_automatically=takes_off_automatically(station, record, member),
         has_come_home=member.return_reason is not None and is_on_ground(station, member),
         mission_command_id=member.command_id,
     )

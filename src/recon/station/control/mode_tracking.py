@@ -355,7 +355,7 @@ def _start(station: Station, serial: str, intent: Intent, mode: FlightMode | Non
 def _command_nothing(
     station: Station, serial: str, now_ns: int, *, failsafe: str | None = None
 ) -> Station:
-    """Return the station with a vehicle commanded nothing; `failsafe`: what it does by itself."""
+    """Return the station with a vehicle commanded nothing; `failsafe`: what it does on its own."""
     vehicle = station.fleet.vehicles.get(serial)
     mode = None if vehicle is None else vehicle.flight_mode.value
     station = intents.with_intent(station, serial, NO_INTENT)

@@ -145,7 +145,7 @@ def repeat(
     record = replace(record, repeats_left=left, next_repeat_ns=later_ns if left > 0 else None)
     command = record.command
     if record.sent is not None:
-        # Nothing that starts motion is sent again by itself.
+        # Nothing that starts motion is sent again automatically.
         command = replace(command, takeoff=False)
     judged = judge(station, command)
     if isinstance(judged, Refusal):

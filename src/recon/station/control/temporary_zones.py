@@ -9,7 +9,7 @@ A zone in force is a keep-out zone of the airspace from the step that draws it o
 by it every order, the next part of a mission, what waits to be sent, and each packet of a setpoint
 stream; the watchdogs hold, within their period, what is about to enter it, and raise an alarm for
 what is in it; surveys and fleet returns plan anew. Nothing else is stored, so that ending it is the
-same in reverse. Nothing that was held resumes by itself. Only a person draws one; its end is an
+same in reverse. Nothing that was held resumes automatically. Only a person draws one; its end is an
 alarm unless a person has ended it.
 """
 

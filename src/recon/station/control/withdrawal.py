@@ -17,7 +17,7 @@ def withdraw(
 ) -> Stepped:
     """End every order that waits unsent to move a vehicle; `with_stops`: unconfirmed stops too.
 
-    Steered orders have a stream, which ends by itself.
+    Steered orders have a stream, which ends automatically.
     """
     book = station.orders
     for record in book.tracked:

@@ -41,7 +41,7 @@ from recon.station.state.station import Station
 _FOUND_ROWS = tuple((row, row.find) for row in ROWS.values() if row.find is not None)
 
 _STREAMS_OWN = frozenset({FailsafeCondition.TELEMETRY_LOST, FailsafeCondition.OPERATOR_GONE})
-"""A setpoint stream ends by itself for these, with a hold."""
+"""A setpoint stream ends automatically for these, with a hold."""
 
 _SHOWN_BY_THE_STATION = frozenset({FailsafeCondition.LINK_LOST, FailsafeCondition.TELEMETRY_LOST})
 """These cannot be from before a restart: they begin with telemetry of this run."""

@@ -1,7 +1,7 @@
 """Sunlit references: read from the site's folder at the start, written while the flight learns.
 
 A flight may end at any time, so a reference is written every two minutes, by the worker, and
-replaces the one before. Detection takes an earlier flight's up by itself (`detection.sunlit`).
+replaces the one before. Detection takes an earlier flight's up automatically (`detection.sunlit`).
 """
 
 from collections.abc import Iterator

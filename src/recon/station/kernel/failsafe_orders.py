@@ -32,7 +32,7 @@ def run_failsafes(station: Station, now_ns: int) -> Stepped:
 
 
 def run_failsafes_isolated(station: Station, now_ns: int) -> Stepped:
-    """Look at each vehicle by itself."""
+    """Look at each vehicle separately."""
     station, run = runner.begin(station, now_ns)
     outputs: tuple[Output, ...] = ()
     if run is None:

@@ -1,8 +1,8 @@
 """Fault isolation: a fault in the station's own code costs one event, or one part of a tick.
 
 The step is pure, so the state before a fault is whole, and the driver continues from it. Of a tick
-whose step raised, every part is tried by itself. A part that sees to several vehicles is tried for
-each vehicle by itself, and the watchdogs one by one: only what raises is lost. A fault never stops
+whose step raised, every part is tried separately. A part that sees to several vehicles is tried for
+each vehicle separately, and the watchdogs one by one: only what raises is lost. A fault never stops
 a station that aircraft depend on, and is always an alarm.
 """
 
@@ -62,7 +62,7 @@ def after_fault(
 
 
 def drive_streams_isolated(station: Station, now_ns: int) -> Stepped:
-    """Drive each setpoint stream by itself.
+    """Drive each setpoint stream separately.
 
     One that raises is ended: its vehicle must not fly on by the last setpoint, and the fault may
     come again at every beat.
@@ -83,7 +83,7 @@ def drive_streams_isolated(station: Station, now_ns: int) -> Stepped:
 
 
 def follow_orders_isolated(station: Station, now_ns: int) -> Stepped:
-    """Follow the orders of each vehicle by itself."""
+    """Follow the orders of each vehicle separately."""
     outputs: tuple[Output, ...] = ()
     serials = {record.command.serial for record in station.orders.tracked}
     for serial in sorted(serial for serial in serials if serial is not None):
@@ -94,7 +94,7 @@ def follow_orders_isolated(station: Station, now_ns: int) -> Stepped:
 
 
 def run_watchdogs_isolated(station: Station, now_ns: int) -> Stepped:
-    """Run each watchdog by itself."""
+    """Run each watchdog separately."""
     return run_watchdogs(station, now_ns, ISOLATED_WATCHDOGS)
 
 

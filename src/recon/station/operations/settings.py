@@ -76,7 +76,7 @@ class SurveyTimes:
 
     takeoff_waits_s: float = 10.0
     """A person who starts a survey expects its vehicles to take off now. One that stands longer and
-    may still take off by itself is an alarm."""
+    may still take off automatically is an alarm."""
 
     home_waits_s: float = 60.0
     """A turn to fly home comes within a minute; a vehicle that waits longer raises an alarm."""

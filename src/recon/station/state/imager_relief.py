@@ -50,7 +50,7 @@ class SurveyOutlook:
 
 @dataclass(frozen=True, slots=True)
 class CalledHome:
-    """For which survey an imaging drone was called home by itself, and when."""
+    """For which survey an imaging drone was called home automatically, and when."""
 
     survey_id: int
     at_ns: int
@@ -88,7 +88,7 @@ class ImagerRelief(ImagerMotion):
 class Reliefs(ByItself):
     """The newest relief; charges, places and outlooks by serial, surveys' outlooks by id.
 
-    `called_home`: those called home by themselves, by serial.
+    `called_home`: those called home automatically, by serial.
     """
 
     newest: ImagerRelief | None = None

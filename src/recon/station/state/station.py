@@ -98,7 +98,7 @@ class Station:
     link_limits: Mapping[str, str] = field(default_factory=dict)
     """Limits that the link server has reached, with what it does about it."""
     next_own_id: int = -1
-    """The number of the next command the station gives by itself; see `take_id`."""
+    """The number of the next command the station gives automatically; see `take_id`."""
     owners: frozenset[str] = frozenset()
     """Open API streams that steered orders may depend on."""
     persons: Mapping[str, Presence] = field(default_factory=dict)

@@ -85,7 +85,7 @@ class SurveyRecord:
     """Who started it, by name."""
     members: Mapping[str, SurveyMember] = field(default_factory=lambda: MappingProxyType({}))
     spare_may_take_off: bool = False
-    """The operator's permission for the spare imaging drone, for one relief by itself."""
+    """The operator's permission for the spare imaging drone, for one relief automatically."""
     step_due_ns: int = 0
     trouble: str | None = None
     """Why the newest step failed."""

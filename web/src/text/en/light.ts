@@ -51,8 +51,8 @@ export const upwind = {
   noPlace: (vehicle: string, reason: string) => `No place upwind for ${vehicle}: ${reason}.`,
   fly: "Fly upwind",
   stages: {
-    upwind: (distance: string) => `flies upwind by itself, ${distance}`,
-    done: (distance: string) => `flew upwind by itself, ${distance}`,
+    upwind: (distance: string) => `flies upwind automatically, ${distance}`,
+    done: (distance: string) => `flew upwind automatically, ${distance}`,
     stopped: (distance: string) => `stopped its flight upwind, ${distance}`,
   } as Stages<MoveUpwindView>,
 };
@@ -179,8 +179,8 @@ export const newSurvey = {
   },
   whenDone: "When complete",
   thenDo: { return_home: "Return home", hover: "Hover" },
-  lookAside: "Imaging drone may look aside by itself",
-  upwind: "Imaging drone may move upwind by itself",
+  lookAside: "Imaging drone may look aside automatically",
+  upwind: "Imaging drone may move upwind automatically",
   battery: "When the imaging drone's battery ends",
   batteryEnds: { warn: "Warn only", home: "Return it home" },
   spare: (vehicle: string) => `Relieve it by ${vehicle}`,

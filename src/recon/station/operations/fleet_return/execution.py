@@ -7,11 +7,11 @@ Each vehicle goes through stages (`Stage`); five times a second they are read an
   landing mission each. Then the first vehicle in turn begins whose layer, pad and path are free,
   and only one at a time, for each changes what others may do. A refusal of the gate that time may
   end (`WAITING_RULES`) is tried again every second, at most 30 s while no other flies. When all
-  that wait are blocked by something that does not end by itself, or temporary zones have changed,
-  they are planned again.
+  that wait are blocked by something that does not end without a command, or temporary zones have
+  changed, they are planned again.
 - *Ordered*, then *flying*: its mission was approved; telemetry shows it.
 - Ends: *landed*; *released*, when its pilot or a newer order controls it; *left out*, when anything
-  else went wrong, with an alarm and its reason. Nothing that went wrong is resumed by itself.
+  else went wrong, with an alarm and its reason. Nothing that went wrong is resumed automatically.
 
 A vehicle whose mission was ignored is held when it is left out: begun late, the mission would cross
 the paths of others. At the end, what guidance had called home goes back to the operator.
@@ -212,7 +212,7 @@ class _Traffic:
 
 
 def _replanned_if_stuck(running: FleetReturn, settings: ReturnSettings, now_ns: int) -> FleetReturn:
-    """Have all that wait planned again if nothing that they wait for will end by itself.
+    """Have all that wait planned again if nothing that they wait for will end without a command.
 
     That is so when a vehicle hovers where none did when the plan was made.
     """

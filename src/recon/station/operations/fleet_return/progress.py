@@ -45,7 +45,7 @@ def updated(
     if broken is not None:
         return member.at(Stage.LEFT_OUT, now_ns, broken)
     if vehicle.is_flying.value is False:
-        return member.at(Stage.LANDED, now_ns, "it landed by itself or was landed by its pilot")
+        return member.at(Stage.LANDED, now_ns, "it landed on its own or was landed by its pilot")
     return _stopping(member, vehicle, settings, now_ns)
 
 
@@ -99,7 +99,7 @@ def _broken(
 ) -> str | None:
     """Why a vehicle that waits is left out: its connection was interrupted since the call."""
     if vehicle.link_id != member.link_id:
-        return "its connection was interrupted since it was called; nothing resumes by itself"
+        return "its connection was interrupted since it was called; nothing resumes automatically"
     if not _has_telemetry(vehicle, settings.telemetry_within_s, now_ns):
         return f"no telemetry for {settings.telemetry_within_s:g} s"
     return None

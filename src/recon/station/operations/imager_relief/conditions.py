@@ -13,7 +13,7 @@ from recon.station.operations.imager_motion.notices import (
     is_left,
 )
 from recon.station.operations.imager_relief import return_home
-from recon.station.operations.imager_relief.by_itself import by_survey
+from recon.station.operations.imager_relief.automatic import by_survey
 from recon.station.operations.imager_relief.outlook import needs_longer
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.imager_motion import MotionStage
@@ -79,7 +79,7 @@ def _shows_too(station: Station, serial: str) -> bool:
 
 
 def _will_relieve(station: Station, record: SurveyRecord) -> bool:
-    """Whether the survey's spare drone takes the place by itself, and is not refused."""
+    """Whether the survey's spare drone takes the place automatically, and is not refused."""
     survey, spare = record.survey, record.survey.spare_serial
     if not survey.relief_allowed or spare is None or station.reliefs.refused is not None:
         return False
@@ -100,7 +100,7 @@ def _leaves(
         refused = return_home.refusal(station, serial, by, record.person, now_ns)
         what = "Relieve it, or it is called home then"
         if refused is not None:
-            what = f"It cannot be called home by itself: {refused.reason}"
+            what = f"It cannot be called home automatically: {refused.reason}"
     elif outlook.leaves_in_s <= 0.0:
         what = "Call it home"
     text = (

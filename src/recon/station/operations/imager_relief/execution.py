@@ -35,7 +35,7 @@ from recon.station.operations.imager_motion.execution import (
     not_of_guidance,
     put,
 )
-from recon.station.operations.imager_relief.by_itself import begin_if_due, call_home_if_due
+from recon.station.operations.imager_relief.automatic import begin_if_due, call_home_if_due
 from recon.station.operations.imager_relief.outlook import checked
 from recon.station.operations.imager_relief.return_home import call_home
 from recon.station.state.imager_motion import MotionStage

@@ -50,7 +50,7 @@ def _command(
 
 
 def _changes(before: Station, event: Event, after: Station) -> Iterator[AuditEntry]:
-    """Changes of phase without a command: planned, impossible, done, paused by itself."""
+    """Changes of phase without a command: planned, impossible, done, paused automatically."""
     if isinstance(event, SurveyStarted | SurveyStopped | SurveyRequested):
         return
     for number, record in after.surveys.records.items():

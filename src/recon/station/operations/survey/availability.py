@@ -110,7 +110,7 @@ def is_on_ground(station: Station, member: SurveyMember) -> bool:
     return vehicle is not None and vehicle.is_flying.value is False
 
 
-def takes_off_by_itself(station: Station, record: SurveyRecord, member: SurveyMember) -> bool:
+def takes_off_automatically(station: Station, record: SurveyRecord, member: SurveyMember) -> bool:
     """Return whether a vehicle stands, and takes off as soon as there are rows for it."""
     is_guided = station.control(member.serial).authority.holder is AuthorityHolder.GUIDANCE
     is_ready = member.may_take_off and member.stop_reason is None and member.return_reason is None
@@ -128,7 +128,7 @@ def after_mission(
 ) -> tuple[SurveyMember, OrderRecord | None]:
     """Return the vehicle, stopped if its mission ended unfinished, and that mission's order.
 
-    Such a mission is not flown again by itself: an operator must check and start it again.
+    Such a mission is not flown again automatically: an operator must check and start it again.
     """
     order, unsent_since_ns = _order(station, member), member.unsent_since_ns
     sent = None if order is None else order.sent

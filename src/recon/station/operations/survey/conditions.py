@@ -10,7 +10,7 @@ from recon.station.operations.settings import SURVEY_TIMES
 from recon.station.operations.survey.availability import (
     is_on_ground,
     may_stay,
-    takes_off_by_itself,
+    takes_off_automatically,
 )
 from recon.station.operations.survey.return_to_home import is_under_way
 from recon.station.state.alarm_book import Condition, Severity
@@ -30,7 +30,7 @@ def conditions(station: Station) -> Iterator[Condition]:
         state = record.state
         is_paused = state is not None and state.phase is SurveyPhase.PAUSED
         if is_paused and state is not None and state.reason != PAUSED_BY_COMMAND:
-            text = f"survey {record.survey.name} has paused by itself: {state.reason}"
+            text = f"survey {record.survey.name} has paused automatically: {state.reason}"
             key = f"{RULE}:{record.survey.id}"
             yield Condition(key, Severity.WARNING, RULE, "", f"{text}. Start it again, or abort it")
         if record.is_running and record.trouble is not None:
@@ -48,10 +48,10 @@ def _of_vehicle(
     if record.is_running and member.stop_reason is not None:
         text = f"stopped flying survey {name}: {member.stop_reason}"
         yield _about(station, member, RULE, f"{text}. Check it, then start it again")
-    elif takes_off_by_itself(station, record, member):
+    elif takes_off_automatically(station, record, member):
         text = (
-            f"stands, and takes off by itself as soon as survey {name} has rows for it. Keep clear "
-            "of it, and pause the survey before anyone goes there"
+            f"stands, and takes off automatically as soon as survey {name} has rows for it. Keep "
+            "clear of it, and pause the survey before anyone goes there"
         )
         condition = _about(station, member, RULE_TAKEOFF, text)
         yield replace(condition, after_s=SURVEY_TIMES.takeoff_waits_s)

@@ -20,7 +20,7 @@ data class Message(val atMs: Long, val severity: Severity, val text: String)
  * The process's one companion app: what the screen shows and its buttons do. It outlives activities;
  * `CompanionService` keeps the process running while it is connected.
  *
- * Theory of operation. *Stopped* without a [Run], *running* with one, which connects again by itself.
+ * Theory of operation. *Stopped* without a [Run], *running* with one, which connects again automatically.
  * [start] and [stop] change between them; what they begin and end, one after the other, is left to
  * [lifecycle], because a connection takes seconds to give up. Released control outlives both and the
  * process, until the person allows it again. All functions are called on the main thread; the companion's

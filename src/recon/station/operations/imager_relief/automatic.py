@@ -1,4 +1,4 @@
-"""Reliefs and ways home by themselves: for a running survey that allows them.
+"""Reliefs and ways home automatically: for a running survey that allows them.
 
 A relief begins two and a half minutes before it must, if the survey goes on after its imaging drone
 has to leave. A drone that must leave is called home, relieved or not: its battery ends; a relief
@@ -6,7 +6,7 @@ that was refused until then still follows. Both are ordered for the person who s
 and refused for the same reasons as when a person asks.
 
 The permission to take off, given with the survey's start, is for one relief: whatever ends that, no
-other begins by itself until the survey is started again.
+other begins automatically until the survey is started again.
 """
 
 from collections.abc import Iterator
