@@ -5,6 +5,7 @@ import io
 import random
 from collections.abc import Iterator
 from pathlib import Path
+from typing import get_type_hints
 
 import msgspec
 import pytest
@@ -35,8 +36,9 @@ from recon.station.recording import recording as recording_of_kernel
 from recon.station.recording.keyframe import (
     KEYFRAME_S,
     DueKeyframe,
+    MapFacts,
     MapMessages,
-    keyframe_bytes,
+    keyframe_pieces,
     maps_of,
     read_keyframe,
     restored,
@@ -77,6 +79,24 @@ def seek(replay: ReplayStation, at_s: float) -> ReplayView:
     return asyncio.run(replay.change(ReplayTransport(position_s=at_s)))
 
 
+def keyframe_bytes(due: DueKeyframe) -> bytes:
+    *_, data = keyframe_pieces(values_codec(), due)
+    return data
+
+
+def encoded(keyframe: bytes) -> dict[str, bytes]:
+    """The fields of a keyframe as this version encodes them, with those that it lacks."""
+    codec, hints = values_codec(), get_type_hints(Station)
+    found = read_keyframe(codec, keyframe)
+    seldom = {"settings", "airspace"} - found.parts.keys()
+    values = {
+        name: found.parts.get(name, getattr(Station(), name)) for name in hints.keys() - seldom
+    }
+    return {name: codec.encode(value, hints[name]) for name, value in values.items()} | {
+        "maps": codec.encode(found.maps, MapFacts | None)
+    }
+
+
 @pytest.mark.parametrize("name", FLIGHTS)
 def test_each_keyframe_is_the_station_of_its_step(name: str) -> None:
     """Compared with the flight run again, jobs included."""
@@ -90,7 +110,7 @@ def test_each_keyframe_is_the_station_of_its_step(name: str) -> None:
                 maps = read_keyframe(codec, item.data).maps
                 at_ns = None if maps is None else maps.at_ns
                 due = DueKeyframe(item.sequence, item.log_ns, again.station, at_ns)
-                assert keyframe_bytes(codec, due) == item.data
+                assert encoded(keyframe_bytes(due)) == encoded(item.data)
                 compared += 1
     assert compared >= again.found.lasted_s / KEYFRAME_S - 1
 
@@ -137,10 +157,9 @@ def _compare_pictures(service: ReplayService, recorded: Service) -> None:
 
 def test_wherever_one_comes_from_a_moment_is_the_same() -> None:
     playback, rng = played(flight("survey")), random.Random(5)
-    codec = values_codec()
 
     def state_at(at_ns: int) -> bytes:
-        return keyframe_bytes(codec, DueKeyframe(0, at_ns, playback.move(at_ns).station))
+        return keyframe_bytes(DueKeyframe(0, at_ns, playback.move(at_ns).station))
 
     span_ns = playback.ends_ns - playback.begins_ns
     moments = [playback.begins_ns + rng.randrange(span_ns) for _ in range(6)]

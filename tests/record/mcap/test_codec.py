@@ -3,9 +3,10 @@
 import contextlib
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, make_dataclass
 from enum import Enum
 from pathlib import Path
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -196,3 +197,26 @@ def test_a_digest_tells_values_apart() -> None:
     ]
     assert len({digest(value) for value in values}) == len(values)
     assert digest(picture()) == digest(picture())
+
+
+def _square(*later: tuple[str, type, object]) -> Any:
+    return make_dataclass("Square", [("side_m", float), *later], frozen=True)
+
+
+def test_a_type_that_gains_a_field_keeps_its_digests() -> None:
+    before = _square()
+    after = _square(
+        ("angle_deg", float, 0.0),
+        ("names", tuple[str, ...], ()),
+        ("inside", Circle, Circle(1.0)),
+        ("weights", npt.NDArray[np.float64], field(default_factory=lambda: np.zeros(2))),
+    )
+    old = digest(before(2.0))
+    assert digest(after(2.0)) == old
+    assert digest(after(2.0, np.float64(0.0), [], Circle(np.float64(1.0)))) == old
+    for changed in (-0.0, 0, 1.0):
+        assert digest(after(2.0, changed)) != old
+    assert digest(after(2.0, names=("a",))) != old
+    assert digest(after(2.0, inside=Circle(-1.0))) != old
+    assert digest(after(2.0, weights=np.ones(2))) != old
+    assert digest(after(2.0, 0.0, (), Circle(1.0), np.zeros(2, np.float32))) != old

@@ -108,12 +108,6 @@ class Keyframes:
         return (DueKeyframe(number, now_ns, after, self._maps_at_ns, changed),)
 
 
-def keyframe_bytes(codec: Codec, due: DueKeyframe) -> bytes:
-    """Return a keyframe as it is recorded."""
-    *_, data = keyframe_pieces(codec, due)
-    return data
-
-
 def keyframe_pieces(codec: Codec, due: DueKeyframe) -> Iterator[bytes]:
     """Encode a keyframe bit by bit: nothing is yielded but empty bytes until it is whole.
 
@@ -212,13 +206,16 @@ class StationKeyframe:
 
 
 def read_keyframe(codec: Codec, data: bytes) -> StationKeyframe:
-    """Return a recorded keyframe; raises `RecordError` for other bytes."""
+    """Return a recorded keyframe; raises `RecordError` for other bytes.
+
+    A field that it lacks came with a later version: it is as at the file's beginning.
+    """
     try:
         found = msgspec.msgpack.decode(data, type=dict[str, Any])
     except (msgspec.MsgspecError, ValueError, RecursionError) as problem:
         raise RecordError(f"a keyframe is damaged: {problem}") from problem
     parts, maps, hints = found.get("parts"), found.get("maps"), _hints()
-    if not isinstance(parts, dict) or not hints.keys() >= parts.keys() >= set(_ALWAYS):
+    if not parts or not isinstance(parts, dict) or not hints.keys() >= parts.keys():
         raise RecordError("a keyframe is damaged or of another version: other fields of a station")
     read = {name: codec.from_builtins(value, hints[name]) for name, value in parts.items()}
     return StationKeyframe(read, None if maps is None else codec.from_builtins(maps, MapFacts))

@@ -2,7 +2,7 @@
 
 Pixels stand in the topics of images; an event names its frame by number. The result of a job does
 not stand in the file: jobs are pure, so a replay runs them again; a digest of its input stands at
-its end. Orders are outputs: they are compared and never read back.
+its end. Orders are outputs: they are compared, and read for that only.
 """
 
 import platform
@@ -235,6 +235,24 @@ def output_builtins(codec: Codec, output: Output) -> dict[str, Any]:
             return {"close_link": codec.to_builtins(output, CloseLink)}
         case WithdrawMotion():
             return {"withdraw_motion": codec.to_builtins(output, WithdrawMotion)}
+
+
+_OUTPUTS = {"send": _Sent, "close_link": CloseLink, "withdraw_motion": WithdrawMotion}
+
+
+def output_with_defaults(codec: Codec, recorded: Any) -> Any:
+    """Return a recorded output as this version records it: with the fields that it lacks.
+
+    Raises `RecordError` for a damaged one.
+    """
+    if not isinstance(recorded, dict):
+        return recorded
+    return {
+        name: codec.to_builtins(codec.from_builtins(value, hint), hint)
+        if (hint := _OUTPUTS.get(name)) is not None
+        else value
+        for name, value in recorded.items()
+    }
 
 
 def _sent(approved: ApprovedCommand) -> _Sent:

@@ -44,6 +44,7 @@ from recon.station.recording.recorded_values import (
     FrameReport,
     audit_builtins,
     output_builtins,
+    output_with_defaults,
     values_codec,
 )
 from recon.station.state.station import Station
@@ -170,8 +171,16 @@ class Replay:
         found.steps = item.sequence
         outputs, entries = self._stepped(event, item.log_ns)
         now = _normal({"outputs": outputs, "audit": entries})
-        for path, was, is_now in differences("", {k: recorded[k] for k in now}, now):
+        then = {"outputs": self._outputs_of(recorded), "audit": recorded["audit"]}
+        for path, was, is_now in differences("", then, now):
             self._note(path, was, is_now, type(event).__name__)
+
+    def _outputs_of(self, recorded: dict[str, Any]) -> Any:
+        """Return recorded outputs, a field that they lack at its default."""
+        outputs = recorded["outputs"]
+        if not isinstance(outputs, list):
+            return outputs
+        return _normal([output_with_defaults(self._codec, each) for each in outputs])
 
     def _note(self, path: str, recorded: Any, now: Any, event: str) -> None:
         found = self.found
