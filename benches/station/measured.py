@@ -120,7 +120,7 @@ async def measure_station(load: Load) -> Outcome:
         while received.core < load.apps * load.seconds * 5 and not sending.done():
             await asyncio.sleep(0.01)
     ordered_at_s = time.monotonic()
-    results = service.all_stop(Person("bench", Role.OPERATOR)).results
+    results = service.orders.all_stop(Person("bench", Role.OPERATOR)).results
     sent = await sending
     cpu_share = (time.process_time() - cpu_s) / (time.monotonic() - wall_s)
     ran_ns, waited_ns = (b - a for a, b in zip(scheduled, ran_and_waited_ns(), strict=True))

@@ -21,7 +21,7 @@ class SiteEditor:
     client: Client = field(init=False)
 
     def __post_init__(self) -> None:
-        self.station.service.edit(self.folder)
+        self.station.edit(self.folder)
         self.client = Client(application(self.station))
 
     def read(self) -> dict[str, Any]:

@@ -125,8 +125,8 @@ class TestOrders:
         }
         client.post("/api/orders", json={"serials": ["B"], "order": stick})
         client.post("/api/orders", json=HOVER)
-        (_, flown, takeoff), (_, pushed, _), (_, held, _) = station.asked
-        assert takeoff is True
+        assert [order.takeoff for order in station.asked] == [True, False, False]
+        flown, pushed, held = (order.body for order in station.asked)
         assert isinstance(flown, FlyMission)
         assert flown.mission.land_at_end
         assert flown.mission.waypoints[0].loiter_s is None
@@ -368,9 +368,9 @@ class TestConsole:
 
 class TestPictures:
     def test_a_raw_frame_comes_as_jpeg(self, client: Client, station: FakeStation) -> None:
-        station.frames["A/ü <b>"] = rgb_frame("A")
+        station.put_frame("A/ü <b>", rgb_frame("A"))
         assert client.get("/api/vehicle/frame.jpg?serial=B").status_code == 404
-        station.frames["A"] = rgb_frame("A")
+        station.put_frame("A", rgb_frame("A"))
         response = client.get("/api/vehicle/frame.jpg?serial=A")
         assert response.headers["content-type"] == "image/jpeg"
         assert response.headers["x-frame-id"] == "7"
@@ -382,7 +382,7 @@ class TestPictures:
 
     def test_an_apps_own_jpeg_is_passed_on(self, client: Client, station: FakeStation) -> None:
         """Even if it is something else: the browser must not guess."""
-        station.frames["A"] = Frame(1, "A", 0, 0, 0.25, jpeg=b"<script>")
+        station.put_frame("A", Frame(1, "A", 0, 0, 0.25, jpeg=b"<script>"))
         response = client.get("/api/vehicle/frame.jpg?serial=A")
         assert response.content == b"<script>"
         assert response.headers["content-type"] == "image/jpeg"

@@ -27,12 +27,12 @@ HOVER = {"serials": ["A", "Z"], "order": {"kind": "hover"}}
 @pytest.fixture
 def station(tmp_path: Path) -> FakeStation:
     made = FakeStation()
-    made.service.audit_log = AuditLog(tmp_path)
+    made.audit_log = AuditLog(tmp_path)
     return made
 
 
 def put(station: FakeStation, count: int) -> None:
-    log = station.service.audit_log
+    log = station.audit_log
     assert log is not None
     for number in range(count):
         log.put(AuditEntry("test", f"entry {number}", details={"x": float("nan")}), number)
@@ -119,7 +119,7 @@ def timeline(client: Client, query: str = "") -> TimelineView:
 
 def test_the_timeline_keeps_orders_while_positions_come_and_go(tmp_path: Path) -> None:
     station = FakeStation()
-    station.service.audit_log = log = AuditLog(tmp_path, quiet_kinds=frozenset({POSITION_KIND}))
+    station.audit_log = log = AuditLog(tmp_path, quiet_kinds=frozenset({POSITION_KIND}))
     for number in range(3):
         log.put(AuditEntry("order.sent", f"hover {number}", "anna", f"SIM-{number}", "Drone"), 0)
         log.put(AuditEntry("alarm.raised", f"low battery {number}", serial=f"SIM-{number}"), 0)

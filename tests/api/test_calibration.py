@@ -35,7 +35,7 @@ class Marker:
     frame_id: int = 0
 
     def __post_init__(self) -> None:
-        self.station.service.edit(self.folder)
+        self.station.edit(self.folder)
         self.client = Client(application(self.station))
 
     def freeze(self, scale: int = 1) -> dict[str, Any]:
@@ -46,7 +46,6 @@ class Marker:
         frame = Frame(7, SERIAL, driver.now_ns(), driver.now_ns(), 0.0, jpeg=jpeg.tobytes())
         imaging = driver.station.imaging
         imager = replace(imaging.imagers[SERIAL], samples=(ImagerSample(driver.now_ns(), TRUTH),))
-        self.station.frames[SERIAL] = frame
         driver.station = replace(
             driver.station,
             frames={SERIAL: frame},
@@ -65,7 +64,7 @@ class Marker:
 
     def points(self, places_m: list[tuple[float, float]], scale: int = 1) -> list[dict[str, Any]]:
         """Return the points as the true camera sees them, on a frame of that scale."""
-        site = self.station.service.site
+        site = self.station.site
         imager, frame = site.imagers[SERIAL], site.frame
         assert frame is not None
         origin_m = frame.origin.ellipsoid_height_m
@@ -232,7 +231,8 @@ def test_without_a_frame_or_telemetry_nothing_is_frozen(marker: Marker) -> None:
     assert marker.fit([])["reason"] == "Freeze a frame of the imaging drone first"
     marker.freeze()
     marker.station.now_ns += 10_000_000_000
-    frame = replace(marker.station.frames[SERIAL], captured_at_ns=marker.station.now_ns)
-    driver = marker.station.driver
-    driver.station = replace(driver.station, frames={SERIAL: frame})
+    frame = replace(
+        marker.station.driver.station.frames[SERIAL], captured_at_ns=marker.station.now_ns
+    )
+    marker.station.put_frame(SERIAL, frame)
     assert "No telemetry" in marker.post("/freeze", {"serial": SERIAL})["reason"]

@@ -14,9 +14,9 @@ from tests.api.client import Client
 from tests.api.fake_station import FakeStation
 from tests.product.made_flight import flight, write_record
 
-from recon.api.app import create_app
 from recon.api.flight_routes import FlightBusyError, FlightFileError
 from recon.api.security import Access, AccessCheck
+from recon.station.api_views.app import create_app
 from recon.station.host import flight_archive
 from recon.station.host.flight_archive import RecordedFlights
 

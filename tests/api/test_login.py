@@ -20,11 +20,11 @@ from tests.persons import TOKEN, user
 
 from recon.api import login as login_module
 from recon.api.addresses import SharedAddress
-from recon.api.app import create_app
 from recon.api.login import FAILURES_OVERALL, FAILURES_PER_ADDRESS, WINDOW_S, Login, RefusedRequest
 from recon.api.security import LOGIN_NEEDED, Access, AccessCheck
 from recon.model.event import LoginAccepted, LoginRefused
 from recon.model.person import Person, Role
+from recon.station.api_views.app import create_app
 
 
 def read_code(svg: str) -> str:
@@ -177,7 +177,7 @@ class TestRequests:
         nothing = client.get("/api/apps/qr.svg")
         assert nothing.status_code == 404
         assert "--link-host" in nothing.json()["error"]
-        station.service.app_url = "recon://192.0.2.5:3001"
+        station.app_url = "recon://192.0.2.5:3001"
         assert client.get("/api/state").json()["station"]["app_url"] == "recon://192.0.2.5:3001"
         code = client.get("/api/apps/qr.svg")
         assert code.headers["content-type"] == "image/svg+xml"

@@ -12,13 +12,13 @@ from tests.api.client import Client
 from tests.api.fake_station import FakeStation
 from tests.basemap.made_maps import FIELD, colour_in, colour_of, keys_over, write_mbtiles
 
-from recon.api.app import create_app
 from recon.api.map_routes import MapFolder, MapsBusyError
 from recon.api.security import Access, AccessCheck
 from recon.basemap.map_reader import MapReader
 from recon.model.airspace import FlightLimits
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.site import Site, demo_site_folder
+from recon.station.api_views.app import create_app
 from recon.station.host import base_maps
 from recon.station.host.base_maps import NO_FOLDER, SiteMaps, maps_of
 

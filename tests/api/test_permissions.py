@@ -10,10 +10,10 @@ from fastapi.routing import APIRoute, APIWebSocketRoute
 from tests.api.client import Client
 from tests.api.fake_station import FakeStation, application
 
-from recon.api.app import create_app
 from recon.api.permissions import LEAST_ROLE, STREAM
 from recon.api.security import LOCAL_PERSON, Access, AccessCheck
 from recon.model.person import Role
+from recon.station.api_views.app import create_app
 
 HOVER = {"serials": ["A"], "order": {"kind": "hover"}}
 NUDGE = {

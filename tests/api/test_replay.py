@@ -12,10 +12,10 @@ from tests.api.serving import serving
 from tests.patient_loop import run_patiently
 from tests.replay.flights import FOLDER
 
-from recon.api.app import create_app
 from recon.api.permissions import LEAST_ROLE, STREAM
 from recon.api.replay_routes import NO_ORDERS, NO_REPLAY, TRANSPORT
 from recon.api.security import Access, AccessCheck
+from recon.station.api_views.app import create_app
 from recon.station.host.replay_run import ReplayStation, replay_service
 from recon.station.recording.playback import Playback
 

@@ -241,7 +241,7 @@ def test_without_a_folder_nothing_is_saved() -> None:
 
 def test_fences_are_an_administrators_and_regions_an_operators(editor: Editor) -> None:
     anna = Person("anna", Role.OPERATOR)
-    folder = editor.station.service.site_folder()
+    folder = editor.station.drawing
 
     def saved(*features: dict[str, Any]) -> str | None:
         body = {"revision": editor.read()["revision"], "features": list(features)}
@@ -289,7 +289,7 @@ def test_a_larger_boundary_brings_the_ground_around_it(editor: Editor) -> None:
 
 
 def test_one_file_is_imported_at_a_time(editor: Editor) -> None:
-    folder = editor.station.service.site_folder()
+    folder = editor.station.drawing
 
     async def both() -> list[str | None]:
         asked = (folder.import_features("a.zip", b"PK\x03\x04") for _ in range(2))

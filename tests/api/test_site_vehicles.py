@@ -181,7 +181,7 @@ def test_the_table_is_an_administrators(editor: Editor) -> None:
     body = {"revision": table["revision"], "vehicles": rows}
     asked = SiteVehiclesRequest.model_validate(body)
     anna = Person("anna", Role.OPERATOR)
-    vehicles = editor.station.service.site_vehicles()
+    vehicles = editor.station.site_vehicles
     answer = asyncio.run(vehicles.save(asked, anna, is_check=False))
     assert answer.reason == (
         "anna has the role operator; boundary, zones, pads and vehicles need admin"

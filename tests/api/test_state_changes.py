@@ -51,7 +51,7 @@ def test_any_track_is_restored(
 
 def test_changes_give_the_states_and_are_shorter() -> None:
     station = FakeStation()
-    first = station.service.state()
+    first = station.state()
     known = json.loads(first.model_dump_json())
     base = first
     for second in range(1, 6):

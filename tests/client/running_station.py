@@ -9,7 +9,6 @@ from tests.api.serving import serving
 from tests.persons import user
 from tests.ready import ready_profile, ready_site
 
-from recon.api.app import create_app
 from recon.api.login import Login
 from recon.api.security import Access, AccessCheck
 from recon.geo import point_from_enu
@@ -20,6 +19,7 @@ from recon.sim.app.faults import parse_fault
 from recon.sim.fleet import Airborne, SimulationConfig
 from recon.sim.run import run_fleet
 from recon.site import Site
+from recon.station.api_views.app import create_app
 from recon.station.api_views.service import Service
 from recon.station.kernel.build import first_state
 from recon.station.kernel.driver import AsyncioDriver, station_clock

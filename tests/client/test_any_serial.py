@@ -12,13 +12,13 @@ from tests.link.approved import core, extended
 from tests.patient_loop import run_patiently
 from tests.ready import ready_site
 
-from recon.api.app import create_app
 from recon.api.security import Access, AccessCheck
 from recon.client import RequestRefusedError, Station
 from recon.link.server import LinkServer
 from recon.link.settings import LinkSettings
 from recon.model.geo import GeoPoint
 from recon.site import Site
+from recon.station.api_views.app import create_app
 from recon.station.api_views.service import Service
 from recon.station.kernel.build import first_state
 from recon.station.kernel.driver import AsyncioDriver, station_clock

@@ -25,7 +25,7 @@ def fake(tmp_path: Path) -> FakeStation:
     """A station that edits a new site's folder."""
     make_site(tmp_path, "field", GeoPoint(41.9012, -93.6034, 275.0), 1)
     station = FakeStation(load_site(tmp_path))
-    station.service.edit(tmp_path)
+    station.edit(tmp_path)
     return station
 
 

@@ -94,7 +94,7 @@ def test_each_flying_link_gets_one_hover_for_each_all_stop(tmp_path: Path) -> No
 
             await until(are_known)
             for stop in range(1, STOPS + 1):
-                results = here.service.all_stop(ANN).results
+                results = here.service.orders.all_stop(ANN).results
                 assert sum(result.accepted for result in results) == expected
                 assert {r.rule for r in results if not r.accepted} == {"flying"}
                 await until(lambda stop=stop: all(len(a.stops) >= stop for a in here.flying))

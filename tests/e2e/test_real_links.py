@@ -19,6 +19,7 @@ from recon.model.mission import Mission, Waypoint
 from recon.model.vehicle import Staleness, VehicleState
 from recon.sim.proxy import Damage, ProxyConfig, run_proxy
 from recon.site import demo_site_folder, load_site
+from recon.station.api_views.order_service import order_of
 from recon.station.api_views.service import Service
 from recon.station.kernel.build import first_state
 from recon.station.kernel.driver import AsyncioDriver, station_clock
@@ -38,7 +39,7 @@ class Field:
         return self.driver.station.fleet.vehicles.get(serial)
 
     def order(self, serial: str, body: Body) -> int:
-        (result,) = self.service.order([serial], body, takeoff=False, by=ANN).results
+        (result,) = self.service.orders.give([serial], order_of(body, ANN)).results
         assert result.accepted, result
         return result.command_id
 

@@ -29,6 +29,8 @@ from recon.record.mcap.foxglove import SHADE_TOPIC, SUN_TOPIC
 from recon.record.mcap.mcap_file import KEYFRAMES_TOPIC, STEPS_TOPIC, McapFile
 from recon.record.mcap.mcap_read import McapReading, RecordMessage
 from recon.site import Site
+from recon.station.api_views.audit_service import audit_page, timeline
+from recon.station.api_views.picture_routes import newest_shade
 from recon.station.api_views.service import Service
 from recon.station.host.replay_run import ReplayService, ReplayStation, replay_service
 from recon.station.kernel.driver import AsyncioDriver
@@ -141,13 +143,13 @@ def _compare_pictures(service: ReplayService, recorded: Service) -> None:
         laid = service.ground_image()
         assert laid is not None
         assert ground_png(laid) == ground_png(ground)
-    shade, sun = recorded.shade(), recorded.forecast()
-    if shade is not None and sun is not None:
-        replayed, forecast = service.shade(), service.forecast()
+    line, again = recorded.driver.station.shade, service.driver.station.shade
+    shade, replayed = newest_shade(line), newest_shade(again)
+    if shade is not None and line.sun is not None:
         assert replayed is not None
-        assert forecast is not None
+        assert again.sun is not None
         assert shade_png(*replayed[1:]) == shade_png(*shade[1:])
-        assert forecast_png(forecast[1], 60.0) == forecast_png(sun[1], 60.0)
+        assert forecast_png(again.sun, 60.0) == forecast_png(line.sun, 60.0)
     for serial in recorded.driver.station.frames:
         frame, was = service.frame(serial), recorded.frame(serial)
         assert frame is not None
@@ -215,7 +217,7 @@ def test_a_replay_takes_no_event_and_ends_paused() -> None:
     seek(replay, 5.0)
     before = replay.station
     replay.handle(AllStopped("anna"))
-    service.all_stop(LOCAL_PERSON)
+    service.orders.all_stop(LOCAL_PERSON)
     assert replay.station is before
     view = seek(replay, 1e6)
     assert view.position_s == view.duration_s
@@ -240,21 +242,24 @@ def test_it_plays_by_the_computers_clock() -> None:
 
 
 def test_the_timeline_goes_up_to_the_moment_and_marks_over_all() -> None:
-    replay, service = opened(flight("survey"))
+    replay, _ = opened(flight("survey"))
     replay.log.read()
     marks = replay.marks()
     assert marks.read_share == 1.0
     assert {mark.kind for mark in marks.marks} == {"alarm", "order"}
     middle_s = marks.marks[1].at_s
     seek(replay, middle_s)
-    lines = service.timeline(None, None, None, 100).entries
+    lines = timeline(replay.log, None, None, None, 100).entries
     assert lines
-    assert lines[0].n == service.audit(0, 500).last_n
-    last_n = service.audit(0, 1).last_n
+    assert lines[0].n == audit_page(replay.log, 0, 500).last_n
+    last_n = audit_page(replay.log, 0, 1).last_n
     seek(replay, 1e6)
-    assert service.audit(0, 1).last_n > last_n
-    assert [each.n for each in service.audit(last_n, 2).entries] == [last_n + 1, last_n + 2]
-    (line,) = service.timeline("SIM-1", "orders", None, 1).entries
+    assert audit_page(replay.log, 0, 1).last_n > last_n
+    assert [each.n for each in audit_page(replay.log, last_n, 2).entries] == [
+        last_n + 1,
+        last_n + 2,
+    ]
+    (line,) = timeline(replay.log, "SIM-1", "orders", None, 1).entries
     assert line.serial == "SIM-1"
     assert line.kind.startswith(("order.", "authority.", "lease."))
 

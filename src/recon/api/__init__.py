@@ -1,6 +1,5 @@
-"""HTTP and WebSocket API.
+"""HTTP and WebSocket: schemas, login and roles, streams, the console's files.
 
-Routes validate requests against `schema/`, call the `StationPort` and return its views; the web
-console and the Python client use nothing else. Access is checked before any route (`security.py`).
-Nothing here knows the station: `station/api_views/service.py` implements the port.
+Access is checked before any route (`security.py`). Routes that read or change the station are in
+`station/api_views/`; the web console and the Python client use nothing else.
 """

@@ -1,12 +1,12 @@
 """Routes about access: the person of a request, and the addresses for other devices as QR codes."""
 
 import io
+from collections.abc import Callable
 
 from fastapi import FastAPI, Request, Response
 
 from recon.api import schema
 from recon.api.addresses import SharedAddress
-from recon.api.port import StationPort
 from recon.api.responses import PROBLEMS, found
 from recon.api.security import person_of
 from recon.model.person import THIS_COMPUTER
@@ -14,8 +14,10 @@ from recon.model.person import THIS_COMPUTER
 SVG: dict[int | str, dict[str, object]] = {200: {"content": {"image/svg+xml": {}}}}
 
 
-def add_access_routes(app: FastAPI, port: StationPort, shared: SharedAddress | None) -> None:
-    """Add all routes of this module."""
+def add_access_routes(
+    app: FastAPI, app_url: Callable[[], str | None], shared: SharedAddress | None
+) -> None:
+    """Add all routes of this module; `app_url` is the station's first address for apps."""
 
     @app.get("/api/access")
     async def access(request: Request) -> schema.AccessView:
@@ -38,8 +40,9 @@ def add_access_routes(app: FastAPI, port: StationPort, shared: SharedAddress | N
     @app.get("/api/apps/qr.svg", response_class=Response, responses=PROBLEMS | SVG)
     async def app_code() -> Response:
         """The station's first address for companion apps, as a QR code for the phone."""
-        url = port.state().station.app_url
-        return _qr_code(found(url, "Apps on other devices reach nothing: start with --link-host"))
+        return _qr_code(
+            found(app_url(), "Apps on other devices reach nothing: start with --link-host")
+        )
 
 
 def _qr_code(text: str) -> Response:

@@ -1,33 +1,18 @@
-"""The HTTP application: routes, the stream, the console's files."""
+"""What is common to the HTTP applications: errors, headers, roles, the console's files."""
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
-from fastapi import Depends, FastAPI, Query, Request, WebSocket
+from fastapi import Depends, FastAPI, Request, WebSocket
 from fastapi.exceptions import RequestValidationError, WebSocketRequestValidationError
 from fastapi.responses import HTMLResponse, JSONResponse
 from starlette.datastructures import MutableHeaders
 from starlette.exceptions import HTTPException as AnyHTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from recon.api import schema
-from recon.api.access_routes import add_access_routes
-from recon.api.addresses import SharedAddress
 from recon.api.console_files import ConsoleFiles
-from recon.api.flight_routes import FlightArchive, NoFlights, add_flight_routes
-from recon.api.map_routes import MapFolder, NoMaps, add_map_routes
-from recon.api.order_routes import add_order_routes
-from recon.api.pairing_routes import add_pairing_routes
 from recon.api.permissions import require_listed_role
-from recon.api.picture_routes import add_picture_routes
-from recon.api.port import StationPort, TimelineSubject
-from recon.api.replay_routes import Replaying, add_replay_routes
-from recon.api.responses import PROBLEMS, found
 from recon.api.security import POLICY_VIOLATION, refuse_stream
-from recon.api.site_routes import add_site_routes
-from recon.api.streams import MAX_ENTRIES, AuditStream, StateStream
-from recon.api.survey_routes import add_survey_routes
-from recon.api.zone_routes import add_zone_routes
 
 CONSOLE_MISSING = """<!doctype html><title>Recon</title><p>The console is not built.
 Run <code>make web</code> in the project's folder, then start the station again.
@@ -45,113 +30,20 @@ SECURITY_HEADERS = {
 }
 
 
-def create_app(
-    port: StationPort,
-    console: Path | None,
-    version: str,
-    shared: SharedAddress | None = None,
-    flights: FlightArchive | None = None,
-    replay: Replaying | None = None,
-    maps: MapFolder | None = None,
-) -> FastAPI:
-    """Return the application around a station, to be put behind an `AccessCheck`.
-
-    `console` is the folder with the built console; without one a page describes how to build it.
-    `shared` is the address for other computers; `flights` are the station's records;
-    `maps` its base maps; with a `replay` everything is refused that orders or changes anything.
-    """
-    app = FastAPI(
-        title="Recon",
+def new_app(title: str, version: str, openapi_url: str | None = "/openapi.json") -> FastAPI:
+    """Return an application without routes that checks the role of each request."""
+    return FastAPI(
+        title=title,
         version=version,
+        openapi_url=openapi_url,
         docs_url=None,
         redoc_url=None,
         dependencies=[Depends(require_listed_role)],
     )
-    add_access_routes(app, port, shared)
-    _add_state_routes(app, port)
-    _add_audit_and_streams(app, port)
-    add_order_routes(app, port)
-    add_pairing_routes(app, port)
-    add_picture_routes(app, port)
-    add_site_routes(app, port)
-    add_survey_routes(app, port)
-    add_flight_routes(app, flights or NoFlights())
-    add_map_routes(app, maps or NoMaps())
-    add_zone_routes(app, port)
-    add_replay_routes(app, replay)
-    _add_console(app, console)
-    add_errors_and_headers(app)
-    return app
 
 
-def _add_state_routes(app: FastAPI, port: StationPort) -> None:
-    @app.get("/api/state")
-    async def state() -> schema.StationState:
-        """Everything a console shows, as of now; the stream sends the same."""
-        return port.state()
-
-    @app.get("/api/vehicles")
-    async def vehicles() -> list[schema.VehicleView]:
-        """All vehicles with every value's age."""
-        return port.state().vehicles
-
-    @app.get("/api/vehicle", responses=PROBLEMS)
-    async def vehicle(serial: str) -> schema.VehicleView:
-        """One vehicle."""
-        known = next((v for v in port.state().vehicles if v.serial == serial), None)
-        return found(known, f"No vehicle with serial {serial!r}")
-
-    @app.get("/api/commands")
-    async def commands() -> list[schema.CommandView]:
-        """The latest commands with their history, the newest first."""
-        return port.state().commands
-
-    @app.get("/api/commands/{command_id}", responses=PROBLEMS)
-    async def command(command_id: int) -> schema.CommandView:
-        """One command with its history."""
-        known = next((c for c in port.state().commands if c.id == command_id), None)
-        return found(known, f"Command {command_id} is not among the latest")
-
-
-def _add_audit_and_streams(app: FastAPI, port: StationPort) -> None:
-    stream, changes = StateStream(port), AuditStream(port)
-
-    @app.get("/api/audit")
-    async def audit(
-        after: Annotated[int, Query(ge=0)] = 0,
-        at_most: Annotated[int, Query(ge=1, le=MAX_ENTRIES)] = MAX_ENTRIES,
-    ) -> schema.AuditPage:
-        """Audit entries of this run after a number, the oldest first."""
-        return port.audit(after, at_most)
-
-    @app.get("/api/timeline")
-    async def timeline(
-        serial: Annotated[str | None, Query(max_length=64)] = None,
-        about: TimelineSubject | None = None,
-        before: Annotated[int | None, Query(ge=1)] = None,
-        at_most: Annotated[int, Query(ge=1, le=MAX_ENTRIES)] = MAX_ENTRIES,
-    ) -> schema.TimelineView:
-        """What happened in this run, the newest first: of all vehicles or one, before a number.
-
-        Positions and details are left out; the audit has them.
-        """
-        return port.timeline(serial, about, before, at_most)
-
-    @app.websocket("/api/audit/stream")
-    async def audit_stream(socket: WebSocket, after: Annotated[int, Query(ge=0)] = 0) -> None:
-        await changes.serve(socket, after)
-
-    @app.websocket("/api/stream")
-    async def state_stream(socket: WebSocket) -> None:
-        await stream.serve(socket)
-
-    @app.websocket("/{path:path}")
-    async def no_stream(socket: WebSocket, path: str) -> None:
-        sentence = "No such stream; available: /api/stream, /api/audit/stream"
-        await refuse_stream(socket, POLICY_VIOLATION, sentence)
-
-
-def _add_console(app: FastAPI, console: Path | None) -> None:
+def add_console(app: FastAPI, console: Path | None) -> None:
+    """Add the pages of the built console; without them, one that describes how to build it."""
     if console is not None and (console / "index.html").is_file():
         app.mount("/", ConsoleFiles(directory=console, html=True), name="console")
         return

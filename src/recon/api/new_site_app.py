@@ -6,14 +6,13 @@ It answers at the console's address before there is a station, and ends when the
 from pathlib import Path
 from typing import Protocol
 
-from fastapi import Depends, FastAPI
+from fastapi import FastAPI
 from fastapi.responses import RedirectResponse
 
 from recon.api import schema
-from recon.api.app import add_errors_and_headers
+from recon.api.app import add_errors_and_headers, new_app
 from recon.api.console_files import ConsoleFiles
-from recon.api.permissions import require_listed_role
-from recon.api.site_routes import Importing, add_import
+from recon.api.import_route import Importing, add_import
 
 PAGE = "new-site.html"
 
@@ -32,14 +31,7 @@ class NewSitePort(Importing, Protocol):
 
 def create_new_site_app(port: NewSitePort, console: Path, version: str) -> FastAPI:
     """Return the application, to be put behind an `AccessCheck`."""
-    app = FastAPI(
-        title="Recon: a new site",
-        version=version,
-        openapi_url=None,
-        docs_url=None,
-        redoc_url=None,
-        dependencies=[Depends(require_listed_role)],
-    )
+    app = new_app("Recon: a new site", version, openapi_url=None)
 
     @app.get("/api/site/new")
     async def about() -> schema.NewSiteView:

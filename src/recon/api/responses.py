@@ -19,11 +19,6 @@ def found(value: _T | None, sentence: str) -> _T:
     return value
 
 
-def given_at_ns(unix_ms: int | None) -> int | None:
-    """Return the time at which a request was given, in nanoseconds; None if not stated."""
-    return None if unix_ms is None else unix_ms * 1_000_000
-
-
 def png(data: bytes, number: int) -> Response:
     """Return a PNG response with the number that the state shows for the picture."""
     return Response(data, media_type="image/png", headers={"X-Frame-Id": str(number)})

@@ -25,8 +25,7 @@ from contextlib import asynccontextmanager
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from recon.api.port import StationPort
-from recon.api.schema import StationState
+from recon.api.schema import AuditPage, StationState
 from recon.api.security import (
     POLICY_VIOLATION,
     TRY_AGAIN_LATER,
@@ -35,6 +34,13 @@ from recon.api.security import (
     refuse_stream,
 )
 from recon.api.state_changes import change_text
+from recon.model.event import (
+    Event,
+    OwnerConnected,
+    OwnerDisconnected,
+    PersonConnected,
+    PersonDisconnected,
+)
 from recon.model.person import Role
 
 INTERVAL_S = 0.1
@@ -55,8 +61,8 @@ _LETTERS = frozenset(string.ascii_letters + string.digits + "-_")
 class Owners:
     """The names of the open owner streams."""
 
-    def __init__(self, port: StationPort) -> None:
-        self._port = port
+    def __init__(self, handle: Callable[[Event], None]) -> None:
+        self._handle = handle
         self._names: set[str] = set()
 
     def fault(self, name: str | None) -> str | None:
@@ -77,26 +83,28 @@ class Owners:
             yield
             return
         self._names.add(name)
-        self._port.owner_connected(name)
+        self._handle(OwnerConnected(name))
         try:
             yield
         finally:
             self._names.discard(name)
-            self._port.owner_disconnected(name)
+            self._handle(OwnerDisconnected(name))
 
 
 class StateStream:
     """Serves all readers; those of one interval share one encoded state."""
 
-    def __init__(self, port: StationPort, clock_s: Callable[[], float] | None = None) -> None:
-        self._port = port
-        self._clock_s = clock_s or time.monotonic
+    def __init__(
+        self, make_state: Callable[[], StationState], handle: Callable[[Event], None]
+    ) -> None:
+        self._make_state = make_state
+        self._handle = handle
         self._state: StationState | None = None
         self._text: str | None = None
         self._change: tuple[StationState, str] | None = None
         self._made_at_s = float("-inf")
         self._readers = 0
-        self._owners = Owners(port)
+        self._owners = Owners(handle)
 
     async def serve(self, socket: WebSocket) -> None:
         """Send states to one reader until it disconnects."""
@@ -138,7 +146,7 @@ class StateStream:
 
     async def _listen(self, socket: WebSocket, owner: str | None) -> None:
         person = person_of(socket)
-        self._port.person_connected(person)
+        self._handle(PersonConnected(person.name))
         try:
             if owner is None:
                 await _until_gone(socket)
@@ -148,12 +156,12 @@ class StateStream:
             async with self._owners.open(counted):
                 await _until_silent(socket)
         finally:
-            self._port.person_disconnected(person)
+            self._handle(PersonDisconnected(person.name))
 
     def _newest(self) -> StationState:
-        if self._state is None or self._clock_s() - self._made_at_s >= INTERVAL_S / 2:
-            self._state, self._text, self._change = self._port.state(), None, None
-            self._made_at_s = self._clock_s()
+        if self._state is None or time.monotonic() - self._made_at_s >= INTERVAL_S / 2:
+            self._state, self._text, self._change = self._make_state(), None, None
+            self._made_at_s = time.monotonic()
         return self._state
 
     def _whole(self, state: StationState) -> str:
@@ -172,8 +180,9 @@ class StateStream:
 class AuditStream:
     """Sends every audit entry to every reader, in order, from a number on."""
 
-    def __init__(self, port: StationPort) -> None:
-        self._port = port
+    def __init__(self, page_after: Callable[[int, int], AuditPage]) -> None:
+        """`page_after` returns at most so many entries after a number."""
+        self._page_after = page_after
         self._readers = 0
 
     async def serve(self, socket: WebSocket, after: int) -> None:
@@ -195,7 +204,7 @@ class AuditStream:
         gone = asyncio.ensure_future(_until_gone(socket))
         try:
             while not gone.done():
-                page = self._port.audit(after, MAX_ENTRIES)
+                page = self._page_after(after, MAX_ENTRIES)
                 if page.entries:
                     await socket.send_text(page.model_dump_json())
                     after = page.entries[-1].n

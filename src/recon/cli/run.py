@@ -8,7 +8,6 @@ from typing import Annotated, Any
 import typer
 
 import recon
-from recon.api.app import create_app
 from recon.cli.foreground import print_now, run_in_loop
 from recon.cli.qr import qr_lines
 from recon.cli.site import opened_site
@@ -18,6 +17,7 @@ from recon.record.audit.audit import shown
 from recon.record.files.users_file import state_folder
 from recon.site import Site, default_site, own_folder, site_report
 from recon.site.app_list import APPS_FILE, read_app_list
+from recon.station.api_views.app import create_app
 from recon.station.api_views.service import Service
 from recon.station.audit.start import AuditPlace
 from recon.station.host.run import run

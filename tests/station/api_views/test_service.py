@@ -3,20 +3,25 @@
 import json
 from dataclasses import replace
 
+import httpx
 import pytest
+from tests.api.client import Client
 from tests.link.approved import core, extended
 from tests.persons import ANN, BOB
 from tests.ready import ready_profile, ready_site
 from tests.safety.cases import mission, waypoint
 
 from recon import wire
-from recon.api.schema import StationState
-from recon.model.command import Hover, LandNow
+from recon.api.schema import ActionResponse, OrderResult, StationState
+from recon.api.security import Access, AccessCheck
+from recon.model.command import Body, Hover, LandNow
 from recon.model.errors import ReconError
 from recon.model.event import LinkClosed, LinkOpened, PacketReceived
 from recon.model.geo import GeoPoint
 from recon.model.units import NS_PER_S
 from recon.site import Site, demo_site_folder, load_site
+from recon.station.api_views.app import create_app
+from recon.station.api_views.order_service import order_of
 from recon.station.api_views.service import Service
 from recon.station.imaging.frames import LAY_FRAME
 from recon.station.kernel.build import first_state
@@ -45,6 +50,21 @@ class Bench:
     def state(self) -> StationState:
         return self.service.state()
 
+    def order(
+        self, serials: list[str], body: Body, given_at_ns: int | None = None
+    ) -> list[OrderResult]:
+        return self.service.orders.give(
+            serials, order_of(body, ANN, given_at_ns=given_at_ns)
+        ).results
+
+    def post(self, path: str, body: object = None) -> httpx.Response:
+        app = create_app(self.service, None, "test")
+        return Client(AccessCheck(app, Access(local=BOB))).post(path, json=body)
+
+    def is_released(self, serials: list[str] | None) -> bool:
+        answer = self.post("/api/all-stop/release", {"serials": serials})
+        return ActionResponse.model_validate_json(answer.text).accepted
+
 
 @pytest.fixture
 def bench() -> Bench:
@@ -58,7 +78,7 @@ class TestAllStop:
         bench.open(3, core())
         bench.open(4, core(is_flying=0))
         bench.open(5, extended(b"00000"), core())
-        results = bench.service.all_stop(ANN).results
+        results = bench.service.orders.all_stop(ANN).results
         accepted = {(r.serial, r.link_id): r.accepted for r in results}
         assert accepted == {("A", None): True, ("B", None): False, (None, 3): True, (None, 5): True}
         refused = next(r for r in results if r.serial == "B")
@@ -67,7 +87,7 @@ class TestAllStop:
     def test_no_vehicle_is_ordered_twice(self, bench: Bench) -> None:
         bench.open(1, extended(b"A"), core())
         bench.open(2, extended(b"A"), core())
-        results = bench.service.all_stop(ANN).results
+        results = bench.service.orders.all_stop(ANN).results
         assert [r.serial for r in results] == ["A"]
 
     def test_a_vehicle_that_flew_when_its_link_closed_is_stopped_when_it_is_back(
@@ -75,32 +95,32 @@ class TestAllStop:
     ) -> None:
         bench.open(1, extended(b"A"), core())
         bench.driver.handle(LinkClosed(1, "gone"))
-        (result,) = bench.service.all_stop(ANN).results
+        (result,) = bench.service.orders.all_stop(ANN).results
         assert result.accepted
         assert "waits for telemetry" in (result.reason or "")
 
     def test_it_stays_in_force_until_a_person_releases_it(self, bench: Bench) -> None:
         bench.open(1, extended(b"A"), core())
-        bench.service.all_stop(ANN)
+        bench.service.orders.all_stop(ANN)
         bench.now_ns += 3 * NS_PER_S
         bench.open(2, extended(b"B"), core())
         latch = bench.state().stop_latch
         assert latch is not None
         assert (latch.by, latch.age_s, latch.released) == ("Ann", 3.0, [])
         assert [v.is_stopped for v in bench.state().vehicles] == [True, True]
-        (refused,) = bench.service.order(["B"], mission(), takeoff=False, by=ANN).results
+        (refused,) = bench.order(["B"], mission())
         assert refused.rule == "stop_latch"
-        assert bench.service.release_stop(["A"], BOB).accepted
+        assert bench.is_released(["A"])
         assert [v.is_stopped for v in bench.state().vehicles] == [False, True]
-        assert bench.service.release_stop(None, BOB).accepted
+        assert bench.is_released(None)
         assert bench.state().stop_latch is None
-        assert not bench.service.release_stop(None, BOB).accepted
+        assert not bench.is_released(None)
 
 
 class TestOrders:
     def test_results_carry_names_and_numbers(self, bench: Bench) -> None:
         bench.open(1, extended(b"A"), core())
-        results = bench.service.order(["A", "Z"], LandNow(), takeoff=False, by=ANN).results
+        results = bench.order(["A", "Z"], LandNow())
         assert [(r.serial, r.accepted, r.vehicle_name) for r in results] == [
             ("A", True, "Anna"),
             ("Z", False, "Z"),
@@ -113,13 +133,13 @@ class TestOrders:
     ) -> None:
         bench.open(1, extended(b"A"), core())
         body = mission(*(waypoint(10.0 * n, speed_mps=20.0) for n in range(120)))
-        (result,) = bench.service.order(["A"], body, takeoff=False, by=ANN).results
+        (result,) = bench.order(["A"], body)
         assert (result.accepted, result.parts) == (False, 2)
         assert [text.split(": ")[0] for text in result.repairs] == [
             "waypoints 1 to 120",
             "flown in 2 parts (waypoints 1 to 99, 99 to 120)",
         ]
-        (landed,) = bench.service.order(["A"], LandNow(), takeoff=False, by=ANN).results
+        (landed,) = bench.order(["A"], LandNow())
         assert (landed.repairs, landed.parts) == ([], 0)
 
     def test_one_to_move_that_was_given_long_ago_is_refused_and_a_stop_is_not(
@@ -130,17 +150,11 @@ class TestOrders:
         bench.hear(1, extended(b"A"), core())
         given_ns = bench.now_ns - 25 * NS_PER_S
         for body, rule in ((mission(), "not_expired"), (Hover(), None)):
-            (result,) = bench.service.order(
-                ["A"], body, takeoff=False, by=ANN, given_at_ns=given_ns
-            ).results
+            (result,) = bench.order(["A"], body, given_ns)
             assert result.rule == rule
 
     def test_numbers_are_never_given_twice(self, bench: Bench) -> None:
-        ids = [
-            r.command_id
-            for _ in range(20)
-            for r in bench.service.order(["A", "B"], Hover(), takeoff=False, by=ANN).results
-        ]
+        ids = [r.command_id for _ in range(20) for r in bench.order(["A", "B"], Hover())]
         assert len(set(ids)) == 40
 
 
@@ -201,7 +215,7 @@ class TestView:
     def test_commands_are_shown_newest_first_with_their_life(self, bench: Bench) -> None:
         bench.open(1, extended(b"A"), core())
         for _ in range(60):
-            bench.service.order(["A"], Hover(), takeoff=False, by=ANN)
+            bench.order(["A"], Hover())
         commands = bench.state().commands
         assert len(commands) == 50
         assert [c.id for c in commands] == sorted((c.id for c in commands), reverse=True)
@@ -222,8 +236,8 @@ class TestView:
         bench.open(1, extended(b"A"), core(), warning)
         (alarm,) = bench.state().alarms
         assert "\x1b" not in alarm.text
-        assert not bench.service.acknowledge(alarm.id + 1, ANN)
-        assert bench.service.acknowledge(alarm.id, ANN)
+        assert bench.post(f"/api/alarms/{alarm.id + 1}/acknowledge").status_code == 404
+        assert bench.post(f"/api/alarms/{alarm.id}/acknowledge").status_code == 204
         assert all(a.is_acknowledged for a in bench.state().alarms)
 
 

@@ -232,7 +232,7 @@ class TestAnEvent:
         self, bench: Bench, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.setitem(step.HANDLERS, OperatorOrder, failing)  # type: ignore[arg-type]
-        (result,) = bench.service.all_stop(ANN).results
+        (result,) = bench.service.orders.all_stop(ANN).results
         assert (result.accepted, result.rule, result.serial) == (False, "station_fault", "A")
         assert fault_alarms(bench.driver.station)
 

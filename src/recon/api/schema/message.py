@@ -1,21 +1,6 @@
 """The base classes of all messages, and the responses that every room uses."""
 
-from typing import Annotated
-
 from pydantic import BaseModel, ConfigDict, Field
-
-GivenAt = Annotated[
-    int | None,
-    Field(
-        ge=0,
-        le=2**53,
-        description=(
-            "when its person gave it, in Unix milliseconds of the station's time (a state's "
-            "`time_ns` and the time since then) or of a clock set by NTP; null: now. What moves a "
-            "vehicle is refused when given more than 5 s ago or in the future; stops are never late"
-        ),
-    ),
-]
 
 
 class Message(BaseModel):
@@ -28,6 +13,26 @@ class StrictMessage(Message):
     """Base of requests: no value is converted from another type ("yes" is not true)."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
+
+
+class GivenRequest(StrictMessage):
+    """Base of requests that must arrive soon after their person gave them."""
+
+    given_at_unix_ms: int | None = Field(
+        default=None,
+        ge=0,
+        le=2**53,
+        description=(
+            "when its person gave it, in Unix milliseconds of the station's time (a state's "
+            "`time_ns` and the time since then) or of a clock set by NTP; null: now. What moves a "
+            "vehicle is refused when given more than 5 s ago or in the future; stops are never late"
+        ),
+    )
+
+    @property
+    def given_at_ns(self) -> int | None:
+        """When it was given, in nanoseconds; None: now."""
+        return None if self.given_at_unix_ms is None else self.given_at_unix_ms * 1_000_000
 
 
 class ActionResponse(Message):

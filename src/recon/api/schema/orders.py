@@ -118,6 +118,10 @@ class PreflightView(Message):
     failsafe: list[FailsafeRowView] = Field(description="the site's failsafe matrix")
 
 
+TimelineSubject = Literal["orders", "alarms", "flights", "operations", "station"]
+"""What a line of the timeline is about."""
+
+
 class TimelineEntryView(Message):
     """One line of the timeline."""
 

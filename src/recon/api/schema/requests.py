@@ -4,8 +4,23 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from recon.api.schema.message import GivenAt, StrictMessage
+from recon.api.schema.message import GivenRequest, StrictMessage
 from recon.api.schema.vehicles import HolderName
+from recon.model.command import (
+    FlyMission,
+    GoTo,
+    HoldPosition,
+    Hover,
+    LandNow,
+    Nudge,
+    ReturnHome,
+    StartCamera,
+    StickFrame,
+    StopCamera,
+    VirtualStick,
+)
+from recon.model.geo import LatLon
+from recon.model.mission import Mission, Waypoint
 
 
 class HoverOrder(StrictMessage):
@@ -13,17 +28,29 @@ class HoverOrder(StrictMessage):
 
     kind: Literal["hover"]
 
+    def body(self) -> Hover:
+        """Return what is ordered."""
+        return Hover()
+
 
 class LandOrder(StrictMessage):
     """Land where the vehicle is."""
 
     kind: Literal["land"]
 
+    def body(self) -> LandNow:
+        """Return what is ordered."""
+        return LandNow()
+
 
 class ReturnHomeOrder(StrictMessage):
     """Return at the aircraft's own go-home height and land."""
 
     kind: Literal["return_home"]
+
+    def body(self) -> ReturnHome:
+        """Return what is ordered."""
+        return ReturnHome()
 
 
 class CameraStartOrder(StrictMessage):
@@ -32,11 +59,19 @@ class CameraStartOrder(StrictMessage):
     kind: Literal["camera_start"]
     fps_hz: float
 
+    def body(self) -> StartCamera:
+        """Return what is ordered."""
+        return StartCamera(fps_hz=self.fps_hz)
+
 
 class CameraStopOrder(StrictMessage):
     """Stop sending images."""
 
     kind: Literal["camera_stop"]
+
+    def body(self) -> StopCamera:
+        """Return what is ordered."""
+        return StopCamera()
 
 
 class WaypointOrder(StrictMessage):
@@ -62,6 +97,11 @@ class MissionOrder(StrictMessage):
     land_at_end: bool = False
     curved: bool = False
 
+    def body(self) -> FlyMission:
+        """Return what is ordered."""
+        waypoints = tuple(Waypoint(**waypoint.model_dump()) for waypoint in self.waypoints)
+        return FlyMission(Mission(waypoints, self.land_at_end, self.curved))
+
 
 class StickOrder(StrictMessage):
     """One virtual stick packet (ground: x north, y east; body: x forward, y right)."""
@@ -74,6 +114,11 @@ class StickOrder(StrictMessage):
     height_above_takeoff_m: float
     timeout_s: float = 1.0
 
+    def body(self) -> VirtualStick:
+        """Return what is ordered."""
+        fields = self.model_dump(exclude={"kind", "frame"})
+        return VirtualStick(frame=StickFrame(self.frame), **fields)
+
 
 class GoToOrder(StrictMessage):
     """Fly straight to a position and hold there; `yaw_deg` null keeps the heading."""
@@ -84,6 +129,11 @@ class GoToOrder(StrictMessage):
     height_above_takeoff_m: float
     speed_mps: float = 5.0
     yaw_deg: float | None = None
+
+    def body(self) -> GoTo:
+        """Return what is ordered."""
+        target = LatLon(self.latitude_deg, self.longitude_deg)
+        return GoTo(target, self.height_above_takeoff_m, self.speed_mps, self.yaw_deg)
 
 
 class NudgeOrder(StrictMessage):
@@ -96,11 +146,19 @@ class NudgeOrder(StrictMessage):
     turn_deg: float = 0.0
     speed_mps: float = 2.0
 
+    def body(self) -> Nudge:
+        """Return what is ordered."""
+        return Nudge(**self.model_dump(exclude={"kind"}))
+
 
 class HoldPositionOrder(StrictMessage):
     """Hold the present position against wind and drift, steered by the station."""
 
     kind: Literal["hold_position"]
+
+    def body(self) -> HoldPosition:
+        """Return what is ordered."""
+        return HoldPosition()
 
 
 AnyOrder = Annotated[
@@ -137,7 +195,7 @@ class RefuseAppRequest(StrictMessage):
     link_id: int
 
 
-class OrderRequest(StrictMessage):
+class OrderRequest(GivenRequest):
     """An order to named vehicles. `takeoff` explicitly allows them to leave the ground.
 
     `goto`, `nudge` and `hold_position` need an `owner`: the name of an open state stream
@@ -148,7 +206,6 @@ class OrderRequest(StrictMessage):
     serials: list[Annotated[str, Field(max_length=2048)]] = Field(min_length=1, max_length=256)
     order: AnyOrder
     takeoff: bool = False
-    given_at_unix_ms: GivenAt = None
     owner: Annotated[str, Field(max_length=64)] | None = None
 
     @model_validator(mode="after")
@@ -170,16 +227,15 @@ class OrderRequest(StrictMessage):
         return self
 
 
-class FleetReturnRequest(StrictMessage):
+class FleetReturnRequest(GivenRequest):
     """Vehicles to return home in layers; null: every vehicle that is or may be in flight."""
 
     serials: list[Annotated[str, Field(max_length=2048)]] | None = Field(
         default=None, min_length=1, max_length=256
     )
-    given_at_unix_ms: GivenAt = None
 
 
-class LookAsideRequest(StrictMessage):
+class LookAsideRequest(GivenRequest):
     """An imaging drone is to fly a little aside and back."""
 
     serial: str | None = Field(
@@ -187,10 +243,9 @@ class LookAsideRequest(StrictMessage):
         max_length=256,
         description="null: the one whose light is unknown, or the site's first",
     )
-    given_at_unix_ms: GivenAt = None
 
 
-class ReliefRequest(StrictMessage):
+class ReliefRequest(GivenRequest):
     """An imaging drone is to take the place of another, or to return to its own.
 
     `takeoff` explicitly allows it to leave the ground, for this relief.
@@ -203,7 +258,6 @@ class ReliefRequest(StrictMessage):
         description="the imaging drone that takes it; null: the same one returns to its place",
     )
     takeoff: bool = False
-    given_at_unix_ms: GivenAt = None
 
 
 class StopReleaseRequest(StrictMessage):

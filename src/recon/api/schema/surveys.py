@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from recon.api.schema.message import ActionResponse, GivenAt, Message, StrictMessage
+from recon.api.schema.message import ActionResponse, GivenRequest, Message, StrictMessage
 
 SurveyPhaseName = Literal["planning", "refused", "created", "running", "paused", "aborted", "done"]
 
@@ -95,7 +95,7 @@ class SurveyRequest(StrictMessage):
     budget: SurveyBudgetRequest = SurveyBudgetRequest()
 
 
-class SurveyStartRequest(StrictMessage):
+class SurveyStartRequest(GivenRequest):
     """The vehicles to fly with. Their control authority passes to the station's guidance.
 
     `takeoff` explicitly allows each to leave the ground once, for this start.
@@ -103,7 +103,6 @@ class SurveyStartRequest(StrictMessage):
 
     serials: list[Annotated[str, Field(max_length=2048)]] = Field(min_length=1, max_length=64)
     takeoff: bool = False
-    given_at_unix_ms: GivenAt = None
 
 
 class SurveyFiguresView(Message):

@@ -1,7 +1,8 @@
-"""The station as the API sees it.
+"""The station's routes, and its state as the API's messages.
 
-`service.py` implements the API's port: requests become events for the driver, and `*_view`
-functions turn the station's state into the messages of `api/schema/`. Views only read the state.
+A route (`*_routes.py`) validates a request by `api/schema/`, makes the event that the driver
+handles, and answers with what became of it. `*_view` functions turn the state into messages; they
+only read it.
 """
 
 from typing import Protocol, TypedDict

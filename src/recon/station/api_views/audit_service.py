@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Protocol
 
 from recon.api import schema
-from recon.api.port import TimelineSubject
+from recon.api.schema.orders import TimelineSubject
 from recon.record.audit.audit import NumberedEntry, harmless
 
 KINDS_OF: dict[TimelineSubject, tuple[str, ...]] = {

@@ -1,10 +1,12 @@
-"""The survey part of the API's port: requests become events, states become views."""
+"""The surveys of a running station: requests become events, states become views."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+import numpy.typing as npt
+
 from recon.api import schema
-from recon.api.port import SurveyCellStates
 from recon.guidance.survey.plan import HEIGHT_FAULT, RULE
 from recon.model.airspace import Region
 from recon.model.command import Refusal
@@ -20,6 +22,17 @@ from recon.station.api_views.operation_views import cells_number, survey_view, s
 from recon.station.api_views.survey_preview import Preview, survey_preview
 from recon.station.operations.survey.commands import start_refusal, stop_refusal
 from recon.station.operations.survey.planning import NO_SITE
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SurveyCellStates:
+    """The states of a survey's cells, (R, C): `state` holds `CellState`s, `inside` the region."""
+
+    number: int
+    state: npt.NDArray[np.uint8]
+    inside: npt.NDArray[np.bool_]
+    light_known: npt.NDArray[np.bool_]
+    """Where the light was known when a photo was taken."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,17 +67,11 @@ class SurveyService:
         return self._taken(number)
 
     def start(
-        self,
-        survey_id: int,
-        serials: list[str],
-        *,
-        takeoff: bool,
-        by: Person,
-        given_at_ns: int | None = None,
+        self, survey_id: int, asked: schema.SurveyStartRequest, by: Person
     ) -> schema.SurveyResponse:
         """Start a survey, unless that is refused; the audit has the refusal too."""
-        named = tuple(dict.fromkeys(serials))
-        event = SurveyStarted(survey_id, named, by.label, takeoff, given_at_ns, by.name)
+        named = tuple(dict.fromkeys(asked.serials))
+        event = SurveyStarted(survey_id, named, by.label, asked.takeoff, asked.given_at_ns, by.name)
         refusal = start_refusal(self.driver.station, event, self.driver.now_ns())
         self.driver.handle(event)
         return self._taken(survey_id) if refusal is None else _refused(refusal)

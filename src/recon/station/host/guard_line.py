@@ -195,7 +195,7 @@ class GuardLine:
         """Take note of something that a guard did."""
         self._driver.handle(GuardActed(act.why, act.serials, act.names, act.missed, act.by))
         if act.by is not None:
-            self._service.all_stop(Person(act.by, Role.OPERATOR, "guard's port"))
+            self._service.orders.all_stop(Person(act.by, Role.OPERATOR, "guard's port"))
 
     def _ended(self) -> None:
         self._hang_up()

@@ -14,12 +14,12 @@ from pathlib import Path
 
 from recon import version
 from recon.api import schema
-from recon.api.app import create_app
 from recon.api.login import Login
 from recon.model.errors import RecordError
 from recon.model.event import Event
 from recon.model.imagery import Frame, GroundImage
 from recon.model.units import ns_to_seconds, seconds_to_ns
+from recon.station.api_views.app import create_app
 from recon.station.api_views.service import Service
 from recon.station.host.base_maps import maps_of
 from recon.station.host.http_servers import (

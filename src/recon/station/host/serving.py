@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 from recon import version
 from recon.api.addresses import SharedAddress
-from recon.api.app import create_app
 from recon.api.certificate import Certificate
 from recon.api.login import Login
 from recon.api.servers import HttpServer
+from recon.station.api_views.app import create_app
 from recon.station.api_views.service import Service
 from recon.station.host.base_maps import maps_of
 from recon.station.host.flight_archive import RecordedFlights

@@ -6,31 +6,31 @@ from typing import Annotated, Literal
 from fastapi import FastAPI, Query, Request, Response
 
 from recon.api import pictures, schema
-from recon.api.picture_routes import Form
-from recon.api.port import StationPort
-from recon.api.responses import PNG, PROBLEMS, found, given_at_ns, png
+from recon.api.responses import PNG, PROBLEMS, found, png
 from recon.api.security import person_of
 from recon.model.survey import unknown_survey
+from recon.station.api_views.picture_routes import Form
+from recon.station.api_views.service import Service
 
 PLANNED_WITHIN_S = 10.0
 """Planning takes tens of milliseconds, after one or two frames in the worker's queue."""
 POLL_EVERY_S = 0.02
 
 
-def add_survey_routes(app: FastAPI, port: StationPort) -> None:
+def add_survey_routes(app: FastAPI, service: Service) -> None:
     """Add all routes of this module."""
-    _add_commands(app, port)
-    _add_views(app, port)
+    _add_commands(app, service)
+    _add_views(app, service)
 
 
-def _add_commands(app: FastAPI, port: StationPort) -> None:
+def _add_commands(app: FastAPI, service: Service) -> None:
     @app.post("/api/surveys")
     async def ask(asked: schema.SurveyRequest, request: Request) -> schema.SurveyResponse:
         """Plan a survey of a region. Responds when its rows are planned; nothing flies."""
-        answer = port.surveys().ask(asked, person_of(request))
+        answer = service.surveys.ask(asked, person_of(request))
         if answer.survey is None:
             return answer
-        return _planned(await _until_planned(port, answer.survey))
+        return _planned(await _until_planned(service, answer.survey))
 
     @app.post("/api/surveys/{survey_id}/start")
     async def start(
@@ -40,40 +40,33 @@ def _add_commands(app: FastAPI, port: StationPort) -> None:
 
         On a running survey the vehicles join, or resume.
         """
-        by = person_of(request)
-        return port.surveys().start(
-            survey_id,
-            asked.serials,
-            takeoff=asked.takeoff,
-            by=by,
-            given_at_ns=given_at_ns(asked.given_at_unix_ms),
-        )
+        return service.surveys.start(survey_id, asked, person_of(request))
 
     @app.post("/api/surveys/{survey_id}/{command}")
     async def stop(
         survey_id: int, command: Literal["pause", "abort"], request: Request
     ) -> schema.SurveyResponse:
         """Pause a survey, or abort it for good. Its vehicles hold where they are."""
-        return port.surveys().stop(survey_id, is_aborted=command == "abort", by=person_of(request))
+        return service.surveys.stop(survey_id, is_aborted=command == "abort", by=person_of(request))
 
 
-def _add_views(app: FastAPI, port: StationPort) -> None:
+def _add_views(app: FastAPI, service: Service) -> None:
     @app.get("/api/surveys")
     async def surveys() -> list[schema.SurveyView]:
         """The surveys of this run, the newest first."""
-        return port.state().surveys
+        return service.state().surveys
 
     @app.get("/api/surveys/{survey_id}", responses=PROBLEMS)
     async def survey(survey_id: int) -> schema.SurveyView:
         """One survey with its figures."""
-        known = port.surveys().view(survey_id)
-        return found(known, "" if known is not None else _unknown_survey(port, survey_id))
+        known = service.surveys.view(survey_id)
+        return found(known, "" if known is not None else _unknown_survey(service, survey_id))
 
     @app.get("/api/surveys/{survey_id}/ways", responses=PROBLEMS)
     async def ways(survey_id: int) -> schema.SurveyWays:
         """A survey's planned rows, the missions in flight, and the paths flown so far."""
-        rows = port.surveys().ways(survey_id)
-        return found(rows, "" if rows is not None else _no_rows(port, survey_id))
+        rows = service.surveys.ways(survey_id)
+        return found(rows, "" if rows is not None else _no_rows(service, survey_id))
 
     @app.get("/api/surveys/{survey_id}/estimate", responses=PROBLEMS)
     async def estimate(
@@ -84,34 +77,34 @@ def _add_views(app: FastAPI, port: StationPort) -> None:
         ] = [],  # noqa: B006
     ) -> schema.SurveyEstimateView:
         """What a survey will take with these vehicles: time, photos, batteries. Nothing flies."""
-        work = port.surveys().preview(survey_id, serial)
+        work = service.surveys.preview(survey_id, serial)
         return await asyncio.to_thread(
-            found(work, "" if work is not None else _no_rows(port, survey_id))
+            found(work, "" if work is not None else _no_rows(service, survey_id))
         )
 
     @app.get("/api/cameras")
     async def cameras() -> list[schema.SurveyCameraView]:
         """The survey cameras that a request may name: the table's and the site's own."""
-        return port.surveys().cameras()
+        return service.surveys.cameras()
 
     @app.get(
         "/api/surveys/{survey_id}/cells.png", response_class=Response, responses=PROBLEMS | PNG
     )
     async def cells(survey_id: int, form: Form = "picture") -> Response:
         """A survey's cells: not imaged, light unknown, in shade, in sun; corners in the survey."""
-        cells = port.surveys().cells(survey_id)
-        known = found(cells, "" if cells is not None else _no_rows(port, survey_id))
+        cells = service.surveys.cells(survey_id)
+        known = found(cells, "" if cells is not None else _no_rows(service, survey_id))
         is_picture = form == "picture"
         draw = pictures.cells_png if is_picture else pictures.cells_values_png
         data = await asyncio.to_thread(draw, known.state, known.inside, known.light_known)
         return png(data, known.number)
 
 
-async def _until_planned(port: StationPort, asked: schema.SurveyView) -> schema.SurveyView:
+async def _until_planned(service: Service, asked: schema.SurveyView) -> schema.SurveyView:
     """Return a survey once it is planned or refused, or as it is after `PLANNED_WITHIN_S`."""
     newest = asked
     for _ in range(round(PLANNED_WITHIN_S / POLL_EVERY_S)):
-        newest = port.surveys().view(asked.id) or newest
+        newest = service.surveys.view(asked.id) or newest
         if newest.phase != "planning":
             break
         await asyncio.sleep(POLL_EVERY_S)
@@ -126,12 +119,12 @@ def _planned(survey: schema.SurveyView) -> schema.SurveyResponse:
     return schema.SurveyResponse(accepted=True, rule=None, reason=None, survey=survey)
 
 
-def _no_rows(port: StationPort, survey_id: int) -> str:
-    survey = port.surveys().view(survey_id)
+def _no_rows(service: Service, survey_id: int) -> str:
+    survey = service.surveys.view(survey_id)
     if survey is None:
-        return _unknown_survey(port, survey_id)
+        return _unknown_survey(service, survey_id)
     return f"Survey {survey_id} has no rows: {survey.reason}"
 
 
-def _unknown_survey(port: StationPort, survey_id: int) -> str:
-    return unknown_survey(survey_id, ((s.id, s.name, s.phase) for s in port.state().surveys))
+def _unknown_survey(service: Service, survey_id: int) -> str:
+    return unknown_survey(survey_id, ((s.id, s.name, s.phase) for s in service.state().surveys))

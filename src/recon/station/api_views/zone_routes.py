@@ -3,8 +3,8 @@
 from fastapi import FastAPI, Request
 
 from recon.api import schema
-from recon.api.port import StationPort
 from recon.api.security import person_of
+from recon.model.event import ZoneDrawn, ZoneEnded
 from recon.model.geo import LatLon
 from recon.model.temporary_zone import (
     DEFAULT_CEILING_M,
@@ -13,15 +13,19 @@ from recon.model.temporary_zone import (
     Outline,
     TemporaryZoneKind,
 )
+from recon.station.api_views.service import Service
+from recon.station.api_views.zone_views import zone_views
+from recon.station.control import temporary_zones
 
 
-def add_zone_routes(app: FastAPI, port: StationPort) -> None:
+def add_zone_routes(app: FastAPI, service: Service) -> None:
     """Add all routes of this module."""
+    driver = service.driver
 
     @app.get("/api/zones")
     async def zones() -> list[schema.TemporaryZoneView]:
         """The temporary zones in force, the oldest first."""
-        return port.state().temporary_zones
+        return service.state().temporary_zones
 
     @app.post("/api/zones")
     async def draw(
@@ -31,12 +35,17 @@ def add_zone_routes(app: FastAPI, port: StationPort) -> None:
 
         Vehicles about to enter it are held. One that is in it raises an alarm and may be led out.
         """
-        return port.draw_zone(to_drawn(asked), person_of(request))
+        event = ZoneDrawn(to_drawn(asked), person_of(request).label)
+        refusal = temporary_zones.draw_refusal(driver.station, event)
+        answer = service.commanded(event, refusal)
+        zone = zone_views(driver.station, driver.now_ns())[-1] if refusal is None else None
+        return schema.TemporaryZoneResponse(**answer.model_dump(), zone=zone)
 
     @app.post("/api/zones/{zone_id}/end")
     async def end(zone_id: int, request: Request) -> schema.ActionResponse:
         """End a temporary zone. Nothing is sent, and nothing that was held resumes."""
-        return port.end_zone(zone_id, person_of(request))
+        event = ZoneEnded(zone_id, person_of(request).label)
+        return service.commanded(event, temporary_zones.end_refusal(driver.station, event))
 
 
 def to_drawn(asked: schema.TemporaryZoneRequest) -> DrawnZone:
