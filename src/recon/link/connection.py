@@ -72,20 +72,17 @@ class Connection(asyncio.BufferedProtocol):
 
     def buffer_updated(self, nbytes: int) -> None:
         """Take what came; many packets are handled in turns with the other links."""
-        with self._isolated():
-            self._receive(nbytes)
-
-    def _receive(self, nbytes: int) -> None:
         if self.session is None:
             return
-        data = bytes(memoryview(self._buffer)[:nbytes])
-        now_ns = self.server.now_ns()
-        self._record(Direction.FROM_APP, data, now_ns)
-        self._take(self.session.receive(data, now_ns))
-        self._check_session(self.session)
-        # An answer may be what the next command has waited for.
-        if self.session.commands_queued:
-            self.pump()
+        with self._isolated():
+            data = bytes(memoryview(self._buffer)[:nbytes])
+            now_ns = self.server.now_ns()
+            self._record(Direction.FROM_APP, data, now_ns)
+            self._take(self.session.receive(data, now_ns))
+            self._check_session(self.session)
+            # An answer may be what the next command has waited for.
+            if self.session.commands_queued:
+                self.pump()
 
     def _check_session(self, session: Session) -> None:
         """Account for what the session holds, and close it when it has a reason to."""
@@ -150,16 +147,13 @@ class Connection(asyncio.BufferedProtocol):
     def tick(self) -> None:
         """Let time pass."""
         with self._isolated():
-            self._tick()
-
-    def _tick(self) -> None:
-        if self.session is None or self._transport is None:
-            return
-        now_ns = self.server.now_ns()
-        self.session.note_socket(self._is_clear(), now_ns)
-        self._take(self.session.tick(now_ns, has_unread=self._has_unread(self.session)))
-        self.pump()
-        self._check_session(self.session)
+            if self.session is None or self._transport is None:
+                return
+            now_ns = self.server.now_ns()
+            self.session.note_socket(self._is_clear(), now_ns)
+            self._take(self.session.tick(now_ns, has_unread=self._has_unread(self.session)))
+            self.pump()
+            self._check_session(self.session)
 
     def pump(self) -> None:
         """Write packets that may go, one at a time, while the socket takes them."""
@@ -219,23 +213,20 @@ class Connection(asyncio.BufferedProtocol):
 
     def _work(self) -> None:
         """Handle some events; with more left, stop reading and go on in the loop's next turn."""
-        with self._isolated():
-            self._work_on()
-
-    def _work_on(self) -> None:
         if self.session is None or self._is_lost:
             return
-        self._advance(self.session)
-        self._check_session(self.session)
-        if self._transport is None or self._transport.is_closing():
-            return
-        if self._events or self.session.is_busy:
-            self._is_reading = False
-            self._transport.pause_reading()
-            asyncio.get_running_loop().call_soon(self._work)
-        elif not self._is_reading:
-            self._is_reading = True
-            self._transport.resume_reading()
+        with self._isolated():
+            self._advance(self.session)
+            self._check_session(self.session)
+            if self._transport is None or self._transport.is_closing():
+                return
+            if self._events or self.session.is_busy:
+                self._is_reading = False
+                self._transport.pause_reading()
+                asyncio.get_running_loop().call_soon(self._work)
+            elif not self._is_reading:
+                self._is_reading = True
+                self._transport.resume_reading()
 
     def _advance(self, session: Session) -> None:
         """Do one turn's work: handle some events, or else search on in what was received."""

@@ -4,7 +4,7 @@ Events go to their handlers by one table; a tick goes through one tuple of parts
 operations from `OPERATIONS`: a new one changes nothing here.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from recon.fleet import pairing
@@ -50,7 +50,7 @@ from recon.model.event import (
     ZoneEnded,
 )
 from recon.model.replacing import replace
-from recon.model.report import CoreReport, ImageReport, MessageReport
+from recon.model.report import CoreReport, ImageReport, MessageReport, Report
 from recon.model.vehicle import VehicleState
 from recon.station.alarms import event_alarms
 from recon.station.alarms.conditions import raise_alarms
@@ -121,28 +121,31 @@ def _packet(station: Station, event: PacketReceived, now_ns: int) -> Stepped:
     vehicle = station.fleet.vehicle_of_link(event.link_id)
     if vehicle is None:
         return station, outputs
-    take = _REPORTS.get(type(event.report))
-    if take is not None:
-        received_at_ns = event.received_at_ns(now_ns)
-        station, more = take(station, vehicle, event.report, received_at_ns)
-        outputs = (*outputs, *more)
+    station, more = _reported(station, vehicle, event.report, event.received_at_ns(now_ns))
     if station.control(vehicle.serial).restored is not None:
         station = restart.recheck(station, vehicle.serial, now_ns)
-    if isinstance(event.report, ImageReport):
-        return station, outputs  # ticks update camera orders, the only ones an image confirms
-    serials = () if vehicle.serial is None else (vehicle.serial,)
-    station, orders = order_gateway.update_orders(station, now_ns, serials)
-    return station, (*outputs, *orders)
+    orders: tuple[Output, ...] = ()
+    if not isinstance(event.report, ImageReport):  # it confirms camera orders only: ticks see them
+        serials = () if vehicle.serial is None else (vehicle.serial,)
+        station, orders = order_gateway.update_orders(station, now_ns, serials)
+    return station, (*outputs, *more, *orders)
 
 
-def _core(
-    station: Station, vehicle: VehicleState, _report: CoreReport, received_at_ns: int
+def _reported(
+    station: Station, vehicle: VehicleState, report: Report, received_at_ns: int
 ) -> Stepped:
-    if vehicle.core_received_at_ns != received_at_ns:
-        return station, ()  # another link has brought newer telemetry
-    for take in _POSITION_TAKERS:
-        station = take(station, vehicle, received_at_ns)
-    return frames.on_telemetry(station, vehicle, received_at_ns), ()
+    """What a report means beside its part in the vehicle's state."""
+    match report:
+        case ImageReport():
+            return frames.on_frame(station, vehicle, report, received_at_ns)
+        case MessageReport():
+            return event_alarms.on_message(station, vehicle, report, received_at_ns)
+        case CoreReport() if vehicle.core_received_at_ns == received_at_ns:
+            for operation in OPERATIONS:
+                if operation.on_position is not None:
+                    station = operation.on_position(station, vehicle, received_at_ns)
+            return frames.on_telemetry(station, vehicle, received_at_ns), ()
+    return station, ()  # or another link has brought newer telemetry
 
 
 def _job_done(station: Station, event: JobDone[Any, Any], now_ns: int) -> Stepped:
@@ -150,8 +153,9 @@ def _job_done(station: Station, event: JobDone[Any, Any], now_ns: int) -> Steppe
     station, outputs = event.kind.done(station, event.job_id, event.result, now_ns)
     shade = station.shade.followed
     if shade is not None and station.shade.number != number:
-        for take in _SHADE_TAKERS:
-            station = take(station, shade)
+        for operation in OPERATIONS:
+            if operation.on_shade is not None:
+                station = operation.on_shade(station, shade)
     return station, outputs
 
 
@@ -288,13 +292,3 @@ HANDLERS: Mapping[type[Any], Handler] = dict(
     )
 )
 """The handler of each type of event."""
-
-_REPORTS: Mapping[type[Any], Callable[[Station, VehicleState, Any, int], Stepped]] = {
-    CoreReport: _core,
-    ImageReport: frames.on_frame,
-    MessageReport: event_alarms.on_message,
-}
-"""What a report means beside its part in the vehicle's state; other reports mean no more."""
-
-_POSITION_TAKERS = tuple(each.on_position for each in OPERATIONS if each.on_position is not None)
-_SHADE_TAKERS = tuple(each.on_shade for each in OPERATIONS if each.on_shade is not None)
