@@ -143,7 +143,6 @@ fuzz: ## Fuzz the deframer and the packet decoder for a minute each (needs a nig
 
 study: setup ## Long runs: the sky against measurements, random fences, fleets and closed loops, 100,000 simulated seconds, mutants (an hour)
 	$(RUN) python -m studies.sky_statistics
-	$(RUN) python -m studies.broken_skies
 	$(RUN) python -m studies.registration
 	$(RUN) python -m studies.tagging
 	$(RUN) python -m studies.fences --scenes 10000

@@ -15,12 +15,15 @@ SCRIPTS = [
 ]
 
 
+OURS = ("recon", "tests", "benches", "studies")
+
+
 @pytest.mark.parametrize("path", SCRIPTS, ids=lambda path: str(path.relative_to(ROOT)))
-def test_every_name_imported_from_recon_exists(path: Path) -> None:
+def test_every_name_imported_from_the_project_exists(path: Path) -> None:
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if not isinstance(node, ast.ImportFrom) or node.module is None:
             continue
-        if node.module.split(".")[0] != "recon":
+        if node.module.split(".")[0] not in OURS:
             continue
         module = import_module(node.module)
         for alias in node.names:
