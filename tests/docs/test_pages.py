@@ -1,6 +1,7 @@
 """The pages say what is true: links lead somewhere, commands and targets exist, examples run."""
 
 import asyncio
+import json
 import re
 import runpy
 import sys
@@ -129,3 +130,15 @@ def test_examples_run(
         "06": "SIM-6: wave 2, 40 m, landed",
     }
     assert expected[example.name[:2]] in printed
+
+
+def test_the_requests_of_the_apis_page_exist() -> None:
+    paths = json.loads((ROOT / "web/openapi.json").read_text(encoding="utf-8"))["paths"]
+    text = (ROOT / "docs/api.md").read_text(encoding="utf-8")
+    named = re.findall(r"`(GET|POST) (/api/[^`]*)`", text)
+    assert len(named) > 30
+    assert [
+        f"{method} {path}"
+        for method, path in named
+        if path not in paths or method.lower() not in paths[path]
+    ] == []
