@@ -18,7 +18,7 @@ UV_VERSION := 0.13.9
 UV := $(shell command -v uv 2>/dev/null || echo .tools/bin/uv)
 RUN := $(UV) run --locked --quiet
 FUZZ_SECONDS ?= 60
-WEB_SOURCES := $(shell find web/src web/public -type f 2>/dev/null) web/index.html web/package.json web/vite.config.ts
+WEB_SOURCES := $(shell find web/src web/public -type f ! -name schema.d.ts 2>/dev/null) web/index.html web/package.json web/vite.config.ts
 
 .PHONY: help setup demo run test test-rust test-safety test-python test-web test-e2e android-core android test-android study-android fuzz-android coverage check check-rust check-python check-web format bench fuzz study mutants docs web clean
 
@@ -157,10 +157,9 @@ study: setup ## Long runs: the sky against measurements, random fences, fleets a
 mutants: setup ## Mutate gate, watchdogs, trust layer and guard: a test must fail for each mutant (hours)
 	$(RUN) --group study python -m studies.mutants
 
-docs: setup web/node_modules/.stamp ## Regenerate the API's description and the console's types
+docs: setup ## Regenerate the API's description and the table of flights
 	$(RUN) recon openapi > web/openapi.json
 	$(RUN) python -m tools.flight_table_page > docs/flight-table.md
-	npm --prefix web run generate --silent
 
 format: setup web/node_modules/.stamp ## Format all sources
 	cargo fmt --all

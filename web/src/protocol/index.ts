@@ -1,6 +1,6 @@
 /**
- * API types under short names. `schema.d.ts` is generated from `openapi.json`
- * (`npm run generate`).
+ * API types under short names. `schema.d.ts` is generated from `openapi.json` by
+ * `npm run check`, or alone by `npm run generate`.
  */
 import type { components } from "./schema";
 
