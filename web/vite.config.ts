@@ -4,8 +4,6 @@ import { defineConfig } from "vitest/config";
 /** The station under development; `npm run dev` sends the API's requests there. */
 const station = process.env["RECON_STATION"] ?? "http://127.0.0.1:8080";
 
-const PSEUDO_LANGUAGE = "src/text/pseudoLanguage.test.tsx";
-
 export default defineConfig({
   plugins: [solid()],
   // Relative addresses, so that the built page works under any folder it is served from.
@@ -19,21 +17,10 @@ export default defineConfig({
   preview: { host: "127.0.0.1", proxy: { "/api": { target: station, ws: true } } },
   test: {
     environment: "happy-dom",
+    include: ["src/**/*.test.{ts,tsx}"],
     restoreMocks: true,
-    projects: [
-      {
-        extends: true,
-        test: {
-          name: "console",
-          include: ["src/**/*.test.{ts,tsx}"],
-          exclude: [PSEUDO_LANGUAGE],
-          // Each file in a context of its own, as with processes, at a sixth of their time.
-          pool: "vmThreads",
-        },
-      },
-      // Changes the page's language: no other file may find its modules.
-      { extends: true, test: { name: "words", include: [PSEUDO_LANGUAGE], pool: "forks" } },
-    ],
+    // Each file in a context of its own, as with processes, at a sixth of their time.
+    pool: "vmThreads",
     // Only a broken test takes this long; a busy machine must not fail one.
     testTimeout: 60_000,
     hookTimeout: 60_000,

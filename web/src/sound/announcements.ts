@@ -109,7 +109,7 @@ export function spokenText(title: string): string {
   return title
     .replace(/[<>&]/g, " ")
     .replace(/(\d)[ \u00a0](m\/s|ft|[ms%])(?![\w/])/g, (_, digit, unit) => {
-      return `${digit} ${text.sound.units[unit] ?? unit}`;
+      return text.sound.units[unit]?.(digit) ?? `${digit} ${unit}`;
     })
     .replace(/\s+/g, " ")
     .trim()

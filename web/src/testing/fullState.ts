@@ -1,39 +1,14 @@
-import type {
-  FlightFiguresView,
-  FlightView,
-  PreflightView,
-  ReplayView,
-  SiteDrawingView,
-  StationState,
-  SurveyView,
-  TimelineEntryView,
-  UpwindPlaceView,
-  VehicleView,
-} from "../protocol";
+import type { StationState, SurveyView, UpwindPlaceView, VehicleView } from "../protocol";
 import { groundImage, shadeLine, survey, surveyLight } from "./fakeField";
-import {
-  alarm,
-  area,
-  at,
-  command,
-  hazard,
-  link,
-  square,
-  station,
-  vehicle,
-  zone,
-} from "./fakeState";
+import { alarm, area, at, command, hazard, link, station, vehicle, zone } from "./fakeState";
 
-/*
- * A station with everything at once that the page can show. Values that the page shows as they come, such as flight
- * modes, are in letters that no language of the page has.
- */
+/* A station with everything at once that the page can show. */
 
 const aged = <T>(value: T) => ({ value, age_s: 0.4 });
 const REPORTED = {
-  flight_mode: aged("ＭＯＤＥ"),
-  battery_warning: aged("ＬＯＷ"),
-  camera_state: aged("ＯＮ"),
+  flight_mode: aged("mode 7"),
+  battery_warning: aged("low"),
+  camera_state: aged("on"),
 };
 const HERE = at(20, 30);
 const [LON, LAT] = HERE;
@@ -133,7 +108,7 @@ const motion = {
 
 const seen = { now: 0.5, in_30_s: 0.5, in_60_s: 0.4, in_90_s: 0.3 };
 
-export const UPWIND: UpwindPlaceView = {
+const UPWIND: UpwindPlaceView = {
   distance_m: 30,
   height_above_takeoff_m: 100,
   here: seen,
@@ -147,7 +122,7 @@ export const UPWIND: UpwindPlaceView = {
   yaw_deg: 0,
 };
 
-export function fullState(changes: Partial<StationState> = {}): StationState {
+export function fullState(): StationState {
   const fleet = vehicles();
   const plain = station(fleet);
   return {
@@ -218,110 +193,5 @@ export function fullState(changes: Partial<StationState> = {}): StationState {
     },
     shade: shadeLine({ reference: "Of an earlier flight", rejected: "Too dark" }),
     surveys: surveys(),
-    ...changes,
   };
 }
-
-export const REPLAY: ReplayView = {
-  file: "Flight A",
-  duration_s: 7200,
-  position_s: 600,
-  speed: 1,
-  is_playing: false,
-  trouble: "The file was cut",
-};
-
-export const PREFLIGHT: PreflightView = {
-  serial: "SN-001",
-  name: "Alder",
-  is_passed: false,
-  override: null,
-  points: (["ok", "attention", "unknown", "fails"] as const).map((state) => ({
-    key: state,
-    name: `Point ${state}`,
-    state,
-    text: "As it is",
-    to_do: "Look again",
-    holds_back: state === "fails",
-  })),
-  failsafe: [
-    {
-      condition: "telemetry_lost",
-      name: "Telemetry lost",
-      begins: "After 1 s",
-      cells: (["mission", "steered", "holding", "returning"] as const).map((activity) => ({
-        activity,
-        reaction: "hold",
-        after_s: 3,
-        text: "Hold after 3 s",
-        default: activity === "mission" ? "Land after 3 s" : null,
-        is_weaker: activity === "mission",
-      })),
-    },
-  ],
-};
-
-const RECORD = "flight-20250620T160412Z";
-
-export const FLIGHTS: readonly FlightView[] = [
-  { name: RECORD, size_bytes: 55_204_853, changed_at_unix_ms: 0, is_recording: true },
-  { name: "ground-20250620T150412Z", size_bytes: 900, changed_at_unix_ms: 0, is_recording: false },
-];
-
-export const FIGURES: FlightFiguresView = {
-  record: `${RECORD}.mcap`,
-  site: "",
-  begin_utc: "2025-06-20T16:04:12.000Z",
-  end_utc: "2025-06-20T16:20:08.000Z",
-  vehicles: ["Alder", "Birch"],
-  surveys: ["North"],
-  airborne_s: 1899,
-  region_m2: null,
-  photographed_share: 1,
-  sunlit_share: 0.9999,
-  well_sunlit_share: 0.87,
-  mean_sun_share: null,
-  shade_maps: 97,
-  shade_maps_of_the_region: 97,
-  alarms: 2,
-  trouble: "The file was cut",
-};
-
-export const TIMELINE: TimelineEntryView[] = Array.from({ length: 60 }, (_, index) => ({
-  n: 60 - index,
-  utc: "2026-05-01T12:00:00.5Z",
-  kind: "order.sent",
-  by: BY,
-  serial: "SN-001",
-  vehicle: "Alder",
-  text: "Hover 2: sent",
-}));
-
-/** A feature of each kind: with and without a name, and with a hole. */
-export const DRAWING: SiteDrawingView = {
-  revision: "r1",
-  locked_reason: null,
-  undo: { what: "Boundary and pads", by: BY, utc: "2026-05-01T12:00:00+00:00" },
-  features: [
-    {
-      layer: "boundary",
-      geometry: { type: "Polygon", coordinates: [square(HERE, 0.0012)] },
-      properties: {},
-    },
-    {
-      layer: "survey_regions",
-      geometry: { type: "Polygon", coordinates: [square(HERE, 0.0008), square(HERE, 0.0002)] },
-      properties: { name: "North field" },
-    },
-    {
-      layer: "keep_out",
-      geometry: { type: "Polygon", coordinates: [square(HERE, 0.0001)] },
-      properties: { ceiling_m: 30, datum: "ground" },
-    },
-    {
-      layer: "landing_pads",
-      geometry: { type: "Point", coordinates: [LON, LAT] },
-      properties: { name: "Home" },
-    },
-  ],
-};

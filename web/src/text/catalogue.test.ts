@@ -1,5 +1,4 @@
 import { describe, expect, it } from "vitest";
-import { type WrittenWords, writtenWords } from "../testing/writtenWords";
 import { type Catalogue, languageOf } from "./catalogue";
 
 const SOURCES = import.meta.glob<string>(
@@ -7,19 +6,36 @@ const SOURCES = import.meta.glob<string>(
   { query: "?raw", import: "default", eager: true },
 );
 
-/** Shown as they are in every language: the product, and commands for the station's computer. */
-const NAMES = /^(?:Recon|recon user add.*)$/;
+/** Comments, imports, types, and the classes of elements. */
+const NOT_SHOWN =
+  /\/\*[\s\S]*?\*\/|(?<=^|\s)\/\/.*|^(?:im|ex)port\b[^;]*? from .*;$|^(?:export )?type \w+ =[^;]*;|\b\w*[cC]lass\w*(?:=|: | = )(?:"[^"]*"|\{?`.*`)/gm;
 
-/** Literals that read like words, and why they are not translated. */
-const NO_WORDS: readonly (readonly [why: string, RegExp])[] = [
+const SHOWS =
+  "title|alt|label|placeholder|of|text|hint|action|reason|problem|note|stage|checking|fallback|" +
+  "textContent|aria-(?:label|description|valuetext|roledescription|placeholder)";
+
+/** Words between tags, and in attributes and properties that are shown or read out. */
+const SHOWN: readonly RegExp[] = [
+  /(?:(?<!=)>|\})(?!\n\n|,\n|:|, \w+:|\s*(?:as|catch|const|else|finally|return)\b)([^<>{}()[\]"`$=;|&]*\p{L}[^<>{}()[\]"`$=;|&]*)(?:<\/|\{)/gu,
+  new RegExp(`(?<![\\w-])(?:${SHOWS})(?:: |=| = )\\{?["\`]([^"\`]*)["\`]`, "g"),
+  new RegExp(`setAttribute\\("(?:${SHOWS})", "([^"]*)"`, "g"),
+];
+
+/** Any other literal, if it reads as a label (a capitalised word) or as a sentence (two words). */
+const LITERAL = /"([^"\n]*)"|`([^`\n]*)`/g;
+const READS_AS_WORDS = /^\s*\p{Lu}\p{Ll}|\p{L}{2,}[,.:;]? \p{L}+/u;
+
+/** The catalogue's words joined with others: another language has its own order of words. */
+const JOINED = /\$\{text\.[^}]*\}|\btext(?:\.\w+)+(?:\([^()]*\))? \+|\+ text\./g;
+
+/** Literals that read as words, and why they are not translated. */
+const NOT_TRANSLATED: readonly (readonly [why: string, RegExp])[] = [
   [
-    "keys of the keyboard",
-    /^(?:Escape|Enter|Delete|Shift|Arrow(?:Left|Right|Up|Down)|Key(?:…|[A-Z]))$/,
+    "the product, and commands for the station's computer",
+    /^(?:Recon|recon user add(?: NAME .*)?)$/,
   ],
-  [
-    "errors that no operator meets",
-    /has no element with id app\.$|^useConsole was called|^A map colour must/,
-  ],
+  ["keys", /^(?:Escape|Enter|Delete|Space|Shift(?:\+.)?|Arrow(?:Left|Right|Up|Down)|Key.)$/],
+  ["errors that no operator meets", /no element with id app\.$|^useConsole was|^A map colour must/],
   ["types of GeoJSON", /^(?:Feature|FeatureCollection|Point|LineString|Polygon)$/],
   ["HTTP and the DOM", /^(?:Bearer …|Content-Type|TimeoutError)$/],
   [
@@ -27,33 +43,50 @@ const NO_WORDS: readonly (readonly [why: string, RegExp])[] = [
     /^(?:\(prefers-color-scheme: dark\)|(?:color-mix|linear-gradient)\(.*|craft-label is-…*)$/,
   ],
   [
-    "what a vehicle does and how ready the fleet is: shown by `activity.names` and `readiness.labels`",
+    "activities and readiness, shown by `activity.names` and `readiness.labels`",
     /^(?:Contact lost|Station lost|Unidentified|Landing|Returning|Flying|On the ground|Unknown|Not ready|Warnings|Ready)$/,
   ],
   ["flight modes, as aircraft report them", /^(?:auto landing|confirm landing|go home)$/],
   ["put into sentences of the station, which are English", /^(?:by a newer order|an order)$/],
 ];
 
-function isException({ words, isShown }: WrittenWords): boolean {
-  return NAMES.test(words) || (!isShown && NO_WORDS.some(([, pattern]) => pattern.test(words)));
+/** The words of a source outside the catalogue; `…` stands for what is filled in. */
+function writtenWords(source: string): string[] {
+  const read = source.replace(NOT_SHOWN, "");
+  const shown = SHOWN.flatMap((pattern) => matches(read, pattern)).filter((one) =>
+    /\p{L}/u.test(one),
+  );
+  const others = matches(read, LITERAL).filter((one) => READS_AS_WORDS.test(one));
+  return [...new Set([...shown, ...others])];
+}
+
+function matches(source: string, pattern: RegExp): string[] {
+  return [...source.matchAll(pattern)].map(([, one, other]) =>
+    (one ?? other ?? "").replace(/\$\{[^}]*\}/g, "…").trim(),
+  );
 }
 
 const found = Object.entries(SOURCES).flatMap(([path, source]) =>
-  writtenWords(path, source).map((one) => ({ path, ...one })),
+  writtenWords(source).map((words) => ({ path, words })),
 );
 
 describe("the console's words", () => {
   it("are in the catalogue, not in the sources", () => {
-    const written = found.filter((one) => !isException(one));
-    expect(written.map(({ path, line, words }) => `${path}:${line}: ${words}`)).toEqual([]);
+    const isException = (words: string) => NOT_TRANSLATED.some(([, one]) => one.test(words));
+    expect(found.filter(({ words }) => !isException(words))).toEqual([]);
+  });
+
+  it("are never joined from pieces", () => {
+    const joined = Object.entries(SOURCES).flatMap(([path, source]) =>
+      (source.match(JOINED) ?? []).map((piece) => `${path}: ${piece}`),
+    );
+    expect(joined).toEqual([]);
   });
 
   it("have no exception that nothing needs", () => {
-    const isNeeded = (pattern: RegExp) => found.some(({ words }) => pattern.test(words));
     expect(Object.keys(SOURCES).length).toBeGreaterThan(150);
-    expect(
-      [NAMES, ...NO_WORDS.map(([, pattern]) => pattern)].filter((one) => !isNeeded(one)),
-    ).toEqual([]);
+    const unused = NOT_TRANSLATED.filter(([, one]) => !found.some(({ words }) => one.test(words)));
+    expect(unused).toEqual([]);
   });
 });
 
@@ -63,41 +96,40 @@ describe("words that are written into a source", () => {
     type Kind = "Two words" | "Other";
     const STATES = { running: "Running" };
     const sentence = (count: number) => \`\${count} drones are in the air\`;
-    function Example(props: { isOn: boolean; name: string }) {
+    function Example(props: { isOn: boolean; name: string }): Map<string, number> {
       if (props.name === "") throw new Error("Type a name.");
       mark.textContent = "holding";
       mark.className = "craft own-colour";
       mark.setAttribute("aria-label", "landing");
       return (
-        <section class="card notice" aria-label={props.isOn ? "on" : text.panels.close(props.name)}>
+        <section class="card notice" aria-label={text.panels.close(props.name)}>
           <button type="button" title={\`remove \${props.name}\`} placeholder="auto">
-            {text.alarms.ok} {props.isOn ? "sun" : ""} {props.name === "shade" ? "—" : props.name}
+            {text.alarms.ok} {props.name === "shade" ? "—" : props.name}
             age
           </button>
         </section>
       );
-    }`;
+    }`.replace(/^ {4}/gm, "");
 
-  it("are found: labels, sentences, JSX text, and any word where something is shown", () => {
-    const words = writtenWords("Example.tsx", EXAMPLE).map((one) => one.words);
-    expect(words).toEqual([
+  it("are found: labels, sentences, and any word where something is shown", () => {
+    expect(writtenWords(EXAMPLE).sort()).toEqual([
       "Running",
-      "… drones are in the air",
       "Type a name.",
+      "age",
+      "auto",
       "holding",
       "landing",
-      "on",
       "remove …",
-      "auto",
-      "sun",
-      "age",
+      "… drones are in the air",
     ]);
   });
 
-  it("are no exception where they are shown", () => {
-    const [one] = writtenWords("Example.tsx", "const shown = <p>Flying</p>;");
-    expect(one).toMatchObject({ words: "Flying", isShown: true });
-    expect(one && isException(one)).toBe(false);
+  it.each([
+    ["`$" + "{text.alarms.ok} $" + "{name}`"],
+    ["text.alarms.since(age) + name"],
+    ["name + text.alarms.ok"],
+  ])("are found when they are joined: %s", (source) => {
+    expect(source.match(JOINED)).not.toBeNull();
   });
 });
 

@@ -87,9 +87,9 @@ function isNoteInHistory(command: CommandView): boolean {
 
 /** A phase's note without the phase's own name before it: "by order 5" of "Replaced by order 5". */
 function noteBesideName(shown: CommandView["history"][number]): string {
-  const name = `${text.commands.phases[shown.phase]} `;
-  const note = shown.note.startsWith(name) ? shown.note.slice(name.length) : shown.note;
-  return withoutNumbers(note);
+  const name = text.commands.phases[shown.phase];
+  const isNamed = shown.note.startsWith(`${name} `);
+  return withoutNumbers(isNamed ? shown.note.slice(name.length + 1) : shown.note);
 }
 
 /** A command's phases, each with its time since the order and its note. */

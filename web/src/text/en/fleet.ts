@@ -148,12 +148,12 @@ export const sound = {
   silent: "No sound for:",
   /** How units are spoken. */
   units: {
-    s: "seconds",
-    m: "metres",
-    ft: "feet",
-    "m/s": "metres per second",
-    "%": "per cent",
-  } as Readonly<Record<string, string>>,
+    s: (digit: string) => `${digit} seconds`,
+    m: (digit: string) => `${digit} metres`,
+    ft: (digit: string) => `${digit} feet`,
+    "m/s": (digit: string) => `${digit} metres per second`,
+    "%": (digit: string) => `${digit} per cent`,
+  } as Readonly<Record<string, (digit: string) => string>>,
 };
 
 export const separation = {
