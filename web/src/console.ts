@@ -7,6 +7,7 @@ import {
   on,
   useContext,
 } from "solid-js";
+import { activeSurveys } from "./fleet/activity";
 import { createFleetView, type FleetView } from "./fleet/fleetView";
 import { createSelection, type Selection, selectedVehicles } from "./fleet/selection";
 import { type BaseMaps, createBaseMaps, type Kept } from "./map/baseMaps";
@@ -18,7 +19,7 @@ import { type Targets, targetsOf } from "./orders/targets";
 import { createZoneDraft, type ZoneDraft } from "./orders/zoneDraft";
 import { createLargeCamera, type LargeCamera } from "./panels/cameras/largeCamera";
 import type { OpenPanels } from "./panels/openPanels";
-import type { ReplayView, SurveyView } from "./protocol";
+import type { ReplayView, Role } from "./protocol";
 import { type Calibration, createCalibration } from "./site/calibration";
 import { createSiteDraft, type SiteDraft } from "./site/siteDraft";
 import { createVehicleTable, type VehicleTable } from "./site/vehicleTable";
@@ -26,7 +27,7 @@ import { type AlarmSound, createAlarmSound } from "./sound/alarmSound";
 import type { Mutes } from "./sound/mutes";
 import type { Speaker } from "./sound/speaker";
 import type { Clock, Instant } from "./source/clock";
-import { lacking, type Role } from "./source/roles";
+import { lacking } from "./source/roles";
 import type { StationSource } from "./source/stationSource";
 import { text } from "./text/catalogue";
 import type { ThemeSwitch } from "./theme/theme";
@@ -93,8 +94,6 @@ export interface MapCentre extends LonLat {
   readonly width_m: number;
 }
 
-const ACTIVE: readonly SurveyView["phase"][] = ["running", "paused"];
-
 /** Creates the shared parts; `now` changes as often as displayed ages are refreshed. */
 export function createConsole(
   source: StationSource,
@@ -114,12 +113,12 @@ export function createConsole(
     return source.behindS(now()) ?? 0;
   });
   const targets = createMemo(() => targetsOf(selectedVehicles(fleet.vehicles, selection)));
-  const orderApi = createOrderApi(source, clock);
+  const orderApi = createOrderApi(source.orders, clock);
   const single = createMemo(() => {
     const [only, ...others] = selectedVehicles(fleet.vehicles, selection);
     return only === undefined || only.serial === null || others.length > 0 ? null : only;
   });
-  const flyHere = createFlyHere(single, source, orderApi, clock);
+  const flyHere = createFlyHere(single, source.orders, orderApi, clock);
   const zoneDraft = createZoneDraft();
   const siteDraft = createSiteDraft(
     source.site,
@@ -172,7 +171,7 @@ export function createConsole(
     siteDraft,
     vehicleTable,
     calibration,
-    overlay: createOverlay(() => fleet.surveys.some(({ phase }) => ACTIVE.includes(phase))),
+    overlay: createOverlay(() => activeSurveys(fleet.surveys).length > 0),
     baseMaps: createBaseMaps(source, kept),
     theme,
     panels,

@@ -1,21 +1,34 @@
-import type { FleetView } from "../fleet/fleetView";
-import { vehicleStatus } from "../fleet/vehicleStatus";
 import type { SurveyingView, SurveyView, VehicleView } from "../protocol";
-import { text } from "./catalogue";
-import { agedBy, formatAge, formatQuantity, groundSpeedMps } from "./quantities";
-import { formatHeight } from "./units";
+import { text } from "../text/catalogue";
+import { agedBy, formatAge, formatQuantity, groundSpeedMps } from "../text/quantities";
+import { formatHeight } from "../text/units";
+import type { FleetView } from "./fleetView";
+import { vehicleStatus } from "./vehicleStatus";
 
 const { names } = text.activity;
 
-const ACTIVE: readonly SurveyView["phase"][] = ["running", "paused"];
+/** Whether a survey of a phase has begun and is not over. */
+const IS_ACTIVE: Readonly<Record<SurveyView["phase"], boolean>> = {
+  planning: false,
+  refused: false,
+  created: false,
+  running: true,
+  paused: true,
+  aborted: false,
+  done: false,
+};
+
+/** The surveys that are running or paused. */
+export function activeSurveys(surveys: readonly SurveyView[]): readonly SurveyView[] {
+  return surveys.filter(({ phase }) => IS_ACTIVE[phase]);
+}
 
 /** A vehicle's part in a survey that is running or paused; null without one. */
 export function surveyPart(
   surveys: FleetView["surveys"],
   serial: string | null,
 ): SurveyingView | null {
-  const active = surveys.filter(({ phase }) => ACTIVE.includes(phase));
-  const parts = active.flatMap(({ vehicles }) => vehicles);
+  const parts = activeSurveys(surveys).flatMap(({ vehicles }) => vehicles);
   return parts.find((part) => part.serial === serial) ?? null;
 }
 

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import type { Connection } from "../source/stationSource";
+import type { Connection } from "../protocol";
 import { alarm, station, vehicle } from "../testing/fakeState";
 import { readiness } from "./readiness";
 

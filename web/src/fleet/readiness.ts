@@ -1,5 +1,4 @@
-import type { AlarmView, Severity, StationState, VehicleView } from "../protocol";
-import type { Connection } from "../source/stationSource";
+import type { AlarmView, Connection, Severity, StationState, VehicleView } from "../protocol";
 import { text } from "../text/catalogue";
 import { alarmText, plainWords } from "../text/names";
 import { formatAge, formatFraction } from "../text/quantities";

@@ -1,11 +1,15 @@
 import type { AlarmView, Severity } from "../protocol";
+import { valuesOf } from "../protocol/values";
+
+/** 0 for the worst. */
+const RANKS: Readonly<Record<Severity, number>> = { critical: 0, error: 1, warning: 2, info: 3 };
 
 /** Worst first, as everything is listed. */
-export const SEVERITIES: readonly Severity[] = ["critical", "error", "warning", "info"];
+const SEVERITIES = valuesOf(RANKS);
 
 /** 0 for the worst. */
 export function severityRank(severity: Severity): number {
-  return SEVERITIES.indexOf(severity);
+  return RANKS[severity];
 }
 
 /** The worst severity; null for an empty list. */

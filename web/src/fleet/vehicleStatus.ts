@@ -24,7 +24,13 @@ export function simulation(vehicles: readonly Pick<VehicleView, "is_simulated">[
   return simulated === vehicles.length ? "all" : "mixed";
 }
 
-const ORDER: readonly Staleness[] = ["live", "late", "lost", "silent"];
+/** 0 for the newest telemetry. */
+const STALENESS_RANKS: Readonly<Record<Staleness, number>> = {
+  live: 0,
+  late: 1,
+  lost: 2,
+  silent: 3,
+};
 
 /** The station's staleness tiers: telemetry younger than 1 s, 3 s, 10 s; older or never received. */
 export function stalenessOfAge(ageS: number | null): Staleness {
@@ -40,7 +46,7 @@ export function stalenessNow(
   behindS: number,
 ): Staleness {
   const here = stalenessOfAge(agedBy(vehicle.telemetry_age_s, behindS));
-  return ORDER.indexOf(here) > ORDER.indexOf(vehicle.staleness) ? here : vehicle.staleness;
+  return STALENESS_RANKS[here] > STALENESS_RANKS[vehicle.staleness] ? here : vehicle.staleness;
 }
 
 /** Initial position error, and the highest speed and acceleration of a DJI aircraft on a mission. */

@@ -44,7 +44,11 @@ export function MapView() {
   const { aim, setMapCentre, siteDraft, calibration, baseMaps } = useConsole();
   const [map, setMap] = createSignal<MapLibre | null>(null);
   const ground = createDisplayedGround(source);
-  const sunHere = createSunHere(source, overlay, () => source.state()?.shade?.map?.number ?? null);
+  const sunHere = createSunHere(
+    source.light,
+    overlay,
+    () => source.state()?.shade?.map?.number ?? null,
+  );
   let holder!: HTMLDivElement;
   let scaleBar!: HTMLDivElement;
   let free!: HTMLDivElement;
@@ -55,9 +59,9 @@ export function MapView() {
     const made = createMap(holder, readColours(document).ground, source.maps.tileRequest);
     layers = [
       baseMap,
-      new GroundImageLayer((frameId) => source.groundImage(frameId), ground),
-      new ShadeLayer(overlay, source),
-      new ForecastLayer(overlay, source),
+      new GroundImageLayer((frameId) => source.light.groundImage(frameId), ground),
+      new ShadeLayer(overlay, source.light),
+      new ForecastLayer(overlay, source.light),
       new SurveyCellsLayer(overlay, source.surveys),
       new GraticuleLayer(scaleBar),
       new SurveyLayer(),

@@ -1,6 +1,6 @@
 import { type Accessor, createEffect, createSignal, on, Show } from "solid-js";
 import type { SunAtView } from "../protocol";
-import type { StationSource } from "../source/stationSource";
+import type { LightRequests } from "../source/lightRequests";
 import { text } from "../text/catalogue";
 import { formatAge, formatFraction } from "../text/quantities";
 import type { LonLat } from "./localGrid";
@@ -18,7 +18,7 @@ export interface SunHere {
 
 /** Asks for the place pointed at, and again with each new shade map; one request at a time. */
 export function createSunHere(
-  source: Pick<StationSource, "sunAt">,
+  light: Pick<LightRequests, "sunAt">,
   overlay: Overlay,
   mapNumber: Accessor<number | null>,
 ): SunHere {
@@ -37,7 +37,7 @@ export function createSunHere(
     do {
       isStale = false;
       const at = wanted();
-      const outcome = at === null ? null : await source.sunAt(at.lat, at.lon);
+      const outcome = at === null ? null : await light.sunAt(at.lat, at.lon);
       // A failed request leaves nothing: an old answer would pass for a new one.
       setAnswer(outcome?.kind === "answered" && wanted() !== null ? outcome.value : null);
     } while (isStale);

@@ -1,7 +1,6 @@
 import type { Map as MapLibre } from "maplibre-gl";
 import { beforeEach, describe, expect, it, vi } from "vitest";
-import type { GroundImageView } from "../protocol";
-import type { Outcome, Picture } from "../source/stationSource";
+import type { GroundImageView, Outcome, Picture } from "../protocol";
 import { groundImage } from "../testing/fakeField";
 import { at, station } from "../testing/fakeState";
 import { GroundImageLayer } from "./groundImageLayer";

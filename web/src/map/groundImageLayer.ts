@@ -1,8 +1,8 @@
 import type { ImageSource, Map as MapLibre } from "maplibre-gl";
 import { type Accessor, createSignal } from "solid-js";
 import { createDisplayedFrame, type FrameInfo } from "../fleet/displayedFrame";
-import type { GroundImageView, StationState } from "../protocol";
-import type { Outcome, Picture, StationSource } from "../source/stationSource";
+import type { GroundImageView, Outcome, Picture, StationState } from "../protocol";
+import type { StationSource } from "../source/stationSource";
 import { BASE_MAP } from "./baseMapLayer";
 import { type Corners, cornersOf } from "./features";
 import type { Layer, Scene } from "./scene";

@@ -1,6 +1,6 @@
 import type { Map as MapLibre } from "maplibre-gl";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
-import type { Outcome, Picture } from "../source/stationSource";
+import type { Outcome, Picture } from "../protocol";
 import { shadeLine, survey } from "../testing/fakeField";
 import { station } from "../testing/fakeState";
 import { settled } from "../testing/renderPage";

@@ -1,6 +1,7 @@
 import type { ImageSource, Map as MapLibre } from "maplibre-gl";
 import { type Accessor, createSignal } from "solid-js";
-import type { Outcome, Picture, StationSource } from "../source/stationSource";
+import type { Outcome, Picture } from "../protocol";
+import type { LightRequests } from "../source/lightRequests";
 import type { SurveyRequests } from "../source/surveyRequests";
 import { shownSurvey } from "../text/survey";
 import { type Corners, cornersOf } from "./features";
@@ -117,7 +118,7 @@ export abstract class PictureOverlay implements Layer {
 export class ShadeLayer extends PictureOverlay {
   constructor(
     private readonly overlay: Overlay,
-    private readonly source: Pick<StationSource, "shadePicture">,
+    private readonly light: Pick<LightRequests, "shadePicture">,
   ) {
     super("shade");
   }
@@ -126,7 +127,7 @@ export class ShadeLayer extends PictureOverlay {
     const map = scene.state.shade?.map ?? null;
     if (this.overlay.kind() !== "shade" || map === null) return null;
     const key = `${map.number}`;
-    return { key, corners: map.corners, fetch: () => this.source.shadePicture(map.number) };
+    return { key, corners: map.corners, fetch: () => this.light.shadePicture(map.number) };
   }
 }
 
@@ -134,7 +135,7 @@ export class ShadeLayer extends PictureOverlay {
 export class ForecastLayer extends PictureOverlay {
   constructor(
     private readonly overlay: Overlay,
-    private readonly source: Pick<StationSource, "forecastPicture">,
+    private readonly light: Pick<LightRequests, "forecastPicture">,
   ) {
     super("forecast");
   }
@@ -146,7 +147,7 @@ export class ForecastLayer extends PictureOverlay {
     return {
       key: `${forecast.number}:${lead_s}`,
       corners: forecast.corners,
-      fetch: () => this.source.forecastPicture(forecast.number, lead_s),
+      fetch: () => this.light.forecastPicture(forecast.number, lead_s),
     };
   }
 }

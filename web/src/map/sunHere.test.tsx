@@ -1,7 +1,6 @@
 import { createRoot, createSignal } from "solid-js";
 import { describe, expect, it, vi } from "vitest";
-import type { SunAtView } from "../protocol";
-import type { Outcome } from "../source/stationSource";
+import type { Outcome, SunAtView } from "../protocol";
 import { createOverlay } from "./overlays";
 import { createSunHere, sunHereText } from "./SunHere";
 

@@ -1,7 +1,7 @@
-import type { OrderAnswer } from "../orders/orderApi";
 import type { CommandView, OrderResult, Phase, Severity, VehicleView } from "../protocol";
-import { text } from "./catalogue";
-import { commandName, listNames, refusalText } from "./names";
+import { text } from "../text/catalogue";
+import { commandName, listNames, refusalText } from "../text/names";
+import type { OrderAnswer } from "./orderApi";
 
 /** An answer to an order in one line, and the vehicles behind its counts. */
 export interface AnswerSummary {
@@ -22,14 +22,21 @@ export interface AnswerLine {
  * one of which that is not certain is a refusal, since it may be in the air.
  */
 const ON_GROUND_RULE = "flying";
-const REACHED: readonly Phase[] = ["confirmed", "done", "started"];
-const FAILED: readonly Phase[] = [
-  "refused_by_station",
-  "refused_by_app",
-  "timed_out",
-  "expired",
-  "failed",
-];
+/** What became of an accepted order, as the answer counts it. */
+const COUNTED_AS: Readonly<Record<Phase, "reached" | "failed" | "underway">> = {
+  queued: "underway",
+  sent: "underway",
+  acknowledged: "underway",
+  confirmed: "reached",
+  started: "reached",
+  done: "reached",
+  refused_by_station: "failed",
+  refused_by_app: "failed",
+  timed_out: "failed",
+  superseded: "underway",
+  expired: "failed",
+  failed: "failed",
+};
 
 /** Orders whose confirmed vehicles are counted by a word: the others are accepted or not. */
 const REACHED_WORDS = new Map([
@@ -83,13 +90,15 @@ function summariseResults(
     };
   }
   const phases = new Map(commands.map(({ id, phase }) => [id, phase]));
-  const isIn = ({ command_id }: OrderResult, wanted: readonly Phase[]) =>
-    command_id !== null && wanted.includes(phases.get(command_id) ?? "queued");
-  const reached = accepted.filter((result) => isIn(result, REACHED));
-  const failed = accepted.filter((result) => isIn(result, FAILED));
-  const underway = accepted.filter(
-    (result) => !reached.includes(result) && !failed.includes(result),
-  );
+  const countedAs = (as: "reached" | "failed" | "underway") =>
+    accepted.filter(
+      ({ command_id }) => COUNTED_AS[phases.get(command_id ?? -1) ?? "queued"] === as,
+    );
+  const [reached, failed, underway] = [
+    countedAs("reached"),
+    countedAs("failed"),
+    countedAs("underway"),
+  ];
   const word = REACHED_WORDS.get(order);
   const total = accepted.length + refused.length;
   const [one] = accepted;

@@ -4,7 +4,7 @@ import type { LonLat } from "../map/localGrid";
 import { positionOf } from "../map/scene";
 import type { Order, VehicleView } from "../protocol";
 import type { Clock } from "../source/clock";
-import type { StationSource } from "../source/stationSource";
+import type { OrderRequests } from "../source/orderRequests";
 import { vehicleLabel } from "../text/names";
 import { createLengthField, type LengthField, numberIn } from "../text/units";
 import { type Course, courseOf } from "./course";
@@ -45,7 +45,7 @@ export interface FlyHere {
 
 export function createFlyHere(
   vehicle: Accessor<VehicleView | null>,
-  source: Pick<StationSource, "check">,
+  orders: Pick<OrderRequests, "check">,
   orderApi: Pick<OrderApi, "order">,
   clock: Clock,
 ): FlyHere {
@@ -65,7 +65,7 @@ export function createFlyHere(
       ? null
       : { serials: [target_serial], order: body };
   });
-  const check = createOrderCheck(source, clock, named);
+  const check = createOrderCheck(orders, clock, named);
   const labels = () => {
     const selected = vehicle();
     return selected === null ? [] : [vehicleLabel(selected)];

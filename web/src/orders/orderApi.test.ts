@@ -1,6 +1,5 @@
 import { describe, expect, it } from "vitest";
-import type { OrderResult } from "../protocol";
-import type { NamedOrder, Outcome } from "../source/stationSource";
+import type { NamedOrder, OrderResult, Outcome } from "../protocol";
 import { FakeClock } from "../testing/fakeClock";
 import { orderResult, vehicle } from "../testing/fakeState";
 import { ACCEPTED_SHOWN_MS, createOrderApi } from "./orderApi";
@@ -23,7 +22,7 @@ function setUp() {
   const wait = () => new Promise<Results>((resolve) => answers.push(resolve));
   const orderApi = createOrderApi(
     {
-      order: (order) => {
+      send: (order) => {
         sent.push(order);
         return wait();
       },

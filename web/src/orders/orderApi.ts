@@ -1,7 +1,7 @@
 import { type Accessor, createSignal } from "solid-js";
-import type { OrderResult } from "../protocol";
+import type { NamedOrder, OrderResult, Outcome } from "../protocol";
 import type { Clock } from "../source/clock";
-import type { NamedOrder, Outcome, StationSource } from "../source/stationSource";
+import type { OrderRequests } from "../source/orderRequests";
 import { text } from "../text/catalogue";
 import { commandName } from "../text/names";
 
@@ -26,9 +26,9 @@ export interface OrderApi {
 /** An answer without refusals disappears after this time; the command list keeps the result. */
 export const ACCEPTED_SHOWN_MS = 10_000;
 
-type OrderSource = Pick<StationSource, "order" | "allStop" | "fleetReturn">;
+type Orders = Pick<OrderRequests, "send" | "allStop" | "fleetReturn">;
 
-export function createOrderApi(source: OrderSource, clock: Clock): OrderApi {
+export function createOrderApi(orders: Orders, clock: Clock): OrderApi {
   const [lastAnswer, setLastAnswer] = createSignal<OrderAnswer | null>(null);
   let newest = 0;
 
@@ -55,11 +55,11 @@ export function createOrderApi(source: OrderSource, clock: Clock): OrderApi {
     lastAnswer,
     order: async (order, labels) => {
       if (order.serials.length === 0) return;
-      await run(commandName(order.order.kind), labels, () => source.order(order));
+      await run(commandName(order.order.kind), labels, () => orders.send(order));
     },
-    allStop: () => run(text.orders.allStop, [text.orders.allFlying], () => source.allStop()),
+    allStop: () => run(text.orders.allStop, [text.orders.allFlying], () => orders.allStop()),
     fleetReturn: (serials, labels) =>
-      run(text.orders.fleetReturn, labels, () => source.fleetReturn(serials)),
+      run(text.orders.fleetReturn, labels, () => orders.fleetReturn(serials)),
     dismiss: () => setLastAnswer(null),
   };
 }

@@ -1,7 +1,7 @@
 import { type Accessor, createEffect, createMemo, createSignal, onCleanup } from "solid-js";
-import type { OrderResult } from "../protocol";
+import type { NamedOrder, OrderResult, Outcome } from "../protocol";
 import type { Clock } from "../source/clock";
-import type { NamedOrder, Outcome, StationSource } from "../source/stationSource";
+import type { OrderRequests } from "../source/orderRequests";
 import { text } from "../text/catalogue";
 import { refusalText } from "../text/names";
 
@@ -19,7 +19,7 @@ const REPEAT_MS = 1000;
 
 /** Checks an order with the safety gate when it changes and then once a second; null stops checking. */
 export function createOrderCheck(
-  source: Pick<StationSource, "check">,
+  orders: Pick<OrderRequests, "check">,
   clock: Clock,
   order: Accessor<NamedOrder | null>,
 ): Accessor<OrderCheck> {
@@ -33,7 +33,7 @@ export function createOrderCheck(
     let isCancelled = false;
     let cancel = clock.after(DEBOUNCE_MS, () => void send());
     const send = async () => {
-      const outcome = await source.check(order);
+      const outcome = await orders.check(order);
       if (isCancelled) return;
       setJudgement(checkOf(outcome));
       cancel = clock.after(REPEAT_MS, () => void send());

@@ -1,8 +1,8 @@
 import { type Accessor, createMemo, createSignal } from "solid-js";
 import type { LonLat } from "../map/localGrid";
-import type { NewZone } from "../source/stationSource";
+import type { NewZone, ZoneKind } from "../protocol";
 import { createLengthField, type LengthField, numberIn } from "../text/units";
-import { ZONE_KINDS, type ZoneKind } from "../text/zones";
+import { ZONE_KINDS } from "../text/zones";
 
 const RADIUS_M = 20;
 

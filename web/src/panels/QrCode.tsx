@@ -1,5 +1,5 @@
 import { createResource, onCleanup, Show } from "solid-js";
-import type { Outcome, Picture } from "../source/stationSource";
+import type { Outcome, Picture } from "../protocol";
 import "./qrCode.css";
 
 /** A QR code that the station draws; nothing while it does not. */

@@ -89,3 +89,16 @@ export type Phase = CommandView["phase"];
 export type Severity = AlarmView["severity"];
 export type Order = OrderRequest["order"];
 export type AuthorityHolder = AuthorityView["holder"];
+export type Role = AccessView["role"];
+export type ZoneKind = TemporaryZoneView["kind"];
+export type {
+  Connection,
+  FlightFile,
+  NamedOrder,
+  NewSurvey,
+  NewZone,
+  Outcome,
+  Picture,
+  TimelineFilter,
+  TimelineSubject,
+} from "./requests";

@@ -1,7 +1,6 @@
 import { type Accessor, createMemo, createSignal } from "solid-js";
-import type { SiteVehiclesView } from "../protocol";
+import type { Outcome, SiteVehiclesView } from "../protocol";
 import type { Clock } from "../source/clock";
-import type { Outcome } from "../source/stationSource";
 import { text } from "../text/catalogue";
 
 /*

@@ -1,8 +1,7 @@
 import type { Accessor } from "solid-js";
-import type { SiteVehiclesResponse, SiteVehiclesView, SiteVehicleView } from "../protocol";
+import type { Outcome, SiteVehiclesResponse, SiteVehiclesView, SiteVehicleView } from "../protocol";
 import type { Clock } from "../source/clock";
 import type { SiteRequests } from "../source/siteRequests";
-import type { Outcome } from "../source/stationSource";
 import { text } from "../text/catalogue";
 import { type Answer, createSavedDraft, NO_REASON, type SavedDraft } from "./savedDraft";
 

@@ -1,14 +1,5 @@
+import type { FlightFile } from "../protocol";
 import { answered, READ, RECORD, type StationHttp } from "./stationHttp";
-
-/** A file that the station makes of a flight record. */
-export type FlightFile =
-  | "tracks.gpx"
-  | "tracks.geojson"
-  | "tracks.csv"
-  | "surveys.kml"
-  | "sun.tif"
-  | "coverage.png"
-  | "report.html";
 
 export type FlightRequests = ReturnType<typeof flightRequests>;
 

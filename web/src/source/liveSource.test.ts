@@ -69,7 +69,7 @@ describe("the live source", () => {
 
   it("sends the token as a header and as a subprotocol, never in a URL", async () => {
     const { source, sockets, requests } = setUp(() => new Response("png"), "s3cret-token");
-    await source.groundImage(7);
+    await source.light.groundImage(7);
     expect(sockets[0]?.protocols).toEqual(["recon.v1", "recon.token.s3cret-token"]);
     expect(requests[0]?.headers.get("Authorization")).toBe("Bearer s3cret-token");
     expect(`${sockets[0]?.url} ${requests[0]?.url}`).not.toContain("s3cret");
@@ -103,9 +103,9 @@ describe("the live source", () => {
     expect(sockets[1]?.url).toContain("02".repeat(16));
     const place = { latitude_deg: 44.7, longitude_deg: -93.07, height_above_takeoff_m: 40 };
     const goto = { kind: "goto" as const, ...place, speed_mps: 5 };
-    await source.check({ serials: ["A"], order: goto });
-    await source.order({ serials: ["A"], order: goto });
-    await source.order({ serials: ["A"], order: { kind: "hover" } });
+    await source.orders.check({ serials: ["A"], order: goto });
+    await source.orders.send({ serials: ["A"], order: goto });
+    await source.orders.send({ serials: ["A"], order: { kind: "hover" } });
     const asked = requests.filter(({ url }) => url.includes("/api/orders"));
     const bodies = await Promise.all(asked.map((request) => request.json()));
     expect(asked.map(({ url }) => new URL(url).pathname)).toEqual([
@@ -118,10 +118,10 @@ describe("the live source", () => {
 
   it("states when an order was given, in the station's time", async () => {
     const { source, sockets, requests, clock } = setUp(() => json({ results: [] }));
-    await source.order({ serials: ["A"], order: { kind: "hover" } });
+    await source.orders.send({ serials: ["A"], order: { kind: "hover" } });
     sockets[0]?.deliver(station([vehicle(1)], { time_ns: 1_780_000_000e9 }));
     clock.advance(400);
-    await source.order({ serials: ["A"], order: { kind: "hover" } });
+    await source.orders.send({ serials: ["A"], order: { kind: "hover" } });
     const bodies = await Promise.all(posted(requests).map((request) => request.json()));
     expect(bodies.map(({ given_at_unix_ms }) => given_at_unix_ms)).toEqual([
       null,
@@ -131,8 +131,8 @@ describe("the live source", () => {
 
   it("releases an all stop for named vehicles or for all", async () => {
     const { source, requests } = setUp(() => json({ accepted: true, rule: null, reason: null }));
-    await source.releaseStop(["A"]);
-    await source.releaseStop(null);
+    await source.orders.releaseStop(["A"]);
+    await source.orders.releaseStop(null);
     expect(requests.map(({ url }) => new URL(url).pathname)).toEqual([
       "/api/all-stop/release",
       "/api/all-stop/release",
@@ -143,8 +143,8 @@ describe("the live source", () => {
 
   it("admits or refuses the app of a link", async () => {
     const { source, requests } = setUp(() => json({ accepted: true, rule: null, reason: null }));
-    await source.admitApp(7, "A", "session");
-    await source.refuseApp(7);
+    await source.station.admitApp(7, "A", "session");
+    await source.station.refuseApp(7);
     const bodies = await Promise.all(posted(requests).map((request) => request.json()));
     expect(requests.map(({ url }) => new URL(url).pathname)).toEqual([
       "/api/apps/admit",
@@ -159,11 +159,11 @@ describe("the live source", () => {
   it("encodes the serial in requests about one vehicle", async () => {
     const response = { accepted: false, rule: "stale", reason: "no telemetry" };
     const { source, requests } = setUp(() => json(response));
-    expect(await source.setAuthority("..", "operator")).toEqual({
+    expect(await source.vehicles.setAuthority("..", "operator")).toEqual({
       kind: "answered",
       value: response,
     });
-    await source.overridePreflight("a/b", "test flight");
+    await source.vehicles.overridePreflight("a/b", "test flight");
     const addresses = requests.map(({ url }) => new URL(url));
     expect(addresses.map(({ pathname }) => pathname)).toEqual([
       "/api/vehicle/authority",
@@ -175,7 +175,7 @@ describe("the live source", () => {
 
   it("reports why a hazard area was not cleared", async () => {
     const { source } = setUp(() => json({ error: "'A' is connected" }, 404));
-    expect(await source.dismissHazard("A")).toEqual({
+    expect(await source.vehicles.dismissHazard("A")).toEqual({
       kind: "failed",
       problem: "'A' is connected",
     });
@@ -183,7 +183,7 @@ describe("the live source", () => {
 
   it("sends orders to the named vehicles and never allows takeoff", async () => {
     const { source, requests } = setUp(() => json({ results: [] }));
-    await source.order({ serials: ["A", "B"], order: { kind: "land" } });
+    await source.orders.send({ serials: ["A", "B"], order: { kind: "land" } });
     const [request] = requests;
     expect(new URL(request?.url ?? "").pathname).toBe("/api/orders");
     expect(await request?.json()).toEqual({
@@ -205,17 +205,17 @@ describe("the live source", () => {
       reason: "on the ground",
     };
     const { source } = setUp(() => json({ results: [result] }));
-    expect(await source.allStop()).toEqual({ kind: "answered", value: [result] });
+    expect(await source.orders.allStop()).toEqual({ kind: "answered", value: [result] });
   });
 
   it("returns the station's error text", async () => {
     const { source } = setUp(() => json({ error: "no alarm 9" }, 404));
-    expect(await source.acknowledge(9)).toEqual({ kind: "failed", problem: "no alarm 9" });
+    expect(await source.station.acknowledge(9)).toEqual({ kind: "failed", problem: "no alarm 9" });
   });
 
   it("tells the operator what to do when the station is unreachable", async () => {
     const { source } = setUp(() => Promise.reject(new TypeError("fetch failed")));
-    const outcome = await source.order({ serials: ["A"], order: { kind: "hover" } });
+    const outcome = await source.orders.send({ serials: ["A"], order: { kind: "hover" } });
     expect(outcome).toMatchObject({
       kind: "failed",
       problem: expect.stringContaining("remote controllers"),
@@ -223,14 +223,18 @@ describe("the live source", () => {
   });
 
   it.each<[request: string, send: (source: LiveSource) => Promise<unknown>, ifLate: string]>([
-    ["an order", (one) => one.order(HOVER), "may still have arrived: check the command list"],
-    ["an all stop", (one) => one.allStop(), "may still have arrived: check the command list"],
-    ["a check of an order", (one) => one.check(HOVER), "Try again"],
-    ["a zone", (one) => one.drawZone(ZONE), "may still have taken effect"],
+    ["an order", (one) => one.orders.send(HOVER), "may still have arrived: check the command list"],
+    [
+      "an all stop",
+      (one) => one.orders.allStop(),
+      "may still have arrived: check the command list",
+    ],
+    ["a check of an order", (one) => one.orders.check(HOVER), "Try again"],
+    ["a zone", (one) => one.station.drawZone(ZONE), "may still have taken effect"],
     ["a survey's start", (one) => one.surveys.start(1, [], false), "may still have taken effect"],
     ["a survey's plan", (one) => one.surveys.plan(SURVEY), "No drone moves"],
-    ["a picture", (one) => one.groundImage(1), "Try again"],
-    ["the timeline", (one) => one.timeline(ALL, 50), "Try again"],
+    ["a picture", (one) => one.light.groundImage(1), "Try again"],
+    ["the timeline", (one) => one.station.timeline(ALL, 50), "Try again"],
     ["a flight's figures", (one) => one.flights.figures("a"), "recon export"],
     ["a flight's file", (one) => one.flights.file("a", "sun.tif"), "recon export"],
     ["the site", (one) => one.site.drawing(), "Nothing was saved"],
@@ -251,14 +255,16 @@ describe("the live source", () => {
 
   it("asks for the token when access is denied", async () => {
     const { source } = setUp(() => json({ error: "a token is needed" }, 401));
-    expect(await source.allStop()).toMatchObject({ problem: expect.stringContaining("token") });
+    expect(await source.orders.allStop()).toMatchObject({
+      problem: expect.stringContaining("token"),
+    });
   });
 
   it("returns the actual frame number of a picture", async () => {
     const { source, requests } = setUp(
       () => new Response("png", { headers: { "X-Frame-Id": "8" } }),
     );
-    const outcome = await source.vehicleFrame("a/b ?", 7);
+    const outcome = await source.vehicles.frame("a/b ?", 7);
     expect(outcome).toMatchObject({ kind: "answered", value: { frameId: 8 } });
     expect(requests[0]?.url).toContain("/api/vehicle/frame.jpg?serial=a%2Fb%20%3F&id=7");
   });
@@ -282,7 +288,7 @@ describe("the live source", () => {
           ? json({ held: ["Drone 1"], missed: ["Drone 2"] })
           : new Promise<Response>(() => {}),
       );
-      const stopped = source.allStop();
+      const stopped = source.orders.allStop();
       clock.advance(1_000);
       expect(await stopped).toMatchObject({
         kind: "answered",
@@ -302,12 +308,12 @@ describe("the live source", () => {
         if (request.url !== guardUrl) throw new TypeError("connection refused");
         return json({ held: ["Drone 1"], missed: [] });
       });
-      expect(await source.allStop()).toMatchObject({ value: [{ vehicle_name: "Drone 1" }] });
+      expect(await source.orders.allStop()).toMatchObject({ value: [{ vehicle_name: "Drone 1" }] });
     });
 
     it("leaves it alone when the station answers", async () => {
       const { clock, source, requests } = withGuard(() => json({ results: [] }));
-      expect(await source.allStop()).toEqual({ kind: "answered", value: [] });
+      expect(await source.orders.allStop()).toEqual({ kind: "answered", value: [] });
       clock.advance(5_000);
       expect(posted(requests).map(({ url }) => url)).not.toContain(guardUrl);
     });
@@ -316,7 +322,7 @@ describe("the live source", () => {
       const { source } = withGuard(() => {
         throw new TypeError("connection refused");
       });
-      expect(await source.allStop()).toMatchObject({ kind: "failed" });
+      expect(await source.orders.allStop()).toMatchObject({ kind: "failed" });
     });
   });
 });

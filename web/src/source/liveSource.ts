@@ -1,23 +1,20 @@
 import { createSignal } from "solid-js";
-import type { AccessView, AuthorityHolder, StationState } from "../protocol";
+import type { AccessView, Connection, StationState } from "../protocol";
 import type { Clock, Instant } from "./clock";
 import { flightRequests } from "./flightRequests";
 import { FramePacer, type NextFrame } from "./framePacer";
+import { lightRequests } from "./lightRequests";
 import { mapRequests } from "./mapRequests";
+import { orderRequests } from "./orderRequests";
 import { replayRequests } from "./replayRequests";
-import { Requests } from "./requests";
 import { siteRequests } from "./siteRequests";
 import { StationHttp } from "./stationHttp";
-import type {
-  Connection,
-  NamedOrder,
-  NewZone,
-  StationSource,
-  TimelineFilter,
-} from "./stationSource";
+import { stationRequests } from "./stationRequests";
+import type { StationSource } from "./stationSource";
 import { newStreamOwner, type Socket, Stream } from "./stream";
 import { StreamLag } from "./streamLag";
 import { surveyRequests } from "./surveyRequests";
+import { vehicleRequests } from "./vehicleRequests";
 
 /** Dependencies of a live source; tests pass fakes. */
 export interface LiveSourceOptions {
@@ -42,23 +39,22 @@ interface Received {
 /** WebSocket subprotocol of the stream. */
 export const STREAM_PROTOCOL = "recon.v1";
 
-/** A station that runs answers an all stop within some tens of milliseconds. */
-export const GUARD_AFTER_MS = 1_000;
-
 /** A source connected to a running station. */
 export class LiveSource implements StationSource {
   readonly state;
   readonly connection;
   readonly person;
-  readonly site;
-  readonly flights;
-  readonly maps;
+  readonly orders;
+  readonly vehicles;
   readonly surveys;
+  readonly light;
+  readonly site;
+  readonly maps;
+  readonly flights;
   readonly replay;
+  readonly station;
   private readonly lag = new StreamLag();
   private readonly stream: Stream;
-  private readonly http: StationHttp;
-  private readonly requests: Requests;
   private readonly clock: Clock;
   private owner = "";
 
@@ -71,13 +67,23 @@ export class LiveSource implements StationSource {
     this.connection = connection;
     const [person, setPerson] = createSignal<AccessView | null>(null);
     this.person = person;
-    this.http = new StationHttp(origin, token, (request) => options.fetch(request));
-    this.requests = new Requests(this.http);
-    this.site = siteRequests(this.http);
-    this.flights = flightRequests(this.http);
-    this.maps = mapRequests(this.http);
-    this.replay = replayRequests(this.http);
-    this.surveys = surveyRequests(this.http, () => this.stationNowMs());
+    const http = new StationHttp(origin, token, (request) => options.fetch(request));
+    const stationNowMs = () => this.stationNowMs();
+    this.orders = orderRequests(http, {
+      clock,
+      owner: () => this.owner,
+      stationNowMs,
+      guardUrl: () => state()?.station.guard_stop_url ?? null,
+      personName: () => person()?.name ?? null,
+    });
+    this.vehicles = vehicleRequests(http);
+    this.surveys = surveyRequests(http, stationNowMs);
+    this.light = lightRequests(http);
+    this.site = siteRequests(http);
+    this.maps = mapRequests(http);
+    this.flights = flightRequests(http);
+    this.replay = replayRequests(http);
+    this.station = stationRequests(http);
     const url = `${origin.replace(/^http/, "ws")}/api/stream`;
     const open = () => {
       // A new owner: orders held by an earlier connection stay stopped.
@@ -98,7 +104,7 @@ export class LiveSource implements StationSource {
         if (next.kind === "lost") {
           if (next.needsLogin !== true) void this.explain(next, setConnection);
         } else if (next.kind === "live") {
-          void this.requests.person().then((outcome) => {
+          void this.station.person().then((outcome) => {
             if (outcome.kind === "answered") setPerson(outcome.value);
           });
         }
@@ -118,20 +124,12 @@ export class LiveSource implements StationSource {
     lost: Connection & { kind: "lost" },
     setConnection: (connection: Connection) => void,
   ): Promise<void> {
-    const reason = await this.requests.refusalReason();
+    const reason = await this.station.refusalReason();
     if (reason !== null && this.connection() === lost) setConnection({ ...lost, reason });
   }
 
   behindS(now: Instant): number | null {
     return this.lag.behindS(now);
-  }
-
-  order(order: NamedOrder) {
-    return this.requests.order(order, this.owner, this.stationNowMs());
-  }
-
-  check(order: NamedOrder) {
-    return this.requests.check(order, this.owner, this.stationNowMs());
   }
 
   /** The station's present time by its newest state, Unix milliseconds; null before the first. */
@@ -141,118 +139,6 @@ export class LiveSource implements StationSource {
     return state === null || behindS === null
       ? null
       : Math.round(state.time_ns / 1e6 + behindS * 1000);
-  }
-
-  admitApp(linkId: number, serial: string, lasting: "always" | "session") {
-    return this.requests.admitApp(linkId, serial, lasting);
-  }
-
-  refuseApp(linkId: number) {
-    return this.requests.refuseApp(linkId);
-  }
-
-  drawZone(zone: NewZone) {
-    return this.requests.drawZone(zone);
-  }
-
-  endZone(id: number) {
-    return this.requests.endZone(id);
-  }
-
-  timeline(filter: TimelineFilter, atMost: number) {
-    return this.requests.timeline(filter, atMost);
-  }
-
-  releaseStop(serials: readonly string[] | null) {
-    return this.requests.releaseStop(serials);
-  }
-
-  fleetReturn(serials: readonly string[] | null) {
-    return this.requests.fleetReturn(serials, this.stationNowMs());
-  }
-
-  lookAside(serial: string) {
-    return this.requests.lookAside(serial, this.stationNowMs());
-  }
-
-  relieve(serial: string, spare: string, takeoff: boolean) {
-    return this.requests.relieve(serial, spare, takeoff, this.stationNowMs());
-  }
-
-  setAuthority(serial: string, holder: AuthorityHolder, takeOver = false) {
-    return this.requests.setAuthority(serial, holder, takeOver);
-  }
-
-  preflight(serial: string) {
-    return this.requests.preflight(serial);
-  }
-
-  overridePreflight(serial: string, reason: string) {
-    return this.requests.overridePreflight(serial, reason);
-  }
-
-  dismissHazard(name: string) {
-    return this.requests.dismissHazard(name);
-  }
-
-  setSeparationHold(isOn: boolean) {
-    return this.requests.setSeparationHold(isOn);
-  }
-
-  /** Asks the station's guard too, when the station does not answer. */
-  async allStop() {
-    const guardUrl = this.state()?.station.guard_stop_url ?? null;
-    const asked = this.requests.allStop();
-    if (guardUrl === null) return asked;
-    const silence = new Promise<null>((resolve) =>
-      this.clock.after(GUARD_AFTER_MS, () => resolve(null)),
-    );
-    const first = await Promise.race([asked, silence]);
-    if (first?.kind === "answered") return first;
-    const held = await this.requests.allStopAtGuard(guardUrl, this.person()?.name ?? null);
-    return held.kind === "answered" ? held : asked;
-  }
-
-  acknowledge(alarmId: number) {
-    return this.requests.acknowledge(alarmId);
-  }
-
-  vehicleFrame(serial: string, frameId: number) {
-    return this.http.picture(
-      `/api/vehicle/frame.jpg?serial=${encodeURIComponent(serial)}&id=${frameId}`,
-    );
-  }
-
-  groundImage(frameId: number) {
-    return this.http.picture(`/api/ground-image.png?id=${frameId}`);
-  }
-
-  sharedAddressCode() {
-    return this.http.picture("/api/access/qr.svg");
-  }
-
-  appAddressCode() {
-    return this.http.picture("/api/apps/qr.svg");
-  }
-
-  groundImageFile() {
-    return this.http.picture("/api/ground-image.tif");
-  }
-
-  shadePicture(number: number) {
-    return this.http.picture(`/api/shade.png?id=${number}`);
-  }
-
-  forecastPicture(number: number, lead_s: number) {
-    return this.http.picture(`/api/forecast.png?id=${number}&lead_s=${lead_s}`);
-  }
-
-  sunAt(latitudeDeg: number, longitudeDeg: number) {
-    return this.requests.sunAt(latitudeDeg, longitudeDeg);
-  }
-
-  upwindPlace(serial: string) {
-    return this.requests.upwindPlace(serial);
   }
 
   close(): void {

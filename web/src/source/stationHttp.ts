@@ -1,7 +1,7 @@
 import createClient from "openapi-fetch";
+import type { Outcome, Picture } from "../protocol";
 import type { paths } from "../protocol/schema";
 import { text } from "../text/catalogue";
-import type { Outcome, Picture } from "./stationSource";
 
 /** How long a request may take, and what the operator does when it took longer. */
 export interface Limit {

@@ -1,9 +1,8 @@
 import { describe, expect, it } from "vitest";
-import type { StationState } from "../protocol";
+import type { Connection, StationState } from "../protocol";
 import { FakeClock } from "../testing/fakeClock";
 import { FakeSocket } from "../testing/fakeSocket";
 import { station, vehicle } from "../testing/fakeState";
-import type { Connection } from "./stationSource";
 import { OPENING_MS, RECONNECT_DELAYS_MS, readState, SILENCE_MS, Stream } from "./stream";
 
 function setUp() {

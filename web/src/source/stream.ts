@@ -1,8 +1,7 @@
-import type { StationState, VehicleView } from "../protocol";
+import type { Connection, StationState, VehicleView } from "../protocol";
 import { text } from "../text/catalogue";
 import { capitalised } from "../text/names";
 import type { Clock } from "./clock";
-import type { Connection } from "./stationSource";
 
 /** Length of an owner name; random, so that no page can guess another's. */
 const OWNER_BYTES = 16;

@@ -1,9 +1,5 @@
-import type { SurveyRequest, SurveyResponse, SurveyWays } from "../protocol";
+import type { NewSurvey, SurveyRequest, SurveyResponse, SurveyWays } from "../protocol";
 import { answered, CHANGE, PLANNING, READ, type StationHttp } from "./stationHttp";
-
-/** A survey to plan; omitted fields use the station's defaults. */
-export type NewSurvey = Pick<SurveyRequest, "speed_mps"> &
-  Partial<Omit<SurveyRequest, "camera">> & { camera?: Partial<SurveyRequest["camera"]> };
 
 export type SurveyRequests = ReturnType<typeof surveyRequests>;
 

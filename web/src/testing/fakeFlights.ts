@@ -1,11 +1,11 @@
 import type {
   FlightFiguresView,
   FlightView,
+  Outcome,
   SurveyCameraView,
   SurveyEstimateView,
 } from "../protocol";
 import type { FlightRequests } from "../source/flightRequests";
-import type { Outcome } from "../source/stationSource";
 import type { SurveyRequests } from "../source/surveyRequests";
 import { surveyEstimate } from "./fakeField";
 import { answered, failed, noPicture, type PageRequests } from "./pageRequests";

@@ -2,20 +2,18 @@ import { createSignal } from "solid-js";
 import type {
   AccessView,
   BaseMapsView,
+  Connection,
+  NamedOrder,
   OrderResult,
+  Outcome,
   PreflightView,
   ReplayMarksView,
   StationState,
   TimelineEntryView,
+  TimelineFilter,
   UpwindView,
 } from "../protocol";
-import type {
-  Connection,
-  NamedOrder,
-  Outcome,
-  StationSource,
-  TimelineFilter,
-} from "../source/stationSource";
+import type { StationSource } from "../source/stationSource";
 import { fakeFlightRequests, fakeFlights, fakeSurveyRequests } from "./fakeFlights";
 import { fakeSite, fakeSiteRequests } from "./fakeSite";
 import { answered, failed, noPicture, PageRequests } from "./pageRequests";
@@ -54,7 +52,7 @@ export function createFakeStation(first: StationState | null) {
     preflight: failed("no checklist in this test") as Outcome<PreflightView>,
     upwindPlace: answered<UpwindView>({ place: null, reason: "no region in this test" }),
     marks: { marks: [], read_share: 0 } as ReplayMarksView,
-    fetchFrame: noPicture as StationSource["vehicleFrame"],
+    fetchFrame: noPicture as StationSource["vehicles"]["frame"],
     timeline: { entries: [], problem: null, asked: [] } as FakeTimeline,
     site: fakeSite(),
     flights: fakeFlights(),
@@ -71,9 +69,55 @@ export function fakeSource(station: FakeStation): StationSource {
     state: station.state,
     connection: station.connection,
     person: station.person,
-    sharedAddressCode: noPicture,
-    appAddressCode: noPicture,
     behindS: () => station.behindS,
+    orders: {
+      send: async (order) => {
+        station.orders.push(order);
+        return answered(station.answer);
+      },
+      check: async (order) => {
+        station.checks.push(order);
+        return answered(station.answer);
+      },
+      allStop: async () => {
+        station.allStops += 1;
+        return answered(station.answer);
+      },
+      releaseStop: (releasedStop) => requests.answer({ releasedStop }),
+      fleetReturn: async (serials) => {
+        requests.sent.push({ fleetReturn: serials });
+        return answered(station.answer);
+      },
+      lookAside: (serial) => requests.answer({ lookAside: serial }),
+      relieve: (relieved, spare, takeoff) => requests.answer({ relieved, spare, takeoff }),
+    },
+    vehicles: {
+      setAuthority: (serial, authority, takeOver) =>
+        requests.answer({ authority, serial, ...(takeOver && { takeOver }) }),
+      preflight: async () => station.preflight,
+      overridePreflight: (serial, override) => requests.answer({ override, serial }),
+      dismissHazard: async (clearedHazard) => {
+        requests.sent.push({ clearedHazard });
+        return answered(null);
+      },
+      frame: (serial, frameId) => station.fetchFrame(serial, frameId),
+    },
+    surveys: fakeSurveyRequests(station.flights, requests),
+    light: {
+      groundImage: noPicture,
+      groundImageFile: noPicture,
+      shadePicture: noPicture,
+      forecastPicture: noPicture,
+      sunAt: noPicture,
+      upwindPlace: async () => station.upwindPlace,
+    },
+    site: fakeSiteRequests(station.site),
+    maps: {
+      list: async () => station.maps,
+      tiles: ({ name }) => `http://station/api/maps/${name}/{z}/{x}/{y}`,
+      tileRequest: (url) => ({ url }),
+    },
+    flights: fakeFlightRequests(station.flights, requests),
     replay: {
       marks: async () => answered(station.marks),
       change: async (transport) => {
@@ -84,71 +128,36 @@ export function fakeSource(station: FakeStation): StationSource {
           : answered(replay);
       },
     },
-    order: async (order) => {
-      station.orders.push(order);
-      return answered(station.answer);
+    station: {
+      person: async () => failed("nobody is asked for in this test"),
+      refusalReason: async () => null,
+      sharedAddressCode: noPicture,
+      appAddressCode: noPicture,
+      admitApp: (admittedLink, serial, lasting) =>
+        requests.answer({ admittedLink, serial, lasting }),
+      refuseApp: (refusedLink) => requests.answer({ refusedLink }),
+      acknowledge: async (id) => {
+        station.acknowledged.push(id);
+        return answered(null);
+      },
+      drawZone: (drawnZone) => requests.answer({ drawnZone }, { zone: null }),
+      endZone: (endedZone) => requests.answer({ endedZone }),
+      setSeparationHold: async (separationHold) => {
+        requests.sent.push({ separationHold });
+        return answered(null);
+      },
+      timeline: async (filter, atMost) => {
+        const { asked, problem, entries } = station.timeline;
+        asked.push(filter);
+        if (problem !== null) return failed(problem);
+        const found = entries.filter(
+          ({ n, serial }) =>
+            (filter.before === null || n < filter.before) &&
+            (filter.serial === null || serial === filter.serial),
+        );
+        return answered({ entries: found.slice(0, atMost), has_more: found.length > atMost });
+      },
     },
-    check: async (order) => {
-      station.checks.push(order);
-      return answered(station.answer);
-    },
-    allStop: async () => {
-      station.allStops += 1;
-      return answered(station.answer);
-    },
-    fleetReturn: async (serials) => {
-      requests.sent.push({ fleetReturn: serials });
-      return answered(station.answer);
-    },
-    drawZone: (drawnZone) => requests.answer({ drawnZone }, { zone: null }),
-    endZone: (endedZone) => requests.answer({ endedZone }),
-    releaseStop: (releasedStop) => requests.answer({ releasedStop }),
-    admitApp: (admittedLink, serial, lasting) => requests.answer({ admittedLink, serial, lasting }),
-    refuseApp: (refusedLink) => requests.answer({ refusedLink }),
-    lookAside: (serial) => requests.answer({ lookAside: serial }),
-    relieve: (relieved, spare, takeoff) => requests.answer({ relieved, spare, takeoff }),
-    setAuthority: (serial, authority, takeOver) =>
-      requests.answer({ authority, serial, ...(takeOver && { takeOver }) }),
-    preflight: async () => station.preflight,
-    overridePreflight: (serial, override) => requests.answer({ override, serial }),
-    dismissHazard: async (clearedHazard) => {
-      requests.sent.push({ clearedHazard });
-      return answered(null);
-    },
-    setSeparationHold: async (separationHold) => {
-      requests.sent.push({ separationHold });
-      return answered(null);
-    },
-    acknowledge: async (id) => {
-      station.acknowledged.push(id);
-      return answered(null);
-    },
-    vehicleFrame: (serial, frameId) => station.fetchFrame(serial, frameId),
-    groundImage: noPicture,
-    groundImageFile: noPicture,
-    shadePicture: noPicture,
-    forecastPicture: noPicture,
-    sunAt: noPicture,
-    upwindPlace: async () => station.upwindPlace,
-    timeline: async (filter, atMost) => {
-      const { asked, problem, entries } = station.timeline;
-      asked.push(filter);
-      if (problem !== null) return failed(problem);
-      const found = entries.filter(
-        ({ n, serial }) =>
-          (filter.before === null || n < filter.before) &&
-          (filter.serial === null || serial === filter.serial),
-      );
-      return answered({ entries: found.slice(0, atMost), has_more: found.length > atMost });
-    },
-    site: fakeSiteRequests(station.site),
-    flights: fakeFlightRequests(station.flights, requests),
-    maps: {
-      list: async () => station.maps,
-      tiles: ({ name }) => `http://station/api/maps/${name}/{z}/{x}/{y}`,
-      tileRequest: (url) => ({ url }),
-    },
-    surveys: fakeSurveyRequests(station.flights, requests),
     close: () => {},
   };
 }

@@ -1,7 +1,12 @@
-import type { ActionResponse, AuthorityHolder, ReplayTransport } from "../protocol";
-import type { FlightFile } from "../source/flightRequests";
-import type { NewZone, Outcome } from "../source/stationSource";
-import type { NewSurvey } from "../source/surveyRequests";
+import type {
+  ActionResponse,
+  AuthorityHolder,
+  FlightFile,
+  NewSurvey,
+  NewZone,
+  Outcome,
+  ReplayTransport,
+} from "../protocol";
 
 /** A request other than a vehicle order. */
 export type PageRequest =

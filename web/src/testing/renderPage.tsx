@@ -6,8 +6,10 @@ import type {
   AccessView,
   ActionResponse,
   BaseMapsView,
+  Connection,
   FlightFiguresView,
   FlightView,
+  NamedOrder,
   OrderResult,
   PreflightView,
   ReplayMarksView,
@@ -18,7 +20,7 @@ import type {
 import type { Announcement } from "../sound/announcements";
 import { createMutes } from "../sound/mutes";
 import type { SoundProblem } from "../sound/speaker";
-import type { Connection, NamedOrder, StationSource } from "../source/stationSource";
+import type { StationSource } from "../source/stationSource";
 import type { ThemeSwitch } from "../theme/theme";
 import { FakeClock } from "./fakeClock";
 import { surveyEstimate } from "./fakeField";
@@ -59,7 +61,7 @@ export interface RenderedPage {
   showFlights(flights: readonly FlightView[] | string, figures: FlightFiguresView | string): void;
   failPreflight(problem: string): void;
   /** Sets how vehicle pictures are fetched. */
-  fetchFramesWith(fetch: StationSource["vehicleFrame"]): void;
+  fetchFramesWith(fetch: StationSource["vehicles"]["frame"]): void;
   receive(state: StationState): void;
   connect(connection: Connection): void;
   /** Sets the person of the page's requests. */

@@ -1,5 +1,11 @@
-import type { ActionResponse, AlarmView, CommandView, Phase, VehicleView } from "../protocol";
-import type { Outcome } from "../source/stationSource";
+import type {
+  ActionResponse,
+  AlarmView,
+  CommandView,
+  Outcome,
+  Phase,
+  VehicleView,
+} from "../protocol";
 import { text } from "./catalogue";
 import { withLengthUnit } from "./units";
 

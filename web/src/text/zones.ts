@@ -3,8 +3,6 @@ import { text } from "./catalogue";
 import { formatAge } from "./quantities";
 import { formatLength } from "./units";
 
-export type ZoneKind = TemporaryZoneView["kind"];
-
 /** Each kind's name, and the reason that is sent when none is typed. */
 export const ZONE_KINDS = text.zones.kinds;
 

@@ -44,7 +44,7 @@ function GroupRow(props: { group: AlarmGroup }) {
   const [problem, setProblem] = createSignal<string | null>(null);
   const acknowledge = async () => {
     const open = props.group.alarms.filter((alarm) => !alarm.is_acknowledged);
-    const outcomes = await Promise.all(open.map(({ id }) => source.acknowledge(id)));
+    const outcomes = await Promise.all(open.map(({ id }) => source.station.acknowledge(id)));
     const failed = outcomes.find((outcome) => outcome.kind === "failed");
     setProblem(failed?.kind === "failed" ? failed.problem : null);
   };

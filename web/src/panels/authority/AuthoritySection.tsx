@@ -20,7 +20,7 @@ export function AuthoritySection(props: {
   const { source } = useConsole();
   const [problem, setProblem] = createSignal<string | null>(null);
   const transfer = async (holder: AuthorityHolder, takeOver = false) => {
-    setProblem(responseProblem(await source.setAuthority(props.serial, holder, takeOver)));
+    setProblem(responseProblem(await source.vehicles.setAuthority(props.serial, holder, takeOver)));
   };
   const others = () => anothersLease(props.lease, source.person());
   const subject = () => JSON.stringify([props.serial, props.authority.holder, others()?.person]);

@@ -18,7 +18,7 @@ export function CameraFrame(props: { serial: string; vehicle: VehicleView }) {
     (state) => state.vehicles.find(({ serial }) => serial === props.serial)?.frame ?? null,
   );
   const latest = new LatestPicture({
-    fetch: (key) => source.vehicleFrame(key.serial, key.frameId),
+    fetch: (key) => source.vehicles.frame(key.serial, key.frameId),
     addresses: {
       create: (blob) => URL.createObjectURL(blob),
       revoke: (url) => URL.revokeObjectURL(url),

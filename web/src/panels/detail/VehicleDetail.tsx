@@ -20,7 +20,7 @@ import "./detail.css";
 /** Telemetry of the vehicle selected last, each value with its age. */
 export function VehicleDetail() {
   const { fleet, selection, source, clock } = useConsole();
-  const cameraOrders = createOrderApi(source, clock);
+  const cameraOrders = createOrderApi(source.orders, clock);
   const shown = () => {
     const key = selection.keys().at(-1);
     return fleet.vehicles.find((vehicle) => vehicleKey(vehicle) === key);

@@ -1,6 +1,5 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
-import type { StationState } from "../../protocol";
-import type { Outcome, Picture } from "../../source/stationSource";
+import type { Outcome, Picture, StationState } from "../../protocol";
 import { station, vehicle } from "../../testing/fakeState";
 import { find, type RenderedPage, renderPage, settled } from "../../testing/renderPage";
 import { VehicleDetail } from "./VehicleDetail";

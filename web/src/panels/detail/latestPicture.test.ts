@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import type { Outcome, Picture } from "../../source/stationSource";
+import type { Outcome, Picture } from "../../protocol";
 import { FakeClock } from "../../testing/fakeClock";
 import { LatestPicture, type PictureKey } from "./latestPicture";
 

@@ -1,4 +1,4 @@
-import type { Outcome, Picture } from "../../source/stationSource";
+import type { Outcome, Picture } from "../../protocol";
 
 export interface PictureKey {
   readonly serial: string;

@@ -1,9 +1,8 @@
 import { createMemo, createResource, createSignal, For, onCleanup, onMount, Show } from "solid-js";
 import { useConsole } from "../../console";
-import type { FlightFiguresView, FlightView } from "../../protocol";
-import type { FlightFile } from "../../source/flightRequests";
+import type { FlightFiguresView, FlightView, Outcome, Picture } from "../../protocol";
+import { valuesOf } from "../../protocol/values";
 import { saveAs } from "../../source/saveAs";
-import type { Outcome, Picture } from "../../source/stationSource";
 import { text } from "../../text/catalogue";
 import { flightTime } from "../../text/flights";
 import { formatAge, formatBytes, formatFraction } from "../../text/quantities";
@@ -11,14 +10,7 @@ import { formatArea } from "../../text/survey";
 import { Empty, Panel, Problem } from "../Panel";
 import "./flights.css";
 
-const FILES = [
-  "report.html",
-  "sun.tif",
-  "surveys.kml",
-  "tracks.gpx",
-  "tracks.geojson",
-  "tracks.csv",
-] as const satisfies readonly FlightFile[];
+const FILES = valuesOf(text.flights.files);
 
 /** A browser holds a file in memory before it saves it. */
 const LARGEST_RECORD_BYTES = 500e6;

@@ -1,7 +1,7 @@
 import { createEffect } from "solid-js";
 import { useConsole } from "../../console";
 import { createHoldTimer, type HoldTimer } from "../../orders/holdToConfirm";
-import type { Role } from "../../source/roles";
+import type { Role } from "../../protocol";
 import { text } from "../../text/catalogue";
 import "./guard.css";
 

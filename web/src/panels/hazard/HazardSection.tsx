@@ -13,7 +13,7 @@ export function HazardSection(props: { hazard: HazardView; name: string }) {
   const { source, behindS } = useConsole();
   const [problem, setProblem] = createSignal<string | null>(null);
   const clear = async () => {
-    setProblem(responseProblem(await source.dismissHazard(props.hazard.dismissal_name)));
+    setProblem(responseProblem(await source.vehicles.dismissHazard(props.hazard.dismissal_name)));
   };
   return (
     <section class="section" aria-label={text.hazard.name}>

@@ -14,7 +14,7 @@ export function AppAddress() {
           <For each={addresses()}>{(address) => <p class="wire-text">{address}</p>}</For>
           <p class="muted">{addresses().length > 1 ? text.links.typeOneOf : text.links.typeIt}</p>
           <QrCode
-            load={() => source.appAddressCode()}
+            load={() => source.station.appAddressCode()}
             alt={text.links.qrCode(addresses()[0] ?? "")}
           />
         </section>

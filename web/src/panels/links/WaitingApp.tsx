@@ -14,9 +14,10 @@ export function WaitingApp(props: { linkId: number; address: string; waiting: Wa
   const admit = async (lasting: "always" | "session") => {
     const { serial } = props.waiting;
     if (serial === null) return;
-    setProblem(responseProblem(await source.admitApp(props.linkId, serial, lasting)));
+    setProblem(responseProblem(await source.station.admitApp(props.linkId, serial, lasting)));
   };
-  const refuse = async () => setProblem(responseProblem(await source.refuseApp(props.linkId)));
+  const refuse = async () =>
+    setProblem(responseProblem(await source.station.refuseApp(props.linkId)));
   // Another serial than the operator compared cancels a hold; without one nothing can be admitted.
   const subject = () => props.waiting.serial ?? "";
   const name = () => props.waiting.serial ?? text.names.link(props.linkId);

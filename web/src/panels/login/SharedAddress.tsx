@@ -19,7 +19,7 @@ export function SharedAddress() {
           <For each={access().urls}>{(url) => <p class="wire-text">{url}</p>}</For>
           <p class="muted">{text.login.certificate}</p>
           <code class="login-digits">{access().fingerprint}</code>
-          <QrCode load={() => source.sharedAddressCode()} alt={text.login.addressCode} />
+          <QrCode load={() => source.station.sharedAddressCode()} alt={text.login.addressCode} />
         </section>
       )}
     </Show>

@@ -1,7 +1,7 @@
 import { createEffect, createMemo, createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
+import { summarise } from "../../orders/answers";
 import type { OrderAnswer } from "../../orders/orderApi";
-import { summarise } from "../../text/answers";
 import { text } from "../../text/catalogue";
 import { listNames } from "../../text/names";
 import { SeverityMark } from "../SeverityMark";

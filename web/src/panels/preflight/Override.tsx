@@ -19,7 +19,7 @@ export function Override(props: { serial: string; name: string; onAccepted: () =
   // Not inline in the JSX, where it would be a computation that a held button reads outside any owner.
   const subject = () => (isEnough() ? JSON.stringify([props.serial, typed()]) : "");
   const override = async () => {
-    const outcome = await source.overridePreflight(props.serial, typed());
+    const outcome = await source.vehicles.overridePreflight(props.serial, typed());
     setProblem(responseProblem(outcome));
     if (responseProblem(outcome) === null) props.onAccepted();
   };

@@ -9,7 +9,7 @@ import {
   Switch,
 } from "solid-js";
 import { useConsole } from "../../console";
-import type { CheckView, PreflightView, Severity } from "../../protocol";
+import type { CheckView, Outcome, PreflightView, Severity } from "../../protocol";
 import { text } from "../../text/catalogue";
 import { personName } from "../../text/names";
 import { formatAge } from "../../text/quantities";
@@ -19,13 +19,13 @@ import { FailsafeTable } from "./FailsafeTable";
 import { Override } from "./Override";
 import "./preflight.css";
 import type { Clock } from "../../source/clock";
-import type { Outcome, StationSource } from "../../source/stationSource";
+import type { VehicleRequests } from "../../source/vehicleRequests";
 
 /** The preflight checklist of a vehicle, with instructions for failed items. */
 export function PreflightSection(props: { serial: string; name: string }) {
   const { source, clock } = useConsole();
   // The section is recreated per vehicle (`keyed`), so the serial never changes.
-  const preflight = createPreflight(source, clock, (() => props.serial)());
+  const preflight = createPreflight(source.vehicles, clock, (() => props.serial)());
   const shown = createMemo<PreflightView | null>((before) => {
     const answer = preflight.answer();
     return answer?.kind === "answered" ? answer.value : before;
@@ -159,7 +159,7 @@ export interface Preflight {
 }
 
 export function createPreflight(
-  source: Pick<StationSource, "preflight">,
+  vehicles: Pick<VehicleRequests, "preflight">,
   clock: Clock,
   serial: string,
 ): Preflight {
@@ -170,7 +170,7 @@ export function createPreflight(
   const refresh = async () => {
     newest += 1;
     const ownNumber = newest;
-    const outcome = await source.preflight(serial);
+    const outcome = await vehicles.preflight(serial);
     if (isDisposed || ownNumber !== newest) return;
     setAnswer(outcome);
     cancel();

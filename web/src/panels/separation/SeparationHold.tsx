@@ -27,7 +27,7 @@ export function SeparationSwitch() {
   const [problem, setProblem] = createSignal<string | null>(null);
   const isOn = () => fleet.station?.separation_hold_on ?? true;
   const turn = async (on: boolean) => {
-    const outcome = await source.setSeparationHold(on);
+    const outcome = await source.station.setSeparationHold(on);
     setProblem(outcome.kind === "failed" ? outcome.problem : null);
   };
   return (

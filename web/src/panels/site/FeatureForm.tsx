@@ -1,6 +1,7 @@
 import { createEffect, createMemo, createSignal, For, Index, on, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { LonLat } from "../../map/localGrid";
+import { valuesOf } from "../../protocol/values";
 import { LEAST_CORNERS } from "../../site/siteDraft";
 import {
   type Attribute,
@@ -45,8 +46,9 @@ export function FeatureForm(props: { feature: DraftFeature }) {
             value={String(props.feature.properties["datum"] ?? "ground")}
             onChange={(event) => set("datum", event.currentTarget.value)}
           >
-            <option value="ground">{text.feature.ground}</option>
-            <option value="wgs84">{text.feature.wgs84}</option>
+            <For each={valuesOf(text.feature.datums)}>
+              {(datum) => <option value={datum}>{text.feature.datums[datum]}</option>}
+            </For>
           </select>
         </label>
       </Show>

@@ -1,9 +1,8 @@
 import { Show } from "solid-js";
 import { useConsole } from "../../console";
-import type { SiteVehiclesView } from "../../protocol";
+import type { Role, SiteVehiclesView } from "../../protocol";
 import type { SavedDraft } from "../../site/savedDraft";
 import type { SiteDraft } from "../../site/siteDraft";
-import type { Role } from "../../source/roles";
 import { text } from "../../text/catalogue";
 import { personName } from "../../text/names";
 import { Problem } from "../Panel";

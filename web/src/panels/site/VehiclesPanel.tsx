@@ -10,6 +10,7 @@ import {
 } from "solid-js";
 import { useConsole } from "../../console";
 import type { SiteVehicleView } from "../../protocol";
+import { valuesOf } from "../../protocol/values";
 import { text } from "../../text/catalogue";
 import { colourOf, lookClasses } from "../../theme/theme";
 import { Empty, Panel, Problem } from "../Panel";
@@ -18,15 +19,7 @@ import "./vehicles.css";
 
 const columns = text.siteVehicles;
 
-const REFERENCES = [
-  ["", text.siteVehicles.references.unset],
-  ["takeoff", text.siteVehicles.references.takeoff],
-  ["wgs84", text.siteVehicles.references.wgs84],
-] as const;
-
-function referenceOf(value: string): "wgs84" | "takeoff" | null {
-  return value === "wgs84" || value === "takeoff" ? value : null;
-}
+const REFERENCES = valuesOf(text.siteVehicles.references);
 
 /** The site's vehicles as a table: connected or not, edited, checked, saved, and in force without a restart. */
 export function VehiclesPanel() {
@@ -171,10 +164,15 @@ function Row(props: {
         <select
           class="field"
           aria-label={text.siteVehicles.referenceOf(serial())}
-          value={props.row.waypoint_altitude ?? ""}
-          onChange={(event) => set({ waypoint_altitude: referenceOf(event.currentTarget.value) })}
+          value={props.row.waypoint_altitude ?? "unset"}
+          onChange={({ currentTarget: { value } }) => {
+            const reference = REFERENCES.find((one) => one === value) ?? "unset";
+            set({ waypoint_altitude: reference === "unset" ? null : reference });
+          }}
         >
-          <For each={REFERENCES}>{([value, label]) => <option value={value}>{label}</option>}</For>
+          <For each={REFERENCES}>
+            {(name) => <option value={name}>{text.siteVehicles.references[name]}</option>}
+          </For>
         </select>
       </td>
       <td data-label={columns.camera}>

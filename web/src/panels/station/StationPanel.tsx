@@ -110,7 +110,7 @@ function Download() {
   const { source } = useConsole();
   const [problem, setProblem] = createSignal<string | null>(null);
   const save = async () => {
-    const outcome = await source.groundImageFile();
+    const outcome = await source.light.groundImageFile();
     setProblem(outcome.kind === "failed" ? outcome.problem : null);
     if (outcome.kind === "answered") saveAs(outcome.value.blob, "ground-image.tif");
   };

@@ -20,7 +20,7 @@ function StopInForce(props: { latch: StopLatchView }) {
   const [problem, setProblem] = createSignal<string | null>(null);
   const held = () => fleet.vehicles.filter((vehicle) => vehicle.is_stopped).map(vehicleLabel);
   const names = () => (held().length > 0 ? listNames(held()) : text.stop.later);
-  const release = async () => setProblem(responseProblem(await source.releaseStop(null)));
+  const release = async () => setProblem(responseProblem(await source.orders.releaseStop(null)));
   return (
     <div class="card notice stop-latch" role="alert">
       <SeverityMark severity="critical" size={22} />
@@ -49,7 +49,8 @@ function StopInForce(props: { latch: StopLatchView }) {
 export function StopSection(props: { serial: string; name: string }) {
   const { source } = useConsole();
   const [problem, setProblem] = createSignal<string | null>(null);
-  const release = async () => setProblem(responseProblem(await source.releaseStop([props.serial])));
+  const release = async () =>
+    setProblem(responseProblem(await source.orders.releaseStop([props.serial])));
   return (
     <section class="section" aria-label={text.stop.section}>
       <p>

@@ -22,7 +22,7 @@ export function LookAside() {
       (motion) => motion !== null && !isOver(motion),
     );
   const order = async (serial: string) =>
-    setProblem(responseProblem(await source.lookAside(serial)));
+    setProblem(responseProblem(await source.orders.lookAside(serial)));
   const button = (label: string, name: string, serial: string) => (
     <GuardButton
       label={label}

@@ -3,11 +3,11 @@ import { useConsole } from "../../console";
 import type {
   MoveUpwindView,
   Order,
+  Outcome,
   UpwindPlaceView,
   UpwindView,
   VehicleView,
 } from "../../protocol";
-import type { Outcome } from "../../source/stationSource";
 import { text } from "../../text/catalogue";
 import { vehicleLabel } from "../../text/names";
 import { formatLength, withLengthUnit } from "../../text/units";
@@ -38,7 +38,7 @@ function Place(props: { vehicle: VehicleView }) {
   let cancel = () => {};
   let isClosed = false;
   const ask = async () => {
-    const outcome = await source.upwindPlace(serial());
+    const outcome = await source.light.upwindPlace(serial());
     if (isClosed) return;
     setAnswer(outcome);
     cancel = clock.after(ASK_EVERY_MS, () => void ask());

@@ -1,14 +1,15 @@
 import { createMemo, createResource, createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
-import type { SurveyResponse } from "../../protocol";
-import type { Outcome } from "../../source/stationSource";
+import type { Outcome, SurveyResponse } from "../../protocol";
+import { valuesOf } from "../../protocol/values";
 import { text } from "../../text/catalogue";
 import { vehicleLabel } from "../../text/names";
 import { createLengthField, inLengthUnit, lengthUnit } from "../../text/units";
 
-const PLANNERS = ["lawnmower_once", "lawnmower_again", "sunlit_first"] as const;
+/** The station's own planners, each under the name that a request has. */
+const PLANNERS = valuesOf(text.newSurvey.planners);
 
-const WHEN_DONE = ["return_home", "hover"] as const;
+const WHEN_DONE = valuesOf(text.newSurvey.thenDo);
 
 /** Heights that can be planned, above takeoff or above ground, and the one offered. */
 const [LOWEST_M, HIGHEST_M, USUAL_HEIGHT_M] = [10, 120, 50];

@@ -26,7 +26,7 @@ export function SurveyLight(props: { light: SurveyLightView }) {
       (motion) => motion !== null && !isOver(motion),
     );
   const relieve = async (serial: string, spare: string, takeoff: boolean) =>
-    setProblem(responseProblem(await source.relieve(serial, spare, takeoff)));
+    setProblem(responseProblem(await source.orders.relieve(serial, spare, takeoff)));
   const subject = (...parts: string[]) => (isUnderWay() ? "" : parts.join(" "));
   return (
     <div class="survey-light" data-testid="survey-light">

@@ -1,8 +1,7 @@
 import { createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import { targetsKey } from "../../orders/targets";
-import type { SurveyingView, SurveyResponse, SurveyView } from "../../protocol";
-import type { Outcome } from "../../source/stationSource";
+import type { Outcome, SurveyingView, SurveyResponse, SurveyView } from "../../protocol";
 import { text } from "../../text/catalogue";
 import { formatArea, sharePercent, surveyHeight, surveyStatus, timeLeft } from "../../text/survey";
 import { withLengthUnit } from "../../text/units";

@@ -1,7 +1,7 @@
 import { createEffect, createSignal, For, on, onCleanup, Show } from "solid-js";
 import { useConsole } from "../../console";
-import type { TimelineEntryView } from "../../protocol";
-import type { TimelineSubject } from "../../source/stationSource";
+import type { TimelineEntryView, TimelineSubject } from "../../protocol";
+import { valuesOf } from "../../protocol/values";
 import { text } from "../../text/catalogue";
 import { capitalised, personName, vehicleLabel, withoutNumbers } from "../../text/names";
 import { Empty, Panel, Problem } from "../Panel";
@@ -13,13 +13,7 @@ const PAGE = 50;
 const MOST = 500;
 const ALL = "";
 
-const SUBJECTS: readonly TimelineSubject[] = [
-  "orders",
-  "alarms",
-  "flights",
-  "operations",
-  "station",
-];
+const SUBJECTS = valuesOf(text.timeline.subjects);
 
 /** What happened in this run, the newest first: of all drones or one, by subject. */
 export function TimelinePanel() {
@@ -41,7 +35,7 @@ export function TimelinePanel() {
   /** Joins the newest to those shown; with `before`, adds those before that number. */
   const load = async (before: number | null) => {
     const asked = question;
-    const outcome = await source.timeline(
+    const outcome = await source.station.timeline(
       { serial: serial(), about: about(), before },
       before === null ? PAGE : 2 * PAGE,
     );

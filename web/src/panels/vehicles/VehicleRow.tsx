@@ -1,5 +1,6 @@
 import { createMemo, Show } from "solid-js";
 import { useConsole } from "../../console";
+import { doing, surveyPart } from "../../fleet/activity";
 import { anothersLease } from "../../fleet/operatorLease";
 import { hasBatteryWarning } from "../../fleet/readiness";
 import {
@@ -10,7 +11,6 @@ import {
   vehicleStatus,
 } from "../../fleet/vehicleStatus";
 import type { VehicleView } from "../../protocol";
-import { doing, surveyPart } from "../../text/activity";
 import { text } from "../../text/catalogue";
 import { vehicleLabel } from "../../text/names";
 import { agedBy, formatAge, formatFraction } from "../../text/quantities";

@@ -1,12 +1,12 @@
 import { createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { ZoneShape } from "../../orders/zoneDraft";
-import type { TemporaryZoneView } from "../../protocol";
+import type { TemporaryZoneView, ZoneKind } from "../../protocol";
 import { text } from "../../text/catalogue";
 import { personName, responseProblem } from "../../text/names";
 import { formatAge } from "../../text/quantities";
 import { lengthUnit } from "../../text/units";
-import { ZONE_KINDS, type ZoneKind, zoneEnd, zoneHeights, zoneName } from "../../text/zones";
+import { ZONE_KINDS, zoneEnd, zoneHeights, zoneName } from "../../text/zones";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Empty, Panel, Problem } from "../Panel";
 import "./zones.css";
@@ -52,7 +52,7 @@ export function ZonesPanel() {
 function ZoneRow(props: { zone: TemporaryZoneView }) {
   const { source, behindS } = useConsole();
   const [problem, setProblem] = createSignal<string | null>(null);
-  const end = async () => setProblem(responseProblem(await source.endZone(props.zone.id)));
+  const end = async () => setProblem(responseProblem(await source.station.endZone(props.zone.id)));
   return (
     <li class="row" data-testid={`zone-${props.zone.id}`}>
       <div class="row-line">
@@ -87,7 +87,7 @@ function DrawForm() {
   const draw = async () => {
     const zone = zoneDraft.zone();
     if (zone === null) return;
-    const refusal = responseProblem(await source.drawZone(zone));
+    const refusal = responseProblem(await source.station.drawZone(zone));
     setProblem(refusal);
     if (refusal === null) zoneDraft.leave();
   };

@@ -1,8 +1,4 @@
 import type { JSX } from "solid-js";
-import type { ReadinessLabel } from "../../fleet/readiness";
-import type { FilterName, GroupName, SortName } from "../../fleet/vehicleOrder";
-import type { VehicleActivity } from "../../fleet/vehicleStatus";
-import type { SoundProblem } from "../../sound/speaker";
 import { plural } from "./grammar";
 
 /** What vehicles do. */
@@ -15,7 +11,7 @@ export const activity = {
     Flying: "Flying",
     "On the ground": "On the ground",
     Unknown: "Unknown",
-  } satisfies Record<VehicleActivity, string>,
+  },
   waitingForSerial: "Waiting for serial number",
   onGroundStopped: "On the ground · all stop",
   mayTakeOff: "On the ground · may take off",
@@ -36,7 +32,7 @@ export const readiness = {
     "Not ready": "Not ready",
     Warnings: "Warnings",
     Ready: "Ready",
-  } satisfies Record<ReadinessLabel, string>,
+  },
   why: "Why",
   reasons: "Reasons",
   noProblems: "All vehicles connected, no problems",
@@ -71,20 +67,20 @@ export const vehicles = {
     flying: "Flying",
     trouble: "With a problem",
     selected: "Selected",
-  } satisfies Record<FilterName, string>,
+  },
   sort: "Sort by",
   sorts: {
     number: "Number",
     name: "Name",
     battery: "Battery",
     trouble: "Trouble",
-  } satisfies Record<SortName, string>,
+  },
   group: "Group by",
   groups: {
     none: "No groups",
     activity: "What they do",
     role: "Kind",
-  } satisfies Record<GroupName, string>,
+  },
   imagers: "Imaging drones",
   surveyors: "Survey drones",
   noApp: "No companion app connected.",
@@ -134,7 +130,7 @@ export const sound = {
   problems: {
     blocked: "Press anywhere on this page to allow sound.",
     absent: "This browser plays no sound: watch the screen.",
-  } satisfies Record<SoundProblem, string>,
+  },
   full: "Tone and speech.",
   toneOnly: "Tone only: no English voice is installed.",
   muteAll: "Mute all",

@@ -1,5 +1,11 @@
-import type { ImagerReliefView, LookAsideView, MoveUpwindView, SurveyView } from "../../protocol";
-import type { LightPercents } from "../light";
+import type {
+  ImagerReliefView,
+  LookAsideView,
+  MoveUpwindView,
+  SunAtView,
+  SurveyRequest,
+  SurveyView,
+} from "../../protocol";
 
 const exposures = { locked: "locked", notLocked: "not locked", automatic: "automatic" };
 
@@ -13,7 +19,7 @@ export const sun = {
     sun: (share: string) => `Sun ${share}`,
     shade: (share: string) => `Shade ${share}`,
     unknown: (share: string) => `Light unknown ${share}`,
-  } satisfies Record<keyof LightPercents, (share: string) => string>,
+  } satisfies Record<SunAtView["light"], (share: string) => string>,
   inView: (age: string, exposure: keyof typeof exposures | null) =>
     exposure === null
       ? `of the ground in view, ${age} ago`
@@ -178,7 +184,10 @@ export const newSurvey = {
     sunlit_first: "What is in sun first",
   },
   whenDone: "When complete",
-  thenDo: { return_home: "Return home", hover: "Hover" },
+  thenDo: { return_home: "Return home", hover: "Hover" } satisfies Record<
+    SurveyRequest["when_done"],
+    string
+  >,
   lookAside: "Imaging drone may look aside automatically",
   upwind: "Imaging drone may move upwind automatically",
   battery: "When the imaging drone's battery ends",

@@ -1,6 +1,4 @@
-import type { OverlayKind } from "../../map/overlays";
-import type { AreaView } from "../../protocol";
-import type { ZoneKind } from "../zones";
+import type { AreaView, ZoneKind } from "../../protocol";
 import { plural } from "./grammar";
 
 export const map = {
@@ -59,7 +57,7 @@ export const layers = {
     shade: "Shade now",
     forecast: "Sun forecast",
     cells: "Coverage",
-  } satisfies Record<OverlayKind, string>,
+  },
   legend: "Legend",
   sun: "sun",
   shade: "shade",

@@ -1,6 +1,5 @@
 import type { JSX } from "solid-js";
-import type { OrderKind } from "../../orders/targets";
-import type { Phase, ReturningView } from "../../protocol";
+import type { Order, Phase, ReturningView } from "../../protocol";
 import { plural } from "./grammar";
 
 /** How each order ends, after its count or its vehicle: `2 of 3 holding`. */
@@ -23,18 +22,18 @@ export const orders = {
   selected: (vehicles: JSX.Element): JSX.Element => [vehicles, " selected"],
   notSentTo: (vehicles: string) => `Not sent to ${vehicles}: unidentified, ALL STOP only.`,
   selectFirst: "select vehicles first",
-  labels: { hover: "Hover", return_home: "Return", land: "Land" } satisfies OfOrder,
+  labels: { hover: "Hover", return_home: "Return", land: "Land" },
   /** Completes `keepHolding`. */
   verbs: {
     hover: "hover",
     return_home: "climb to the go-home height and return home",
     land: "land",
-  } satisfies OfOrder,
+  },
   notes: {
     hover: "Stop and hold position.",
     return_home: "Climbs to the aircraft's go-home height first.",
     land: "Land at the current position.",
-  } satisfies OfOrder,
+  },
   flyHere: "Fly here",
   flyHereOff: "Select one vehicle to send it to a place",
   flyHereHint: "Fly the selected vehicle to a position on the map (G)",
@@ -52,14 +51,12 @@ export const orders = {
     goto: "Fly here",
     nudge: "Nudge",
     hold_position: "Hold position",
-  } as Readonly<Record<string, string>>,
+  } satisfies Record<Order["kind"], string> as Readonly<Record<string, string>>,
   allStop: "All stop",
   fleetReturn: "Return in layers (hold first)",
   allFlying: "all flying vehicles",
   noCheck: "No check result from the station. Try again.",
 };
-
-type OfOrder = Record<OrderKind["kind"], string>;
 
 /** What became of an order. */
 export const answers = {

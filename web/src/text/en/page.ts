@@ -1,8 +1,4 @@
-import type { PanelName } from "../../panels/openPanels";
-import type { Severity } from "../../protocol";
-import type { Role } from "../../source/roles";
-import type { Theme } from "../../theme/theme";
-import type { LengthUnit } from "../units";
+import type { Role, Severity } from "../../protocol";
 import { listNames, listSome, plural } from "./grammar";
 
 export const page = {
@@ -40,7 +36,7 @@ export const panels = {
     links: "Links",
     flights: "After the flight",
     station: "Station and site",
-  } satisfies Record<PanelName, string>,
+  },
   close: (title: string) => `Close ${title}`,
   noData: "No data from the station yet.",
 };
@@ -91,14 +87,14 @@ export const menu = {
   hint: "Panels, colours, help",
   help: "Keys and orders",
   units: "Units",
-  lengthUnits: { m: "Metres", ft: "Feet" } satisfies Record<LengthUnit, string>,
+  lengthUnits: { m: "Metres", ft: "Feet" },
   colours: "Colours",
   themes: {
     auto: "As the computer",
     light: "Light",
     dark: "Dark",
     sun: "Bright sun",
-  } satisfies Record<Theme, string>,
+  },
 };
 
 export const help = {

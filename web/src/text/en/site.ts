@@ -1,5 +1,5 @@
 import type { JSX } from "solid-js";
-import type { LayerName } from "../../protocol";
+import type { AreaView, LayerName, VehicleView } from "../../protocol";
 import { plural } from "./grammar";
 
 /** A draft of the site that is checked and saved as a whole. */
@@ -68,8 +68,10 @@ export const feature = {
   floor: "Floor",
   ceiling: "Ceiling",
   datum: "Heights count from",
-  ground: "ground",
-  wgs84: "WGS84 ellipsoid",
+  datums: { ground: "ground", wgs84: "WGS84 ellipsoid" } satisfies Record<
+    NonNullable<AreaView["datum"]>,
+    string
+  >,
   altitude: "Altitude (WGS84)",
   serial: "Serial of its drone (empty: any)",
   tooManyCorners: (most: number) =>
@@ -121,7 +123,7 @@ export const siteVehicles = {
     unset: "Not set: missions are refused",
     takeoff: "Above takeoff",
     wgs84: "WGS84 ellipsoid",
-  },
+  } satisfies Record<VehicleView["waypoint_altitude"], string>,
   notConnected: "not connected",
   imager: "imaging drone",
   connected: "connected",

@@ -1,6 +1,5 @@
 import type { JSX } from "solid-js";
-import type { LinkView } from "../../protocol";
-import type { TimelineSubject } from "../../source/stationSource";
+import type { FlightFile, LinkView, TimelineSubject } from "../../protocol";
 
 /** What the page itself finds about the connection; the station's reasons are its own. */
 export const connection = {
@@ -180,7 +179,8 @@ export const flights = {
     "tracks.gpx": "Tracks GPX",
     "tracks.geojson": "Tracks GeoJSON",
     "tracks.csv": "Tracks CSV",
-  },
+    // The picture of the coverage is shown, not offered.
+  } satisfies Record<Exclude<FlightFile, "coverage.png">, string>,
   record: "Record MCAP",
   recordHint: "The whole record, for replays and bug reports",
   site: "Site",
