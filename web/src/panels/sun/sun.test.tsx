@@ -184,7 +184,7 @@ describe("view upwind", () => {
     expect(buttons()).toHaveLength(0);
   });
 
-  it("shows a flight by itself, and offers no look aside meanwhile", () => {
+  it("shows a flight automatically, and offers no look aside meanwhile", () => {
     const moving = {
       serial: "SN-001",
       vehicle_name: "Alder",
@@ -199,7 +199,7 @@ describe("view upwind", () => {
     const vehicles = [vehicle(1, { is_imager: true })];
     page = renderPage(SunPanel, station(vehicles, { shade: shadeLine(), move_upwind: moving }));
     const shown = find(page.root, "[data-testid=move-upwind]").textContent;
-    expect(shown).toContain("Alder flies upwind by itself, 224\u00a0m since 3");
+    expect(shown).toContain("Alder flies upwind automatically, 224\u00a0m since 3");
     const aside = find(page.root, "section[aria-label='Look aside'] button");
     expect(aside.getAttribute("aria-disabled")).toBe("true");
   });
