@@ -7,8 +7,9 @@ from random import Random
 
 from recon import wire
 from recon.model.units import seconds_to_ns
-from recon.sim.app.app import MAIN_LINK, LinkOrder, LinkOrderKind, SimulatedApp
-from recon.station.kernel.virtual import FAR_NS, FakeLink, VirtualDriver
+from recon.sim.app.app import MAIN_LINK, NEVER_NS, LinkOrder, LinkOrderKind, SimulatedApp
+from recon.sim.fake_link import FakeLink
+from recon.station.kernel.virtual import VirtualDriver
 
 SECOND_LINK = 1
 RECONNECTS_AFTER_S = 2.0
@@ -63,7 +64,7 @@ class TappedConnection:
     @property
     def next_due_ns(self) -> int:
         """When the app has something to do next."""
-        return FAR_NS if self.is_abandoned else self.app.next_due_ns
+        return NEVER_NS if self.is_abandoned else self.app.next_due_ns
 
     def delay_s(self, now_ns: int) -> float:
         """Return the longest delay of what arrives now."""

@@ -13,19 +13,20 @@ from recon.model.event import OperatorOrder, OwnerConnected
 from recon.model.geo import LatLon
 from recon.model.mission import Mission, Waypoint
 from recon.model.units import NS_PER_S, seconds_to_ns
-from recon.score.connected_apps import ConnectedApps
 from recon.sim.app.app import SimulatedApp
 from recon.sim.app.camera_feed import FeedSettings, ImageFormat
 from recon.sim.app.faults import parse_fault
 from recon.sim.camera.field import FieldRenderer
 from recon.sim.camera.rig import CameraRig
 from recon.sim.camera.settings import CameraSettings
+from recon.sim.connected_apps import ConnectedApps
+from recon.sim.fake_link import FakeLink
 from recon.sim.fleet import IMAGER_SERIAL, Airborne, ImagerSetup, SimulationConfig, build_fleet
 from recon.sim.flight.estimate import FIELD_DRIFT
 from recon.sim.world import LayerSettings, Sky, SkySettings, SunSettings
 from recon.site import Site, demo_site_folder, load_site
 from recon.station.kernel.build import first_state
-from recon.station.kernel.virtual import FakeLink, VirtualDriver
+from recon.station.kernel.virtual import VirtualDriver
 from recon.station.kernel.worker import JobRunner
 
 VEHICLES = 8

@@ -15,7 +15,7 @@ from random import Random
 from tests.oracles.eight_vehicles import EightVehicles, eight_vehicles
 from tests.oracles.run_digest import RunDigest
 
-from recon.station.kernel.virtual import FakeLink
+from recon.sim.fake_link import FakeLink
 
 FAULTS = (
     "gusts:1:5:20",

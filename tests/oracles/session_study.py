@@ -37,9 +37,11 @@ from recon.model.geo import GeoPoint, LatLon
 from recon.model.mission import Mission, Waypoint
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import AltitudeReference, Failsafe, VehicleProfile
+from recon.sim.app.app import NEVER_NS
+from recon.sim.fake_link import FakeLink
 from recon.site import Site
 from recon.station.kernel.build import first_state
-from recon.station.kernel.virtual import FAR_NS, FakeLink, VirtualDriver
+from recon.station.kernel.virtual import VirtualDriver
 from recon.station.state.orders import OrderRecord
 from recon.station.state.steps import StepTaken
 
@@ -88,7 +90,7 @@ class _Connection:
     @property
     def next_due_ns(self) -> int:
         """When the app has something to do next."""
-        return self.app.next_due_ns if self.is_current else FAR_NS
+        return self.app.next_due_ns if self.is_current else NEVER_NS
 
 
 @dataclass(slots=True)

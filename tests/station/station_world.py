@@ -10,12 +10,13 @@ from recon.model.event import OperatorOrder
 from recon.model.geo import GeoPoint
 from recon.model.mission import Mission, Waypoint
 from recon.model.vehicle import AltitudeReference, VehicleState
-from recon.score.connected_apps import ConnectedApps
 from recon.sim.app.app import SimulatedApp
 from recon.sim.app.faults import parse_fault
+from recon.sim.connected_apps import ConnectedApps
+from recon.sim.fake_link import FakeLink
 from recon.sim.fleet import Airborne, SimulationConfig, build_fleet
 from recon.station.kernel.build import first_state
-from recon.station.kernel.virtual import FakeLink, VirtualDriver
+from recon.station.kernel.virtual import VirtualDriver
 from recon.station.state.orders import OrderRecord
 
 HOME = GeoPoint(41.9, -93.6, 275.0)

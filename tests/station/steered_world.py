@@ -13,8 +13,8 @@ from recon.model.command import Body, GoTo, Phase
 from recon.model.event import OperatorOrder, OwnerConnected, OwnerDisconnected
 from recon.model.geo import LatLon
 from recon.sim.app.app import MAIN_LINK, SimulatedApp
+from recon.sim.fake_link import FakeLink
 from recon.sim.flight.aircraft import Aircraft
-from recon.station.kernel.virtual import FakeLink
 from recon.station.state.setpoint_stream import SetpointStream
 from recon.station.steering.stream_ends import RULE
 

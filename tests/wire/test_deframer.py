@@ -1,5 +1,7 @@
 """The deframer as Python sees it: reads of any size, time, counters."""
 
+from copy import copy
+
 import hypothesis.strategies as st
 from hypothesis import given
 from tests.wire.cases import packets
@@ -49,6 +51,28 @@ def test_counters_tell_what_came() -> None:
     assert deframer.finish() == []
     assert deframer.counters.abandoned == 1
     assert counters.abandoned == 0, "counters are a snapshot"
+
+
+@given(
+    st.lists(st.tuples(packets, st.binary(max_size=9)), max_size=4),
+    st.integers(0, 300),
+    st.booleans(),
+)
+def test_a_copy_goes_on_in_the_same_state_and_leaves_the_other_alone(
+    pieces: list[tuple[wire.Packet, bytes]], read: int, gives_up: bool
+) -> None:
+    stream = b"".join(noise + wire.encode(packet) for packet, noise in pieces)
+    first = wire.Deframer(wire.Limits(work_per_call=100_000))
+    first.feed(stream[:read], 5)
+    second = copy(first)
+    ends = []
+    for deframer in (second, first):
+        found = deframer.resume() + deframer.feed(stream[read:], 5 + 3 * SECOND_NS * gives_up)
+        arrivals = (deframer.arrivals_ns, deframer.spans, deframer.is_busy, deframer.pending_bytes)
+        while deframer.is_busy:
+            found += deframer.resume()
+        ends.append((found + deframer.finish(), arrivals, deframer.counters, deframer.work_done))
+    assert ends[0] == ends[1]
 
 
 def test_a_stall_gives_up_the_half_packet_and_what_it_hides() -> None:

@@ -10,6 +10,7 @@ use std::borrow::Cow;
 /// Times are nanoseconds of any one clock that does not run backwards. A call ends at the limits'
 /// `work_per_call`; `resume` goes on while `is_busy`.
 #[pyclass(module = "recon.wire")]
+#[derive(Clone)]
 pub struct Deframer {
     inner: recon_wire::Deframer,
     arrivals_ns: Vec<i64>,
@@ -54,6 +55,11 @@ impl Deframer {
             arrivals_ns: Vec::new(),
             spans: Vec::new(),
         }
+    }
+
+    /// A deframer in the same state: from here on each goes on with the bytes that it is given.
+    fn __copy__(&self) -> Self {
+        self.clone()
     }
 
     /// Takes in bytes received at `now_ns`; returns the packets they complete, in order.

@@ -17,7 +17,7 @@ pub(crate) struct Mark {
 /// Bytes that come shortly after a mark are counted to it, so that a byte at a time needs no more memory
 /// than a megabyte at a time. So a byte seems older than it is by a thousandth of the patience at most,
 /// and never newer.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Arrivals {
     marks: VecDeque<Mark>,
 }

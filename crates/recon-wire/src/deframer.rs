@@ -74,7 +74,7 @@ pub struct Arrival {
 ///
 /// One call does no more than [`Limits::work_per_call`]; [`Deframer::resume`] goes on while
 /// [`Deframer::is_busy`].
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Deframer {
     limits: Limits,
     counters: Counters,

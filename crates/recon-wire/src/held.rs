@@ -14,7 +14,7 @@ const KEPT_CAPACITY: usize = 64 * 1024;
 /// Every 256 bytes the hash of all before is remembered, computed while the bytes are in cache anyway.
 /// So an image is hashed on its way in, and testing one frame after another inside it costs no
 /// more than a few hundred bytes each: a stream full of false headers is searched in linear time.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Held {
     bytes: Vec<u8>,
     start: usize,

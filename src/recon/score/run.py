@@ -12,7 +12,6 @@ from recon.model.command import Hover, Phase
 from recon.model.control import AuthorityHolder
 from recon.model.survey import CellState
 from recon.model.units import NS_PER_S
-from recon.score.connected_apps import ConnectedApps
 from recon.score.methods import config_of, jobs_of, renderers_of, sent_by, settings_of
 from recon.score.run_score import (
     ENOUGH,
@@ -41,6 +40,7 @@ from recon.score.true_paths import (
 )
 from recon.sim.app.app import SimulatedApp
 from recon.sim.app.camera_feed import CaptureTimes
+from recon.sim.connected_apps import ConnectedApps
 from recon.sim.fleet import build_fleet
 from recon.station.kernel.build import first_state
 from recon.station.kernel.virtual import VirtualDriver

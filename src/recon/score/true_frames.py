@@ -51,7 +51,7 @@ class TrueFrames:
         return TrueFrame(newest.taken_at_ns / NS_PER_S, pose)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class FleetFrames:
     """The frames of all imaging drones of a run, by serial."""
 

@@ -5,4 +5,5 @@ same seed and commands give the same bytes. The ground under an aircraft is flat
 its home point.
 
 Imports go downwards only: run, proxy -> fleet -> app -> camera -> flight -> land -> world.
+`connected_apps` and `fork` are for worlds in virtual time: apps on a driver, and copies of it all.
 """

@@ -12,8 +12,8 @@ from recon.model.event import Event, LinkClosed, PacketReceived
 from recon.model.report import CoreReport
 from recon.model.units import NS_PER_S
 from recon.model.vehicle import AltitudeReference, FlightMode, Staleness
+from recon.sim.fake_link import FakeLink
 from recon.sim.fleet import Airborne
-from recon.station.kernel.virtual import FakeLink
 
 
 def lived(seed: int) -> World:

@@ -10,7 +10,8 @@ from recon.fleet.state import staleness
 from recon.model.event import PacketReceived
 from recon.model.report import CoreReport
 from recon.model.vehicle import Staleness, VehicleState
-from recon.station.kernel.virtual import FAR_NS, VirtualDriver
+from recon.sim.app.app import NEVER_NS
+from recon.station.kernel.virtual import VirtualDriver
 from recon.station.state.station import Station
 
 SECOND = 1000 * MS
@@ -33,7 +34,7 @@ class Script:
 
     @property
     def next_due_ns(self) -> int:
-        return min((at_ns for at_ns, _ in self.sends), default=FAR_NS)
+        return min((at_ns for at_ns, _ in self.sends), default=NEVER_NS)
 
 
 def vehicle(station: Station) -> VehicleState:

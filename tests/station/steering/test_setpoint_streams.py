@@ -31,7 +31,7 @@ from recon.model.event import AuthorityTaken, OwnerConnected
 from recon.model.mission import Mission, Waypoint
 from recon.model.vehicle import FlightMode
 from recon.safety import PreparedAirspace
-from recon.station.kernel.virtual import FakeLink
+from recon.sim.fake_link import FakeLink
 from recon.station.steering.setpoint_streams import advance, start_stream
 from recon.station.steering.stream_ends import StreamUpdate
 

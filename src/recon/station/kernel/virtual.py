@@ -5,10 +5,9 @@ The order is always the same: the same peers and seeds give the same run to the 
 """
 
 import heapq
-import random
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
-from typing import Protocol
+from dataclasses import dataclass
+from typing import Protocol, TypeAlias
 
 from recon.fleet.step import CloseLink
 from recon.link.session import Session
@@ -26,6 +25,7 @@ from recon.model.event import (
 )
 from recon.model.units import seconds_to_ns
 from recon.safety import ApprovedCommand
+from recon.sim.fake_link import FakeLink
 from recon.station.control import dispatch
 from recon.station.kernel.event_queue import EventQueue
 from recon.station.kernel.step import step
@@ -43,7 +43,6 @@ from recon.station.steering.setpoint_streams import next_due_ns
 
 STEP_NS = 10_000_000
 TICK_EVERY_NS = 50_000_000
-FAR_NS = 2**63 - 1
 EPOCH_NS = 1_780_000_000_000_000_000
 """What the computer's clock shows when virtual time begins, by default: a day in 2026."""
 
@@ -63,25 +62,6 @@ class Peer(Protocol):
 
 
 @dataclass(slots=True)
-class FakeLink:
-    """A simulated TCP connection. It delivers in order, so a delay delays all that follows.
-
-    `damage` may change, cut or drop a chunk on its way to the station. A dead link drops everything
-    silently, as a sleeping phone does.
-    """
-
-    delay_s: float = 0.02
-    jitter_s: float = 0.0
-    damage: Callable[[bytes, random.Random], bytes] | None = None
-    is_dead: bool = False
-    seed: int = 0
-    rng: random.Random = field(init=False)
-
-    def __post_init__(self) -> None:
-        self.rng = random.Random(self.seed)
-
-
-@dataclass(slots=True)
 class _Wire:
     """One connection: a peer, the link between, and the station's session."""
 
@@ -89,12 +69,39 @@ class _Wire:
     link: FakeLink
     session: Session
     to_station_at_ns: int = 0
-    to_app_at_ns: int = 0
+    to_peer_at_ns: int = 0
     peer_due_ns: int = 0
 
 
+@dataclass(frozen=True, slots=True)
+class ToStation:
+    """Bytes under way from a peer."""
+
+    link_id: int
+    data: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class ToPeer:
+    """Bytes under way to a peer."""
+
+    link_id: int
+    data: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class JobEnd:
+    """The end of a job whose work takes until then."""
+
+    event: Event
+
+
+Due: TypeAlias = ToStation | ToPeer | JobEnd
+"""What the driver does at a later time."""
+
+
 class VirtualDriver:
-    """Runs the station and its peers in virtual time."""
+    """Runs the station and its peers in virtual time; `recon.sim.fork` copies it."""
 
     def __init__(
         self,
@@ -122,7 +129,7 @@ class VirtualDriver:
         self._work_takes_ns = seconds_to_ns(work_takes_s)
         self._wires: dict[int, _Wire] = {}
         self._next_link_id = 1
-        self._due: list[tuple[int, int, Callable[[], None]]] = []
+        self._due: list[tuple[int, int, Due]] = []
         self._sequence = 0
         self._queue = EventQueue(self._step)
         self.handle(ClockRead(epoch_ns))
@@ -201,12 +208,21 @@ class VirtualDriver:
                     self._post_to_station(link_id, wire, chunk)
                 wire.peer_due_ns = wire.peer.next_due_ns
         while self._due and self._due[0][0] <= now_ns:
-            heapq.heappop(self._due)[2]()
+            self._do(heapq.heappop(self._due)[2])
         sticks_ns = next_due_ns(self.station)
         if sticks_ns is not None and sticks_ns <= now_ns:
             self.handle(SetpointsDue())
         if now_ns % TICK_EVERY_NS == 0:
             self._tick()
+
+    def _do(self, due: Due) -> None:
+        match due:
+            case ToStation(link_id, data):
+                self._arrive(link_id, data)
+            case ToPeer(link_id, data):
+                self._reach_peer(link_id, data)
+            case JobEnd(event):
+                self.handle(event)
 
     def _tick(self) -> None:
         for link_id, wire in tuple(self._wires.items()):
@@ -224,7 +240,7 @@ class VirtualDriver:
             return
         arriving = chunk if link.damage is None else link.damage(chunk, link.rng)
         wire.to_station_at_ns = max(wire.to_station_at_ns, self.now_ns + self._delay_ns(link))
-        self._at(wire.to_station_at_ns, lambda: self._arrive(link_id, arriving))
+        self._at(wire.to_station_at_ns, ToStation(link_id, arriving))
 
     def _arrive(self, link_id: int, data: bytes) -> None:
         wire = self._wires.get(link_id)
@@ -246,20 +262,21 @@ class VirtualDriver:
             self._tap(wire.session.link_id, Direction.TO_APP, outgoing.data)
             self.handle(outgoing.event)
             if not wire.link.is_dead:
-                self._post_to_app(wire, outgoing.data)
+                self._post_to_peer(wire, outgoing.data)
 
     def _tap(self, link_id: int, direction: Direction, data: bytes) -> None:
         if self.tap is not None:
             self.tap(link_id, direction, data, self.now_ns)
 
-    def _post_to_app(self, wire: _Wire, data: bytes) -> None:
+    def _post_to_peer(self, wire: _Wire, data: bytes) -> None:
         arrives_at_ns = self.now_ns + self._delay_ns(wire.link)
-        wire.to_app_at_ns = max(wire.to_app_at_ns, arrives_at_ns)
-        self._at(wire.to_app_at_ns, lambda: self._reach_app(wire, data))
+        wire.to_peer_at_ns = max(wire.to_peer_at_ns, arrives_at_ns)
+        self._at(wire.to_peer_at_ns, ToPeer(wire.session.link_id, data))
 
-    def _reach_app(self, wire: _Wire, data: bytes) -> None:
-        # Bytes under way when a connection ended must not arrive on the peer's next one.
-        if self._wires.get(wire.session.link_id) is wire and not wire.link.is_dead:
+    def _reach_peer(self, link_id: int, data: bytes) -> None:
+        # Bytes under way when a connection ended never arrive: its number is not used again.
+        wire = self._wires.get(link_id)
+        if wire is not None and not wire.link.is_dead:
             wire.peer.receive(data, self.now_ns)
             wire.peer_due_ns = self.now_ns  # it may have an answer
 
@@ -279,8 +296,7 @@ class VirtualDriver:
             case CloseLink(link_id, reason):
                 self.disconnect(link_id, reason)
             case Job():
-                ended = self._run(output)
-                self._at(self.now_ns + self._work_takes_ns, lambda: self.handle(ended))
+                self._at(self.now_ns + self._work_takes_ns, JobEnd(self._run(output)))
 
     def _run(self, job: AnyJob) -> Event:
         if self.jobs is None:
@@ -294,9 +310,9 @@ class VirtualDriver:
         for event in events:
             self.handle(event)
 
-    def _at(self, at_ns: int, action: Callable[[], None]) -> None:
+    def _at(self, at_ns: int, due: Due) -> None:
         self._sequence += 1
-        heapq.heappush(self._due, (at_ns, self._sequence, action))
+        heapq.heappush(self._due, (at_ns, self._sequence, due))
 
 
 def _step_from(at_ns: int) -> int:
