@@ -48,7 +48,7 @@ BODIES: dict[str, tuple[str, object, Role]] = {
     "start": ("/api/surveys/1/start", START, Role.OPERATOR),
     "release": ("/api/all-stop/release", {"serials": None}, Role.OPERATOR),
     "fleet return": ("/api/fleet-return", {"serials": None}, Role.OPERATOR),
-    "look aside": ("/api/look-aside", {}, Role.OPERATOR),
+    "side-step": ("/api/side-step", {}, Role.OPERATOR),
     "relieve": ("/api/imager-relief", RELIEF, Role.OPERATOR),
     "dismiss": ("/api/vehicle/hazard/dismiss?serial=A", None, Role.OPERATOR),
     "acknowledge": ("/api/alarms/1/acknowledge", None, Role.OPERATOR),

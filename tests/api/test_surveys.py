@@ -377,25 +377,25 @@ class TestCells:
         assert (unknown[:, 0] == unknown[:, 2]).all(), "unknown is grey"
 
 
-class TestLookAside:
+class TestSideStep:
     def test_without_an_imaging_drone_it_is_refused_and_audited(
         self, client: Client, station: FakeStation
     ) -> None:
-        answer = client.post("/api/look-aside", json={}).json()
+        answer = client.post("/api/side-step", json={}).json()
         assert answer == {
             "accepted": False,
-            "rule": "look_aside",
+            "rule": "side_step",
             "reason": "the site has no imaging drone",
         }
-        assert client.get("/api/state").json()["look_aside"] is None
+        assert client.get("/api/state").json()["side_step"] is None
 
     def test_a_survey_allows_it_only_when_asked(self, client: Client) -> None:
         plain = client.post("/api/surveys", json=ASKED).json()["survey"]
-        allowing = {"look_aside_allowed": True, "upwind_allowed": True}
+        allowing = {"side_step_allowed": True, "upwind_allowed": True}
         allowed = client.post("/api/surveys", json={**ASKED, **allowing}).json()
-        assert plain["look_aside_allowed"] is False
+        assert plain["side_step_allowed"] is False
         assert plain["upwind_allowed"] is False
-        assert allowed["survey"]["look_aside_allowed"] is True
+        assert allowed["survey"]["side_step_allowed"] is True
         assert allowed["survey"]["upwind_allowed"] is True
 
 

@@ -78,12 +78,12 @@ class TestOnTheGround:
         again = station.recon("release-stop", "--all")
         assert (again.code, "refused (stop_latch)" in again.out) == (1, True)
 
-    def test_a_look_aside_without_its_imaging_drone_is_refused(
+    def test_a_side_step_without_its_imaging_drone_is_refused(
         self, station: StationProcess
     ) -> None:
-        result = station.recon("look-aside")
+        result = station.recon("side-step")
         assert result.code != 0
-        assert "refused (look_aside): the imaging drone SIM-IMAGER is not connected" in result.out
+        assert "refused (side_step): the imaging drone SIM-IMAGER is not connected" in result.out
 
     def test_a_relief_by_what_is_no_imaging_drone_is_refused(self, station: StationProcess) -> None:
         result = station.recon("relieve", "SIM-1", "SIM-2")

@@ -10,12 +10,12 @@ from recon.api import schema
 from recon.client import BadAnswerError, Staleness
 from recon.client.messages import (
     ImagerReliefStatus,
-    LookAsideStatus,
     OrderMessage,
     OrderStatus,
     PhaseReport,
     ProblemMessage,
     ResultMessage,
+    SideStepStatus,
     StateMessage,
     StationMessage,
     decode,
@@ -41,7 +41,7 @@ from recon.model.vehicle import staleness_at
 PAIRS = [
     (StateMessage, schema.StationState),
     (StationMessage, schema.StationView),
-    (LookAsideStatus, schema.LookAsideView),
+    (SideStepStatus, schema.SideStepView),
     (ImagerReliefStatus, schema.ImagerReliefView),
     (SurveyLight, schema.SurveyLightView),
     (Telemetry, schema.VehicleView),

@@ -510,7 +510,7 @@ class TestParts:
         assert max(np.diff(times_s)) < 200.0
 
     def test_a_hot_spot_that_moves_is_kept_more_often(self) -> None:
-        """A look aside lasts twenty seconds: with a keyframe in ten it would hardly be seen."""
+        """A side-step lasts twenty seconds: with a keyframe in ten it would hardly be seen."""
         still, moved = np.zeros((8, 8), np.float32), np.zeros((8, 8), np.float32)
         still[2, 2] = moved[2, 4] = 1.0
         level = Level(0.0, 0.0)

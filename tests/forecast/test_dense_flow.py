@@ -62,7 +62,7 @@ def small(at_s: float) -> ShadeMap:
     return shade_map(direct, at_s, np.ones((8, 8), np.bool_), grid=grid)
 
 
-@pytest.mark.parametrize("drawn", [even, small], ids=["an even sky", "a small map"])
+@pytest.mark.parametrize("drawn", [even, small], ids=["a uniform sky", "a small map"])
 def test_without_a_motion_it_is_persistence(drawn) -> None:
     maps = [drawn(at_s) for at_s in TIMES_S]
     found, still = (forecasts(m, maps, SETTINGS)[-1] for m in ("dense_flow", "persistence"))

@@ -1,4 +1,4 @@
-"""When an imaging drone must leave, what a survey needs, and the way to its place."""
+"""When an imaging drone must return, what a survey needs, and the way to its place."""
 
 import numpy as np
 import pytest
@@ -10,12 +10,12 @@ from recon.guidance.imager_relief import (
     MissingGround,
     layers_m,
     least_share,
-    leaves_at_ns,
     relief_mission,
+    return_due_ns,
     shown_share,
     survey_needs_s,
+    transit_time_s,
     use_per_s,
-    way_takes_s,
     with_charge,
     with_missing,
 )
@@ -70,10 +70,10 @@ class TestUse:
 
 class TestLeaves:
     def test_it_leaves_when_the_charge_is_what_is_needed(self) -> None:
-        assert leaves_at_ns(Charge(100 * S, 0.50), 0.01 / 15.0, 0.30) == 400 * S
+        assert return_due_ns(Charge(100 * S, 0.50), 0.01 / 15.0, 0.30) == 400 * S
 
     def test_it_may_be_past(self) -> None:
-        assert leaves_at_ns(Charge(100 * S, 0.29), 0.01 / 15.0, 0.30) == 85 * S
+        assert return_due_ns(Charge(100 * S, 0.29), 0.01 / 15.0, 0.30) == 85 * S
 
 
 class TestSurveyNeeds:
@@ -152,4 +152,4 @@ class TestWay:
 
     def test_how_long_it_takes(self) -> None:
         across_m = horizontal_distance_m(HERE, THERE)
-        assert way_takes_s(HERE, 60.0, THERE) == pytest.approx(15.0 + 30.0 + across_m / 8.0)
+        assert transit_time_s(HERE, 60.0, THERE) == pytest.approx(15.0 + 30.0 + across_m / 8.0)

@@ -58,7 +58,7 @@ ENTRIES = [
     (20.0, entry("alarm.raised", "alarm: battery low", id=3, severity="warning")),
     (22.0, entry("alarm.worse", "alarm is worse: battery empty", id=3, severity="critical")),
     (30.0, entry("alarm.ended", "alarm ended: battery empty", id=3, severity="critical")),
-    (31.0, entry("alarm.raised", "alarm: looks aside", id=4, severity="info")),
+    (31.0, entry("alarm.raised", "alarm: side-steps", id=4, severity="info")),
     (65.0, entry("vehicle.landed", "Drone 1: landed")),
     (70.0, entry("vehicle.took_off", "Drone 2: took off", "Drone 2")),
 ]
@@ -201,7 +201,7 @@ def test_only_surveys_that_were_started_count(tmp_path: Path) -> None:
 def test_alarms_flights_and_decisions_of_the_log(report: FlightReport) -> None:
     seconds = [(each.text, each.severity, each.ended_ns) for each in report.alarms]
     ended_ns = START_NS + 30 * NS_PER_S
-    assert seconds == [("battery empty", "critical", ended_ns), ("looks aside", "info", None)]
+    assert seconds == [("battery empty", "critical", ended_ns), ("side-steps", "info", None)]
     spans = {
         name: [tuple(round((at - START_NS) / NS_PER_S) for at in span) for span in each]
         for name, each in report.airborne.items()

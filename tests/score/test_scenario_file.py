@@ -102,10 +102,10 @@ def test_values_of_the_file_are_in_the_scenario(tmp_path: Path) -> None:
     assert scenario.faults[0].start_s == 40.0
 
 
-def test_the_task_may_forbid_a_look_aside(tmp_path: Path) -> None:
-    assert small(tmp_path).survey.look_aside_allowed
-    forbidden = SMALL.replace("[task]", "[task]\nlook_aside = false")
-    assert not load_scenario(written(tmp_path, forbidden)).survey.look_aside_allowed
+def test_the_task_may_forbid_a_side_step(tmp_path: Path) -> None:
+    assert small(tmp_path).survey.side_step_allowed
+    forbidden = SMALL.replace("[task]", "[task]\nside_step = false")
+    assert not load_scenario(written(tmp_path, forbidden)).survey.side_step_allowed
 
 
 def test_the_task_may_allow_a_move_upwind_and_the_site_has_room_for_it(tmp_path: Path) -> None:

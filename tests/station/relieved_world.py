@@ -7,8 +7,8 @@ follows is the station's own: the map of all drones, its age, and the relief.
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from tests.station.imager_world import GRID
 from tests.station.imagers import with_imagers
-from tests.station.looking_world import GRID
 from tests.station.returning_world import returning_world
 from tests.station.surveyed_world import SurveyedWorld
 
@@ -23,7 +23,7 @@ from recon.sim.camera.frames import StillFrame
 from recon.sim.fleet import ImagerSetup
 from recon.sim.flight.battery import Battery
 from recon.station.imaging.shade import READ_SHADE, ShadeRead
-from recon.station.state.imager_relief import ImagerRelief
+from recon.station.state.imager_motion import ImagerRelief
 from recon.station.state.imaging import SeenShade
 from recon.station.state.station import Station
 from recon.station.state.steps import JobDone
@@ -100,7 +100,7 @@ class RelievedWorld:
         self.surveyed.driver.handle(event)
 
     def newest(self) -> ImagerRelief:
-        newest = self.station.reliefs.newest
+        newest = self.station.imager_motions.of(ImagerRelief)
         assert newest is not None
         return newest
 

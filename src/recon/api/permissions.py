@@ -75,7 +75,7 @@ LEAST_ROLE: dict[tuple[str, str], Role] = {
     ("POST", "/api/apps/admit"): Role.OPERATOR,
     ("POST", "/api/apps/refuse"): Role.OPERATOR,
     ("POST", "/api/fleet-return"): Role.OPERATOR,
-    ("POST", "/api/look-aside"): Role.OPERATOR,
+    ("POST", "/api/side-step"): Role.OPERATOR,
     ("POST", "/api/imager-relief"): Role.OPERATOR,
     ("POST", "/api/surveys"): Role.OPERATOR,
     ("POST", "/api/surveys/{survey_id}/start"): Role.OPERATOR,

@@ -62,9 +62,9 @@ COMMANDS = {
         "fleet_return:fleet_return_command",
         "Return vehicles in separate height layers; they land one at a time.",
     ),
-    "look-aside": CommandSource(
-        "imaging_drone:look_aside_command",
-        "Fly an imaging drone 25 m aside and back, to tell even sun from even shade.",
+    "side-step": CommandSource(
+        "imaging_drone:side_step_command",
+        "Fly 25 m aside and back, to tell whether a uniform scene is all sun or all shade.",
     ),
     "relieve": CommandSource(
         "imaging_drone:relieve_command",

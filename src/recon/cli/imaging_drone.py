@@ -1,4 +1,4 @@
-"""`recon look-aside` and `recon relieve`: orders to imaging drones, and their progress."""
+"""`recon side-step` and `recon relieve`: orders to imaging drones, and their progress."""
 
 from collections.abc import Awaitable, Callable
 from typing import Annotated, TypeVar
@@ -19,12 +19,12 @@ from recon.cli.connection import (
     run_at_station,
 )
 from recon.cli.output import print_json, print_line
-from recon.client import ImagerReliefStatus, LookAsideStatus, Refusal, Station
+from recon.client import ImagerReliefStatus, Refusal, SideStepStatus, Station
 
-Motion = TypeVar("Motion", LookAsideStatus, ImagerReliefStatus)
+Motion = TypeVar("Motion", SideStepStatus, ImagerReliefStatus)
 
 
-def look_aside_command(
+def side_step_command(
     vehicle: Annotated[
         str | None,
         typer.Argument(
@@ -38,17 +38,17 @@ def look_aside_command(
     address: AddressOption = DEFAULT_ADDRESS,
     token_file: TokenOption = None,
 ) -> None:
-    """Fly an imaging drone 25 m aside and back, to tell even sun from even shade.
+    """Fly 25 m aside and back, to tell whether a uniform scene is all sun or all shade.
 
-    It must hover. Exits once it has begun; with --wait, once it has ended or after that many
-    seconds. It continues after the exit: `recon hold` stops it.
+    The imaging drone must hover. Exits once it has begun; with --wait, once it has ended or after
+    that many seconds. It continues after the exit: `recon hold` stops it.
     """
 
     async def work(station: Station) -> int:
         serial = named_serials(station, [vehicle])[0] if vehicle is not None else None
-        refusal = await station.look_aside(serial)
-        read = station.looking_aside
-        return await _followed("look aside", refusal, read, wait, _look_aside_text, as_json)
+        refusal = await station.side_step(serial)
+        read = station.side_stepping
+        return await _followed("side-step", refusal, read, wait, _side_step_text, as_json)
 
     run_at_station(address, token_file, work)
 
@@ -76,7 +76,7 @@ def relieve_command(
     """Relieve an imaging drone, or send it back to its place with a fresh battery.
 
     The spare drone flies to the place in a layer of its own; once its shade maps show the ground,
-    the other one is called home. Exits once it has begun; with --wait, once it has ended or after
+    the other one is recalled. Exits once it has begun; with --wait, once it has ended or after
     that many seconds. It continues after the exit: `recon hold` stops it.
     """
 
@@ -111,8 +111,8 @@ async def _followed(
     return DONE if is_good else REFUSED
 
 
-def _look_aside_text(status: LookAsideStatus) -> str:
-    return f"look aside to bearing {status.bearing_deg:.0f} deg, {status.stage}"
+def _side_step_text(status: SideStepStatus) -> str:
+    return f"side-step to bearing {status.bearing_deg:.0f} deg, {status.stage}"
 
 
 def _relief_text(status: ImagerReliefStatus) -> str:

@@ -209,7 +209,7 @@ def survey_request(scenario: Scenario) -> dict[str, Any]:
         "planner": survey.planner,
         "camera": {"interval_s": survey.camera.interval_s},
         "budget": {"rounds": survey.budget.rounds},
-        "look_aside_allowed": survey.look_aside_allowed,
+        "side_step_allowed": survey.side_step_allowed,
         "upwind_allowed": survey.upwind_allowed,
     }
 

@@ -115,11 +115,11 @@ def create_command(
         WhenDone,
         typer.Option("--when-done", help="What vehicles do when finished or low on battery."),
     ] = WhenDone.RETURN_HOME,
-    look_aside: Annotated[
+    side_step: Annotated[
         bool,
         typer.Option(
-            "--look-aside",
-            help="The imaging drone may look aside automatically while light is mostly unknown.",
+            "--side-step",
+            help="The imaging drone may side-step automatically while light is mostly unknown.",
         ),
     ] = False,
     upwind: Annotated[
@@ -133,8 +133,8 @@ def create_command(
         bool,
         typer.Option(
             "--relief",
-            help="The imaging drone is relieved by the spare drone, or called home, when its "
-            "battery wants it.",
+            help="The imaging drone is relieved by the spare drone, or recalled, when its "
+            "battery is at the return threshold.",
         ),
     ] = False,
     spare: Annotated[
@@ -159,7 +159,7 @@ def create_command(
         "camera": {"model": camera, "interval_s": interval},
         "budget": {"rounds": rounds, "time_s": None if minutes is None else 60.0 * minutes},
         "when_done": when_done.value,
-        "look_aside_allowed": look_aside,
+        "side_step_allowed": side_step,
         "upwind_allowed": upwind,
         "relief_allowed": relief,
     }

@@ -122,8 +122,8 @@ class ImagerMotionStatus(msgspec.Struct, frozen=True):
         return self.stage in ("done", "stopped")
 
 
-class LookAsideStatus(ImagerMotionStatus, frozen=True):
-    """The newest look aside of the imaging drone."""
+class SideStepStatus(ImagerMotionStatus, frozen=True):
+    """The newest side-step of the imaging drone."""
 
     bearing_deg: float
 
@@ -307,7 +307,7 @@ class StateMessage(msgspec.Struct, frozen=True):
     commands: tuple[OrderStatus, ...]
     alarms: tuple[AlarmStatus, ...]
     fleet_return: FleetReturnMessage | None = None
-    look_aside: LookAsideStatus | None = None
+    side_step: SideStepStatus | None = None
     imager_relief: ImagerReliefStatus | None = None
     move_upwind: MoveUpwindStatus | None = None
     stop_latch: StopLatchStatus | None = None

@@ -11,9 +11,9 @@ from recon.client.messages import (
     AuditLogPage,
     ImagerReliefStatus,
     LinkStatus,
-    LookAsideStatus,
     MoveUpwindStatus,
     OrderStatus,
+    SideStepStatus,
     StateMessage,
     StopAnswer,
     StopLatchStatus,
@@ -142,21 +142,21 @@ class Station:
         """Return the all stop in force; None without one."""
         return (await self._state()).stop_latch
 
-    async def look_aside(self, serial: str | None = None) -> Refusal | None:
+    async def side_step(self, serial: str | None = None) -> Refusal | None:
         """Have an imaging drone fly 25 m aside and back; None on success.
 
         By default the one whose light is unknown, or the site's first. It goes on after this call;
-        `looking_aside` has the progress, a hold stops it.
+        `side_stepping` has the progress, a hold stops it.
         """
         request = {"serial": serial, "given_at_unix_ms": self._order_api.station_time_ms()}
         answer = await self._http.post(
-            "/api/look-aside", request, AnswerMessage, "an answer to a look aside"
+            "/api/side-step", request, AnswerMessage, "an answer to a side-step"
         )
         return answer.refusal
 
-    async def looking_aside(self) -> LookAsideStatus | None:
-        """Return the newest look aside; None before the first."""
-        return (await self._state()).look_aside
+    async def side_stepping(self) -> SideStepStatus | None:
+        """Return the newest side-step; None before the first."""
+        return (await self._state()).side_step
 
     async def relieve(
         self, serial: str, spare: str | None = None, *, takeoff: bool = False

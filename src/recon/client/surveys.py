@@ -45,11 +45,11 @@ class SurveyVehicle(msgspec.Struct, frozen=True):
 
 
 class ImagerStay(msgspec.Struct, frozen=True):
-    """When the battery of an imaging drone wants it home; None with the reason if unknown."""
+    """When an imaging drone must return; None with the reason if unknown."""
 
     serial: str
     vehicle_name: str
-    leaves_in_s: float | None
+    return_due_in_s: float | None
     unknown: str | None
 
 
@@ -59,7 +59,7 @@ class SurveyLight(msgspec.Struct, frozen=True):
     needs_s: float | None
     imagers: tuple[ImagerStay, ...]
     unknown_in_s: float | None
-    """Until the last imaging drone must leave; None if the survey is done by then."""
+    """Until the last imaging drone must return; None if the survey is done by then."""
     unknown_for_s: float | None
     without_age_s: float | None
     without_m2: float | None
@@ -74,7 +74,7 @@ class SurveyStatus(msgspec.Struct, frozen=True):
     reason: str
     planner: str
     when_done: WhenDoneName
-    look_aside_allowed: bool
+    side_step_allowed: bool
     upwind_allowed: bool
     relief_allowed: bool
     spare_serial: str | None

@@ -1,4 +1,4 @@
-"""The relief of an imaging drone: when it must leave, what shows as much, and the way there.
+"""The relief of an imaging drone: when it must return, what shows as much, and the way there.
 
 An imaging drone hovers until its charge is what the way home and the reserve take. Its use is read
 from the changes of the charge that it reports, in whole percent; so the moment is known to about a
@@ -37,7 +37,7 @@ class ImagerReliefSettings:
     """Traffic in the way passes; the battery does not wait."""
 
     called_again_s: float = 60.0
-    """One that was called home and hovers again, left out of the fleet return, is called anew."""
+    """One that was recalled and hovers again, left out of the fleet return, is called anew."""
 
     speed_mps: float = 8.0
     """As a move upwind."""
@@ -145,7 +145,7 @@ def use_per_s(charges: tuple[Charge, ...]) -> float | None:
     return (first.fraction - last.fraction) / ns_to_seconds(last.at_ns - first.at_ns)
 
 
-def leaves_at_ns(newest: Charge, uses_per_s: float, needed: float) -> int:
+def return_due_ns(newest: Charge, uses_per_s: float, needed: float) -> int:
     """Return when the charge has fallen to the fraction that is needed; it may be past."""
     return newest.at_ns + seconds_to_ns((newest.fraction - needed) / uses_per_s)
 
@@ -234,7 +234,7 @@ def relief_mission(
     return Mission((above, across), purpose="relief")
 
 
-def way_takes_s(here: LatLon, up_m: float, place: LatLon) -> float:
+def transit_time_s(here: LatLon, up_m: float, place: LatLon) -> float:
     """Return how long the way takes: takeoff, climb or descent by `up_m`, and across."""
     settings = RELIEF_SETTINGS
     across_s = horizontal_distance_m(here, place) / settings.speed_mps

@@ -35,8 +35,7 @@ STATED_LEAD_S = 60.0
 
 @dataclass(frozen=True, slots=True)
 class MoveUpwindSettings:
-    """When an imaging drone flies to its place upwind automatically, for a survey that allows
-    it."""
+    """When an imaging drone flies upwind automatically, for a survey that allows it."""
 
     asked_every_s: float = 10.0
     """Between two proposals: the wind turns in minutes, and one costs the worker 12 ms or more."""
@@ -53,7 +52,7 @@ class MoveUpwindSettings:
     anew. Velocities measured in the first half minute of shade still change."""
 
     every_s: float = 180.0
-    """Between two automatically: the wind turns in minutes, and a flight takes half of one."""
+    """Between two automatic ones: the wind turns in minutes, and a flight takes half of one."""
 
     refused_again_s: float = 60.0
     """After a refusal, before it is tried again."""

@@ -311,7 +311,7 @@ class FleetReturnOrdered:
 
 
 @dataclass(frozen=True, slots=True)
-class LookAsideOrdered:
+class SideStepOrdered:
     """An imaging drone is to fly a little aside and back, so that a flat scene is decided.
 
     `given_at_ns` is when its person gave the command, in station time; None if not stated.
@@ -497,7 +497,7 @@ Event = (
     | SiteRedrawn
     | ImagerMarked
     | FleetReturnOrdered
-    | LookAsideOrdered
+    | SideStepOrdered
     | ReliefOrdered
     | SurveyRequested
     | SurveyStarted

@@ -90,13 +90,12 @@ class Survey:
     cell_m: float = 4.0
     """Progress is kept in cells of this size: finer than shadows' edges are known."""
     when_done: WhenDone = WhenDone.RETURN_HOME
-    look_aside_allowed: bool = False
-    """Whether the imaging drone may look aside automatically while light is mostly unknown."""
+    side_step_allowed: bool = False
+    """Whether the imaging drone may side-step automatically while light is mostly unknown."""
     upwind_allowed: bool = False
-    """Whether the imaging drone may fly automatically to where it sees more of the shade to
-    come."""
+    """Whether the imaging drone may fly to where it sees more of the shade to come."""
     relief_allowed: bool = False
-    """Whether the imaging drone may be relieved, or called home, when its battery wants it."""
+    """Whether the imaging drone may be relieved, or recalled, when its battery is low."""
     spare_serial: str | None = None
     """The imaging drone that relieves it then; it takes off if the start allowed takeoff."""
     height_above_ground_m: float | None = None

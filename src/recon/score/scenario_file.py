@@ -158,7 +158,7 @@ def _survey(name: str, task: TaskTable, planner: str) -> Survey:
         side_overlap=task.side_overlap,
         planner=planner,
         budget=SurveyBudget(rounds=task.rounds, time_s=60.0 * task.limit_min),
-        look_aside_allowed=task.look_aside,
+        side_step_allowed=task.side_step,
         upwind_allowed=task.upwind,
     )
 

@@ -77,8 +77,8 @@ class TaskTable(Table, frozen=True):
     side_overlap: Share = 0.6
     photo_interval_s: Annotated[float, Meta(ge=0.1, le=60.0)] = 2.0
     rounds: Annotated[int, Meta(ge=1, le=100)] = 20
-    look_aside: bool = True
-    """The operator allows the imaging drone to look aside automatically."""
+    side_step: bool = True
+    """The operator allows the imaging drone to side-step automatically."""
     upwind: bool = False
     """The operator allows the imaging drone to move upwind automatically."""
 

@@ -56,7 +56,7 @@ class Flyer:
     place_m: Place
     rng: np.random.Generator
     endurance_s: float | None = None
-    is_able: bool = True
+    is_available: bool = True
     height_m: float = 60.0
     late_s: float = 0.3
     off_m: float = 0.3
@@ -120,7 +120,7 @@ class Flyer:
         """Return what the planner gets."""
         left_s = None if self.endurance_s is None else self.endurance_s - self.flown_s
         return Surveyor(
-            self.serial, self.place_m, self.is_able, self.ended_mission, left_s, self.home_m
+            self.serial, self.place_m, self.is_available, self.ended_mission, left_s, self.home_m
         )
 
 

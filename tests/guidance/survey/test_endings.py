@@ -94,7 +94,7 @@ def test_ground_outside_the_imaging_drones_view_is_flown_once(planner: str) -> N
 
 
 def test_what_the_imaging_drone_loses_from_view_for_a_while_is_flown_for_sun() -> None:
-    """It looks aside for 90 s, while the last of the field is flown."""
+    """It side-steps for 90 s, while the last of the field is flown."""
 
     def aside(places_m: FloatArray, time_s: float) -> BoolArray:
         return np.full(len(places_m), not 60.0 <= time_s < 150.0)

@@ -158,8 +158,8 @@ class TestTroubles:
         flyers = fleet(3)
 
         def lose(flights: Flights) -> None:
-            if flights.time_s > 60.0 and flyers[1].is_able:
-                flyers[1].is_able = False
+            if flights.time_s > 60.0 and flyers[1].is_available:
+                flyers[1].is_available = False
                 flyers[1].stop()
 
         flights = Flights(begun(survey_of(rectangle()), flyers), flyers)
@@ -222,7 +222,7 @@ class TestTroubles:
         assert not flights.given
 
     def test_without_an_able_vehicle_it_waits(self) -> None:
-        flyers = fleet(1, is_able=False)
+        flyers = fleet(1, is_available=False)
         waiting = Flights(begun(survey_of(rectangle()), flyers), flyers).run(most_s=20.0)
         assert "no vehicle can fly now" in waiting.reason
 

@@ -33,7 +33,7 @@ OTHER = "X"
 class Seat:
     """The state of one vehicle."""
 
-    is_able: bool = True
+    is_available: bool = True
     ended: int = 0
     time_left_s: float | None = None
 
@@ -78,11 +78,11 @@ class SurveyLife(RuleBasedStateMachine):
 
     @rule(
         serial=st.sampled_from(SERIALS),
-        is_able=st.booleans(),
+        is_available=st.booleans(),
         left_s=st.none() | st.floats(0.0, 600.0),
     )
-    def change(self, serial: str, is_able: bool, left_s: float | None) -> None:
-        self.seats[serial].is_able = is_able
+    def change(self, serial: str, is_available: bool, left_s: float | None) -> None:
+        self.seats[serial].is_available = is_available
         self.seats[serial].time_left_s = left_s
 
     @rule(serial=st.sampled_from(SERIALS))
@@ -113,7 +113,7 @@ class SurveyLife(RuleBasedStateMachine):
         self.now_s += seconds
         before = self.state
         positions = [
-            Surveyor(serial, (0.0, 0.0), seat.is_able, seat.ended, seat.time_left_s)
+            Surveyor(serial, (0.0, 0.0), seat.is_available, seat.ended, seat.time_left_s)
             for serial, seat in self.seats.items()
         ]
         self.state, missions = step(before, positions, self._now_ns())
@@ -130,7 +130,7 @@ class SurveyLife(RuleBasedStateMachine):
         assert before.phase is SurveyPhase.RUNNING
         assert mission.serial in before.serials
         assert mission.serial not in before.barred
-        assert seat.is_able
+        assert seat.is_available
         assert earlier is None or seat.ended >= earlier.number
         assert seat.time_left_s is None or mission.length_m / 8.0 < seat.time_left_s
         assert len(mission.mission.waypoints) >= 2

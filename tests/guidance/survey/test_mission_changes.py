@@ -81,7 +81,7 @@ class TestEnds:
 
 class TestHandingOn:
     def test_a_vehicle_without_rows_gets_the_farther_half(self) -> None:
-        state, _given = decided(lit(), HERE, replace(OTHER, is_able=False))
+        state, _given = decided(lit(), HERE, replace(OTHER, is_available=False))
         rows = flown_rows(state, "S-1")
         assert len(rows) > 4
         state, missions = flown_to(state, 1, OTHER)
@@ -101,11 +101,11 @@ class TestHandingOn:
         took_s = []
         for comes_s in (60.0, 2000.0):
             flyers = fleet(2)
-            flyers[1].is_able = False
+            flyers[1].is_available = False
             survey = replace(SURVEY, budget=SurveyBudget(rounds=20))
             flights = Flights(begun(survey, flyers), flyers, foresees=True)
             flights.run(comes_s)
-            flyers[1].is_able = True
+            flyers[1].is_available = True
             segments = segments_of(flights.plan)
 
             def check(now: Flights, segments: object = segments) -> None:
@@ -119,7 +119,7 @@ class TestHandingOn:
     def test_a_vehicle_whose_battery_lasts_for_no_other_mission_flies_on(self) -> None:
         """Else it would leave rows that the gate has approved, and step aside."""
         low = replace(HERE, time_left_s=20.0, height_above_takeoff_m=60.0)
-        state, _given = decided(lit(), HERE, replace(OTHER, is_able=False))
+        state, _given = decided(lit(), HERE, replace(OTHER, is_available=False))
         for now_s, end_m in enumerate(ends_m(state, "S-1")[:2], 1):
             at_end = replace(low, place_m=end_m)
             state, missions = decided(lit(now_s), at_end, OTHER, state=state, now_s=now_s)
@@ -127,9 +127,9 @@ class TestHandingOn:
         assert (state.flights["S-1"].number, state.flights["S-1"].ends_passed) == (1, 2)
 
     def test_little_is_not_handed_on(self) -> None:
-        state, _given = decided(lit(), HERE, replace(OTHER, is_able=False))
+        state, _given = decided(lit(), HERE, replace(OTHER, is_available=False))
         all_but_two = 2 * (len(flown_rows(state, "S-1")) - 1)
-        alone = replace(OTHER, is_able=False)
+        alone = replace(OTHER, is_available=False)
         state, _none = flown_to(state, all_but_two - 1, alone)
         flight = state.flights["S-1"]
         place_m = ends_m(state, "S-1")[all_but_two - 1]

@@ -75,6 +75,6 @@ def test_who_waits_for_what_others_leave_keeps_enough_for_the_way_home() -> None
 
 def test_who_cannot_fly_or_is_not_asked_is_not_called() -> None:
     empty = with_time(0.0, 0.0)
-    assert returning(STATE, [replace(empty[0], is_able=False)]) == {}
+    assert returning(STATE, [replace(empty[0], is_available=False)]) == {}
     assert returning(replace(STATE, phase=SurveyPhase.PAUSED), empty) == {}
     assert returning(STATE, [replace(empty[0], serial="stranger")]) == {}

@@ -131,7 +131,7 @@ class TestSurveys:
         flights = Flights(started(flyers), flyers, sky=in_bands)
         flights.run(60.0)
         flyers[1].stop()
-        flyers[1].is_able = False
+        flyers[1].is_available = False
         state = flights.run()
         assert state.phase is SurveyPhase.DONE
         assert figures(state).in_sun_m2 > 0.98 * figures(state).reached_m2
@@ -207,7 +207,7 @@ class TestSurveys:
         state, _missions = decided(sun, *here)
         rows = set(flown_rows(state, "S-2"))
         lost = ClosedArea("Drone 2", "S-2", (-500.0, 180.0), 60.0, None, 20.0)
-        gone = replace(here[0], ended_mission=1), replace(here[1], is_able=False)
+        gone = replace(here[0], ended_mission=1), replace(here[1], is_available=False)
 
         def after(
             state: SurveyState, now_s: float, ended: int, *closed: ClosedArea
@@ -316,10 +316,10 @@ class TestSurveys:
         here = Surveyor("S-1", (180.0, -40.0), height_above_takeoff_m=60.0)
         sun = forecast(clear_sky)
         state, _given = decided(sun, here)
-        out = replace(here, is_able=False, ended_mission=1)
+        out = replace(here, is_available=False, ended_mission=1)
         state, _none = decided(sun, out, state=state, now_s=50.0)
         assert state.reason == "waiting: no vehicle can fly now"
-        back = replace(out, is_able=True)
+        back = replace(out, is_available=True)
         state, missions = decided(forecast(clear_sky, 60.0), back, state=state, now_s=60.0)
         assert (len(missions), state.reason) == (1, "under way")
 
@@ -464,7 +464,7 @@ class TestDecisions:
         else:
             assert missions == ()
             assert called == {"S-1": purpose}
-            assert returning(state, [replace(here, is_able=False)]) == {}
+            assert returning(state, [replace(here, is_available=False)]) == {}
 
     @pytest.mark.parametrize(("shaded_s", "called"), [(240.0, {"S-1"}), (290.0, {"S-1", "S-2"})])
     def test_one_stays_for_sun_that_may_come_while_another_changes_its_battery(

@@ -7,12 +7,12 @@ from collections.abc import Iterator
 from tests.architecture.source import files, tree
 
 from recon.station.api_views.audit_service import KINDS_OF
-from recon.station.state.imager_motion import LookAside, MoveUpwind
-from recon.station.state.imager_relief import ImagerRelief
+from recon.station.state.imager_motion import ImagerRelief, MoveUpwind, SideStep
 
 FROM_NAMES = {
     "{what}": ("authority", "preflight"),
-    "{after.rule}": (LookAside.rule, MoveUpwind.rule, ImagerRelief.rule),
+    "{motion.rule}": (SideStep.rule, MoveUpwind.rule, ImagerRelief.rule),
+    "{kind.rule}": (SideStep.rule, ImagerRelief.rule),
 }
 """What begins a kind that a function is given, by the expression."""
 

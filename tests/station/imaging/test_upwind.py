@@ -5,7 +5,7 @@ from math import hypot, radians
 
 import numpy as np
 import pytest
-from tests.station.looking_world import GRID, IMAGER, LookingWorld, looking_world
+from tests.station.imager_world import GRID, IMAGER, ImagerWorld, imager_world
 
 from recon.forecast import ForecastState
 from recon.geo import enu_from_point
@@ -46,9 +46,9 @@ def forecast(at_ns: int, velocity: tuple[float, float] | None) -> SunForecast:
 
 def knowing(
     outlook: Outlook = LEVEL, velocity: tuple[float, float] | None = EASTWARD, age_s: float = 0.0
-) -> LookingWorld:
+) -> ImagerWorld:
     """An imaging drone above the middle of the region, and a forecast with this motion."""
-    world = looking_world(place_m=(0.0, 0.0), height_m=118.0)
+    world = imager_world(place_m=(0.0, 0.0), height_m=118.0)
     station, now_ns = world.station, world.surveyed.driver.now_ns
     imager = replace(station.imaging.imagers[IMAGER], outlook=outlook)
     sun = forecast(now_ns - round(age_s * 1e9), velocity)
@@ -60,11 +60,11 @@ def knowing(
     return world
 
 
-def proposal(world: LookingWorld, serial: str | None = None) -> UpwindProposal | str:
+def proposal(world: ImagerWorld, serial: str | None = None) -> UpwindProposal | str:
     return proposed(world.station, [SQUARE], serial, world.surveyed.driver.now_ns)
 
 
-def found(world: LookingWorld) -> UpwindProposal:
+def found(world: ImagerWorld) -> UpwindProposal:
     answer = proposal(world)
     assert isinstance(answer, UpwindProposal), answer
     return answer

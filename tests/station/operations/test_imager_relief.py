@@ -29,11 +29,12 @@ from recon.station.api_views.operation_views import survey_view
 from recon.station.api_views.relief_views import unknown_from_s
 from recon.station.imaging.at_work import imagers_at_work
 from recon.station.imaging.upwind import upwind_question
+from recon.station.operations.imager_motion.execution import put
+from recon.station.operations.imager_motion.side_step import meant
 from recon.station.operations.imager_relief.commands import audit_entries, refusal
 from recon.station.operations.imager_relief.conditions import conditions
-from recon.station.operations.look_aside.commands import meant
 from recon.station.state.fleet_return_record import Stage
-from recon.station.state.imager_motion import MotionStage
+from recon.station.state.imager_motion import ImagerRelief, MotionStage
 from recon.station.state.steps import StepTaken
 
 REGION = field(120.0, 100.0, south_m=-20.0)
@@ -98,7 +99,7 @@ def left_at_home(world: RelievedWorld) -> bool:
 
 @pytest.fixture(scope="module")
 def flown() -> tuple[RelievedWorld, list[tuple[str, str | None]], dict[str, str]]:
-    """An automatic relief from its beginning until the first one has landed; audit and alarms."""
+    """A relief by itself from its beginning until the first one has landed; audit and alarms."""
     world = surveying()
     entries: list[tuple[str, str | None]] = []
 
@@ -107,7 +108,9 @@ def flown() -> tuple[RelievedWorld, list[tuple[str, str | None]], dict[str, str]
         entries.extend((each.kind, each.serial) for each in found)
 
     world.surveyed.driver.observe = observe
-    assert world.runs_until(lambda: world.station.reliefs.newest is not None, 240.0)
+    assert world.runs_until(
+        lambda: world.station.imager_motions.of(ImagerRelief) is not None, 240.0
+    )
     world.runs(20.0)
     on_the_way = world.alarms()
     assert world.runs_until(lambda: left_at_home(world), 240.0)
@@ -144,7 +147,7 @@ class TestFlown:
         assert imagers_at_work(world.station) == (SPARE,)
 
     def test_it_is_the_imaging_drone_from_then_on(self, flown: Flown) -> None:
-        """Looks aside and moves upwind mean it where none is named."""
+        """Side-steps and moves upwind mean it where none is named."""
         world = flown[0]
         assert meant(world.station) == SPARE
         shade = world.station.shade
@@ -200,12 +203,12 @@ class TestWithoutRelief:
         light = light_of(world)
         assert light.needs_s is not None
         (first,) = light.imagers
-        assert first.leaves_in_s is not None
-        assert light.unknown_in_s == pytest.approx(first.leaves_in_s)
-        assert light.unknown_for_s == pytest.approx(light.needs_s - first.leaves_in_s)
+        assert first.return_due_in_s is not None
+        assert light.unknown_in_s == pytest.approx(first.return_due_in_s)
+        assert light.unknown_for_s == pytest.approx(light.needs_s - first.return_due_in_s)
         assert (light.without_age_s, light.absent) == (None, [])
         assert world.runs_until(lambda: left_at_home(world), 200.0)
-        assert "light is unknown from then on. Call it home" in leaves_texts(world)[-1]
+        assert "light is unknown from then on. Recall it" in leaves_texts(world)[-1]
         world.runs(45.0)
         assert world.surveyed.phase() is SurveyPhase.RUNNING
         assert world.worst_age_s > 45.0 > SURVEY_DEFAULT.forecast_age_s
@@ -222,8 +225,8 @@ class TestWithoutRelief:
     def test_it_is_called_home_when_it_must_leave_and_sent_back_with_a_fresh_battery(self) -> None:
         world = surveying(None, first=0.36)
         assert world.runs_until(lambda: bool(world.alarms()), 60.0)
-        text = world.alarms()["imager_relief:leaves:CAM-1"]
-        assert "Relieve it, or it is called home then" in text
+        text = world.alarms()["imager_relief:return:CAM-1"]
+        assert "Relieve it, or it is recalled then" in text
         assert world.runs_until(lambda: left_at_home(world), 200.0)
         world.runs(2.0)
         assert world.surveyed.fleet.stages()[FIRST] is Stage.LANDED
@@ -242,7 +245,7 @@ class TestWithoutRelief:
 
 
 def leaves_texts(world: RelievedWorld) -> list[str]:
-    """All texts of the alarm that a drone must leave, ended or not."""
+    """All texts of the alarm that a drone must return, ended or not."""
     book = world.station.alarms.alarms.values()
     return [a.condition.text for a in book if a.condition.key.startswith("imager_relief:leaves")]
 
@@ -253,8 +256,8 @@ class TestForeseen:
         world.charges(FIRST, 0.60)
         world.runs(90.0)  # its use is observed by now
         outlook = world.station.reliefs.outlooks[FIRST]
-        assert outlook.leaves_at_ns is not None
-        in_s = (outlook.leaves_at_ns - world.surveyed.driver.now_ns) / 1e9
+        assert outlook.return_due_ns is not None
+        in_s = (outlook.return_due_ns - world.surveyed.driver.now_ns) / 1e9
         home_s = 1.2 * (FIRST_UP_M / 1.5 + 15.0 + 50.0 / 8.0 + 8.0 / 2.5)
         """Landing, the way and its stop, in wind that is not reported."""
         reserve = 0.25 + 0.01
@@ -266,7 +269,7 @@ class TestForeseen:
     def test_unknown_without_endurance(self) -> None:
         world = relieved_world(endurance_s=None)
         outlook = world.station.reliefs.outlooks[FIRST]
-        assert outlook.leaves_at_ns is None
+        assert outlook.return_due_ns is None
         assert "endurance unknown" in outlook.unknown
 
     def test_what_the_survey_needs_comes_true_and_a_battery_that_outlasts_it_stays(self) -> None:
@@ -278,7 +281,7 @@ class TestForeseen:
         assert world.surveyed.runs_until(SurveyPhase.DONE, 400.0)
         took_s = world.surveyed.driver.now_ns / 1e9 - began_s
         assert 0.7 * took_s < needs_s < 1.4 * took_s
-        assert world.station.reliefs.newest is None
+        assert world.station.imager_motions.of(ImagerRelief) is None
         assert leaves_texts(world) == []
 
 
@@ -289,7 +292,7 @@ def light_of(world: RelievedWorld) -> SurveyLightView:
 
 
 class TestAnotherShowsTheField:
-    """The first one's battery wants it home soon; another one hovers over the field too."""
+    """The first one must return soon; another one hovers over the field too."""
 
     @staticmethod
     def texts(world: RelievedWorld, maps_are_old_s: float) -> list[str]:
@@ -301,7 +304,7 @@ class TestAnotherShowsTheField:
         checked_ns = own.shade.captured_at_ns + seconds_to_ns(maps_are_old_s)
         reliefs = replace(station.reliefs, checked_at_ns=checked_ns)
         station = replace(station, fleet=fleet, shade=shade, reliefs=reliefs)
-        return [each.text for each in conditions(station) if "wants it home" in each.text]
+        return [each.text for each in conditions(station) if "return threshold" in each.text]
 
     def test_its_maps_of_now_are_light_and_old_ones_are_not(self) -> None:
         world = surveying(allowed=False, first=SHORT)
@@ -314,7 +317,7 @@ class TestNotByItself:
     def test_without_permission_to_take_off(self) -> None:
         world = surveying(takeoff=False, first=SHORT)
         world.runs(3.0)
-        assert world.station.reliefs.newest is None
+        assert world.station.imager_motions.of(ImagerRelief) is None
         assert "Relieve it" in leaves_texts(world)[0]
 
     def test_where_the_gate_refuses_every_layer(self) -> None:
@@ -323,7 +326,7 @@ class TestNotByItself:
         text = world.alarms()["imager_relief:refused"]
         assert "wall" in text
         assert "every other height was refused as well" in text
-        assert "imager_relief:leaves:CAM-1" in world.alarms()
+        assert "imager_relief:return:CAM-1" in world.alarms()
         assert world.holder(SPARE) is AuthorityHolder.OPERATOR
         assert not world.surveyed.fleet.flies(SPARE)
         assert world.surveyed.record().spare_may_take_off  # nothing has used it
@@ -338,9 +341,9 @@ class TestNotByItself:
         assert holds(world) == 1
         world.runs(5.0)
         assert holds(world) == 1
-        called = world.station.reliefs.called_home[FIRST]
+        called = world.station.reliefs.recalled[FIRST]
         again = {FIRST: replace(called, at_ns=called.at_ns - 60_000_000_000)}
-        reliefs = replace(world.station.reliefs, called_home=again)
+        reliefs = replace(world.station.reliefs, recalled=again)
         world.station = replace(world.station, reliefs=reliefs)
         world.runs(2.0)
         assert holds(world) == 2
@@ -351,8 +354,8 @@ class TestNotByItself:
         world.surveyed.driver.handle(taken)
         world.charges(FIRST, AT_ONCE)
         world.runs(5.0)
-        text = world.alarms()["imager_relief:leaves:CAM-1"]
-        assert "cannot be called home automatically: CAM-1 is controlled by the pilot" in text
+        text = world.alarms()["imager_relief:return:CAM-1"]
+        assert "cannot be recalled automatically: CAM-1 is controlled by the pilot" in text
         assert holds(world) == 0
 
 
@@ -389,7 +392,7 @@ class TestEndedBefore:
         world.runs(5.0)
         world.surveyed.fleet.world.connect(connected.app)
         self.stays(world, "its connection was interrupted")
-        assert "Relieve again once that is settled" in world.alarms()["imager_relief:stopped"]
+        assert "Fix the cause and relieve again" in world.alarms()["imager_relief:stopped"]
 
     def test_by_telemetry_that_is_lost_for_longer(self) -> None:
         world = ordered(faults=("telemetry-dropout:CAM-2:26:6",))
@@ -427,7 +430,7 @@ class TestEndedBefore:
         assert world.runs_until(lambda: world.newest().is_over, 120.0)
         assert world.app(SPARE).feed.is_on  # it was switched on
         self.stays(world, "no shade map within 60 s of its arrival: no frames")
-        assert "Relieve again" in world.alarms()["imager_relief:stopped"]
+        assert "relieve again" in world.alarms()["imager_relief:stopped"]
         world.blind_cameras = set()
         world.orders(takeoff=False)
         assert world.newest().stage is MotionStage.MAPS
@@ -443,21 +446,20 @@ class TestEndedBefore:
         assert world.runs_until(lambda: "of what CAM-1 shows" in world.newest().reason, 15.0)
         waits = world.newest()
         late = replace(waits, since_ns=waits.since_ns - 150_000_000_000)
-        reliefs = replace(world.station.reliefs, newest=late)
-        world.station = replace(world.station, reliefs=reliefs)
+        world.station = put(world.station, late)
         self.stays(world, "no 3 shade maps in a row within 150 s of its arrival: its shade map")
 
 
 def test_a_relief_by_itself_that_a_person_stops_does_not_begin_again() -> None:
     world = surveying(first=LOW)
-    assert world.runs_until(lambda: world.station.reliefs.newest is not None, 60.0)
+    assert world.runs_until(lambda: world.station.imager_motions.of(ImagerRelief) is not None, 60.0)
     world.runs(10.0)
     world.surveyed.driver.handle(OperatorOrder(900, Hover(), "bob", serial=SPARE))
     world.runs(2.0)
     stopped = world.newest()
     assert stopped.stage is MotionStage.STOPPED
     assert "hover, ordered by bob" in stopped.reason
-    assert "imager_relief:leaves:CAM-1" in world.alarms()
+    assert "imager_relief:return:CAM-1" in world.alarms()
     world.runs(20.0)
     assert world.newest() is stopped
 
@@ -470,7 +472,7 @@ def test_a_first_one_that_cannot_be_called_home_in_the_end_is_an_alarm() -> None
     assert world.newest().stage is MotionStage.DONE
     world.runs(1.0)
     assert (
-        "cannot be called home: CAM-1 is controlled by the pilot"
+        "cannot be recalled: CAM-1 is controlled by the pilot"
         in (world.alarms()["imager_relief:stays"])
     )
 
@@ -480,7 +482,7 @@ def test_a_first_one_that_must_leave_at_once_is_called_home_and_the_relief_follo
     world = surveying(first=0.29)
     assert "relief cannot begin" in world.alarms()["imager_relief:refused"]
     assert world.surveyed.fleet.stages()[FIRST] in (Stage.STOPPING, Stage.WAITING, Stage.FLYING)
-    assert world.runs_until(lambda: world.station.reliefs.newest is not None, 60.0)
+    assert world.runs_until(lambda: world.station.imager_motions.of(ImagerRelief) is not None, 60.0)
     assert world.runs_until(lambda: left_at_home(world), 120.0)
     names = [
         each.command.name
@@ -537,7 +539,7 @@ class TestRefused:
         event = ReliefOrdered(FIRST, SPARE, "ann")
         now_ns = world.surveyed.driver.now_ns
         world.orders(takeoff=False)
-        assert world.station.reliefs.newest is None
+        assert world.station.imager_motions.of(ImagerRelief) is None
         (entry,) = audit_entries(before, event, world.station, now_ns)
         assert entry.kind == "imager_relief.refused"
         assert world.station.control(SPARE).authority is before.control(SPARE).authority
@@ -569,6 +571,8 @@ class TestPermissionOfTheSpare:
 
     def test_a_vehicle_that_joins_from_the_ground_does_not_give_it_again(self) -> None:
         world = surveying(first=SHORT)
-        assert world.runs_until(lambda: world.station.reliefs.newest is not None, 60.0)
+        assert world.runs_until(
+            lambda: world.station.imager_motions.of(ImagerRelief) is not None, 60.0
+        )
         world.surveyed.starts("SIM-1", takeoff=True)
         assert not world.surveyed.record().spare_may_take_off

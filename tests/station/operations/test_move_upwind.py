@@ -6,7 +6,7 @@ from math import hypot, radians
 
 import numpy as np
 import pytest
-from tests.station.looking_world import GRID, IMAGER, LookingWorld, looking_world
+from tests.station.imager_world import GRID, IMAGER, ImagerWorld, imager_world
 from tests.station.surveyed_world import SURVEY_ID, asked
 
 from recon.forecast import ForecastState
@@ -16,8 +16,8 @@ from recon.model.control import AuthorityHolder
 from recon.model.event import (
     AllStopped,
     AuthorityTaken,
-    LookAsideOrdered,
     OperatorOrder,
+    SideStepOrdered,
     SurveyStarted,
     ZoneDrawn,
 )
@@ -25,9 +25,10 @@ from recon.model.imagery import Outlook
 from recon.model.shade import ShadeMap, SunForecast
 from recon.model.survey import SurveyPhase
 from recon.model.temporary_zone import Circle, DrawnZone, TemporaryZoneKind
-from recon.station.operations.look_aside.commands import refusal
-from recon.station.operations.move_upwind.conditions import audit_entries
-from recon.station.state.imager_motion import MotionStage, MoveUpwind
+from recon.station.operations.imager_motion.execution import put
+from recon.station.operations.imager_motion.move_upwind import MOVE_UPWIND
+from recon.station.operations.imager_motion.side_step import refusal
+from recon.station.state.imager_motion import MotionStage, MoveUpwind, SideStep
 from recon.station.state.steps import StepTaken
 
 EASTWARD, NORTHWARD = (5.0, 0.0), (0.0, 5.0)
@@ -40,7 +41,7 @@ NOTHING = ShadeMap(
 PERSON = {"issued_by": "bob", "serial": IMAGER, "person": "ann"}
 
 
-def blows(world: LookingWorld, velocity: tuple[float, float] | None) -> None:
+def blows(world: ImagerWorld, velocity: tuple[float, float] | None) -> None:
     """A forecast of now, with this motion of the shadows."""
     cells = (GRID.rows, GRID.cols)
     sun = SunForecast(
@@ -58,21 +59,21 @@ def blows(world: LookingWorld, velocity: tuple[float, float] | None) -> None:
 
 
 def blowing(
-    world: LookingWorld, seconds: float, velocity: tuple[float, float] | None = EASTWARD
+    world: ImagerWorld, seconds: float, velocity: tuple[float, float] | None = EASTWARD
 ) -> None:
     for _ in range(round(seconds)):
         blows(world, velocity)
         world.surveyed.runs(1.0)
 
 
-def starts(world: LookingWorld) -> None:
+def starts(world: ImagerWorld) -> None:
     started = SurveyStarted(SURVEY_ID, ("SIM-2",), "ann", takeoff=False, person="ann")
     world.surveyed.driver.handle(started)
 
 
-def surveying(*, allowed: bool = True, **options: object) -> LookingWorld:
+def surveying(*, allowed: bool = True, **options: object) -> ImagerWorld:
     """A survey drone at work, and an imaging drone above the middle of its field."""
-    world = looking_world(1, place_m=(0.0, 0.0), height_m=118.0, **options)  # type: ignore[arg-type]
+    world = imager_world(1, place_m=(0.0, 0.0), height_m=118.0, **options)  # type: ignore[arg-type]
     imager = replace(world.station.imaging.imagers[IMAGER], outlook=Outlook(radians(65.0)))
     imaging = replace(world.station.imaging, imagers={IMAGER: imager})
     world.station = replace(world.station, imaging=imaging)
@@ -84,16 +85,17 @@ def surveying(*, allowed: bool = True, **options: object) -> LookingWorld:
     return world
 
 
-def better_for_long(world: LookingWorld) -> None:
+def better_for_long(world: ImagerWorld) -> None:
     """The newest proposal is better, since half a minute, and one may begin."""
-    moves = world.station.upwind_moves
-    assert moves.better_since_ns is not None
+    motions = world.station.imager_motions
+    assert motions.upwind.better_since_ns is not None
     since_ns = world.surveyed.driver.now_ns - 31_000_000_000
-    moves = replace(moves, better_since_ns=since_ns, due_ns=0)
-    world.station = replace(world.station, upwind_moves=moves)
+    start = replace(motions.start(MoveUpwind), due_ns=0)
+    motions = replace(motions, upwind=replace(motions.upwind, better_since_ns=since_ns))
+    world.station = replace(world.station, imager_motions=motions.with_start(MoveUpwind, start))
 
 
-def under_way() -> LookingWorld:
+def under_way() -> ImagerWorld:
     """A move that has begun 4 s ago."""
     world = surveying()
     blowing(world, 2.0)
@@ -103,23 +105,23 @@ def under_way() -> LookingWorld:
     return world
 
 
-def newest(world: LookingWorld) -> MoveUpwind:
-    found = world.station.upwind_moves.newest
+def newest(world: ImagerWorld) -> MoveUpwind:
+    found = world.station.imager_motions.of(MoveUpwind)
     assert found is not None
     return found
 
 
-def has_begun(world: LookingWorld) -> bool:
-    return world.station.upwind_moves.newest is not None
+def has_begun(world: ImagerWorld) -> bool:
+    return world.station.imager_motions.of(MoveUpwind) is not None
 
 
-def alarms(world: LookingWorld) -> dict[str, str]:
+def alarms(world: ImagerWorld) -> dict[str, str]:
     book = world.station.alarms.alarms.values()
     conditions = [alarm.condition for alarm in book if alarm.is_active]
     return {each.key: each.text for each in conditions if each.rule == "move_upwind"}
 
 
-def ways(world: LookingWorld) -> list[GoTo]:
+def ways(world: ImagerWorld) -> list[GoTo]:
     records = world.station.orders.records.values()
     return [
         each.command.body
@@ -129,13 +131,13 @@ def ways(world: LookingWorld) -> list[GoTo]:
 
 
 @pytest.fixture(scope="module")
-def flown() -> tuple[LookingWorld, list[tuple[str, str]], dict[str, str]]:
+def flown() -> tuple[ImagerWorld, list[tuple[str, str]], dict[str, str]]:
     """A move from its beginning to its end; its audit, and its alarms on the way."""
     world = surveying()
     entries: list[tuple[str, str]] = []
 
     def observe(step: StepTaken) -> None:
-        found = audit_entries(step.before, step.event, step.after, step.now_ns)
+        found = MOVE_UPWIND.audit(step.before, step.event, step.after, step.now_ns)
         entries.extend((each.kind, each.by) for each in found)
 
     world.surveyed.driver.observe = observe
@@ -147,7 +149,7 @@ def flown() -> tuple[LookingWorld, list[tuple[str, str]], dict[str, str]]:
 
 
 class TestFlown:
-    Flown = tuple[LookingWorld, list[tuple[str, str]], dict[str, str]]
+    Flown = tuple[ImagerWorld, list[tuple[str, str]], dict[str, str]]
 
     def test_it_hovers_upwind_and_the_operator_has_it(self, flown: Flown) -> None:
         world = flown[0]
@@ -196,7 +198,7 @@ def test_not_for_a_survey_that_does_not_allow_it() -> None:
     world = surveying(allowed=False)
     blowing(world, 15.0)
     assert not has_begun(world)
-    assert world.station.upwind_moves.next_job_id == 1
+    assert world.station.imager_motions.upwind.next_job_id == 1
     assert alarms(world) == {}
 
 
@@ -207,14 +209,14 @@ def test_not_after_the_survey_was_paused() -> None:
     world.surveyed.pauses()
     blowing(world, 5.0)
     assert not has_begun(world)
-    assert world.station.upwind_moves.survey_id is None
+    assert world.station.imager_motions.upwind.survey_id is None
 
 
 def test_a_wind_that_is_lost_begins_the_half_minute_anew() -> None:
     world = surveying()
     blowing(world, 22.0)
     blowing(world, 10.0, None)
-    assert world.station.upwind_moves.better_since_ns is None
+    assert world.station.imager_motions.upwind.better_since_ns is None
     blowing(world, 10.0)
     assert not has_begun(world)
 
@@ -255,7 +257,7 @@ def test_the_gate_refuses_a_way_through_a_zone() -> None:
 class TestEndedBefore:
     """Whatever ends it, the vehicle holds and nothing resumes."""
 
-    def stays(self, world: LookingWorld, why: str) -> None:
+    def stays(self, world: ImagerWorld, why: str) -> None:
         blowing(world, 5.0)
         ended = newest(world)
         assert ended.stage is MotionStage.STOPPED
@@ -263,7 +265,7 @@ class TestEndedBefore:
         off_m = world.off_m()
         count = len(ways(world))
         blowing(world, 11.0)
-        if world.station.upwind_moves.better_since_ns is not None:
+        if world.station.imager_motions.upwind.better_since_ns is not None:
             better_for_long(world)
         blowing(world, 2.0)
         assert newest(world) is ended
@@ -320,8 +322,7 @@ class TestEndedBefore:
     def test_by_time(self) -> None:
         world = under_way()
         slow = replace(newest(world), since_ns=newest(world).since_ns - 120_000_000_000)
-        moves = replace(world.station.upwind_moves, newest=slow)
-        world.station = replace(world.station, upwind_moves=moves)
+        world.station = put(world.station, slow)
         self.stays(world, "not arrived within")
         holds = [
             each
@@ -345,8 +346,8 @@ class TestEndedBefore:
         assert len(ways(world)) == 1
 
 
-class TestNeverWithALookAside:
-    def test_it_waits_for_a_look_aside(self) -> None:
+class TestNeverWithASideStep:
+    def test_it_waits_for_a_side_step(self) -> None:
         world = surveying()
         blowing(world, 2.0)
         world.ordered("ann")
@@ -359,24 +360,24 @@ class TestNeverWithALookAside:
         assert newest(world).stage is MotionStage.UPWIND
 
     @pytest.mark.parametrize("is_asked", [True, False], ids=["asked for", "by itself"])
-    def test_no_look_aside_begins_during_a_move(self, is_asked: bool) -> None:
+    def test_no_side_step_begins_during_a_move(self, is_asked: bool) -> None:
         world = under_way()
         if is_asked:
-            event = LookAsideOrdered("ann", person="ann")
+            event = SideStepOrdered("ann", person="ann")
             why = refusal(world.station, event, world.surveyed.driver.now_ns)
             assert why is not None
             assert "moves upwind already" in why.reason
             world.ordered("ann")
         else:
             record = world.surveyed.record()
-            survey = replace(record.survey, look_aside_allowed=True)
+            survey = replace(record.survey, side_step_allowed=True)
             surveys = world.station.surveys.put(replace(record, survey=survey))
             world.station = replace(world.station, surveys=surveys)
             world.reads_shade(0.0, 30.0)
             world.reads_shade(0.0)
         world.surveyed.runs(1.0)
-        assert world.station.look_asides.newest is None
-        assert world.station.look_asides.refused is None
+        assert world.station.imager_motions.of(SideStep) is None
+        assert world.station.imager_motions.start(SideStep).refused is None
         assert newest(world).stage is MotionStage.UPWIND
 
 
@@ -393,7 +394,7 @@ class TestNeverWithALookAside:
     ids=["hold", "goto"],
 )
 def test_where_a_person_has_sent_it_there_it_stays(
-    ordered: Callable[[LookingWorld], OperatorOrder],
+    ordered: Callable[[ImagerWorld], OperatorOrder],
 ) -> None:
     world = surveying()
     world.surveyed.driver.handle(ordered(world))

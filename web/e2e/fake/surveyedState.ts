@@ -58,7 +58,9 @@ export function surveyedState(elapsed_s: number): StationState {
       survey(ID, {
         name: "south-east field by the long brook",
         light: surveyLight({
-          imagers: [{ serial: "SN-004", vehicle_name: "Dogwood", leaves_in_s: 540, unknown: null }],
+          imagers: [
+            { serial: "SN-004", vehicle_name: "Dogwood", return_due_in_s: 540, unknown: null },
+          ],
           absent: [{ serial: "SN-005", vehicle_name: "Elm", gone_age_s: 90, is_on_ground: true }],
         }),
         vehicles: [

@@ -7,9 +7,9 @@ import type {
   GroundImageView,
   ImagerReliefView,
   LinkView,
-  LookAsideView,
   MoveUpwindView,
   ShadeLineView,
+  SideStepView,
   SiteView,
   StationView,
   StopLatchView,
@@ -37,7 +37,7 @@ interface FleetData {
   site: SiteView | null;
   groundImage: GroundImageView | null;
   fleetReturn: FleetReturnView | null;
-  lookAside: LookAsideView | null;
+  sideStep: SideStepView | null;
   moveUpwind: MoveUpwindView | null;
   imagerRelief: ImagerReliefView | null;
   shade: ShadeLineView | null;
@@ -56,7 +56,7 @@ const NO_DATA: FleetData = {
   site: null,
   groundImage: null,
   fleetReturn: null,
-  lookAside: null,
+  sideStep: null,
   moveUpwind: null,
   imagerRelief: null,
   shade: null,
@@ -88,7 +88,7 @@ export function createFleetView(source: Pick<StationSource, "state">): FleetView
     setView("temporaryZones", reconcile([...state.temporary_zones], { key: "id" }));
     setView("site", reconcile(state.site));
     setView("fleetReturn", reconcile(state.fleet_return, { key: "serial" }));
-    setView("lookAside", reconcile(state.look_aside));
+    setView("sideStep", reconcile(state.side_step));
     setView("moveUpwind", reconcile(state.move_upwind));
     setView("imagerRelief", reconcile(state.imager_relief));
     setView("shade", reconcile(state.shade));

@@ -34,11 +34,11 @@ export type PreflightView = Schemas["PreflightView"];
 export type CheckView = Schemas["CheckView"];
 export type FleetReturnView = Schemas["FleetReturnView"];
 export type ImagerMotionView =
-  | Schemas["LookAsideView"]
+  | Schemas["SideStepView"]
   | Schemas["MoveUpwindView"]
   | Schemas["ImagerReliefView"];
 export type ImagerReliefView = Schemas["ImagerReliefView"];
-export type LookAsideView = Schemas["LookAsideView"];
+export type SideStepView = Schemas["SideStepView"];
 export type MoveUpwindView = Schemas["MoveUpwindView"];
 export type LightSharesView = Schemas["LightSharesView"];
 export type ReturningView = Schemas["ReturningView"];

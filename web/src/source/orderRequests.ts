@@ -91,9 +91,9 @@ export function orderRequests(http: StationHttp, context: OrderContext) {
       );
     },
     /** Has the imaging drone fly 25 m aside and back. */
-    lookAside: (serial: string) => {
+    sideStep: (serial: string) => {
       const body = { serial, given_at_unix_ms: context.stationNowMs() };
-      return answered(ORDER, (signal) => client.POST("/api/look-aside", { body, signal }));
+      return answered(ORDER, (signal) => client.POST("/api/side-step", { body, signal }));
     },
     /** Has an imaging drone take the place of another; of the same serial: return to its own. */
     relieve: (serial: string, spare: string, takeoff: boolean) => {

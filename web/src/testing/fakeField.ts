@@ -37,7 +37,7 @@ export function surveyEstimate(changes: Partial<SurveyEstimateView> = {}): Surve
 export function surveyLight(changes: Partial<SurveyLightView> = {}): SurveyLightView {
   return {
     needs_s: 1080,
-    imagers: [{ serial: "SN-003", vehicle_name: "Cedar", leaves_in_s: 540, unknown: null }],
+    imagers: [{ serial: "SN-003", vehicle_name: "Cedar", return_due_in_s: 540, unknown: null }],
     absent: [],
     unknown_in_s: 540,
     unknown_for_s: 540,
@@ -59,7 +59,7 @@ export function survey(id: number, changes: Partial<SurveyView> = {}): SurveyVie
     started_by: "api 127.0.0.1",
     planner: "lawnmower_again",
     when_done: "return_home",
-    look_aside_allowed: false,
+    side_step_allowed: false,
     upwind_allowed: false,
     relief_allowed: false,
     spare_serial: null,

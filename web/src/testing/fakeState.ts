@@ -220,7 +220,7 @@ export function station(
     temporary_zones: [],
     ground_image: null,
     fleet_return: null,
-    look_aside: null,
+    side_step: null,
     move_upwind: null,
     imager_relief: null,
     shade: null,

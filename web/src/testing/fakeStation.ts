@@ -88,7 +88,7 @@ export function fakeSource(station: FakeStation): StationSource {
         requests.sent.push({ fleetReturn: serials });
         return answered(station.answer);
       },
-      lookAside: (serial) => requests.answer({ lookAside: serial }),
+      sideStep: (serial) => requests.answer({ sideStep: serial }),
       relieve: (relieved, spare, takeoff) => requests.answer({ relieved, spare, takeoff }),
     },
     vehicles: {

@@ -66,8 +66,8 @@ function vehicles(): VehicleView[] {
 
 const LIGHT = surveyLight({
   imagers: [
-    { serial: "SN-003", vehicle_name: "Cedar", leaves_in_s: 540, unknown: null },
-    { serial: "SN-004", vehicle_name: "Dogwood", leaves_in_s: null, unknown: "Charge unknown" },
+    { serial: "SN-003", vehicle_name: "Cedar", return_due_in_s: 540, unknown: null },
+    { serial: "SN-004", vehicle_name: "Dogwood", return_due_in_s: null, unknown: "Charge unknown" },
   ],
   absent: [{ serial: "SN-002", vehicle_name: "Birch", gone_age_s: 200, is_on_ground: true }],
   without_age_s: 75,
@@ -182,7 +182,7 @@ export function fullState(): StationState {
         reason: "Pad in use",
       })),
     },
-    look_aside: { ...motion, bearing_deg: 90, stage: "aside" },
+    side_step: { ...motion, bearing_deg: 90, stage: "aside" },
     move_upwind: { ...motion, place: UPWIND, stage: "upwind" },
     imager_relief: {
       ...motion,

@@ -24,7 +24,7 @@ export type PageRequest =
     }
   | { readonly refusedLink: number }
   | { readonly fleetReturn: readonly string[] | null }
-  | { readonly lookAside: string }
+  | { readonly sideStep: string }
   | { readonly relieved: string; readonly spare: string; readonly takeoff: boolean }
   | { readonly plannedSurvey: NewSurvey }
   | {

@@ -235,7 +235,7 @@ class FleetReturnRequest(GivenRequest):
     )
 
 
-class LookAsideRequest(GivenRequest):
+class SideStepRequest(GivenRequest):
     """An imaging drone is to fly a little aside and back."""
 
     serial: str | None = Field(

@@ -114,11 +114,13 @@ class ImagerMotionView(Message):
     begun_by: str
     begun_age_s: float
     reason: str | None = Field(description="why it waits beside its place, or has stopped")
-    survey_id: int | None = Field(description="the survey that it serves; null: ordered")
+    survey_id: int | None = Field(
+        description="the survey it began for automatically; null: ordered"
+    )
 
 
-class LookAsideView(ImagerMotionView):
-    """The newest look aside of the imaging drone."""
+class SideStepView(ImagerMotionView):
+    """The newest side-step of the imaging drone."""
 
     bearing_deg: float
 
@@ -151,7 +153,7 @@ class StationState(Message):
     temporary_zones: list[TemporaryZoneView]
     ground_image: GroundImageView | None
     fleet_return: FleetReturnView | None
-    look_aside: LookAsideView | None
+    side_step: SideStepView | None
     move_upwind: MoveUpwindView | None
     imager_relief: ImagerReliefView | None
     shade: ShadeLineView | None

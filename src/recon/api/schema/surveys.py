@@ -73,9 +73,9 @@ class SurveyRequest(StrictMessage):
         default="return_home",
         description="what vehicles do when it is complete, or no battery is sufficient for a row",
     )
-    look_aside_allowed: bool = Field(
+    side_step_allowed: bool = Field(
         default=False,
-        description="the imaging drone may look aside automatically while light is mostly unknown",
+        description="the imaging drone may side-step automatically while light is mostly unknown",
     )
     upwind_allowed: bool = Field(
         default=False,
@@ -84,8 +84,8 @@ class SurveyRequest(StrictMessage):
     )
     relief_allowed: bool = Field(
         default=False,
-        description="the imaging drone may be relieved automatically, or called home, when its "
-        "battery wants it",
+        description="the imaging drone may be relieved automatically, or recalled, when its "
+        "battery is at the return threshold",
     )
     spare_serial: Annotated[str, Field(max_length=256)] | None = Field(
         default=None,
@@ -150,11 +150,11 @@ class SurveyingView(Message):
 
 
 class ImagerOutlookView(Message):
-    """When the battery of an imaging drone over the field wants it home."""
+    """When the battery of an imaging drone over the field will be at the return threshold."""
 
     serial: str
     vehicle_name: str
-    leaves_in_s: float | None = Field(description="null: not known; `unknown` states why")
+    return_due_in_s: float | None = Field(description="null: not known; `unknown` states why")
     unknown: str | None
 
 
@@ -174,9 +174,9 @@ class SurveyLightView(Message):
     imagers: list[ImagerOutlookView]
     absent: list[AbsentImagerView]
     unknown_in_s: float | None = Field(
-        description="until the last imaging drone must leave, if that is before the survey is done"
+        description="until the last imaging drone must return, if that is before the survey is done"
     )
-    unknown_for_s: float | None = Field(description="from then on, without a relief")
+    unknown_for_s: float | None = Field(description="from then on, without a second imaging drone")
     without_age_s: float | None = Field(description="since the last shade map; null: it has light")
     without_m2: float | None = Field(description="imaged since then, its light unknown")
 
@@ -193,7 +193,7 @@ class SurveyView(Message):
     started_by: str | None
     planner: str
     when_done: WhenDoneName
-    look_aside_allowed: bool
+    side_step_allowed: bool
     upwind_allowed: bool
     relief_allowed: bool
     spare_serial: str | None

@@ -210,14 +210,14 @@ def step(
     state = replace(state, progress=progress, closed=tuple(closed))
     if state.phase is SurveyPhase.PAUSED:
         return state, ()
-    own = [_as_able(each, state.plan) for each in vehicles if each.serial in state.serials]
+    own = [_as_available(each, state.plan) for each in vehicles if each.serial in state.serials]
     return PLANNERS[state.plan.survey.planner](state, own, sun, now_ns)
 
 
-def _as_able(surveyor: Surveyor, plan: SurveyPlan) -> Surveyor:
+def _as_available(surveyor: Surveyor, plan: SurveyPlan) -> Surveyor:
     """A vehicle whose takeoff height is not known cannot fly above ground."""
     is_lost = plan.terrain is not None and surveyor.takeoff_up_m is None
-    return replace(surveyor, is_able=False) if is_lost else surveyor
+    return replace(surveyor, is_available=False) if is_lost else surveyor
 
 
 def _wrong_phase(state: SurveyState, asked: str) -> Refusal:
@@ -240,7 +240,11 @@ def returning(state: SurveyState, vehicles: Sequence[Surveyor]) -> Mapping[str, 
         return {}
     reasons: dict[str, str] = {}
     for each in vehicles:
-        if not each.is_able or each.serial in state.flights or each.serial not in state.serials:
+        if (
+            not each.is_available
+            or each.serial in state.flights
+            or each.serial not in state.serials
+        ):
             continue
         decision = state.decisions.get(each.serial)
         if decision is not None and decision.returns:

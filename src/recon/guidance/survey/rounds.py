@@ -51,7 +51,7 @@ def fly_rounds(
     state: SurveyState, vehicles: Sequence[Surveyor], now_ns: int, wanted: CellState
 ) -> Step:
     """Return the next state and the missions to give, for cells up to the `wanted` state."""
-    able = {each.serial: each for each in vehicles if each.is_able}
+    able = {each.serial: each for each in vehicles if each.is_available}
     state = without_ended_missions(state, able, now_ns)
     spent = spent_budget(state, wanted, now_ns)
     if spent is None:

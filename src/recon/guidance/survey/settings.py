@@ -68,7 +68,7 @@ class SurveySettings:
 
     light_shown_s: float = 150.0
     """Over about this long it is remembered how often shade maps show a cell's light: longer than
-    an imaging drone looks aside."""
+    an imaging drone side-steps."""
 
     light_shown_from: float = 0.25
     """A cell that fewer maps show lies outside the imaging drone's view, or at its edge: it cannot

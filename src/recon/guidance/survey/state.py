@@ -22,7 +22,7 @@ NO_ROUTES: Routes = MappingProxyType({})
 class Surveyor:
     """One of the survey's vehicles, as the planner needs it now.
 
-    `is_able`: it can take a mission (telemetry live, controlled by guidance, not returning), or
+    `is_available`: it can take a mission (telemetry live, under guidance, not returning), or
     flies its present one, with or without telemetry. `ended_mission` is the number of its newest
     mission of this survey that has ended, in whatever way. `time_left_s` is its remaining flight
     time without the reserve; None if unknown: then only the gate checks the battery.
@@ -30,7 +30,7 @@ class Surveyor:
 
     serial: str
     place_m: EastNorth
-    is_able: bool = True
+    is_available: bool = True
     ended_mission: int = 0
     time_left_s: float | None = None
     keeps_battery: bool | None = None

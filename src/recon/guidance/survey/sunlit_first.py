@@ -146,7 +146,7 @@ def vehicle_by_vehicle(
     begun: Begun,
 ) -> Step:
     """Fly until all is in sun, without waiting for one another; `begun` gives the missions."""
-    able = {each.serial: each for each in vehicles if each.is_able}
+    able = {each.serial: each for each in vehicles if each.is_available}
     state = _with_just_flown(state, without_ended_missions(state, able, now_ns), now_ns)
     # One that could not fly meanwhile is decided on anew.
     decided = {key: each for key, each in state.decisions.items() if key in able}

@@ -14,7 +14,7 @@ KINDS_OF: dict[TimelineSubject, tuple[str, ...]] = {
     "operations": (
         "survey.",
         "fleet_return.",
-        "look_aside.",
+        "side_step.",
         "move_upwind.",
         "imager_relief.",
         "temporary_zone.",

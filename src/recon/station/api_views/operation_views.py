@@ -23,7 +23,7 @@ from recon.station.operations.survey.availability import (
 )
 from recon.station.operations.survey.return_to_home import is_under_way
 from recon.station.state.fleet_return_record import ReturningVehicle
-from recon.station.state.imager_motion import ImagerMotion
+from recon.station.state.imager_motion import ImagerMotion, ImagerRelief, MoveUpwind, SideStep
 from recon.station.state.station import Station
 from recon.station.state.survey_record import SURVEYS_KEPT, EastNorth, SurveyMember, SurveyRecord
 
@@ -51,7 +51,7 @@ def survey_view(station: Station, record: SurveyRecord, now_ns: int) -> schema.S
         started_by=record.started_by or None,
         planner=survey.planner,
         when_done=survey.when_done.value,
-        look_aside_allowed=survey.look_aside_allowed,
+        side_step_allowed=survey.side_step_allowed,
         upwind_allowed=survey.upwind_allowed,
         relief_allowed=survey.relief_allowed,
         spare_serial=survey.spare_serial,
@@ -182,17 +182,17 @@ def fleet_return_view(station: Station, now_ns: int) -> schema.FleetReturnView |
     )
 
 
-def look_aside_view(station: Station, now_ns: int) -> schema.LookAsideView | None:
-    """Return the newest look aside; None before the first."""
-    newest = station.look_asides.newest
+def side_step_view(station: Station, now_ns: int) -> schema.SideStepView | None:
+    """Return the newest side-step; None before the first."""
+    newest = station.imager_motions.of(SideStep)
     if newest is None:
         return None
-    return schema.LookAsideView(**_motion(newest, now_ns), bearing_deg=newest.bearing_deg)
+    return schema.SideStepView(**_motion(newest, now_ns), bearing_deg=newest.bearing_deg)
 
 
 def move_upwind_view(station: Station, now_ns: int) -> schema.MoveUpwindView | None:
     """Return the newest move upwind; None before the first."""
-    newest = station.upwind_moves.newest
+    newest = station.imager_motions.of(MoveUpwind)
     if newest is None:
         return None
     place = upwind_place_view(newest.proposal)
@@ -201,7 +201,7 @@ def move_upwind_view(station: Station, now_ns: int) -> schema.MoveUpwindView | N
 
 def imager_relief_view(station: Station, now_ns: int) -> schema.ImagerReliefView | None:
     """Return the newest relief of an imaging drone; None before the first."""
-    newest = station.reliefs.newest
+    newest = station.imager_motions.of(ImagerRelief)
     if newest is None:
         return None
     return schema.ImagerReliefView(

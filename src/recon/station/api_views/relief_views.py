@@ -21,7 +21,7 @@ def light_view(
         return None
     at_work = imagers_at_work(station)
     imagers = [_imager(station, serial, now_ns) for serial in at_work]
-    unknown_in_s = unknown_from_s([each.leaves_in_s for each in imagers], outlook.needs_s)
+    unknown_in_s = unknown_from_s([each.return_due_in_s for each in imagers], outlook.needs_s)
     unknown_for_s = None
     if unknown_in_s is not None and outlook.needs_s is not None:
         unknown_for_s = outlook.needs_s - unknown_in_s
@@ -39,11 +39,11 @@ def light_view(
 
 def _imager(station: Station, serial: str, now_ns: int) -> schema.ImagerOutlookView:
     outlook = station.reliefs.outlooks.get(serial)
-    at_ns = None if outlook is None else outlook.leaves_at_ns
+    at_ns = None if outlook is None else outlook.return_due_ns
     return schema.ImagerOutlookView(
         serial=serial,
         vehicle_name=_name(station, serial),
-        leaves_in_s=None if at_ns is None else max(0.0, ns_to_seconds(at_ns - now_ns)),
+        return_due_in_s=None if at_ns is None else max(0.0, ns_to_seconds(at_ns - now_ns)),
         unknown=None if outlook is None or at_ns is not None else outlook.unknown,
     )
 
@@ -64,7 +64,7 @@ def _absent(station: Station, now_ns: int) -> list[schema.AbsentImagerView]:
 
 
 def unknown_from_s(leaves_s: Sequence[float | None], needs_s: float | None) -> float | None:
-    """Return when the last imaging drone must leave, if the survey goes on then; else None.
+    """Return when the last imaging drone must return, if the survey goes on then; else None.
 
     None where one's time is not known. What a survey needs is not known for its first minutes: then
     only what is near is stated, or every survey would begin with a warning.

@@ -17,8 +17,8 @@ from recon.station.api_views.imaging_views import ground_image_view, shade_view
 from recon.station.api_views.operation_views import (
     fleet_return_view,
     imager_relief_view,
-    look_aside_view,
     move_upwind_view,
+    side_step_view,
     survey_views,
 )
 from recon.station.api_views.vehicle_views import (
@@ -70,7 +70,7 @@ def state_view(station: Station, around: DriverState, now_ns: int) -> schema.Sta
         temporary_zones=zone_views(station, now_ns),
         ground_image=ground_image_view(station, now_ns),
         fleet_return=fleet_return_view(station, now_ns),
-        look_aside=look_aside_view(station, now_ns),
+        side_step=side_step_view(station, now_ns),
         move_upwind=move_upwind_view(station, now_ns),
         imager_relief=imager_relief_view(station, now_ns),
         shade=shade_view(station, now_ns),

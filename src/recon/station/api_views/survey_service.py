@@ -188,7 +188,7 @@ def _survey(
         counts_neighbours=asked.counts_neighbours,
         cell_m=asked.cell_m,
         when_done=WhenDone(asked.when_done),
-        look_aside_allowed=asked.look_aside_allowed,
+        side_step_allowed=asked.side_step_allowed,
         upwind_allowed=asked.upwind_allowed,
         relief_allowed=asked.relief_allowed,
         spare_serial=asked.spare_serial,

@@ -14,7 +14,7 @@ from recon.station.state import alarm_book
 from recon.station.state.alarm_book import AlarmBook, Condition
 from recon.station.state.failsafe_state import FailsafeState
 from recon.station.state.fleet_return_record import FleetReturn
-from recon.station.state.imager_motion import LookAsides, UpwindMoves
+from recon.station.state.imager_motion import ImagerMotions
 from recon.station.state.imager_relief import Reliefs
 from recon.station.state.imaging import Imaging, ShadePipeline
 from recon.station.state.orders import OrderBook
@@ -107,12 +107,10 @@ class Station:
     """The all stop in force. Writer: `control/stop_latch.py`."""
     fleet_return: FleetReturn | None = None
     """The newest fleet return of this run."""
-    look_asides: LookAsides = field(default_factory=LookAsides)
-    """Of this run. Writer: `operations/look_aside`, and for its end `operations/imager_motion`."""
-    upwind_moves: UpwindMoves = field(default_factory=UpwindMoves)
-    """Of this run. Writer: `operations/move_upwind`, and for its end `operations/imager_motion`."""
+    imager_motions: ImagerMotions = field(default_factory=ImagerMotions)
+    """Of this run. Writers: `operations/imager_motion` and `operations/imager_relief`."""
     reliefs: Reliefs = field(default_factory=Reliefs)
-    """Of this run. Writer: `operations/imager_relief`, for its end `operations/imager_motion`."""
+    """Of this run. Writer: `operations/imager_relief`."""
     watchdog_state: WatchdogState = field(default_factory=WatchdogState)
     """Findings, holds and switches of the watchdogs."""
     failsafe_state: FailsafeState = field(default_factory=FailsafeState)

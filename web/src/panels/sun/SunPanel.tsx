@@ -5,7 +5,7 @@ import { text } from "../../text/catalogue";
 import { formatAge, formatHeading, formatQuantity } from "../../text/quantities";
 import { Panel, Warning } from "../Panel";
 import { LightShares } from "./LightShares";
-import { LookAside } from "./LookAside";
+import { SideStep } from "./SideStep";
 import { UpwindPlace } from "./UpwindPlace";
 import "./sun.css";
 
@@ -19,7 +19,7 @@ export function SunPanel() {
           <>
             <ShadeStatus line={line()} />
             <UpwindPlace />
-            <LookAside />
+            <SideStep />
           </>
         )}
       </Show>

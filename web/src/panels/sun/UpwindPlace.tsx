@@ -14,7 +14,7 @@ import { formatLength, withLengthUnit } from "../../text/units";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { MotionProgress } from "./MotionProgress";
 
-/** The wind turns in minutes, and the imaging drone moves by itself only a little. */
+/** The wind turns in minutes, and the imaging drone moves automatically only a little. */
 const ASK_EVERY_MS = 10_000;
 
 /** Where each imaging drone would see more of the shade to come, with a button to send it there. */

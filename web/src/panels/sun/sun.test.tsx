@@ -1,5 +1,5 @@
 import { afterEach, describe, expect, it } from "vitest";
-import type { LookAsideView, UpwindPlaceView } from "../../protocol";
+import type { SideStepView, UpwindPlaceView } from "../../protocol";
 import { groundImage, shadeLine } from "../../testing/fakeField";
 import { station, vehicle } from "../../testing/fakeState";
 import { find, type RenderedPage, renderPage, settled } from "../../testing/renderPage";
@@ -79,8 +79,8 @@ describe("sun and shade", () => {
   });
 });
 
-describe("look aside", () => {
-  const view: LookAsideView = {
+describe("side-step", () => {
+  const view: SideStepView = {
     serial: "SN-001",
     vehicle_name: "Alder",
     stage: "aside",
@@ -92,31 +92,30 @@ describe("look aside", () => {
     survey_id: null,
   };
 
-  function showImager(lookAside: LookAsideView | null, isImager = true) {
+  function showImager(sideStep: SideStepView | null, isImager = true) {
     const vehicles = [vehicle(1, { is_imager: isImager })];
-    page = renderPage(SunPanel, station(vehicles, { shade: shadeLine(), look_aside: lookAside }));
+    page = renderPage(SunPanel, station(vehicles, { shade: shadeLine(), side_step: sideStep }));
   }
 
-  const button = () =>
-    find<HTMLButtonElement>(page.root, "section[aria-label='Look aside'] button");
+  const button = () => find<HTMLButtonElement>(page.root, "section[aria-label='Side-step'] button");
 
   it("is ordered by a held button that names the imaging drone", () => {
     showImager(null);
     expect(button().getAttribute("aria-label")).toContain("25\u00a0m aside and back");
     button().dispatchEvent(new PointerEvent("pointerdown", { bubbles: true, button: 0 }));
     page.clock.advance(GUARD_MS);
-    expect(page.requests).toEqual([{ lookAside: "SN-001" }]);
+    expect(page.requests).toEqual([{ sideStep: "SN-001" }]);
   });
 
   it("has a button for each of several imaging drones", () => {
     const vehicles = [1, 2].map((number) => vehicle(number, { is_imager: true }));
     page = renderPage(SunPanel, station(vehicles, { shade: shadeLine() }));
-    const buttons = page.root.querySelectorAll("section[aria-label='Look aside'] button");
+    const buttons = page.root.querySelectorAll("section[aria-label='Side-step'] button");
     expect(buttons).toHaveLength(2);
-    expect(buttons[1]?.textContent).toContain(`Look aside: ${vehicleLabel(vehicle(2))}`);
+    expect(buttons[1]?.textContent).toContain(`Side-step: ${vehicleLabel(vehicle(2))}`);
     buttons[1]?.dispatchEvent(new PointerEvent("pointerdown", { bubbles: true, button: 0 }));
     page.clock.advance(GUARD_MS);
-    expect(page.requests).toEqual([{ lookAside: "SN-002" }]);
+    expect(page.requests).toEqual([{ sideStep: "SN-002" }]);
   });
 
   it("is not offered while one is under way, or without the imaging drone", () => {
@@ -132,8 +131,8 @@ describe("look aside", () => {
 
   it("shows its stage and why it waits or has stopped", () => {
     showImager({ ...view, stage: "stopped", reason: "hover, ordered by bob" });
-    const text = find(page.root, "[data-testid=look-aside]").textContent;
-    expect(text).toContain("Alder stopped its look aside, bearing 123°");
+    const text = find(page.root, "[data-testid=side-step]").textContent;
+    expect(text).toContain("Alder stopped its side-step, bearing 123°");
     expect(text).toContain("hover, ordered by bob");
   });
 });
@@ -184,7 +183,7 @@ describe("view upwind", () => {
     expect(buttons()).toHaveLength(0);
   });
 
-  it("shows a flight automatically, and offers no look aside meanwhile", () => {
+  it("shows a flight automatically, and offers no side-step meanwhile", () => {
     const moving = {
       serial: "SN-001",
       vehicle_name: "Alder",
@@ -200,7 +199,7 @@ describe("view upwind", () => {
     page = renderPage(SunPanel, station(vehicles, { shade: shadeLine(), move_upwind: moving }));
     const shown = find(page.root, "[data-testid=move-upwind]").textContent;
     expect(shown).toContain("Alder flies upwind automatically, 224\u00a0m since 3");
-    const aside = find(page.root, "section[aria-label='Look aside'] button");
+    const aside = find(page.root, "section[aria-label='Side-step'] button");
     expect(aside.getAttribute("aria-disabled")).toBe("true");
   });
 

@@ -56,7 +56,7 @@ export function NewSurvey(props: {
       speed_mps: Number(data.get("speed")),
       planner: String(data.get("planner")),
       camera: { model: model === "" ? null : model, interval_s: Number(data.get("interval")) },
-      look_aside_allowed: data.get("look_aside") !== null,
+      side_step_allowed: data.get("side_step") !== null,
       upwind_allowed: data.get("upwind") !== null,
       ...reliefOf(String(data.get("battery") ?? "warn")),
       when_done: data.get("when_done") === "hover" ? "hover" : "return_home",
@@ -144,8 +144,8 @@ export function NewSurvey(props: {
             </select>
           </label>
           <label class="survey-wide survey-check">
-            <input name="look_aside" type="checkbox" />
-            {text.newSurvey.lookAside}
+            <input name="side_step" type="checkbox" />
+            {text.newSurvey.sideStep}
           </label>
           <label class="survey-wide survey-check">
             <input name="upwind" type="checkbox" />

@@ -22,7 +22,7 @@ export function SurveyLight(props: { light: SurveyLightView }) {
   const spares = () =>
     fleet.vehicles.filter(({ is_imager, serial }) => is_imager && !isAtWork(serial));
   const isUnderWay = () =>
-    [fleet.lookAside, fleet.moveUpwind, fleet.imagerRelief].some(
+    [fleet.sideStep, fleet.moveUpwind, fleet.imagerRelief].some(
       (motion) => motion !== null && !isOver(motion),
     );
   const relieve = async (serial: string, spare: string, takeoff: boolean) =>
@@ -74,15 +74,15 @@ export function SurveyLight(props: { light: SurveyLightView }) {
 
 /** When one imaging drone must return, beside the end of the survey where that is later. */
 function leavesText(
-  { vehicle_name, leaves_in_s, unknown }: SurveyLightView["imagers"][number],
+  { vehicle_name, return_due_in_s, unknown }: SurveyLightView["imagers"][number],
   { needs_s }: SurveyLightView,
   timeIn: (seconds: number) => string,
 ): string {
-  if (leaves_in_s === null) return text.relief.notKnown(vehicle_name, unknown ?? "");
-  if (leaves_in_s <= 0) return text.relief.leavesNow(vehicle_name);
-  return needs_s === null || needs_s <= leaves_in_s
-    ? text.relief.leaves(vehicle_name, timeIn(leaves_in_s))
-    : text.relief.leavesBefore(vehicle_name, timeIn(leaves_in_s), timeIn(needs_s));
+  if (return_due_in_s === null) return text.relief.notKnown(vehicle_name, unknown ?? "");
+  if (return_due_in_s <= 0) return text.relief.leavesNow(vehicle_name);
+  return needs_s === null || needs_s <= return_due_in_s
+    ? text.relief.leaves(vehicle_name, timeIn(return_due_in_s))
+    : text.relief.leavesBefore(vehicle_name, timeIn(return_due_in_s), timeIn(needs_s));
 }
 
 /** What is flown without light now, or from when on; null while nothing is. */

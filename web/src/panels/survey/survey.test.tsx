@@ -190,12 +190,12 @@ describe("the light of a running survey", () => {
     expect(text()).not.toContain("unknown");
     page.dispose();
     showLight({ needs_s: null, unknown_for_s: null });
-    expect(text()).toContain("Without a relief, light is unknown from then on.");
+    expect(text()).toContain("Without a second imaging drone, light is unknown from then on.");
   });
 
   it("states why the return is not known", () => {
     const unknown = "endurance unknown";
-    const imagers = [{ serial: "SN-003", vehicle_name: "Cedar", leaves_in_s: null, unknown }];
+    const imagers = [{ serial: "SN-003", vehicle_name: "Cedar", return_due_in_s: null, unknown }];
     showLight({ imagers, unknown_in_s: null });
     expect(text()).toContain("When Cedar must return is not known: endurance unknown.");
   });
@@ -285,7 +285,7 @@ describe("a new survey", () => {
           planner: "lawnmower_once",
           camera: { model: null, interval_s: 2 },
           when_done: "return_home",
-          look_aside_allowed: false,
+          side_step_allowed: false,
           upwind_allowed: false,
           relief_allowed: false,
           spare_serial: null,
@@ -349,13 +349,13 @@ describe("a new survey", () => {
     const base = station([vehicle(1)]);
     const site = base.site === null ? null : { ...base.site, areas: regions };
     page = renderPage(SurveyPanel, { ...base, site });
-    find<HTMLInputElement>(page.root, "input[name=look_aside]").click();
+    find<HTMLInputElement>(page.root, "input[name=side_step]").click();
     find<HTMLInputElement>(page.root, "input[name=upwind]").click();
     find<HTMLFormElement>(page.root, "form").dispatchEvent(
       new SubmitEvent("submit", { bubbles: true, cancelable: true }),
     );
     expect(page.requests).toMatchObject([
-      { plannedSurvey: { look_aside_allowed: true, upwind_allowed: true } },
+      { plannedSurvey: { side_step_allowed: true, upwind_allowed: true } },
     ]);
   });
 

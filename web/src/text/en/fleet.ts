@@ -114,7 +114,7 @@ export const alarms = {
     battery: "Battery",
     geofence: "Geofence",
     gnss: "GNSS",
-    look_aside: "Look aside",
+    side_step: "Side-step",
     move_upwind: "Move upwind",
     imager_relief: "Imaging drone",
   } as Readonly<Record<string, string>>,

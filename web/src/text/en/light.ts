@@ -1,7 +1,7 @@
 import type {
   ImagerReliefView,
-  LookAsideView,
   MoveUpwindView,
+  SideStepView,
   SunAtView,
   SurveyRequest,
   SurveyView,
@@ -35,12 +35,12 @@ type Stages<View extends { readonly stage: string }> = Readonly<
   Partial<Record<View["stage"], (detail: string) => string>>
 >;
 
-export const lookAside = {
-  name: "Look aside",
+export const sideStep = {
+  name: "Side-step",
   how: (distance: string) =>
-    `Under an even sky, an imaging drone flies ${distance} aside and back, to tell sun from shade.`,
-  button: "Look aside",
-  buttonFor: (vehicle: string) => `Look aside: ${vehicle}`,
+    `Under a uniform sky, an imaging drone flies ${distance} aside and back, to tell sun from shade.`,
+  button: "Side-step",
+  buttonFor: (vehicle: string) => `Side-step: ${vehicle}`,
   buttonOf: (vehicle: string, distance: string) => `fly ${vehicle} ${distance} aside and back`,
   imager: "the imaging drone",
   stages: {
@@ -48,8 +48,8 @@ export const lookAside = {
     waiting: (bearing: string) => `waits beside its place, bearing ${bearing}`,
     back: (bearing: string) => `flies back, bearing ${bearing}`,
     done: (bearing: string) => `looked aside and is back, bearing ${bearing}`,
-    stopped: (bearing: string) => `stopped its look aside, bearing ${bearing}`,
-  } as Stages<LookAsideView>,
+    stopped: (bearing: string) => `stopped its side-step, bearing ${bearing}`,
+  } as Stages<SideStepView>,
 };
 
 export const upwind = {
@@ -73,8 +73,8 @@ export const relief = {
   notKnown: (vehicle: string, reason: string) =>
     `When ${vehicle} must return is not known: ${reason}.`,
   unknownFor: (minutes: number) =>
-    `Without a relief, light is unknown from then on, for about ${minutes} min.`,
-  unknown: "Without a relief, light is unknown from then on.",
+    `Without a second imaging drone, light is unknown from then on, for about ${minutes} min.`,
+  unknown: "Without a second imaging drone, light is unknown from then on.",
   without: (age: string, area: string) =>
     `No shade map for ${age}: ${area} flown with light unknown.`,
   relieve: (spare: string) => `Relieve by ${spare}`,
@@ -188,7 +188,7 @@ export const newSurvey = {
     SurveyRequest["when_done"],
     string
   >,
-  lookAside: "Imaging drone may look aside automatically",
+  sideStep: "Imaging drone may side-step automatically",
   upwind: "Imaging drone may move upwind automatically",
   battery: "When the imaging drone's battery ends",
   batteryEnds: { warn: "Warn only", home: "Return it home" },

@@ -11,7 +11,6 @@ from recon.model.vehicle import VehicleState
 from recon.station.control import handover
 from recon.station.control.stop_latch import RULE as STOP_RULE
 from recon.station.failsafe.activity import activity_of
-from recon.station.state.imager_motion import ImagerMotion
 from recon.station.state.station import Station
 from recon.station.state.steps import Output
 from recon.station.steering.kinematic_state import kinematic_state
@@ -55,18 +54,12 @@ def claimed(
     return Claimed(station, withdrawn, vehicle, place, height_m)
 
 
-def motion_under_way(station: Station) -> ImagerMotion | None:
-    """Return the motion of an imaging drone that is under way; there is one at most."""
-    newest = (station.look_asides.newest, station.upwind_moves.newest, station.reliefs.newest)
-    return next((each for each in newest if each is not None and not each.is_over), None)
-
-
 def _hindrance(station: Station, rule: str, vehicle: VehicleState, now_ns: int) -> Refusal | None:
     """Why the imaging drone has no place to leave."""
     serial, name = vehicle.serial or "", vehicle.display_name
     if station.is_stopped(serial):
         return Refusal(STOP_RULE, f"{name} is held by an all stop; release its stop first")
-    other = motion_under_way(station)
+    other = station.imager_motions.under_way()
     if other is not None:
         return Refusal(rule, f"{other.name} {other.doing} already")
     if vehicle.is_flying.value is not True:
@@ -81,11 +74,13 @@ def _hindrance(station: Station, rule: str, vehicle: VehicleState, now_ns: int) 
             f"{RESTING_MPS:g} m/s",
             parameters={"speed_mps": seen.speed_mps, "max_mps": RESTING_MPS},
         )
-    return None if is_at_rest(station, vehicle) else Refusal(rule, f"{name} flies; hold it first")
+    return (
+        None if is_at_rest(station, vehicle) else Refusal(rule, f"{name} is moving; hold it first")
+    )
 
 
 def is_at_rest(station: Station, vehicle: VehicleState) -> bool:
-    """Whether it holds its position: by itself, or by a steered order that has arrived."""
+    """Whether it holds its position, without an order or by a steered order that has arrived."""
     activity = activity_of(station, vehicle)
     stream = station.control(vehicle.serial).stream
     has_arrived = stream is not None and stream.arrived_at_ns is not None

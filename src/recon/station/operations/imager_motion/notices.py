@@ -1,13 +1,15 @@
 """What an operator must know of a motion: alarms while it lasts and where it stopped, the audit."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 
 from recon.geo.distance import horizontal_distance_m
+from recon.model.command import Refusal
 from recon.model.control import AuthorityHolder
+from recon.model.event import Event
 from recon.record.audit.audit import AuditEntry
 from recon.station.operations.fleet_return.progress import newest_motion
 from recon.station.state.alarm_book import Condition, Severity
-from recon.station.state.imager_motion import ImagerMotion, MotionStage
+from recon.station.state.imager_motion import AnyMotion, MotionStage, MotionT
 from recon.station.state.station import Station
 
 OFF_PLACE_M = 5.0
@@ -15,7 +17,7 @@ OFF_PLACE_M = 5.0
 
 
 def about(
-    station: Station, motion: ImagerMotion, severity: Severity, key: str, text: str
+    station: Station, motion: AnyMotion, severity: Severity, key: str, text: str
 ) -> Condition:
     """Return a condition of a motion's vehicle."""
     vehicle = station.fleet.vehicles.get(motion.serial)
@@ -25,21 +27,24 @@ def about(
     return Condition(key, severity, rule, name, text, motion.serial, link_id)
 
 
-def by_itself(station: Station, motion: ImagerMotion | None, text: str) -> Iterator[Condition]:
+def automatic_motion(station: Station, motion: AnyMotion | None, text: str) -> Iterator[Condition]:
     """A motion without an order of now: under way for a survey."""
     if motion is not None and not motion.is_over and motion.survey_id is not None:
         yield about(station, motion, Severity.INFO, "motion", text)
 
 
-def cannot_begin(rule: str, refused: str | None, serial: str, what: str) -> Iterator[Condition]:
-    """A motion that would begin by itself, and is refused."""
+def cannot_begin(
+    station: Station, kind: type[AnyMotion], serial: str, what: str
+) -> Iterator[Condition]:
+    """A motion that would begin automatically, and is refused."""
+    refused = station.imager_motions.start(kind).refused
     if refused is not None:
-        text = f"{what}: {refused}"
+        rule, text = kind.rule, f"{what}: {refused}"
         yield Condition(f"{rule}:refused", Severity.WARNING, rule, serial, text, serial)
 
 
 def off_its_place(
-    station: Station, motion: ImagerMotion | None, what_to_do: str
+    station: Station, motion: AnyMotion | None, what_to_do: str
 ) -> Iterator[Condition]:
     """A vehicle that stopped away from its place, until it is commanded elsewhere."""
     if motion is None or not is_left(station, motion):
@@ -53,7 +58,7 @@ def off_its_place(
         yield about(station, motion, Severity.WARNING, "stopped", text + what_to_do)
 
 
-def is_left(station: Station, motion: ImagerMotion) -> bool:
+def is_left(station: Station, motion: AnyMotion) -> bool:
     """Return whether a motion's vehicle still hovers where it stopped, commanded nowhere since."""
     vehicle = station.fleet.vehicles.get(motion.serial)
     if motion.stage is not MotionStage.STOPPED or vehicle is None:
@@ -66,20 +71,45 @@ def is_left(station: Station, motion: ImagerMotion) -> bool:
     return newest is None or not newest.command.moves or newest.command.id == motion.command_id
 
 
-def stage_entries(
-    before: ImagerMotion | None, after: ImagerMotion | None, text: str, details: Mapping[str, float]
-) -> Iterator[AuditEntry]:
-    """Yield the entry of the audit for a change of stage; `text` states which motion it is."""
-    if after is None or (
-        before is not None and (before.stage, before.since_ns) == (after.stage, after.since_ns)
-    ):
-        return
-    stage, reason = after.stage.value, f": {after.reason}" if after.reason else ""
-    yield AuditEntry(
-        f"{after.rule}.{stage}",
+def audit_of(
+    kind: type[MotionT],
+    described: Callable[[MotionT], tuple[str, Mapping[str, float]]],
+    refused: Callable[[Station, Event, int], AuditEntry | None] = lambda *_step: None,
+) -> Callable[[Station, Event, Station, int], Iterator[AuditEntry]]:
+    """Return the audit of a kind: an entry for a refused command, and for each change of stage.
+
+    `described` states which motion it is, in words and in figures.
+    """
+
+    def entries(before: Station, event: Event, after: Station, now_ns: int) -> Iterator[AuditEntry]:
+        entry = refused(before, event, now_ns)
+        if entry is not None:
+            yield entry
+        old, new = before.imager_motions.of(kind), after.imager_motions.of(kind)
+        if new is not None and (
+            old is None or (old.stage, old.since_ns) != (new.stage, new.since_ns)
+        ):
+            yield _stage_entry(new, *described(new))
+
+    return entries
+
+
+def refused_entry(
+    kind: type[AnyMotion], why: Refusal, by: str, serial: str | None, **details: str
+) -> AuditEntry:
+    """Return the entry for a refused command."""
+    told = {"rule": why.rule, "reason": why.reason, **details}
+    text = f"{kind.words} refused: {why.reason}"
+    return AuditEntry(f"{kind.rule}.refused", text, by, serial, details=told)
+
+
+def _stage_entry(motion: AnyMotion, text: str, details: Mapping[str, float]) -> AuditEntry:
+    stage, reason = motion.stage.value, f": {motion.reason}" if motion.reason else ""
+    return AuditEntry(
+        f"{motion.rule}.{stage}",
         f"{text}: {stage}{reason}",
-        after.by,
-        after.serial,
-        after.name,
-        details={"stage": stage, **details, "order": after.command_id},
+        motion.by,
+        motion.serial,
+        motion.name,
+        details={"stage": stage, **details, "order": motion.command_id},
     )

@@ -1,7 +1,7 @@
 """The relief: an imaging drone takes the place of one whose battery ends, or returns to its own.
 
-`outlook` predicts when each must leave and what the surveys need, `commands` begins a relief,
-`execution` advances it, `automatic` begins one for a survey that allows it and calls home what must
+`outlook` predicts when each must return and what the surveys need, `commands` begins a relief,
+`execution` advances it, `automatic` begins one for a survey that allows it and recalls what must
 leave (`return_home`). What it shares with the other motions is in `imager_motion`.
 """
 

@@ -1,11 +1,11 @@
 """Beginning a relief: guidance gets the imaging drone, and the gate chooses its layer."""
 
-from collections.abc import Iterator
+from collections.abc import Mapping
 from dataclasses import replace
 from math import degrees
 
 from recon.geo.distance import horizontal_distance_m
-from recon.guidance.imager_relief import RELIEF_SETTINGS, layers_m, relief_mission, way_takes_s
+from recon.guidance.imager_relief import RELIEF_SETTINGS, layers_m, relief_mission, transit_time_s
 from recon.model.command import Command, FlyMission, Refusal
 from recon.model.control import AuthorityHolder
 from recon.model.event import AuthorityTaken, Event, ReliefOrdered
@@ -19,13 +19,13 @@ from recon.station.control import handover
 from recon.station.control.stop_latch import RULE as STOP_RULE
 from recon.station.imaging.at_work import imagers_at_work, is_going_home, is_in_the_air
 from recon.station.operations.fleet_return.planning import PLAN_LASTS_S, separation
-from recon.station.operations.imager_motion.claim import is_at_rest, motion_under_way
+from recon.station.operations.imager_motion.claim import is_at_rest
 from recon.station.operations.imager_motion.execution import is_refused, put, tried
-from recon.station.operations.imager_motion.notices import stage_entries
+from recon.station.operations.imager_motion.notices import audit_of, refused_entry
 from recon.station.operations.imager_relief import return_home
 from recon.station.operations.settings import RETURN_SETTINGS
-from recon.station.state.imager_motion import MotionStage
-from recon.station.state.imager_relief import HoverPlace, ImagerRelief
+from recon.station.state.imager_motion import ImagerRelief, MotionStage
+from recon.station.state.imager_relief import HoverPlace
 from recon.station.state.station import Station
 from recon.station.state.steps import Stepped
 
@@ -65,21 +65,20 @@ def begin(station: Station, event: ReliefOrdered, now_ns: int) -> Stepped | Refu
     return why or _begun(station, event, at, _layers_up_m(station, event, at, now_ns), now_ns)
 
 
-def audit_entries(
-    before: Station, event: Event, after: Station, now_ns: int
-) -> Iterator[AuditEntry]:
-    """Yield an entry for the command, and for each change of stage."""
-    if isinstance(event, ReliefOrdered):
-        why = refusal(before, event, now_ns)
-        if why is not None:
-            details = {"rule": why.rule, "reason": why.reason, "relieved": event.relieved}
-            text = f"relief refused: {why.reason}"
-            yield AuditEntry("imager_relief.refused", text, event.by, event.serial, details=details)
-    new = after.reliefs.newest
-    if new is not None:
-        text = "return to its place" if new.comes_back else f"relief of {new.relieved_name}"
-        height = {"height_above_takeoff_m": round(new.height_above_takeoff_m, 1)}
-        yield from stage_entries(before.reliefs.newest, new, text, height)
+def _refused(station: Station, event: Event, now_ns: int) -> AuditEntry | None:
+    why = refusal(station, event, now_ns) if isinstance(event, ReliefOrdered) else None
+    if why is None or not isinstance(event, ReliefOrdered):
+        return None
+    return refused_entry(ImagerRelief, why, event.by, event.serial, relieved=event.relieved)
+
+
+def _described(motion: ImagerRelief) -> tuple[str, Mapping[str, float]]:
+    text = "return to its place" if motion.comes_back else f"relief of {motion.relieved_name}"
+    return text, {"height_above_takeoff_m": round(motion.height_above_takeoff_m, 1)}
+
+
+audit_entries = audit_of(ImagerRelief, _described, _refused)
+"""Yields an entry for the command, and for each change of stage."""
 
 
 def _unknown(station: Station, event: ReliefOrdered) -> Refusal | None:
@@ -100,7 +99,7 @@ def _busy(station: Station, event: ReliefOrdered, now_ns: int) -> Refusal | None
     name, is_up = vehicle.display_name, vehicle.is_flying.value
     if station.is_stopped(serial):
         return Refusal(STOP_RULE, f"{name} is held by an all stop; release its stop first")
-    other = motion_under_way(station)
+    other = station.imager_motions.under_way()
     if other is not None:
         return Refusal(RULE, f"{other.name} {other.doing} already")
     if is_in_the_air(station, serial) and is_going_home(station, serial):
@@ -108,7 +107,7 @@ def _busy(station: Station, event: ReliefOrdered, now_ns: int) -> Refusal | None
     if is_up is not True and not event.takeoff:
         return Refusal(RULE, f"{name} is not in the air, and takeoff was not allowed")
     if is_up is True and not is_at_rest(station, vehicle):
-        return Refusal(RULE, f"{name} flies; hold it first")
+        return Refusal(RULE, f"{name} is moving; hold it first")
     taken = AuthorityTaken(serial, AuthorityHolder.GUIDANCE, event.by, event.person)
     return handover.refusal(station, taken, now_ns)
 
@@ -124,10 +123,10 @@ def _place(station: Station, serial: str) -> HoverPlace | Refusal:
 
 
 def _cannot_leave(station: Station, event: ReliefOrdered, now_ns: int) -> Refusal | None:
-    """Why the relieved one, in the air, could not be called home afterwards."""
+    """Why the relieved one, in the air, could not be recalled afterwards."""
     vehicle = station.fleet.vehicles[event.relieved]
     if not is_at_rest(station, vehicle):
-        return Refusal(RULE, f"{vehicle.display_name} flies; hold it first")
+        return Refusal(RULE, f"{vehicle.display_name} is moving; hold it first")
     return return_home.refusal(station, event.relieved, event.by, event.person, now_ns)
 
 
@@ -146,7 +145,7 @@ def _layers_up_m(
         height_m,
         separation(station, RETURN_SETTINGS, now_ns, PLAN_LASTS_S).vertical_m,
         limits.max_height_above_ground_m - RELIEF_SETTINGS.below_ceiling_m,
-        # Called home by its aircraft it would climb through what hovers above it.
+        # Recalled by its aircraft it would climb through what hovers above it.
         may_be_above=goes_home_m is not None and goes_home_m <= height_m,
     )
     return tuple(base_m + each for each in heights_m)
@@ -165,16 +164,14 @@ def _begun(
     claimed, withdrawn = handover.take(station, taken, now_ns)
     first: Refusal | None = None
     for to_m in (up_m - base_m for up_m in ups_m):
-        takes_s = way_takes_s(here, to_m - height_m, at.place)
+        takes_s = transit_time_s(here, to_m - height_m, at.place)
         motion = _motion(station, event, at, to_m, takes_s, now_ns)
         is_near = horizontal_distance_m(here, at.place) < THERE_M
         if is_near and abs(to_m - height_m) < THERE_M:
             return put(claimed, motion.at(MotionStage.MAPS, now_ns)), withdrawn
         mission = relief_mission(here, at.place, to_m, _gimbal_deg(station, vehicle))
         body, takeoff = FlyMission(mission), vehicle.is_flying.value is not True
-        flying, sent, order = tried(
-            claimed, ImagerRelief, event.by, event.serial, body, now_ns, takeoff=takeoff
-        )
+        flying, sent, order = tried(claimed, motion, body, now_ns, takeoff=takeoff)
         why = order.refusal if is_refused(order) else _too_short(station, vehicle, order.command)
         if why is None:
             return put(flying, replace(motion, command_id=order.command.id)), (*withdrawn, *sent)
@@ -202,7 +199,6 @@ def _motion(
         begun_at_ns=now_ns,
         place=at.place,
         height_above_takeoff_m=height_m,
-        command_id=0,
         stage=MotionStage.TO_PLACE,
         since_ns=now_ns,
         survey_id=event.survey_id,

@@ -1,4 +1,4 @@
-"""The alarms of reliefs: a drone that must leave soon, a survey without light, a relief's end."""
+"""The alarms of reliefs: a drone that must return soon, a survey without light, a relief's end."""
 
 from collections.abc import Iterator
 from math import ceil
@@ -8,7 +8,7 @@ from recon.model.units import seconds_to_ns
 from recon.station.imaging.at_work import imagers_at_work
 from recon.station.operations.imager_motion.notices import (
     about,
-    by_itself,
+    automatic_motion,
     cannot_begin,
     is_left,
 )
@@ -16,8 +16,8 @@ from recon.station.operations.imager_relief import return_home
 from recon.station.operations.imager_relief.automatic import by_survey
 from recon.station.operations.imager_relief.outlook import needs_longer
 from recon.station.state.alarm_book import Condition, Severity
-from recon.station.state.imager_motion import MotionStage
-from recon.station.state.imager_relief import ImagerOutlook, ImagerRelief
+from recon.station.state.imager_motion import ImagerRelief, MotionStage
+from recon.station.state.imager_relief import ImagerOutlook
 from recon.station.state.imaging import TOGETHER_WITHIN_S
 from recon.station.state.station import Station
 from recon.station.state.survey_record import SurveyRecord
@@ -27,44 +27,48 @@ RULE = ImagerRelief.rule
 
 def conditions(station: Station) -> Iterator[Condition]:
     """Yield what an operator must know, while a survey runs or a relief has left something."""
-    reliefs = station.reliefs
-    newest, running = reliefs.newest, [r for r in station.surveys.records.values() if r.is_running]
+    newest = station.imager_motions.of(ImagerRelief)
+    running = [r for r in station.surveys.records.values() if r.is_running]
     if newest is not None:
-        yield from by_itself(station, newest, f"relieves {newest.relieved_name} for its survey")
+        yield from automatic_motion(
+            station, newest, f"relieves {newest.relieved_name} for its survey"
+        )
         yield from _ended(station, newest)
     for record in running[:1]:
-        yield from _must_leave(station, record)
+        yield from _must_return(station, record)
     for record in running:
         yield from _without_light(station, record)
     spare = next((r.survey.spare_serial for r in running if r.survey.relief_allowed), None)
-    yield from cannot_begin(RULE, reliefs.refused, spare or "", "the relief cannot begin")
+    yield from cannot_begin(station, ImagerRelief, spare or "", "the relief cannot begin")
 
 
 def _ended(station: Station, newest: ImagerRelief) -> Iterator[Condition]:
     is_there = newest.relieved in imagers_at_work(station)
     if newest.stage is MotionStage.DONE and newest.home_refused and is_there:
-        text = f"relieves {newest.relieved_name}, and that one cannot be called home: "
-        text += f"{newest.home_refused}. Call it home"
+        text = f"relieves {newest.relieved_name}, and that one cannot be recalled: "
+        text += f"{newest.home_refused}. Recall it"
         yield about(station, newest, Severity.WARNING, "stays", text)
     if is_left(station, newest):
         text = f"its relief of {newest.relieved_name} stopped, and it hovers: {newest.reason}. "
-        text += "Relieve again once that is settled, or call it home"
+        text += "Fix the cause and relieve again, or recall it"
         yield about(station, newest, Severity.WARNING, "stopped", text)
 
 
-def _must_leave(station: Station, record: SurveyRecord) -> Iterator[Condition]:
+def _must_return(station: Station, record: SurveyRecord) -> Iterator[Condition]:
     """A drone whose battery ends before the survey, unless a relief is under way or will begin."""
-    newest = station.reliefs.newest
+    newest = station.imager_motions.of(ImagerRelief)
     coming = None if newest is None or newest.is_over else newest.relieved
     for serial in imagers_at_work(station):
         outlook = station.reliefs.outlooks.get(serial)
-        if outlook is None or outlook.leaves_at_ns is None or serial == coming:
+        if outlook is None or outlook.return_due_ns is None or serial == coming:
             continue
-        if outlook.leaves_in_s > 0.0 and _shows_too(station, serial):
+        if outlook.return_due_in_s > 0.0 and _shows_too(station, serial):
             continue
-        if outlook.leaves_in_s > RELIEF_SETTINGS.warned_before_s or _will_relieve(station, record):
+        if outlook.return_due_in_s > RELIEF_SETTINGS.warned_before_s or _will_relieve(
+            station, record
+        ):
             continue
-        if needs_longer(station.reliefs, record.survey.id, outlook.leaves_in_s):
+        if needs_longer(station.reliefs, record.survey.id, outlook.return_due_in_s):
             yield _leaves(station, record, serial, outlook)
 
 
@@ -81,7 +85,8 @@ def _shows_too(station: Station, serial: str) -> bool:
 def _will_relieve(station: Station, record: SurveyRecord) -> bool:
     """Whether the survey's spare drone takes the place automatically, and is not refused."""
     survey, spare = record.survey, record.survey.spare_serial
-    if not survey.relief_allowed or spare is None or station.reliefs.refused is not None:
+    refused = station.imager_motions.start(ImagerRelief).refused
+    if not survey.relief_allowed or spare is None or refused is not None:
         return False
     vehicle = station.fleet.vehicles.get(spare)
     is_there = vehicle is not None and vehicle.link_id is not None
@@ -92,22 +97,22 @@ def _leaves(
     station: Station, record: SurveyRecord, serial: str, outlook: ImagerOutlook
 ) -> Condition:
     vehicle = station.fleet.vehicles[serial]
-    name, minutes = vehicle.display_name, ceil(outlook.leaves_in_s / 60.0)
-    when = "now" if outlook.leaves_in_s <= 0.0 else f"in {minutes} min"
-    what = "Relieve it, or call it home"
+    name, minutes = vehicle.display_name, ceil(outlook.return_due_in_s / 60.0)
+    when = "now" if outlook.return_due_in_s <= 0.0 else f"in {minutes} min"
+    what = "Relieve it, or recall it"
     if record.survey.relief_allowed:
         by, now_ns = by_survey(record), station.reliefs.checked_at_ns or 0
         refused = return_home.refusal(station, serial, by, record.person, now_ns)
-        what = "Relieve it, or it is called home then"
+        what = "Relieve it, or it is recalled then"
         if refused is not None:
-            what = f"It cannot be called home automatically: {refused.reason}"
-    elif outlook.leaves_in_s <= 0.0:
-        what = "Call it home"
+            what = f"It cannot be recalled automatically: {refused.reason}"
+    elif outlook.return_due_in_s <= 0.0:
+        what = "Recall it"
     text = (
-        f"{name}: its battery wants it home {when}, and survey {record.survey.name} goes on: "
-        f"without a relief light is unknown from then on. {what}"
+        f"{name}: battery at the return threshold {when}; survey {record.survey.name} is still "
+        f"running: without a second imaging drone, light is unknown from then on. {what}"
     )
-    key = f"{RULE}:leaves:{serial}"
+    key = f"{RULE}:return:{serial}"
     return Condition(key, Severity.WARNING, RULE, name, text, serial, vehicle.link_id)
 
 

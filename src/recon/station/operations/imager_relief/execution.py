@@ -1,7 +1,7 @@
 """The execution of a relief: one mission to the place, shade maps from there, the way home.
 
     to_place --its mission is flown to the end--> maps: its camera is switched on if it is quiet
-    maps --three shade maps in a row that show the ground--> done: the relieved one is called home
+    maps --three shade maps in a row that show the ground--> done: the relieved one is recalled
     either --pilot, another order, all stop, telemetry or connection lost, the way or the maps late,
              what ends any motion (`imager_motion/execution.py`)--> stopped
 
@@ -9,7 +9,8 @@ The one that flies goes in a layer of its own, 10 m above the other's height or 
 the place until the newer one's maps show seven tenths of the ground whose light the other knows; so
 no moment is without light. A relief that stops holds its vehicle where it is, with an alarm: mostly
 its camera or site file is at fault, best seen in place, and an order from there goes on with the
-maps. The relieved one stays until its battery wants it home, whatever becomes of the relief.
+maps. The relieved one stays until its battery is at the return threshold, whatever becomes of the
+relief.
 """
 
 from dataclasses import replace
@@ -31,15 +32,14 @@ from recon.station.imaging.at_work import imagers_at_work
 from recon.station.operations.imager_motion.execution import (
     done,
     follow,
+    go_on,
     held,
-    not_of_guidance,
     put,
 )
-from recon.station.operations.imager_relief.automatic import begin_if_due, call_home_if_due
+from recon.station.operations.imager_relief.automatic import begin_if_due, recall_if_due
 from recon.station.operations.imager_relief.outlook import checked
-from recon.station.operations.imager_relief.return_home import call_home
-from recon.station.state.imager_motion import MotionStage
-from recon.station.state.imager_relief import ImagerRelief
+from recon.station.operations.imager_relief.return_home import recall
+from recon.station.state.imager_motion import ImagerRelief, MotionStage
 from recon.station.state.imaging import TOGETHER_WITHIN_S
 from recon.station.state.station import Station, take_id
 from recon.station.state.steps import Stepped
@@ -48,19 +48,23 @@ from recon.station.state.steps import Stepped
 def advance(
     station: Station, now_ns: int, settings: ImagerReliefSettings = RELIEF_SETTINGS
 ) -> Stepped:
-    """Advance the relief under way; once a second predict, begin one, call home what must leave."""
-    station, went_on = _go_on(station, now_ns, settings)
+    """Advance the relief under way; once a second predict, begin one, recall what must return."""
+
+    def advanced(station: Station, current: ImagerRelief, now_ns: int) -> Stepped:
+        return _advanced(station, current, now_ns, settings)
+
+    station, went_on = go_on(station, ImagerRelief, advanced, now_ns) or (station, ())
     station, is_due = checked(station, now_ns, settings)
     if not is_due:
         return station, went_on
     station, begun = begin_if_due(station, now_ns, settings)
-    station, called = call_home_if_due(station, now_ns, settings)
+    station, called = recall_if_due(station, now_ns, settings)
     return station, (*went_on, *begun, *called)
 
 
 def on_shade(station: Station, _shade: ShadeMap) -> Station:
     """Count the maps in a row of the one that has reached the place."""
-    current = station.reliefs.newest
+    current = station.imager_motions.of(ImagerRelief)
     own = None if current is None else station.shade.own.get(current.serial)
     if current is None or own is None or current.stage is not MotionStage.MAPS:
         return station
@@ -97,13 +101,9 @@ def _known_to_other(station: Station, current: ImagerRelief, at_ns: int) -> Mask
     return other.shade.valid if is_recent else None
 
 
-def _go_on(station: Station, now_ns: int, settings: ImagerReliefSettings) -> Stepped:
-    current = station.reliefs.newest
-    if current is None or current.is_over:
-        return station, ()
-    ended = not_of_guidance(station, current, now_ns)
-    if ended is not None:
-        return ended, ()
+def _advanced(
+    station: Station, current: ImagerRelief, now_ns: int, settings: ImagerReliefSettings
+) -> Stepped:
     broken = _broken(station, current, now_ns, settings)
     if broken is not None:
         return held(station, current, broken, now_ns)
@@ -168,13 +168,13 @@ def _with_camera(
 
 
 def _relieved(station: Station, current: ImagerRelief, now_ns: int) -> Stepped:
-    """End the relief at the place; call the other one home, if it is still there."""
+    """End the relief at the place; recall the other one, if it is still there."""
     station, held_there = done(station, replace(current, reason=""), now_ns)
     if current.comes_back or current.relieved not in imagers_at_work(station):
         return station, held_there
-    called = call_home(station, current.relieved, current.by, current.person, now_ns)
+    called = recall(station, current.relieved, current.by, current.person, now_ns)
     if not isinstance(called, Refusal):
         return called[0], (*held_there, *called[1])
-    ended = station.reliefs.newest
+    ended = station.imager_motions.of(ImagerRelief)
     assert ended is not None, "it has just been put there"
     return put(station, replace(ended, home_refused=called.reason)), held_there

@@ -1,4 +1,4 @@
-"""What is predicted once a second: when each imaging drone must leave, what each survey needs."""
+"""What is predicted once a second: when each imaging drone must return, what each survey needs."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -7,7 +7,7 @@ from recon.guidance.imager_relief import (
     RELIEF_SETTINGS,
     ImagerReliefSettings,
     MissingGround,
-    leaves_at_ns,
+    return_due_ns,
     survey_needs_s,
     use_per_s,
     with_charge,
@@ -22,7 +22,7 @@ from recon.safety.datum import takeoff_up_m
 from recon.safety.energy import consumption, fraction_to_get_home
 from recon.station.imaging.at_work import imagers_at_work
 from recon.station.imaging.upwind import LEAST_HEIGHT_M
-from recon.station.operations.imager_motion.claim import RESTING_MPS, is_at_rest, motion_under_way
+from recon.station.operations.imager_motion.claim import RESTING_MPS, is_at_rest
 from recon.station.state.imager_relief import (
     HoverPlace,
     ImagerOutlook,
@@ -79,10 +79,10 @@ def checked(
 
 
 def imager_outlook(station: Station, serial: str, now_ns: int) -> ImagerOutlook:
-    """Return when an imaging drone in the air must leave, by its reports.
+    """Return when an imaging drone in the air must return, by its reports.
 
     Its charge then is what the way home and the site's reserve take, or the charge at which the
-    failsafe matrix calls it home, whichever is more; and a minute beside, as survey vehicles keep:
+    failsafe matrix recalls it, whichever is more; and a minute beside, as survey vehicles keep:
     its way home may wait for others' rows.
     """
     vehicle, energy = station.fleet.vehicles[serial], station.settings.safety.energy
@@ -102,13 +102,13 @@ def imager_outlook(station: Station, serial: str, now_ns: int) -> ImagerOutlook:
     use = use_per_s(charges) or uses.fraction(1.0)
     needed = max(home + reserve, station.settings.low_battery_fraction) + RESOLUTION
     needed += use * SURVEY_DEFAULT.way_home_waits_s
-    at_ns = leaves_at_ns(charges[-1], use, needed)
+    at_ns = return_due_ns(charges[-1], use, needed)
     return ImagerOutlook(at_ns, ns_to_seconds(at_ns - now_ns))
 
 
 def _places(station: Station, now_ns: int) -> Mapping[str, HoverPlace]:
-    """Where each imaging drone hovers now, or did last; not beside its place to look aside."""
-    places, motion = dict(station.reliefs.places), motion_under_way(station)
+    """Where each imaging drone hovers now, or did last; not beside its place to side-step."""
+    places, motion = dict(station.reliefs.places), station.imager_motions.under_way()
     for serial in imagers_at_work(station):
         vehicle = station.fleet.vehicles[serial]
         place, velocity = vehicle.position.value, vehicle.velocity_ned.value
@@ -151,8 +151,8 @@ def _without_light(
     )
 
 
-def needs_longer(reliefs: Reliefs, survey_id: int, leaves_in_s: float) -> bool:
+def needs_longer(reliefs: Reliefs, survey_id: int, return_due_in_s: float) -> bool:
     """Return whether a survey is not done when an imaging drone leaves, or may not be."""
     outlook = reliefs.surveys.get(survey_id)
     needs_s = None if outlook is None else outlook.needs_s
-    return needs_s is None or needs_s > leaves_in_s
+    return needs_s is None or needs_s > return_due_in_s

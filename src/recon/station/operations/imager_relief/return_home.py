@@ -1,4 +1,4 @@
-"""An imaging drone is called home under guidance, for the person who ordered it or the survey."""
+"""An imaging drone is recalled under guidance, for the person who ordered it or the survey."""
 
 from recon.model.command import Phase, Refusal
 from recon.model.control import AuthorityHolder
@@ -16,9 +16,7 @@ def refusal(station: Station, serial: str, by: str, person: str, now_ns: int) ->
     return commands.refusal(station, serial) or handover.refusal(station, taken, now_ns)
 
 
-def call_home(
-    station: Station, serial: str, by: str, person: str, now_ns: int
-) -> Stepped | Refusal:
+def recall(station: Station, serial: str, by: str, person: str, now_ns: int) -> Stepped | Refusal:
     """Have an imaging drone join the fleet return: a hold, then a landing mission in a layer."""
     why = refusal(station, serial, by, person, now_ns)
     if why is not None:

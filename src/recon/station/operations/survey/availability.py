@@ -44,7 +44,7 @@ def available_vehicles(station: Station, record: SurveyRecord, now_ns: int) -> I
         yield Surveyor(
             serial=member.serial,
             place_m=(float(place_m[0]), float(place_m[1])),
-            is_able=hindrance(station, member, now_ns) is None,
+            is_available=hindrance(station, member, now_ns) is None,
             ended_mission=member.number - is_flown(station, member),
             time_left_s=time_left_s(vehicle, station.airspace, energy),
             keeps_battery=None if has is None or takes is None else may_stay(station, has - takes),

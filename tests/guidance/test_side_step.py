@@ -1,11 +1,11 @@
-"""Where a look aside leads, and when the light counts as mostly unknown."""
+"""Where a side-step leads, and when the light counts as mostly unknown."""
 
 import numpy as np
 import pytest
 
 from recon.geo.distance import horizontal_distance_m, offset_north_east_m
-from recon.guidance.look_aside import (
-    LookAsideSettings,
+from recon.guidance.side_step import (
+    SideStepSettings,
     bearings_deg,
     is_mostly_unknown,
     place_aside,
@@ -13,7 +13,7 @@ from recon.guidance.look_aside import (
 from recon.model.geo import LatLon
 
 HERE = LatLon(41.9, -93.6)
-SETTINGS = LookAsideSettings()
+SETTINGS = SideStepSettings()
 
 
 def test_across_the_sun_comes_first() -> None:

@@ -1,4 +1,4 @@
-"""An imaging drone that hovers, SIM-1, and what a look aside makes of it."""
+"""An imaging drone that hovers, SIM-1, and what a side-step makes of it."""
 
 from dataclasses import dataclass, replace
 from math import hypot
@@ -12,12 +12,12 @@ from recon.detection import DetectionState
 from recon.forecast import FORECASTERS, ForecastSettings, ForecastState
 from recon.geo.sun import sun_position
 from recon.model.control import AuthorityHolder
-from recon.model.event import LookAsideOrdered
+from recon.model.event import SideStepOrdered
 from recon.model.geo import GroundGrid, LatLon, LocalFrame
 from recon.model.shade import ShadeMap
 from recon.station.imaging.shade import READ_SHADE, ShadeRead
 from recon.station.kernel.virtual import EPOCH_NS
-from recon.station.state.imager_motion import LookAside
+from recon.station.state.imager_motion import SideStep
 from recon.station.state.imaging import SeenShade
 from recon.station.state.station import Station
 from recon.station.state.steps import JobDone
@@ -27,7 +27,7 @@ GRID = GroundGrid(LocalFrame(HOME), -100.0, 100.0, 10.0, 20, 20)
 
 
 @dataclass(slots=True)
-class LookingWorld:
+class ImagerWorld:
     """A simulated imaging drone, beside survey drones where there are any."""
 
     surveyed: SurveyedWorld
@@ -43,10 +43,10 @@ class LookingWorld:
         self.surveyed.driver.station = station
 
     def ordered(self, person: str = "ann") -> None:
-        self.surveyed.driver.handle(LookAsideOrdered(person, person=person))
+        self.surveyed.driver.handle(SideStepOrdered(person, person=person))
 
-    def newest(self) -> LookAside:
-        newest = self.station.look_asides.newest
+    def newest(self) -> SideStep:
+        newest = self.station.imager_motions.of(SideStep)
         assert newest is not None
         return newest
 
@@ -69,10 +69,10 @@ class LookingWorld:
         return self.surveyed.holder(IMAGER)
 
     def alarms(self) -> dict[str, str]:
-        """Active alarms of looks aside: text by key."""
+        """Active alarms of side-steps: text by key."""
         book = self.station.alarms.alarms.values()
         conditions = [alarm.condition for alarm in book if alarm.is_active]
-        return {each.key: each.text for each in conditions if each.rule == "look_aside"}
+        return {each.key: each.text for each in conditions if each.rule == "side_step"}
 
     def reads_shade(self, known_share: float, age_s: float = 0.0) -> None:
         """A shade map, captured so long ago, with this share of the seen cells known, in sun."""
@@ -98,13 +98,13 @@ class LookingWorld:
         return sun_position(LatLon(HOME.latitude_deg, HOME.longitude_deg), at_s).azimuth_deg
 
 
-def looking_world(
+def imager_world(
     others: int = 0,
     *,
     height_m: float = 60.0,
     place_m: tuple[float, float] = (60.0, 120.0),
     **options: object,
-) -> LookingWorld:
+) -> ImagerWorld:
     """Return an imaging drone that hovers, and survey drones that hover at 40 m over their pads."""
     pads = ((place_m[0], place_m[1]), *((40.0 * number, -40.0) for number in range(others)))
     world = surveyed_world(1 + others, pads=pads, **options)
@@ -112,4 +112,4 @@ def looking_world(
     driver.station = with_imagers(driver.station, IMAGER)
     world.fleet.put(IMAGER, (*place_m, height_m))
     world.runs(3.0)
-    return LookingWorld(world, (*place_m, height_m))
+    return ImagerWorld(world, (*place_m, height_m))

@@ -1,6 +1,6 @@
-"""A look aside: the imaging drone moves a little aside and back, so that a flat scene is decided.
+"""A side-step: the imaging drone moves a little aside and back, so that a flat scene is decided.
 
-Under an even sky no cell differs from the others, and all sun looks like all shade. In sun the
+Under a uniform sky no cell differs from the others, and all sun looks like all shade. In sun the
 ground is brightest opposite the sun (the hot spot), and that place moves with the camera: what is
 brighter there in one frame is darker in the next. Under cloud nothing moves. Pure.
 """
@@ -18,7 +18,7 @@ which ground also brightens and darkens without a hot spot."""
 
 
 @dataclass(frozen=True, slots=True)
-class LookAsideSettings:
+class SideStepSettings:
     """How far and how fast the imaging drone moves, and how long it may take."""
 
     distance_m: float = 25.0
@@ -39,20 +39,20 @@ class LookAsideSettings:
     """From this share of the ground in view on, light is mostly unknown."""
 
     unknown_for_s: float = 20.0
-    """Unknown for so long before the imaging drone moves by itself. Edges of shade pass six times
-    an hour: most flat views stay flat for minutes, and surveys are flown in them."""
+    """Light must be unknown for so long before the imaging drone moves. Edges of shade pass six
+    times an hour: most flat views stay flat for minutes, and surveys are flown in them."""
 
     map_within_s: float = 10.0
     """An older shade map does not show the present light."""
 
-    by_itself_every_s: float = 300.0
-    """Between two by itself: the sky changes in minutes, and each interrupts the view."""
+    automatic_every_s: float = 300.0
+    """Between two automatic ones: the sky changes in minutes, and each interrupts the view."""
 
     refused_again_s: float = 60.0
-    """After a refusal, before it is tried again by itself."""
+    """After a refusal, before it is tried again."""
 
 
-LOOK_ASIDE_SETTINGS = LookAsideSettings()
+SIDE_STEP_SETTINGS = SideStepSettings()
 
 
 def bearings_deg(sun_azimuth_deg: float | None) -> tuple[float, ...]:
@@ -70,7 +70,7 @@ def place_aside(place: LatLon, bearing_deg: float, distance_m: float) -> LatLon:
     return moved_m(place, distance_m * cos(bearing), distance_m * sin(bearing))
 
 
-def is_mostly_unknown(known: MaskMap, seen: MaskMap, settings: LookAsideSettings) -> bool:
+def is_mostly_unknown(known: MaskMap, seen: MaskMap, settings: SideStepSettings) -> bool:
     """Return whether light is unknown on most of the ground in view; of no ground: False.
 
     Both are (R, C): the cells with a known light, and those that the frame shows.
