@@ -23,7 +23,6 @@ import os
 import socket
 import statistics
 import struct
-import subprocess
 import sys
 import tempfile
 import time
@@ -34,7 +33,8 @@ from pathlib import Path
 
 import numpy as np
 from benches.console.browser import Browser, Page, find_chromium, running_browser
-from benches.station.bench_all_stop import PATIENCE_S, start_recon, start_station, wait_until_flying
+from benches.station.bench_all_stop import wait_until_flying
+from benches.station.started import PATIENCE_S, start_apps, start_recon, start_station
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
@@ -87,10 +87,8 @@ def flying(drones: int) -> Iterator[int]:
     """Run a station with so many drones in the air; yield the console's port."""
     with ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
-        station, link_port, http_port = start_station(folder, False, stack)
-        command = [sys.executable, "-m", "benches.console.moving_apps", str(link_port)]
-        apps = subprocess.Popen([*command, "--apps", str(drones)], stdin=subprocess.PIPE)
-        stack.callback(apps.kill)
+        station, link_port, http_port = start_station(folder, stack)
+        apps = start_apps(link_port, stack, "--flight", "circle", "--apps", drones)
         wait_until_flying(http_port, drones)
         time.sleep(SETTLED_S)
         yield http_port
@@ -166,10 +164,7 @@ def videos(program: str, seconds: float) -> Row:
     with ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         station, link_port, http_port = start_recon(("demo", "--no-record"), folder, stack)
-        command = [sys.executable, "-m", "benches.console.moving_apps", str(link_port)]
-        words = ["--apps", "1", "--videos", "1"]
-        apps = subprocess.Popen([*command, *words], stdin=subprocess.PIPE)
-        stack.callback(apps.kill)
+        start_apps(link_port, stack, "--flight", "circle", "--apps", 1, "--streams", 1)
         browser = stack.enter_context(running_browser(program))
         page = browser.open(f"http://127.0.0.1:{http_port}/", CAMERAS_OPEN)
         page.wait_for(ALL_SHOWN)

@@ -24,18 +24,17 @@ import json
 import random
 import shutil
 import signal
-import subprocess
 import sys
 import tempfile
 import threading
 import time
-from collections.abc import Sequence
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass, field
 from datetime import datetime
 from pathlib import Path
 
 import numpy as np
+from benches.station.started import PATIENCE_S, start_apps, start_station
 from benches.station.tile_readers import TileReaders, write_orthophoto
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
@@ -48,7 +47,6 @@ STOP_BYTES = 10
 SETTLED_S = 4.0
 READ_WITHIN_S = 0.4
 """Telemetry confirms within half a second; the next all stop comes when that is over."""
-PATIENCE_S = 60.0
 
 
 @dataclass(slots=True)
@@ -76,8 +74,9 @@ def measure(
         plain = PlainServer()
         stack.callback(plain.close)
         site = site_with_map(folder) if tile_readers else demo_site_folder()
-        station, link_port, http_port = start_station(folder, records, stack, site)
-        flying = start_apps(link_port, plain.port, apps, streams, stack)
+        station, link_port, http_port = start_station(folder, stack, records=records, site=site)
+        options = ("--plain-port", plain.port, "--apps", apps, "--streams", streams)
+        flying = start_apps(link_port, stack, *options)
         stop_reading = threading.Event()
         reader = threading.Thread(target=read_states, args=(http_port, stop_reading))
         reader.start()
@@ -126,52 +125,6 @@ def middle_of(site: Path) -> GeoPoint:
     frame = load_site(site).frame
     assert frame is not None
     return frame.origin
-
-
-def start_station(
-    folder: Path, records: bool, stack: ExitStack, site: Path | None = None
-) -> tuple[subprocess.Popen[str], int, int]:
-    """Start `recon run`; return its process, and its ports for apps and for the console."""
-    options = ["--site", str(site or demo_site_folder()), "--audit", str(folder / "audit")]
-    options += ["--record", str(folder / "records")] if records else ["--no-record"]
-    return start_recon(("run", *options), folder, stack)
-
-
-def start_recon(
-    words: Sequence[str], folder: Path, stack: ExitStack
-) -> tuple[subprocess.Popen[str], int, int]:
-    """Start a station on free ports; its output goes into a file, as under a service manager."""
-    log = stack.enter_context((folder / "log").open("w+", encoding="utf-8"))
-    process = subprocess.Popen(
-        [sys.executable, "-m", "recon", *words, "--link-port", "0", "--http-port", "0"],
-        stdout=log,
-        stderr=subprocess.STDOUT,
-        text=True,
-    )
-    stack.callback(process.kill)
-    end_s = time.monotonic() + PATIENCE_S
-    while "console: " not in (said := (folder / "log").read_text(encoding="utf-8")):
-        if process.poll() is not None or time.monotonic() > end_s:
-            raise RuntimeError(f"expected a station, got: {said}")
-        time.sleep(0.05)
-    facts = dict(line.split(": ", 1) for line in said.splitlines() if ": " in line)
-    link_port = int(facts["companion apps"].rpartition(":")[2])
-    return process, link_port, int(facts["console"].rpartition(":")[2])
-
-
-def start_apps(
-    link_port: int, plain_port: int, apps: int, streams: int, stack: ExitStack
-) -> subprocess.Popen[str]:
-    """Start the apps' process."""
-    options = [str(link_port), str(plain_port), "--apps", str(apps), "--streams", str(streams)]
-    process = subprocess.Popen(
-        [sys.executable, "-m", "benches.station.stop_apps", *options],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        text=True,
-    )
-    stack.callback(process.kill)
-    return process
 
 
 class PlainServer:

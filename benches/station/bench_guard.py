@@ -32,18 +32,15 @@ from pathlib import Path
 
 import numpy as np
 from benches.station.bench_all_stop import (
-    PATIENCE_S,
     READ_WITHIN_S,
     SETTLED_S,
-    PlainServer,
     ask,
     read_states,
     scheduled,
-    start_apps,
-    start_station,
     wait_until_flying,
     within,
 )
+from benches.station.started import PATIENCE_S, start_apps, start_station
 
 HALTED_S = 3.0
 HALTED_REPEATS = 5
@@ -92,10 +89,8 @@ def measure(apps: int, streams: int, repeats: int, seed: int) -> Measured:
     """Run everything once."""
     with ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
-        plain = PlainServer()
-        stack.callback(plain.close)
         station, link_port, http_port = start_station(folder, stack)
-        flying = start_apps(link_port, plain.port, apps, streams, stack)
+        flying = start_apps(link_port, stack, "--apps", apps, "--streams", streams)
         is_over = threading.Event()
         reader = threading.Thread(target=read_states, args=(http_port, is_over))
         reader.start()

@@ -22,11 +22,12 @@ SINK_SECONDS = 10.0
 
 def report(load: Load, outcome: Outcome, sink: SinkOutcome) -> None:
     """Print every figure."""
-    sent = outcome.sent
-    mib_s = sent.bytes / load.seconds / 2**20
+    sent = outcome.sent.packets
+    mib_s = sent["bytes"] / load.seconds / 2**20
     print(
         f"{load.apps} apps, {load.streams} image streams, {load.seconds:g} s: "
-        f"{sent.core} core, {sent.extended} extended, {sent.images} images, {mib_s:.0f} MiB/s"
+        f"{sent['core']} core, {sent['extended']} extended, {sent.get('images', 0)} images, "
+        f"{mib_s:.0f} MiB/s"
     )
     print(f"lost: {outcome.lost}")
     print(

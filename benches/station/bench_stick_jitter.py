@@ -14,17 +14,17 @@ real-time class, as root), so that what is measured is the station and not its n
 
 import argparse
 import asyncio
-import json
 import os
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 import uvloop
+from benches.station.fake_apps import APART_M, GROUND_M, HEIGHT_M, place_deg, serial
 from benches.station.measured import ran_and_waited_ns
-from benches.station.stick_apps import APART_DEG, LATITUDE_DEG, LONGITUDE_DEG, serial
+from benches.station.started import fly_apps
 
 from recon.camera.motion import TelemetryReference
 from recon.link.server import LinkServer
@@ -85,11 +85,12 @@ async def measure(apps: int, seconds: float, *, is_worker_busy: bool) -> Jitter:
     worker = _busy_worker(laid) if is_worker_busy else None
     freeze_loaded_objects()
     scheduled_ns = ran_and_waited_ns()
-    flying = asyncio.create_task(_apps(links.port, apps, seconds))
+    options = ("--flight", "north", "--apps", apps, "--seconds", seconds)
+    flying = asyncio.create_task(fly_apps(links.port, *options))
     await asyncio.sleep(SETTLING_S)
     for number in range(apps):
         _order_goto(driver, number)
-    arrived_s = await flying
+    arrived_s: list[list[float]] = (await flying)["sticks"]
     ran_ns, waited_ns = (b - a for a, b in zip(scheduled_ns, ran_and_waited_ns(), strict=True))
     if worker is not None:
         worker.stop()
@@ -105,24 +106,26 @@ async def measure(apps: int, seconds: float, *, is_worker_busy: bool) -> Jitter:
 
 def _site(apps: int) -> Site:
     """Return a site with nothing in the way, its vehicles in a row with pads under them."""
-    home = GeoPoint(LATITUDE_DEG, LONGITUDE_DEG, 275.0)
+    homes = [
+        GeoPoint(**place_deg(0.0, APART_M * n), ellipsoid_height_m=GROUND_M) for n in range(apps)
+    ]
     profiles = {
         serial(number): VehicleProfile(
             serial(number),
             waypoint_altitude=AltitudeReference.TAKEOFF,
-            pad=replace(home, longitude_deg=LONGITUDE_DEG + APART_DEG * number),
+            pad=homes[number],
             endurance_s=1_800.0,
             go_home_height_m=60.0,
             failsafe=Failsafe.HOVER,
         )
         for number in range(apps)
     }
-    return Site(name="bench", frame=LocalFrame(home), profiles=profiles)
+    return Site(name="bench", frame=LocalFrame(homes[0]), profiles=profiles)
 
 
 def _order_goto(driver: AsyncioDriver, number: int) -> None:
-    target = LatLon(LATITUDE_DEG + 0.003, LONGITUDE_DEG + APART_DEG * number)
-    order = OperatorOrder(number + 1, GoTo(target, 40.0, 5.0), "bench", serial(number))
+    target = LatLon(**place_deg(330.0, APART_M * number))
+    order = OperatorOrder(number + 1, GoTo(target, HEIGHT_M, 5.0), "bench", serial(number))
     driver.handle(order)
     record = driver.station.orders.records[order.command_id]
     if not record.is_tracked:
@@ -137,7 +140,7 @@ def _busy_worker(laid: list[int]) -> ThreadWorker:
     rng = np.random.default_rng(1)
     pixels = rng.integers(0, 256, (camera.rows, camera.cols, 3), dtype=np.uint8)
     frame = Frame(1, site.imager.serial, 0, 0, 0.0, rgb=pixels)
-    at = TelemetryReference(LATITUDE_DEG, LONGITUDE_DEG, 120.0, 10.0)
+    at = TelemetryReference(*place_deg(0.0, 0.0).values(), 120.0, 10.0)
     work = Job(1, LAY_FRAME, LayFrame(frame, at, at))
 
     def again(event: Event) -> None:
@@ -150,25 +153,6 @@ def _busy_worker(laid: list[int]) -> ThreadWorker:
     worker.start()
     worker.submit(work)
     return worker
-
-
-async def _apps(port: int, apps: int, seconds: float) -> list[list[float]]:
-    process = await asyncio.create_subprocess_exec(
-        sys.executable,
-        "-m",
-        "benches.station.stick_apps",
-        str(port),
-        "--apps",
-        str(apps),
-        "--seconds",
-        str(seconds),
-        stdout=asyncio.subprocess.PIPE,
-    )
-    said, _ = await process.communicate()
-    if process.returncode != 0:
-        raise RuntimeError(f"expected the apps to end well, got exit code {process.returncode}")
-    arrived_s: list[list[float]] = json.loads(said)
-    return arrived_s
 
 
 def go_first() -> bool:

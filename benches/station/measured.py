@@ -1,14 +1,12 @@
 """The receiving ends of the load: the station with everything measured, and a bare sink."""
 
 import asyncio
-import json
-import sys
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from benches.station.app_load import Sent
+from benches.station.started import fly_apps
 
 from recon import wire
 from recon.link.server import LinkServer
@@ -35,6 +33,14 @@ class Load:
     seconds: float
     image_rows: int = 720
     image_cols: int = 1280
+
+
+@dataclass(frozen=True, slots=True)
+class Sent:
+    """What the apps sent, by kind, and when each app's first stop arrived."""
+
+    packets: dict[str, int]
+    first_command_at_s: list[float]
 
 
 @dataclass(slots=True)
@@ -84,7 +90,7 @@ class Outcome:
     def lost(self) -> dict[str, int]:
         """Packets sent and not received, by kind."""
         return {
-            kind: getattr(self.sent, kind) - getattr(self.received, kind)
+            kind: self.sent.packets.get(kind, 0) - getattr(self.received, kind)
             for kind in ("core", "extended", "images")
         }
 
@@ -162,7 +168,7 @@ async def measure_sink(load: Load) -> SinkOutcome:
     sent = await _send(server.sockets[0].getsockname()[1], load, stamps_from_s)
     share = (time.process_time() - cpu_s) / (time.monotonic() - wall_s)
     async with asyncio.timeout(ENDING_S):
-        while len(latencies_s) < sent.core:
+        while len(latencies_s) < sent.packets["core"]:
             await asyncio.sleep(0.01)
     server.close()
     return SinkOutcome(share, latencies_s)
@@ -192,16 +198,5 @@ async def _console(service: Service, state_ms: list[float]) -> None:
 async def _send(port: int, load: Load, stamps_from_s: float) -> Sent:
     options = ["--apps", load.apps, "--streams", load.streams, "--seconds", load.seconds]
     options += ["--image-rows", load.image_rows, "--image-cols", load.image_cols]
-    options += ["--stamps-from-s", stamps_from_s]
-    process = await asyncio.create_subprocess_exec(
-        sys.executable,
-        "-m",
-        "benches.station.app_load",
-        str(port),
-        *map(str, options),
-        stdout=asyncio.subprocess.PIPE,
-    )
-    said, _ = await process.communicate()
-    if process.returncode != 0:
-        raise RuntimeError(f"expected the apps to end well, got exit code {process.returncode}")
-    return Sent(**json.loads(said))
+    told = await fly_apps(port, *options, "--stamps-from-s", stamps_from_s)
+    return Sent(told["sent"], [times[0] for times in told["stops"] if times])

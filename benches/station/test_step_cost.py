@@ -7,7 +7,7 @@ import statistics
 from collections.abc import Callable
 from time import perf_counter
 
-from benches.station.app_load import core_packet, extended_packet
+from benches.station.fake_apps import core_packet, extended_packet, place_deg, serial
 
 from recon import wire
 from recon.link.session import Session
@@ -34,15 +34,20 @@ def busy_station() -> Station:
     station = first_state(default_site())
     for number in range(VEHICLES):
         station, _ = step(station, LinkOpened(number, "bench"), 0)
-        station = heard(station, number, extended_packet(number), 0)
+        station = heard(station, number, extended_packet(serial(number).encode()), 0)
     for now_ns in range(0, LAST_NS + 1, NS_PER_S):
         for number in range(VEHICLES):
-            packet = core_packet(number, now_ns // (NS_PER_S // 10), now_ns / NS_PER_S)
-            station = heard(station, number, packet, now_ns)
+            station = heard(station, number, core(number, now_ns), now_ns)
     for number in range(VEHICLES):
-        serial = f"LOAD-{number:03d}"
-        station, _ = step(station, OperatorOrder(number, Hover(), "bench", serial=serial), LAST_NS)
+        order = OperatorOrder(number, Hover(), "bench", serial=serial(number))
+        station, _ = step(station, order, LAST_NS)
     return station
+
+
+def core(number: int, now_ns: int) -> bytes:
+    """Return the core telemetry of a vehicle that moves slowly."""
+    time_s = now_ns / NS_PER_S
+    return core_packet(**place_deg(10.0 * number, time_s), yaw_deg=10.0 * time_s % 360.0)
 
 
 def heard(station: Station, link_id: int, packet: bytes, now_ns: int) -> Station:
@@ -64,7 +69,7 @@ def median_us(work: Callable[[], object], times: int) -> float:
 def test_costs_with_64_vehicles() -> None:
     station = busy_station()
     now_ns = LAST_NS + NS_PER_S // 4
-    report = to_report(wire.decode(core_packet(3, 7, 0.7)))
+    report = to_report(wire.decode(core(3, NS_PER_S)))
     event = PacketReceived(3, report)
     empty, _ = step(first_state(default_site()), LinkOpened(3, "bench"), 0)
     one_us = median_us(lambda: step(empty, event, now_ns), 200)

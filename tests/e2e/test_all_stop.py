@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from benches.station.stop_apps import StoppedApp
+from benches.station.fake_apps import HoveringApp
 from tests.persons import ANN
 
 from recon import wire
@@ -37,8 +37,8 @@ class Here:
 
     service: Service
     log: AuditLog
-    flying: list[StoppedApp]
-    standing: list[StoppedApp]
+    flying: list[HoveringApp]
+    standing: list[HoveringApp]
 
 
 @asynccontextmanager
@@ -63,9 +63,11 @@ async def station_with_apps(audit: Path) -> AsyncIterator[Here]:
         yield Here(service, log, flying, [app for app in apps if not app.is_flying])
 
 
-async def connect(port: int, number: int, image: bytes | None, stack: AsyncExitStack) -> StoppedApp:
+async def connect(
+    port: int, number: int, image: bytes | None, stack: AsyncExitStack
+) -> HoveringApp:
     is_flying = not FLYING <= number < FLYING + STANDING
-    app = StoppedApp(number, image, is_flying)
+    app = HoveringApp(number, image, is_flying)
     if number >= FLYING + STANDING:
         app.serial = b"00000"
     await asyncio.get_running_loop().create_connection(lambda: app, "127.0.0.1", port)
