@@ -4,7 +4,22 @@ from dataclasses import replace
 
 from tests.ready import ready_airspace
 
-from recon.model.command import Body, Command, FlyMission, Refusal, StickFrame, VirtualStick
+from recon.model.command import (
+    Body,
+    Command,
+    FlyMission,
+    GoTo,
+    HoldPosition,
+    Hover,
+    LandNow,
+    Nudge,
+    Refusal,
+    ReturnHome,
+    StartCamera,
+    StickFrame,
+    StopCamera,
+    VirtualStick,
+)
 from recon.model.geo import GeoPoint, LatLon
 from recon.model.mission import Mission, Waypoint
 from recon.model.units import Stamped
@@ -42,6 +57,7 @@ FACTS = StationFacts(clock=ClockReading(1_780_000_000 * S))
 """A fence far away, and a clock that was set: nothing on the checklist fails."""
 
 STICK = VirtualStick(StickFrame.GROUND, 90.0, 1.0, 2.0, 30.0, 1.0)
+ZERO = replace(STICK, velocity_x_mps=0.0, velocity_y_mps=0.0, height_above_takeoff_m=40.0)
 
 
 def waypoint(north_m: float = 0.0, **changes: object) -> Waypoint:
@@ -57,6 +73,17 @@ def waypoint(north_m: float = 0.0, **changes: object) -> Waypoint:
 
 def mission(*waypoints: Waypoint, curved: bool = False) -> FlyMission:
     return FlyMission(Mission(waypoints or (waypoint(0.0), waypoint(50.0)), curved=curved))
+
+
+MOVES: list[Body] = [
+    mission(),
+    STICK,
+    GoTo(PLACE, 40.0, 5.0),
+    Nudge(1.0, 0.0, 0.0),
+    HoldPosition(),
+]
+STOPS: list[Body] = [Hover(), LandNow(), ReturnHome(), StartCamera(1.0), StopCamera()]
+"""An order of each kind that sets a vehicle in motion, and of each that does not."""
 
 
 def command(body: Body, *, takeoff: bool = False, expires_at_ns: int = NOW + 5 * S) -> Command:

@@ -3,14 +3,14 @@
 from dataclasses import replace
 
 import pytest
-from tests.safety.cases import AIRSPACE, FACTS, NOW, S, situation, vehicle
+from tests.safety.cases import AIRSPACE, NOW, S, vehicle
 from tests.safety.checks.checked import ATTENTION, FAILS, OK, UNKNOWN, checked
 
 from recon.model.airspace import FlightLimits
-from recon.model.vehicle import BatteryWarning, FlightMode
+from recon.model.vehicle import BatteryWarning
 from recon.safety import PreparedAirspace
 from recon.safety.check import CheckState
-from recon.safety.checks.aircraft import app, battery, gnss, link, wind
+from recon.safety.checks.aircraft import battery, link, wind
 
 
 class TestLink:
@@ -19,14 +19,6 @@ class TestLink:
     )
     def test_telemetry_is_young(self, age_s: float, state: CheckState) -> None:
         assert checked(link, vehicle(age_s=age_s)).state is state
-
-    def test_before_any_telemetry_it_is_unknown(self) -> None:
-        assert checked(link, vehicle(core_received_at_ns=None)).state is UNKNOWN
-
-    def test_one_app_speaks_for_it(self) -> None:
-        state = replace(vehicle(), rival_link_ids=(2,))
-        found = link(state, situation())
-        assert (found.state, found.text) == (FAILS, "two connections claim this serial")
 
 
 class TestBattery:
@@ -54,30 +46,12 @@ class TestBattery:
         assert checked(battery, vehicle(**lost)).state is UNKNOWN  # type: ignore[arg-type]
 
 
-class TestGnss:
-    def test_it_is_the_gates_own_measure(self) -> None:
-        assert checked(gnss, vehicle()).text == "14 satellites, signal level 4"
-        found = checked(gnss, vehicle(flight_mode=FlightMode.ATTI))
-        assert (found.state, found.text) == (
-            FAILS,
-            "flies in ATTI, without GNSS; the pilot must steer it",
-        )
-
-
 class TestWind:
     @pytest.mark.parametrize(
         ("level", "state"), [(None, OK), (0, OK), (1, OK), (2, ATTENTION), (7, ATTENTION)]
     )
     def test_strong_wind_wants_attention(self, level: int | None, state: CheckState) -> None:
         assert checked(wind, vehicle(wind_level=level)).state is state
-
-
-class TestApp:
-    def test_its_warnings_stay_until_acknowledged(self) -> None:
-        assert checked(app, vehicle()).state is OK
-        facts = replace(FACTS, app_warnings=("compass error", "storage full"))
-        found = checked(app, vehicle(), facts=facts)
-        assert (found.state, found.text) == (ATTENTION, "compass error; storage full")
 
 
 def test_ages_are_shown_in_tenths_of_a_second() -> None:

@@ -66,10 +66,6 @@ class TestNeighbours:
         facts = replace(FACTS, others=(other(height_m),))
         assert at(60.0, facts=facts).state is state
 
-    def test_the_neighbour_is_named(self) -> None:
-        facts = replace(FACTS, others=(other(90.0), other(62.0, serial="C")))
-        assert at(60.0, facts=facts).text == ("must be 7.5 m from that of C; got 2.0 m at 60 m")
-
     def test_heights_are_compared_in_one_frame(self) -> None:
         """Its pad lies 40 m lower: 100 m above it are 60 m above here."""
         low = replace(FACTS, others=(other(100.0, altitude_m=230.0),))

@@ -23,7 +23,6 @@ from recon.model.command import Hover, Refusal
 from recon.model.units import Stamped
 from recon.model.vehicle import VehicleProfile, VehicleState
 from recon.safety import ApprovedCommand, approve
-from recon.safety.rules.altitude_reference import altitude_reference
 from recon.vehicles.packets import to_packet
 
 
@@ -86,34 +85,6 @@ class TestWgs84:
     def test_10_km_is_still_an_altitude(self) -> None:
         state = vehicle(WGS84, offset_m=10_000.0, offset_at_takeoff_m=10_000.0)
         assert approved(judged(state))
-
-    @pytest.mark.parametrize(
-        ("state", "reason"),
-        [
-            (
-                vehicle(WGS84, offset_m=None),
-                "A reports no altitude: WGS84 cannot be related to its takeoff point",
-            ),
-            (
-                vehicle(WGS84, altitude_offset_m=aged(2.5)),
-                "A: altitude must be at most 2 s old; got 2.5 s",
-            ),
-            (
-                vehicle(WGS84, offset_m=-12_000.0),
-                "A: altitude must be within 10000 m of the height above takeoff; got -12000 m; "
-                "wait until it reports a valid altitude",
-            ),
-            (
-                vehicle(WGS84, offset_m=257.0),
-                "A: WGS84 altitude must stay within 2 m of the height above takeoff; got a jump of "
-                "3.0 m since takeoff; land and take off again",
-            ),
-        ],
-    )
-    def test_the_reasons(self, state: VehicleState, reason: str) -> None:
-        assert altitude_reference(command(mission()), situation(state)) == Refusal(
-            "altitude_reference", reason
-        )
 
     def test_from_the_ground_no_takeoff_is_there_to_compare_with(self) -> None:
         state = vehicle(WGS84, flying=False, offset_at_takeoff_m=None)

@@ -3,33 +3,15 @@
 from dataclasses import replace
 
 import pytest
-from tests.safety.cases import STICK, command, mission, situation, vehicle
+from tests.safety.cases import MOVES, STICK, STOPS, command, mission, situation, vehicle
 
 from recon.model.command import (
     Body,
-    GoTo,
-    HoldPosition,
-    Hover,
-    LandNow,
-    Nudge,
     Refusal,
-    ReturnHome,
-    StartCamera,
-    StopCamera,
 )
 from recon.model.control import AuthorityHolder, ControlAuthority
-from recon.model.geo import LatLon
 from recon.safety import Situation
 from recon.safety.rules.authority import authority
-
-MOVES: list[Body] = [
-    mission(),
-    STICK,
-    GoTo(LatLon(42.0, -93.6), 40.0, 5.0),
-    Nudge(1.0, 0.0, 0.0),
-    HoldPosition(),
-]
-STOPS: list[Body] = [Hover(), LandNow(), ReturnHome(), StartCamera(1.0), StopCamera()]
 
 
 def held_by(who: AuthorityHolder) -> Situation:

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from tests.safety.cases import STICK, TAKEOFF, command, mission, situation, vehicle, waypoint
+from tests.safety.cases import STICK, TAKEOFF, ZERO, command, mission, situation, vehicle, waypoint
 
 from recon.model.airspace import Airspace, FlightLimits
 from recon.model.command import Body, FlyMission, GoTo, HoldPosition, Hover, Nudge, StartCamera
@@ -15,7 +15,6 @@ from recon.safety.energy import consumption, need_of
 from recon.safety.rules.battery import battery
 from recon.safety.situation import Situation
 
-ZERO = replace(STICK, velocity_x_mps=0.0, velocity_y_mps=0.0, height_above_takeoff_m=40.0)
 OUT = LatLon(waypoint(200.0).latitude_deg, -93.6)
 FAR = GoTo(LatLon(waypoint(400.0).latitude_deg, -93.6), 40.0, 5.0)
 NEARER = GoTo(LatLon(waypoint(100.0).latitude_deg, -93.6), 40.0, 5.0)
@@ -121,28 +120,6 @@ class TestWarning:
     ) -> None:
         goes = reason(body, out(battery_warning=warning)) is None
         assert goes is (warning is not BatteryWarning.SERIOUS)
-
-    @pytest.mark.parametrize(
-        ("warning", "refusal_text"),
-        [
-            (
-                BatteryWarning.SERIOUS,
-                "the aircraft reports a critically low battery; land it or call it home now",
-            ),
-            (
-                BatteryWarning.LOW,
-                "the aircraft reports a low battery: only motion towards home is accepted",
-            ),
-            (
-                None,
-                "battery warning unknown; check its companion app",
-            ),
-        ],
-    )
-    def test_a_refusal_states_the_aircrafts_warning(
-        self, warning: BatteryWarning | None, refusal_text: str
-    ) -> None:
-        assert reason(FAR, out(battery_warning=warning)) == refusal_text
 
 
 class TestUnknown:

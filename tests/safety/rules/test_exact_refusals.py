@@ -38,7 +38,7 @@ from recon.model.command import Body, Command, GoTo, Hover, Nudge, Refusal, Star
 from recon.model.control import AuthorityHolder, ControlAuthority, OperatorLease, StopLatch
 from recon.model.geo import LatLon
 from recon.model.units import Stamped
-from recon.model.vehicle import BatteryWarning, VehicleState
+from recon.model.vehicle import BatteryWarning, FlightMode, VehicleState
 from recon.safety import ClaimingLink, PreparedAirspace, Situation, Traffic
 from recon.safety.rules import RULES
 
@@ -247,6 +247,24 @@ DJI_NUMBERS = [
     ),
     case(
         "dji_limits",
+        Nudge(1.0, 0.0, 0.0, 16.0),
+        HERE,
+        "Speed must be 0.1 to 15 m/s; got 16 m/s",
+        speed_mps=16.0,
+        min_mps=0.1,
+        max_mps=15.0,
+    ),
+    case(
+        "dji_limits",
+        replace(STICK, height_above_takeoff_m=501.0),
+        HERE,
+        "Height must be 0 to 500 m above takeoff; got 501 m",
+        height_above_takeoff_m=501.0,
+        min_m=0.0,
+        max_m=500.0,
+    ),
+    case(
+        "dji_limits",
         replace(STICK, timeout_s=6.0),
         HERE,
         "Stick timeout must be above 0 and at most 5 s, the time for which the app keeps flying it "
@@ -327,9 +345,9 @@ DJI_MISSIONS = [
     ),
     case(
         "dji_limits",
-        northward(waypoint(0.0), waypoint(0.0, height_above_takeoff_m=40.25)),
+        northward(waypoint(50.0), waypoint(0.0), waypoint(0.0, height_above_takeoff_m=40.25)),
         HERE,
-        "Waypoints 1 and 2 must be 0.5 to 2000 m apart; got 0.25 m",
+        "Waypoints 2 and 3 must be 0.5 to 2000 m apart; got 0.25 m",
         distance_m=0.25,
         min_m=0.5,
         max_m=2000.0,
@@ -363,6 +381,16 @@ DJI_MISSIONS = [
     ),
     case(
         "dji_limits",
+        corners(0.2, 5.0, 0.3),
+        HERE,
+        "Waypoint 3: the first and last corner radius must be 0.2 m; got 0.3 m",
+        waypoint=3,
+        corner_radius_m=0.3,
+        min_m=0.2,
+        max_m=0.2,
+    ),
+    case(
+        "dji_limits",
         corners(0.2, 1000.1, 0.2),
         HERE,
         "Waypoint 2: corner radius must be 0.2 to 1000 m; got 1000.1 m",
@@ -372,16 +400,22 @@ DJI_MISSIONS = [
     ),
     case(
         "dji_limits",
-        corners(0.2, 20.5, 0.2),
+        corners(0.2, 15.0, 15.0, 0.2),
         HERE,
-        "Waypoints 1 and 2: the corner radii must sum to less than their leg of 20.00 m; got "
-        "20.70 m",
-        corner_radii_m=20.7,
+        "Waypoints 2 and 3: the corner radii must sum to less than their leg of 20.00 m; got "
+        "30.00 m",
+        corner_radii_m=30.0,
         max_m=20.0,
     ),
 ]
 
 TELEMETRY = [
+    case(
+        "altitude_reference",
+        FAR,
+        situation(vehicle(WGS84, offset_m=None)),
+        "A reports no altitude: WGS84 cannot be related to its takeoff point",
+    ),
     case(
         "altitude_reference",
         FAR,
@@ -441,6 +475,19 @@ TELEMETRY = [
         age_s=4.0,
         max_s=3.0,
     ),
+    *(
+        case("gnss", FAR, situation(vehicle(**{name: value})), f"A: {sentence}")  # type: ignore[arg-type]
+        for name, value, sentence in (
+            ("position", Stamped(), "no position reported; wait for a fix"),
+            ("gnss_satellite_count", None, "satellite count unknown; wait for extended telemetry"),
+            ("flight_mode", None, "flight mode unknown, so position hold is uncertain"),
+            (
+                "flight_mode",
+                FlightMode.ATTI,
+                "flies in ATTI, without GNSS; the pilot must steer it",
+            ),
+        )
+    ),
     case(
         "gnss",
         FAR,
@@ -473,11 +520,19 @@ TELEMETRY = [
         signal_level=3,
         min_level=4,
     ),
-    case(
-        "battery",
-        FAR,
-        here(airspace(), flier(battery_warning=BatteryWarning.SERIOUS)),
-        "A: the aircraft reports a critically low battery; land it or call it home now",
+    *(
+        case("battery", FAR, here(airspace(), flier(battery_warning=warning)), f"A: {sentence}")
+        for warning, sentence in (
+            (
+                BatteryWarning.SERIOUS,
+                "the aircraft reports a critically low battery; land it or call it home now",
+            ),
+            (
+                BatteryWarning.LOW,
+                "the aircraft reports a low battery: only motion towards home is accepted",
+            ),
+            (None, "battery warning unknown; check its companion app"),
+        )
     ),
     case(
         "battery",

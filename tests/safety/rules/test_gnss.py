@@ -3,23 +3,14 @@
 from dataclasses import replace
 
 import pytest
-from tests.safety.cases import STICK, command, mission, situation, vehicle
+from tests.safety.cases import MOVES, ZERO, command, mission, situation, vehicle
 
-from recon.model.command import Body, GoTo, HoldPosition, Hover, Nudge, Refusal, StopCamera
-from recon.model.geo import LatLon
+from recon.model.command import Body, Hover, Refusal, StopCamera
 from recon.model.units import Stamped
 from recon.model.vehicle import FlightMode
 from recon.safety import SafetySettings
 from recon.safety.rules.gnss import gnss
 
-MOVES: list[Body] = [
-    mission(),
-    STICK,
-    GoTo(LatLon(42.0, -93.6), 40.0, 5.0),
-    Nudge(1.0, 0.0, 0.0),
-    HoldPosition(),
-]
-ZERO = replace(STICK, velocity_x_mps=0.0, velocity_y_mps=0.0, height_above_takeoff_m=40.0)
 WITHOUT = {FlightMode.MANUAL, FlightMode.ATTI, FlightMode.ATTI_COURSE_LOCK, FlightMode.UNKNOWN}
 
 
@@ -33,7 +24,7 @@ def judged(body: Body = MOVES[0], *, flying: bool | None = True, **changes: obje
 @pytest.mark.parametrize("body", MOVES)
 def test_motion_needs_a_fix(body: Body) -> None:
     assert judged(body) is None
-    assert judged(body, position=Stamped()) == "A: no position reported; wait for a fix"
+    assert judged(body, position=Stamped()) is not None
 
 
 @pytest.mark.parametrize("body", [ZERO, Hover(), StopCamera()])
@@ -66,46 +57,6 @@ def test_on_the_ground_the_level_at_which_it_records_its_home(
 @pytest.mark.parametrize("mode", [None, *FlightMode])
 def test_modes_without_gnss_are_the_pilots(mode: FlightMode | None) -> None:
     assert (judged(flight_mode=mode) is None) is (mode is not None and mode not in WITHOUT)
-
-
-@pytest.mark.parametrize(
-    ("changes", "reason"),
-    [
-        (
-            {"gnss_satellite_count": None},
-            "satellite count unknown; wait for extended telemetry",
-        ),
-        (
-            {"gnss_satellite_count": 7},
-            "at least 8 satellites are needed; got 7; wait, or move to open sky",
-        ),
-        (
-            {"gnss_signal_level": None},
-            "GNSS signal level unknown, at least 3 of 5 is needed; wait, or move to open sky",
-        ),
-        (
-            {"gnss_signal_level": 2},
-            "GNSS signal level must be at least 3 of 5; got 2; wait, or move to open sky",
-        ),
-        (
-            {"gnss_signal_level": 3, "flying": False},
-            "GNSS signal level must be at least 4 of 5 before takeoff, to record the home point; "
-            "got 3; wait, or move to open sky",
-        ),
-        (
-            {"flight_mode": None},
-            "flight mode unknown, so position hold is uncertain",
-        ),
-        (
-            {"flight_mode": FlightMode.ATTI},
-            "flies in ATTI, without GNSS; the pilot must steer it",
-        ),
-    ],
-)
-def test_a_refusal_states_what_is_needed_what_came_and_what_to_do(
-    changes: dict[str, object], reason: str
-) -> None:
-    assert judged(**changes) == f"A: {reason}"  # type: ignore[arg-type]
 
 
 def test_the_thresholds_are_settings() -> None:

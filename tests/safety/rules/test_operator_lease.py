@@ -3,15 +3,14 @@
 from dataclasses import replace
 
 import pytest
-from tests.safety.cases import NOW, STICK, S, command, mission, situation
+from tests.safety.cases import NOW, STICK, STOPS, S, command, mission, situation
 
-from recon.model.command import Body, Hover, LandNow, Refusal, ReturnHome, StartCamera
+from recon.model.command import Body, Hover, Refusal
 from recon.model.control import AuthorityHolder, OperatorLease
 from recon.safety import Situation, approve
 from recon.safety.rules.operator_lease import operator_lease
 
 LEASE = OperatorLease("anna", NOW - 14 * S, NOW - 2 * S)
-STOPS: list[Body] = [Hover(), LandNow(), ReturnHome(), StartCamera(1.0)]
 
 
 def operated() -> Situation:

@@ -3,9 +3,9 @@
 from dataclasses import replace
 
 import pytest
-from tests.safety.cases import STICK, command, mission, situation, vehicle, waypoint
+from tests.safety.cases import MOVES, command, mission, situation, vehicle, waypoint
 
-from recon.model.command import Body, FlyMission, GoTo, HoldPosition, Hover, Nudge
+from recon.model.command import Body, FlyMission, Hover
 from recon.model.geo import LatLon
 from recon.model.vehicle import VehicleState
 from recon.safety import OPEN_AIRSPACE, Override, Situation
@@ -59,13 +59,7 @@ def test_somebodys_word_lets_it_fly() -> None:
 
 @pytest.mark.parametrize(
     "body",
-    [
-        Hover(),
-        STICK,
-        GoTo(LatLon(42.0, -93.6), 40.0, 5.0),
-        Nudge(1.0, 0.0, 0.0),
-        HoldPosition(),
-    ],
+    [Hover(), *MOVES[1:]],
 )
 def test_the_list_is_for_missions(body: Body) -> None:
     assert reason(body, now=UNFENCED) is None

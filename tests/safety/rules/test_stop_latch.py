@@ -4,9 +4,10 @@ from dataclasses import replace
 
 import pytest
 from tests.safety.cases import (
+    MOVES,
     NOW,
-    PLACE,
     STICK,
+    STOPS,
     S,
     approved,
     command,
@@ -18,28 +19,13 @@ from tests.safety.cases import (
 
 from recon.model.command import (
     Body,
-    GoTo,
-    HoldPosition,
     Hover,
-    LandNow,
-    Nudge,
     Refusal,
-    ReturnHome,
-    StartCamera,
-    StopCamera,
 )
 from recon.model.control import AuthorityHolder, StopLatch
 from recon.safety import Situation, approve, judge
 from recon.safety.rules.stop_latch import stop_latch
 
-MOVES: list[Body] = [
-    mission(),
-    STICK,
-    GoTo(PLACE, 40.0, 5.0),
-    Nudge(1.0, 0.0, 0.0),
-    HoldPosition(),
-]
-STOPS: list[Body] = [Hover(), LandNow(), ReturnHome(), StartCamera(1.0), StopCamera()]
 LATCH = StopLatch("Ann", NOW - 12 * S)
 
 
