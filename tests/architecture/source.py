@@ -44,8 +44,8 @@ def dotted(node: ast.AST) -> str:
     return ""
 
 
-def calls(path: Path) -> Iterator[tuple[int, str]]:
-    """Every call in a file, with its line."""
+def calls(path: Path) -> Iterator[tuple[ast.Call, str]]:
+    """Every call in a file, with what it calls."""
     for node in ast.walk(tree(path)):
         if isinstance(node, ast.Call):
-            yield node.lineno, dotted(node.func)
+            yield node, dotted(node.func)

@@ -46,9 +46,9 @@ class TestOnlyTheGateMakesOne:
     def test_no_file_goes_round_the_constructor_or_changes_a_frozen_value(self) -> None:
         tricks = ("object.__new__", "object.__setattr__", "copyreg.__newobj__")
         found = [
-            (name_of(path), line, name)
+            (name_of(path), call.lineno, name)
             for path in files(*MAY_KNOW_IT)
-            for line, name in calls(path)
+            for call, name in calls(path)
             if name.endswith("ApprovedCommand.__new__") or name in tricks
         ]
         assert found == []
