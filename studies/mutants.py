@@ -192,7 +192,12 @@ def _copy_project(copy: Path, part: Part) -> None:
         "source_paths": _lines("src"),
         "only_mutate": _lines(*part.changed),
         "pytest_add_cli_args": _lines(
-            "-p", "no:cacheprovider", "-x", "--hypothesis-profile=mutants"
+            "-p",
+            "no:cacheprovider",
+            "-p",
+            "no:processor_time",
+            "-x",
+            "--hypothesis-profile=mutants",
         ),
         "pytest_add_cli_args_test_selection": _lines(*part.tests),
         "also_copy": _lines(*(f"{name}/" for name in COPIED[2:])),

@@ -6,6 +6,22 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 from tests.examples import examples
+from tests.processor_time import ProcessorTime
+
+FLYING = ("benches", "score", "station/operations", "guidance", "cli", "sim", "client", "safety")
+"""Rooms with the dearest files: they come first, so that no worker ends long after the others."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Sort tests by room; within one their order stays."""
+    tests = Path(__file__).parent
+    items.sort(key=lambda item: not any(item.path.is_relative_to(tests / r) for r in FLYING))
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Count every test's processor time; `-p no:processor_time` turns it off."""
+    config.pluginmanager.register(ProcessorTime(), "processor_time")
+
 
 settings.register_profile(
     "untimed", max_examples=examples(100), deadline=None, derandomize="CI" in os.environ

@@ -3,6 +3,7 @@
 import io
 import json
 from collections.abc import AsyncIterator
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -42,6 +43,12 @@ def station() -> FakeStation:
 @pytest.fixture
 def client(station: FakeStation) -> Client:
     return Client(application(station))
+
+
+@cache
+def same_client() -> Client:
+    """Return one for all examples of a property: to make an application takes 0.1 s."""
+    return Client(application(FakeStation()))
 
 
 def post(client: Client, text: str) -> Any:
@@ -181,8 +188,7 @@ class TestOrders:
     @settings(max_examples=examples(100), deadline=None)
     @given(st.text(max_size=60))
     def test_any_serial_is_answered(self, serial: str) -> None:
-        station = FakeStation()
-        client = Client(application(station))
+        client = same_client()
         text = json.dumps({**HOVER, "serials": [serial]})
         response = post(client, text)
         assert response.status_code in (200, 422)
@@ -205,7 +211,7 @@ class TestOrders:
         )
     )
     def test_no_body_is_an_error_of_the_server(self, body: object) -> None:
-        client = Client(application(FakeStation()))
+        client = same_client()
         assert post(client, json.dumps(body)).status_code in (200, 422)
 
     def test_lone_surrogates_are_no_error_of_the_server(self, client: Client) -> None:

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tests.camera.registered_scenes import displacements_m
+from tests.examples import family
 from tests.real_footage.footage import FootageSettings, footage
 from tests.real_footage.places import PLACES, load_place
 
@@ -25,7 +26,7 @@ WOBBLE = FootageSettings(
 
 
 @pytest.mark.parametrize("settings", [HOVER, WOBBLE], ids=["hover", "wobble"])
-@pytest.mark.parametrize("name", PLACES)
+@pytest.mark.parametrize("name", family(*PLACES))
 def test_a_real_field_stays_in_place(
     name: str, settings: FootageSettings, fisheye_data: Path
 ) -> None:

@@ -73,11 +73,11 @@ def test_a_summary_is_the_first_line_of_the_commands_own_help(name: str) -> None
     assert (command.help or "").splitlines()[0] == COMMANDS[name].summary
 
 
-def test_help_lists_every_command_in_order() -> None:
+def test_help_lists_every_command() -> None:
     page = CliRunner().invoke(app, ["--help"]).output
     _, _, listed = page.partition("Commands:\n")
     names = [line.split()[0] for line in listed.splitlines() if line[2:3] not in ("", " ")]
-    assert names == list(COMMANDS)
+    assert set(names) == set(COMMANDS)
 
 
 def test_a_mistyped_command_gets_a_suggestion() -> None:

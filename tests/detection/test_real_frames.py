@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tests.detection.shaded_field import FIELD, DriftingShade, centres
+from tests.examples import family
 
 from recon.camera import (
     GroundProjector,
@@ -69,7 +70,7 @@ def under(image: GroundImage, shade: DriftingShade, i: int, seed: int) -> Ground
     )
 
 
-@pytest.mark.parametrize("name", FIELDS)
+@pytest.mark.parametrize("name", family(*FIELDS))
 def test_drawn_shadows_are_found_on_real_ground(fisheye_data: Path, name: str) -> None:
     image = laid(fisheye_data, name)
     settings = DetectionSettings(grid=replace(image.grid, cell_m=4.0, rows=128, cols=128))

@@ -131,6 +131,7 @@ class TestDriftingShade:
     def test_shade_is_found_whatever_the_camera_does(self, changes: dict[str, object]) -> None:
         assert mean_iou(found_in(Flight(SEED, **changes).moments())[12:]) > 0.85
 
+    @pytest.mark.flight
     def test_it_beats_the_recent_maximum_under_large_clouds(self) -> None:
         flight = Flight(9_210, cover=0.6, size_m=180.0)
         own = mean_iou(found_in(flight.moments())[12:])
@@ -168,6 +169,7 @@ class TestFlatScenes:
         images = ((replace(image, toward_sun_enu=None), t) for image, t in flight.moments())
         assert max(known_share(found) for found, _ in found_in(images)) == 0.0
 
+    @pytest.mark.flight
     def test_a_moving_hot_spot_shows_sun(self) -> None:
         last, _ = found_in(
             Flight(9_231, direct=1.0, hot_spot=0.5, lasts_s=600.0, every_s=10.0).moments()
@@ -175,6 +177,7 @@ class TestFlatScenes:
         assert known_share(last) > 0.95
         assert last.is_sunlit[FOOTPRINT & last.valid].mean() > 0.99
 
+    @pytest.mark.flight
     def test_in_shade_sun_is_never_seen(self) -> None:
         maps = found_in(
             Flight(9_232, direct=0.0, hot_spot=0.5, lasts_s=600.0, every_s=10.0).moments()

@@ -16,8 +16,6 @@ from recon.safety.rules.separation import separation
 from recon.safety.settings import SafetySettings
 from recon.safety.situation import Situation
 
-pytestmark = pytest.mark.uncovered
-
 SEEDS = range(20_000, 20_300)
 """None that `make study` draws too."""
 
@@ -74,7 +72,11 @@ def test_the_rule_agrees_with_dense_sampling_on_every_drawn_fleet() -> None:
     [
         pytest.param(present_places, range(20_000, 20_050), "approves", id="present places"),
         pytest.param(whole_paths, range(20_000, 20_100), "refuses", id="whole paths at once"),
-        pytest.param(exact_times, range(20_000, 20_300), "approves", id="times as if exact"),
+        pytest.param(
+            *(exact_times, range(20_000, 20_300), "approves"),
+            id="times as if exact",
+            marks=pytest.mark.flight,
+        ),
     ],
 )
 def test_the_sampling_finds_out_a_rule_that_does_without_time(

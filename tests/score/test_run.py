@@ -59,6 +59,7 @@ def short(folder: Path) -> tuple[Scenario, RunScore]:
     return scenario, run(scenario, 5)
 
 
+@pytest.mark.flight
 def test_a_field_in_sun_is_imaged_in_one_round(clear: RunScore) -> None:
     assert clear.end == "Complete: all reachable ground photographed in sun"
     assert clear.missions == 2
@@ -71,6 +72,7 @@ def test_a_field_in_sun_is_imaged_in_one_round(clear: RunScore) -> None:
     assert clear.survey_s < 300.0
 
 
+@pytest.mark.flight
 def test_all_drones_land_without_a_violation(clear: RunScore) -> None:
     assert (clear.encounters, clear.breaches, clear.low_landings) == (0, 0, 0)
     assert clear.landings == 2
@@ -78,6 +80,7 @@ def test_all_drones_land_without_a_violation(clear: RunScore) -> None:
     assert 0.0 < clear.flight_s <= 2.0 * clear.survey_s
 
 
+@pytest.mark.flight
 def test_a_seed_repeats_to_the_bit(short: tuple[Scenario, RunScore]) -> None:
     scenario, first = short
     again = run(scenario, 5)
@@ -85,11 +88,13 @@ def test_a_seed_repeats_to_the_bit(short: tuple[Scenario, RunScore]) -> None:
     assert tables(scenario, [again]) == tables(scenario, [first])
 
 
+@pytest.mark.flight
 def test_another_seed_has_another_sky(short: tuple[Scenario, RunScore]) -> None:
     scenario, first = short
     assert run(scenario, 6).shade.shaded != first.shade.shaded
 
 
+@pytest.mark.flight
 def test_an_overcast_survey_ends_at_the_limit_and_all_return(folder: Path) -> None:
     text = DARK.replace("limit_min = 10.0", "limit_min = 3.0")
     scenario = guidance_alone(small(folder, text))
@@ -106,6 +111,7 @@ def test_an_overcast_survey_ends_at_the_limit_and_all_return(folder: Path) -> No
     assert row in printed
 
 
+@pytest.mark.flight
 def test_flying_again_images_no_less_in_sun_than_once(folder: Path, cumulus: RunScore) -> None:
     scenario, again = guidance_alone(small(folder, TINY)), cumulus
     assert scenario.survey.planner == "lawnmower_again"
@@ -116,6 +122,7 @@ def test_flying_again_images_no_less_in_sun_than_once(folder: Path, cumulus: Run
     assert (once.to_95_in_sun_s is None) or (again.to_95_in_sun_s is not None)
 
 
+@pytest.mark.flight
 def test_ideal_detection_errs_by_latency_and_pose_alone(cumulus: RunScore) -> None:
     shade = cumulus.shade
     assert shade.iou is not None
@@ -131,6 +138,7 @@ def test_ideal_detection_errs_by_latency_and_pose_alone(cumulus: RunScore) -> No
     assert cumulus.wrongly_in_sun < 0.02 * cumulus.counted_in_sun
 
 
+@pytest.mark.flight
 def test_cells_seen_and_not_seen_add_up(cumulus: RunScore) -> None:
     shares = []
     for lead_s in (15.0, 30.0, 180.0):
@@ -161,6 +169,7 @@ def test_methods_are_compared_on_the_same_maps_and_cells(short: tuple[Scenario, 
     assert {name for name, _lead_s, _cells in alone} == {"advection"}
 
 
+@pytest.mark.flight
 def test_a_detector_reads_rendered_frames_with_errors(folder: Path) -> None:
     scenario = replace(small(folder, TINY), methods=Methods("otsu", "persistence"))
     flown = StationRun(scenario, 2)
@@ -176,6 +185,7 @@ def test_a_detector_reads_rendered_frames_with_errors(folder: Path) -> None:
     assert len(scored.registration_errors_m) > 3
 
 
+@pytest.mark.flight
 def test_frames_that_stop_leave_maps_unknown(folder: Path) -> None:
     faults = 'faults = ["camera-stops:SIM-IMAGER:30:120"]\n[site]'
     text = TINY.replace("[site]", faults).replace("limit_min = 10.0", SHORT)
@@ -191,6 +201,7 @@ def flown_to_the_surveys_end(scenario: Scenario, at_most_s: float) -> StationRun
     return flown
 
 
+@pytest.mark.flight
 @pytest.mark.parametrize("fault", ["gnss-loss:1:40:10", "telemetry-dropout:2:40:9"])
 def test_a_survey_is_completed_after_a_fault(folder: Path, fault: str) -> None:
     text = CLEAR.replace("[site]", f'faults = ["{fault}"]\n[site]')
@@ -199,6 +210,7 @@ def test_a_survey_is_completed_after_a_fault(folder: Path, fault: str) -> None:
     assert all(path.flown_s > 0.0 for path in flown.drones)
 
 
+@pytest.mark.flight
 def test_the_operator_resumes_drones_after_pilot_and_low_battery(
     folder: Path, clear: RunScore
 ) -> None:
@@ -213,6 +225,7 @@ def test_the_operator_resumes_drones_after_pilot_and_low_battery(
     assert (flown.encounters, flown.breaches) == (0, 0)
 
 
+@pytest.mark.flight
 def test_a_survey_continues_after_a_battery_change(folder: Path) -> None:
     one = "survey_drones = 1\nendurance_min = 6.0\nswap_min = 0.5"
     text = (
@@ -225,6 +238,7 @@ def test_a_survey_continues_after_a_battery_change(folder: Path) -> None:
     assert found.flight_s < found.survey_s - 30.0
 
 
+@pytest.mark.flight
 def test_rows_longer_than_the_shade_history_count_in_sun(folder: Path) -> None:
     text = CLEAR.replace("90.0", "1200.0").replace("60.0]", "40.0]")
     wide = "field_deg = 83.0\ncoarsest_m = 70.0\nradius_m = 700.0\ncell_m = 20.0"
@@ -236,6 +250,7 @@ def test_rows_longer_than_the_shade_history_count_in_sun(folder: Path) -> None:
     assert flown.record.state.missions == 2
 
 
+@pytest.mark.flight
 def test_an_imaging_drone_told_to_goes_upwind_and_sees_what_comes(folder: Path) -> None:
     """Clouds go north to east of north: it hovers south of where it began, and looks back."""
     layer = "[[clouds]]\ncover = 0.5\nspeed_mps = 8.0\nheading_deg = 90.0\n"
@@ -255,6 +270,7 @@ def test_an_imaging_drone_told_to_goes_upwind_and_sees_what_comes(folder: Path) 
     assert toward @ upwind > 0.98
 
 
+@pytest.mark.flight
 def test_two_imaging_drones_make_one_map(folder: Path) -> None:
     """Each sees 150 m around itself, 200 m apart: all of the scored ground is known."""
     two = "[imager]\nalso_over_m = [[245.0, 30.0]]\nreach_m = 400.0\ncell_m = 8.0"

@@ -4,6 +4,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from tests.examples import family
 
 from recon.geo import Polygon, enu_from_points
 from recon.model.airspace import ZoneKind
@@ -56,7 +57,7 @@ def flown_m(site: Site, seed: int, vehicle_count: int) -> np.ndarray:
     return track
 
 
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", family(*range(5)))
 @pytest.mark.parametrize("vehicle_count", [4, 8])
 def test_wandering_vehicles_stay_inside_fences_and_apart(seed: int, vehicle_count: int) -> None:
     site = load_site(demo_site_folder())

@@ -9,6 +9,7 @@ import pytest
 import shapely
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.examples import family
 from tests.guidance.survey.decisions import (
     GRID,
     PLAN,
@@ -79,7 +80,7 @@ def clear_sky(_east: FloatArray, _north: FloatArray, _lead_s: float) -> bool:
 
 
 class TestSurveys:
-    @pytest.mark.parametrize("sky", [clear, leaves_eastwards, in_bands])
+    @pytest.mark.parametrize("sky", [*family(leaves_eastwards, in_bands), clear])
     def test_all_is_imaged_in_sun_as_photos_truly_show(self, sky: object) -> None:
         flights = Flights(started(fleet(3)), fleet(3), sky=sky)  # type: ignore[arg-type]
         state = flights.run()
@@ -90,6 +91,7 @@ class TestSurveys:
         assert not (counted & ~flights.shown_in_sun).any()
         assert figures(state).in_sun_m2 > 0.98 * figures(state).reached_m2
 
+    @pytest.mark.flight
     def test_under_broken_shade_it_is_sooner_done_than_flying_all_again(self) -> None:
         ratios = []
         for phase_m in (0.0, 100.0, 200.0):
@@ -115,6 +117,7 @@ class TestSurveys:
         assert took_s[1] is not None
         assert took_s[0] < 1.05 * took_s[1]
 
+    @pytest.mark.flight
     def test_two_vehicles_never_fly_the_same_ground_at_once(self) -> None:
         segments = segments_of(PLAN)
         flights = Flights(started(fleet(3)), fleet(3), sky=in_bands)
@@ -126,6 +129,7 @@ class TestSurveys:
         flights.run(each_second=check)
         assert len(flights.given) > 3
 
+    @pytest.mark.flight
     def test_the_rest_is_flown_without_a_vehicle_that_drops_out(self) -> None:
         flyers = fleet(3)
         flights = Flights(started(flyers), flyers, sky=in_bands)
@@ -338,6 +342,7 @@ class TestSurveys:
         asked = refused(state, "S-1", first.number, "near Drone 2", now_ns, in_the_way=True)
         assert [m.serial for m in decided(sun, here, state=asked, now_s=5.0)[1]] == ["S-1"]
 
+    @pytest.mark.flight
     def test_the_same_survey_is_flown_again_to_the_last_waypoint(self) -> None:
         given = []
         for _ in range(2):

@@ -17,8 +17,6 @@ from recon.model.vehicle import FlightMode
 from recon.safety.watchdogs import WatchedVehicle, build_traffic_picture
 from recon.safety.watchdogs.separation import separation
 
-pytestmark = pytest.mark.uncovered
-
 LINE_M, LINES = 300.0, 2
 SPEED_MPS, GAINS_MPS2 = 8.0, 2.5
 MINUTES = 6
@@ -119,6 +117,7 @@ def test_lines_20_m_apart_raise_hardly_any_alarm_and_hold_no_vehicle() -> None:
     assert began <= FALSE_ALARMS_PER_VEHICLE_HOUR * 8 * MINUTES / 60.0
 
 
+@pytest.mark.flight
 def test_the_control_lines_nearer_than_what_must_be_kept_do() -> None:
     began, holds = alarms_and_holds(12.0)
     assert began > 0

@@ -118,7 +118,7 @@ def unbounded(of: TrafficPicture) -> TrafficPicture:
     return copied
 
 
-@pytest.mark.uncovered
+@pytest.mark.flight
 @settings(max_examples=300, deadline=None)
 @given(fleets)
 def test_bounds_change_no_finding(fleet: tuple[WatchedVehicle, ...]) -> None:
@@ -127,7 +127,6 @@ def test_bounds_change_no_finding(fleet: tuple[WatchedVehicle, ...]) -> None:
         assert list(watchdog(bounded)) == list(watchdog(unbounded(bounded)))
 
 
-@pytest.mark.uncovered
 @settings(max_examples=300, deadline=None)
 @given(vehicles("V1"))
 def test_what_is_predicted_stays_within_its_bound(vehicle: WatchedVehicle) -> None:

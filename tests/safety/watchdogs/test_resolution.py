@@ -8,6 +8,7 @@ from random import Random
 
 import numpy as np
 import pytest
+from tests.examples import family
 from tests.safety.traffic import NOW, S, aircraft, flies, route
 from tests.safety.watchdogs.looks import held, in_context, looks, picture
 
@@ -16,8 +17,6 @@ from recon.model.vehicle import FlightMode
 from recon.safety.prediction.trajectory import Samples
 from recon.safety.watchdogs import TrafficPicture, WatchedVehicle
 from recon.safety.watchdogs.separation import separation
-
-pytestmark = pytest.mark.uncovered
 
 MODES = {
     Commanded.MISSION: FlightMode.GPS_WAYPOINT,
@@ -82,7 +81,7 @@ def nearest(one: tuple[Samples, int], other: tuple[Samples, int], now: TrafficPi
     return float(np.min(shares))
 
 
-@pytest.mark.parametrize("block", range(4))
+@pytest.mark.parametrize("block", family(0, 1, 2, 3))
 def test_holding_is_never_predicted_to_bring_a_pair_nearer(block: int) -> None:
     rng, conflicts, holds = Random(block), 0, 0
     for _ in range(1_000):

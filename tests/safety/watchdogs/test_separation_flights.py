@@ -7,11 +7,10 @@ from math import cos, pi, sin
 from random import Random
 
 import pytest
+from tests.examples import family
 from tests.safety.watchdogs.flights import Air, Aircraft, Vector, closeness, straight_mission
 
 from recon.model.vehicle import FlightMode
-
-pytestmark = pytest.mark.uncovered
 
 PAIRS = 32
 APART_M = 2_500.0
@@ -87,15 +86,15 @@ def least(kind: object, seed: int, *, acts: bool) -> list[float]:
     return nearest
 
 
-KINDS = [head_on, crossing, overtaking, climbing_into]
+KINDS = (crossing, head_on, overtaking, climbing_into)
 
 
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("kind", family(*KINDS))
+@pytest.mark.parametrize("seed", family(1, 2))
 def test_the_minimum_is_never_violated(kind: object, seed: int) -> None:
     assert min(least(kind, seed, acts=True)) >= 1.0
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", family(*KINDS))
 def test_the_control_without_it_violates_the_minimum_every_time(kind: object) -> None:
     assert max(least(kind, 1, acts=False)) < 1.0
