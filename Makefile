@@ -20,7 +20,7 @@ RUN := $(UV) run --locked --quiet
 FUZZ_SECONDS ?= 60
 WEB_SOURCES := $(shell find web/src web/public -type f ! -name schema.d.ts 2>/dev/null) web/index.html web/package.json web/vite.config.ts
 
-.PHONY: help setup demo run test test-rust test-safety test-python test-web test-e2e android-core android test-android study-android fuzz-android coverage check check-rust check-python check-web format bench fuzz study mutants docs web clean
+.PHONY: help setup demo run test test-all test-rust test-python flights test-web test-e2e android-core android test-android study-android fuzz-android coverage coverage-safety check check-rust check-python check-web format bench fuzz study mutants docs web clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -28,7 +28,12 @@ help: ## List the targets
 demo: setup web ## Run a survey under broken cloud: station, simulated drones, console at http://127.0.0.1:8080
 	$(RUN) recon demo
 
-test: test-rust test-safety test-python test-web test-e2e ## Set everything up and pass all tests
+# Browser tests wait most of their time: what runs beside them fills it, and lets them go first.
+test: setup web ## Set everything up and pass all tests but the long flights
+	@$(MAKE) -j3 test-e2e test-python test-rust test-web $(ALSO)
+
+test-all: setup web ## All tests with the long flights, as CI runs them
+	@$(MAKE) test CHOSEN=
 
 # In parts, so that `make -j2 check` of CI fills two cores: each part is mostly one process.
 check: check-rust check-python check-web ## Formats, lint, types, import rules, stub and generated files
@@ -75,23 +80,30 @@ web/node_modules/.stamp: web/package.json web/package-lock.json
 test-rust: setup ## Tests of the wire crate
 	cargo test --workspace --quiet
 
-# Each process imports and compiles all tests first; two more than the cores of CI fill their waiting.
-PYTEST := $(RUN) python -m pytest -n 4 --dist loadfile
+CORES := $(shell nproc 2>/dev/null || getconf _NPROCESSORS_ONLN)
+# A file stays in one process, which makes what its tests share once. Files that fly come first, as tests/conftest.py
+# sorts them, so that no process ends long after the others.
+PYTEST := nice -n 5 $(RUN) python -m pytest -n $(CORES) --dist loadfile --no-loadscope-reorder
+CHOSEN := -m "not flight"
 
-test-safety: setup ## Tests of the gate and the watchdogs, with full branch coverage
-	$(PYTEST) tests/safety -m uncovered
-	$(PYTEST) tests/safety -m "not uncovered" --cov=recon.safety --cov-branch \
-		--cov-report=term-missing:skip-covered --cov-fail-under=100
+test-python: setup ## Tests in Python, one of each family that flies
+	$(PYTEST) --ignore=tests/android $(CHOSEN)
 
-coverage: setup ## Line coverage of every room, by all Python tests
-	$(PYTEST) --cov=recon --cov-report=term
+flights: setup ## The other flights: tests over 2 s of processor time
+	$(PYTEST) --ignore=tests/android -m flight
 
-test-python: setup ## Tests of everything else in Python
-	$(PYTEST) --ignore=tests/safety --ignore=tests/android
+# Counting lines doubles processor time, which says nothing then.
+COVERED := $(PYTEST) -p no:processor_time -m "not flight" --cov-branch
+
+coverage-safety: setup ## Tests of the gate and the watchdogs: every branch must be taken
+	$(COVERED) tests/safety --cov=recon.safety --cov-report=term-missing:skip-covered --cov-fail-under=100
+
+coverage: coverage-safety ## The same, then coverage of every room by the tests in Python
+	$(COVERED) --ignore=tests/android --cov=recon --cov-report=term
 
 MAVEN := mvn --batch-mode --quiet --file android/pom.xml
 COMPANION_JAR := $(CURDIR)/android/companion/target/recon-companion.jar
-ANDROID_TESTS := RECON_COMPANION_JAR=$(COMPANION_JAR) $(PYTEST) tests/android
+ANDROID_TESTS := RECON_COMPANION_JAR=$(COMPANION_JAR) $(PYTEST) -p no:processor_time tests/android
 
 test-web: web/node_modules/.stamp ## Tests of the console
 	npm --prefix web test --silent
@@ -131,6 +143,7 @@ bench: setup web ## Measurements, each beside a baseline of the same run
 	$(RUN) python -m benches.record.bench_replay_seek
 	$(RUN) python -m benches.product.bench_tag
 	$(RUN) python -m benches.cli.bench_startup
+	$(RUN) python -m benches.cli.bench_first_page
 	$(RUN) python -m benches.console.bench_console
 
 fuzz: ## Fuzz the deframer and the packet decoder for a minute each (needs a nightly Rust)
@@ -151,7 +164,7 @@ study: setup ## Long runs: the sky against measurements, random fences, fleets a
 	$(RUN) python -m studies.closed_loop --runs 100 --first-seed 1000 --jobs 2
 	$(RUN) python -m studies.same_again --seconds 600
 	$(RUN) python -m studies.guidance --seeds 3 --only wide
-	RECON_THOROUGH=1 $(PYTEST) -m "hypothesis or drawn"
+	RECON_THOROUGH=1 $(PYTEST) -p no:processor_time -m "hypothesis or drawn"
 	@$(MAKE) mutants
 
 mutants: setup ## Mutate gate, watchdogs, trust layer and guard: a test must fail for each mutant (hours)

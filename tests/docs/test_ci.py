@@ -1,4 +1,4 @@
-"""CI's step for the companion app: what leaves it out, and what fails it."""
+"""What CI decides: the step for the companion app, coverage of `safety/`, commit subjects."""
 
 import os
 import subprocess
@@ -65,5 +65,63 @@ def test_a_build_that_passes_or_fails_decides(tmp_path: Path) -> None:
     assert SKIPPED not in failed.stdout
 
 
-def test_ci_takes_the_step() -> None:
-    assert "\ntools/ci_android_core.sh\n" in (ROOT / ".ci/run").read_text()
+def test_ci_takes_the_steps() -> None:
+    run = (ROOT / ".ci/run").read_text()
+    assert "\ntools/ci_android_core.sh\n" in run
+    assert "tools/safety_changed.sh && echo coverage-safety" in run
+
+
+def git(folder: Path, *words: str) -> str:
+    """Run git without the configuration of this machine."""
+    name = ("-c", "user.name=test", "-c", "user.email=test@localhost")
+    environment = {**os.environ, "GIT_CONFIG_GLOBAL": os.devnull}
+    return subprocess.run(
+        ["git", *name, *words],
+        cwd=folder,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout
+
+
+def test_safety_has_changed_when_one_of_fifty_commits_changed_it_or_nothing_is_known(
+    tmp_path: Path,
+) -> None:
+    def has_changed() -> bool:
+        return not subprocess.run([ROOT / "tools/safety_changed.sh"], cwd=tmp_path).returncode
+
+    def commits(count: int) -> None:
+        for _ in range(count):
+            git(tmp_path, "commit", "--allow-empty", "--quiet", "--message", "docs: something")
+
+    assert has_changed()  # no repository
+    git(tmp_path, "init", "--quiet")
+    assert has_changed()  # no commit
+    commits(50)
+    assert has_changed()  # a shallow clone may look like this
+    commits(1)
+    assert not has_changed()
+    gate = tmp_path / "src/recon/safety/gate.py"
+    gate.parent.mkdir(parents=True)
+    gate.write_text("")
+    assert has_changed()
+    git(tmp_path, "add", ".")
+    commits(50)
+    assert has_changed()
+    commits(1)
+    assert not has_changed()
+
+
+LAST_OF_FREE_LENGTH = "8f9030d35f66fc623fa06b7a83910adfc5fee0ec"
+SUBJECT_CHARACTERS = 72
+
+
+def test_commit_subjects_are_short() -> None:
+    """Those since the rule is checked; of a shallow clone, those that it holds."""
+    if not (ROOT / ".git").exists():
+        pytest.skip("not a git repository")
+    known = git(ROOT, "rev-list", "HEAD").split()
+    since = [f"^{LAST_OF_FREE_LENGTH}"] if LAST_OF_FREE_LENGTH in known else []
+    subjects = git(ROOT, "log", "--no-merges", "--format=%s", "HEAD", *since).splitlines()
+    assert [each for each in subjects if len(each) > SUBJECT_CHARACTERS] == []
