@@ -47,7 +47,7 @@ def read(
     at_ns = 60 * NS_PER_S
     view = CameraView(taken_s, 12, true)
     sent = deque([CaptureTimes(view, round(taken_s * NS_PER_S), at_ns)])
-    ideal = IdealDetection(scenario, SKY, TrueFrames(sent, renderer, latency_s=0.0))
+    ideal = IdealDetection(scenario, SKY, TrueFrames(sent, renderer, latency_s=0.0), shows_sun=True)
     marked = rig_of(scenario.frame, imager).marked
     pixels = np.zeros((8, 8, 3), dtype=np.uint8)
     frame = Frame(1, IMAGER_SERIAL, at_ns, at_ns, 0.0, rgb=pixels)

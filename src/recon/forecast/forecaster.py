@@ -36,6 +36,16 @@ class Forecaster:
         `in_view` (R, C) are the cells that the map's frames show: shade may be followed beyond
         them. Without it none is. Raises `ValueError` as `observed` does.
         """
-        state = self.observed(replace(state, in_view=in_view), shade, settings)
+        state, _ = self.without_forecast(state, shade, settings, in_view)
         sun = self.forecast(state, settings)
         return with_hindcast(state, sun, settings), sun
+
+    def without_forecast(
+        self,
+        state: ForecastState,
+        shade: ShadeMap,
+        settings: ForecastSettings,
+        in_view: MaskMap | None = None,
+    ) -> tuple[ForecastState, None]:
+        """Return the state after a map as `after` does, with no forecast made or compared."""
+        return self.observed(replace(state, in_view=in_view), shade, settings), None

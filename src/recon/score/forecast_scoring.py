@@ -23,7 +23,7 @@ from recon.score.forecast_figures import sun_probability as probability_on
 from recon.score.scenario import PERFECT, TRUE_MOTION
 from recon.score.settings import SCORE
 from recon.sim.world import Sky
-from recon.station.state.imaging import ShadePipeline
+from recon.station.state.imaging import ShadePipeline, made
 
 ForecastKey = tuple[str, float, SeenCells]
 """Method, lead in seconds, cells."""
@@ -52,7 +52,7 @@ class ForecastScoring:
 
     def update(self, line: ShadePipeline, now_s: float) -> None:
         """Observe the newest map, if new, and score all forecasts from it, if due."""
-        if line.sun is None or line.shade is None or line.number == self._number:
+        if line.shade is None or line.number == self._number:
             return
         self._number = line.number
         for name in self.compared:
@@ -62,9 +62,11 @@ class ForecastScoring:
                 self._states[name] = observed(state, line.shade, self.settings)
         if now_s >= self._due_s:
             self._due_s = now_s + SCORE.score_forecasts_every_s
-            self._score(line.sun, line.shade, line.seen)
+            sun = made(line.newest_sun(self.settings))
+            assert sun is not None  # there is a map
+            self._score(sun, line.shade, line.seen)
             if self.own != PERFECT:
-                self.changes += self._changes(line.sun, line.followed or line.shade)
+                self.changes += self._changes(sun, line.followed or line.shade)
 
     def _score(self, own: SunForecast, shade: ShadeMap, seen: MaskMap | None) -> None:
         issued = {

@@ -31,7 +31,7 @@ class IdealDetection:
     pose, and is laid on the station's grid by the pose from telemetry. Only the pixels are ideal.
     """
 
-    def __init__(self, scenario: Scenario, sky: Sky, frames: Frames) -> None:
+    def __init__(self, scenario: Scenario, sky: Sky, frames: Frames, *, shows_sun: bool) -> None:
         site = scenario.site
         assert site.ground_grid is not None  # or it would not have been read
         self._frame, self._site = scenario.frame, site
@@ -42,6 +42,7 @@ class IdealDetection:
         self._points_m = np.column_stack([east_m, north_m])
         self._outlooks = {serial: each.outlook for serial, each in site.imagers.items()}
         self._coarsest_m = scenario.imager.coarsest_m
+        self._shows_sun = shows_sun
         self._is_forecast_perfect = scenario.methods.forecast == PERFECT
 
     def lay(self, work: LayFrame) -> LaidFrame:
@@ -67,10 +68,11 @@ class IdealDetection:
     def read(self, work: ReadShade) -> ShadeRead:
         """Return the true sky of an image as a shade map, and the forecast from it."""
         shade = self._shade(work.image)
-        found = with_forecast(work, work.detection, shade, work.image.valid)
+        found = with_forecast(work, work.detection, shade, work.image.valid, self._shows_sun)
         if found.merged is None or not self._is_forecast_perfect:
             return found
         together, sun = found.merged
+        assert sun is not None  # or it would not be shown
         perfect = perfect_forecast(self._sky, sun, work.forecast_settings.surest)
         return replace(found, merged=(together, perfect))
 

@@ -5,6 +5,7 @@ With ideal detection, frames of a few pixels are sent over the link, with latenc
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -21,7 +22,7 @@ from recon.sim.camera.frames import CameraView
 from recon.sim.fleet import SimulationConfig
 from recon.sim.world import Sky
 from recon.station.imaging.frames import LAY_FRAME
-from recon.station.imaging.shade import READ_SHADE
+from recon.station.imaging.shade import READ_SHADE, read_shade
 from recon.station.kernel.worker import JobRunner
 from recon.station.state.settings import StationSettings
 
@@ -94,8 +95,17 @@ def _leads_planned_with_s(leads_s: Sequence[float]) -> tuple[float, ...]:
 def jobs_of(scenario: Scenario, sky: Sky, frames: Frames) -> JobRunner:
     """Return the runner of the station's jobs; with ideal detection it reads the truth of `sky`."""
     jobs = JobRunner(scenario.site)
+    shows_sun = _shows_sun(scenario)
+    jobs.replace(READ_SHADE, partial(read_shade, shows_sun=shows_sun))
     if scenario.methods.detection == IDEAL:
-        ideal = IdealDetection(scenario, sky, frames)
+        ideal = IdealDetection(scenario, sky, frames, shows_sun=shows_sun)
         jobs.replace(LAY_FRAME, ideal.lay)
         jobs.replace(READ_SHADE, ideal.read)
     return jobs
+
+
+def _shows_sun(scenario: Scenario) -> bool:
+    """Whether each forecast is read, beside what surveys decide by and scores compare: the truth
+    replaces it, an imaging drone moves upwind by it, or several merge their maps by it."""
+    imager = scenario.imager
+    return scenario.methods.forecast == PERFECT or imager.is_upwind or len(imager.places_m) > 1

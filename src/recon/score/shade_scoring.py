@@ -4,7 +4,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from recon.forecast import ForecastSettings
 from recon.geo import nearest_cells
 from recon.model.arrays import FloatArray
 from recon.model.geo import GroundGrid
@@ -14,6 +13,7 @@ from recon.model.units import NS_PER_S, seconds_to_ns
 from recon.score.change_figures import ChangeScore
 from recon.score.forecast_figures import LeadScore
 from recon.score.forecast_scoring import ForecastKey, ForecastScoring
+from recon.score.methods import settings_of
 from recon.score.scenario import NO_FORECAST, Scenario
 from recon.score.score_grid import score_grid, scored_cells
 from recon.score.settings import SCORE
@@ -90,7 +90,7 @@ class ShadeScoring:
                 ground.counted,
                 methods.forecast,
                 tuple(name for name in methods.compared if name != methods.forecast),
-                ForecastSettings(),
+                settings_of(self.scenario).forecast,
                 sums=self.score.forecasts,
             )
 

@@ -189,7 +189,8 @@ class WhatIf:
         if isinstance(read.own, SeenShade):
             self._own[serial] = read.own
         if read.merged is not None:
-            self._velocity_mps = read.merged[1].velocity_mps
+            _, sun = read.merged
+            self._velocity_mps = None if sun is None else sun.velocity_mps
         return read
 
     def _compare(self, recorded: ShadeMap | None, asked: ShadeMap | None) -> None:

@@ -58,7 +58,7 @@ def decided(
         running = start(made, [each.serial for each in surveyors], 0)
         assert isinstance(running, SurveyState)
         state = running
-    return step(state, surveyors, seconds_to_ns(now_s), sun, closed)
+    return step(state, surveyors, seconds_to_ns(now_s), lambda: sun, closed)
 
 
 def flown_rows(state: SurveyState, serial: str) -> list[int]:

@@ -167,9 +167,12 @@ class Flights:
                 if index % flyer.every == 0:
                     self._tell(flyer)
         positions = [flyer.surveyor() for flyer in self.flyers]
-        sun = self.forecast() if self.foresees else None
         self.state, missions = step(
-            self.state, positions, seconds_to_ns(self.time_s), sun, self.closed
+            self.state,
+            positions,
+            seconds_to_ns(self.time_s),
+            lambda: self.forecast() if self.foresees else None,
+            self.closed,
         )
         self.given += missions
         for mission in missions:

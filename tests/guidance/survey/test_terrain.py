@@ -267,7 +267,7 @@ class TestSunlitFirst:
         started = start(created, ["S-1", "S-2"], 0)
         assert isinstance(started, SurveyState)
         sun = forecast(lambda _east, _north, _lead: False)
-        _, given_out = step(started, (waiting, other), 0, sun)
+        _, given_out = step(started, (waiting, other), 0, lambda: sun)
         assert [each.stands_by for each in given_out] == [True] * steps_aside
         if steps_aside:
             (aside,) = given_out[0].mission.waypoints

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 from recon.guidance.survey.rounds import Step, fly_rounds
 from recon.guidance.survey.route import route_of
-from recon.guidance.survey.segments import expected_sun, segments_of
+from recon.guidance.survey.segments import NewestForecast, expected_sun, segments_of
 from recon.guidance.survey.state import (
     Surveyor,
     SurveyState,
@@ -19,7 +19,6 @@ from recon.guidance.survey.state import (
 )
 from recon.guidance.survey.sunlit_first import PlanningMoment, vehicle_by_vehicle
 from recon.guidance.survey.vehicle_choice import WANTED, missing_pieces
-from recon.model.shade import SunForecast
 from recon.model.survey import MissionAssignment
 
 IN_SUN = 0.5
@@ -27,7 +26,7 @@ IN_SUN = 0.5
 
 
 def lawnmower_waits(
-    state: SurveyState, vehicles: Sequence[Surveyor], sun: SunForecast | None, now_ns: int
+    state: SurveyState, vehicles: Sequence[Surveyor], sun: NewestForecast, now_ns: int
 ) -> Step:
     """Fly rounds over what is missing, each once most of that is in sun, until all is."""
     is_between = not state.flights and not state.waiting
@@ -39,16 +38,16 @@ def lawnmower_waits(
 
 
 def nearest_sunlit(
-    state: SurveyState, vehicles: Sequence[Surveyor], sun: SunForecast | None, now_ns: int
+    state: SurveyState, vehicles: Sequence[Surveyor], sun: NewestForecast, now_ns: int
 ) -> Step:
     """Fly the nearest row in sun, until all is imaged in sun."""
     return vehicle_by_vehicle(state, vehicles, sun, now_ns, _give_nearest)
 
 
-def _is_mostly_in_sun(state: SurveyState, sun: SunForecast | None, now_ns: int) -> bool:
+def _is_mostly_in_sun(state: SurveyState, sun: NewestForecast, now_ns: int) -> bool:
     """Whether a round is worth it by the light of the moment; also where that is unknown."""
     segments = segments_of(state.plan)
-    expected = expected_sun(segments, state.plan, state.progress, sun, now_ns)
+    expected = expected_sun(segments, state.plan, state.progress, sun(), now_ns)
     if expected is None:
         return True
     lit_m2 = float(expected.missing_m2 @ expected.probability[:, 0])

@@ -41,6 +41,7 @@ from recon.guidance.survey.progress import (
 )
 from recon.guidance.survey.rounds import Step, battery_lasts, ended
 from recon.guidance.survey.route import Route, route_of
+from recon.guidance.survey.segments import NewestForecast
 from recon.guidance.survey.state import (
     AssignedMission,
     Decision,
@@ -50,7 +51,7 @@ from recon.guidance.survey.state import (
 )
 from recon.guidance.survey.vehicle_choice import named
 from recon.model.command import Refusal
-from recon.model.shade import ShadeMap, SunForecast
+from recon.model.shade import ShadeMap
 from recon.model.survey import SurveyPhase
 from recon.model.units import seconds_to_ns
 
@@ -196,7 +197,7 @@ def step(
     state: SurveyState,
     vehicles: Sequence[Surveyor],
     now_ns: int,
-    sun: SunForecast | None = None,
+    sun: NewestForecast = lambda: None,
     closed: Sequence[ClosedArea] = (),
 ) -> Step:
     """Return the next state and the missions to give; called about once a second.

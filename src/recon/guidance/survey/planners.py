@@ -5,11 +5,11 @@ from types import MappingProxyType
 
 from recon.guidance.survey.comparison import lawnmower_waits, nearest_sunlit
 from recon.guidance.survey.rounds import Step, lawnmower_again, lawnmower_once
+from recon.guidance.survey.segments import NewestForecast
 from recon.guidance.survey.state import Surveyor, SurveyState
 from recon.guidance.survey.sunlit_first import sunlit_first
-from recon.model.shade import SunForecast
 
-Planner = Callable[[SurveyState, Sequence[Surveyor], SunForecast | None, int], Step]
+Planner = Callable[[SurveyState, Sequence[Surveyor], NewestForecast, int], Step]
 """Pure: the survey, its vehicles, the newest forecast and the time in; the survey and the missions
 to give out. Asked about once a second."""
 

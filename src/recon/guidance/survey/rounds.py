@@ -32,6 +32,7 @@ from recon.guidance.survey.missions import Track, approach_of, flight_time_s, mi
 from recon.guidance.survey.plan import SurveyPlan
 from recon.guidance.survey.route import Cost, Route, between_m, route_of, shared
 from recon.guidance.survey.rows import Piece
+from recon.guidance.survey.segments import NewestForecast
 from recon.guidance.survey.state import (
     NO_ROUTES,
     AssignedMission,
@@ -41,7 +42,6 @@ from recon.guidance.survey.state import (
     has_settled,
     spent_budget,
 )
-from recon.model.shade import SunForecast
 from recon.model.survey import PLANNER_GOALS, CellState, MissionAssignment, SurveyPhase
 
 Step = tuple[SurveyState, tuple[MissionAssignment, ...]]
@@ -252,14 +252,14 @@ def battery_lasts(plan: SurveyPlan, track: Track | None, surveyor: Surveyor) -> 
 
 
 def lawnmower_once(
-    state: SurveyState, vehicles: Sequence[Surveyor], _sun: SunForecast | None, now_ns: int
+    state: SurveyState, vehicles: Sequence[Surveyor], _sun: NewestForecast, now_ns: int
 ) -> Step:
     """Fly all rows once, in whatever light; again only what was not imaged, as by a dropout."""
     return fly_rounds(state, vehicles, now_ns, PLANNER_GOALS["lawnmower_once"])
 
 
 def lawnmower_again(
-    state: SurveyState, vehicles: Sequence[Surveyor], _sun: SunForecast | None, now_ns: int
+    state: SurveyState, vehicles: Sequence[Surveyor], _sun: NewestForecast, now_ns: int
 ) -> Step:
     """Fly all rows, and again what was imaged in shade, until all is imaged in sun.
 

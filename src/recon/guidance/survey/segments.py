@@ -1,6 +1,6 @@
 """A survey's rows in segments of about 60 m, and how much sun is expected on each, and when."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -16,6 +16,9 @@ from recon.model.geo import GroundGrid
 from recon.model.shade import SUNLIT_TRANSMITTANCE, ShadeMap, SunForecast
 from recon.model.survey import CellState
 from recon.model.units import ns_to_seconds
+
+NewestForecast = Callable[[], SunForecast | None]
+"""Returns the newest forecast; a planner calls it once it decides, since making one takes time."""
 
 NONE = -1
 """Instead of the number of a segment, where it has no such neighbour."""

@@ -59,6 +59,7 @@ from recon.guidance.survey.rounds import (
 )
 from recon.guidance.survey.segments import (
     ExpectedSun,
+    NewestForecast,
     Segments,
     expected_sun,
     segments_of,
@@ -132,7 +133,7 @@ Begun = Callable[[SurveyState, PlanningMoment], Step]
 
 
 def sunlit_first(
-    state: SurveyState, vehicles: Sequence[Surveyor], sun: SunForecast | None, now_ns: int
+    state: SurveyState, vehicles: Sequence[Surveyor], sun: NewestForecast, now_ns: int
 ) -> Step:
     """Fly what is in sun first, wait for the rest near where it will come, until all is in sun."""
     return vehicle_by_vehicle(state, vehicles, sun, now_ns, _decide_idle)
@@ -141,7 +142,7 @@ def sunlit_first(
 def vehicle_by_vehicle(
     state: SurveyState,
     vehicles: Sequence[Surveyor],
-    sun: SunForecast | None,
+    sun: NewestForecast,
     now_ns: int,
     begun: Begun,
 ) -> Step:
@@ -164,7 +165,7 @@ def vehicle_by_vehicle(
     is_asked = any(_may_decide(state, serial, able, now_ns) for serial in able)
     if not (is_asked or at_end or closed or in_any_light):
         return state, ()
-    moment = PlanningMoment.of(state, able, sun, now_ns)
+    moment = PlanningMoment.of(state, able, sun(), now_ns)
     if moment is None:
         return _fly_in_any_light(state, vehicles, now_ns)
     state = replace(state, waiting=NO_ROUTES, round=max(1, state.round), reason="under way")

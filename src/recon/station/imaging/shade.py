@@ -65,9 +65,9 @@ class ShadeRead:
     detection: DetectionState
     forecast: ForecastState
     own: SeenShade | RejectedFrame
-    merged: tuple[SeenShade, SunForecast] | None = None
-    """All imaging drones' map and the forecast from it; None for a rejected frame, and for one
-    taken before another drone's that was read already."""
+    merged: tuple[SeenShade, SunForecast | None] | None = None
+    """All imaging drones' map and the forecast from it, if that is shown; None for a rejected
+    frame, and for one taken before another drone's that was read already."""
 
 
 def on_ground_image(station: Station, image: GroundImage) -> Stepped:
@@ -79,8 +79,11 @@ def on_ground_image(station: Station, image: GroundImage) -> Stepped:
     return _next(station, replace(pipeline, waiting=kept, frames_dropped=dropped))
 
 
-def read_shade(work: ReadShade) -> ShadeRead:
+def read_shade(work: ReadShade, *, shows_sun: bool = True) -> ShadeRead:
     """Read one image by the methods named in the settings.
+
+    Where no console, record or other imaging drone takes each forecast, `shows_sun` is False: then
+    only what decides by a forecast makes it (`ShadePipeline.newest_sun`).
 
     Raises `ValueError` for an unknown method.
     """
@@ -88,11 +91,11 @@ def read_shade(work: ReadShade) -> ShadeRead:
     detection, shade = detect(work.detection, work.image, work.detection_settings)
     if isinstance(shade, RejectedFrame):
         return ShadeRead(work.image.serial, detection, work.forecast, shade)
-    return with_forecast(work, detection, shade, seen_cells(work.image, shade.grid))
+    return with_forecast(work, detection, shade, seen_cells(work.image, shade.grid), shows_sun)
 
 
 def with_forecast(
-    work: ReadShade, detection: DetectionState, shade: ShadeMap, seen: MaskMap
+    work: ReadShade, detection: DetectionState, shade: ShadeMap, seen: MaskMap, shows_sun: bool
 ) -> ShadeRead:
     """Return what follows from an image's own map: the map of all imaging drones, and a forecast.
 
@@ -103,9 +106,8 @@ def with_forecast(
     if newest is not None and shade.captured_at_ns <= newest.captured_at_ns:
         return ShadeRead(serial, detection, work.forecast, own)
     together = _together(own, work.others, work.velocity_mps)
-    forecast, sun = forecaster.after(
-        work.forecast, together.shade, work.forecast_settings, together.seen
-    )
+    observe = forecaster.after if shows_sun else forecaster.without_forecast
+    forecast, sun = observe(work.forecast, together.shade, work.forecast_settings, together.seen)
     return ShadeRead(serial, detection, forecast, own, (together, sun))
 
 

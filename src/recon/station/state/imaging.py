@@ -8,7 +8,7 @@ from typing import Any
 
 from recon.camera.registration import RegistrationState
 from recon.detection import DetectionState, RejectedFrame
-from recon.forecast import ForecastState
+from recon.forecast import FORECASTERS, ForecastSettings, ForecastState
 from recon.model.imagery import CameraPose, Frame, GroundImage, Outlook, TelemetryReference
 from recon.model.shade import MaskMap, ShadeMap, SunForecast, SunlitReference
 
@@ -109,6 +109,21 @@ class SeenShade:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class DueForecast:
+    """The forecast from the newest map, before anyone has read it."""
+
+    state: ForecastState
+    settings: ForecastSettings
+
+
+def made(sun: SunForecast | DueForecast | None) -> SunForecast | None:
+    """Return a forecast, made now if it is due. Takes too long for a step."""
+    if not isinstance(sun, DueForecast):
+        return sun
+    return FORECASTERS[sun.settings.method].forecast(sun.state, sun.settings)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class ShadePipeline:
     """Ground images that wait to be read for shade, and the newest shade map and forecast.
 
@@ -128,6 +143,7 @@ class ShadePipeline:
     seen: MaskMap | None = None
     """The cells of `shade` that its ground images showed; those without a value are unknown."""
     sun: SunForecast | None = None
+    """None also where no console or record shows forecasts: see `newest_sun`."""
     waiting: tuple[GroundImage, ...] = ()
     job_id: int | None = None
     """Of the job that runs now."""
@@ -145,6 +161,12 @@ class ShadePipeline:
     def followed(self) -> ShadeMap | None:
         """The newest map, with the shade that has left the view where it is by now."""
         return self.forecast.followed or self.shade
+
+    def newest_sun(self, settings: ForecastSettings) -> SunForecast | DueForecast | None:
+        """Return the forecast from the newest map, or what it is made of; None without a map."""
+        if self.sun is not None or self.shade is None:
+            return self.sun
+        return DueForecast(self.forecast, settings)
 
 
 @dataclass(frozen=True, slots=True)

@@ -222,7 +222,13 @@ def _start_step(station: Station, survey_id: int, now_ns: int) -> Stepped:
     closed = tuple(closed_areas(station, now_ns))
     positions, shade_maps = record.positions, record.shade_maps
     work = StepSurvey(
-        record.state, positions.items, shade_maps.items, vehicles, now_ns, station.shade.sun, closed
+        record.state,
+        positions.items,
+        shade_maps.items,
+        vehicles,
+        now_ns,
+        station.shade.newest_sun(station.settings.forecast),
+        closed,
     )
     job = Job(surveys.next_job_id, STEP_SURVEY, work)
     pending = PendingStep(job.id, survey_id, now_ns, positions.end, shade_maps.end)

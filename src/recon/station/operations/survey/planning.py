@@ -27,6 +27,7 @@ from recon.model.event import SurveyRequested
 from recon.model.geo import LocalFrame
 from recon.model.shade import ShadeMap, SunForecast
 from recon.model.survey import MissionAssignment, Survey
+from recon.station.state.imaging import DueForecast, made
 from recon.station.state.station import Station
 from recon.station.state.steps import Job, JobKind, Stepped
 from recon.station.state.survey_record import SURVEYS_KEPT, SurveyRecord
@@ -54,8 +55,8 @@ class StepSurvey:
     shade_maps: tuple[ShadeMap, ...]
     vehicles: tuple[Surveyor, ...]
     now_ns: int
-    sun: SunForecast | None = None
-    """The newest forecast."""
+    sun: SunForecast | DueForecast | None = None
+    """The newest forecast, or what it is made of."""
     closed: tuple[ClosedArea, ...] = ()
 
 
@@ -81,7 +82,7 @@ def step_survey(work: StepSurvey) -> SurveyStepped:
         state = observe_shade(state, shade)
     for serial, samples in _by_vehicle(work.positions).items():
         state = observe(state, serial, samples)
-    state, missions = step(state, work.vehicles, work.now_ns, work.sun, work.closed)
+    state, missions = step(state, work.vehicles, work.now_ns, lambda: made(work.sun), work.closed)
     return SurveyStepped(state, missions, returning(state, work.vehicles))
 
 
