@@ -32,15 +32,8 @@ from recon.model.shade import ShadeMap, SunForecast
 from recon.model.units import seconds_to_ns
 from recon.product.flight import read_flight
 from recon.record.mcap import foxglove
-from recon.record.mcap.flight_messages import (
-    BULK_BYTES,
-    HEAD,
-    STEP_HEAD,
-    Beginning,
-    FlightMessages,
-    Item,
-    ItemKind,
-)
+from recon.record.mcap.flight_messages import FlightMessages
+from recon.record.mcap.items import BULK_BYTES, HEAD, STEP_HEAD, Beginning, Item, ItemKind
 from recon.record.mcap.link_bytes import LINKS_TOPIC, link_bytes
 from recon.record.mcap.mcap_file import STEPS_TOPIC
 from recon.record.mcap.mcap_read import MAGIC, McapReading, RecordMessage

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from recon.model.errors import RecordError
-from recon.record.mcap.flight_messages import HEAD, Item, ItemKind, packed
+from recon.record.mcap.items import HEAD, Item, ItemKind, packed
 from recon.record.mcap.record_process import RingInbox
 from recon.record.mcap.shared_ring import SharedRing, shared_file
 

@@ -1,13 +1,10 @@
-"""What the station hands to the process that writes its record, and the messages made of it.
+"""The messages of a record, made of the items that the station hands over.
 
-One item is a head (`HEAD`: kind, bytes that follow) and its content. A step comes encoded; what a
-person looks at, the topics in Foxglove's schemas, is made of it here, in the writer's process.
+A step comes encoded; what a person looks at, the topics in Foxglove's schemas, is made of it here,
+in the writer's process.
 """
 
-import struct
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
-from enum import IntEnum
 from typing import Any
 
 import msgspec
@@ -18,6 +15,15 @@ from recon.model.mission import Mission
 from recon.model.shade import ShadeMap, SunForecast
 from recon.record.mcap import foxglove
 from recon.record.mcap.codec import TAG, Codec
+from recon.record.mcap.items import (
+    BULK_BYTES,
+    LINK_HEAD,
+    STEP_HEAD,
+    Beginning,
+    Item,
+    ItemKind,
+    TimedValue,
+)
 from recon.record.mcap.link_bytes import (
     LINKS_TOPIC,
     FrameBytes,
@@ -32,60 +38,9 @@ START_NAME = "recon/start"
 START_TYPE = "application/vnd.recon.start+zstd"
 MSGPACK = "msgpack"
 
-HEAD = struct.Struct("<BI")
-LINK_HEAD = struct.Struct("<IBqQ")
-"""Link, whether from the app, time, and bytes from the app before these."""
-STEP_HEAD = struct.Struct("<QqH")
-"""Number, time, bytes of the vehicle's name, which follow; then the step."""
-
-BULK_BYTES = 16 * 1024
-"""Bytes of so long a read are part of an image."""
 MOST_HELD_BYTES = 256 * 1024**2
 """Of all links whose packets have not ended: ten of the largest images."""
 _LOG_LEVELS = {"alarm.raised": "warning", "alarm.worse": "error", "order.failed": "error"}
-
-
-class ItemKind(IntEnum):
-    """What an item is."""
-
-    BEGIN = 0
-    """A new file; its `Beginning`."""
-    FLOWN = 1
-    """A vehicle has taken off: the file is a flight's."""
-    LINK = 2
-    STEP = 3
-    SHADE = 4
-    SUN = 5
-    KEYFRAME = 6
-    """The station's state, with a step's head."""
-
-
-class Beginning(msgspec.Struct, frozen=True):
-    """What stands at the beginning of a file."""
-
-    at_ns: int
-    start: bytes
-    about: bytes
-
-
-class TimedValue(msgspec.Struct, frozen=True):
-    """A value of a topic by the codec."""
-
-    at_ns: int
-    value: Any
-
-
-@dataclass(frozen=True, slots=True)
-class Item:
-    """One item as it came."""
-
-    kind: ItemKind
-    content: bytes
-
-
-def packed(kind: ItemKind, *parts: bytes) -> tuple[bytes, ...]:
-    """Return an item as the bytes to be sent."""
-    return HEAD.pack(kind, sum(map(len, parts))), *parts
 
 
 class FlightMessages:

@@ -32,6 +32,8 @@ from mcap.records import (
 )
 from mcap.writer import MCAP0_MAGIC
 
+from recon.record.mcap.items import COMPRESSION
+
 PROFILE = "recon"
 ABOUT_NAME, STEPS_TOPIC = "recon/about.json", "/recon/steps"
 """Written by the station; read by it for a replay, and after the flight without it."""
@@ -49,8 +51,8 @@ CHUNK_HEAD = struct.Struct("<QQQI")
 
 
 def compressor() -> zstandard.ZstdCompressor:
-    """Return the compressor of chunks: fast, because frames are most of a record."""
-    return zstandard.ZstdCompressor(level=1)
+    """Return the compressor of chunks."""
+    return zstandard.ZstdCompressor(level=COMPRESSION)
 
 
 @dataclass(slots=True)

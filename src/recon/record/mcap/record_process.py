@@ -26,14 +26,16 @@ import time
 from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
-from typing import BinaryIO
+from typing import TYPE_CHECKING, BinaryIO
 
 import msgspec
 
 from recon.model.errors import RecordError
-from recon.record.mcap.flight_messages import HEAD, FlightMessages, Item, ItemKind
-from recon.record.mcap.record_writer import RecordWriter, Status
+from recon.record.mcap.items import HEAD, Item, ItemKind, Status
 from recon.record.mcap.shared_ring import SharedRing, shared_file
+
+if TYPE_CHECKING:
+    from recon.record.mcap.record_writer import RecordWriter
 
 RING_BYTES = 96 * 1024 * 1024
 """Two seconds of the bench's twenty raw frames a second; a minute of the demonstration's."""
@@ -178,13 +180,17 @@ class RingInbox:
         return Item(ItemKind(kind), content)
 
 
-def _await_end(station: BinaryIO, inbox: RingInbox, writer: RecordWriter) -> None:
+def _await_end(station: BinaryIO, inbox: RingInbox, writer: "RecordWriter") -> None:
     station.read()
     inbox.is_over = writer.is_ending = True
 
 
 def main(folder: str, library: str, descriptor: str, ring_bytes: str) -> None:
     """Write what comes until standard input ends; report on standard output."""
+    # The station has this module too, and starts without what only this process needs.
+    from recon.record.mcap.flight_messages import FlightMessages
+    from recon.record.mcap.record_writer import RecordWriter
+
     _be_nice()
     for ignored in (signal.SIGINT, signal.SIGTERM):
         # It ends after the station, which may still send items.

@@ -28,11 +28,10 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Protocol
 
-import msgspec
-
 from recon.model.errors import RecordError, describe_fault
 from recon.model.units import NS_PER_S
 from recon.record.files.file_lock import lock_file
+from recon.record.mcap.items import Status
 from recon.record.mcap.mcap_file import McapFile
 from recon.record.mcap.mcap_repair import repair
 from recon.record.mcap.topics import Topics
@@ -72,18 +71,6 @@ class Messages(Protocol):
 
     def finish(self, topics: Topics, *, with_images: bool) -> None:
         """Write what still waits; the file is about to end."""
-
-
-class Status(msgspec.Struct, frozen=True):
-    """What the sender of items learns."""
-
-    path: str | None = None
-    """The file that is being written."""
-    problem: str | None = None
-    """What is not recorded, and why; None while everything is."""
-    cpu_s: float = 0.0
-    repaired: tuple[str, ...] = ()
-    """Files of earlier runs that were finished at the start."""
 
 
 class RecordWriter:

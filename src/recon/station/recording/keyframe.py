@@ -14,8 +14,6 @@ from typing import Any, get_type_hints
 import msgspec
 import numpy as np
 import numpy.typing as npt
-from foxglove_schemas_protobuf.Grid_pb2 import Grid
-from google.protobuf.message import DecodeError
 
 from recon.camera.registration import RegistrationState
 from recon.detection import DetectionState
@@ -278,6 +276,9 @@ def maps_of(
 
 def _cells(data: bytes, frame: LocalFrame) -> tuple[GroundGrid, int, npt.NDArray[np.uint8]]:
     """Return grid, time and bytes (R, C, stride) of a `foxglove.Grid`, row 0 north."""
+    from foxglove_schemas_protobuf.Grid_pb2 import Grid
+    from google.protobuf.message import DecodeError
+
     try:
         found = Grid.FromString(data)
     except DecodeError as problem:

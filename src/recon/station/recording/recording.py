@@ -25,6 +25,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 import msgspec
+import zstandard
 
 from recon import version
 from recon.link.tap import Direction
@@ -33,8 +34,9 @@ from recon.model.event import Event, LinkClosed, PacketReceived, RecordFailed, T
 from recon.model.shade import ShadeMap, SunForecast
 from recon.model.units import seconds_to_ns
 from recon.record.audit.audit import AuditEntry
-from recon.record.mcap.flight_messages import (
+from recon.record.mcap.items import (
     BULK_BYTES,
+    COMPRESSION,
     HEAD,
     LINK_HEAD,
     STEP_HEAD,
@@ -43,7 +45,6 @@ from recon.record.mcap.flight_messages import (
     TimedValue,
     packed,
 )
-from recon.record.mcap.mcap_file import compressor
 from recon.record.mcap.record_process import BULK_SHARE, CLOSE_WITHIN_S, RING_BYTES, RecordProcess
 from recon.site import Site
 from recon.station.audit.entries import Auditing
@@ -368,7 +369,7 @@ class Recorder:
         try:
             text = msgspec.json.encode(_about(start), enc_hook=str)
             # A codec of its own: it compiles types as it meets them.
-            state = compressor().compress(values_codec().encode(start, FlightStart))
+            state = zstandard.compress(values_codec().encode(start, FlightStart), COMPRESSION)
         except Exception as fault:
             self._fault = f"the record begins without the station's state: {describe_fault(fault)}"
         self._beginning = msgspec.msgpack.encode(Beginning(start.started_at_ns, state, text))
