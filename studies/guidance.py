@@ -6,9 +6,9 @@
 Each claim is a scenario flown by `sunlit_first` and, under the same skies, by `lawnmower_again` or
 in another scenario. Its figure is the geometric mean of the seeds' ratios of the time to 95 % in
 sun, or the ratio of the flight times of all seeds together, with a 95 % interval. All claims take
-hours on one computer; `--cluster` shares the runs with others. Finished runs are kept, as by
-`recon score`: a stopped study goes on where it was, and `--kept` sums up what has been flown so
-far. At the end it states, by all landings, how probable one below the reserve is.
+hours. Finished runs are kept, as by `recon score`: a stopped study goes on where it was, and
+`--kept` sums up what has been flown so far. At the end it states, by all landings, how probable one
+below the reserve is.
 """
 
 import argparse
@@ -104,9 +104,9 @@ class Claim:
         """The shorter one of the two scenarios' limits."""
         return min(scenario.limit_s for _, scenario in self.compared())
 
-    def flown(self, seeds: range, jobs: int | None, cluster: str | None) -> RunPairs:
+    def flown(self, seeds: range, jobs: int | None) -> RunPairs:
         """Return its runs and the runs they are compared with."""
-        flying = Flying(seeds, jobs, cluster, fresh=False)
+        flying = Flying(seeds, jobs, fresh=False)
         one, other = self.compared()
         return flying.runs_of(*one), flying.runs_of(*other)
 
@@ -324,7 +324,6 @@ def main() -> None:
     parser.add_argument("--references", action="store_true", help="fly what is compared with")
     parser.add_argument("--seeds", type=int, help="at most so many of each claim")
     parser.add_argument("--jobs", type=int, help="runs at once; default: one for each core")
-    parser.add_argument("--cluster", help="address of a Dask scheduler")
     parser.add_argument("--picture", type=Path, help="PNG file to draw")
     asked = parser.parse_args()
     known = REFERENCES if asked.references else CLAIMS
@@ -339,7 +338,7 @@ def main() -> None:
     print(table(HEAD, ()), flush=True)
 
     def runs_of(claim: Claim, seeds: range) -> RunPairs:
-        return claim.kept(seeds) if asked.kept else claim.flown(seeds, asked.jobs, asked.cluster)
+        return claim.kept(seeds) if asked.kept else claim.flown(seeds, asked.jobs)
 
     for each in measured(claims, asked.seeds, runs_of):
         found.append(each)

@@ -1,8 +1,7 @@
-"""`recon inspect` on bare streams, flight records, network captures and damage."""
+"""`recon inspect` on bare streams, flight records and damage."""
 
 import io
 import json
-import struct
 import subprocess
 import sys
 from pathlib import Path
@@ -46,36 +45,6 @@ def flight_record(path: Path, *reads: tuple[int, int, bool, bytes]) -> bytes:
         file.add_message(channel, number, at_ns, data)
     file.finish()
     return (path / "a.mcap").read_bytes()
-
-
-def tcp(seq: int, data: bytes, from_port: int = 40000, to_port: int = 3001, syn: int = 0) -> bytes:
-    """An Ethernet frame with a TCP segment over IPv4."""
-    segment = struct.pack(">HHIIBBHHH", from_port, to_port, seq, 0, 5 << 4, syn, 0, 0, 0) + data
-    addresses = bytes([10, 0, 0, 5, 10, 0, 0, 1])
-    head = struct.pack(">BBHIBBH", 0x45, 0, 20 + len(segment), 0, 64, 6, 0) + addresses
-    return bytes(12) + b"\x08\x00" + head + segment
-
-
-def pcap(*packets: bytes, order: str = "<") -> bytes:
-    data = struct.pack(f"{order}IHHiIII", 0xA1B2C3D4, 2, 4, 0, 0, 65535, 1)
-    for number, packet in enumerate(packets):
-        data += struct.pack(f"{order}4I", 7, number * 1000, len(packet), len(packet)) + packet
-    return data
-
-
-def pcapng(*packets: bytes) -> bytes:
-    def block(kind: int, body: bytes) -> bytes:
-        body += bytes(-len(body) % 4)
-        size = struct.pack("<I", len(body) + 12)
-        return struct.pack("<I", kind) + size + body + size
-
-    data = block(0x0A0D0D0A, struct.pack("<IHHq", 0x1A2B3C4D, 1, 0, -1))
-    # One interface, Ethernet, whose times are in nanoseconds.
-    data += block(1, struct.pack("<HHI", 1, 0, 0) + struct.pack("<HHB3x", 9, 1, 9))
-    for packet in packets:
-        head = struct.pack("<5I", 0, 0, 123, len(packet), len(packet))
-        data += block(6, head + packet)
-    return data
 
 
 def test_a_bare_stream_shows_each_packet_and_the_counters() -> None:
@@ -159,58 +128,9 @@ def test_a_record_that_was_cut_shows_what_is_whole(tmp_path: Path) -> None:
     assert shown[-1].startswith("the file ends without MCAP's summary")
 
 
-@pytest.mark.parametrize("order", ["<", ">"])
-def test_streams_of_a_network_capture_are_put_in_order(order: str) -> None:
-    capture = pcap(
-        tcp(99, b"", syn=2),
-        tcp(105, ACK[5:]),
-        tcp(100, ACK[:5]),
-        tcp(100, ACK[:5]),
-        tcp(500, HOVER, 3001, 40000),
-        b"no packet",
-        order=order,
-    )
-    shown = lines(capture)
-    assert shown[0] == (
-        "7.002000 s  10.0.0.5:40000 > 10.0.0.1:3001  Acknowledgment positive=1 source_pid=253"
-    )
-    assert shown[1].endswith("10.0.0.5:3001 > 10.0.0.1:40000  EmergencyCommand action=0")
-    assert shown[2].startswith("10.0.0.5:40000 > 10.0.0.1:3001: packets 1")
-
-
-def test_a_stream_goes_on_behind_a_gap_that_is_never_filled() -> None:
-    shown = lines(pcap(tcp(0, ACK), tcp(500, HOVER)))
-    assert [line.split("  ")[-1].split(" ")[0] for line in shown[:2]] == [
-        "Acknowledgment",
-        "EmergencyCommand",
-    ]
-
-
-def test_numbers_of_a_stream_wrap_around() -> None:
-    shown = lines(pcap(tcp(2**32 - 5, ACK[:5]), tcp(0, ACK[5:])))
-    assert "Acknowledgment" in shown[0]
-
-
-def test_pcapng_states_the_unit_of_its_times() -> None:
-    [first, *_] = objects(pcapng(tcp(0, HOVER)))
-    assert (first["packet"], first["time_ns"]) == ("EmergencyCommand", 123)
-
-
-@given(st.binary(max_size=200), st.sampled_from([pcap(), pcapng(), b"\x89MCAP0\r\n"]))
+@given(st.binary(max_size=200), st.sampled_from([ACK[:6], b"\x89MCAP0\r\n"]))
 def test_any_bytes_behind_a_files_beginning_are_no_crash(data: bytes, start: bytes) -> None:
     assert lines(start + data)[-1:] != [""] or not data
-
-
-@given(st.data())
-def test_a_damaged_capture_is_no_crash(data: st.DataObject) -> None:
-    whole = bytearray(
-        pcapng(tcp(0, ACK), tcp(10, HOVER))
-        if data.draw(st.booleans())
-        else pcap(tcp(0, ACK), tcp(10, HOVER))
-    )
-    at = data.draw(st.integers(4, len(whole) - 1))
-    whole[at] = data.draw(st.integers(0, 255))
-    lines(bytes(whole[: data.draw(st.integers(0, len(whole)))]))
 
 
 def test_bytes_without_a_packet_are_an_error(

@@ -178,7 +178,6 @@ def test_options_choose_methods(tmp_path: Path) -> None:
             "--forecast: expected detection ideal with the forecast perfect, got detection otsu",
         ),
         (["--jobs", "0"], "--jobs: expected 1 or more, got 0"),
-        (["--cluster", "127.0.0.1:1"], "expected a Dask scheduler at 127.0.0.1:1, got"),
     ],
 )
 def test_invalid_options_are_one_line(

@@ -103,7 +103,7 @@ FLOWN = (*CLAIMS, *REFERENCES)
 @pytest.mark.parametrize("claim", FLOWN, ids=[claim.name for claim in FLOWN])
 def test_every_claims_scenarios_and_methods_can_be_flown(claim: Claim) -> None:
     no_seeds = range(FIRST_SEED, FIRST_SEED)
-    assert claim.flown(no_seeds, jobs=1, cluster=None) == ([], [])
+    assert claim.flown(no_seeds, jobs=1) == ([], [])
     assert claim.limit_s > 0.0
 
 

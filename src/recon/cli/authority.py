@@ -11,17 +11,14 @@ import msgspec
 import typer
 
 from recon.cli.connection import (
-    DEFAULT_ADDRESS,
     DONE,
     REFUSED,
-    AddressOption,
     JsonOption,
     NameArgument,
     NamesArgument,
-    TokenOption,
     VehicleNameError,
     named_serials,
-    run_at_station,
+    station_command,
 )
 from recon.cli.failsafe_table import print_failsafe_matrix
 from recon.cli.output import print_json, print_line, print_table
@@ -42,118 +39,98 @@ class Switch(Enum):
     OFF = "off"
 
 
-def take_command(
+@station_command
+async def take_command(
+    station: Station,
     vehicles: NamesArgument = None,
     take_over: Annotated[
         bool, typer.Option("--take-over", help="Also from another person who operates them.")
     ] = False,
-    address: AddressOption = DEFAULT_ADDRESS,
-    token_file: TokenOption = None,
-) -> None:
+) -> int:
     """Take control authority for the operator.
 
     From then on only your orders set these vehicles in motion. Nothing is sent to them, but what
     another person steers stops and holds.
     """
     control = "operator control"
-
-    async def work(station: Station) -> int:
-        done = [
-            _is_done(serial, await station.known(serial).take(take_over=take_over), control)
-            for serial in named_serials(station, vehicles)
-        ]
-        return DONE if all(done) else REFUSED
-
-    run_at_station(address, token_file, work)
+    done = [
+        _is_done(serial, await station.known(serial).take(take_over=take_over), control)
+        for serial in named_serials(station, vehicles)
+    ]
+    return DONE if all(done) else REFUSED
 
 
-def release_command(
+@station_command
+async def release_command(
+    station: Station,
     vehicles: NamesArgument = None,
     to: Annotated[Receiver, typer.Option("--to", help="The new holder.")] = Receiver.PILOT,
-    address: AddressOption = DEFAULT_ADDRESS,
-    token_file: TokenOption = None,
-) -> None:
+) -> int:
     """Hand control authority to the pilot or to guidance.
 
     Nothing is sent to the vehicles.
     """
-
-    async def work(station: Station) -> int:
-        done: list[bool] = []
-        for serial in named_serials(station, vehicles):
-            known = station.known(serial)
-            give = known.give_to_pilot if to is Receiver.PILOT else known.give_to_guidance
-            done.append(_is_done(serial, await give(), f"{to.value} control"))
-        return DONE if all(done) else REFUSED
-
-    run_at_station(address, token_file, work)
+    done: list[bool] = []
+    for serial in named_serials(station, vehicles):
+        known = station.known(serial)
+        give = known.give_to_pilot if to is Receiver.PILOT else known.give_to_guidance
+        done.append(_is_done(serial, await give(), f"{to.value} control"))
+    return DONE if all(done) else REFUSED
 
 
-def preflight_command(
+@station_command
+async def preflight_command(
+    station: Station,
     vehicle: NameArgument,
     override: Annotated[
         str | None,
         typer.Option("--override", metavar="REASON", help="Allow missions anyway; audited."),
     ] = None,
     as_json: JsonOption = False,
-    address: AddressOption = DEFAULT_ADDRESS,
-    token_file: TokenOption = None,
-) -> None:
+) -> int:
     """Show a vehicle's checklist.
 
     With it the failsafe matrix of the site. Exit code 0 when missions are allowed: passed, or
     overridden.
     """
-
-    async def work(station: Station) -> int:
-        (serial,) = named_serials(station, [vehicle])
-        known = station.known(serial)
-        if override is not None:
-            refusal = await known.override_preflight(override)
-            if refusal is not None:
-                _is_done(serial, refusal, "")
-                return REFUSED
-        return _print_checklist(await known.preflight(), as_json)
-
-    run_at_station(address, token_file, work)
+    (serial,) = named_serials(station, [vehicle])
+    known = station.known(serial)
+    if override is not None:
+        refusal = await known.override_preflight(override)
+        if refusal is not None:
+            _is_done(serial, refusal, "")
+            return REFUSED
+    return _print_checklist(await known.preflight(), as_json)
 
 
-def dismiss_command(
+@station_command
+async def dismiss_command(
+    station: Station,
     vehicle: NameArgument,
-    address: AddressOption = DEFAULT_ADDRESS,
-    token_file: TokenOption = None,
-) -> None:
+) -> int:
     """Clear a lost vehicle's hazard area.
 
     Only when you know where the vehicle is: others then fly through the area again. Name an
     unidentified vehicle as its alarm does.
     """
-
-    async def work(station: Station) -> int:
-        try:
-            (name,) = named_serials(station, [vehicle])
-        except VehicleNameError:
-            name = vehicle
-        await station.known(name).dismiss_hazard()
-        print_line(f"{name}: hazard area cleared (audited)")
-        return DONE
-
-    run_at_station(address, token_file, work)
+    try:
+        (name,) = named_serials(station, [vehicle])
+    except VehicleNameError:
+        name = vehicle
+    await station.known(name).dismiss_hazard()
+    print_line(f"{name}: hazard area cleared (audited)")
+    return DONE
 
 
-def separation_hold_command(
+@station_command
+async def separation_hold_command(
+    station: Station,
     switch: Annotated[Switch, typer.Argument(help="Off raises an alarm.")],
-    address: AddressOption = DEFAULT_ADDRESS,
-    token_file: TokenOption = None,
-) -> None:
+) -> int:
     """Turn automatic holds for vehicles on conflicting paths on or off."""
-
-    async def work(station: Station) -> int:
-        await station.switch_separation_hold(switch is Switch.ON)
-        print_line(f"automatic separation holds are {switch.value.upper()}")
-        return DONE
-
-    run_at_station(address, token_file, work)
+    await station.switch_separation_hold(switch is Switch.ON)
+    print_line(f"automatic separation holds are {switch.value.upper()}")
+    return DONE
 
 
 def _is_done(serial: str, refusal: Refusal | None, result: str) -> bool:

@@ -157,7 +157,7 @@ COMMANDS = {
     ),
     "inspect": CommandSource(
         "inspect:inspect_command",
-        "Print the packets of a flight record, a network capture or bare bytes.",
+        "Print the packets of a flight record or of bare bytes.",
     ),
     "openapi": CommandSource("run:openapi_command", "Print the API's OpenAPI document."),
 }

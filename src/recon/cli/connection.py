@@ -4,14 +4,19 @@ Exit codes: 0 done; 1 refused, or not confirmed by telemetry; 2 wrong use, or no
 """
 
 import asyncio
+import inspect
 import os
 import time
 from collections.abc import Awaitable, Callable, Sequence
+from dataclasses import dataclass
+from functools import wraps
+from inspect import Parameter
 from pathlib import Path
-from typing import Annotated, TypeVar
+from typing import Annotated, Any, TypeVar
 
 import typer
 
+from recon.cli.options import with_options
 from recon.client import ClientError, Station, Telemetry
 from recon.client.errors import AddressError
 
@@ -54,19 +59,41 @@ NameArgument = Annotated[
 Work = Callable[[Station], Awaitable[int]]
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StationOptions:
+    """Where the station is, and what admits to it."""
+
+    address: AddressOption = DEFAULT_ADDRESS
+    token_file: TokenOption = None
+
+
 class VehicleNameError(ClientError):
     """A name that matches no vehicle, or several."""
 
 
-def run_at_station(address: str, token_file: Path | None, work: Work) -> None:
+def station_command(work: Callable[..., Awaitable[int]]) -> Callable[..., None]:
+    """Return a command of what is done at a connected station: its options, and the station's.
+
+    The first parameter is the station; what is returned is the exit code.
+    """
+
+    def run(at: StationOptions, **values: Any) -> None:
+        run_at_station(at, lambda station: work(station, **values))
+
+    _, *own = inspect.signature(work).parameters.values()
+    shown = [*own, Parameter("at", Parameter.KEYWORD_ONLY, annotation=StationOptions)]
+    return with_options(wraps(work)(run), shown)
+
+
+def run_at_station(at: StationOptions, work: Work) -> None:
     """Connect, run `work` and exit with its exit code; raises `ClientError`s."""
-    raise typer.Exit(asyncio.run(_connected(station_at(address, token_file), work)))
+    raise typer.Exit(asyncio.run(_connected(station_at(at), work)))
 
 
-def station_at(address: str, token_file: Path | None) -> Station:
+def station_at(at: StationOptions) -> Station:
     """Return the station of a command's options, not yet connected; raises `AddressError`."""
     fingerprint = os.environ.get(FINGERPRINT_VARIABLE)
-    return Station(address, read_token(token_file), fingerprint=fingerprint)
+    return Station(at.address, read_token(at.token_file), fingerprint=fingerprint)
 
 
 async def _connected(unopened: Station, work: Work) -> int:

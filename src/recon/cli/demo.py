@@ -3,7 +3,7 @@
 import asyncio
 import sys
 from collections.abc import Coroutine, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from time import monotonic_ns, time, time_ns
 from typing import Annotated, Any
@@ -12,6 +12,7 @@ import typer
 
 import recon
 from recon.cli.foreground import print_now, run_in_loop
+from recon.cli.options import with_options
 from recon.cli.run import HAS_GUARD, console_folder, guard_port, print_started
 from recon.cli.scripted_operator import fly_surveys
 from recon.cli.site import opened_site
@@ -20,7 +21,7 @@ from recon.record.files.users_file import state_folder
 from recon.score import Scenario, ScenarioError, load_scenario
 from recon.score.scenario_sky import sky_of
 from recon.score.truth import world_text
-from recon.site import SiteError
+from recon.site import Site, SiteError
 from recon.site.load import SITE_FILE
 from recon.station.audit.start import default_place
 from recon.station.host.new_site import awaits_site, make_in_browser
@@ -39,111 +40,105 @@ DEMO_SEED = 11
 """Its sky has sun and shadows by turns from the first minute on."""
 
 
-def demo_command(
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DemoOptions:
+    """What is demonstrated, and where the station listens."""
+
     scenario: Annotated[
         Path | None, typer.Option(help="Scenario file; default: fair-weather cumulus.")
-    ] = None,
+    ] = None
     site: Annotated[
         Path | None,
         typer.Option(
             help="Your own site: its simulated drones wait there for your orders. An empty or "
             "missing folder: a page of the console asks where the field is, and makes the site."
         ),
-    ] = None,
+    ] = None
     survey: Annotated[
         bool, typer.Option("--survey/--no-survey", help="Fly surveys with a scripted operator.")
-    ] = True,
+    ] = True
     http_port: Annotated[
         int, typer.Option(min=0, max=65535, help="Port of the console; 0 picks one.")
-    ] = 8080,
+    ] = 8080
     link_port: Annotated[
         int, typer.Option(min=0, max=65535, help="Port for companion apps; 0 picks one.")
-    ] = 3001,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of sky, wind and faults.")] = DEMO_SEED,
+    ] = 3001
+    seed: Annotated[int, typer.Option(min=0, help="Seed of sky, wind and faults.")] = DEMO_SEED
     record: Annotated[
         Path | None, typer.Option("--record", help="Folder of the flight records.")
-    ] = None,
-    no_record: Annotated[bool, typer.Option("--no-record", help="Record no flights.")] = False,
-) -> None:
+    ] = None
+    no_record: Annotated[bool, typer.Option("--no-record", help="Record no flights.")] = False
+
+    def config(self, site: Site, http_port: int) -> RunConfig:
+        """Return how the station of a site is started."""
+        return RunConfig(
+            site=site,
+            link_port=self.link_port,
+            http_port=http_port,
+            stop_port=guard_port(None, http_port) if HAS_GUARD else None,
+            # No state of an earlier run is recovered: its drones no longer exist.
+            audit=default_place(link_port=0),
+            record_folder=None if self.no_record else self.record or state_folder() / "records",
+            is_record_required=self.record is not None,
+            console=console_folder(),
+        )
+
+
+@with_options
+def demo_command(options: DemoOptions) -> None:
     """Run the station with simulated drones that survey a field.
 
     It runs until Ctrl+C.
     """
-    folder = None if no_record else record or state_folder() / "records"
-    if site is not None:
-        _rehearse(site, scenario, http_port, link_port, seed, folder)
-        return
     try:
-        path = demo_scenario_file() if scenario is None else scenario
-        played = load_scenario(path)
-        if scenario is None:
-            played = replace(played, survey=replace(played.survey, planner=DEMO_PLANNER))
-        # The record states when the sky's time began, so that its truth is known.
-        began_ns, start_ns = time_ns(), monotonic_ns()
-        world = world_text(path, seed, began_ns)
+        demo = _played(options) if options.site is None else _rehearsed(options.site, options)
     except ReconError as problem:
         print(f"recon demo: {problem}", file=sys.stderr)
         raise typer.Exit(2) from None
-    config = RunConfig(
-        site=played.site,
-        link_port=link_port,
-        http_port=http_port,
-        stop_port=guard_port(None, http_port) if HAS_GUARD else None,
-        # No state of an earlier run is recovered: its drones no longer exist.
-        audit=default_place(link_port=0),
-        record_folder=folder,
-        is_record_required=record is not None,
-        scenario=world,
-        console=console_folder(),
+    run_in_loop(demo.run())
+
+
+def _played(options: DemoOptions) -> "_Demo":
+    """Return the demonstration of a scenario; raises `ReconError`."""
+    path = demo_scenario_file() if options.scenario is None else options.scenario
+    played, seed = load_scenario(path), options.seed
+    if options.scenario is None:
+        played = replace(played, survey=replace(played.survey, planner=DEMO_PLANNER))
+    # The record states when the sky's time began, so that its truth is known.
+    began_ns, start_ns = time_ns(), monotonic_ns()
+    config = replace(
+        options.config(played.site, options.http_port),
+        scenario=world_text(path, seed, began_ns),
         sun_time_ahead_s=sky_of(played, seed).settings.sun.start_utc_s - time(),
     )
     words = ("scenario", str(path), "--fps", str(FPS_HZ), "--seed", str(seed))
-    flies = played if survey else None
-    run_in_loop(_Demo(config, (*words, "--start-ns", str(start_ns)), flies).run())
+    flies = played if options.survey else None
+    return _Demo(config, (*words, "--start-ns", str(start_ns)), flies)
 
 
-def _rehearse(
-    folder: Path,
-    scenario: Path | None,
-    http_port: int,
-    link_port: int,
-    seed: int,
-    record_folder: Path | None,
-) -> None:
-    """Run the station and simulated drones on a site of one's own."""
-    try:
-        if scenario is not None:
-            raise ScenarioError("expected --site or --scenario, got both: a scenario has a site")
-        if awaits_site(folder):
-            http_port = _made_in_browser(folder, http_port)
-        if not (folder / SITE_FILE).is_file():
-            raise SiteError(
-                f"{folder}: expected a site's folder, or an empty one to make a site in, got one "
-                f"without {SITE_FILE} that is not empty"
-            )
-        own = opened_site(folder)
-        simulated = [serial for serial in own.profiles if serial.startswith(SIMULATED)]
-        if not simulated:
-            raise SiteError(
-                f"{folder}: expected [[vehicles]] with a serial that begins with {SIMULATED}, got "
-                "none; recon site new makes a site with three"
-            )
-    except ReconError as problem:
-        print(f"recon demo: {problem}", file=sys.stderr)
-        raise typer.Exit(2) from None
-    config = RunConfig(
-        site=own,
-        site_folder=folder,
-        link_port=link_port,
-        http_port=http_port,
-        stop_port=guard_port(None, http_port) if HAS_GUARD else None,
-        audit=default_place(link_port=0),
-        record_folder=record_folder,
-        console=console_folder(),
-    )
+def _rehearsed(folder: Path, options: DemoOptions) -> "_Demo":
+    """Return a station with simulated drones on a site of one's own; raises `ReconError`."""
+    if options.scenario is not None:
+        raise ScenarioError("expected --site or --scenario, got both: a scenario has a site")
+    http_port = options.http_port
+    if awaits_site(folder):
+        http_port = _made_in_browser(folder, http_port)
+    if not (folder / SITE_FILE).is_file():
+        raise SiteError(
+            f"{folder}: expected a site's folder, or an empty one to make a site in, got one "
+            f"without {SITE_FILE} that is not empty"
+        )
+    own = opened_site(folder)
+    simulated = [serial for serial in own.profiles if serial.startswith(SIMULATED)]
+    if not simulated:
+        raise SiteError(
+            f"{folder}: expected [[vehicles]] with a serial that begins with {SIMULATED}, got "
+            "none; recon site new makes a site with three"
+        )
+    config = replace(options.config(own, http_port), site_folder=folder, is_record_required=False)
     imager = ("--imager", "--fps", str(FPS_HZ)) if own.imagers else ("--no-imager",)
-    words = ("--site", str(folder), "--vehicles", str(len(simulated)), "--seed", str(seed))
-    run_in_loop(_Demo(config, (*words, *imager), None).run())
+    words = ("--site", str(folder), "--vehicles", str(len(simulated)))
+    return _Demo(config, (*words, "--seed", str(options.seed), *imager), None)
 
 
 def _made_in_browser(folder: Path, http_port: int) -> int:

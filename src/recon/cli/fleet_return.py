@@ -5,17 +5,14 @@ from collections.abc import Sequence
 import msgspec
 
 from recon.cli.connection import (
-    DEFAULT_ADDRESS,
     DONE,
     REFUSED,
-    AddressOption,
     JsonOption,
     NamesArgument,
-    TokenOption,
     WaitOption,
     named_serials,
     read_until,
-    run_at_station,
+    station_command,
 )
 from recon.cli.output import print_json, print_table
 from recon.client import Station, VehicleReturn
@@ -23,35 +20,31 @@ from recon.client import Station, VehicleReturn
 PLANNING_TIMEOUT_S = 10.0
 
 
-def fleet_return_command(
+@station_command
+async def fleet_return_command(
+    station: Station,
     vehicles: NamesArgument = None,
     wait: WaitOption = 0.0,
     as_json: JsonOption = False,
-    address: AddressOption = DEFAULT_ADDRESS,
-    token_file: TokenOption = None,
-) -> None:
+) -> int:
     """Return vehicles in separate height layers; they land one at a time.
 
     Without names: every vehicle that is or may be in the air. Exits once the plan is made; with
     --wait, once all have ended or after that many seconds. The return continues after the exit.
     """
+    serials = named_serials(station, vehicles) if vehicles else None
+    called = {answer.serial for answer in await station.fleet.return_in_layers(serials)}
 
-    async def work(station: Station) -> int:
-        serials = named_serials(station, vehicles) if vehicles else None
-        called = {answer.serial for answer in await station.fleet.return_in_layers(serials)}
+    async def read() -> list[VehicleReturn]:
+        return [f for f in await station.fleet.returning() if f.serial in called]
 
-        async def read() -> list[VehicleReturn]:
-            return [f for f in await station.fleet.returning() if f.serial in called]
-
-        flights = await read_until(read, _are_planned, PLANNING_TIMEOUT_S)
-        if wait > 0.0:
-            flights = await read_until(read, _are_done, wait)
-        _print_flights(flights, as_json)
-        is_good = all(flight.stage not in ("left_out", "released") for flight in flights)
-        is_over = wait == 0.0 or _are_done(flights)
-        return DONE if is_good and is_over else REFUSED
-
-    run_at_station(address, token_file, work)
+    flights = await read_until(read, _are_planned, PLANNING_TIMEOUT_S)
+    if wait > 0.0:
+        flights = await read_until(read, _are_done, wait)
+    _print_flights(flights, as_json)
+    is_good = all(flight.stage not in ("left_out", "released") for flight in flights)
+    is_over = wait == 0.0 or _are_done(flights)
+    return DONE if is_good and is_over else REFUSED
 
 
 def _are_planned(flights: Sequence[VehicleReturn]) -> bool:

@@ -7,16 +7,13 @@ import msgspec
 import typer
 
 from recon.cli.connection import (
-    DEFAULT_ADDRESS,
     DONE,
     REFUSED,
-    AddressOption,
     JsonOption,
-    TokenOption,
     WaitOption,
     named_serials,
     read_until,
-    run_at_station,
+    station_command,
 )
 from recon.cli.output import print_json, print_line
 from recon.client import ImagerReliefStatus, Refusal, SideStepStatus, Station
@@ -24,7 +21,9 @@ from recon.client import ImagerReliefStatus, Refusal, SideStepStatus, Station
 Motion = TypeVar("Motion", SideStepStatus, ImagerReliefStatus)
 
 
-def side_step_command(
+@station_command
+async def side_step_command(
+    station: Station,
     vehicle: Annotated[
         str | None,
         typer.Argument(
@@ -35,25 +34,21 @@ def side_step_command(
     ] = None,
     wait: WaitOption = 0.0,
     as_json: JsonOption = False,
-    address: AddressOption = DEFAULT_ADDRESS,
-    token_file: TokenOption = None,
-) -> None:
+) -> int:
     """Fly 25 m aside and back, to tell whether a uniform scene is all sun or all shade.
 
     The imaging drone must hover. Exits once it has begun; with --wait, once it has ended or after
     that many seconds. It continues after the exit: `recon hold` stops it.
     """
-
-    async def work(station: Station) -> int:
-        serial = named_serials(station, [vehicle])[0] if vehicle is not None else None
-        refusal = await station.side_step(serial)
-        read = station.side_stepping
-        return await _followed("side-step", refusal, read, wait, _side_step_text, as_json)
-
-    run_at_station(address, token_file, work)
+    serial = named_serials(station, [vehicle])[0] if vehicle is not None else None
+    refusal = await station.side_step(serial)
+    read = station.side_stepping
+    return await _followed("side-step", refusal, read, wait, _side_step_text, as_json)
 
 
-def relieve_command(
+@station_command
+async def relieve_command(
+    station: Station,
     vehicle: Annotated[
         str,
         typer.Argument(metavar="VEHICLE", help="The imaging drone whose place is taken."),
@@ -70,22 +65,16 @@ def relieve_command(
     ] = False,
     wait: WaitOption = 0.0,
     as_json: JsonOption = False,
-    address: AddressOption = DEFAULT_ADDRESS,
-    token_file: TokenOption = None,
-) -> None:
+) -> int:
     """Relieve an imaging drone, or send it back to its place with a fresh battery.
 
     The spare drone flies to the place in a layer of its own; once its shade maps show the ground,
     the other one is recalled. Exits once it has begun; with --wait, once it has ended or after
     that many seconds. It continues after the exit: `recon hold` stops it.
     """
-
-    async def work(station: Station) -> int:
-        serials = named_serials(station, [vehicle] if spare is None else [vehicle, spare])
-        refusal = await station.relieve(serials[0], serials[-1], takeoff=takeoff)
-        return await _followed("relieve", refusal, station.relieving, wait, _relief_text, as_json)
-
-    run_at_station(address, token_file, work)
+    serials = named_serials(station, [vehicle] if spare is None else [vehicle, spare])
+    refusal = await station.relieve(serials[0], serials[-1], takeoff=takeoff)
+    return await _followed("relieve", refusal, station.relieving, wait, _relief_text, as_json)
 
 
 async def _followed(

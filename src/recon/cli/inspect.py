@@ -1,7 +1,7 @@
 """`recon inspect`: the packets in a file, one per line or as JSON lines.
 
-A flight record (MCAP) and a network capture (pcap, pcapng) hold several streams, each with its own
-deframer; anything else is one stream of bare bytes.
+A flight record (MCAP) holds several streams, each with its own deframer; anything else is one
+stream of bare bytes.
 """
 
 import json
@@ -17,7 +17,6 @@ from typing import Annotated, Any, BinaryIO, NamedTuple, TextIO
 import typer
 
 from recon import wire
-from recon.cli.pcap import PcapError, is_pcap, tcp_segments
 from recon.model.errors import RecordError
 
 READ_BYTES = 64 * 1024
@@ -36,13 +35,11 @@ class Read(NamedTuple):
 def inspect_command(
     files: Annotated[
         list[str],
-        typer.Argument(
-            metavar="FILE...", help="Flight records, network captures or bare streams; - for stdin."
-        ),
+        typer.Argument(metavar="FILE...", help="Flight records or bare streams; - for stdin."),
     ],
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object per line.")] = False,
 ) -> None:
-    """Print the packets of a flight record, a network capture or bare bytes.
+    """Print the packets of a flight record or of bare bytes.
 
     After them come the deframer's counters. Exit code 1: a file holds no packet.
     """
@@ -90,7 +87,7 @@ def inspect(source: BinaryIO, json_lines: bool, out: TextIO) -> bool:
             latest[read.stream] = read
             for packet in deframer.feed(read.data, read.time_ns or 0):
                 show(read, packet, out)
-    except (PcapError, RecordError) as problem:
+    except RecordError as problem:
         trouble = str(problem)
     for stream, deframer in deframers.items():
         for packet in deframer.finish():
@@ -111,12 +108,7 @@ def printable_bytes(data: bytes) -> str:
 
 
 def _reads(source: BinaryIO) -> Iterator[Read]:
-    start = _exactly(source, 4)
-    if is_pcap(start):
-        for stream, time_ns, data in tcp_segments(source, start):
-            yield Read(data, stream, min(time_ns, LATEST_NS))
-        return
-    start += _exactly(source, len(MCAP_START) - len(start))
+    start = _exactly(source, len(MCAP_START))
     if start == MCAP_START:
         yield from _record_reads(source)
         return

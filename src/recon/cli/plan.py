@@ -3,7 +3,7 @@
 import re
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import isfinite, nan
 from pathlib import Path
 from typing import Annotated
@@ -11,19 +11,13 @@ from typing import Annotated
 import typer
 
 from recon.cli.connection import REFUSED, WRONG_USE, JsonOption
+from recon.cli.options import with_options
 from recon.cli.output import print_json, print_table, printable
 from recon.cli.plan_output import ImagingFigures, figures_of, geojson_of, plan_rows_of
 from recon.cli.plan_picture import Theme, picture_png
 from recon.cli.region_file import region_in
 from recon.cli.site import opened_site
-from recon.cli.survey import (
-    AboveGroundOption,
-    BearingOption,
-    FeatureOption,
-    FrontOption,
-    SideOption,
-    names_file,
-)
+from recon.cli.survey import RowOptions, names_file
 from recon.geo import enu_from_points
 from recon.guidance.survey import Surveyor, SurveyPlan, plan_survey, surroundings_of
 from recon.guidance.survey.estimate import Batteries, SurveyEstimate, corner_of, estimate
@@ -63,7 +57,14 @@ class PlanError(ReconError):
     """Options that make no plan; one sentence."""
 
 
-def plan_command(
+class RefusedPlanError(PlanError):
+    """A survey that cannot be flown: the region, or the numbers."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlanOptions:
+    """What is planned, for which drones, and what is written of it."""
+
     region: Annotated[
         str | None,
         typer.Argument(
@@ -71,38 +72,33 @@ def plan_command(
             help="GeoJSON, KML, KMZ, Shapefile (zip) or GeoPackage file, or the name of a survey "
             "region of --site.",
         ),
-    ] = None,
+    ] = None
     camera: Annotated[
         str, typer.Option("--camera", help="Name of a camera; `list` prints them.")
-    ] = "mavic3m",
+    ] = "mavic3m"
     gsd: Annotated[
         str | None, typer.Option("--gsd", help="Size of a pixel on the ground, such as 2cm.")
-    ] = None,
+    ] = None
     height: Annotated[
         float | None, typer.Option("--height", help="Metres above takeoff, instead of --gsd.")
-    ] = None,
-    above_ground: AboveGroundOption = False,
-    feature: FeatureOption = None,
+    ] = None
     drones: Annotated[
         int, typer.Option("--drones", min=1, max=MOST_DRONES, help="How many fly.")
-    ] = 1,
+    ] = 1
     speed: Annotated[
         float | None, typer.Option("--speed", help="Metres per second; default: the most allowed.")
-    ] = None,
-    front: FrontOption = 0.7,
-    side: SideOption = 0.6,
-    bearing: BearingOption = None,
+    ] = None
     interval: Annotated[
         float | None,
         typer.Option("--interval", help="Seconds between photos; default: the timer's best."),
-    ] = None,
+    ] = None
     exposure: Annotated[
         str, typer.Option("--exposure", help="Of a photo, such as 1/1000, for the blur.")
-    ] = "1/1000",
+    ] = "1/1000"
     site: Annotated[
         Path | None,
         typer.Option("--site", help="A site's folder: boundary, zones, pads, limits, cameras."),
-    ] = None,
+    ] = None
     endurance: Annotated[
         float | None,
         typer.Option(
@@ -111,73 +107,95 @@ def plan_command(
             max=240.0,
             help=f"Hover time of a full battery; default: the site's, else {ENDURANCE_MIN:g}.",
         ),
-    ] = None,
+    ] = None
     batteries: Annotated[
         int | None, typer.Option("--batteries", min=1, help="Full batteries available.")
-    ] = None,
+    ] = None
     cameras: Annotated[
         Path | None,
         typer.Option("--cameras", help="Your own cameras, as in a site's cameras.toml."),
-    ] = None,
+    ] = None
     hourly: Annotated[
         float | None,
         typer.Option("--cost-per-hour", min=0.0, help="Of one drone in the air, any currency."),
-    ] = None,
-    png: Annotated[Path | None, typer.Option("--png", help="Picture to write.")] = None,
-    theme: Annotated[Theme, typer.Option("--theme", help="Of the picture.")] = Theme.LIGHT,
-    geojson: Annotated[Path | None, typer.Option("--geojson", help="Rows and flights.")] = None,
-    as_json: JsonOption = False,
-) -> None:
+    ] = None
+    png: Annotated[Path | None, typer.Option("--png", help="Picture to write.")] = None
+    theme: Annotated[Theme, typer.Option("--theme", help="Of the picture.")] = Theme.LIGHT
+    geojson: Annotated[Path | None, typer.Option("--geojson", help="Rows and flights.")] = None
+    as_json: JsonOption = False
+
+
+@with_options
+def plan_command(options: PlanOptions, rows: RowOptions) -> None:
     """Plan a survey without a station: rows, speed, time, photos, batteries.
 
     Nothing flies and nothing is sent.
     """
     try:
-        home = default_site() if site is None else opened_site(site)
-        known = (
-            dict(home.cameras)
-            if cameras is None
-            else {**home.cameras, **read_cameras_file(cameras)}
-        )
-        if camera == "list":
-            _print_cameras({**CAMERAS, **known})
+        home = default_site() if options.site is None else opened_site(options.site)
+        own = {} if options.cameras is None else read_cameras_file(options.cameras)
+        cameras = {**home.cameras, **own}
+        if options.camera == "list":
+            _print_cameras({**CAMERAS, **cameras})
             return
-        if region is None:
-            raise PlanError("name a region: a file, or a survey region of --site")
-        _refuse_same_file({"the region": Path(region), "--png": png, "--geojson": geojson})
-        model = camera_named(camera, known.values())
-        name, area, frame = _region(region, feature, home)
-        lens = model.at_interval(model.timer_s[0] if interval is None else interval)
-        height_m = _height_m(model, gsd, height)
-        draft = Survey(1, name, area, height_m, SLOWEST_MPS, lens, front, side, bearing)
-        if above_ground:
-            if home.airspace.elevation is None:
-                raise PlanError(NO_ELEVATION)
-            draft = replace(draft, height_above_takeoff_m=None, height_above_ground_m=height_m)
-        imaging = _imaging(draft, model, interval, _exposure_s(exposure), home)
-        plan = _plan(draft, imaging, speed, frame, home)
-        fleet = _fleet(plan, home, drones)
-        needs, uses = _needs(plan, home, fleet, endurance)
-        figures = figures_of(plan, fleet, needs, imaging, uses.endurance_s, hourly)
-        figures["warnings"] += _too_few(needs.batteries, batteries)
-        if as_json:
-            print_json(figures)
-        else:
-            print_table(f"plan of {name}", ("what", "value"), plan_rows_of(figures))
-        if png is not None:
-            around = None if home.frame is None else surroundings_of(home.airspace)
-            _write(png, picture_png(plan, needs, fleet, around, figures["title"], theme))
-        if geojson is not None:
-            _write(geojson, geojson_of(plan, needs))
+        warnings = _plan_at(home, cameras, options, rows)
     except ReconError as problem:
         print(f"recon plan: {printable(str(problem))}", file=sys.stderr)
         raise typer.Exit(REFUSED if isinstance(problem, RefusedPlanError) else WRONG_USE) from None
-    if figures["warnings"]:
+    if warnings:
         raise typer.Exit(REFUSED)
 
 
-class RefusedPlanError(PlanError):
-    """A survey that cannot be flown: the region, or the numbers."""
+def _plan_at(
+    home: Site, cameras: Mapping[str, CameraModel], options: PlanOptions, rows: RowOptions
+) -> Sequence[str]:
+    """Print and write the plan of a survey at a site; return its warnings."""
+    if options.region is None:
+        raise PlanError("name a region: a file, or a survey region of --site")
+    _refuse_same_file(
+        {"the region": Path(options.region), "--png": options.png, "--geojson": options.geojson}
+    )
+    model = camera_named(options.camera, cameras.values())
+    name, area, frame = _region(options.region, rows.feature, home)
+    draft = _draft(name, area, home, model, options, rows)
+    imaging = _imaging(draft, model, options.interval, _exposure_s(options.exposure), home)
+    plan = _plan(draft, imaging, options.speed, frame, home)
+    fleet = _fleet(plan, home, options.drones)
+    needs, uses = _needs(plan, home, fleet, options.endurance)
+    figures = figures_of(plan, fleet, needs, imaging, uses.endurance_s, options.hourly)
+    figures["warnings"] += _too_few(needs.batteries, options.batteries)
+    if options.as_json:
+        print_json(figures)
+    else:
+        print_table(f"plan of {name}", ("what", "value"), plan_rows_of(figures))
+    if options.png is not None:
+        around = None if home.frame is None else surroundings_of(home.airspace)
+        picture = picture_png(plan, needs, fleet, around, figures["title"], options.theme)
+        _write(options.png, picture)
+    if options.geojson is not None:
+        _write(options.geojson, geojson_of(plan, needs))
+    warnings: Sequence[str] = figures["warnings"]
+    return warnings
+
+
+def _draft(
+    name: str,
+    area: Region,
+    home: Site,
+    model: CameraModel,
+    options: PlanOptions,
+    rows: RowOptions,
+) -> Survey:
+    """Return the survey before the speed and the interval of its photos are known."""
+    interval_s = model.timer_s[0] if options.interval is None else options.interval
+    lens, height_m = model.at_interval(interval_s), _height_m(model, options.gsd, options.height)
+    overlaps = rows.front, rows.side
+    draft = Survey(1, name, area, height_m, SLOWEST_MPS, lens, *overlaps, rows.bearing)
+    if not rows.above_ground:
+        return draft
+    if home.airspace.elevation is None:
+        raise PlanError(NO_ELEVATION)
+    return replace(draft, height_above_takeoff_m=None, height_above_ground_m=height_m)
 
 
 def _region(name: str, feature: str | None, site: Site) -> tuple[str, Region, LocalFrame]:

@@ -2,6 +2,7 @@
 
 import json
 import socket
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -9,6 +10,7 @@ import typer
 
 import recon
 from recon.cli.foreground import print_now, run_in_loop
+from recon.cli.options import with_options
 from recon.cli.qr import qr_lines
 from recon.cli.site import opened_site
 from recon.cli.users import UsersOption
@@ -29,27 +31,30 @@ HAS_GUARD = hasattr(socket, "send_fds")
 """Windows hands no sockets to other processes."""
 
 
-def run_command(
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunOptions:
+    """The site, the addresses a station listens on, and what it keeps."""
+
     site: Annotated[
         Path | None,
         typer.Option(
             help="Folder with a site.toml; without one, vehicle profiles and ground image are off."
         ),
-    ] = None,
+    ] = None
     link_host: Annotated[
         str, typer.Option(help="Address for companion apps; 0.0.0.0 accepts phones on the network.")
-    ] = "127.0.0.1",
+    ] = "127.0.0.1"
     link_port: Annotated[
         int, typer.Option(min=0, max=65535, help="Port for companion apps; 0: any free port.")
-    ] = 3001,
+    ] = 3001
     announce: Annotated[
         bool,
         typer.Option(help="Announce the station by mDNS to apps on the network of --link-host."),
-    ] = False,
-    http_host: Annotated[str, typer.Option(help="Loopback address of the console.")] = "127.0.0.1",
+    ] = False
+    http_host: Annotated[str, typer.Option(help="Loopback address of the console.")] = "127.0.0.1"
     http_port: Annotated[
         int, typer.Option(min=0, max=65535, help="Port of the console; 0: any free port.")
-    ] = 8080,
+    ] = 8080
     stop_port: Annotated[
         int | None,
         typer.Option(
@@ -58,71 +63,77 @@ def run_command(
             help="Port of the guard, on this computer: all stop when the console does not answer. "
             "Default: the console's port and 1; 0: any free port.",
         ),
-    ] = None,
+    ] = None
     guard: Annotated[
         bool, typer.Option(help="Run a guard: a process that can stop vehicles automatically.")
-    ] = HAS_GUARD,
+    ] = HAS_GUARD
     https_host: Annotated[
         str | None,
         typer.Option(
             help="Address of the console for other computers, with TLS and login; 0.0.0.0: each."
         ),
-    ] = None,
+    ] = None
     https_port: Annotated[
         int, typer.Option(min=0, max=65535, help="Port for other computers; 0: any free port.")
-    ] = 8443,
+    ] = 8443
     certificate: Annotated[
         Path | None, typer.Option(help="PEM file of a certificate; default: a generated one.")
-    ] = None,
-    key: Annotated[Path | None, typer.Option(help="PEM file of the certificate's key.")] = None,
-    users: UsersOption = None,
+    ] = None
+    key: Annotated[Path | None, typer.Option(help="PEM file of the certificate's key.")] = None
+    users: UsersOption = None
     record: Annotated[
         Path | None,
         typer.Option(
             "--record",
             help="Folder of the flight records; default: records in the site's folder.",
         ),
-    ] = None,
-    no_record: Annotated[bool, typer.Option("--no-record", help="Record no flights.")] = False,
+    ] = None
+    no_record: Annotated[bool, typer.Option("--no-record", help="Record no flights.")] = False
     audit: Annotated[
         Path | None,
         typer.Option(help="Folder of the audit; default: one per link port."),
-    ] = None,
+    ] = None
     apps: Annotated[
         Path | None,
         typer.Option(
             help="List of admitted apps; default: apps.toml in the site's folder, if any."
         ),
-    ] = None,
+    ] = None
     garbage_limit: Annotated[
         int, typer.Option(min=1024, help="Close a link after this many bytes without a packet.")
-    ] = LinkSettings().garbage_limit_bytes,
-) -> None:
+    ] = LinkSettings().garbage_limit_bytes
+
+    def config(self) -> RunConfig:
+        """Return how the station is started; raises `ReconError` for what cannot be read."""
+        apps_file = self.apps or apps_file_of(self.site)
+        return RunConfig(
+            site=default_site() if self.site is None else opened_site(self.site),
+            link_host=self.link_host,
+            link_port=self.link_port,
+            is_announced=self.announce,
+            http_host=self.http_host,
+            http_port=self.http_port,
+            stop_port=guard_port(self.stop_port, self.http_port) if self.guard else None,
+            site_folder=self.site,
+            record_folder=None if self.no_record else self.record or records_of(self.site),
+            is_record_required=self.record is not None,
+            audit=None if self.audit is None else AuditPlace(self.audit),
+            users_file=self.users,
+            https_host=self.https_host,
+            https_port=self.https_port,
+            certificate=self.certificate,
+            key=self.key,
+            console=console_folder(),
+            link=LinkSettings(garbage_limit_bytes=self.garbage_limit),
+            apps_file=apps_file,
+            apps=None if apps_file is None else read_app_list(apps_file),
+        )
+
+
+@with_options
+def run_command(options: RunOptions) -> None:
     """Run the station until Ctrl+C."""
-    opened = default_site() if site is None else opened_site(site)
-    apps_file = apps or apps_file_of(site)
-    config = RunConfig(
-        site=opened,
-        link_host=link_host,
-        link_port=link_port,
-        is_announced=announce,
-        http_host=http_host,
-        http_port=http_port,
-        stop_port=guard_port(stop_port, http_port) if guard else None,
-        site_folder=site,
-        record_folder=None if no_record else record or records_of(site),
-        is_record_required=record is not None,
-        audit=None if audit is None else AuditPlace(audit),
-        users_file=users,
-        https_host=https_host,
-        https_port=https_port,
-        certificate=certificate,
-        key=key,
-        console=console_folder(),
-        link=LinkSettings(garbage_limit_bytes=garbage_limit),
-        apps_file=apps_file,
-        apps=None if apps_file is None else read_app_list(apps_file),
-    )
+    config = options.config()
     describe(config.site)
     run_in_loop(run(config, _print_started))
 

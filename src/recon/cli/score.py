@@ -16,7 +16,7 @@ from recon.model.errors import ReconError
 from recon.record.files.users_file import state_folder
 from recon.score import RunScore, Scenario, ScenarioError, load_scenario, tables
 from recon.score.kept_runs import KeptRuns
-from recon.score.many_runs import on_cluster, on_cores, one_by_one
+from recon.score.many_runs import on_cores, one_by_one
 from recon.score.scenario import NO_FORECAST, TRUE_MOTION
 from recon.score.scenario_conditions import with_exposure
 from recon.score.scenario_schema import METHOD_NAMES
@@ -39,10 +39,6 @@ AgainstOption = Annotated[
 ]
 JobsOption = Annotated[
     int | None, typer.Option(help="Runs flown at once; default: one for each core.")
-]
-ClusterOption = Annotated[
-    str | None,
-    typer.Option(help="Fly the runs on the workers of a Dask scheduler, host:port."),
 ]
 SurveysOption = Annotated[
     bool,
@@ -78,7 +74,6 @@ def score_command(
     exposure: ExposureOption = None,
     against: AgainstOption = None,
     jobs: JobsOption = None,
-    cluster: ClusterOption = None,
     fresh: FreshOption = False,
     surveys_only: SurveysOption = False,
 ) -> None:
@@ -89,7 +84,7 @@ def score_command(
         loaded, other = chosen.scenario(scenario), chosen.other(scenario, against)
         if against is not None and other is None:
             loaded = _compared(loaded, against)
-        flying = Flying(range(first_seed, first_seed + seeds), jobs, cluster, fresh)
+        flying = Flying(range(first_seed, first_seed + seeds), jobs, fresh)
         runs = flying.runs_of(scenario, loaded)
         others = [] if other is None else flying.runs_of(*other)
     except ReconError as problem:
@@ -141,11 +136,10 @@ def runs_folder() -> Path:
 
 @dataclass(frozen=True, slots=True)
 class Flying:
-    """Which runs of scenarios are wanted, and where they are flown."""
+    """Which runs of scenarios are wanted, and how many are flown at once."""
 
     seeds: range
     jobs: int | None
-    cluster: str | None
     fresh: bool
 
     def runs_of(self, path: Path, scenario: Scenario) -> list[RunScore]:
@@ -156,7 +150,7 @@ class Flying:
             count = f"{len(runs)} of {len(self.seeds)}"
             _report(f"{count} runs were flown before (--fresh flies them again)")
         missing = sorted(set(self.seeds) - {run.seed for run in runs})
-        flown = _flown(scenario, missing, self.jobs, self.cluster)
+        flown = _flown(scenario, missing, self.jobs)
         for done in _with_progress(flown, len(missing)):
             kept.keep(done)
             runs.append(done)
@@ -173,11 +167,7 @@ def _check_numbers(seeds: int, first_seed: int, jobs: int | None) -> None:
         raise ScenarioError(f"--jobs: expected 1 or more, got {jobs}")
 
 
-def _flown(
-    scenario: Scenario, seeds: list[int], jobs: int | None, cluster: str | None
-) -> Iterator[RunScore]:
-    if cluster is not None:
-        return on_cluster(scenario, seeds, cluster)
+def _flown(scenario: Scenario, seeds: list[int], jobs: int | None) -> Iterator[RunScore]:
     at_once = min(jobs or usable_cores(), len(seeds))
     if at_once > 1:
         return on_cores(scenario, seeds, at_once, _report_minutes)

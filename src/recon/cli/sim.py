@@ -11,34 +11,11 @@ import typer
 
 from recon.cli.commands import App
 from recon.cli.foreground import print_now, until_stopped
+from recon.cli.options import with_options
 from recon.cli.sim_options import (
-    AirborneOption,
-    AltitudeBiasMOption,
-    AltitudeReferenceOption,
-    EnduranceMinOption,
-    FaultOption,
-    FaultsOption,
-    FeedOption,
-    FpsOption,
-    FrameSizeOption,
-    FramesOption,
-    HomeOption,
-    HoverOnGroundOption,
-    ImageFormatOption,
-    ImagerOption,
-    LatencySOption,
-    MissionIdsOption,
-    ReplaySiteOption,
-    SeedOption,
-    SiteOption,
-    StationOption,
-    VehiclesOption,
-    WanderOption,
-    WaypointAltitude,
-    WindMpsOption,
-    WindToDegOption,
+    FleetOptions,
+    RunningOptions,
     check_numbers,
-    parse_address,
     parse_home,
     parse_size,
 )
@@ -48,8 +25,7 @@ from recon.model.geo import GeoPoint, LatLon
 from recon.model.vehicle import AltitudeReference
 from recon.score import load_scenario
 from recon.score.simulation import go_home_heights_of, pads_of, rig_of, simulation_of
-from recon.sim.app.camera_feed import FeedSettings, ImageFormat
-from recon.sim.app.commands import HoverOnGround
+from recon.sim.app.camera_feed import FeedSettings
 from recon.sim.app.fault_file import FaultScript, load_faults
 from recon.sim.app.faults import parse_fault
 from recon.sim.camera import CameraSettings
@@ -77,33 +53,8 @@ class ImagerWorld(NamedTuple):
 
 
 @sim_app.callback(invoke_without_command=True)
-def sim_command(
-    context: typer.Context,
-    vehicles: VehiclesOption = 4,
-    station: StationOption = "127.0.0.1:3001",
-    altitude_reference: AltitudeReferenceOption = WaypointAltitude.TAKEOFF,
-    hover_on_ground: HoverOnGroundOption = HoverOnGround.NOTHING,
-    imager: ImagerOption = True,
-    airborne: AirborneOption = None,
-    wander: WanderOption = False,
-    home: HomeOption = None,
-    site: SiteOption = None,
-    replay_site: ReplaySiteOption = None,
-    frames: FramesOption = None,
-    frame_size: FrameSizeOption = "1280x720",
-    fps: FpsOption = 1.0,
-    image_format: ImageFormatOption = ImageFormat.RAW,
-    latency_s: LatencySOption = None,
-    feed: FeedOption = True,
-    altitude_bias_m: AltitudeBiasMOption = None,
-    endurance_min: EnduranceMinOption = 25.0,
-    fault: FaultOption = None,
-    faults: FaultsOption = None,
-    wind_mps: WindMpsOption = 0.0,
-    wind_to_deg: WindToDegOption = 50.0,
-    mission_ids: MissionIdsOption = True,
-    seed: SeedOption = 0,
-) -> None:
+@with_options
+def sim_command(context: typer.Context, fleet: FleetOptions, running: RunningOptions) -> None:
     """Run simulated companion apps that connect to a station.
 
     They run until Ctrl+C.
@@ -111,56 +62,53 @@ def sim_command(
     if context.invoked_subcommand is not None:
         return
     try:
-        host, port = parse_address("--station", station)
-        check_numbers(fps, endurance_min, latency_s)
-        script = FaultScript() if faults is None else load_faults(faults)
-        place = _load_site(site)
-        feed_settings = FeedSettings(fps, image_format, latency_s, feed)
-        if not imager:
-            _refuse_frames(frames, replay_site)
-        worlds = _imager_worlds(place, replay_site, frames, frame_size, seed) if imager else {}
-        config = SimulationConfig(
-            home=_home(home, place, worlds),
-            station_host=host,
-            station_port=port,
-            vehicle_count=vehicles,
-            imagers={s: ImagerSetup(w.source, feed_settings, w.rig) for s, w in worlds.items()},
-            altitude_reference=AltitudeReference(altitude_reference.value),
-            hover_on_ground=hover_on_ground,
-            airborne=_AIRBORNE[airborne],
-            wanders=wander,
-            altitude_bias_m=altitude_bias_m,
-            endurance_s=60.0 * endurance_min,
-            seed=seed,
-            drift=FIELD_DRIFT,
-            wind=_wind(wind_mps, wind_to_deg, seed),
-            reports_mission_id=mission_ids,
-            faults=(*(parse_fault(text) for text in fault or ()), *script.faults),
-            chances=script.chances,
-            pads=pads_of(place) if home is None and replay_site is None else {},
-            go_home_heights_m=go_home_heights_of(place),
-        )
+        config = _config(fleet, running)
         asyncio.run(until_stopped(run_fleet(config, print_now), "simulation ended"))
     except ReconError as problem:
         print(f"recon sim: {problem}", file=sys.stderr)
         raise typer.Exit(2) from None
 
 
-def _refuse_frames(frames: Path | None, replay_site: Path | None) -> None:
-    if frames is not None or replay_site is not None:
-        raise SimulationError("--no-imager: expected neither --frames nor --replay-site, got one")
+def _config(fleet: FleetOptions, running: RunningOptions) -> SimulationConfig:
+    """Return the simulation of the options; raises `ReconError`."""
+    host, port = running.address
+    check_numbers(running.fps, fleet.endurance_min, fleet.latency_s)
+    script = FaultScript() if fleet.faults is None else load_faults(fleet.faults)
+    place = _load_site(fleet.site)
+    feed = FeedSettings(running.fps, running.image_format, fleet.latency_s, fleet.feed)
+    worlds = _imager_worlds(place, fleet, running.seed)
+    is_on_pads = fleet.home is None and fleet.replay_site is None
+    return SimulationConfig(
+        home=_home(fleet.home, place, worlds),
+        station_host=host,
+        station_port=port,
+        vehicle_count=fleet.vehicles,
+        imagers={s: ImagerSetup(w.source, feed, w.rig) for s, w in worlds.items()},
+        altitude_reference=AltitudeReference(fleet.altitude_reference.value),
+        hover_on_ground=fleet.hover_on_ground,
+        airborne=_AIRBORNE[fleet.airborne],
+        wanders=fleet.wander,
+        altitude_bias_m=fleet.altitude_bias_m,
+        endurance_s=60.0 * fleet.endurance_min,
+        seed=running.seed,
+        drift=FIELD_DRIFT,
+        wind=_wind(fleet.wind_mps, fleet.wind_to_deg, running.seed),
+        reports_mission_id=fleet.mission_ids,
+        faults=(*(parse_fault(text) for text in fleet.fault or ()), *script.faults),
+        chances=script.chances,
+        pads=pads_of(place) if is_on_pads else {},
+        go_home_heights_m=go_home_heights_of(place),
+    )
 
 
 _AIRBORNE = {None: Airborne.IMAGER, True: Airborne.ALL, False: Airborne.NONE}
 
 
 @sim_app.command("scenario")
+@with_options
 def scenario_command(
+    running: RunningOptions,
     scenario: Annotated[Path, typer.Argument(help="A scenario file, as in scenarios/.")],
-    station: StationOption = "127.0.0.1:3001",
-    fps: FpsOption = 1.0,
-    image_format: ImageFormatOption = ImageFormat.RAW,
-    seed: SeedOption = 0,
     start_ns: Annotated[
         int | None, typer.Option(hidden=True, help="Zero of the world's time (monotonic clock).")
     ] = None,
@@ -170,11 +118,13 @@ def scenario_command(
     They run until Ctrl+C. The station should run the scenario's site.
     """
     try:
-        host, port = parse_address("--station", station)
-        if not 0.0 < fps <= MAX_FPS_HZ:
-            raise SimulationError(f"--fps: expected up to {MAX_FPS_HZ:g} per second, got {fps:g}")
-        feed = FeedSettings(fps, image_format)
-        config = simulation_of(load_scenario(scenario), abs(seed), feed)
+        host, port = running.address
+        if not 0.0 < running.fps <= MAX_FPS_HZ:
+            raise SimulationError(
+                f"--fps: expected up to {MAX_FPS_HZ:g} per second, got {running.fps:g}"
+            )
+        feed = FeedSettings(running.fps, running.image_format)
+        config = simulation_of(load_scenario(scenario), abs(running.seed), feed)
         config = replace(config, station_host=host, station_port=port)
         asyncio.run(until_stopped(run_fleet(config, print_now, start_ns), "simulation ended"))
     except ReconError as problem:
@@ -207,15 +157,20 @@ def _home(text: str | None, place: Site, worlds: Mapping[str, ImagerWorld]) -> G
     return GeoPoint(*parse_home(text), frame.origin.ellipsoid_height_m)
 
 
-def _imager_worlds(
-    place: Site, replay: Path | None, frames: Path | None, frame_size: str, seed: int
-) -> dict[str, ImagerWorld]:
+def _imager_worlds(place: Site, fleet: FleetOptions, seed: int) -> dict[str, ImagerWorld]:
     """Return the imaging drones' rigs and frames: of a real field, a folder, or rendered land."""
+    replay, frames = fleet.replay_site, fleet.frames
+    if not fleet.imager:
+        if frames is not None or replay is not None:
+            raise SimulationError(
+                "--no-imager: expected neither --frames nor --replay-site, got one"
+            )
+        return {}
     if replay is not None and frames is not None:
         raise SimulationError("expected --replay-site or --frames, got both")
     if replay is not None:
         return {IMAGER_SERIAL: ImagerWorld(*load_replay(replay))}
-    cols, rows = parse_size(frame_size)
+    cols, rows = parse_size(fleet.frame_size)
     rigs = {serial: _rig(place, imager) for serial, imager in place.imagers.items()}
     if frames is not None:
         still = folder_frames(frames, rows, cols)

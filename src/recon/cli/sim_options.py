@@ -1,5 +1,6 @@
 """The options of `recon sim`, and the parsing of their values."""
 
+from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 from typing import Annotated
@@ -13,6 +14,7 @@ from recon.sim.errors import SimulationError
 
 MAX_VEHICLES = 256
 MAX_LATENCY_S = 60.0
+DEFAULT_STATION = "127.0.0.1:3001"
 
 
 class WaypointAltitude(Enum):
@@ -22,82 +24,104 @@ class WaypointAltitude(Enum):
     TAKEOFF = "takeoff"
 
 
-VehiclesOption = Annotated[
-    int,
-    typer.Option(min=1, max=MAX_VEHICLES, help="Number of vehicles, the imaging drone included."),
-]
-StationOption = Annotated[str, typer.Option(help="HOST:PORT of the station.")]
-AltitudeReferenceOption = Annotated[
-    WaypointAltitude, typer.Option(help="Altitude reference of waypoints in the apps.")
-]
-HoverOnGroundOption = Annotated[
-    HoverOnGround, typer.Option(help="Effect of hover and return on the ground.")
-]
-ImagerOption = Annotated[
-    bool,
-    typer.Option("--imager/--no-imager", help="Whether the first vehicle is an imaging drone."),
-]
-AirborneOption = Annotated[
-    bool | None,
-    typer.Option(
-        "--airborne/--grounded",
-        help="All start in the air, or none; default: only the imaging drone.",
-    ),
-]
-WanderOption = Annotated[
-    bool, typer.Option(help="Survey drones fly back and forth until commanded otherwise.")
-]
-HomeOption = Annotated[
-    str | None, typer.Option(help="LAT,LON to start from; default: the site's origin.")
-]
-SiteOption = Annotated[
-    Path | None, typer.Option(help="Folder with a site.toml: origin, imaging drone, pads.")
-]
-ReplaySiteOption = Annotated[
-    Path | None,
-    typer.Option(help="Folder with RefFrame.jpeg and GCPs.txt: frames of a real field."),
-]
-FramesOption = Annotated[
-    Path | None, typer.Option(help="Folder of images for the imaging drone to send in turn.")
-]
-FrameSizeOption = Annotated[str, typer.Option(help="COLSxROWS of frames from a folder.")]
-FpsOption = Annotated[float, typer.Option(help="Frames per second of the imaging drone, at most.")]
-ImageFormatOption = Annotated[
-    ImageFormat, typer.Option(help="Format of frames: raw (packet 2) or JPEG (packet 5).")
-]
-LatencySOption = Annotated[
-    float | None, typer.Option(help="Seconds from capture to sending; default: random, 0.2 to 1 s.")
-]
-FeedOption = Annotated[
-    bool, typer.Option("--feed/--no-feed", help="Whether the image stream is on at the start.")
-]
-AltitudeBiasMOption = Annotated[
-    float | None, typer.Option(help="Error of the reported altitude, m; default: random.")
-]
-EnduranceMinOption = Annotated[float, typer.Option(help="Hover time of a full battery, minutes.")]
-FaultOption = Annotated[
-    list[str] | None,
-    typer.Option(
-        help="NAME[:vehicle[:start_s[:duration_s]]]; may be repeated. Names: "
-        + ", ".join(kind.value for kind in FaultKind)
-    ),
-]
-FaultsOption = Annotated[
-    Path | None, typer.Option(help="TOML file with scripted and random faults.")
-]
-WindMpsOption = Annotated[
-    float, typer.Option(help="Mean wind 10 m above ground, with gusts, m/s; 0: calm.")
-]
-WindToDegOption = Annotated[
-    float, typer.Option(help="Direction the wind blows to, degrees clockwise from north.")
-]
-MissionIdsOption = Annotated[
-    bool,
-    typer.Option(
-        "--mission-ids/--no-mission-ids", help="Whether apps report MissionID, or always 0."
-    ),
-]
-SeedOption = Annotated[int, typer.Option(help="The same seed gives the same run.")]
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FleetOptions:
+    """The simulated aircraft, their apps and what they fly over."""
+
+    vehicles: Annotated[
+        int,
+        typer.Option(
+            min=1, max=MAX_VEHICLES, help="Number of vehicles, the imaging drone included."
+        ),
+    ] = 4
+    altitude_reference: Annotated[
+        WaypointAltitude, typer.Option(help="Altitude reference of waypoints in the apps.")
+    ] = WaypointAltitude.TAKEOFF
+    hover_on_ground: Annotated[
+        HoverOnGround, typer.Option(help="Effect of hover and return on the ground.")
+    ] = HoverOnGround.NOTHING
+    imager: Annotated[
+        bool,
+        typer.Option("--imager/--no-imager", help="Whether the first vehicle is an imaging drone."),
+    ] = True
+    airborne: Annotated[
+        bool | None,
+        typer.Option(
+            "--airborne/--grounded",
+            help="All start in the air, or none; default: only the imaging drone.",
+        ),
+    ] = None
+    wander: Annotated[
+        bool, typer.Option(help="Survey drones fly back and forth until commanded otherwise.")
+    ] = False
+    home: Annotated[
+        str | None, typer.Option(help="LAT,LON to start from; default: the site's origin.")
+    ] = None
+    site: Annotated[
+        Path | None, typer.Option(help="Folder with a site.toml: origin, imaging drone, pads.")
+    ] = None
+    replay_site: Annotated[
+        Path | None,
+        typer.Option(help="Folder with RefFrame.jpeg and GCPs.txt: frames of a real field."),
+    ] = None
+    frames: Annotated[
+        Path | None, typer.Option(help="Folder of images for the imaging drone to send in turn.")
+    ] = None
+    frame_size: Annotated[str, typer.Option(help="COLSxROWS of frames from a folder.")] = "1280x720"
+    latency_s: Annotated[
+        float | None,
+        typer.Option(help="Seconds from capture to sending; default: random, 0.2 to 1 s."),
+    ] = None
+    feed: Annotated[
+        bool, typer.Option("--feed/--no-feed", help="Whether the image stream is on at the start.")
+    ] = True
+    altitude_bias_m: Annotated[
+        float | None, typer.Option(help="Error of the reported altitude, m; default: random.")
+    ] = None
+    endurance_min: Annotated[float, typer.Option(help="Hover time of a full battery, minutes.")] = (
+        25.0
+    )
+    fault: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="NAME[:vehicle[:start_s[:duration_s]]]; may be repeated. Names: "
+            + ", ".join(kind.value for kind in FaultKind)
+        ),
+    ] = None
+    faults: Annotated[
+        Path | None, typer.Option(help="TOML file with scripted and random faults.")
+    ] = None
+    wind_mps: Annotated[
+        float, typer.Option(help="Mean wind 10 m above ground, with gusts, m/s; 0: calm.")
+    ] = 0.0
+    wind_to_deg: Annotated[
+        float, typer.Option(help="Direction the wind blows to, degrees clockwise from north.")
+    ] = 50.0
+    mission_ids: Annotated[
+        bool,
+        typer.Option(
+            "--mission-ids/--no-mission-ids", help="Whether apps report MissionID, or always 0."
+        ),
+    ] = True
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunningOptions:
+    """Where simulated apps connect to, what they send, and the seed of the run."""
+
+    station: Annotated[str, typer.Option(help="HOST:PORT of the station.")] = DEFAULT_STATION
+    fps: Annotated[float, typer.Option(help="Frames per second of the imaging drone, at most.")] = (
+        1.0
+    )
+    image_format: Annotated[
+        ImageFormat, typer.Option(help="Format of frames: raw (packet 2) or JPEG (packet 5).")
+    ] = ImageFormat.RAW
+    seed: Annotated[int, typer.Option(help="The same seed gives the same run.")] = 0
+
+    @property
+    def address(self) -> tuple[str, int]:
+        """Host and port of the station; raises `SimulationError`."""
+        return parse_address("--station", self.station)
 
 
 def parse_address(option: str, text: str, lowest_port: int = 1) -> tuple[str, int]:

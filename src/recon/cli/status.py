@@ -6,40 +6,33 @@ import msgspec
 import typer
 
 from recon.cli.connection import (
-    DEFAULT_ADDRESS,
     DONE,
-    AddressOption,
     JsonOption,
-    TokenOption,
-    run_at_station,
+    station_command,
 )
 from recon.cli.output import print_json, print_line, print_table
 from recon.client import AlarmStatus, OrderStatus, Station, StopLatchStatus, Telemetry
 
 
-def status_command(
+@station_command
+async def status_command(
+    station: Station,
     as_json: JsonOption = False,
-    address: AddressOption = DEFAULT_ADDRESS,
-    token_file: TokenOption = None,
-) -> None:
+) -> int:
     """Show every vehicle and its telemetry's age."""
-
-    async def work(station: Station) -> int:
-        vehicles, alarms = station.vehicles(), await station.alarms()
-        if as_json:
-            print_json(msgspec.to_builtins(vehicles))
-            return DONE
-        facts = ("vehicle", "serial", "telemetry", "state", "mode", "height", "speed", "battery")
-        columns = (*facts, "operated by")
-        print_table("vehicles", columns, [_vehicle_row(vehicle) for vehicle in vehicles])
-        latch = await station.stop_in_force()
-        if latch is not None:
-            print_line(_in_force(latch))
-        active = sum(alarm.is_active for alarm in alarms)
-        print_line(f"{len(vehicles)} vehicles, {active} active alarms")
+    vehicles, alarms = station.vehicles(), await station.alarms()
+    if as_json:
+        print_json(msgspec.to_builtins(vehicles))
         return DONE
-
-    run_at_station(address, token_file, work)
+    facts = ("vehicle", "serial", "telemetry", "state", "mode", "height", "speed", "battery")
+    columns = (*facts, "operated by")
+    print_table("vehicles", columns, [_vehicle_row(vehicle) for vehicle in vehicles])
+    latch = await station.stop_in_force()
+    if latch is not None:
+        print_line(_in_force(latch))
+    active = sum(alarm.is_active for alarm in alarms)
+    print_line(f"{len(vehicles)} vehicles, {active} active alarms")
+    return DONE
 
 
 def _in_force(latch: StopLatchStatus) -> str:
@@ -50,56 +43,48 @@ def _in_force(latch: StopLatchStatus) -> str:
     )
 
 
-def alarms_command(
+@station_command
+async def alarms_command(
+    station: Station,
     acknowledged: Annotated[
         list[int] | None,
         typer.Option("--ack", metavar="ID", help="Acknowledge an alarm; may be repeated."),
     ] = None,
     as_json: JsonOption = False,
-    address: AddressOption = DEFAULT_ADDRESS,
-    token_file: TokenOption = None,
-) -> None:
+) -> int:
     """Show alarms, and acknowledge them.
 
     An alarm stays listed until its cause has ended and an operator has acknowledged it.
     """
-
-    async def work(station: Station) -> int:
-        for number in acknowledged or []:
-            await station.acknowledge(number)
-        alarms = await station.alarms()
-        if as_json:
-            print_json(msgspec.to_builtins(alarms))
-            return DONE
-        columns = ("id", "severity", "since", "alarm", "acknowledged")
-        print_table("alarms", columns, [_alarm_row(alarm) for alarm in alarms])
-        print_line(f"{sum(alarm.is_active for alarm in alarms)} active alarms")
+    for number in acknowledged or []:
+        await station.acknowledge(number)
+    alarms = await station.alarms()
+    if as_json:
+        print_json(msgspec.to_builtins(alarms))
         return DONE
+    columns = ("id", "severity", "since", "alarm", "acknowledged")
+    print_table("alarms", columns, [_alarm_row(alarm) for alarm in alarms])
+    print_line(f"{sum(alarm.is_active for alarm in alarms)} active alarms")
+    return DONE
 
-    run_at_station(address, token_file, work)
 
-
-def commands_command(
+@station_command
+async def commands_command(
+    station: Station,
     as_json: JsonOption = False,
-    address: AddressOption = DEFAULT_ADDRESS,
-    token_file: TokenOption = None,
-) -> None:
+) -> int:
     """Show recent orders and their outcomes.
 
     The newest comes first.
     """
-
-    async def work(station: Station) -> int:
-        lives = await station.commands()
-        if as_json:
-            print_json(msgspec.to_builtins(lives))
-            return DONE
-        columns = ("id", "vehicle", "order", "phase", "age", "note")
-        print_table("orders", columns, [_life_row(life) for life in lives])
-        print_line(f"{len(lives)} orders")
+    lives = await station.commands()
+    if as_json:
+        print_json(msgspec.to_builtins(lives))
         return DONE
-
-    run_at_station(address, token_file, work)
+    columns = ("id", "vehicle", "order", "phase", "age", "note")
+    print_table("orders", columns, [_life_row(life) for life in lives])
+    print_line(f"{len(lives)} orders")
+    return DONE
 
 
 def _vehicle_row(vehicle: Telemetry) -> tuple[str, ...]:

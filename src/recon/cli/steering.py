@@ -4,19 +4,15 @@ When the command ends before arrival, by Ctrl+C or otherwise, the vehicle stops 
 """
 
 from collections.abc import Awaitable, Callable
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from recon.cli.connection import (
-    DEFAULT_ADDRESS,
-    AddressOption,
     JsonOption,
     NameArgument,
-    TokenOption,
     named_serials,
-    run_at_station,
+    station_command,
 )
 from recon.cli.output import Outcome, print_line, print_outcomes
 from recon.client import Order, Phase, Refusal, Station, Vehicle
@@ -45,7 +41,9 @@ def _in_range(degrees: float, limit: float) -> float:
     raise typer.BadParameter(f"expected degrees from -{limit:g} to {limit:g}, got {degrees:g}")
 
 
-def goto_command(
+@station_command
+async def goto_command(
+    station: Station,
     vehicle: NameArgument,
     latitude: Annotated[
         float, typer.Argument(metavar="LAT", help="Degrees, WGS84.", callback=_latitude)
@@ -57,9 +55,7 @@ def goto_command(
     speed: SpeedOption = 5.0,
     timeout: TimeoutOption = ARRIVAL_TIMEOUT_S,
     as_json: JsonOption = False,
-    address: AddressOption = DEFAULT_ADDRESS,
-    token_file: TokenOption = None,
-) -> None:
+) -> int:
     """Fly a vehicle straight to a position.
 
     The command runs until the vehicle has arrived. Ctrl+C stops the vehicle.
@@ -70,10 +66,12 @@ def goto_command(
             latitude, longitude, height_above_takeoff_m=height, speed_mps=speed
         )
 
-    _steer(vehicle, give, timeout, as_json, address, token_file)
+    return await _steered(station, vehicle, give, timeout, as_json)
 
 
-def nudge_command(
+@station_command
+async def nudge_command(
+    station: Station,
     vehicle: NameArgument,
     north: Annotated[float, typer.Option("--north", help="Metres; negative is south.")] = 0.0,
     east: Annotated[float, typer.Option("--east", help="Metres; negative is west.")] = 0.0,
@@ -82,9 +80,7 @@ def nudge_command(
     speed: SpeedOption = 2.0,
     timeout: TimeoutOption = 60.0,
     as_json: JsonOption = False,
-    address: AddressOption = DEFAULT_ADDRESS,
-    token_file: TokenOption = None,
-) -> None:
+) -> int:
     """Move a vehicle by a few metres.
 
     The command runs until the vehicle has arrived. Ctrl+C stops the vehicle.
@@ -95,35 +91,30 @@ def nudge_command(
             north_m=north, east_m=east, up_m=up, turn_deg=turn, speed_mps=speed
         )
 
-    _steer(vehicle, give, timeout, as_json, address, token_file)
+    return await _steered(station, vehicle, give, timeout, as_json)
 
 
-def _steer(
-    name: str, give: Give, timeout_s: float, as_json: bool, address: str, token_file: Path | None
-) -> None:
-    async def work(station: Station) -> int:
-        (serial,) = named_serials(station, [name])
-        aircraft = await station.vehicle(serial, timeout_s=CONNECT_TIMEOUT_S)
-        order = await give(aircraft)
-        vehicle = aircraft.now().name
-        if isinstance(order, Refusal):
-            rule, reason = order.rule, order.reason
-            refused = Outcome(serial, None, vehicle, False, False, rule=rule, note=reason)
-            return print_outcomes([refused], as_json)
-        if not as_json:
-            print_line(f"{vehicle}: moving; Ctrl+C stops it")
-        is_replaced = False
-        try:
-            outcome = await _arrival(order, vehicle, timeout_s)
-            is_replaced = outcome.phase == Phase.SUPERSEDED.value
-        finally:
-            # Closing the connection would stop the vehicle too, but with an alarm. No hold when
-            # another order or the pilot flies it now: never fight a pilot's sticks.
-            if not is_replaced:
-                await aircraft.hold()
-        return print_outcomes([outcome], as_json)
-
-    run_at_station(address, token_file, work)
+async def _steered(station: Station, name: str, give: Give, timeout_s: float, as_json: bool) -> int:
+    (serial,) = named_serials(station, [name])
+    aircraft = await station.vehicle(serial, timeout_s=CONNECT_TIMEOUT_S)
+    order = await give(aircraft)
+    vehicle = aircraft.now().name
+    if isinstance(order, Refusal):
+        rule, reason = order.rule, order.reason
+        refused = Outcome(serial, None, vehicle, False, False, rule=rule, note=reason)
+        return print_outcomes([refused], as_json)
+    if not as_json:
+        print_line(f"{vehicle}: moving; Ctrl+C stops it")
+    is_replaced = False
+    try:
+        outcome = await _arrival(order, vehicle, timeout_s)
+        is_replaced = outcome.phase == Phase.SUPERSEDED.value
+    finally:
+        # Closing the connection would stop the vehicle too, but with an alarm. No hold when
+        # another order or the pilot flies it now: never fight a pilot's sticks.
+        if not is_replaced:
+            await aircraft.hold()
+    return print_outcomes([outcome], as_json)
 
 
 async def _arrival(order: Order, vehicle: str, timeout_s: float) -> Outcome:

@@ -6,19 +6,17 @@
 import asyncio
 import time
 from collections.abc import Awaitable, Callable, Sequence
-from pathlib import Path
+from dataclasses import dataclass
 from typing import Annotated
 
 import typer
 
 from recon.cli.connection import (
-    DEFAULT_ADDRESS,
     DONE,
     REFUSED,
-    AddressOption,
     JsonOption,
     NamesArgument,
-    TokenOption,
+    StationOptions,
     VehicleNameError,
     WaitOption,
     named_serials,
@@ -26,6 +24,7 @@ from recon.cli.connection import (
     station_at,
 )
 from recon.cli.guard_stop import STATION_ANSWERS_WITHIN_S, guard_port_of, stop_all_at_guard
+from recon.cli.options import with_options
 from recon.cli.output import Outcome, await_outcomes, print_line, print_outcomes
 from recon.client import ClientError, FleetCommands, OrderStatus, Station, StopAnswer, VehicleAnswer
 from recon.client.errors import MaybeSentError, StationUnreachableError
@@ -39,92 +38,83 @@ AllOption = Annotated[bool, typer.Option("--all", help="Every identified vehicle
 Give = Callable[[FleetCommands, Sequence[str] | None], Awaitable[tuple[VehicleAnswer, ...]]]
 
 
-def hold_command(
-    vehicles: NamesArgument = None,
-    all_vehicles: AllOption = False,
-    wait: WaitOption = CONFIRMATION_TIMEOUT_S,
-    as_json: JsonOption = False,
-    address: AddressOption = DEFAULT_ADDRESS,
-    token_file: TokenOption = None,
-) -> None:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StopOptions:
+    """The vehicles that are stopped, and how that is followed."""
+
+    vehicles: NamesArgument = None
+    all_vehicles: AllOption = False
+    wait: WaitOption = CONFIRMATION_TIMEOUT_S
+    as_json: JsonOption = False
+
+
+@with_options
+def hold_command(options: StopOptions, at: StationOptions) -> None:
     """Stop vehicles and hold position."""
-    _order(FleetCommands.hold, vehicles, all_vehicles, wait, as_json, address, token_file)
+    _order(FleetCommands.hold, options, at)
 
 
-def land_command(
-    vehicles: NamesArgument = None,
-    all_vehicles: AllOption = False,
-    wait: WaitOption = CONFIRMATION_TIMEOUT_S,
-    as_json: JsonOption = False,
-    address: AddressOption = DEFAULT_ADDRESS,
-    token_file: TokenOption = None,
-) -> None:
+@with_options
+def land_command(options: StopOptions, at: StationOptions) -> None:
     """Land vehicles where they are.
 
     Exit code 0 once telemetry shows them landing.
     """
-    _order(FleetCommands.land, vehicles, all_vehicles, wait, as_json, address, token_file)
+    _order(FleetCommands.land, options, at)
 
 
-def return_command(
-    vehicles: NamesArgument = None,
-    all_vehicles: AllOption = False,
-    wait: WaitOption = CONFIRMATION_TIMEOUT_S,
-    as_json: JsonOption = False,
-    address: AddressOption = DEFAULT_ADDRESS,
-    token_file: TokenOption = None,
-) -> None:
+@with_options
+def return_command(options: StopOptions, at: StationOptions) -> None:
     """Return vehicles to home, each at its own go-home height, and land.
 
     The go-home height is set in the aircraft. Exit code 0 once telemetry shows them returning.
     """
-    _order(FleetCommands.return_home, vehicles, all_vehicles, wait, as_json, address, token_file)
+    _order(FleetCommands.return_home, options, at)
 
 
+@with_options
 def all_stop_command(
+    at: StationOptions,
     wait: WaitOption = CONFIRMATION_TIMEOUT_S,
     as_json: JsonOption = False,
     stop_port: Annotated[
         int | None,
         typer.Option(help="Port of the station's guard; default: the console's port and 1."),
     ] = None,
-    address: AddressOption = DEFAULT_ADDRESS,
-    token_file: TokenOption = None,
 ) -> None:
     """Hold every vehicle in the air, identified or not. Never stops motors.
 
     It stays in force: nothing moves a vehicle until `recon release-stop`. Where the station does
     not answer within a second, its guard holds them.
     """
-    port = guard_port_of(address) if stop_port is None else stop_port
+    port = guard_port_of(at.address) if stop_port is None else stop_port
     first = None if port is None else STATION_ANSWERS_WITHIN_S
     try:
-        outcomes = asyncio.run(_all_stop(station_at(address, token_file), wait, first))
+        outcomes = asyncio.run(_all_stop(station_at(at), wait, first))
     except (TimeoutError, StationUnreachableError, MaybeSentError) as problem:
         by_guard = None if port is None else stop_all_at_guard(port)
         if by_guard is None and not isinstance(problem, TimeoutError):
             raise
         if by_guard is None:
-            outcomes = asyncio.run(_all_stop(station_at(address, token_file), wait, None))
+            outcomes = asyncio.run(_all_stop(station_at(at), wait, None))
         else:
             outcomes = by_guard
     raise typer.Exit(print_outcomes(outcomes, as_json))
 
 
+@with_options
 def release_stop_command(
+    at: StationOptions,
     vehicles: NamesArgument = None,
     all_vehicles: Annotated[
         bool, typer.Option("--all", help="Every vehicle, also those that connect later.")
     ] = False,
-    address: AddressOption = DEFAULT_ADDRESS,
-    token_file: TokenOption = None,
 ) -> None:
     """Release vehicles from an all stop.
 
     Nothing is sent to them, and nothing resumes automatically.
     """
-    if bool(vehicles) is all_vehicles:
-        raise VehicleNameError("Name the vehicles or use --all")
+    _require_names_or_all(vehicles, all_vehicles)
 
     async def work(station: Station) -> int:
         serials = None if all_vehicles else named_serials(station, vehicles)
@@ -136,30 +126,27 @@ def release_stop_command(
         print_line(f"{which}: released from the all stop (audited); nothing was sent")
         return DONE
 
-    run_at_station(address, token_file, work)
+    run_at_station(at, work)
 
 
-def _order(
-    give: Give,
-    names: list[str] | None,
-    all_vehicles: bool,
-    wait_s: float,
-    as_json: bool,
-    address: str,
-    token_file: Path | None,
-) -> None:
+def _require_names_or_all(names: list[str] | None, all_vehicles: bool) -> None:
     if bool(names) is all_vehicles:
         raise VehicleNameError("Name the vehicles or use --all")
 
+
+def _order(give: Give, options: StopOptions, at: StationOptions) -> None:
+    is_for_all = options.all_vehicles
+    _require_names_or_all(options.vehicles, is_for_all)
+
     async def work(station: Station) -> int:
-        serials = None if all_vehicles else named_serials(station, names)
+        serials = None if is_for_all else named_serials(station, options.vehicles)
         answers = await give(station.fleet, serials)
         outcomes = await await_outcomes(
-            station, answers, wait_s, leaves_grounded_alone=all_vehicles
+            station, answers, options.wait, leaves_grounded_alone=is_for_all
         )
-        return print_outcomes(outcomes, as_json)
+        return print_outcomes(outcomes, options.as_json)
 
-    run_at_station(address, token_file, work)
+    run_at_station(at, work)
 
 
 async def _all_stop(station: Station, wait_s: float, within_s: float | None) -> list[Outcome]:

@@ -1,6 +1,6 @@
 """`recon survey`: a region cut into rows, flown by vehicles that guidance controls."""
 
-from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -9,19 +9,15 @@ import typer
 
 from recon.cli.commands import App
 from recon.cli.connection import (
-    DEFAULT_ADDRESS,
     DONE,
     REFUSED,
-    AddressOption,
     JsonOption,
     NamesArgument,
-    TokenOption,
-    Work,
     named_serials,
-    run_at_station,
+    station_command,
 )
 from recon.cli.output import print_json, print_line, print_table
-from recon.client import ClientError, Refusal, Station, SurveyCommands, SurveyStatus
+from recon.client import ClientError, Refusal, Station, SurveyStatus
 from recon.client.surveys import SurveyVehicle
 from recon.model.geo import GeoPoint
 from recon.model.survey import PLANNER_GOALS, WhenDone, height_text, unknown_survey
@@ -38,32 +34,39 @@ survey_app = App(
 
 NumberArgument = Annotated[int, typer.Argument(metavar="ID", help="The survey's number.")]
 
-FeatureOption = Annotated[
-    str | None, typer.Option("--feature", help="Name of the feature in the file.")
-]
-FrontOption = Annotated[
-    float, typer.Option("--front-overlap", help="Overlap of photos along a row, 0 to 0.95.")
-]
-SideOption = Annotated[float, typer.Option("--side-overlap", help="Overlap of rows, 0 to 0.95.")]
-BearingOption = Annotated[
-    float | None,
-    typer.Option("--bearing", help="Of the rows, degrees; default: the fewest turns."),
-]
-AboveGroundOption = Annotated[
-    bool,
-    typer.Option(
-        "--above-ground",
-        help="The height is above the ground of the site's elevation model, not above takeoff.",
-    ),
-]
-
 
 class SurveyNumberError(ClientError):
     """No survey has this number."""
 
 
-@survey_app.command("create")
-def create_command(
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RowOptions:
+    """How rows are laid over a region, for a plan as for a survey."""
+
+    feature: Annotated[
+        str | None, typer.Option("--feature", help="Name of the feature in the file.")
+    ] = None
+    above_ground: Annotated[
+        bool,
+        typer.Option(
+            "--above-ground",
+            help="The height is above the ground of the site's elevation model, not above takeoff.",
+        ),
+    ] = False
+    front: Annotated[
+        float, typer.Option("--front-overlap", help="Overlap of photos along a row, 0 to 0.95.")
+    ] = 0.7
+    side: Annotated[float, typer.Option("--side-overlap", help="Overlap of rows, 0 to 0.95.")] = 0.6
+    bearing: Annotated[
+        float | None,
+        typer.Option("--bearing", help="Of the rows, degrees; default: the fewest turns."),
+    ] = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CreateOptions:
+    """A survey: its region, how it is flown and what the imaging drone may do."""
+
     region: Annotated[
         str,
         typer.Argument(
@@ -71,14 +74,12 @@ def create_command(
             help="Name of a survey region of the site, or a GeoJSON, KML, KMZ, Shapefile (zip) or "
             "GeoPackage file.",
         ),
-    ],
+    ]
     height: Annotated[
         float, typer.Option("--height", help="Metres above takeoff, or above ground.")
-    ],
-    above_ground: AboveGroundOption = False,
-    speed: Annotated[float, typer.Option("--speed", help="Metres per second.")] = 5.0,
-    feature: FeatureOption = None,
-    name: Annotated[str | None, typer.Option("--name", help="Name of the survey.")] = None,
+    ]
+    speed: Annotated[float, typer.Option("--speed", help="Metres per second.")] = 5.0
+    name: Annotated[str | None, typer.Option("--name", help="Name of the survey.")] = None
     planner: Annotated[
         str | None,
         typer.Option(
@@ -86,10 +87,7 @@ def create_command(
             help=f"{' or '.join(PLANNER_GOALS)}. Default: sunlit_first with an imaging drone, else "
             "lawnmower_once.",
         ),
-    ] = None,
-    front: FrontOption = 0.7,
-    side: SideOption = 0.6,
-    bearing: BearingOption = None,
+    ] = None
     camera: Annotated[
         str | None,
         typer.Option(
@@ -97,38 +95,38 @@ def create_command(
             help="Name of a camera; `recon plan --camera list`. Default: a common one, 4:3, of "
             "unknown pixels.",
         ),
-    ] = None,
+    ] = None
     interval: Annotated[
         float,
         typer.Option("--interval", help="Seconds between photos, as set in the camera's timer."),
-    ] = 2.0,
+    ] = 2.0
     rounds: Annotated[
         int,
         typer.Option(
             "--rounds", help="Most rounds of a lawnmower over ground that is still missing."
         ),
-    ] = 6,
+    ] = 6
     minutes: Annotated[
         float | None, typer.Option("--minutes", min=0.1, help="No new mission after this many.")
-    ] = None,
+    ] = None
     when_done: Annotated[
         WhenDone,
         typer.Option("--when-done", help="What vehicles do when finished or low on battery."),
-    ] = WhenDone.RETURN_HOME,
+    ] = WhenDone.RETURN_HOME
     side_step: Annotated[
         bool,
         typer.Option(
             "--side-step",
             help="The imaging drone may side-step automatically while light is mostly unknown.",
         ),
-    ] = False,
+    ] = False
     upwind: Annotated[
         bool,
         typer.Option(
             "--upwind",
             help="The imaging drone may fly to where it sees more of the shade to come.",
         ),
-    ] = False,
+    ] = False
     relief: Annotated[
         bool,
         typer.Option(
@@ -136,164 +134,137 @@ def create_command(
             help="The imaging drone is relieved by the spare drone, or recalled, when its "
             "battery is at the return threshold.",
         ),
-    ] = False,
+    ] = False
     spare: Annotated[
         str | None,
         typer.Option("--spare", help="The imaging drone that relieves it; with --relief."),
-    ] = None,
-    as_json: JsonOption = False,
-    address: AddressOption = DEFAULT_ADDRESS,
-    token_file: TokenOption = None,
-) -> None:
+    ] = None
+
+    def as_requested(self, rows: RowOptions) -> dict[str, Any]:
+        """Return the survey as the client creates it, but for its region."""
+        height = "height_above_ground_m" if rows.above_ground else "height_above_takeoff_m"
+        time_s = None if self.minutes is None else 60.0 * self.minutes
+        return {
+            height: self.height,
+            "speed_mps": self.speed,
+            "planner": self.planner,
+            "front_overlap": rows.front,
+            "side_overlap": rows.side,
+            "row_bearing_deg": rows.bearing,
+            "camera": {"model": self.camera, "interval_s": self.interval},
+            "budget": {"rounds": self.rounds, "time_s": time_s},
+            "when_done": self.when_done.value,
+            "side_step_allowed": self.side_step,
+            "upwind_allowed": self.upwind,
+            "relief_allowed": self.relief,
+        }
+
+
+@survey_app.command("create")
+@station_command
+async def create_command(
+    station: Station, survey: CreateOptions, rows: RowOptions, as_json: JsonOption = False
+) -> int:
     """Plan a survey.
 
     Nothing flies yet: `recon survey start` starts it.
     """
-    settings: dict[str, Any] = {
-        "height_above_ground_m" if above_ground else "height_above_takeoff_m": height,
-        "speed_mps": speed,
-        "planner": planner,
-        "front_overlap": front,
-        "side_overlap": side,
-        "row_bearing_deg": bearing,
-        "camera": {"model": camera, "interval_s": interval},
-        "budget": {"rounds": rounds, "time_s": None if minutes is None else 60.0 * minutes},
-        "when_done": when_done.value,
-        "side_step_allowed": side_step,
-        "upwind_allowed": upwind,
-        "relief_allowed": relief,
-    }
-
-    async def work(station: Station) -> int:
-        area = await _area(station, region, feature, name)
-        if spare is not None:
-            area["spare_serial"] = named_serials(station, [spare])[0]
-        return _print_answer(await station.surveys.create(**area, **settings), as_json)
-
-    run_at_station(address, token_file, work)
+    area = await _area(station, survey.region, rows.feature, survey.name)
+    if survey.spare is not None:
+        area["spare_serial"] = named_serials(station, [survey.spare])[0]
+    answer = await station.surveys.create(**area, **survey.as_requested(rows))
+    return _print_answer(answer, as_json)
 
 
 @survey_app.command("start")
-def start_command(
+@station_command
+async def start_command(
+    station: Station,
     number: NumberArgument,
     vehicles: NamesArgument = None,
     takeoff: Annotated[
         bool, typer.Option("--takeoff", help="Allow takeoff for this start.")
     ] = False,
     as_json: JsonOption = False,
-    address: AddressOption = DEFAULT_ADDRESS,
-    token_file: TokenOption = None,
-) -> None:
+) -> int:
     """Fly a survey with these vehicles; guidance takes control of them.
 
     For a running survey: add vehicles, or resume those that stopped.
     """
-
-    async def work(station: Station) -> int:
-        serials = named_serials(station, vehicles)
-        return _print_answer(await station.surveys.start(number, serials, takeoff=takeoff), as_json)
-
-    run_at_station(address, token_file, work)
+    serials = named_serials(station, vehicles)
+    return _print_answer(await station.surveys.start(number, serials, takeoff=takeoff), as_json)
 
 
 @survey_app.command("estimate")
-def estimate_command(
+@station_command
+async def estimate_command(
+    station: Station,
     number: NumberArgument,
     vehicles: NamesArgument = None,
     as_json: JsonOption = False,
-    address: AddressOption = DEFAULT_ADDRESS,
-    token_file: TokenOption = None,
-) -> None:
+) -> int:
     """Show what a survey will take with these vehicles: time, photos, batteries.
 
     Nothing flies. Without vehicles it is for one drone.
     """
+    serials = named_serials(station, vehicles) if vehicles else []
+    preview = await station.surveys.estimate(number, serials)
+    if as_json:
+        print_json(msgspec.to_builtins(preview))
+    elif preview.refusal is not None:
+        print_line(f"refused: {preview.refusal}")
+    else:
+        # Imported here: geometry takes longer to load than a pause may wait.
+        from recon.cli.plan_output import rows_of
 
-    async def work(station: Station) -> int:
-        serials = named_serials(station, vehicles) if vehicles else []
-        preview = await station.surveys.estimate(number, serials)
-        if as_json:
-            print_json(msgspec.to_builtins(preview))
-        elif preview.refusal is not None:
-            print_line(f"refused: {preview.refusal}")
-        else:
-            # Imported here: geometry takes longer to load than a pause may wait.
-            from recon.cli.plan_output import rows_of
-
-            figures = msgspec.to_builtins(preview)
-            print_table("estimate", ("what", "value"), rows_of(figures))
-        return REFUSED if preview.refusal or preview.warnings else DONE
-
-    run_at_station(address, token_file, work)
+        figures = msgspec.to_builtins(preview)
+        print_table("estimate", ("what", "value"), rows_of(figures))
+    return REFUSED if preview.refusal or preview.warnings else DONE
 
 
 @survey_app.command("pause")
-def pause_command(
-    number: NumberArgument,
-    as_json: JsonOption = False,
-    address: AddressOption = DEFAULT_ADDRESS,
-    token_file: TokenOption = None,
-) -> None:
+@station_command
+async def pause_command(
+    station: Station, number: NumberArgument, as_json: JsonOption = False
+) -> int:
     """Pause a survey.
 
     Its vehicles hold position, under operator control.
     """
-    run_at_station(address, token_file, _stop(SurveyCommands.pause, number, as_json))
+    return _print_answer(await station.surveys.pause(number), as_json)
 
 
 @survey_app.command("abort")
-def abort_command(
-    number: NumberArgument,
-    as_json: JsonOption = False,
-    address: AddressOption = DEFAULT_ADDRESS,
-    token_file: TokenOption = None,
-) -> None:
+@station_command
+async def abort_command(
+    station: Station, number: NumberArgument, as_json: JsonOption = False
+) -> int:
     """End a survey; it cannot be resumed.
 
     Its vehicles hold position, under operator control.
     """
-    run_at_station(address, token_file, _stop(SurveyCommands.abort, number, as_json))
+    return _print_answer(await station.surveys.abort(number), as_json)
 
 
 @survey_app.command("status")
-def status_command(
+@station_command
+async def status_command(
+    station: Station,
     number: Annotated[
         int | None, typer.Argument(metavar="ID", help="One survey; default: all.")
     ] = None,
     as_json: JsonOption = False,
-    address: AddressOption = DEFAULT_ADDRESS,
-    token_file: TokenOption = None,
-) -> None:
+) -> int:
     """Show surveys, their coverage and vehicles, the newest first."""
-    run_at_station(address, token_file, _status(number, as_json))
-
-
-def _stop(
-    stop: Callable[[SurveyCommands, int], Awaitable[SurveyStatus | Refusal]],
-    number: int,
-    as_json: bool,
-) -> Work:
-    async def work(station: Station) -> int:
-        return _print_answer(await stop(station.surveys, number), as_json)
-
-    return work
-
-
-def _status(number: int | None, as_json: bool) -> Work:
-    async def work(station: Station) -> int:
-        known = await station.surveys.list()
-        surveys = [survey for survey in known if number in (None, survey.id)]
-        if number is not None and not surveys:
-            raise SurveyNumberError(
-                unknown_survey(number, ((s.id, s.name, s.phase) for s in known))
-            )
-        if as_json:
-            print_json(msgspec.to_builtins(surveys))
-        else:
-            _print_surveys(surveys)
-        return DONE
-
-    return work
+    known = await station.surveys.list()
+    surveys = [survey for survey in known if number in (None, survey.id)]
+    if number is not None and not surveys:
+        raise SurveyNumberError(unknown_survey(number, ((s.id, s.name, s.phase) for s in known)))
+    if as_json:
+        print_json(msgspec.to_builtins(surveys))
+    else:
+        _print_surveys(surveys)
+    return DONE
 
 
 def names_file(region: Path) -> bool:

@@ -1,5 +1,6 @@
 """`recon zone`: temporary zones round a person, a tractor or a crewed aircraft."""
 
+from dataclasses import dataclass
 from typing import Annotated
 
 import msgspec
@@ -7,14 +8,14 @@ import typer
 
 from recon.cli.commands import App
 from recon.cli.connection import (
-    DEFAULT_ADDRESS,
     DONE,
     REFUSED,
-    AddressOption,
     JsonOption,
-    TokenOption,
+    StationOptions,
     run_at_station,
+    station_command,
 )
+from recon.cli.options import with_options
 from recon.cli.output import print_json, print_line, print_table, refused
 from recon.client import ClientError, Refusal, Station, TemporaryZoneStatus
 from recon.model.geo import LatLon
@@ -30,102 +31,98 @@ class ZoneShapeError(ClientError):
     """The options name no place, or two."""
 
 
-@zone_app.command("add")
-def add_command(
-    kind: Annotated[TemporaryZoneKind, typer.Option("--kind", help="What is kept clear.")],
-    reason: Annotated[str, typer.Option("--reason", help="For those who see the alarm; audited.")],
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ZoneOptions:
+    """A temporary zone: what is kept clear, where and for how long."""
+
+    kind: Annotated[TemporaryZoneKind, typer.Option("--kind", help="What is kept clear.")]
+    reason: Annotated[str, typer.Option("--reason", help="For those who see the alarm; audited.")]
     at: Annotated[
         str | None, typer.Option("--at", metavar="LAT,LON", help="Centre of a circle.")
-    ] = None,
+    ] = None
     radius: Annotated[
         float | None, typer.Option("--radius-m", help="Radius of the circle, metres.")
-    ] = None,
+    ] = None
     corners: Annotated[
         list[str] | None,
         typer.Option("--corner", metavar="LAT,LON", help="A corner of an outline; repeat it."),
-    ] = None,
+    ] = None
     floor: Annotated[
         float | None, typer.Option("--floor-m", help="Metres above ground; default: the ground.")
-    ] = None,
+    ] = None
     ceiling: Annotated[
         float | None,
         typer.Option(
             "--ceiling-m",
             help="Metres above ground; default: 30, of a crewed aircraft all heights.",
         ),
-    ] = None,
+    ] = None
     minutes: Annotated[
         float | None, typer.Option("--minutes", help="Default: until a person ends it.")
-    ] = None,
-    as_json: JsonOption = False,
-    address: AddressOption = DEFAULT_ADDRESS,
-    token_file: TokenOption = None,
-) -> None:
+    ] = None
+    as_json: JsonOption = False
+
+
+@zone_app.command("add")
+@with_options
+def add_command(zone: ZoneOptions, station: StationOptions) -> None:
     """Draw a zone that everything is kept out of at once.
 
     Drones about to enter it are held. One that is in it raises an alarm and may be led out.
     """
-    shape = _shape(at, radius, corners or [])
+    shape = _shape(zone.at, zone.radius, zone.corners or [])
+    run_at_station(station, lambda connected: _draw(connected, shape, zone))
 
-    async def work(station: Station) -> int:
-        zone = await station.zones.draw(
-            kind,
-            shape,
-            reason,
-            floor_m=floor,
-            ceiling_m=ceiling,
-            lasts_s=None if minutes is None else 60.0 * minutes,
-        )
-        if isinstance(zone, Refusal):
-            print_line(refused(zone))
-            return REFUSED
-        if as_json:
-            print_json(msgspec.to_builtins(zone))
-        else:
-            print_line(f"zone {zone.id} is in force: {zone.name}, {_heights(zone)}, {_until(zone)}")
-        return DONE
 
-    run_at_station(address, token_file, work)
+async def _draw(station: Station, shape: Circle | list[LatLon], options: ZoneOptions) -> int:
+    zone = await station.zones.draw(
+        options.kind,
+        shape,
+        options.reason,
+        floor_m=options.floor,
+        ceiling_m=options.ceiling,
+        lasts_s=None if options.minutes is None else 60.0 * options.minutes,
+    )
+    if isinstance(zone, Refusal):
+        print_line(refused(zone))
+        return REFUSED
+    if options.as_json:
+        print_json(msgspec.to_builtins(zone))
+    else:
+        print_line(f"zone {zone.id} is in force: {zone.name}, {_heights(zone)}, {_until(zone)}")
+    return DONE
 
 
 @zone_app.command("end")
-def end_command(
+@station_command
+async def end_command(
+    station: Station,
     number: Annotated[int, typer.Argument(metavar="ID", help="The zone's number.")],
-    address: AddressOption = DEFAULT_ADDRESS,
-    token_file: TokenOption = None,
-) -> None:
+) -> int:
     """End a zone.
 
     Nothing is sent, and nothing that was held resumes automatically.
     """
-
-    async def work(station: Station) -> int:
-        refusal = await station.zones.end(number)
-        print_line(f"zone {number} has ended (audited)" if refusal is None else refused(refusal))
-        return DONE if refusal is None else REFUSED
-
-    run_at_station(address, token_file, work)
+    refusal = await station.zones.end(number)
+    print_line(f"zone {number} has ended (audited)" if refusal is None else refused(refusal))
+    return DONE if refusal is None else REFUSED
 
 
 @zone_app.command("list")
-def list_command(
+@station_command
+async def list_command(
+    station: Station,
     as_json: JsonOption = False,
-    address: AddressOption = DEFAULT_ADDRESS,
-    token_file: TokenOption = None,
-) -> None:
+) -> int:
     """Show the temporary zones in force."""
-
-    async def work(station: Station) -> int:
-        zones = await station.zones.in_force()
-        if as_json:
-            print_json(msgspec.to_builtins(zones))
-            return DONE
-        columns = ("id", "kind", "size", "heights", "by", "reason", "end")
-        print_table("temporary zones", columns, [_row(zone) for zone in zones])
-        print_line(f"{len(zones)} temporary zones in force")
+    zones = await station.zones.in_force()
+    if as_json:
+        print_json(msgspec.to_builtins(zones))
         return DONE
-
-    run_at_station(address, token_file, work)
+    columns = ("id", "kind", "size", "heights", "by", "reason", "end")
+    print_table("temporary zones", columns, [_row(zone) for zone in zones])
+    print_line(f"{len(zones)} temporary zones in force")
+    return DONE
 
 
 def _shape(at: str | None, radius_m: float | None, corners: list[str]) -> Circle | list[LatLon]:

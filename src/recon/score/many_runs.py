@@ -1,4 +1,4 @@
-"""Runs of many seeds: one after the other, on this machine's cores, or on a Dask cluster.
+"""Runs of many seeds: one after the other, or on this machine's cores.
 
 Each run is a pure function of scenario and seed, so it does not matter where it is flown; runs come
 back in the order in which they end.
@@ -6,21 +6,15 @@ back in the order in which they end.
 
 import multiprocessing
 import os
-import socket
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from threading import Thread
-from typing import Any
 
-from recon.model.errors import ReconError
-from recon.score.kept_runs import code_digest
 from recon.score.run import Report, run
 from recon.score.run_score import RunScore
 from recon.score.scenario import Scenario
 from recon.score.scenario_schema import ScenarioError
-
-CONNECT_WITHIN_S, WORKERS_WITHIN_S = 10.0, 60.0
 
 
 def one_by_one(
@@ -68,65 +62,3 @@ def _end_with_parent() -> None:
         os._exit(1)
 
     Thread(target=watch, daemon=True).start()
-
-
-def on_cluster(scenario: Scenario, seeds: Sequence[int], address: str) -> Iterator[RunScore]:
-    """Yield the runs, flown by the workers of a Dask scheduler.
-
-    Raises `ScenarioError` without Dask, without scheduler or workers at the address, and for
-    workers that have other code than this process.
-    """
-    try:
-        import distributed
-    except ImportError:
-        raise ScenarioError(
-            "--cluster: expected the package distributed, which is not installed;"
-            " install it here and on every worker: pip install distributed"
-        ) from None
-    try:
-        client = distributed.Client(address, timeout=CONNECT_WITHIN_S)
-    except (OSError, ValueError) as problem:
-        why = str(problem) or type(problem).__name__
-        raise ScenarioError(
-            f"--cluster: expected a Dask scheduler at {address}, got: {why}"
-        ) from None
-    with client:
-        _wait_for_worker(client)
-        whole: Any = client.scatter(scenario, broadcast=True)
-        digest = code_digest()
-        waiting = [client.submit(_run_of, whole, seed, digest, pure=False) for seed in seeds]
-        for done in distributed.as_completed(waiting):
-            yield _result(done)
-
-
-def _wait_for_worker(client: Any) -> None:
-    try:
-        client.wait_for_workers(1, timeout=WORKERS_WITHIN_S)
-    except TimeoutError:
-        raise ScenarioError(
-            "--cluster: expected workers at the scheduler, got none: start some"
-        ) from None
-
-
-def _run_of(scenario: Scenario, seed: int, digest: str) -> RunScore:
-    """Return a run; on a worker, whose code must be that of the one who asks."""
-    if code_digest() != digest:
-        raise ScenarioError(
-            "--cluster: expected workers with this version of Recon and of its libraries, got"
-            f" another on {socket.gethostname()}: install the same there"
-        )
-    return run(scenario, seed)
-
-
-def _result(done: Any) -> RunScore:
-    try:
-        found: RunScore = done.result()
-    except ReconError:
-        raise
-    except Exception as problem:
-        # Whatever a foreign machine lacks ends up here: Recon, memory, power.
-        why = f"{type(problem).__name__}: {problem}"
-        raise ScenarioError(
-            f"--cluster: expected a run, got {why}; finished runs are kept"
-        ) from problem
-    return found
