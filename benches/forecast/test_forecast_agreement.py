@@ -24,7 +24,7 @@ def test_brier_by_lead(capsys: pytest.CaptureFixture[str]) -> None:
         issued = {method: forecasts(method, maps, SETTINGS)[-1] for method in FORECASTERS}
         for lead, lead_s in enumerate(SETTINGS.lead_s):
             truth = is_sunlit(shade, 95.0 + lead_s)
-            near = SEEN & (issued["global_shift"].horizon_s >= lead_s)
+            near = SEEN & (issued["advection"].horizon_s >= lead_s)
             horizon_share[lead].append(near.sum() / SEEN.sum())
             for method, forecast in issued.items():
                 wrong = (forecast.sun_probability[lead] / 255.0 - truth) ** 2
@@ -41,4 +41,4 @@ def test_brier_by_lead(capsys: pytest.CaptureFixture[str]) -> None:
             )
             print(f"  {lead_s:3.0f} s, {np.mean(horizon_share[lead]):4.0%} in horizon: {summary}")
     at_30 = {m: np.mean(scores[m, 0][2]) for m in FORECASTERS}
-    assert at_30["global_shift"] < 0.5 * at_30["persistence"]
+    assert at_30["advection"] < 0.5 * at_30["persistence"]

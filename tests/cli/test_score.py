@@ -84,7 +84,7 @@ def test_all_forecasts_are_compared_with_one(tmp_path: Path) -> None:
         2
     ].splitlines()
     methods = {row.split(" | ")[0].strip("| ") for row in rows if row}
-    assert {"climatology", "global_shift", "true_motion"} <= methods
+    assert {"climatology", "advection", "true_motion"} <= methods
     assert "15 s" in heading
 
 
@@ -166,7 +166,7 @@ def test_options_choose_methods(tmp_path: Path) -> None:
         ),
         (["--detection", "magic"], f"--detection: expected {known('detection')}, got"),
         (["--forecast", "magic"], f"--forecast: expected {known('forecast')}, got"),
-        (["--against", "magic"], "--against: expected advection or global_shift or"),
+        (["--against", "magic"], "--against: expected advection or persistence or"),
         (["--against", "persistence", "--forecast", "none"], "expected a forecast to compare"),
         (["--against", "persistence", "--surveys-only"], "--surveys-only: expected --against a"),
         (

@@ -105,7 +105,7 @@ def test_another_method_follows_none_and_another_grid_starts_anew() -> None:
     later, _sun = FORECASTERS["advection"].after(state, one, SETTINGS, one.valid)
     assert later.followed is not None
     assert (later.followed.valid == seen).all()
-    other, _sun = step("global_shift", state, replace(maps[-1], captured_at_ns=10**12), SETTINGS)
+    other, _sun = step("persistence", state, replace(maps[-1], captured_at_ns=10**12), SETTINGS)
     assert other.followed is None
 
 

@@ -31,11 +31,11 @@ def test_the_motion_is_found_in_detected_maps_and_helps() -> None:
     scores: dict[str, list[float]] = {method: [] for method in FORECASTERS}
     for seed, velocity in ((800, (4.0, -2.0)), (801, (-3.0, -4.0)), (802, (0.5, 5.0))):
         shade, latest = line(seed, velocity)
-        assert latest["global_shift"].grid == FIELD
-        assert latest["global_shift"].velocity_mps == pytest.approx(velocity, abs=0.7)
+        assert latest["advection"].grid == FIELD
+        assert latest["advection"].velocity_mps == pytest.approx(velocity, abs=0.7)
         truth = is_sunlit(shade, 120.0 + 30.0)
-        within_horizon = FOOTPRINT & (latest["global_shift"].horizon_s >= 30.0)
+        within_horizon = FOOTPRINT & (latest["advection"].horizon_s >= 30.0)
         for method, forecast in latest.items():
             probability = forecast.sun_probability[1] / 255.0
             scores[method].append(float(((probability - truth) ** 2)[within_horizon].mean()))
-    assert np.mean(scores["global_shift"]) < 0.6 * np.mean(scores["persistence"]), scores
+    assert np.mean(scores["advection"]) < 0.6 * np.mean(scores["persistence"]), scores

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from recon.forecast import moved_on
-from recon.forecast.global_shift import CONFIDENCE_HALVES_S
+from recon.forecast.moved_on import CONFIDENCE_HALVES_S
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.shade import ShadeMap
 from recon.model.units import NS_PER_S

@@ -10,10 +10,9 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from recon.forecast.advection import ADVECTION
-from recon.forecast.dense_flow import DENSE_FLOW
 from recon.forecast.forecaster import Forecaster
-from recon.forecast.global_shift import GLOBAL_SHIFT, moved_on
 from recon.forecast.hindcast import right_shares
+from recon.forecast.moved_on import moved_on
 from recon.forecast.next_change import NextChange, next_change
 from recon.forecast.persistence import CLIMATOLOGY, PERSISTENCE
 from recon.forecast.settings import ForecastSettings
@@ -33,8 +32,6 @@ __all__ = [
 FORECASTERS: Mapping[str, Forecaster] = MappingProxyType(
     {
         "advection": ADVECTION,
-        "global_shift": GLOBAL_SHIFT,
-        "dense_flow": DENSE_FLOW,
         "persistence": PERSISTENCE,
         "climatology": CLIMATOLOGY,
     }

@@ -1,4 +1,4 @@
-"""The shift between two shade maps, by phase correlation.
+"""How well two shade maps agree at each shift, by phase correlation.
 
 C. D. Kuglin, D. C. Hines, The phase correlation image alignment method, Proc. Int. Conf. on
 Cybernetics and Society (1975). Two steps come first. The mean of the surroundings, over visible
@@ -17,31 +17,11 @@ import numpy.typing as npt
 from recon.forecast.settings import ForecastSettings
 from recon.model.geo import GroundGrid
 from recon.model.shade import FloatMap, MaskMap, ShadeMap
-from recon.model.units import ns_to_seconds
 
 Waves: TypeAlias = npt.NDArray[np.complex64]
 
 FADES_OVER_CELLS = 12.0
 """From the edge of the visible area inwards."""
-
-PEAK_CELLS = 12
-"""Half width of the area around the best shift without rivals: a peak is some cells wide."""
-
-
-@dataclass(frozen=True, slots=True)
-class Shift:
-    """Shift in metres east and north from the earlier map to the later one, and its quality."""
-
-    east_m: float
-    north_m: float
-    peak: float
-    """Share of the phases that agree, in [0, 1]."""
-    rival: float
-    """The next best shift's peak as a share of this one's."""
-
-    def is_clear(self, settings: ForecastSettings) -> bool:
-        """Return whether the peak is significant."""
-        return self.peak >= settings.least_peak and self.rival <= settings.most_rival
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -69,22 +49,6 @@ def spectrum_of(
     if _contrast(shade) >= least_contrast:
         waves = fft.rfft2(_details(shade, settings.detail_m / grid.cell_m), shape)
     return ShadeSpectrum(grid, shade.captured_at_ns, shape, waves)
-
-
-def shift_between(
-    before: ShadeSpectrum, now: ShadeSpectrum, settings: ForecastSettings
-) -> Shift | None:
-    """Return the shift of the shade between two maps of one grid, or None without contrast.
-
-    Only shifts up to `fastest_mps`, and shorter than the grid, are searched.
-    """
-    agreement, grid = agreement_between(before, now, settings), now.grid
-    if agreement is None:
-        return None
-    reach_m = settings.fastest_mps * ns_to_seconds(now.at_ns - before.at_ns)
-    # Within the grid and the fastest motion: peaks beyond are chance.
-    reach = int(min(reach_m / grid.cell_m, min(grid.rows, grid.cols) - 1))
-    return _best(agreement, max(reach, 1), grid.cell_m)
 
 
 def agreement_between(
@@ -137,24 +101,6 @@ def _agreement(
     # Normalised by the value of a perfect match, in which all weights are in phase.
     shares: FloatMap = (found / (by_row.mean() * by_col.mean())).astype(np.float32)
     return shares
-
-
-def _best(agreement: FloatMap, reach: int, cell_m: float) -> Shift:
-    middle_row, middle_col = agreement.shape[0] // 2, agreement.shape[1] // 2
-    near = agreement[
-        middle_row - reach : middle_row + reach + 1, middle_col - reach : middle_col + reach + 1
-    ]
-    row, col = (int(i) for i in np.unravel_index(int(np.argmax(near)), near.shape))
-    peak = float(near[row, col])
-    others = near.copy()
-    others[
-        max(0, row - PEAK_CELLS) : row + PEAK_CELLS + 1,
-        max(0, col - PEAK_CELLS) : col + PEAK_CELLS + 1,
-    ] = 0.0
-    down = row - reach + between(near[:, col], row)
-    right = col - reach + between(near[row], col)
-    rival = float(others.max()) / peak if peak > 0.0 else 1.0
-    return Shift(right * cell_m, -down * cell_m, peak, rival)
 
 
 def between(line: FloatMap, best: int) -> float:

@@ -60,7 +60,7 @@ def pooled_motion(state: ForecastState, settings: ForecastSettings) -> ShadowMot
         return None
     right = col - middle + between(surface[row], col)
     down = row - middle + between(surface[:, col], row)
-    return ShadowMotion(right * step, -down * step, settings.least_spread_mps)
+    return ShadowMotion(right * step, -down * step)
 
 
 def _highest(surface: FloatMap) -> tuple[int, int]:

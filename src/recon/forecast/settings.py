@@ -9,159 +9,90 @@ class ForecastSettings:
 
     method: str = "advection"
     """A name in `recon.forecast.FORECASTERS`."""
-
     lead_s: tuple[float, ...] = (0.0, 15.0, 30.0, 45.0, *(30.0 * i for i in range(2, 21)))
     """0 to ten minutes: a survey row takes about half a minute, a whole mission ten. Denser where
     most is known."""
-
     surest: float = 0.97
     """Largest probability: detection is wrong in a few per cent of the cells it is sure of."""
-
     soft_edge: float = 0.2
     """Half the width, in transmittance, of the transition from shade to sun: detection is no
     finer."""
-
     cover_memory_s: float = 900.0
     """Averaging time of the share in sun, the prior where nothing is known: cloud cover changes
     over a quarter of an hour."""
-
     cover_view_s: float = 120.0
     """Time after which a view shows other clouds, so counts as independent. The prior is the mean
     of the views so far and one half-sunlit view, which stands for no knowledge."""
-
     persistence_memory_s: float = 150.0
     """Time constant of the decay to the prior when no motion is known. Measured shadows (36, 88,
     640 s as 10th, 50th, 90th percentile) and gaps (40, 129, 836 s) last 250 and 330 s on average;
     a place that switches like this between two states has a correlation time of about 140 s."""
-
     persistence_horizon_s: float = 300.0
     """Horizon without a motion."""
-
-    shape_memory_s: float = 600.0
-    """Time constant of changes of cloud shape: clouds of half a kilometre live about ten
-    minutes."""
-
     keep_every_s: float = 5.0
     """Interval of the maps kept for comparison: in 5 s low clouds move ten cells at most."""
-
-    pair_s: tuple[float, ...] = (10.0, 20.0, 40.0)
-    """Time between compared maps: at 10 s an error of one cell is 0.4 m/s and fast clouds are still
-    in view; at 40 s it is a quarter of that, for slow ones."""
-
-    motion_window_s: float = 60.0
-    """The motion is the median of the pairs in this window; wind changes over minutes."""
-
-    least_pairs: int = 4
-    """Fewer may agree by chance."""
-
-    most_spread_mps: float = 1.5
-    """Standard deviation of the pairs above which there is no common motion."""
-
     least_spread_mps: float = 0.3
-    """Lower bound of the velocity's uncertainty: clouds do not all move alike."""
-
-    slowest_mps: float = 0.5
-    """Slower pairs are ignored: they show the ground's pattern in the maps, or persistence is as
-    good."""
-
+    """The velocity's uncertainty: clouds do not all move alike."""
     fastest_mps: float = 30.0
     """Search limit: high clouds move at 18 m/s."""
-
     detail_m: float = 24.0
     """Radius of the local mean that is subtracted before comparing, so that the edge of the visible
     area, which does not move, has no weight."""
-
     smooth_cells: float = 2.0
     """Smaller details are noise: all phases have equal weight, and most are of small details."""
-
-    least_peak: float = 0.2
-    """Share of the phases that agree on the shift. With these two bounds 4 in 100 pairs of
-    unrelated drawn maps pass, and nine in ten pairs that moved for 10 to 20 s."""
-
-    most_rival: float = 0.7
-    """The next best shift's peak as a share of the best one's."""
-
-    least_contrast: float = 0.08
-    """Standard deviation of the transmittance below which maps are not compared."""
-
     longest_pair_s: float = 40.0
     """Maps are compared with all kept ones up to this old."""
-
     agreement_memory_s: float = 60.0
     """Time constant of fading of older pairs: wind changes over minutes."""
-
     velocity_step_mps: float = 0.5
     """Of the agreement by velocity: a cell in 8 s."""
-
     peak_mps: float = 3.0
     """Half width of the area around the best velocity without rivals."""
-
     slowest_pooled_mps: float = 1.0
-    """As `slowest_mps`: the agreement of what stands still has its peak within a step or two of
-    rest."""
-
+    """Slower is no motion but the ground's pattern in the maps: the agreement of what stands still
+    has its peak within a step or two of rest."""
     least_over_rival: float = 1.25
     """The best velocity's agreement over the next best one's, to count."""
-
     least_soft_edge: float = 0.04
     soft_edge_per_s: float = 0.0007
     soft_edge_per_m: float = 0.0008
     most_soft_edge: float = 0.4
     """As `soft_edge`, of shadows that are followed: they keep their edges, less so with the lead,
     and least where another place must stand for the one upwind."""
-
-    flow_over_s: float = 15.0
-    """Between the two maps that dense flow is read from: shadows move 10 to 40 cells in it."""
-
     followed_for_s: float = 60.0
     """Shade that has left the view is followed for so long: one seen cell in twelve is wrong then
     by its motion alone."""
-
     followed_memory_s: float = 300.0
     """Time constant of the confidence in it."""
-
     shade_scale_m: float = 2_500.0
     """Distance at which the nearest seen shade shows half as much of the sun as shade that is
     followed. Fitted, as the correlation, to Brier scores of the scenarios' skies, seeds 0 to 7."""
-
     most_scale_of_shade_m: float = 700.0
     """The same at most, of seen shade: a view all in shade is correlated throughout, and does not
     show that the shade ends beyond it. Fitted likewise, seeds 0 to 19."""
-
     correlation_lag_m: float = 160.0
     """Distance at which the correlation of shade is measured: a third of a view."""
-
     usual_correlation: float = 0.8
     """Of a cell's deviation from the prior to that of a cell so far away, under usual skies."""
-
     usual_correlation_s: float = 6.0
     """Weight of the usual correlation: half a minute of maps with as much sun as shade."""
-
     least_correlation: float = 0.02
     most_correlation: float = 0.9
-
     usual_change: float = 0.15
     """Of the transmittance between partly shaded cells `correlation_lag_m` apart in usual skies.
     Soft edges are so much wider or narrower than these as it is larger or smaller in this flight:
     0.02 under even thin cloud. Fitted to Brier scores likewise, seeds 0 to 39."""
-
     usual_change_s: float = 0.3
     """Weight of the usual change: less than one map that is all partly shaded."""
-
     shade_memory_s: float = 3_000.0
     """Time constant of the same for shadows that are followed: they change their shape."""
-
     usual_speed_mps: float = 6.0
     """Of shadows whose motion is not known: what shades a place now has moved on so far."""
-
     least_pooled_contrast: float = 0.02
-    """As `least_contrast`, where many pairs are read together."""
-
+    """Standard deviation of the transmittance below which maps are not compared."""
     hindcast_lead_s: tuple[float, ...] = (15.0, 30.0, 60.0, 120.0, 300.0)
     """Leads at which earlier forecasts are compared with what came."""
-
     hindcast_memory_s: float = 1_200.0
     """Time constant of fading of these comparisons: what a pilot still remembers of the sky."""
-
     horizon_step_s: float = 5.0
     """Resolution of the horizon, rounded down."""

@@ -13,15 +13,6 @@ from recon.model.shade import SUNLIT_TRANSMITTANCE, FloatMap, MaskMap, ShadeMap,
 from recon.model.units import ns_to_seconds
 
 
-@dataclass(frozen=True, slots=True)
-class PairVelocity:
-    """The shadows' velocity by one pair of shade maps."""
-
-    at_ns: int
-    east_mps: float
-    north_mps: float
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class Agreement:
     """The faded sum of all pairs' agreement by velocity, and when it was faded last."""
@@ -86,8 +77,6 @@ class ForecastState:
     """Time that mean covers, at most `cover_memory_s`."""
     kept: tuple[ShadeSpectrum, ...] = ()
     """Spectra of earlier maps to compare with, oldest first."""
-    velocities: tuple[PairVelocity, ...] = ()
-    """Oldest first."""
     agreement: Agreement | None = None
     """Of all recent pairs of maps."""
     correlation: SpatialCorrelation | None = None
@@ -128,7 +117,7 @@ def with_map(state: ForecastState, shade: ShadeMap, settings: ForecastSettings) 
                 f"expected a newer shade map than the last one, got one {-passed_s:.1f} s older"
             )
     if state.kept and state.kept[-1].grid != shade.grid:
-        state = replace(state, kept=(), velocities=(), agreement=None)
+        state = replace(state, kept=(), agreement=None)
     state = replace(state, shade=shade, followed=None)
     return _with_share(state, shade, passed_s, settings.cover_memory_s)
 

@@ -17,9 +17,8 @@ from tests.forecast.moving_shade import (
     shade_map,
 )
 
-from recon.forecast import FORECASTERS, ForecastSettings, ForecastState
-from recon.forecast.motion import ShadowMotion, motion_of
-from recon.forecast.state import PairVelocity
+from recon.forecast import FORECASTERS, ForecastSettings
+from recon.forecast.motion import ShadowMotion
 from recon.forecast.upwind import visible_upwind_s
 from recon.model.geo import GroundGrid
 from recon.model.shade import ShadeMap, SunForecast
@@ -47,8 +46,8 @@ class TestUnknownCells:
             shade = DriftingShade(seed, velocity_mps=drawn_velocity(seed, fastest=5.0))
             whole = [noisy_map(shade, at_s) for at_s in np.arange(0.0, 60.0, 5.0)]
             holed = [with_gaps(one, 0.1, number) for number, one in enumerate(whole)]
-            issued = forecasts("global_shift", holed, SETTINGS)[-1]
-            complete = forecasts("global_shift", whole, SETTINGS)[-1]
+            issued = forecasts("advection", holed, SETTINGS)[-1]
+            complete = forecasts("advection", whole, SETTINGS)[-1]
             assert np.isnan(issued.horizon_s[~holed[-1].valid]).all()
             known = holed[-1].valid
             reached = (issued.horizon_s >= 30.0)[known].mean()
@@ -84,24 +83,24 @@ class TestAgainstPersistence:
             issued = {method: forecasts(method, maps, SETTINGS) for method in FORECASTERS}
             for i in (13, 17):
                 truth = is_sunlit(shade, 5.0 * i + 60.0)
-                near = issued["global_shift"][i].horizon_s >= 60.0
+                near = issued["advection"][i].horizon_s >= 60.0
                 assert near.any()
                 for method in FORECASTERS:
                     seen[method].append(brier(issued[method][i], 2, truth, near))
                     unseen[method].append(brier(issued[method][i], 2, truth, SEEN & ~near))
-        shifted, still = np.mean(seen["global_shift"]), np.mean(seen["persistence"])
+        shifted, still = np.mean(seen["advection"]), np.mean(seen["persistence"])
         assert shifted < 0.5 * still, (shifted, still)
         assert shifted < 0.15, (shifted, still)
         # A coin would have 0.25 where nothing is known.
-        assert np.mean(unseen["global_shift"]) < np.mean(unseen["persistence"])
-        assert np.mean(unseen["global_shift"]) < 0.27
+        assert np.mean(unseen["advection"]) < np.mean(unseen["persistence"])
+        assert np.mean(unseen["advection"]) < 0.27
 
     def test_probabilities_are_calibrated(self) -> None:
         predicted, true = [], []
         for seed in SEEDS:
             shade = DriftingShade(seed, cover=0.5, velocity_mps=drawn_velocity(seed, fastest=5.0))
             maps = [noisy_map(shade, at_s) for at_s in np.arange(0.0, 65.0, 5.0)]
-            issued = forecasts("global_shift", maps, SETTINGS)[-1]
+            issued = forecasts("advection", maps, SETTINGS)[-1]
             near = issued.horizon_s >= 30.0
             predicted.append(issued.sun_probability[1][near] / 255.0)
             true.append(is_sunlit(shade, 90.0)[near])
@@ -117,7 +116,7 @@ class TestMotion:
             velocity = drawn_velocity(seed)
             shade = DriftingShade(seed, cover=0.4, velocity_mps=velocity)
             maps = [noisy_map(shade, at_s) for at_s in np.arange(0.0, 45.0, 5.0)]
-            issued = forecasts("global_shift", maps, SETTINGS)[-1]
+            issued = forecasts("advection", maps, SETTINGS)[-1]
             assert issued.velocity_mps == pytest.approx(velocity, abs=0.5), seed
 
     def test_a_turn_of_the_wind_is_followed_within_its_window(self) -> None:
@@ -125,25 +124,9 @@ class TestMotion:
         after = DriftingShade(711, cover=0.4, velocity_mps=(0.0, -5.0))
         maps = [noisy_map(before, at_s) for at_s in np.arange(0.0, 60.0, 5.0)]
         maps += [noisy_map(after, at_s) for at_s in np.arange(60.0, 130.0, 5.0)]
-        issued = forecasts("global_shift", maps, SETTINGS)
+        issued = forecasts("advection", maps, SETTINGS)
         assert issued[11].velocity_mps == pytest.approx((6.0, 0.0), abs=0.5)
         assert issued[-1].velocity_mps == pytest.approx((0.0, -5.0), abs=0.5)
-
-    def test_it_is_the_median_so_that_some_wrong_pairs_do_no_harm(self) -> None:
-        right = tuple(PairVelocity(i, 5.0 + 0.1 * (i % 3 - 1), -2.0) for i in range(9))
-        wrong = (PairVelocity(9, -20.0, 3.0), PairVelocity(10, 8.0, 25.0))
-        motion = motion_of(ForecastState(velocities=(*right, *wrong)), SETTINGS)
-        assert motion is not None
-        assert (motion.east_mps, motion.north_mps) == pytest.approx((5.0, -2.0), abs=0.11)
-        assert motion.spread_mps == SETTINGS.least_spread_mps
-
-    def test_pairs_that_disagree_or_are_few_tell_no_motion(self) -> None:
-        rng = np.random.default_rng(3)
-        wild = tuple(PairVelocity(i, *map(float, rng.normal(0.0, 6.0, 2))) for i in range(20))
-        assert motion_of(ForecastState(velocities=wild), SETTINGS) is None
-        few = tuple(PairVelocity(i, 5.0, 0.0) for i in range(SETTINGS.least_pairs))
-        assert motion_of(ForecastState(velocities=few), SETTINGS) is not None
-        assert motion_of(ForecastState(velocities=few[1:]), SETTINGS) is None
 
 
 class TestHorizon:
@@ -161,7 +144,7 @@ class TestHorizon:
         rng = np.random.default_rng(seed)
         grid = GroundGrid(FIELD.frame, 0.0, 0.0, 4.0, 12, 15)
         seen = rng.random((12, 15)) < share
-        found = visible_upwind_s(seen, grid, ShadowMotion(east_mps, north_mps, 0.3), SETTINGS)
+        found = visible_upwind_s(seen, grid, ShadowMotion(east_mps, north_mps), SETTINGS)
         for row in range(12):
             for col in range(15):
                 least_s, most_s = self.slow_s(seen, row, col, (east_mps / 4.0, -north_mps / 4.0))
@@ -196,51 +179,46 @@ class TestHorizon:
             horizons_s.append(horizon_s)
         return horizons_s[0], horizons_s[1]
 
-    def test_downwind_has_the_longest_horizon_and_beyond_is_the_prior(self) -> None:
+    def test_downwind_has_the_longest_horizon(self) -> None:
         shade = DriftingShade(712, cover=0.4, velocity_mps=(5.0, 0.0))
         maps = [noisy_map(shade, at_s) for at_s in np.arange(0.0, 65.0, 5.0)]
-        issued = forecasts("global_shift", maps, SETTINGS)[-1]
-        assert issued.method == "global_shift"
+        issued = forecasts("advection", maps, SETTINGS)[-1]
+        assert issued.method == "advection"
         middle = issued.horizon_s[64]
         assert middle[20] < middle[64] < middle[110]
         # 448 m of footprint lie upwind of its eastern edge: 90 s at 5 m/s.
         assert middle[SEEN[64]].max() == pytest.approx(480.0 / 5.0, abs=10.0)
-        beyond = issued.horizon_s[np.newaxis] < issued.lead_s[:, np.newaxis, np.newaxis]
-        beyond |= ~SEEN
-        assert (issued.sun_probability[beyond] == round(issued.prior_sunlit * 255.0)).all()
 
 
 class TestWithoutAMotion:
     @pytest.mark.parametrize("level", [0.0, 0.6, 1.0])
-    def test_an_even_sky_persists(self, level: float) -> None:
+    def test_an_even_sky_has_none(self, level: float) -> None:
         maps = [shade_map(np.full(SEEN.shape, level), 5.0 * i) for i in range(14)]
-        issued = forecasts("global_shift", maps, SETTINGS)[-1]
-        assert (issued.method, issued.velocity_mps) == ("persistence", None)
-        still = forecasts("persistence", maps, SETTINGS)[-1]
-        assert np.array_equal(issued.sun_probability, still.sun_probability)
-        assert np.array_equal(issued.horizon_s, still.horizon_s, equal_nan=True)
+        issued = forecasts("advection", maps, SETTINGS)[-1]
+        assert issued.velocity_mps is None
+        assert (issued.horizon_s[SEEN] == 0.0).all()
 
     def test_a_pattern_of_the_ground_in_the_maps_is_no_motion(self) -> None:
         """A detector's reference leaves the same errors at the same places in every map."""
         still = DriftingShade(739, cover=0.4, velocity_mps=(0.0, 0.0))
         maps = [noisy_map(still, 5.0 * i) for i in range(14)]
-        assert [t.method for t in forecasts("global_shift", maps, SETTINGS)] == ["persistence"] * 14
+        assert {t.velocity_mps for t in forecasts("advection", maps, SETTINGS)} == {None}
 
     def test_maps_that_have_nothing_in_common_persist(self) -> None:
         maps = [noisy_map(DriftingShade(720 + i), 5.0 * i) for i in range(14)]
-        assert forecasts("global_shift", maps, SETTINGS)[-1].method == "persistence"
+        assert forecasts("advection", maps, SETTINGS)[-1].velocity_mps is None
 
     def test_the_first_maps_persist(self) -> None:
         shade = DriftingShade(740, cover=0.4)
         maps = [noisy_map(shade, 5.0 * i) for i in range(3)]
-        assert [t.method for t in forecasts("global_shift", maps, SETTINGS)] == ["persistence"] * 3
+        assert {t.velocity_mps for t in forecasts("advection", maps, SETTINGS)[:1]} == {None}
 
     def test_another_grid_begins_anew(self) -> None:
         shade = DriftingShade(741, cover=0.4)
         maps = [noisy_map(shade, 5.0 * i) for i in range(12)]
         moved = replace(maps[-1], grid=replace(FIELD, west_m=-200.0), captured_at_ns=60 * 10**9)
-        issued = forecasts("global_shift", [*maps, moved], SETTINGS)
-        assert [t.method for t in issued[-2:]] == ["global_shift", "persistence"]
+        issued = forecasts("advection", [*maps, moved], SETTINGS)
+        assert [t.velocity_mps is None for t in issued[-2:]] == [False, True]
 
 
 def test_the_middle_of_the_field_is_the_middle_of_the_tests() -> None:
