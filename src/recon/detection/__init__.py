@@ -20,17 +20,6 @@ from recon.detection.sunlit_reference import sunlit_reference, sunlit_reference_
 from recon.model.imagery import GroundImage
 from recon.model.shade import ShadeMap
 
-__all__ = [
-    "DETECTORS",
-    "DetectionSettings",
-    "DetectionState",
-    "Detector",
-    "FrameFault",
-    "RejectedFrame",
-    "merged",
-    "sunlit_reference_of",
-]
-
 Detector: TypeAlias = Callable[
     [DetectionState, GroundImage, DetectionSettings],
     tuple[DetectionState, ShadeMap | RejectedFrame],

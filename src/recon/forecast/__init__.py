@@ -18,17 +18,6 @@ from recon.forecast.persistence import CLIMATOLOGY, PERSISTENCE
 from recon.forecast.settings import ForecastSettings
 from recon.forecast.state import ForecastState
 
-__all__ = [
-    "FORECASTERS",
-    "ForecastSettings",
-    "ForecastState",
-    "Forecaster",
-    "NextChange",
-    "moved_on",
-    "next_change",
-    "right_shares",
-]
-
 FORECASTERS: Mapping[str, Forecaster] = MappingProxyType(
     {
         "advection": ADVECTION,

@@ -29,35 +29,3 @@ from recon.geo.polygon import (
 )
 from recon.geo.sun import SunPosition, sun_position, utc_at_elevation
 from recon.geo.surface import Surface
-
-__all__ = [
-    "DEFAULT_CHORD_ERROR_M",
-    "Box",
-    "Footprints",
-    "OnGlobe",
-    "Path",
-    "Polygon",
-    "SunPosition",
-    "Surface",
-    "TangentPlane",
-    "cell_at",
-    "cell_centres_m",
-    "corner_hulls",
-    "enu_from_geo",
-    "enu_from_point",
-    "enu_from_points",
-    "geo_from_enu",
-    "geojson_geometry",
-    "nearest_cells",
-    "point_from_enu",
-    "region_fault",
-    "round_length_m",
-    "rounded_path",
-    "shape_of",
-    "shift_east_north_m",
-    "straight_path",
-    "sun_position",
-    "tangent_plane",
-    "thinned_ring",
-    "utc_at_elevation",
-]

@@ -7,17 +7,3 @@ from recon.safety.airspace import OPEN_AIRSPACE, PreparedAirspace
 from recon.safety.gate import ApprovedCommand, approve, judge, judge_parts
 from recon.safety.settings import SafetySettings
 from recon.safety.situation import ClaimingLink, Override, Situation, Traffic
-
-__all__ = [
-    "OPEN_AIRSPACE",
-    "ApprovedCommand",
-    "ClaimingLink",
-    "Override",
-    "PreparedAirspace",
-    "SafetySettings",
-    "Situation",
-    "Traffic",
-    "approve",
-    "judge",
-    "judge_parts",
-]

@@ -10,14 +10,3 @@ from recon.score.scenario import Methods, Scenario
 from recon.score.scenario_file import load_scenario
 from recon.score.scenario_schema import ScenarioError
 from recon.score.tables import tables
-
-__all__ = [
-    "Methods",
-    "RunScore",
-    "Scenario",
-    "ScenarioError",
-    "StationRun",
-    "load_scenario",
-    "run",
-    "tables",
-]

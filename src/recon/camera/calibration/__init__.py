@@ -13,16 +13,3 @@ from recon.camera.calibration.calibrate import (
 from recon.camera.calibration.chessboard import Chessboard, find_corners
 from recon.camera.calibration.coverage import Coverage, coverage_of, warnings_of
 from recon.camera.calibration.residual_picture import residual_picture
-
-__all__ = [
-    "BoardPhoto",
-    "Chessboard",
-    "Coverage",
-    "LensCalibration",
-    "PhotoResiduals",
-    "calibrate_lens",
-    "coverage_of",
-    "find_corners",
-    "residual_picture",
-    "warnings_of",
-]

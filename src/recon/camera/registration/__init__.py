@@ -10,12 +10,3 @@ reference; lost and found). Pure: no clock, no random numbers.
 from recon.camera.registration.lens_view import LensView, view_of
 from recon.camera.registration.settings import RegistrationSettings
 from recon.camera.registration.step import RegisteredPose, RegistrationState, step
-
-__all__ = [
-    "LensView",
-    "RegisteredPose",
-    "RegistrationSettings",
-    "RegistrationState",
-    "step",
-    "view_of",
-]

@@ -26,25 +26,3 @@ from recon.guidance.fleet_return.turn import (
     whole_claim,
 )
 from recon.guidance.fleet_return.ways import WayHome, way_home
-
-__all__ = [
-    "CalledVehicle",
-    "Claim",
-    "FleetReturnSettings",
-    "Hovering",
-    "LeftOut",
-    "Pad",
-    "Place",
-    "ReturnFlight",
-    "ReturnPlan",
-    "Separation",
-    "WayHome",
-    "claim_left",
-    "hindrance",
-    "layer_is_taken_by",
-    "least_time_s",
-    "mission_of",
-    "plan_return",
-    "way_home",
-    "whole_claim",
-]

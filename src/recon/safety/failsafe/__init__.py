@@ -51,14 +51,3 @@ ROWS: Mapping[FailsafeCondition, FailsafeRow] = {
 
 DEFAULT_MATRIX = FailsafeMatrix({condition: row.default for condition, row in ROWS.items()})
 """What the station does at a site that states nothing."""
-
-__all__ = [
-    "DEFAULT_MATRIX",
-    "ROWS",
-    "FailsafeLimits",
-    "FailsafeRow",
-    "FlightFacts",
-    "RelatedFinding",
-    "SharedFacts",
-    "cell_words",
-]

@@ -29,25 +29,3 @@ from recon.safety.prediction.predicted_trajectories import predict_order, predic
 from recon.safety.prediction.predictor import Predictor
 from recon.safety.prediction.trajectory import FOREVER_S, FlightPart, Trajectory, part_text
 from recon.safety.settings import PredictionSettings
-
-__all__ = [
-    "FOREVER_S",
-    "BoolArray",
-    "Conflict",
-    "FlightPart",
-    "HazardArea",
-    "Plane",
-    "PredictionSettings",
-    "Predictor",
-    "Trajectory",
-    "VehicleMotion",
-    "first_conflict",
-    "hazard_area_of",
-    "hazard_trajectories",
-    "height_drift_m",
-    "part_text",
-    "predict_order",
-    "predict_traffic",
-    "unknown_heights",
-    "vehicle_motion",
-]

@@ -46,16 +46,3 @@ WATCHDOGS: tuple[Watchdog, ...] = (
     heights,
     sticks,
 )
-
-__all__ = [
-    "WATCHDOGS",
-    "CommandedHold",
-    "Finding",
-    "TrafficPicture",
-    "Watchdog",
-    "WatchdogSettings",
-    "WatchedVehicle",
-    "build_traffic_picture",
-    "hold_outcome",
-    "plane_of",
-]

@@ -13,12 +13,3 @@ from recon.sim.camera.settings import (
     LensSettings,
     ToneSettings,
 )
-
-__all__ = [
-    "CameraSettings",
-    "ExposureSettings",
-    "HoverSettings",
-    "ImageSensorSettings",
-    "LensSettings",
-    "ToneSettings",
-]

@@ -6,5 +6,3 @@ It delays, stalls, throttles, corrupts and resets connections, of simulated and 
 
 from recon.sim.proxy.damage import Damage
 from recon.sim.proxy.relay import ProxyConfig, Towards, run_proxy
-
-__all__ = ["Damage", "ProxyConfig", "Towards", "run_proxy"]

@@ -15,15 +15,3 @@ from recon.sim.world.settings import (
 )
 from recon.sim.world.sky import Sky
 from recon.sim.world.wind import Wind
-
-__all__ = [
-    "LayerSettings",
-    "LightSettings",
-    "ShadeColour",
-    "Sky",
-    "SkySettings",
-    "SunSettings",
-    "Wind",
-    "WindSettings",
-    "WindShift",
-]

@@ -6,8 +6,6 @@ from dataclasses import dataclass, field, replace
 from recon.model.severity import Severity
 from recon.model.units import seconds_to_ns
 
-__all__ = ["Alarm", "AlarmBook", "Condition", "Severity", "acknowledge", "note", "update"]
-
 
 @dataclass(frozen=True, slots=True)
 class Condition:

@@ -19,5 +19,3 @@ curved mission with actions) stays as it is, and the gate refuses it.
 
 from recon.vehicles.mission_repair.repair import Repaired, joined, repair
 from recon.vehicles.mission_repair.steps import REPAIR_LIMITS, RepairLimits
-
-__all__ = ["REPAIR_LIMITS", "RepairLimits", "Repaired", "joined", "repair"]
