@@ -1,9 +1,9 @@
 """The lens that the camera's tests look through."""
 
 import pytest
+from tools.demo_site import demo_camera
 
 from recon.camera import OmnidirectionalCamera
-from recon.site.demo_site import demo_camera
 
 
 @pytest.fixture(scope="session")

@@ -6,12 +6,12 @@ import cv2
 import numpy as np
 from scipy.spatial.transform import Rotation
 from tests.camera.constructions import LEVEL
+from tools.demo_site import demo_camera
 
 from recon.camera import ImageCircle, OmnidirectionalCamera
 from recon.camera.registration.lens_view import LensView, homography, view_of
 from recon.camera.registration.settings import RegistrationSettings
 from recon.model.imagery import CameraPose, RgbImage
-from recon.site.demo_site import demo_camera
 
 HEIGHT_M = 120.0
 CELL_M = 1.0

@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tools.demo_site import demo_camera
 
 from recon.camera import CalibrationError, format_camera, load_camera, parse_camera
-from recon.site.demo_site import demo_camera
 
 TEXT = format_camera(demo_camera())
 DATA_LINES = [i for i, line in enumerate(TEXT.split("\n")) if line and not line.startswith("#")]

@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.camera.constructions import FRAME, seen_pixels, solved, tilted_pose
 from tests.examples import examples
+from tools.demo_site import demo_camera
 
 from recon.camera import (
     FrameDecodeError,
@@ -28,7 +29,6 @@ from recon.camera.sight import COARSEST_M, farthest_sight_m
 from recon.geo import enu_from_geo
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.imagery import CameraPose, Frame, Registration
-from recon.site.demo_site import demo_camera
 
 DEMO = demo_camera()
 GRID = GroundGrid(FRAME, -256.0, 256.0, 1.0, 512, 512)

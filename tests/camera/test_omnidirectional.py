@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tools.demo_site import demo_camera
 
 from recon.camera import CalibrationError, FrameSizeError, OmnidirectionalCamera, load_camera
-from recon.site.demo_site import demo_camera
 
 DEMO = demo_camera()
 

@@ -17,6 +17,7 @@ from tests.camera.constructions import (
     tilted_pose,
 )
 from tests.examples import examples
+from tools.demo_site import demo_camera
 
 from recon.camera import (
     FrameSizeError,
@@ -27,7 +28,6 @@ from recon.camera import (
 )
 from recon.camera.pose import PoseSolution
 from recon.model.geo import GeoPoint, LocalFrame
-from recon.site.demo_site import demo_camera
 
 DEMO = demo_camera()
 TRUE_POSE = tilted_pose(12.0, -20.0, 118.0, (2.5, -3.0, 140.0))

@@ -7,13 +7,13 @@ import cv2
 import numpy as np
 import pytest
 import rasterio
+from tools.demo_site import demo_camera
 from typer.testing import CliRunner, Result
 
 from recon.camera import format_camera
 from recon.cli.commands import app
 from recon.geo import point_from_enu
 from recon.model.geo import GeoPoint, LocalFrame
-from recon.site.demo_site import demo_camera
 
 FRAMES = 8
 HEIGHT_M = 120.0

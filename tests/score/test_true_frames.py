@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tools.demo_site import demo_camera
 
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.imagery import CameraPose, GroundImage
@@ -15,7 +16,6 @@ from recon.sim.app.camera_feed import CaptureTimes
 from recon.sim.camera.field import FieldRenderer
 from recon.sim.camera.frames import CameraView
 from recon.sim.camera.settings import CameraSettings
-from recon.site.demo_site import demo_camera
 
 HEIGHT_M = 120.0
 DOWN = np.diag([1.0, -1.0, -1.0])

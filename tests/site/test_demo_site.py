@@ -6,6 +6,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tools.demo_site import (
+    BOUNDARY,
+    ELEVATION_FILE,
+    IMAGER_HEIGHT_M,
+    IMAGER_SERIAL,
+    ORIGIN,
+    SERIALS,
+    demo_camera,
+    demo_elevation_bytes,
+    demo_marked_telemetry,
+    demo_site_files,
+)
 
 from recon.camera import (
     GroundProjector,
@@ -21,18 +33,6 @@ from recon.model.geo import LocalFrame
 from recon.model.vehicle import AltitudeReference, Failsafe
 from recon.safety import PreparedAirspace
 from recon.site import demo_site_folder, load_site
-from recon.site.demo_site import (
-    BOUNDARY,
-    ELEVATION_FILE,
-    IMAGER_HEIGHT_M,
-    IMAGER_SERIAL,
-    ORIGIN,
-    SERIALS,
-    demo_camera,
-    demo_elevation_bytes,
-    demo_marked_telemetry,
-    demo_site_files,
-)
 
 
 def test_the_shipped_files_are_those_the_generator_writes() -> None:

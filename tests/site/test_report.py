@@ -5,13 +5,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tools.demo_site import BOUNDARY, FARMYARD, ORIGIN, SURVEY, TREES, Outline
 
 from recon.geo import point_from_enu
 from recon.model.airspace import HeightDatum, Region, Zone, ZoneKind
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.vehicle import Failsafe, VehicleProfile
 from recon.site import Site, default_site, demo_site_folder, load_site, site_report
-from recon.site.demo_site import BOUNDARY, FARMYARD, ORIGIN, SURVEY, TREES, Outline
 from recon.site.report import site_warnings
 from recon.site.site import Layers
 

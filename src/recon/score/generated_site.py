@@ -1,23 +1,24 @@
 """A site generated around a task: fence, pads, lens and limits."""
 
 from collections.abc import Iterable
+from functools import cache
 from math import ceil, cos, hypot, radians, sin
 
 import numpy as np
 
-from recon.camera import ImageCircle, TelemetryReference, mounted_pose
+from recon.camera import (
+    ImageCircle,
+    OmnidirectionalCamera,
+    TelemetryReference,
+    load_camera,
+    mounted_pose,
+)
 from recon.geo import point_from_enu
 from recon.model.airspace import FlightLimits, LandingPad, Region
 from recon.model.geo import GroundGrid, LocalFrame
 from recon.model.vehicle import AltitudeReference, Failsafe, VehicleProfile
 from recon.score.scenario import EastNorth, ScenarioFleet, ScenarioImager
-from recon.site import Imager, Site
-from recon.site.demo_site import (
-    CENTRE_COL_PX,
-    CENTRE_ROW_PX,
-    IMAGE_CIRCLE_RADIUS_PX,
-    demo_camera,
-)
+from recon.site import Imager, Site, demo_site_folder
 from recon.site.site import Layers
 
 FENCE_OFF_M = 80.0
@@ -34,6 +35,8 @@ large fleets."""
 BELOW_CEILING_M = 5.0
 IMAGER_PRIORITY = 10
 """In a conflict the imaging drone is held last: it observes the whole field."""
+IMAGE_CIRCLE_RADIUS_PX = 274.1
+"""Of the demonstration's lens, as its site.toml states it."""
 IMAGE_CELLS_PER_CELL = 4
 """Ground images are finer than shade maps by this."""
 
@@ -121,20 +124,25 @@ def _generated_imager(
     """Return the demonstration's lens, with a pose that needs no fit."""
     beneath = point_from_enu(frame, (*over_m, 0.0))
     marked = TelemetryReference(beneath.latitude_deg, beneath.longitude_deg, imager.height_m, 0.0)
-    camera = demo_camera()
+    camera = _demo_camera()
     radius_px = IMAGE_CIRCLE_RADIUS_PX
     if imager.field_deg is not None:
         field = radians(imager.field_deg)
         (rim_px,) = camera.project(np.array([[sin(field), 0.0, cos(field)]]))
-        radius_px = float(rim_px[0]) - CENTRE_COL_PX
+        radius_px = float(rim_px[0]) - camera.centre_col_px
     pose = mounted_pose(marked, np.array([*over_m, imager.height_m]), imager.tilt_deg)
     return Imager(
         serial=serial,
         camera=camera,
         marked_pose=pose,
         marked_frame=marked,
-        image_circle=ImageCircle(CENTRE_COL_PX, CENTRE_ROW_PX, radius_px),
+        image_circle=ImageCircle(camera.centre_col_px, camera.centre_row_px, radius_px),
     )
+
+
+@cache
+def _demo_camera() -> OmnidirectionalCamera:
+    return load_camera(demo_site_folder() / "camera-model.txt")
 
 
 def _profiles(

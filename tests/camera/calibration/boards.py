@@ -6,11 +6,11 @@ from functools import lru_cache
 import cv2
 import numpy as np
 from scipy.spatial.transform import Rotation
+from tools.demo_site import demo_camera
 
 from recon.camera import OmnidirectionalCamera
 from recon.camera.calibration import BoardPhoto, Chessboard
 from recon.model.imagery import RgbImage
-from recon.site.demo_site import demo_camera
 
 BOARD = Chessboard(rows=5, cols=7, square_mm=30.0)
 PAPER, INK, WALL = 225.0, 22.0, 90.0
