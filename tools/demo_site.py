@@ -4,7 +4,7 @@ The lens is an equisolid-angle fisheye that lights the sensor up to 66 degrees f
 imaging drone hovers 120 m over farmland and looks straight down, the top of the frame at its yaw.
 Running this module writes `demo/`:
 
-    python -m recon.site.demo_site
+    python -m tools.demo_site
 """
 
 import json
@@ -242,7 +242,7 @@ def _control_points(camera: OmnidirectionalCamera) -> tuple[ControlPoint, ...]:
 
 def _site_toml() -> str:
     header = f"""# The demonstration's site: a synthetic field and lens.
-# Written by `python -m recon.site.demo_site`; docs/how-to/prepare-a-site.md explains the keys.
+# Written by `python -m tools.demo_site`; docs/how-to/prepare-a-site.md explains the keys.
 name = "demo field"
 
 [origin]

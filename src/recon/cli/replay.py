@@ -5,6 +5,7 @@ recorded one; `--what-if` also reads each image by other methods and prints thei
 """
 
 import platform
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -79,16 +80,18 @@ def _show(file: Path, http_port: int, site: Path | None) -> None:
 
     By default on any free port: the usual address stays a live station's, where stops go.
     """
-    from recon.api.schema import ReplayView
     from recon.cli.foreground import print_now, run_in_loop
     from recon.cli.run import console_folder
-    from recon.station.host.replay_run import run_replay
+    from recon.station.host.replay_run import ReplayStation, run_replay
 
-    async def started(url: str, replay: ReplayView) -> None:
+    async def started(url: str, station: ReplayStation) -> None:
+        replay = station.view()
         minutes, seconds = divmod(round(replay.duration_s), 60)
         print_now(f"REPLAY of {shown(replay.file)}, {minutes} min {seconds} s: no orders possible")
         if replay.trouble is not None:
             print_now(f"the record ends early: {shown(replay.trouble)}")
+        for line in _skipped(station.playback.skipped):
+            print_now(line)
         print_now(f"console: {url}")
 
     try:
@@ -147,9 +150,16 @@ def lines(found: Checked) -> list[str]:
         text.append(f"equal to the bit: {what}")
     if found.trouble:
         text.append(f"ended before the record's end: {shown(found.trouble)}")
+    text += _skipped(sorted(found.skipped))
     if found.start is not None and found.differences:
         text += _other_versions(found.start)
     return text
+
+
+def _skipped(names: Sequence[str]) -> list[str]:
+    if not names:
+        return []
+    return [f"warning: skipped, for another version wrote them: {shown(', '.join(names))}"]
 
 
 def _other_versions(start: FlightStart) -> list[str]:

@@ -2,8 +2,9 @@
 
 A dataclass is a map of its fields by name; where a union allows several types, the key `TAG` names
 the one. Arrays are raw bytes with dtype and shape. A type decodes to itself only: the set of
-classes that a file can make is closed, each field is checked against its hint, and a field that the
-file lacks takes its default. What is no plain dataclass gets a `Custom` codec.
+classes that a file can make is closed, and each field is checked against its hint. A field that the
+file lacks takes its default, and one that its class does not have is noted and skipped. What is no
+plain dataclass gets a `Custom` codec.
 """
 
 import dataclasses
@@ -24,6 +25,7 @@ TAG = "_"
 
 ARRAY_KINDS = "biufc"
 MOST_DIMENSIONS = 4
+MOST_SKIPPED = 64
 _SCALARS: tuple[type[Any], ...] = (bool, int, float, str, bytes)
 
 
@@ -64,6 +66,8 @@ class Codec:
     def __init__(self, customs: Mapping[type[Any], Custom] | None = None) -> None:
         self._customs = dict(customs or {})
         self._made: dict[Any, _Both] = {}
+        self.skipped: set[str] = set()
+        """Fields that were not read, for another version wrote them: some, as `Class.field`."""
 
     def encode(self, value: Any, hint: Any) -> bytes:
         """Return a value as msgpack; raises TypeError for a type without a codec."""
@@ -194,13 +198,20 @@ class Codec:
                     given[each.name] = _decoded(kind, each, value[each.name])
                 elif each.is_required:
                     raise CodecError(f"{kind.__name__}.{each.name} is missing")
-            _refuse_unknown(kind, value, given)
+            if len(value) > len(given):
+                self.note_skipped(kind, value.keys() - given.keys())
             try:
                 return kind(**given)
             except (TypeError, ValueError) as problem:
                 raise CodecError(f"expected a {kind.__name__}, got: {problem}") from problem
 
         return _Both(encode, decode)
+
+    def note_skipped(self, kind: type[Any], names: Iterable[Any]) -> None:
+        """Note fields that a type does not have."""
+        for name in names:
+            if len(self.skipped) < MOST_SKIPPED:
+                self.skipped.add(f"{kind.__name__}.{str(name)[:40]}")
 
     def _fields(self, kind: type[Any], args: tuple[Any, ...]) -> Iterable[_Field]:
         hints = get_type_hints(kind)
@@ -267,15 +278,6 @@ def _decoded(kind: type[Any], field: _Field, value: Any) -> Any:
         return field.codec.decode(value)
     except CodecError as problem:
         raise CodecError(f"{kind.__name__}.{field.name}: {problem}") from problem
-
-
-def _refuse_unknown(kind: type[Any], value: Mapping[str, Any], given: Mapping[str, Any]) -> None:
-    unknown = [str(key) for key in value if key not in given]
-    if unknown:
-        raise CodecError(
-            f"{kind.__name__} has no field {', '.join(unknown)[:80]!a}: another version of Recon "
-            "wrote it"
-        )
 
 
 def _expect(value: Any, kind: type[Any]) -> Any:

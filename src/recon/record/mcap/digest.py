@@ -85,7 +85,9 @@ def _is_same(value: Any, default: Any) -> bool:
     kind = type(value)
     if kind in (bool, int, float, str, bytes):
         return kind is type(default) and repr(value) == repr(default)
-    for collection in (tuple | list, Mapping, Set):
+    if isinstance(value, tuple | list) and isinstance(default, tuple | list):
+        return len(value) == len(default) and all(map(_is_same, value, default))
+    for collection in (Mapping, Set):
         if isinstance(value, collection):
             return isinstance(default, collection) and not value and not default
     if kind is not type(default):

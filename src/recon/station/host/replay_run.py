@@ -172,7 +172,7 @@ async def run_replay(
     path: Path,
     http_port: int,
     console: Path | None,
-    on_start: Callable[[str, schema.ReplayView], Awaitable[None]],
+    on_start: Callable[[str, ReplayStation], Awaitable[None]],
     site_folder: Path | None = None,
 ) -> None:
     """Serve a recorded flight until SIGINT or SIGTERM; `on_start` gets the address.
@@ -198,7 +198,7 @@ async def run_replay(
         freeze_loaded_objects()
         stop_on_signals([server])
         serving = asyncio.create_task(server.serve(sockets=[sock]))
-        await on_start(url_of(HOST, sock), replay.view())
+        await on_start(url_of(HOST, sock), replay)
         await asyncio.wait((serving, playing), return_when=asyncio.FIRST_COMPLETED)
         server.should_exit = True
         await serving

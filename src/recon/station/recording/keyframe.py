@@ -206,16 +206,18 @@ class StationKeyframe:
 def read_keyframe(codec: Codec, data: bytes) -> StationKeyframe:
     """Return a recorded keyframe; raises `RecordError` for other bytes.
 
-    A field that it lacks came with a later version: it is as at the file's beginning.
+    A field that it lacks came with a later version: it is as at the file's beginning. One that a
+    station does not have is noted and skipped.
     """
     try:
         found = msgspec.msgpack.decode(data, type=dict[str, Any])
     except (msgspec.MsgspecError, ValueError, RecursionError) as problem:
         raise RecordError(f"a keyframe is damaged: {problem}") from problem
     parts, maps, hints = found.get("parts"), found.get("maps"), _hints()
-    if not parts or not isinstance(parts, dict) or not hints.keys() >= parts.keys():
-        raise RecordError("a keyframe is damaged or of another version: other fields of a station")
-    read = {name: codec.from_builtins(value, hints[name]) for name, value in parts.items()}
+    if not isinstance(parts, dict) or not hints.keys() & parts.keys():
+        raise RecordError("a keyframe is damaged: expected fields of a station")
+    codec.note_skipped(Station, parts.keys() - hints.keys())
+    read = {name: codec.from_builtins(parts[name], hints[name]) for name in parts if name in hints}
     return StationKeyframe(read, None if maps is None else codec.from_builtins(maps, MapFacts))
 
 

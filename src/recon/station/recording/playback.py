@@ -94,6 +94,11 @@ class Playback:
         """Why the file ends early; empty if it does not."""
         return self._file.trouble
 
+    @property
+    def skipped(self) -> list[str]:
+        """Fields in what was read that this version does not have, as `Class.field`."""
+        return sorted(self._codec.skipped)
+
     def close(self) -> None:
         """Close the file."""
         with self._lock:

@@ -86,6 +86,8 @@ class Checked:
     differences: list[Difference] = field(default_factory=list)
     trouble: str = ""
     """Why the check ended before the record's end; empty if it did not."""
+    skipped: set[str] = field(default_factory=set)
+    """Fields in the record that this version does not have, as `Class.field`."""
 
 
 def check(
@@ -127,9 +129,9 @@ class Replay:
     ) -> None:
         """Wait for the record's start."""
         self._on_start, self._on_job = on_start, on_job
-        self.found = Checked()
-        self.station = Station()
         self._codec = values_codec()
+        self.found = Checked(skipped=self._codec.skipped)
+        self.station = Station()
         self._auditing = Auditing()
         self._runner: JobRunner | None = None
         self._jobs: dict[tuple[str, int], AnyJob] = {}
