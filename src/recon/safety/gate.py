@@ -146,7 +146,7 @@ def _link_ids(command: Command, situation: Situation) -> tuple[int, ...]:
 
 
 def _holds_until_ns(command: Command, situation: Situation) -> int:
-    """When the approval ends: an order that may do harm late must not wait in a queue."""
+    """Return when the approval ends: an order that may do harm late must not wait in a queue."""
     body, limits = command.body, situation.settings
     if isinstance(body, (LandNow, *CAMERA_BODIES)):
         return command.expires_at_ns

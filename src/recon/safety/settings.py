@@ -19,7 +19,7 @@ class StickBounds:
 
 @dataclass(frozen=True, slots=True)
 class PreflightSettings:
-    """Beside what the site's limits and the gate's rules say."""
+    """Preflight limits besides the site's limits and the gate's rules."""
 
     early_battery_fraction: float = 0.5
     """A flight begun with less is a short one; the operator should know."""
@@ -83,8 +83,8 @@ class EnergySettings:
     """A mission waits at a waypoint until the gimbal has turned: 90 degrees at 30 a second."""
 
     wind_loads: tuple[float, ...] = (1.0, 1.2, 1.5)
-    """By the aircraft's wind warning (none, wind, strong wind and worse): it leans, and flies
-    farther through the air than over the ground."""
+    """Load factors by the aircraft's wind warning (none, wind, strong wind and worse): it leans and
+    flies farther through the air than over the ground."""
 
     unknown_wind_load: float = 1.2
     """An app that tells no wind is taken to be in some."""
@@ -107,7 +107,7 @@ class EnergySettings:
 
 @dataclass(frozen=True, slots=True)
 class BlindStopSettings:
-    """When a hover is sent although telemetry is stale."""
+    """Conditions for a hover although telemetry is stale."""
 
     fastest_descent_mps: float = 10.0
     """The fastest of DJI's aircraft that fly missions sinks at 9 m/s; one more for the air."""
@@ -121,7 +121,7 @@ class BlindStopSettings:
 
 @dataclass(frozen=True, slots=True)
 class FenceSettings:
-    """Beside what the site's own limits say."""
+    """Fence limits besides the site's own."""
 
     stick: StickBounds = StickBounds(reaction_s=0.0, braking_mps2=2.5)
     """The app itself ends a stick at its timeout, so no reaction time passes; a loaded aircraft
@@ -166,14 +166,14 @@ class PredictionSettings:
     """What a loaded aircraft brakes and gains speed with."""
 
     reaction_s: float = 1.0
-    """From an order at the station to the aircraft's first deceleration: link, app and pacing."""
+    """Time from the station's order to the aircraft's first deceleration: link, app and pacing."""
 
     time_uncertainty: float = 0.1
-    """Of the time gone by: an aircraft holds its ground speed within a few percent, and takes a
-    little longer or shorter at each of its corners and stops."""
+    """Share of the elapsed time: an aircraft holds its ground speed within a few percent, and takes
+    a little longer or shorter at each corner and stop."""
 
     slack_s: float = 3.0
-    """Beyond that: gaining speed and stopping are counted in whole legs."""
+    """Additional uncertainty: gaining speed and stopping are counted in whole legs."""
 
     start_delay_s: float = 8.0
     waypoint_upload_s: float = 0.1
@@ -184,7 +184,7 @@ class PredictionSettings:
     """Paths are compared in pieces of this time, or of their own uncertainty when that is more."""
 
     stick: StickBounds = StickBounds(reaction_s=1.0, braking_mps2=2.5)
-    """As an order's: `reaction_s` passes before the vehicle brakes, whatever ends the stick."""
+    """Bounds as for an order: `reaction_s` passes before braking, whatever ends the stick."""
 
     stick_line_deg: float = 15.0
     """A body-frame stick that turns the vehicle by more than this sweeps a disc, not a line."""
@@ -237,13 +237,13 @@ class PredictionSettings:
 
     track_error_horizontal_m: float = 1.0
     track_error_vertical_m: float = 0.5
-    """Off its predicted path in a fault-free flight: aircraft fly some decimetres beside a row, and
-    a barometer resolves decimetres. The gate keeps this beyond the watchdog's minima."""
+    """Vertical error in a fault-free flight: aircraft fly some decimetres beside a row, and a
+    barometer resolves decimetres. The gate keeps this beyond the watchdog's minima."""
 
     height_drift_m_per_h: float = 0.5
-    """Of each vehicle's height above takeoff, by its time in the air: so much more is kept between
-    two. An assumption, for barometers that were warm at takeoff: two in the air for half an hour
-    are half a metre off each other, which layers of 10 m hold (docs/decisions/0014)."""
+    """Drift of a vehicle's height above takeoff, by its time in the air: the separation of two
+    grows by both. An assumption, for barometers that were warm at takeoff: two in the air for half
+    an hour differ by half a metre, which layers of 10 m allow (docs/decisions/0014)."""
 
     corridor_m: float = 10.0
     """Half the width of a way home: GNSS error, wind, and where home really is."""
@@ -262,14 +262,14 @@ class PredictionSettings:
 
 @dataclass(frozen=True, slots=True)
 class GoHomeSettings:
-    """When a flight home by the aircraft's own go-home is not what the site asks for."""
+    """Limits beyond which the aircraft's own go-home is not what the site asks for."""
 
     near_home_m: float = 20.0
     """Begun nearer to home, or come nearer, an aircraft may land without climbing. An assumption on
     the careful side: DJI's manuals give 5 m to 20 m, by model and firmware."""
 
     height_off_m: float = 3.0
-    """From the height that is asked: a barometer's drift of metres, and half a metre in a hover."""
+    """Largest error from the requested height: barometer drift, and half a metre in a hover."""
 
     climb_mps: float = 1.0
     """Climbing slower than this, it no longer climbs."""
@@ -278,17 +278,17 @@ class GoHomeSettings:
     within half a second."""
 
     off_track_m: float = 10.0
-    """Beside the straight way home: half the width that others are kept from it (`corridor_m`)."""
+    """Largest distance from the straight way home: half the width kept clear (`corridor_m`)."""
     off_track_deg: float = 40.0
-    """Between its velocity and the direction of home: a crosswind of 6 m/s at 10 m/s of airspeed
-    drifts one that does not correct it by 31 degrees."""
+    """Largest angle between its velocity and the direction of home: a crosswind of 6 m/s at 10 m/s
+    of airspeed causes 31 degrees without correction."""
     off_track_s: float = 2.0
 
     no_progress_s: float = 10.0
     """Neither nearer nor higher for so long. It turns and brakes from 15 m/s in 8 s."""
 
     lands_within_m: float = 10.0
-    """Of home or its pad: both places by GNSS, 2.5 m off each, and precision of go-home."""
+    """Largest distance of a landing from home or pad: GNSS (2.5 m each) and go-home precision."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -305,8 +305,8 @@ class WatchdogSettings:
     """How far ahead vehicles are kept apart: two at 15 m/s need 7 s each to stand still."""
 
     sample_s: float = 0.25
-    """At 30 m/s of closing speed the nearest sample is at most 4 m along from the nearest point:
-    at 15 m of distance that hides half a metre, which the margin below holds."""
+    """Sampling interval: at 30 m/s of closing speed the nearest sample is at most 4 m from the
+    nearest point; at 15 m of distance that hides half a metre, which the margin below covers."""
 
     margin_horizontal_m: float = 2.0
     margin_vertical_m: float = 1.0
@@ -341,17 +341,17 @@ class WatchdogSettings:
     """A conflict this near is critical."""
 
     fence_factor: float = 1.25
-    """Of the stopping distance: what is looked at ahead for fences and zones."""
+    """Factor on the stopping distance: how far ahead fences and zones are checked."""
 
     link_late_s: float = 1.0
     """A vehicle in the air without telemetry for this long, ten times the usual interval."""
 
     height_drift_m: float = 10.0
-    """Between the reported altitude and the height above takeoff since takeoff: barometers drift
-    by metres in an hour of changing weather; more than that, and one of the two is wrong."""
+    """Largest change of reported altitude less height above takeoff since takeoff: barometers drift
+    by metres in an hour of changing weather; beyond this, one of the two is wrong."""
 
     height_off_m: float = 4.0
-    """From the heights of the leg being flown: half of what layers are apart."""
+    """Largest error from the heights of the present leg: half of the distance between layers."""
 
     stick_quiet_s: float = 0.5
     """A stream with no stick sent for this long: below 5 Hz aircraft may hover, and at 1 s the
@@ -383,7 +383,7 @@ class SafetySettings:
     min_satellites: int = 8
     """Six give a position; with two more one may go behind a tree and it still holds."""
     min_gnss_level: int = 3
-    """Of DJI's levels 0 to 5 the first at which the aircraft holds its place by GNSS."""
+    """First of DJI's levels 0 to 5 at which the aircraft holds its position by GNSS."""
     min_gnss_level_on_ground: int = 4
     """The first level at which DJI's aircraft record their home point: without, none comes back."""
 
@@ -429,7 +429,7 @@ class SafetySettings:
     """No DJI video feed is faster."""
 
     preflight: PreflightSettings = field(default_factory=PreflightSettings)
-    """When a point of the checklist is not passed."""
+    """Limits of the preflight checklist."""
 
     energy: EnergySettings = field(default_factory=EnergySettings)
     """How much of its battery a flight takes."""
@@ -441,7 +441,7 @@ class SafetySettings:
     """How far and how surely vehicles' paths are predicted."""
 
     go_home: GoHomeSettings = field(default_factory=GoHomeSettings)
-    """When a flight home is not what the site asks for."""
+    """Limits of the aircraft's own go-home."""
 
     watchdogs: WatchdogSettings = field(default_factory=WatchdogSettings)
     """Watchdog alarm and intervention thresholds."""

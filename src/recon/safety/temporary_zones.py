@@ -13,7 +13,7 @@ from recon.safety.airspace import PreparedZone, prepared_zone
 from recon.safety.datum import places_m
 
 MOST_ZONES = 32
-"""In force at the same time: the watchdogs look at all of them ten times a second."""
+"""Most zones in force at the same time: the watchdogs check all of them ten times a second."""
 
 MOST_CORNERS = 64
 """A person draws fewer; a finer outline costs time in every judgement."""
@@ -23,10 +23,10 @@ MOST_RADIUS_M = 2_000.0
 """Larger than what a drone in sight can reach: to clear more sky, stop all."""
 MOST_ACROSS_M = 2.0 * MOST_RADIUS_M
 FARTHEST_M = 10_000.0
-"""From the site's origin: farther is a wrong place, such as latitude and longitude exchanged."""
+"""Largest distance from the site's origin: farther is an error, such as swapped coordinates."""
 
 HIGHEST_M = 1_000.0
-"""Above ground: twice what DJI's aircraft can fly."""
+"""Largest height above ground: twice what DJI's aircraft can fly."""
 
 LEAST_LASTS_S = 10.0
 MOST_LASTS_S = 86_400.0

@@ -33,9 +33,9 @@ class SharedFacts(NamedTuple):
     """What the rows of the station itself are judged by; None while the condition is absent."""
 
     late_since_ns: int | None = None
-    """Since when its steps have come late."""
+    """Start of the present run of late steps."""
     operator_gone_since_ns: int | None = None
-    """Since when no client is connected, after one was for a while."""
+    """When the last client disconnected, after one was connected for a while."""
     imager_serials: frozenset[str] = frozenset()
     """The imaging drones."""
     imager_lost_since_ns: int | None = None
@@ -64,7 +64,7 @@ class FlightFacts(NamedTuple):
 
 
 Find = Callable[[FlightFacts], int | None]
-"""Since when the condition holds for a vehicle (station time, ns); None while it does not."""
+"""Returns since when the condition holds for a vehicle (station time, ns); None while absent."""
 
 OFFERED: Mapping[Activity, frozenset[Reaction]] = {
     Activity.MISSION: frozenset(Reaction),
@@ -86,7 +86,7 @@ class FailsafeRow:
 
     condition: FailsafeCondition
     begins: str
-    """When it begins, in words."""
+    """When the condition begins, in words."""
     ends: str
     """What ends it, to follow "unless"."""
     reactions: frozenset[Reaction]

@@ -120,7 +120,7 @@ def _landing(point_m: FloatArray) -> Pieces:
 
 
 def straight_pieces(path: StraightFlight, departure: Departure, settings: FenceSettings) -> Pieces:
-    """To the target by closed-loop sticks, which may pass it a little; ways home from there."""
+    """Return the flight to the target by closed-loop sticks, with overshoot, and the ways home."""
     height_m = path.height_above_takeoff_m
     assert height_m is not None  # a departure has a height
     target_m = places_m(departure.frame, [path.target])[0]

@@ -27,7 +27,7 @@ CLOSER_M = 0.5
 
 @dataclass(frozen=True, slots=True)
 class Conflict:
-    """When a trajectory first violates the minima to another, and the closest approach."""
+    """The first violation of the minima to another trajectory, and the closest approach."""
 
     other: int
     """Index into the others' trajectories."""
@@ -101,7 +101,7 @@ def _kept(pairs: _Pairs, mask: BoolArray) -> _Pairs:
 
 
 def _pairs(mine: ProtectedVolumes, theirs: ProtectedVolumes) -> _Pairs:
-    """In a trajectory both ends of the pieces' times ascend, so those that overlap lie together."""
+    """Return the pairs of pieces that overlap in time; times ascend, so they lie together."""
     counts_of = np.diff(theirs.first)
     shift_s = np.arange(len(counts_of)) * _APART_S
     piece_shift_s = np.repeat(shift_s, counts_of)
@@ -238,7 +238,7 @@ def _to_segment_m(point: FloatArray, start: FloatArray, end: FloatArray) -> Floa
 
 
 def _side(start: FloatArray, end: FloatArray, point: FloatArray) -> FloatArray:
-    """On which side of the line each point lies: positive left, negative right."""
+    """Return on which side of the line each point lies: positive left, negative right."""
     along, to_point = end - start, point - start
     side: FloatArray = along[:, 0] * to_point[:, 1] - along[:, 1] * to_point[:, 0]
     return side

@@ -12,7 +12,7 @@ LEAST_SPEED_MPS = 0.1
 """A leg commanded at zero speed still ends."""
 
 STANDING_MPS = 0.5
-"""Below this a vehicle counts as standing: GNSS velocity noise and gusts stay under it."""
+"""Speed below which a vehicle counts as hovering: above GNSS velocity noise and gusts."""
 
 VERTICAL_BRAKING_MPS2 = 2.0
 EASING_MPS2 = 0.8

@@ -266,9 +266,9 @@ def _stick(predictor: Predictor, path: StickFlight) -> None:
 
 
 def _climbs(predictor: Predictor, band_m: tuple[float, float]) -> None:
-    """From now on at any height up or down to these; until now at its own, at its own velocity.
+    """Write a climb: any height between these from now on; its own height and velocity until now.
 
-    So the climb itself is no way out for two that are too near already.
+    So the climb itself does not separate two vehicles that are too near already.
     """
     writer, (east_mps, north_mps, _up_mps) = predictor.writer, predictor.motion.velocity_mps
     until_now_s = max(0.0, -writer.time_s) + LEAST_S
@@ -282,7 +282,7 @@ def _climbs(predictor: Predictor, band_m: tuple[float, float]) -> None:
 
 
 def _take_up(predictor: Predictor, velocity: tuple[float, float]) -> None:
-    """From the present velocity to the stick's: a parabola, within its bow of the chord."""
+    """Write the change to the stick's velocity: a parabola, within its bow of the chord."""
     writer, settings = predictor.writer, predictor.settings
     east_mps, north_mps, _up_mps = predictor.motion.velocity_mps
     change_mps = hypot(velocity[0] - east_mps, velocity[1] - north_mps)

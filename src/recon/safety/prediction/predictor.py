@@ -31,7 +31,7 @@ UNDER_WAY_MPS = 2.0
 """A returning vehicle this fast towards its home is under way, at whatever height."""
 
 UNHOMED_RADIUS_M = 150.0
-"""Of a vehicle that returns, its home unknown or not where it flies: hazard areas grow as far."""
+"""Radius for a vehicle returning to an unknown or wrong home: as large as hazard areas grow."""
 
 
 class Predictor:
@@ -55,7 +55,7 @@ class Predictor:
         self.writer = TrajectoryWriter(motion.east_m, motion.north_m, motion.low_m, motion.high_m)
         self.writer.time_s = -motion.age_s
         self.delay_s = 0.0
-        """By how much later all of it may be flown."""
+        """Longest delay of the whole trajectory."""
 
     def follow(self, intent: Intent) -> None:
         """Write what an intent makes a vehicle do."""

@@ -28,7 +28,7 @@ from recon.safety.prediction.trajectory import (
 from recon.safety.settings import PredictionSettings
 
 MOST_PIECES = 400
-"""Of one row: enough for 2 km at a walking pace; a slower one is cut coarser, never shortened."""
+"""Most pieces of one row: enough for 2 km at walking pace; slower rows get longer pieces."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -21,7 +21,7 @@ FOREVER_S = 1.0e6
 """Longer than any battery; times never go beyond, so that sums stay finite."""
 
 ALL_HEIGHTS_M = 1.0e5
-"""Above and below every aircraft: the band of one whose height is unknown."""
+"""Band of a vehicle whose height is unknown: above and below every aircraft."""
 
 (START_S, END_S, EAST_0, NORTH_0, EAST_1, NORTH_1, LOW_0, HIGH_0, LOW_1, HIGH_1) = range(10)
 (RADIUS_0, RADIUS_1, CURVE, PART) = range(10, 14)
@@ -119,7 +119,7 @@ class TrajectoryWriter:
         self.moves(self.east_m, self.north_m, seconds, part, radius_m=radius_m)
 
     def widens(self, low_m: float, high_m: float) -> None:
-        """From here on be anywhere between these heights and the present ones."""
+        """Allow any height between these and the present ones from here on."""
         self.low_m, self.high_m = min(self.low_m, low_m), max(self.high_m, high_m)
 
     def stays(self, part: int) -> None:

@@ -1,4 +1,4 @@
-"""From every point of a flight the battery must suffice for the way home and a reserve."""
+"""The battery suffices for the way home and a reserve from every point of a flight."""
 
 from math import ceil, floor, isfinite
 

@@ -49,7 +49,7 @@ def _worse(
     margin_m: float,
     rounding_m: float,
 ) -> npt.NDArray[np.int64]:
-    """Of the pieces that break the rule, those that do not begin with it broken as much."""
+    """Return the pieces that break the rule, except those that begin with it broken as much."""
     entries = path.pieces.is_entry[outside]
     if not entries.any():
         return outside

@@ -30,7 +30,7 @@ _WITHOUT_GNSS = {
     FlightMode.ATTI: "ATTI",
     FlightMode.ATTI_COURSE_LOCK: "ATTI_COURSE_LOCK",
 }
-"""In these modes the aircraft drifts with the wind and flies no mission and no stick's velocity."""
+"""Modes in which the aircraft drifts with the wind and flies no mission or stick velocity."""
 
 
 def gnss_refusal(vehicle: VehicleState, settings: SafetySettings) -> Refusal | None:

@@ -1,4 +1,4 @@
-"""In a height zone no path is lower than the floor or higher than the ceiling."""
+"""No path in a height zone is lower than its floor or higher than its ceiling."""
 
 import numpy as np
 

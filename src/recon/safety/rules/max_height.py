@@ -55,7 +55,7 @@ def _higher(path: PathVolume, indices: IntArray, situation: Situation, most_m: f
 
 
 def _worse(path: PathVolume, high: IntArray, situation: Situation, rounding_m: float) -> IntArray:
-    """Of the pieces that break the rule, those that the vehicle does not break as much now."""
+    """Return the pieces that break the rule, except those that the vehicle breaks as much now."""
     begins = high[path.pieces.is_entry[high]]
     if len(begins) == 0:
         return high

@@ -1,4 +1,4 @@
-"""After an all stop nothing sets a vehicle in motion until a person releases it."""
+"""No order sets a vehicle in motion after an all stop until a person releases it."""
 
 from recon.model.command import Command, Refusal
 from recon.model.units import ns_to_seconds

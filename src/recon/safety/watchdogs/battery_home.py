@@ -23,7 +23,7 @@ def battery_home(picture: TrafficPicture) -> Iterator[Finding]:
 def _compared(
     watched: WatchedVehicle, has: float, needs: float, picture: TrafficPicture
 ) -> Iterator[Finding]:
-    """Below what a landing must leave it is critical; below the reserve it is time to turn back."""
+    """Yield a critical finding below the landing minimum, a warning to return below the reserve."""
     least, reserve = picture.energy.landing_fraction, _reserve(picture)
     figures = f"battery {has:.0%}, way home {needs:.0%}"
     if has < needs + least and not (watched.is_coming_down and has >= needs):

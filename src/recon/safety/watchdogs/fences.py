@@ -37,7 +37,7 @@ DEEPER_M = 0.5
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Way:
-    """For N vehicles: where they are and will be, (N, 2) in the site's frame, and the heights
+    """Present and predicted positions of N vehicles, (N, 2) in the site's frame, and the heights
     between, (N,) up metres. `ahead` are the hulls of the ways, from (N, 3, 2) `triangles_m`."""
 
     here_m: FloatArray

@@ -27,7 +27,7 @@ from recon.safety.watchdogs.closest_approach import Approach, approach, closenes
 from recon.safety.watchdogs.traffic_picture import TrafficPicture, WatchedVehicle
 
 ROUNDING = 1e-9
-"""Of a closeness: the same paths may be summed in another order."""
+"""Rounding error of a closeness: the same paths may be summed in another order."""
 
 
 class PairConflict(NamedTuple):

@@ -31,7 +31,7 @@ def link(picture: TrafficPicture) -> Iterator[Finding]:
 
 ALTITUDE_MISMATCH = "altitude_mismatch"
 WGS84_DRIFT_M = 2.0
-"""For an app that is sent altitudes: the gate refuses missions from here on."""
+"""Altitude drift limit for an app that is sent altitudes: the gate refuses missions beyond it."""
 
 
 def heights(picture: TrafficPicture) -> Iterator[Finding]:
@@ -59,7 +59,7 @@ def _drift(watched: WatchedVehicle, settings: WatchdogSettings) -> Iterator[Find
 
 
 def _off_its_leg(watched: WatchedVehicle, settings: WatchdogSettings) -> Iterator[Finding]:
-    """On a leg between two waypoints every height between theirs is right, and no other."""
+    """Yield a finding when the height is outside the heights of the present leg."""
     intent, height_m = watched.intent, watched.state.height_above_takeoff_m.value
     flies_it = watched.state.flight_mode.value is FlightMode.GPS_WAYPOINT
     if intent.commanded is not Commanded.MISSION or intent.mission is None or not flies_it:

@@ -51,7 +51,7 @@ def way_home_zones(picture: TrafficPicture) -> Iterator[Finding]:
 
 
 def _way_m(vehicle: VehicleState, frame: LocalFrame) -> FloatArray | None:
-    """From here to its home, which is last, (3, 2) in the frame; None while home is unknown."""
+    """Return the path from here to its home, (3, 2) in the frame; None while home is unknown."""
     here, there = last_known_place(vehicle), home(vehicle)
     return None if there is None else places_m(frame, [here, here, there])
 
