@@ -46,7 +46,7 @@ class CalibrationService:
     newest: Callable[[str], Frame | None]
     """A vehicle's newest frame, with its pixels."""
     _frozen: dict[str, _Frozen] = field(default_factory=dict)
-    """By serial, of the site's few imaging drones."""
+    """Frozen frames of the site's few imaging drones, by serial."""
 
     async def freeze(self, serial: str) -> schema.FrozenFrameView:
         """Keep the newest frame of an imaging drone."""

@@ -28,7 +28,7 @@ from recon.station.state.station import Station
 from recon.station.state.survey_record import SURVEYS_KEPT, EastNorth, SurveyMember, SurveyRecord
 
 DECIMALS = 7
-"""Of a degree: a centimetre."""
+"""Decimals of a degree: a centimetre."""
 
 
 def survey_views(station: Station, now_ns: int) -> list[schema.SurveyView]:

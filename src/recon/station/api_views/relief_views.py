@@ -1,4 +1,4 @@
-"""Until when a running survey has light, as the API sends it."""
+"""How long a running survey will have light, as the API sends it."""
 
 from collections.abc import Sequence
 
@@ -81,7 +81,7 @@ def unknown_from_s(leaves_s: Sequence[float | None], needs_s: float | None) -> f
 def _without(
     record: SurveyRecord, outlook: SurveyOutlook, now_ns: int
 ) -> tuple[float | None, float | None]:
-    """Since when it has no shade map, and what it imaged since then in unknown light."""
+    """Return since when it has no shade map, and the area imaged since in unknown light."""
     without = outlook.without_light
     if without is None or record.state is None:
         return None, None

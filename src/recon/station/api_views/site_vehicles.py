@@ -23,7 +23,7 @@ class SiteVehiclesService:
 
     edited: EditedSite
     numbers: Callable[[], Mapping[str, int]] = dict
-    """By serial."""
+    """Returns the vehicles' numbers by serial."""
 
     async def vehicles(self) -> schema.SiteVehiclesView:
         """Return the vehicles in the folder."""

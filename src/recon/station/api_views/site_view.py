@@ -27,7 +27,7 @@ MAX_RINGS = 100
 FIRST_THINNING_M = 0.25
 COARSEST_THINNING_M = 1_000.0
 DECIMALS = 7
-"""Of a degree: a centimetre."""
+"""Decimals of a degree: a centimetre."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

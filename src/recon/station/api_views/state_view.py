@@ -41,7 +41,7 @@ TRACK_DIGITS = 6
 PLACE_DIGITS = 8
 """A millimetre; further digits cannot be compressed."""
 DIGITS = 3
-"""Of seconds, metres, metres per second and degrees of angle."""
+"""Decimals of seconds, metres, metres per second and degrees of angle."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -68,7 +68,7 @@ class Auditor:
         self._now_ns = now_ns
         self.memory = Auditing()
         self.entries: tuple[AuditEntry, ...] = ()
-        """Of the newest step."""
+        """The newest step's entries."""
         self._reported_problem: str | None = None
         self.snapshot_problem: Callable[[], str | None] = lambda: None
         """Why the recovery snapshot cannot be written; None while it can."""

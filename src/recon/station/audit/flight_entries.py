@@ -33,7 +33,7 @@ MAX_REMEMBERED = 512
 
 @dataclass(frozen=True, slots=True)
 class FlightsLogged:
-    """When each vehicle's position was last written, by serial."""
+    """Times at which each vehicle's position was last written, by serial."""
 
     written_at_ns: Mapping[str, int] = field(default_factory=dict)
 

@@ -14,7 +14,7 @@ from recon.station.control.situation_builder import situation
 from recon.station.state.station import Station
 
 RULE = "dispatch"
-"""Of what no rule of the gate refuses: an order that has ended, a fault in judging it."""
+"""Rule of refusals outside the gate: an order that has ended, a fault in judging it."""
 
 SAME_MOMENT_S = 0.05
 """What leaves within a tick of its approval was judged by the facts of that moment."""

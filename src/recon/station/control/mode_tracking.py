@@ -43,7 +43,7 @@ FLOWN_BY_HAND_MPS = 2.0
 
 _LASTING = (Verdict.PILOT, Verdict.FAILSAFE)
 _UNCONFIRMED_EMERGENCY = (Instruction.HOLD_SENT, Instruction.RETURN_SENT, Instruction.LAND_SENT)
-"""Until telemetry shows these, their order's own repeats and timeouts decide."""
+"""Instructions whose repeats and timeouts decide until telemetry shows their effect."""
 
 _FAILED_BEFORE_START = (Phase.TIMED_OUT, Phase.REFUSED_BY_APP, Phase.FAILED, Phase.EXPIRED)
 

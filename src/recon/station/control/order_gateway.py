@@ -223,7 +223,7 @@ def on_link_event(
 
 
 def _on_sent(station: Station, record: OrderRecord, event: CommandSent, now_ns: int) -> Station:
-    """From its first sending on an order is its vehicle's intent."""
+    """Make the order its vehicle's intent from its first sending on."""
     context = sent_context(station, record, now_ns)
     is_first = record.sent is None and not record.phase.is_final
     station = put(station, orders.on_sent(record, event, context))

@@ -130,4 +130,4 @@ def _findings(station: Station) -> Findings:
 
 
 _RULES_READ = frozenset({"battery_home"})
-"""Of the watchdogs' findings, those that a row is judged by."""
+"""Rules of the watchdog findings that a row is judged by."""

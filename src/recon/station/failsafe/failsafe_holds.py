@@ -7,7 +7,7 @@ from recon.station.state.station import Station
 
 _WATCHDOGS = (FailsafeCondition.GEOFENCE, FailsafeCondition.SEPARATION)
 _LEFT_TO_THE_WATCHDOG = (FailsafeCondition.GEOFENCE, Activity.RETURNING)
-"""At a fence the watchdog itself leaves alone what lands or returns, by its mode and order."""
+"""The watchdog itself exempts vehicles that land or return from holds at a fence."""
 
 
 def alarm_only(station: Station, vehicle: VehicleState) -> frozenset[FailsafeCondition]:

@@ -293,7 +293,7 @@ def _is_from_before(row: FailsafeRow, flight: _Flight) -> bool:
 
 
 def _awaited(station: Station, now_ns: int) -> dict[str, int]:
-    """When each vehicle of the last run was last seen missing, until its telemetry has settled."""
+    """Return when each vehicle of the last run was last missing, until its telemetry settles."""
     if station.restored_at_ns is None:
         return {}
     settles_ns = seconds_to_ns(station.settings.failsafe.restart_settles_s)

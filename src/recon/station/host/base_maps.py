@@ -19,7 +19,7 @@ from recon.site import Site, own_folder
 from recon.site.reading import MAPS_FOLDER
 
 MOST_WAITING = 256
-"""For a tile that is read: a console asks for sixteen at once."""
+"""Most requests that wait for a tile being read: a console sends sixteen at once."""
 NO_FOLDER = (
     "Base maps belong to a site: start the station with a site's folder (--site) that has a folder "
     "maps"

@@ -23,7 +23,7 @@ from recon.api.flight_routes import FlightBusyError, FlightFileError
 SUFFIX = ".mcap"
 MOST_LISTED = 1_000
 MOST_WAITING = 4
-"""For the one that is being made."""
+"""Most requests that wait for the file being made."""
 MOST_KEPT = 12
 WITHIN_S = 600.0
 NICENESS = 15

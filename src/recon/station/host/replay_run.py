@@ -36,7 +36,7 @@ from recon.station.recording.transport import Transport
 from recon.station.state.station import Station
 
 INTERVAL_S = 0.1
-"""As often as a console is sent a state."""
+"""Interval between two states, as for a live console."""
 FASTEST_EXACT = 10.0
 """A computer steps a small fleet twenty times as fast as it flew; faster, keyframes are shown."""
 

@@ -21,15 +21,15 @@ class RunConfig:
     link_host: str = "127.0.0.1"
     link_port: int = 3001
     is_announced: bool = False
-    """By mDNS, to apps on the network of `link_host`."""
+    """Whether mDNS announces the link to apps on the network of `link_host`."""
     http_host: str = "127.0.0.1"
     http_port: int = 8080
     stop_port: int | None = None
-    """Of the guard, on loopback; None: no guard."""
+    """The guard's port on loopback; None: no guard."""
     site_folder: Path | None = None
     """Where the site was read from; its digest goes into the audit."""
     record_folder: Path | None = None
-    """Of the flight records; None: nothing is recorded."""
+    """Folder of the flight records; None: nothing is recorded."""
     is_record_required: bool = False
     """Whether a folder that cannot be written is an error at the start, not only an alarm."""
     audit: AuditPlace | None = None
@@ -76,7 +76,7 @@ class Started:
     network: SharedAddress | None = None
     """What other computers use; None when they reach nothing."""
     app_url: str | None = None
-    """For apps on other devices, as QR codes have it; None when they reach nothing."""
+    """Address for apps on other devices, as in QR codes; None when they cannot connect."""
     taken_up: str = ""
     """What this run continues from the last one, in words; empty if nothing."""
 

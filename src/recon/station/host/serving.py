@@ -36,7 +36,7 @@ class Doors:
     network: socket.socket | None
     certificate: Certificate | None
     url: str
-    """Of the console, on this computer."""
+    """The console's address on this computer."""
     shared: SharedAddress | None
     """What other computers use; None when they reach nothing."""
 

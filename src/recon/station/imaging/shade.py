@@ -61,7 +61,7 @@ class ShadeRead:
     """What an image showed, or why it was rejected; and the methods' new memories."""
 
     serial: str
-    """Of the imaging drone."""
+    """The imaging drone's serial."""
     detection: DetectionState
     forecast: ForecastState
     own: SeenShade | RejectedFrame

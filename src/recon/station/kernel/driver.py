@@ -86,7 +86,7 @@ class AsyncioDriver:
         self._loop: asyncio.AbstractEventLoop | None = None
         self._tick_ns = self._clock_ns = 0
         self._stepped_at_ns: int | None = None
-        """When the last event was stepped, from the first tick on."""
+        """Time of the last stepped event, from the first tick on."""
 
     def handle(self, event: Event) -> None:
         """Queue an event and step by it; events caused by its outputs are queued behind it."""

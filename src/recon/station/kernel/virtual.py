@@ -58,7 +58,7 @@ class Peer(Protocol):
 
     @property
     def next_due_ns(self) -> int:
-        """When `advance` is due next, if nothing is received before then."""
+        """Return when `advance` is due next, if nothing is received before then."""
 
 
 @dataclass(slots=True)

@@ -16,4 +16,4 @@ OPERATIONS: tuple[Operation, ...] = (
     IMAGER_RELIEF,
     SURVEY,
 )
-"""In the order of their ticks."""
+"""All operations, in the order of their ticks."""

@@ -27,7 +27,7 @@ class Operation:
     """
 
     name: str
-    """As in "advancing the survey"; part of a fault's alarm."""
+    """Name in a fault's alarm, such as "advancing the survey"."""
     tick: Callable[[Station, int], Stepped]
     """Its step on every tick, 20 times a second."""
     conditions: Callable[[Station], Iterator[Condition]]

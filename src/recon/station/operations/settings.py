@@ -7,7 +7,7 @@ from recon.guidance.fleet_return import FleetReturnSettings
 
 @dataclass(frozen=True, slots=True)
 class ReturnSettings:
-    """Of fleet returns. Times in seconds."""
+    """Settings of fleet returns; times in seconds."""
 
     plan: FleetReturnSettings = field(default_factory=FleetReturnSettings)
 
@@ -15,7 +15,7 @@ class ReturnSettings:
     """How often the turns are checked; each flight lasts a minute or so."""
 
     stands_within_s: float = 12.0
-    """From 15 m/s an aircraft stands within 6 s of a hold, which is sent up to 2 s late."""
+    """Longest time until a held aircraft hovers: 6 s from 15 m/s, and up to 2 s to the hold."""
 
     telemetry_within_s: float = 3.0
     """A waiting vehicle without telemetry for so long may do anything: it is left out."""
@@ -28,15 +28,15 @@ class ReturnSettings:
     as broken, and vehicles that hover must not wait for it."""
 
     planned_again_s: float = 2.0
-    """Between two plans for the same vehicles, when another vehicle blocks their way."""
+    """Shortest time between two plans for the same vehicles, when another blocks their way."""
 
     gate_waits_s: float = 30.0
-    """With no vehicle of the return flying before it, a mission may wait this long for telemetry or
-    for other vehicles; then the gate's refusal stands."""
+    """Longest time that a mission waits for telemetry or for other vehicles while no vehicle of the
+    return flies before it; then the gate's refusal is final."""
 
     pad_clearing_s: float = 30.0
-    """From a landing to the next one at the same pad, at least: time to carry the first vehicle
-    away. An alarm requests it."""
+    """Shortest time between two landings at the same pad: time to carry the first vehicle away. An
+    alarm requests it."""
 
     same_pad_m: float = 5.0
     """Pads nearer than this count as one: two vehicles could not stand on both."""
@@ -52,7 +52,7 @@ class ReturnSettings:
 
 @dataclass(frozen=True, slots=True)
 class SurveyTimes:
-    """Of running surveys. Times in seconds."""
+    """Settings of running surveys; times in seconds."""
 
     step_every_s: float = 1.0
     """A row takes half a minute; a second of battery counts for nothing."""
@@ -62,10 +62,10 @@ class SurveyTimes:
     tenths of a second. After this it counts as lost."""
 
     positions_kept: int = 4_000
-    """Between two steps: eight vehicles at 10 Hz for as long as a step may take."""
+    """Most positions kept between two steps: eight vehicles at 10 Hz for a step's longest time."""
 
     shade_maps_kept: int = 16
-    """Between two steps: as many as a survey keeps itself."""
+    """Most shade maps kept between two steps: as many as a survey itself keeps."""
 
     unsent_within_s: float = 60.0
     """A vehicle whose missions could not be sent for so long, for reasons that time ends otherwise,
@@ -85,7 +85,7 @@ class SurveyTimes:
     """A flown path is drawn with corners this far apart."""
 
     track_corners: int = 2_000
-    """Of one mission: ten kilometres."""
+    """Most corners of one mission's track: ten kilometres."""
 
 
 RETURN_SETTINGS = ReturnSettings()

@@ -33,12 +33,12 @@ KEYFRAME_S = 2.0
 """A seek steps through the events of so long at most; each takes 1 to 2 ms of the station."""
 
 SAMPLES_KEPT = 30
-"""Of an imaging drone's telemetry, for the frames of the next seconds."""
+"""Telemetry samples kept of an imaging drone, for the frames of the next seconds."""
 NO_PIXELS = np.zeros((0, 0, 3), np.uint8)
 _SELDOM = ("settings", "airspace")
 """Changed by a drawing, if ever: left out while they are as at the file's beginning."""
 _LARGE = ("fleet", "orders")
-"""With many vehicles nearly all of a keyframe."""
+"""Fields that are nearly all of a keyframe when there are many vehicles."""
 _ALWAYS = tuple(each.name for each in fields(Station) if each.name not in _SELDOM)
 MOST_CELLS = 4_000_000
 
@@ -48,10 +48,10 @@ class MapFacts:
     """What the topics of the newest shade map and forecast do not hold."""
 
     at_ns: int
-    """When both were recorded."""
+    """Time of recording of both."""
     source_serials: tuple[str, ...]
     lead_s: tuple[float, ...] = ()
-    """Of the forecast; none without one."""
+    """The forecast's lead times; none without a forecast."""
     prior_sunlit: float = 0.0
     method: str = ""
     velocity_mps: tuple[float, float] | None = None
@@ -70,17 +70,17 @@ class DueKeyframe:
     """The state after a step, of which a keyframe is to be made at once."""
 
     number: int
-    """Of the step in its file."""
+    """The step's number in its file."""
     now_ns: int
     station: Station
     maps_at_ns: int | None = None
-    """When the newest shade map was recorded; None if it is not in this file."""
+    """Time of recording of the newest shade map; None if it is not in this file."""
     changed: frozenset[str] = frozenset()
     """Those of settings and airspace that are not as at the file's beginning."""
 
 
 class Keyframes:
-    """When keyframes of a file are due, and what they leave out."""
+    """Decides when keyframes of a file are due and what they omit."""
 
     def __init__(self) -> None:
         self._first = Station()

@@ -68,7 +68,7 @@ RESTART_WITHIN_S = 30.0
 """A record that cannot be replayed is better than none."""
 
 WAITING_BYTES = RING_BYTES // 4
-"""While the first state of a file is encoded: minutes of telemetry, or a second of raw frames."""
+"""Limit while a file's first state is encoded: minutes of telemetry, a second of raw frames."""
 WAITING_BULK_BYTES = int(BULK_SHARE * WAITING_BYTES)
 
 
@@ -142,10 +142,10 @@ class Recorder:
         self._number = self._dropped_bytes = 0
         self._has_flown = self._reports_flown = False
         self._quiet_since_ns = 0
-        """When the file began, or, with a flight in it, when the last vehicle was on the ground."""
+        """Start of the file or, if it has a flight, when the last vehicle was last seen flying."""
         self._keyframes = Keyframes()
         self._pieces: Iterator[bytes] | None = None
-        """Of the keyframe that is being encoded: the first item of what is kept."""
+        """Pieces of the keyframe being encoded, which is the first of the queued items."""
         self._died_at_ns: int | None = None
         self._restart_at_ns = 0
         self._reported: str | None = None

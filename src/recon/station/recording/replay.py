@@ -55,7 +55,7 @@ REPORT_EVERY_STEPS = 2000
 OnJob = Callable[[AnyJob, Event], None]
 
 MOST_DIFFERENCES = 20
-"""After the first one the replayed station is another one: more of them tell no more."""
+"""Most differences reported: after the first one the replayed station is in another state."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +64,7 @@ class Difference:
 
     step: int
     after_s: float
-    """Since the flight's start."""
+    """Time since the flight's start."""
     event: str
     path: str
     recorded: Any

@@ -34,7 +34,7 @@ MARKED_KINDS: dict[str, Literal["alarm", "order"]] = {
     "order.failed": "order",
 }
 BREATH_S = 0.002
-"""After each chunk: the replay itself goes first."""
+"""Pause after each chunk: the replay itself has priority."""
 
 
 class _RecordedEntry(msgspec.Struct, frozen=True):

@@ -44,8 +44,8 @@ INTERRUPTED = "the station was restarted during this order; check what the vehic
 IDS_ROUNDED_TO = 1_000
 OWN_IDS_SKIPPED = 100_000
 IDS_PER_LOST_RUN = 1_000_000_000
-"""Without a readable snapshot ids start at this times the number of runs in the audit's folder:
-no run uses so many."""
+"""Without a readable snapshot, ids start at this times the number of runs in the audit's folder: no
+run uses so many."""
 
 _BODIES = {name: kind for kind, name in BODY_NAMES.items()}
 

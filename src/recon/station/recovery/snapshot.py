@@ -38,9 +38,9 @@ MAX_VEHICLES = 256
 MAX_UNIDENTIFIED = 256
 MAX_ORDERS = 200
 MAX_ID = 2**52
-"""Beyond it a JavaScript number, and so the console, could not tell two orders apart."""
+"""Largest id: beyond it JavaScript, and so the console, could not tell two orders apart."""
 MAX_TEXT = 200
-"""Of names typed by operators; a serial is never cut."""
+"""Longest name typed by an operator; a serial is never cut."""
 
 OrderId = Annotated[int, msgspec.Meta(ge=-MAX_ID, le=MAX_ID)]
 

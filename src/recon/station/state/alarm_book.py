@@ -38,7 +38,7 @@ class AlarmBook:
 
     alarms: Mapping[int, Alarm] = field(default_factory=dict)
     since_ns: Mapping[str, int] = field(default_factory=dict)
-    """When each present condition began, by key."""
+    """Start of each present condition, by key."""
     next_id: int = 1
 
 

@@ -57,18 +57,18 @@ class FailsafeState:
     run_at_ns: int | None = None
     occurrences: Mapping[str, Occurrences] = field(default_factory=dict)
     activities: Mapping[str, Activity] = field(default_factory=dict)
-    """Of each vehicle with an occurrence, at the last run."""
+    """Activity at the last run of each vehicle with an occurrence."""
     remaining: Mapping[str, RemainingMission] = field(default_factory=dict)
     awaited_ns: Mapping[str, int] = field(default_factory=dict)
-    """When each vehicle of the last run was last seen missing, while that matters."""
+    """Time at which each vehicle of the last run was last missing, while that matters."""
     ticked_ns: int | None = None
     late_ns: tuple[int, ...] = ()
-    """When late steps came, the newest last."""
+    """Times of late steps, the newest last."""
     is_late: bool = False
     late_since_ns: int = 0
     late_gap_s: float = 0.0
     client_since_ns: int | None = None
-    """Since when any client is connected; None while none is."""
+    """Time since which any client is connected; None while none is."""
     had_operator: bool = False
     """Whether one stayed long enough to be an operator's."""
     no_client_since_ns: int | None = None

@@ -82,9 +82,9 @@ class FleetReturn:
     layers_up_m: tuple[float, ...] = ()
     step_due_ns: int = 0
     planning_since_ns: int | None = None
-    """When the plan that the worker makes now was requested; the job's id too."""
+    """Time at which the worker's present plan was requested; also the job's id."""
     zone_changes: int = 0
-    """Of `TemporaryZones.changes`: after how many of them it was planned."""
+    """`TemporaryZones.changes` when it was planned."""
 
     def put(self, member: ReturningVehicle) -> "FleetReturn":
         """Return it with one vehicle replaced."""

@@ -28,7 +28,7 @@ class ImagerOutlook:
 
 @dataclass(frozen=True, slots=True)
 class WithoutLight:
-    """Since when a survey has had no shade map, and the area of unknown light it had then."""
+    """Time since which a survey has had no shade map, and its area of unknown light then."""
 
     since_ns: int
     sun_unknown_m2: float

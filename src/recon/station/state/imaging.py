@@ -17,8 +17,8 @@ WAITING_KEPT = 8
 catch up. More drop the oldest, and are counted."""
 
 TOGETHER_WITHIN_S = 10.0
-"""Of the newest one: older images and maps of other imaging drones are left out of what is shown of
-all together. Shadows have moved and changed by then, and an old image would look like now."""
+"""Largest age difference to the newest image: older images and maps of other imaging drones are not
+shown with it. Shadows have moved since, and an old image would look current."""
 
 NONE: Mapping[str, Any] = MappingProxyType({})
 
@@ -39,7 +39,7 @@ class LayFrame:
     telemetry: TelemetryReference
     reference: TelemetryReference
     captured_utc_s: float | None = None
-    """By the computer's clock, for the sun's position; None before the clock was read."""
+    """Capture time by the computer's clock, for the sun's position; None before it was read."""
     registration: RegistrationState = field(default_factory=RegistrationState)
     """What registration keeps of the frames before; set when the job starts."""
 
@@ -89,9 +89,9 @@ class Imaging:
     """The site's imaging drones, and the one job that lays a frame of one of them."""
 
     imagers: Mapping[str, ImagerFrames] = field(default_factory=lambda: NONE)
-    """By serial, in the order of the site's file."""
+    """Frames by serial, in the order of the site's file."""
     job_id: int | None = None
-    """Of the job that runs now."""
+    """Id of the running job."""
     job_serial: str = ""
     """The imaging drone whose frame it lays."""
     next_job_id: int = 1
@@ -139,14 +139,14 @@ class ShadePipeline:
     forecast: ForecastState = field(default_factory=ForecastState)
     number: int = 0
     shade: ShadeMap | None = None
-    """Of all imaging drones."""
+    """Shade map of all imaging drones."""
     seen: MaskMap | None = None
     """The cells of `shade` that its ground images showed; those without a value are unknown."""
     sun: SunForecast | None = None
     """None also where no console or record shows forecasts: see `newest_sun`."""
     waiting: tuple[GroundImage, ...] = ()
     job_id: int | None = None
-    """Of the job that runs now."""
+    """Id of the running job."""
     frames_rejected: int = 0
     frames_dropped: int = 0
     rejected: Mapping[str, RejectedFrame] = field(default_factory=lambda: NONE)
@@ -175,7 +175,7 @@ class ReferenceKeeping:
 
     folder: Path
     found: tuple[SunlitReference, ...] = ()
-    """Of earlier flights."""
+    """References found in earlier flights."""
     due_ns: int = 0
     """The next ones are written with the first shade map taken at this time or later."""
     next_job_id: int = 1

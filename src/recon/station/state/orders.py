@@ -52,7 +52,7 @@ class FlightPlan:
     parts: tuple[Mission, ...]
     repairs: tuple[str, ...] = ()
     index: int = 0
-    """Of the part sent last."""
+    """Index of the part sent last."""
     link_id: int | None = None
     authority: ControlAuthority | None = None
     telemetry_at_ns: int | None = None
@@ -95,14 +95,14 @@ class OrderRecord:
     """A stop refused because telemetry is stale, judged again at each packet of its vehicle; or one
     sent without it, and sent again when telemetry returns and does not show it obeyed."""
     follows: int | None = None
-    """Of a stop: the order to take off that it follows (`control/takeoff_stops`)."""
+    """For a stop: the order to take off that it follows (`control/takeoff_stops`)."""
     waiting_link_ids: tuple[int, ...] = ()
     """Links whose queue it may still stand in: dropped by one, it can yet be sent by another."""
     is_refused_by_app: bool = False
     """An app has refused an emergency order that is still repeated."""
     alarm: str | None = None
     plan: FlightPlan | None = None
-    """Of a mission: its parts, and which one is flown."""
+    """For a mission: its parts, and which one is flown."""
     refusal: Refusal | None = None
     """The gate's refusal that ended it: of the order when given or when sent, of a mission's later
     part, or of a setpoint."""

@@ -20,30 +20,30 @@ class StreamSettings:
     other, and the station's other work gets its turn between."""
 
     most_at_once: int = 16
-    """With 64 vehicles in the air the gate takes some 4 ms for each stick: 16 streams are two
-    thirds of a core, and a stop given meanwhile waits for a few sticks at most."""
+    """Most streams at once. With 64 vehicles in the air the gate takes some 4 ms for each stick: 16
+    streams are two thirds of a core, and a stop given meanwhile waits for a few sticks at most."""
 
     stick_timeout_s: float = 1.0
     """An app that hears no more sticks stops after this; the station sends the zero itself."""
 
     max_telemetry_age_s: float = 1.0
-    """On older telemetry a neutral setpoint is sent. The same limit as the gate's."""
+    """Largest age of telemetry, as for the gate; beyond it a neutral setpoint is sent."""
 
     resumes_s: float = 3.0
     """Telemetry that comes back within this goes on with the stream. Later the vehicle may be
     anywhere, and its operator may have turned to something else."""
 
     neutral_to_hold_s: float = 0.15
-    """Between the zero at a stream's end and the hold that follows: the zero may have to wait 75 ms
-    for the gap after the stick before it and for the next tick, and an app that reads two packets
-    at once loses the second."""
+    """Time between the zero at a stream's end and the hold that follows: the zero may have to wait
+    75 ms for the gap after the stick before it and for the next tick, and an app that reads two
+    packets at once loses the second."""
 
     obeyed_s: float = 3.0
     """An aircraft goes over to sticks within a second, and its mode is reported at 2 Hz."""
 
     hold_at_most_s: float = 900.0
-    """After this at its goal the vehicle is left to its own position hold. Longer than a battery's
-    half: to hold on, order it again."""
+    """Longest hold at a stream's goal, then the vehicle is left to its own position hold. Longer
+    than half a battery: to hold on, order it again."""
 
     hold_speed_mps: float = 5.0
     """Back to a place to be held: faster than any wind's drift, slower than a flight."""

@@ -21,9 +21,9 @@ class RestartSettings:
     """No aircraft of this size flies for an hour; half an hour more for a clock that was set."""
 
     settle_s: float = 10.0
-    """For this long after a restart, hazard areas of restored vehicles raise no alarm and hold no
+    """Time after a restart in which hazard areas of restored vehicles raise no alarm and hold no
     other vehicle: apps reconnect within seconds, and each vehicle that reports again is close to
-    the hazard areas of those that are about to. The gate counts these areas from the start."""
+    the hazard areas of those about to report. The gate counts these areas from the start."""
 
     fastest_mps: float = DJI.fastest_mps
     fastest_climb_mps: float = 10.0
@@ -39,7 +39,7 @@ class FlightAlarmSettings:
     """What a vehicle in flight must not do, and for how long it must last to be an alarm."""
 
     gnss_s: float = 2.0
-    """Under trees and at takeoff a fix is poor for a moment."""
+    """Shortest duration of a poor fix: under trees and at takeoff it is poor for a moment."""
     height_s: float = 1.0
     max_tilt_deg: float = 45.0
     """DJI's aircraft lean by 25 to 35 degrees at most, in sport mode by 42."""
@@ -48,14 +48,14 @@ class FlightAlarmSettings:
     """They sink at 3 to 6 m/s, the fastest at 8."""
     descent_s: float = 0.3
     slow_answer_s: float = 1.0
-    """From an order's sending to its acknowledgment: apps answer when they have read it, so this is
-    the link's way there and back. At 15 m/s it is 15 m."""
+    """Longest time from an order's sending to its acknowledgment: apps acknowledge when they have
+    read it, so this is the link's round trip. At 15 m/s it is 15 m."""
 
 
 @dataclass(frozen=True, slots=True)
 class FailsafeSettings:
-    """When the station's own conditions of the failsafe matrix hold, and how reactions are ordered;
-    times in seconds."""
+    """Limits of the failsafe matrix's station conditions, and how reactions are ordered; times in
+    seconds."""
 
     period_s: float = 0.1
     lingers_s: float = 3.0
@@ -115,7 +115,7 @@ class StationSettings:
     """Decisions on the ICD, 16: every 0.7 s, three at most, until telemetry confirms."""
 
     emergency_answer_s: float = 3.5
-    """When the last repeat is out, telemetry gets little more than a second to show an effect."""
+    """Time to confirm: after the last repeat little more than a second is left for an effect."""
 
     emergency_confirm_s: float = 10.0
     """A hover that has begun: from 15 m/s an aircraft needs 6 s to stand still."""
@@ -132,20 +132,20 @@ class StationSettings:
     """An order whose vehicle stays in an ambiguous mode this long has failed."""
 
     parts_gap_s: float = 3.0
-    """After a longer gap of telemetry its pilot may have flown it: no next part is sent."""
+    """Longest telemetry gap before a next part: in a longer one its pilot may have flown it."""
 
     telemetry_lost_s: float = 600.0
-    """After this long without telemetry the outcome of an order stays unknown."""
+    """Time without telemetry after which the outcome of an order stays unknown."""
 
     camera_confirm_s: float = 8.0
     stick_confirm_s: float = 2.0
 
     stick_to_hold_s: float = 1.0
-    """From a neutral setpoint to the hold: a client that steers by single sticks sends the next one
-    within this, and mode changes cost an app some tenths of a second."""
+    """Time from a neutral setpoint to the hold: a client that steers by single sticks sends the
+    next one within this, and mode changes cost an app some tenths of a second."""
 
     neutral_setpoint_waits_s: float = 3.0
-    """After a stick's time the mode may still be on its way; later than this nothing flies it."""
+    """Longest wait for the mode after a stick's time; later, nothing applies the setpoint."""
 
     steering: SteeringSettings = field(default_factory=SteeringSettings)
     streams: StreamSettings = field(default_factory=StreamSettings)
@@ -167,7 +167,7 @@ class StationSettings:
 
     low_battery_fraction: float = 0.25
     serious_battery_fraction: float = 0.10
-    """In flight; the aircraft's own warnings count as well, whichever comes first."""
+    """Limit in flight; the aircraft's own warnings also count, whichever comes first."""
 
     serial_wait_s: float = 2.0
     """Extended telemetry, with the serial, comes at 1 to 2 Hz: a link in flight without it for
@@ -177,7 +177,7 @@ class StationSettings:
     """A vehicle known by its serial alone, without core telemetry this long, is unseen."""
 
     landing_wait_s: float = 8.0
-    """After this a landing that waits for confirmation needs its pilot (decisions, 17)."""
+    """Time after which a landing that waits for confirmation needs its pilot (decisions, 17)."""
 
     pose_history_samples: int = 50
     """Five seconds of the imaging drone's telemetry, to look up the pose of a late frame."""

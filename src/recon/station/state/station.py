@@ -37,7 +37,7 @@ class Clock:
 
     @property
     def set_by_ns(self) -> int:
-        """By how much it was set since the start."""
+        """Return by how much it was set since the start."""
         return self.ahead_ns - self.ahead_at_start_ns
 
 
@@ -70,7 +70,7 @@ class Station:
     imaging: Imaging = field(default_factory=Imaging)
     shade: ShadePipeline = field(default_factory=ShadePipeline)
     surveys: Surveys = field(default_factory=Surveys)
-    """Of this run; not restored after a restart."""
+    """Surveys of this run; not restored after a restart."""
     frames: Mapping[str, Frame] = field(default_factory=dict)
     """The newest frame of each vehicle, by serial."""
     next_frame_id: int = 1
@@ -79,7 +79,7 @@ class Station:
     temporary_zones: TemporaryZones = field(default_factory=TemporaryZones)
     """Writer: `control/temporary_zones.py`."""
     controls: Mapping[str, VehicleControl] = field(default_factory=dict)
-    """By serial; read with `control`, changed with `with_control` only."""
+    """Control state by serial; read with `control`, changed with `with_control` only."""
     streaming: tuple[str, ...] = ()
     """Serials of the vehicles with a setpoint stream, kept by `with_control`: read at every
     event, and few of many vehicles."""
@@ -88,7 +88,7 @@ class Station:
     clock: Clock | None = None
     """The computer's clock; None until it was first read."""
     restored_at_ns: int | None = None
-    """When the last run's snapshot was restored; None without one."""
+    """Time at which the last run's snapshot was restored; None without one."""
     audit_problem: str | None = None
     """Why the audit cannot be written, while it cannot."""
     record_problem: str | None = None

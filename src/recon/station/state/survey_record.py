@@ -92,7 +92,7 @@ class SurveyRecord:
     positions: NumberedBuffer[tuple[str, PositionSample]] = field(default_factory=NumberedBuffer)
     shade_maps: NumberedBuffer[ShadeMap] = field(default_factory=NumberedBuffer)
     zone_changes: int = 0
-    """Of `TemporaryZones.changes`: after how many of them its rows were planned."""
+    """`TemporaryZones.changes` when its rows were planned."""
     flown: Mapping[tuple[str, int], tuple[EastNorth, ...]] = field(
         default_factory=lambda: MappingProxyType({})
     )

@@ -114,9 +114,9 @@ class VehicleControl:
     neutral: PendingNeutral | None = None
     """The neutral setpoint that ends a single stick. Writer: `steering/neutral_setpoint.py`."""
     preflight_override: Override | None = None
-    """Until the vehicle has landed. Writer: `control/preflight.py`."""
+    """Override until the vehicle has landed. Writer: `control/preflight.py`."""
     restored: VehicleSnapshot | None = None
-    """From the last run, when it was flying then; until its first telemetry in this run.
+    """Snapshot of a vehicle that flew in the last run, until its first telemetry in this run.
     Writer: `recovery/restart.py`."""
 
     @property

@@ -49,7 +49,7 @@ class WatchdogState:
     sticks: Mapping[str, StickCount] = field(default_factory=dict)
     dismissed: Mapping[str, int | None] = field(default_factory=dict)
     unidentified_since_ns: Mapping[int, int] = field(default_factory=dict)
-    """Since when each link has flown without a serial, by link id."""
+    """Time since which each link has flown without a serial, by link id."""
     lost: Mapping[str, VehicleState] = field(default_factory=dict)
     is_hold_on: bool = True
     """Whether the watchdogs' findings hold vehicles; switched by an operator."""

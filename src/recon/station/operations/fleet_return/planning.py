@@ -230,7 +230,7 @@ PLAN_RETURN: JobKind[ReturnPlanRequest, ReturnPlan] = JobKind(
 
 
 PLAN_LASTS_S = 600.0
-"""Until the last vehicle of a plan is down: layers must be far enough apart for the gate then."""
+"""Time until a plan's last vehicle has landed: the gate must still accept the layers then."""
 
 
 def _work(

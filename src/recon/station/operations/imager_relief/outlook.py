@@ -37,7 +37,7 @@ RESOLUTION = 0.01
 """A charge is reported in whole percent: it may be less by so much."""
 
 PACE_EVERY_S = 10.0
-"""Between two moments of a survey's pace: counting its cells takes a tenth of a millisecond."""
+"""Interval between two samples of a survey's pace: counting cells takes 0.1 ms."""
 
 
 def on_position(station: Station, vehicle: VehicleState, now_ns: int) -> Station:
@@ -139,7 +139,7 @@ def _survey_outlook(station: Station, record: SurveyRecord, now_ns: int) -> Surv
 def _without_light(
     station: Station, state: SurveyState, before: SurveyOutlook, now_ns: int
 ) -> WithoutLight | None:
-    """Since when it has had no shade map, if it had any."""
+    """Return since when it has had no shade map; None if it never had one."""
     newest = station.shade.shade
     goal = PLANNER_GOALS[state.plan.survey.planner]
     if newest is None or goal is not CellState.IN_SUN:

@@ -17,7 +17,7 @@ from recon.model.arrays import FloatArray
 from recon.safety.airspace import PreparedAirspace
 
 SPARE_M = 5.0
-"""Under the site's ceiling: the ground under an approach may lie higher than the takeoff point."""
+"""Margin under the site's ceiling: the ground may be higher there than the takeoff point."""
 
 LOWEST_M = 20.0
 """No approach is lower: trees and buildings are in a zone, or lower than this."""

@@ -127,7 +127,7 @@ def _zone_on_the_way(station: Station, member: SurveyMember) -> PreparedZone | N
 
 
 def _waypoints_left(station: Station, member: SurveyMember) -> Iterator[Waypoint]:
-    """From the waypoint it last passed on, of the present part and all that follow."""
+    """Yield the waypoints from the last passed one on, of the present part and all that follow."""
     record = station.orders.records.get(member.command_id or 0)
     if record is None or record.plan is None:
         return
