@@ -44,7 +44,7 @@ class ConditionRanges:
     """What differs between flights; each range with the limits it must keep."""
 
     sun_elevation_deg: Range | None = None
-    """At the start, before or after noon; None: as the start time has it."""
+    """Sun elevation at the start, before or after noon; None: as the start time has it."""
     shade_green: Range = Range(0.22, 0.40)
     """Light in full shade over light in full sun, in green."""
     shade_blue_over_red: Range = Range(1.4, 2.4)
@@ -69,13 +69,13 @@ class ConditionRanges:
     hot_spot: Range = Range(0.2, 0.6)
     hot_spot_deg: Range = Range(4.0, 8.0)
     yaw_error_deg: Range = Range(1.0, 2.0)
-    """Of telemetry, to either side."""
+    """Error of telemetry to either side."""
     relief_m: Range = Range(0.0, 4.0)
     """Standard deviation of the ground's height."""
     period_s: Range = Range(1.0, 5.0)
-    """Between two frames."""
+    """Time between two frames."""
     jpeg_share: Range = Range(0.5, 0.5)
-    """Of the flights, whose frames are JPEG."""
+    """Share of the flights whose frames are JPEG."""
     jpeg_quality: Range = Range(70.0, 92.0)
     exposure_locked: bool = False
     """Whether the pilot locked exposure and white balance."""
@@ -114,7 +114,7 @@ LIMITS = {
     "jpeg_share": (0.0, 1.0),
     "jpeg_quality": (10.0, 100.0),
 }
-"""Of each range's values."""
+"""Limits of each range's values."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -45,7 +45,7 @@ class AppConnection:
 
     @property
     def next_due_ns(self) -> int:
-        """When the app has something to do next."""
+        """Return when the app has something to do next."""
         return NEVER_NS if self.is_abandoned else self.app.next_due_ns
 
 

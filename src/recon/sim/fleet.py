@@ -67,9 +67,9 @@ class SimulationConfig:
     """None draws one per vehicle, up to plus or minus 40 m."""
     endurance_s: float = 1500.0
     endurances_s: Mapping[str, float] = field(default_factory=dict)
-    """By serial, where it differs from `endurance_s`."""
+    """Endurance by serial, where it differs from `endurance_s`."""
     battery_swap_s: float | None = None
-    """From landing to a full battery; None: batteries are not changed."""
+    """Time from landing to a full battery; None: batteries are not changed."""
     battery_kept_share: float = 1.0
     """A battery that is this full at landing stays in."""
     sensors: TelemetrySensorSettings = field(default_factory=TelemetrySensorSettings)

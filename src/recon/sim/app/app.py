@@ -60,7 +60,7 @@ from recon.sim.flight.aircraft import Aircraft
 CORE_PERIOD_NS = 100_000_000
 EXTENDED_PERIOD_NS = 500_000_000
 ACTION_DELAY_NS = 120_000_000
-"""From the acknowledgment to the effect: the duration of a call of DJI's SDK."""
+"""Time from the acknowledgment to the effect: the duration of a call of DJI's SDK."""
 
 NEVER_NS = 2**63 - 1
 
@@ -140,7 +140,7 @@ class SimulatedApp:
         self._links: dict[int, _Link] = {}
         self._pending: deque[tuple[int, AppResponse]] = deque()
         self._start: tuple[int, MissionStart] | None = None
-        """When a mission that is being uploaded is flown."""
+        """The mission being uploaded, and when it is flown."""
         self._link_orders: deque[LinkOrder] = deque()
         name = f"{settings.seed}/{settings.serial}/faults"
         self._plan = FaultSchedule(settings.faults, name, self._start_ns)
@@ -191,7 +191,7 @@ class SimulatedApp:
 
     @property
     def next_due_ns(self) -> int:
-        """When `advance` has work next, if nothing is received before."""
+        """Return when `advance` has work next, if nothing is received before."""
         due_ns, _ = self._next_work()
         for link in self._links.values():
             held_until_ns = link.outbox.next_after_ns(self._now_ns)

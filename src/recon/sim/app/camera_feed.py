@@ -19,7 +19,7 @@ from recon.sim.camera.frames import CameraView, FrameFlaw, FrameSource
 from recon.sim.errors import FrameSourceError
 
 MOST_SHOTS_IN_HAND = 4
-"""With more unrendered frames than this new ones are skipped, as a busy phone does."""
+"""Most unrendered frames: beyond it new ones are skipped, as a busy phone does."""
 
 SHORTEST_LATENCY_S = 0.2
 LONGEST_LATENCY_S = 1.0
@@ -71,7 +71,7 @@ class Shot:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CaptureTimes:
-    """When a frame was truly taken and when it is sent: for the score and for tests."""
+    """True capture time of a frame and when it is sent: for the score and for tests."""
 
     view: CameraView
     taken_at_ns: int
@@ -185,7 +185,7 @@ class CameraFeed:
 
     @property
     def next_send_ns(self) -> int | None:
-        """When the next frame is sent, None without one."""
+        """Return when the next frame is sent, None without one."""
         return self._ready[0][0] if self._ready else None
 
     def due(self, now_ns: int) -> list[bytes]:

@@ -26,12 +26,12 @@ class HoverOnGround(Enum):
 
     NOTHING = "nothing"
     TAKEOFF = "takeoff"
-    """As the public iOS app: it takes off (and then hovers, or returns and lands)."""
+    """Behaviour of the public iOS app: it takes off (and then hovers, or returns and lands)."""
 
 
 @dataclass(frozen=True, slots=True)
 class AppBehaviour:
-    """In what this app differs from others: every variant exists in the field."""
+    """Differences between apps: every variant exists in the field."""
 
     altitude_reference: AltitudeReference = AltitudeReference.TAKEOFF
     hover_on_ground: HoverOnGround = HoverOnGround.NOTHING
@@ -41,9 +41,9 @@ class AppBehaviour:
     """False: MissionID in telemetry is always 0, as from some apps in the field."""
     sdk: SdkLimits = field(default_factory=SdkLimits)
     upload_s: float = 0.1
-    """For each waypoint of a mission; the aircraft holds meanwhile."""
+    """Upload time of each waypoint of a mission; the aircraft holds meanwhile."""
     start_s: float = 2.0
-    """From a mission's upload until the aircraft flies it."""
+    """Time from a mission's upload until the aircraft flies it."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -148,7 +148,7 @@ HOME_MOVED_BY_M = 320.0
 """Home recorded anew at the controller, on the other side of a field."""
 
 JUMP_DEG = -60.0 / 111_070.0
-"""In latitude: more than any flight between two packets."""
+"""Jump in latitude: more than any flight between two packets."""
 
 ALL_VEHICLES = "*"
 

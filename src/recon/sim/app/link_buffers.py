@@ -7,9 +7,9 @@ READ_EVERY_NS = 100_000_000
 SLOW_BYTES = 32
 """Read per period by a slow reader: less than ten stick commands per second need."""
 MOST_UNREAD_BYTES = 4_096
-"""With more unread bytes the socket is not read, so that TCP flow control stops the station."""
+"""Limit of unread bytes: beyond it the socket is not read, so that TCP stops the station."""
 MOST_KEPT_BYTES = 1_048_576
-"""Without a socket there is no flow control: bytes beyond this are lost."""
+"""Limit without a socket, which has no flow control: bytes beyond this are lost."""
 
 
 @dataclass(slots=True)
@@ -41,7 +41,7 @@ class AppInbox:
 
 
 MOST_PACKETS_WAITING = 256
-"""Per link; beyond it the packet that is due first is dropped: the peer does not read."""
+"""Limit per link: beyond it the packet due first is dropped, as the peer does not read."""
 
 
 @dataclass(slots=True)

@@ -57,7 +57,7 @@ class TelemetrySensors:
     settings: TelemetrySensorSettings
     random: Random
     _noise: tuple[GaussMarkov, ...] = field(init=False)
-    """Of north, east and height."""
+    """Noise of north, east and height."""
     _satellites: int = field(init=False)
     _plane: TangentPlane = field(init=False)
 

@@ -1,4 +1,4 @@
-"""From the land's colours to pixel values: light, haze, exposure, lens, sensor noise, tone curve.
+"""Conversion of the land's colours to pixels: light, haze, exposure, lens, noise, tone curve.
 
 For each channel: colour of the land (undone display curve) x light on the ground x transmission of
 the air, plus haze; x exposure and white balance; x the lens's falloff and colour; plus shot and

@@ -28,7 +28,7 @@ from recon.sim.world.light import beam_share, light_under, metered_light
 from recon.sim.world.relief import Relief
 
 HIGHLIGHTS_LAND_LEVEL = 2
-"""Of 4 m: a road still covers its pixels, and a square covers kilometres."""
+"""Land level of 4 m: a road still covers its pixels, and a square covers kilometres."""
 
 
 def _clear_sky() -> Sky:

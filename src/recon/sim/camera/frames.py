@@ -130,7 +130,7 @@ def _decode(path: Path, data: bytes) -> RgbImage:
 
 
 EXPOSURE_GAINS = (0.35, 0.6, 1.7, 2.6)
-"""Up to one and a half stops: the effect of a bright cloud or a dark wood on auto exposure."""
+"""Gains of up to one and a half stops: auto exposure with a bright cloud or a dark wood."""
 
 
 class FrameFlaw(Protocol):

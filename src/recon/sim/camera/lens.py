@@ -17,7 +17,7 @@ from recon.sim.world.relief import Relief
 LATTICE_PX = 4
 """Ground points are computed for blocks of this many pixels and interpolated."""
 RIM_COLOUR_POWER = 3.0
-"""Of the way to the rim: in real frames of this lens class the colour changes mostly near it."""
+"""Power of the radius: in real frames of this lens class colour changes mostly near the rim."""
 
 
 @dataclass(frozen=True)
@@ -132,7 +132,7 @@ class GroundRays:
     east_m: FloatImage
     north_m: FloatImage
     distance_m: FloatImage
-    """Along the ray; infinite where there is no ground."""
+    """Distance along the ray; infinite where there is no ground."""
     footprint_m: FloatImage
     """Length of a pixel's footprint on the ground, along its longer direction."""
     directions: FloatImage

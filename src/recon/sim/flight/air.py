@@ -24,12 +24,12 @@ LEARNS_WITHIN_S = 1.5
 COMES_BACK_WITHIN_S = 1.0
 """Time constant with which the controller takes out a velocity error."""
 GROUND_EFFECT_M = 10.0
-"""Below this height vertical gusts fade linearly to zero at the ground."""
+"""Height below which vertical gusts fade linearly to zero at the ground."""
 WARNS_OF_S = 10.0
 """Averaging time of the wind speed that warnings are based on."""
 WARNING_MPS = (5.0, 8.0)
-"""Above these the aircraft reports wind, and strong wind (half and most of what it can fly in).
-Low values, so that the station's energy model errs on the safe side."""
+"""Speeds above which the aircraft reports wind and strong wind (half and most of its limit). Low
+values, so that the station's energy model errs on the safe side."""
 
 
 @dataclass(frozen=True, slots=True)

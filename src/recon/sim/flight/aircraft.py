@@ -69,11 +69,11 @@ class AircraftSettings:
     landing_confirmation_s: float = 1.0
     """Delay until the app confirms a landing, after the aircraft stopped at 0.3 m."""
     max_height_m: float = 500.0
-    """Above takeoff: the aircraft climbs no higher, and reports reaching it."""
+    """Height limit above takeoff: the aircraft climbs no higher, and reports reaching it."""
     max_distance_m: float = 5_000.0
-    """From home: reported when reached; missions that lead farther are rejected."""
+    """Distance limit from home: reported when reached; missions that lead farther are rejected."""
     battery_swap_s: float | None = None
-    """From landing to a full battery; None: batteries are not changed."""
+    """Time from landing to a full battery; None: batteries are not changed."""
     battery_kept_share: float = 1.0
     """A battery that is this full at landing stays in."""
 
@@ -159,7 +159,7 @@ class Aircraft:
 
     @property
     def next_tick_ns(self) -> int:
-        """When it moves next; before that `advance` changes nothing."""
+        """Return when it moves next; before that `advance` changes nothing."""
         return self.now_ns + TICK_NS
 
     def advance(self, now_ns: int) -> None:

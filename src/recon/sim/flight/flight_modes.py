@@ -68,7 +68,7 @@ class ActiveMode(Protocol):
 
 @dataclass(slots=True)
 class Grounded:
-    """On the ground with the motors off."""
+    """Mode on the ground with the motors off."""
 
     mode: FlightMode = FlightMode.GPS_ATTI
 

@@ -29,7 +29,7 @@ class Limits:
     speed_mps: float = 15.0
     """Ground speed, limited by the flight controller."""
     airspeed_mps: float = 17.0
-    """Against a wind of 10 m/s, 7 m/s of ground speed are left."""
+    """Largest airspeed: against a wind of 10 m/s it leaves 7 m/s of ground speed."""
     acceleration_mps2: float = 2.5
     climb_mps: float = 2.6
     descent_mps: float = 3.2

@@ -36,7 +36,7 @@ CROWN = (58.0, 76.0, 44.0)
 HEADLAND_M = 16.0
 TRAMLINE_M = 24.0
 PLANT_ROW_M = 0.75
-"""Between rows of maize or soybeans; visible from low heights only."""
+"""Distance between rows of maize or soybeans; visible from low heights only."""
 WETTEST_DARKENS = 0.34
 """Loss of pixel value from dry to saturated soil: about half of the light."""
 WET_ABOVE, WET_OVER = 0.5, 1.1
@@ -226,7 +226,7 @@ class _Canvas:
 LOWEST_SHADOW_SUN_DEG = 12.0
 """Shadows are drawn for at least this elevation: lower, they would cover everything."""
 CROWN_SHADES_ITSELF = 70
-"""Of 255: shade of leaves on leaves."""
+"""Opacity of 255: shade of leaves on leaves."""
 
 
 def draw_shadows(land: Farmland, part: LandPart, sun: SunPosition) -> npt.NDArray[np.uint8]:

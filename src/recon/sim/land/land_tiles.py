@@ -51,7 +51,7 @@ class LandSquare:
 
     @property
     def half_width_m(self) -> float:
-        """From the middle to an edge."""
+        """Return the distance from the middle to an edge."""
         return len(self.pixels) * self.cell_m / 2.0
 
 

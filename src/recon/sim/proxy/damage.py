@@ -118,8 +118,8 @@ def _expect(what: str, value: float, lowest: float, highest: float, unit: str) -
 
 
 MOST_HELD_BYTES = 4 * 1024 * 1024
-"""In flight in one direction: two and a half raw frames. Beyond it the caller stops reading, and
-TCP flow control stops the sender. One more read may come on top."""
+"""Most bytes in transit in one direction: two and a half raw frames. Beyond it the caller stops
+reading, and TCP flow control stops the sender. One more read may come on top."""
 PIECE_BYTES = 1_400
 """A rate-limited link passes segments of this size, about one Ethernet frame, one by one."""
 
@@ -144,7 +144,7 @@ class Channel:
 
     @property
     def next_due_ns(self) -> int | None:
-        """When the next piece comes out, None when empty."""
+        """Return when the next piece comes out, None when empty."""
         return self._under_way[0][0] if self._under_way else None
 
     def push(self, data: bytes, now_ns: int) -> None:

@@ -21,9 +21,9 @@ from recon.sim.world.keyframes import FloatImage, blend, generator, phase
 BAND_RATIO = 4.0
 TILE_CELLS = 256
 CELLS_PER_WAVE = 32.0
-"""At a band's middle; its strongest waves have 16 cells and more."""
+"""Cells per wave at a band's middle; its strongest waves have 16 cells and more."""
 SHORTEST_CELLS = 8
-"""Of a band's shortest waves: the window ends one band ratio from the middle."""
+"""Cells of a band's shortest waves: the window ends one band ratio from the middle."""
 PADDING = 2
 """Columns and rows repeated at a tile's end, so that interpolation never crosses its edge."""
 TILES_KEPT = 64
@@ -139,7 +139,7 @@ class FractalField:
     outer_scale_m: float
     finest_scale_m: float
     lifetime_s: float
-    """Of structures of 1 km."""
+    """Lifetime of structures of 1 km."""
     lifetime_exponent: float
 
     @cached_property
@@ -218,7 +218,7 @@ class _Places:
         self.shape = self._tiles[0].shape
         self._spare = np.empty(self.shape)
         self.cols, self.rows = (np.empty(self.shape, dtype=np.float32) for _ in self._tiles)
-        """In cells."""
+        """Columns and rows in cells."""
 
     def enter_tile(self) -> None:
         """Reduce to the part beyond the last whole tile; exact in floating point."""

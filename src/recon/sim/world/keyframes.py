@@ -17,14 +17,14 @@ from recon.model.arrays import FloatArray
 FloatImage = npt.NDArray[np.float32]
 
 PERIODS_PER_LIFETIME = 1.0 / 0.90017
-"""With this blending the correlation falls to 1/e after 0.90017 periods (solved numerically)."""
+"""Periods until the correlation falls to 1/e with this blending (solved numerically)."""
 NUMBERS = 2**32
 NUMBERS_KEPT = 4096
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Blend:
-    """For each time the keyframe before it, and the weights of that one and the next."""
+    """The keyframe before each time, and the weights of that one and the next."""
 
     number: npt.NDArray[np.int64]
     share: FloatArray

@@ -41,7 +41,7 @@ class Penumbra:
     toward_north: FloatArray
     """The unit vector to the sun's azimuth."""
     offset_m: FloatArray
-    """From a point on the ground to the cloud that shades it, towards the sun's azimuth."""
+    """Distance from a point on the ground to the cloud shading it, towards the sun's azimuth."""
 
     def at(self, numbers: npt.NDArray[np.intp]) -> "Penumbra":
         """Return the penumbrae of these numbers."""

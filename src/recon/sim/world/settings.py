@@ -58,9 +58,9 @@ class LayerSettings:
     """One layer of clouds."""
 
     base_height_m: float = 1_400.0
-    """Above the ground; fair-weather cumulus at noon."""
+    """Height above the ground; fair-weather cumulus at noon."""
     speed_mps: float = 7.5
-    """In the middle of `LOW_SPEED_MPS`."""
+    """Speed in the middle of `LOW_SPEED_MPS`."""
     heading_deg: float = 70.0
     """Direction the clouds move to, clockwise from north."""
     cover: float = 0.4
@@ -75,7 +75,7 @@ class LayerSettings:
     """Optical depth grows e-fold over this part of the field's deviation: edges of 20 to 200 m.
     Measured days have 0.02 to 1 (docs/world.md)."""
     largest_optical_depth: float = 20.0
-    """Of thick cumulus, along the beam; below 0.7 (thin cirrus) the layer never casts shade."""
+    """Depth of thick cumulus along the beam; below 0.7 (thin cirrus) there is never shade."""
     lifetime_s: float = 900.0
     """Time in which the correlation of a 1 km structure falls to 1/e; inf: frozen."""
     lifetime_exponent: float = 2.0 / 3.0
@@ -85,7 +85,7 @@ class LayerSettings:
     modulation_s: float = 2_400.0
     """Time in which the correlation of that variation falls to 1/e."""
     shifts: tuple[WindShift, ...] = ()
-    """In order, each after the end of the one before."""
+    """Wind shifts in order, each after the end of the one before."""
 
     def __post_init__(self) -> None:
         expect("base_height_m", self.base_height_m, 50.0, 15_000.0)
@@ -158,7 +158,7 @@ class ShadeColour:
     """Light in full shade over light in full sun, as measured on the ground."""
 
     green: float = 0.36
-    """Of real frames, in red, green and blue: 0.19 to 0.23, 0.36, 0.47 to 0.53."""
+    """Shade in real frames: 0.19 to 0.23 in red, 0.36 in green, 0.47 to 0.53 in blue."""
     blue_over_red: float = 2.4
     """How many times more blue than red light is left in shade."""
 
@@ -185,7 +185,7 @@ class LightSettings:
     linke_turbidity: float = 3.5
     """Number of clean dry atmospheres of equal extinction; mid-latitude farmland in summer."""
     altitude_m: float = 250.0
-    """Above the sea: thinner air dims less."""
+    """Altitude above the sea: thinner air dims less."""
     cloud_brightening: float = 1.7
     """Diffuse light between broken clouds over that of a clear sky: their sides are bright."""
     shade: ShadeColour | None = None

@@ -12,11 +12,11 @@ from recon.sim.world.settings import WindSettings
 
 REFERENCE_M = 10.0
 LOWEST_M = 1.0
-"""Below, in the crop, the power law does not apply."""
+"""Height below which, in the crop, the power law does not apply."""
 HIGHEST_M = 600.0
-"""Above, the wind is taken as constant."""
+"""Height above which the wind is taken as constant."""
 OCTAVES = 6
-"""From the largest gusts down to those of a second or two: drones do not react to faster ones."""
+"""Octaves from the largest gusts to those of a second or two: drones ignore faster ones."""
 OCTAVE_RATIO = 0.5
 KOLMOGOROV = 2.0 / 3.0
 """Exponent of velocity variance over scale (Kolmogorov 1941)."""
