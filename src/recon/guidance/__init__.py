@@ -1,1 +1,1 @@
-"""From what is wanted to how it is flown: steering, and paths for the whole fleet."""
+"""Steering, and the paths of the whole fleet."""

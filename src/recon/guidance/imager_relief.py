@@ -20,7 +20,7 @@ from recon.model.units import ns_to_seconds, seconds_to_ns
 
 @dataclass(frozen=True, slots=True)
 class ImagerReliefSettings:
-    """Of reliefs. Times in seconds."""
+    """Settings of reliefs; times in seconds."""
 
     checked_every_s: float = 1.0
     """Batteries and light change in seconds."""
@@ -40,32 +40,32 @@ class ImagerReliefSettings:
     """One that was recalled and hovers again, left out of the fleet return, is called anew."""
 
     speed_mps: float = 8.0
-    """As a move upwind."""
+    """Speed on the way, as for a move upwind."""
 
     takeoff_s: float = 15.0
-    """From the order to the climb."""
+    """Time from the order to the climb."""
 
     climb_mps: float = 2.0
-    """As the energy model counts."""
+    """Climb rate of the energy model."""
 
     late_by_s: float = 60.0
-    """For gusts and headwind, beside the time that the way takes."""
+    """Allowance for gusts and headwind, in addition to the time that the way takes."""
 
     telemetry_within_s: float = 3.0
-    """As in a fleet return: a vehicle without telemetry for so long may do anything."""
+    """Largest age of telemetry, as in a fleet return: beyond it a vehicle may do anything."""
 
     layer_m: float = LAYER_SPACING_M
-    """Between the two at the place: as between two layers of a fleet return."""
+    """Vertical distance between the two at the place: that of two layers of a fleet return."""
 
     layer_step_m: float = 4.0
     layers: int = 5
     """Heights that are tried to either side."""
 
     lowest_m: float = 20.0
-    """As for approaches of a survey: trees and buildings are in a zone, or lower than this."""
+    """Lowest height, as for a survey's approaches: trees and buildings are in a zone, or lower."""
 
     below_ceiling_m: float = 1.0
-    """Under the site's ceiling, as in a fleet return."""
+    """Margin under the site's ceiling, as in a fleet return."""
 
     stays_s: float = 300.0
     """What the spare one's battery must give at the place: less is not worth the flight."""
@@ -74,21 +74,21 @@ class ImagerReliefSettings:
     """One map may come by chance from the climb's last frame; three are a camera that works."""
 
     map_gap_s: float = 5.0
-    """Between two maps in a row; older ones do not count for a survey's photos."""
+    """Longest gap between two successive maps; older ones do not count for a survey's photos."""
 
     maps_within_s: float = 150.0
-    """At the place, for maps that show enough: a shade method learns the ground for a minute or
-    two, of rendered frames under cumulus."""
+    """Longest wait at the place for maps that show enough: a shade method learns the ground for a
+    minute or two, of rendered frames under cumulus."""
 
     first_map_within_s: float = 60.0
-    """At the place, for any shade map: without, its camera or its placing does not work."""
+    """Longest wait at the place for any shade map: without one, its camera or its placing fails."""
 
     shows_share: float = 0.7
-    """Of the ground whose light the other one knows, and that it can see from its own height. A
+    """Share of the ground with light known to the other one and visible from its own height. A
     method that has just begun knew 72 to 79 % of it for 40 s, of rendered frames under cumulus."""
 
     camera_quiet_s: float = 5.0
-    """Without a frame for so long its camera is taken to be off, and is switched on."""
+    """Time without a frame after which its camera is taken to be off, and is switched on."""
 
 
 RELIEF_SETTINGS = ImagerReliefSettings()

@@ -13,8 +13,8 @@ from recon.model.geo import LatLon
 from recon.model.shade import MaskMap
 
 ACROSS_FIRST_DEG = (90.0, -90.0, 45.0, -45.0, 135.0, -135.0, 0.0, 180.0)
-"""From the sun's azimuth. Across it the view of the ground keeps its angle to the sun's plane, in
-which ground also brightens and darkens without a hot spot."""
+"""Directions from the sun's azimuth. Across it the view of the ground keeps its angle to the sun's
+plane, in which ground also brightens and darkens without a hot spot."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +22,7 @@ class SideStepSettings:
     """How far and how fast the imaging drone moves, and how long it may take."""
 
     distance_m: float = 25.0
-    """At 120 m this moves the hot spot by more than its own width, 4 to 8 degrees."""
+    """Distance that at 120 m moves the hot spot by more than its own width, 4 to 8 degrees."""
 
     speed_mps: float = 4.0
     """25 m in about 10 s: at one frame in 2 s enough of them on the way, without motion blur."""
@@ -36,7 +36,7 @@ class SideStepSettings:
     judged_again_s: float = 1.0
 
     unknown_share: float = 0.5
-    """From this share of the ground in view on, light is mostly unknown."""
+    """Share of the ground in view from which on light counts as mostly unknown."""
 
     unknown_for_s: float = 20.0
     """Light must be unknown for so long before the imaging drone moves. Edges of shade pass six

@@ -42,15 +42,15 @@ class SteeringSettings:
     the product stays under 0.37 (1/e), from where on a loop swings."""
 
     latency_s: float = 0.3
-    """From the aircraft's sensors to the station and from the stick to its effect, beyond the age
-    that the station sees."""
+    """Delay from the aircraft's sensors to the station and from the stick to its effect, beyond the
+    age that the station sees."""
 
     longest_lead_s: float = 1.3
     """Longest prediction of telemetry: a second of age, and the latency."""
 
     climb_mps: float = 2.0
     sink_mps: float = 1.5
-    """Under what aircraft of all sizes do; sinking faster meets their own downwash."""
+    """Sink rate that aircraft of all sizes exceed; sinking faster meets their own downwash."""
 
     longest_height_lead_m: float = 3.0
     """The demanded height runs ahead of the aircraft by this at most, if it climbs slower."""
@@ -59,8 +59,8 @@ class SteeringSettings:
 
     steady_s: float = 1.2
     steady_mps: float = 0.4
-    """While the demand stays within this for so long, a vehicle has had the time to follow it, and
-    what its velocity differs by is the wind's doing."""
+    """Change limit: while the demand stays within this for so long, a vehicle has had the time to
+    follow it, and the rest of its velocity's error is due to the wind."""
 
     push_learning_s: float = 2.0
     push_learning_mps2: float = 0.25
@@ -70,7 +70,7 @@ class SteeringSettings:
     """More is no wind that an aircraft lets through, but an aircraft that does not obey."""
 
     resting_mps: float = 0.5
-    """Below this a vehicle counts as standing: GNSS velocity noise and gusts stay under it."""
+    """Speed below which a vehicle counts as hovering: above GNSS velocity noise and gusts."""
 
     arrived_m: float = 1.0
     """GNSS tells a place no better than this."""

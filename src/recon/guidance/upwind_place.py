@@ -20,10 +20,10 @@ from recon.model.arrays import BoolArray, FloatArray
 LEAD_S = (0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 90.0, 105.0, 120.0)
 """The present, a photo, a row, and the rows until the next decision."""
 SAMPLE_M, MOST_SAMPLES = 20.0, 2_000
-"""Between the points that stand for the field: shares are right to about two per cent. A field of
-more than 80 ha has them farther apart."""
+"""Distance between the points that represent the field, and the most of them: shares are right to
+about two per cent. A field of more than 80 ha has them farther apart."""
 STEP_M = 40.0
-"""Between places: nearer ones differ by less than the wind turns."""
+"""Distance between places: nearer ones differ by less than the wind turns."""
 FOLLOWED_WORTH = 0.7
 """What shade that has left the view and is followed is worth, against shade that is seen."""
 LEAST_NOW = 0.5

@@ -25,9 +25,9 @@ from recon.model.units import wrap_degrees
 
 SPEED_MPS = 8.0
 EDGE_M = 30.0
-"""From the boundary and from keep-out zones: the gate wants less, and has the last word."""
+"""Distance from boundary and keep-out zones: more than the gate, which decides, requires."""
 LEAST_GAIN = 0.03
-"""In what a place is worth, for a flight there."""
+"""Least gain in a place's worth for a flight there."""
 LEAST_TILT_RAD = 0.1
 """A camera tilted by less sees as much in every direction: the heading stays."""
 STATED_LEAD_S = 60.0
@@ -38,14 +38,14 @@ class MoveUpwindSettings:
     """When an imaging drone flies upwind automatically, for a survey that allows it."""
 
     asked_every_s: float = 10.0
-    """Between two proposals: the wind turns in minutes, and one costs the worker 12 ms or more."""
+    """Time between two proposals: the wind turns in minutes; one costs the worker 12 ms or more."""
 
     answered_within_s: float = 30.0
     """A proposal waits behind a frame's job or two; after this it counts as lost."""
 
     better_by: float = 0.06
-    """In what a place is worth: with the same view of the field now, an eighth more of its shade
-    in the next two minutes. A smaller gain is within the error of the measured velocity."""
+    """Least automatic gain in a place's worth: with the same view of the field now, an eighth more
+    of its shade in the next two minutes. Smaller gains are within the measured velocity's error."""
 
     better_for_s: float = 30.0
     """Better for so long before it moves; a place better by less than `LEAST_GAIN` begins the time
@@ -55,11 +55,11 @@ class MoveUpwindSettings:
     """Between two automatic ones: the wind turns in minutes, and a flight takes half of one."""
 
     refused_again_s: float = 60.0
-    """After a refusal, before it is tried again."""
+    """Time after a refusal before the next attempt."""
 
     late_by_s: float = 30.0
-    """For taking off speed, gusts and headwind; a flight that takes longer than this beside its
-    own time is not flown as it was ordered."""
+    """Allowance for picking up speed, gusts and headwind; a flight that exceeds its own time by
+    more is not flown as it was ordered."""
 
 
 MOVE_UPWIND_SETTINGS = MoveUpwindSettings()
@@ -75,9 +75,9 @@ class UpwindQuestion:
     serial: str
     frame: LocalFrame
     regions: tuple[Region, ...]
-    """To be seen; at least one."""
+    """Regions to be seen; at least one."""
     velocity_mps: tuple[float, float]
-    """Of the shadows, east and north."""
+    """Velocity of the shadows, east and north."""
     view: GroundView
     followed_for_s: float
     """So long shade that has left the view is followed."""
@@ -111,7 +111,7 @@ class UpwindProposal:
 
     @property
     def gain(self) -> float:
-        """By how much the place there is worth more, in [0, 1]."""
+        """Return by how much the place there is worth more, in [0, 1]."""
         return self.there.worth - self.here.worth
 
     @property

@@ -12,7 +12,7 @@ class FleetReturnSettings:
     layer_spacing_m: float = LAYER_SPACING_M
 
     lowest_layer_m: float = 20.0
-    """Above the highest ground on the ways: over vans, masts and the trees of a field's edge."""
+    """Height above the highest ground on the ways: over vans, masts and trees at a field's edge."""
 
     ceiling_margin_m: float = 1.0
     """Left below the ceiling: an aircraft overshoots a climb by less than this."""
@@ -24,13 +24,13 @@ class FleetReturnSettings:
     """Added to the gate's minimum."""
 
     vertical_slack_m: float = 0.4
-    """As above; less than the difference between the layers' spacing and the gate's 7.5 m."""
+    """Added to the gate's minimum; less than the layers' spacing exceeds the gate's 7.5 m."""
 
     detour_slack_m: float = 1.0
     """Added to the margin at boundary and zones: a waypoint is rounded, a corner is not."""
 
     speed_mps: float = 8.0
-    """Between the layers' ends: half of what DJI allows, braking takes 13 m."""
+    """Speed between the layers' ends: half of what DJI allows, braking takes 13 m."""
 
     fastest_upright_mps: float = 5.0
     """No survey aircraft climbs or sinks faster on its own: the least time of a flight."""

@@ -14,7 +14,7 @@ from recon.model.arrays import BoolArray, FloatArray, IntArray
 from recon.model.geo import GroundGrid, LocalFrame
 
 NO_STRETCH = -1
-"""For cells that no row is certain to photograph."""
+"""Stretch of cells that no row is certain to photograph."""
 
 ROUNDING_M = 0.01
 

@@ -22,7 +22,7 @@ class ClosedArea:
     """A circle, and the way home of a vehicle that may return; the gate's margins are included."""
 
     name: str
-    """Of the vehicle, for operators."""
+    """The vehicle's name, for operators."""
     serial: str | None
     """None while it has not reported one."""
     place_m: EastNorth

@@ -22,7 +22,7 @@ from recon.guidance.survey.vehicle_choice import WANTED, missing_pieces
 from recon.model.survey import MissionAssignment
 
 IN_SUN = 0.5
-"""Of a segment's missing ground, to be flown by `nearest_sunlit`."""
+"""Share of a segment's missing ground that must be in sun for `nearest_sunlit` to fly it."""
 
 
 def lawnmower_waits(

@@ -21,10 +21,10 @@ from recon.model.command import Refusal
 from recon.model.units import HECTARE_M2
 
 SWAP_S = 180.0
-"""From touchdown to takeoff with a fresh battery, by a person at the pad."""
+"""Time from touchdown to takeoff with a fresh battery, by a person at the pad."""
 
 MOST_FLIGHTS = 500
-"""Of all drones; more come from a wrong endurance."""
+"""Most flights of all drones; more come from a wrong endurance."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +35,7 @@ class Batteries:
     level_s: float | None = None
     swap_s: float = SWAP_S
     landing_s: float = 0.0
-    """From above the pad to the ground."""
+    """Time from above the pad to the ground."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,10 +48,10 @@ class PlannedFlight:
     rows_m: float
     """Length of its rows, lead-in included."""
     missions_s: float
-    """From the takeoff point to the end of the last row."""
+    """Time from the takeoff point to the end of the last row."""
     time_s: float
     photos: int
-    """On its rows."""
+    """Photos on its rows."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +64,7 @@ class DroneEstimate:
 
     @property
     def flown_s(self) -> float:
-        """In the air."""
+        """Return the time in the air."""
         return sum(flight.time_s for flight in self.flights)
 
 
@@ -78,17 +78,17 @@ class SurveyEstimate:
 
     @property
     def time_s(self) -> float:
-        """From the start to the last landing."""
+        """Return the time from the start to the last landing."""
         return max(drone.time_s for drone in self.drones)
 
     @property
     def flown_s(self) -> float:
-        """In the air, all drones added."""
+        """Return the total time in the air of all drones."""
         return sum(drone.flown_s for drone in self.drones)
 
     @property
     def photos(self) -> int:
-        """On the rows."""
+        """Return the photos on the rows."""
         return sum(flight.photos for drone in self.drones for flight in drone.flights)
 
     @property
@@ -143,7 +143,7 @@ class PlanFigures:
     """Imaged by the rows with certainty."""
     least_height_above_ground_m: float | None
     most_height_above_ground_m: float | None
-    """Of rows over the region, for any of the drones; None: the ground is not known."""
+    """Largest height of rows over the region, for any of the drones; None: ground unknown."""
     rows: int
     gsd_m: float | None
     blur_px: float
@@ -189,7 +189,7 @@ def plan_figures(
 
 
 MOST_SKIPPED = 0.005
-"""Of the region that rows may not reach without a warning: cells at an edge."""
+"""Share of the region that rows may miss without a warning: cells at an edge."""
 
 
 def _warnings(plan: SurveyPlan, limit: SpeedLimit) -> list[str]:

@@ -11,7 +11,7 @@ from recon.model.survey import SurveyCamera
 from recon.model.survey_camera import CameraModel
 
 MOST_BLUR_PX = 0.5
-"""Of motion during an exposure: what moves less is sharper than the pixels can show."""
+"""Motion blur during an exposure below which an image is as sharp as its pixels allow."""
 
 EXPOSURE_S = 1.0 / 1000.0
 """What surveys in sun are set to with shutter priority; in shade it gets longer."""

@@ -66,7 +66,7 @@ AlongAcross = tuple[float, float]
 
 
 ROUNDING = 1e-6
-"""Of a mark's distance: a place this near to a mark is on it."""
+"""Tolerance of a mark's distance: a place this near to a mark is on it."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,22 +23,22 @@ Vertex = tuple[EastNorth, float]
 """East-north metres, and the height there."""
 
 FINEST_M = 0.5
-"""Between two places at which a leg is compared with the wanted height."""
+"""Distance between two places at which a leg is compared with the wanted height."""
 
 INSIDE = 0.8
-"""Of the limits, for vertices off the wanted height."""
+"""Share of the limits for vertices off the wanted height."""
 
 BETWEEN_M = 0.2
 """Kept to the limits, for what lies between two such places."""
 
 OFF_COST, RAISED_COST = 0.01, 0.02
-"""Of a waypoint, for one off the wanted height, so that it is taken only to save others."""
+"""Cost, in waypoints, of one off the wanted height, so that it is taken only to save others."""
 
 RAISED = 3
 """The kind of vertex that is as high as the highest wanted height within a step."""
 
 STEEP_COST, LOW_COST = 1e3, 1e6
-"""Of a leg of one step that may be too high, and of one that may be too low."""
+"""Cost of a leg of one step that may be too high, and of one that may be too low."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +48,7 @@ class ProfileLimits:
     below_m: float
     above_m: float
     climb_m: float
-    """Between the ends of one leg, up or down."""
+    """Climb between the ends of one leg, up or down."""
     step_m: float
     """Waypoints stand this far apart, or up to twice as near."""
 

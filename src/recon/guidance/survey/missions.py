@@ -35,7 +35,7 @@ class Track:
 
     @property
     def length_m(self) -> float:
-        """From the first corner to the last."""
+        """Return the length from the first corner to the last."""
         return sum(dist(a, b) for a, b in pairwise(self.corners_m))
 
     def climbing_s(self, speed_mps: float, climb_mps: float) -> float:
@@ -141,7 +141,7 @@ def _east_north(ends: Sequence[AlongAcross], lattice: RowLattice) -> tuple[EastN
 
 
 def _thinned(corners: Sequence[EastNorth]) -> tuple[EastNorth, ...]:
-    """Without the corners that are too near to the one before."""
+    """Return the corners without those that are too near to the one before."""
     kept: list[EastNorth] = []
     for corner in corners:
         if not kept or dist(kept[-1], corner) >= LEAST_LEG_M:

@@ -1,4 +1,4 @@
-"""When a vehicle passes the missing ground of a route, and how much of it is in sun by then."""
+"""Time at which a vehicle passes a route's missing ground, and how much is in sun by then."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -29,7 +29,7 @@ MOST_CELLS = 4_000_000
 """400 ha in cells of 1 m: more takes too much memory."""
 
 SLOWEST_MPS = 0.5
-"""Along rows: a survey this slow takes all day."""
+"""Slowest speed along rows: a survey this slow takes all day."""
 
 MOST_ROWS = 2_000
 """More rows than this come from a wrong height or region."""
@@ -217,7 +217,7 @@ class SurveyPlan:
 
     @property
     def rows_m(self) -> tuple[tuple[EastNorth, EastNorth], ...]:
-        """From where to where each row is flown, lead and all, in east-north metres; to show."""
+        """Return the ends of each row as flown, lead included, in east-north metres; to show."""
         lattice, lead_m = self.lattice, self.swath.lead_m
         legs = [RowLeg(piece, False).ends_m(lattice, lead_m) for piece in self.pieces]
         ends = lattice.east_north_m(np.array(legs).reshape(-1, 2)).reshape(-1, 2, 2).tolist()

@@ -102,7 +102,7 @@ class CoverageProgress:
     waiting: Mapping[str, tuple[PositionSample, ...]] = field(
         default_factory=lambda: MappingProxyType({})
     )
-    """By serial: positions whose way from the first on does not count yet."""
+    """Positions by serial whose way from the first on does not count yet."""
     in_view: Mapping[str, InView] = field(default_factory=lambda: MappingProxyType({}))
     imaged_95_at_ns: int | None = None
     in_sun_95_at_ns: int | None = None
@@ -323,6 +323,6 @@ def _within(window: Window, rows: tuple[int, int], cols: tuple[int, int]) -> tup
 
 
 def _since(cross: Crossing, since_ns: IntArray) -> IntArray:
-    """Since when cells are in view: as before, or from entering on."""
+    """Return since when cells are in view: as before, or from entering on."""
     goes_on = cross.was_in_view & (since_ns != NEVER)
     return np.where(goes_on, since_ns, cross.enters_ns)

@@ -20,7 +20,7 @@ OFF_PLACE_M = 3.0
 """A vehicle at the end of a row is no farther off it: GNSS and braking."""
 
 MOST_CORNERS = 400
-"""Of the area; from there on it is taken a little smaller, with fewer corners."""
+"""Most corners of the area; with more it is taken a little smaller, with fewer corners."""
 
 COARSEST_M = 50.0
 """A region that has more corners even so has no room to spare."""

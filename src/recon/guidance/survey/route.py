@@ -1,4 +1,4 @@
-"""In which order and direction pieces of rows are flown: to and fro, row by row.
+"""Order and direction in which pieces of rows are flown: to and fro, row by row.
 
 Pieces of neighbouring rows that face one another, one to one, make a chain that is flown as a
 serpentine. Where a hole or a bay divides rows a chain ends and others begin; these are put in the

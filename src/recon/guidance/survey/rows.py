@@ -34,7 +34,7 @@ class Piece:
 
     @property
     def length_m(self) -> float:
-        """Without lead."""
+        """Return the length without lead."""
         return self.end_m - self.start_m
 
 
@@ -135,7 +135,7 @@ def lines_along(west: float, east: float, across_m: FloatArray) -> npt.NDArray[n
 
 
 def _spans(geometry: shapely.Geometry, least_m: float) -> list[Span]:
-    """From where to where each part lies along; parts smaller than that both ways are left out."""
+    """Return where each part begins and ends along; parts smaller both ways are skipped."""
     bounds = shapely.bounds(shapely.get_parts(geometry)).reshape(-1, 4)
     large = (bounds[:, 2:] - bounds[:, :2]).max(axis=1, initial=0.0) > least_m
     return [(float(west), float(east)) for west, _south, east, _north in bounds[large]]

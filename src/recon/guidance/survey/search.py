@@ -38,7 +38,7 @@ class Node(NamedTuple):
     segment: int
     heading: int
     gain_m2: float
-    """Of `segment`: ground that will most likely be imaged in sun, 0 if it is too little."""
+    """Ground of `segment` that will most likely be imaged in sun, 0 if it is too little."""
     before: "Node | None"
 
 
@@ -51,7 +51,7 @@ class PlannedLeg:
     from_s: float
     until_s: float
     probability: float
-    """Of sun, mean over its missing ground."""
+    """Probability of sun, mean over its missing ground."""
 
 
 @dataclass(frozen=True, slots=True)

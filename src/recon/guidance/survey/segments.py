@@ -38,7 +38,7 @@ class Segment:
 
     @property
     def length_m(self) -> float:
-        """Along the row."""
+        """Return the length along the row."""
         return self.end_m - self.start_m
 
 

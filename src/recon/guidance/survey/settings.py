@@ -31,10 +31,10 @@ class SurveySettings:
     """What aircraft brake and start with: a stop costs speed over this."""
 
     flight_time_share: float = 0.8
-    """Of a battery's time that is planned with: wind, and turns that take longer."""
+    """Share of a battery's time that is planned with: wind, and turns that take longer."""
 
     longest_gap_s: float = 3.0
-    """Between two positions: over a longer gap the path is unknown."""
+    """Longest gap between two positions: over a longer gap the path is unknown."""
 
     least_step_s: float = 0.5
     """Positions nearer in time are thinned: telemetry comes in bursts, and two that are stamped a
@@ -44,11 +44,11 @@ class SurveySettings:
     """Positions stamped nearer than this arrived together; aircraft report ten times a second."""
 
     least_move_m: float = 0.15
-    """Between two positions: with less movement the course is undefined, and so is the camera's
-    heading."""
+    """Least movement between two positions: with less the course is undefined, and so is the
+    camera's heading."""
 
     steepest_course: float = 0.27
-    """Across over along a row, 15 degrees: the camera is turned with the course."""
+    """Largest across over along a row, 15 degrees: the camera is turned with the course."""
 
     course_slack_m: float = 0.3
     """What GNSS adds to that between two positions."""
@@ -57,7 +57,7 @@ class SurveySettings:
     """Barometers drift by metres; at 60 m this is an eighth of the footprint less overlap."""
 
     fastest_share: float = 1.5
-    """Of the planned speed: two positions stamped a few tenths of a second wrong seem this fast."""
+    """Factor on the planned speed: positions stamped a few tenths of a second wrong reach it."""
 
     settle_s: float = 3.0
     """Positions wait this long before they count, so that the shade maps of that time are there:
@@ -75,8 +75,8 @@ class SurveySettings:
     count in sun. One that no map shows is known as such after 208 s."""
 
     decided_least: float = 0.02
-    """Of the ground whose light was shown: a map that knows less of it shows nothing of the view,
-    as in flat light, when a method decides single spots."""
+    """Share of the ground whose light was shown: a map that knows less of it shows nothing of the
+    view, as in flat light, when a method decides single spots."""
 
     least_transmittance: float = 0.55
     """A cell counts in sun from this share of the direct beam, more than half, because shade maps
@@ -84,15 +84,15 @@ class SurveySettings:
     and does not count. With 0.6 too much ground lay between them under thin cloud."""
 
     terrain_below_m: float = 1.5
-    """Below the height wanted above ground, between two waypoints: rows are this much narrower for
-    each 100 m of footprint per 60 m of height, and clearance comes first."""
+    """Allowance below the height wanted above ground, between two waypoints: rows are this much
+    narrower for each 100 m of footprint per 60 m of height, and clearance comes first."""
 
     terrain_above_m: float = 3.0
-    """Above it: pixels are then a twentieth larger from 60 m. Each waypoint less saves a stop."""
+    """Allowance above it: pixels are a twentieth larger from 60 m. Fewer waypoints save stops."""
 
     terrain_step_m: float = 10.0
-    """Between waypoints that follow the ground, at most twice as near: braking from 5 m/s and
-    starting again take as much."""
+    """Distance between waypoints that follow the ground, at most twice as near: braking from 5 m/s
+    and starting again take as much."""
 
     terrain_cell_m: float = 5.0
     """Wanted heights are kept on a lattice this fine: ground is smoother than that."""
@@ -102,12 +102,12 @@ class SurveySettings:
     and single cells of a model disappear in it."""
 
     least_clearance: float = 0.75
-    """Of the survey's height, kept above the highest ground near: over a row of trees the aircraft
-    climbs, over plants it does not."""
+    """Share of the survey's height, kept above the highest ground near: over a row of trees the
+    aircraft climbs, over plants it does not."""
 
     shade_maps_kept: int = 16
     positions_kept: int = 1_000
-    """Of each vehicle, waiting to count: at 10 Hz, far more than settling takes."""
+    """Most positions of each vehicle that wait to count: at 10 Hz, far more than settling takes."""
 
     retry_s: float = 15.0
     """A mission refused while others flew is asked for again after this: by then they are
@@ -119,13 +119,13 @@ class SurveySettings:
     seconds."""
 
     segment_m: float = 60.0
-    """Of a row, decided on at once: shorter ones take longer to plan, shade's edges are wider."""
+    """Length of a row decided on at once: shorter takes longer to plan; shade's edges are wider."""
 
     planned_s: float = 300.0
     """How far ahead a flight is planned; beyond, forecasts know little but the share of sun."""
 
     moment_s: float = 10.0
-    """Between two moments at which the expected sun is looked up: an edge of shade takes 15 s."""
+    """Time between two look-ups of the expected sun: an edge of shade takes 15 s."""
 
     patience_s: float = 150.0
     """A gain this much later counts for a third: a forecast that far ahead is uncertain."""
@@ -141,7 +141,7 @@ class SurveySettings:
     """Time to reach one of these rows: it must be in sun within this."""
 
     expected_rate: float = 0.8
-    """Of flying rows without a stop, to compare flights that end at different moments."""
+    """Share of the rate without a stop, to compare flights that end at different moments."""
 
     gap_costs_s: float = 6.0
     """What a gap left in a row costs: a stop at both of its ends, later."""
@@ -150,20 +150,20 @@ class SurveySettings:
     """Probability of sun from which flying over ground is worth it."""
 
     least_gain: float = 0.02
-    """Of a segment's ground; a row is not flown for less."""
+    """Least share of a segment's ground; a row is not flown for less."""
 
     put_off_share: float = 0.02
     """Rows that image less in sun than this share of what is flown in their time are put off while
     the vehicle's last rows are not counted: what they left is near, and known in seconds."""
 
     near_m: float = 90.0
-    """To a row within this distance a vehicle flies at the rows' height, if the gate approves."""
+    """Distance to a row within which a vehicle flies at the rows' height, if the gate approves."""
 
     near_rows: float = 2.6
     """Rows this far apart are within one mission; farther ones cost the way in a layer."""
 
     start_s: float = 3.5
-    """From the decision until an aircraft that hovers moves: upload and start."""
+    """Time from the decision until a hovering aircraft moves: upload and start."""
 
     takeoff_s: float = 5.0
     taken_off_m: float = 5.0
@@ -171,10 +171,10 @@ class SurveySettings:
 
     climb_mps: float = 2.5
     corner_s: float = 0.8
-    """Beside braking and starting, an aircraft stands this long at a corner."""
+    """Time at a corner in addition to braking and starting."""
 
     layer_s: float = 14.0
-    """Up to a layer of its own and down again to its first row."""
+    """Time for a climb to a layer of its own and the descent to its first row."""
 
     committed_s: float = 90.0
     """A mission takes the rows begun by then; what comes later is decided anew, with a newer
@@ -199,38 +199,38 @@ class SurveySettings:
     """A mission is flown in shade if less than this share of its rest is expected in sun."""
 
     mission_kept_sun_share: float = 0.6
-    """With this share of its missing ground expected in sun, what is left of a mission is flown."""
+    """Share of a mission's missing ground expected in sun from which on its rest is flown."""
 
     replacement_gain_share: float = 0.25
     """It is replaced if that brings so much more ground into sun, as a share of what is flown
     meanwhile."""
 
     clear_sky_probability: float = 0.85
-    """With this mean probability of sun for as long as is planned, nothing is gained by choosing:
-    a share is flown row by row."""
+    """Mean probability of sun for as long as is planned from which on choosing gains nothing: a
+    share is flown row by row."""
 
     best_flight_worth: float = 1.1
-    """Under a clear sky the best flight is flown if it is worth so many times as much as the share
-    row by row: it comes to the first long row much sooner."""
+    """Ratio to the share flown row by row from which on the best flight is flown under a clear sky:
+    it comes to the first long row much sooner."""
 
     round_sun_share: float = 0.6
-    """With this share of the missing ground expected in sun when a round would pass it, the round
-    is flown: choosing takes longer than it gains."""
+    """Share of a round's missing ground expected in sun when it passes, from which on it is flown:
+    choosing takes longer than it gains."""
 
     round_without_motion_sun_share: float = 0.8
     """A round of which this much is expected in sun is flown before the shadows' motion is known:
     what is in sun without any shade near stays so."""
 
     clear_view: float = 0.99
-    """With this share of the view in sun no edge of shade can show a motion: the planner does not
-    wait for one. It is so under thin even cloud."""
+    """Share of the view in sun from which on no edge of shade can show a motion: the planner does
+    not wait for one. It is so under thin uniform cloud."""
 
     motion_within_s: float = 9.0
-    """From the start on, the first forecast with motion comes within this where there are shadows:
-    three maps or more show it."""
+    """Longest time from the start to the first forecast with motion, where there are shadows: three
+    maps or more show it."""
 
     share_worth: float = 0.15
-    """Of a share's missing ground that must be expected in sun; else its vehicle helps others."""
+    """Share of a vehicle's missing ground that must be expected in sun; else it helps others."""
 
     least_worth: float = 0.2
     """Ground in shade counts this much when shares are made: it must be flown some time."""
@@ -251,7 +251,7 @@ class SurveySettings:
     """A battery that is this full after a landing stays in; a lower one is changed."""
 
     battery_kept_above_reserve: float = 0.25
-    """Under a site's large reserve more must be left: what flies rows is above the reserve."""
+    """Battery above a site's large reserve: a vehicle that flies rows is above the reserve."""
 
     ground_wait_away_s: float = 150.0
     """The way home, landing, takeoff with the same battery and the way back."""
@@ -281,8 +281,8 @@ class SurveySettings:
     """A vehicle that waits for others' rows keeps this beside its return: there it may wait too."""
 
     enough_share: float = 0.99
-    """Of the cells that rows reach: from here on a survey is done; a cell or two at an edge are not
-    worth a flight."""
+    """Share of the cells that rows reach from which on a survey is done; a cell or two at an edge
+    are not worth a flight."""
 
 
 DEFAULT = SurveySettings()

@@ -50,18 +50,18 @@ class AssignedMission:
     number: int
     route: Route
     corners_m: tuple[EastNorth, ...]
-    """For display."""
+    """Corners to show."""
     length_m: float
     ends_at_ns: int = 0
-    """As planned, for planners that share rows by it."""
+    """Planned end, for planners that share rows by it."""
     up_m: tuple[float, ...] = ()
     """The height at each corner, up of the site's frame, of a survey above ground."""
     ends_passed: int = 0
-    """Of the beginnings and ends of its rows, in order, for planners that replace missions."""
+    """Passed beginnings and ends of its rows, in order, for planners that replace missions."""
     replaces: "AssignedMission | None" = None
     """The mission that is flown on if this one is refused."""
     is_chosen: bool = False
-    """For its vehicle alone, not as a share of a round: if it is refused, another is chosen."""
+    """Whether it is for its vehicle alone, not a share of a round: another is chosen if refused."""
     is_beside_closed: bool = False
     """There was closed ground when it was given: its rows are what was left beside."""
     is_in_any_light: bool = False
@@ -91,7 +91,7 @@ class Refused:
     reason: str
     again_ns: int
     rows_most: int | None = None
-    """For the next one, after a mission that would have met another vehicle on its way."""
+    """Most rows of the next one, after a mission that would have met another vehicle on its way."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +112,7 @@ class JustFlown:
 
 
 COUNTED_S = 2.0
-"""After positions have settled, until the survey's next step has counted them."""
+"""Time from settled positions until the survey's next step has counted them."""
 
 
 def flown_just_now(route: Route, settings: SurveySettings, now_ns: int) -> JustFlown:
@@ -151,7 +151,7 @@ class SurveyState:
     started_at_ns: int | None = None
     ended_at_ns: int | None = None
     quiet_since_ns: int = 0
-    """Since when no vehicle flies."""
+    """Time since which no vehicle flies."""
 
     def missing(self, wanted: CellState | None = None) -> BoolArray:
         """Return (R, C): the reached cells that are to be imaged yet, up to the `wanted` state, or
@@ -187,10 +187,10 @@ class CoverageFigures:
     sun_unknown_m2: float
     """Imaged while no shade map had a value: neither in sun nor in shade."""
     not_shown_m2: float
-    """Of the reached ground, what shade maps do not show: it is imaged in unknown light."""
+    """Reached ground that shade maps do not show: it is imaged in unknown light."""
     time_to_95_imaged_s: float | None
     time_to_95_in_sun_s: float | None
-    """Of the reached cells."""
+    """Time until 95 % of the reached cells are imaged in sun."""
 
 
 def figures(state: SurveyState) -> CoverageFigures:

@@ -219,7 +219,7 @@ class _Round:
 
     rows: Routes
     lit_share: float
-    """Of its ground, expected in sun when they pass."""
+    """Share of its ground that is expected in sun when they pass."""
     is_worth: bool
     """Most of it is, and waiting does not bring more into sun than is flown meanwhile."""
 

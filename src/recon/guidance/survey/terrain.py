@@ -36,10 +36,10 @@ MOST_LEGS_KEPT = 4_096
 """Legs whose waypoints are remembered: a survey has up to some hundred rows and ways."""
 
 LEAST_CLIMB_M = 5.0
-"""Along one leg, where the site's height limits leave less: then the gate decides."""
+"""Least climb along one leg where the site's height limits leave less: then the gate decides."""
 
 STEEPEST = 0.5
-"""From a corner, at which the waypoint of the next step is reached within the limits."""
+"""Steepest slope from a corner at which the next step's waypoint is within the limits."""
 
 CLIMB_SPARE_M = 1.0
 """Kept to the site's height limits along a leg."""
@@ -57,7 +57,7 @@ class Terrain:
     limits: ProfileLimits
     lowest_above_ground_m: float
     highest_above_ground_m: float
-    """Of the wanted height over the region."""
+    """Largest wanted height above the ground over the region."""
 
     def __post_init__(self) -> None:
         shape = self.grid.rows, self.grid.cols

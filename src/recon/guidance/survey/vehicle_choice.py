@@ -232,7 +232,7 @@ class VehicleChoice:
         return search.best(self.start_m, self._starts_s)
 
     def passing(self, route: Route, starts_s: float | None = None) -> Passing:
-        """When it passes the rows of a route; without a start, that of a new mission."""
+        """Return when it passes the rows of a route; without a start, that of a new mission."""
         starts_s = self._starts_s if starts_s is None else starts_s
         start_m = self.start_m
         segments, lattice = self.segments, self.plan.lattice

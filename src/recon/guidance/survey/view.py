@@ -33,7 +33,7 @@ class Window:
 
     @property
     def index(self) -> tuple[slice, slice]:
-        """To take the window out of an array on the grid."""
+        """Return the index that takes the window out of an array on the grid."""
         return slice(self.first_row, self.last_row), slice(self.first_col, self.last_col)
 
 
@@ -91,7 +91,7 @@ def crossing(
 def _shares(
     cell_m: FloatArray, start_m: float, end_m: float, half_m: float
 ) -> tuple[FloatArray, FloatArray]:
-    """From what share of the way to what share a cell is within `half_m`, on one axis."""
+    """Return from which to which share of the way a cell is within `half_m`, on one axis."""
     way_m = end_m - start_m
     if abs(way_m) < STANDING_M:
         is_near = np.abs(cell_m - start_m) <= half_m
@@ -121,7 +121,7 @@ def _window(
 
 
 def _clipped(middle_m: float, half_m: float, cell_m: float, count: int) -> tuple[int, int]:
-    """From which to which cell a span reaches, on one axis of a grid."""
+    """Return from which to which cell a span reaches, on one axis of a grid."""
     first = min(max(floor((middle_m - half_m) / cell_m), 0), count)
     last = min(max(ceil((middle_m + half_m) / cell_m), first), count)
     return first, last
