@@ -50,11 +50,11 @@ class LinkSettings:
     packet counts as 64 KiB."""
 
     read_gap_s: float = 0.25
-    """After this time without a read or a tick, five ticks, the station itself did not run: that
-    time does not count against a half-received packet."""
+    """Time without a read or a tick (five ticks) after which the station itself did not run: it
+    does not count against a half-received packet."""
 
     stuck_output_timeout_s: float = 5.0
-    """With the socket full for this long the client does not read, and the link is closed."""
+    """Time with a full socket after which the client is not reading, and the link is closed."""
 
     send_buffer_bytes: int = 16 * 1024
     """Small, so that an emergency order never waits behind much data in the kernel."""
