@@ -29,7 +29,7 @@ from recon.model.imagery import CameraPose, Frame, GroundImage, Registration, Rg
 MapArray = npt.NDArray[np.float32]
 
 LARGEST_LATTICE_STEP = 16
-"""In cells. Coarser saves nothing: `cv2.remap` dominates."""
+"""Largest step in cells. Coarser saves nothing: `cv2.remap` dominates."""
 INTERPOLATION_BUDGET_PX = 0.09
 """Allowed error of the interpolation; the test's bound is 0.1 px."""
 BENDING = 0.85

@@ -16,11 +16,11 @@ from recon.model.imagery import RgbImage
 
 DIRECTIONS = 180
 LIT_LEVEL = 32
-"""Of 255. Stray light outside the circle is below about 15 in real frames."""
+"""Level of 255. Stray light outside the circle is below about 15 in real frames."""
 LEAST_HIT_SHARE = 0.4
 """Share of directions with an edge; fewer: the lens fills the frame, or the frame is dark."""
 LARGEST_SPREAD_SHARE = 0.02
-"""Of the radius: edges farther than this from one circle belong to the scene, not the rim."""
+"""Share of the radius: edges farther than this from one circle are the scene's, not the rim's."""
 RIM_SHARE = 0.02
 """Outer part of the radius that is left out: it is dark and blurred."""
 

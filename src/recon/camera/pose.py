@@ -14,9 +14,9 @@ from recon.model.imagery import CameraPose
 
 FEWEST_POINTS = 4
 LARGEST_RMS_SHARE = 0.03
-"""Of the image's height. Real markings give 0.2 to 0.5 %; beyond 3 % points were swapped."""
+"""Share of the image's height. Real markings give 0.2 to 0.5 %; beyond 3 % points are swapped."""
 LARGEST_POSITION_SIGMA_SHARE = 0.5
-"""Of the camera's height: less certain poses are rejected."""
+"""Share of the camera's height: less certain poses are rejected."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,7 +22,7 @@ MOST_TRIPLES = 1_500
 LEAST_SPREAD_RATIO = 0.02
 """Points nearer to one line than this share of its length do not fix the rotation about it."""
 LEAST_SEPARATION_RATIO = 0.01
-"""Of the points' extent: two points nearer than this count as one place marked twice."""
+"""Share of the points' extent: two points nearer than this count as one place marked twice."""
 FEWEST_PLACES = 4
 
 

@@ -21,8 +21,8 @@ NEWTON_STEPS = 2
 """Each step squares the error of the table; two reach rounding."""
 
 LEAST_SLOPE_SHARE = 0.2
-"""Of the angle per pixel at the centre. With less, the polynomial is about to fold back: no lens
-does, and near the fold a radius does not determine the angle."""
+"""Share of the angle per pixel at the centre. With less, the polynomial is about to fold back: no
+lens does, and near the fold a radius does not determine the angle."""
 
 LARGEST_ANGLE_RAD = float(np.deg2rad(100.0))
 """No supported lens sees farther from its axis; beyond it a polynomial extrapolates."""

@@ -1,4 +1,4 @@
-"""From the corners of chessboard photos to a lens with its residuals, coverage and warnings.
+"""Calibration of a lens from chessboard photos, with residuals, coverage and warnings.
 
 1. The centre for which the boards turn about it best, on a grid around the frame's middle.
 2. The linear solution for that centre (`linear_start`).
@@ -23,15 +23,15 @@ from recon.model.arrays import FloatArray
 FEWEST_PHOTOS = 3
 """Fewer leave the centre and the coefficients undetermined."""
 CENTRE_REACH_SHARE = 0.06
-"""Of the frame's width: how far from its middle the centre is looked for."""
+"""Share of the frame's width from its middle within which the centre is searched."""
 OUTLIER_SIGMAS = 6.0
 LEAST_OUTLIER_PX = 1.0
 LEAST_USED_SHARE = 0.5
-"""Of a photo's corners; a photo with fewer is left out as a whole."""
+"""Share of a photo's corners; a photo with fewer is excluded as a whole."""
 LARGEST_RMS_SHARE = 0.004
-"""Of the frame's width, 5 px at 1280: beyond, the corners are not of this board or lens."""
+"""Share of the frame's width, 5 px at 1280: beyond, the corners are of another board or lens."""
 INVERSE_DEGREE = 14
-"""As the toolbox writes at most."""
+"""Highest degree that the toolbox writes."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,7 +65,7 @@ class LensCalibration:
     camera: OmnidirectionalCamera
     photos: tuple[PhotoResiduals, ...]
     focal_sigma_share: float
-    """Of the focal length: the scale of the whole field of view."""
+    """Uncertainty as a share of the focal length: the scale of the whole field of view."""
     centre_sigma_px: float
 
     @property

@@ -11,10 +11,10 @@ from recon.model.arrays import FloatArray
 from recon.model.imagery import RgbImage
 
 FEWEST_CORNERS = 3
-"""Along a side: OpenCV's search needs as many."""
+"""Fewest corners along a side for OpenCV's search."""
 MOST_CORNERS = 50
 WINDOW_SHARE = 0.3
-"""Of the distance to the nearest corner: a wider window would include that corner's edges."""
+"""Share of the distance to the nearest corner: a wider window would include its edges."""
 WINDOW_PX = (2, 10)
 """Half sides of the window: smaller holds too few pixels, larger only more of a curved edge."""
 

@@ -14,9 +14,9 @@ CELLS_ACROSS = 18
 ENOUGH_PHOTOS = 10
 ENOUGH_COVERAGE = 0.6
 ENOUGH_REACH = 0.85
-"""Of the radius: beyond the outermost corner the polynomial extrapolates."""
+"""Share of the radius: beyond the outermost corner the polynomial extrapolates."""
 ENOUGH_RMS_SHARE = 1.0 / 1280.0
-"""Of the frame's width: sharp photos of a flat board give half of it or less."""
+"""Share of the frame's width: sharp photos of a flat board give half of it or less."""
 ENOUGH_FOCAL_SIGMA = 0.003
 
 

@@ -24,14 +24,14 @@ CENTRE = len(POWERS)
 LENS_PARAMETERS = CENTRE + 4
 POSE_PARAMETERS = 6
 NEWTON_STEPS = 6
-"""From the observed radius, which is within pixels of the root."""
+"""Newton steps from the observed radius, which is within pixels of the root."""
 HUBER_PX = 0.5
 """Residuals beyond this count linearly: good corners are within 0.3 px."""
 MOST_EVALUATIONS = 60
 """Ten to twenty suffice; the robust fit, whose end is only a start, may creep on for hundreds."""
 FARTHEST_PX = 1e6
 LEAST_INFORMATION = 1e-13
-"""Of the largest eigenvalue: smaller is rounding, and that combination of parameters is unknown."""
+"""Share of the largest eigenvalue: below it, that combination of parameters is unknown."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

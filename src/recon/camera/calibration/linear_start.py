@@ -20,9 +20,9 @@ import numpy as np
 from recon.model.arrays import FloatArray
 
 POWERS = (0, 2, 3, 4)
-"""Of the radius, in the depth: a lens is smooth at its centre, so there is no first power."""
+"""Powers of the radius in the depth: a lens is smooth at its centre, so none is of degree 1."""
 ROUNDS = 5
-"""Of weighing photos by their residual and choosing their signs anew."""
+"""Rounds of weighting photos by their residual and choosing their signs anew."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

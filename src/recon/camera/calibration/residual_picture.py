@@ -26,7 +26,7 @@ LINES: tuple[Color, ...] = (
 )
 """One after the other by photo."""
 ARROW_SHARE = 0.03
-"""Of the width: length of the arrow of a corner with three times the overall residual."""
+"""Share of the width: arrow length of a corner with three times the overall residual."""
 
 
 def residual_picture(

@@ -43,7 +43,7 @@ class LensView:
     inner_mask: GreyImage
     """255 where a feature may lie: the patch around it is in the scene."""
     mask_scale: MapArray
-    """From a mean over the contrast window to the mean of its pixels that are shown."""
+    """Factor from a mean over the contrast window to the mean of its visible pixels."""
     lattice_rays: FloatArray
     """Unit rays (r, c, 3) at the lattice's nodes."""
 

@@ -14,9 +14,9 @@ from recon.model.arrays import BoolArray, FloatArray
 from recon.model.imagery import CameraPose
 
 ENOUGH_SHARE = 0.7
-"""Of the features in view as inliers: another round of tracking would not find many more."""
+"""Share of the features in view as inliers: another round of tracking finds few more."""
 LEAST_SLOPE = 0.05
-"""Of a ray downwards (sine) that meets the ground."""
+"""Least downward slope (sine) of a ray that meets the ground."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -46,7 +46,7 @@ class Alignment:
 
     @property
     def inlier_share(self) -> float:
-        """Of the reference's features in view."""
+        """Return the share of the reference's features in view that are inliers."""
         return self.inliers / max(1, self.in_view)
 
 

@@ -18,9 +18,9 @@ class RegistrationSettings:
     features_apart_px: float = 12.0
     """Spreads the features over the frame: one farm does not hold most of them."""
     feature_quality: float = 0.01
-    """Of the strongest corner."""
+    """Share of the strongest corner."""
     largest_nadir_deg: float = 66.0
-    """Of features, from straight down: beyond, a pixel covers metres and relief displaces most."""
+    """Largest angle of features from nadir: beyond, pixels cover metres; relief displaces most."""
     rim_px: int = 8
     """Inside the image circle: a patch must not reach over its edge."""
     window_px: int = 21
@@ -35,42 +35,42 @@ class RegistrationSettings:
     """A feature tracked to the frame and back must end this near to where it began."""
 
     rotation_sigma_rad: float = 0.05
-    """Of telemetry's rotation about each axis: a gimbal in wind, a compass."""
+    """Error of telemetry's rotation about each axis: a gimbal in wind, a compass."""
     horizontal_sigma_m: float = 5.0
-    """Of telemetry's position against the reference frame's: the drift of GNSS."""
+    """Error of telemetry's position against the reference frame's: the drift of GNSS."""
     vertical_sigma_m: float = 3.0
-    """Of telemetry's height against the reference frame's: the drift of the barometer."""
+    """Error of telemetry's height against the reference frame's: the drift of the barometer."""
     feature_sigma_px: float = 0.5
-    """Of a tracked feature, relative to the prior."""
+    """Error of a tracked feature, relative to the prior."""
 
     inlier_px: float = 1.0
     """A feature farther from the fit does not support it: shadow edges, vehicles, wrong corners."""
     fewest_inliers: int = 40
     least_inlier_share: float = 0.2
-    """Of the features in view. Wrong tracks agree by chance within a pixel at 1 in 1000."""
+    """Share of the features in view. Wrong tracks agree by chance within a pixel at 1 in 1000."""
     fewest_quadrants: int = 3
-    """Of the frame's four that have inliers: fewer do not fix the tilt, as in a torn frame."""
+    """Fewest quadrants with inliers: fewer do not fix the tilt, as in a torn frame."""
     quadrant_inliers: int = 4
     largest_turn_rad: float = 0.2
-    """Against telemetry; more is a wrong fit."""
+    """Largest rotation against telemetry; more is a wrong fit."""
     largest_shift_m: float = 25.0
-    """Against telemetry; more is a wrong fit."""
+    """Largest shift against telemetry; more is a wrong fit."""
 
     lost_after_s: float = 3.0
-    """Without a registered frame."""
+    """Time without a registered frame."""
     new_start_after_s: float = 30.0
     """Lost for so long, a new reference begins from telemetry: the drone has flown elsewhere."""
     largest_speed_mps: float = 2.0
-    """Of the drone where a reference begins from telemetry: the capture time of a frame is known to
-    a quarter of a second only, in which it would move by metres."""
+    """Largest speed of the drone where a reference begins from telemetry: a frame's capture time is
+    known to a quarter of a second only, in which it would move by metres."""
     least_height_m: float = 20.0
-    """Of the camera where a reference begins: lower, an error of height in telemetry is too large a
-    share of it, and the ground seen too small."""
+    """Least height of the camera where a reference begins: lower, an error of height in telemetry
+    is too large a share of it, and the ground seen too small."""
     references: int = 5
     """Kept; each takes about 1 MB."""
     hand_on_share: float = 0.45
     """A frame with a smaller share of inliers becomes a reference as well, while it still fits."""
     hand_on_apart_s: float = 5.0
-    """Between new references, so that one dark frame does not displace all the older ones."""
+    """Time between new references, so that one dark frame does not displace all the older ones."""
     residual_within_m: float = 195.0
-    """Of the point below the camera: the residual is stated for the ground that is used."""
+    """Distance from the point below the camera: the residual is stated for the ground in use."""

@@ -48,7 +48,7 @@ class RegistrationState:
     turn: int = 0
     """Counts frames: which of the older references is tried."""
     last_at_s: float | None = None
-    """Of the newest registered frame, or of the first frame before there was one."""
+    """Time of the newest registered frame, or of the first frame before there was one."""
     newest_prior: TimedPose | None = None
 
 

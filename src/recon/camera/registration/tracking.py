@@ -17,7 +17,7 @@ MIDDLE_LEVEL, LEVELS_PER_DEVIATION = 128, 40.0
 """Grey of the mean, and of one standard deviation: three fit on each side."""
 STEPS, LEAST_STEP_PX = 20, 0.02
 LEAST_EIGENVALUE = 1e-3
-"""Of a patch's gradients: flat patches hold no position."""
+"""Least eigenvalue of a patch's gradients: flat patches hold no position."""
 
 QUARTER = 4
 COARSE_TURNS_DEG = (0.0, 2.5, -2.5, 5.0, -5.0, 7.5, -7.5, 10.0, -10.0)
