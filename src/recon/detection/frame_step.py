@@ -28,7 +28,7 @@ class FrameFault(Enum):
     """Why a frame was rejected."""
 
     OTHER_PLACE = "other_place"
-    """In another local frame than the field's, or outside its grid."""
+    """A frame in another local frame than the field's, or outside its grid."""
     NOT_NEWER = "not_newer"
     REPEATED = "repeated"
     BLACK = "black"

@@ -55,7 +55,7 @@ class DetectionSettings:
     errors add up more slowly than from frame to frame."""
 
     exposure_gap_s: float = 10.0
-    """Across a longer gap most cells may have changed; the exposure is not estimated then."""
+    """Longest gap across which the exposure is estimated: in a longer one most cells may change."""
 
     exposure_spread: float = 0.04
     """Largest spread (natural log of light) of the changes of a third of the cells to be taken as

@@ -85,4 +85,4 @@ class DetectionState:
     history: LightHistory | None = None
     sunlit: SunlitMemory | None = None
     references: tuple[SunlitReference, ...] = ()
-    """Of earlier flights over the site."""
+    """References from earlier flights over the site."""

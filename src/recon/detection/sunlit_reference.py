@@ -37,7 +37,7 @@ from recon.model.shade import FloatMap, MaskMap, ShadeMap, SunlitReference
 from recon.model.units import NS_PER_S
 
 SMOOTHED_CELLS = 5
-"""Of the median filter over the map: edges of shade are wider than 20 m."""
+"""Size of the median filter over the map: edges of shade are wider than 20 m."""
 
 
 def sunlit_reference(

@@ -27,9 +27,9 @@ class Contrast:
     """Shade against sun: natural logs, both positive."""
 
     light: float = 1.05
-    """By which green is darker: shade keeps 0.35 of full light."""
+    """Log ratio of green in sun to shade, which keeps 0.35 of full light."""
     colour: float = 0.6
-    """By which blue over red rises: 1.4 to 2.4 times in real frames."""
+    """Log ratio of blue over red in shade to sun: 1.4 to 2.4 times in real frames."""
 
     LEAST = (0.8, 0.3)
     MOST = (1.9, 1.1)

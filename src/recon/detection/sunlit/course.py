@@ -39,11 +39,11 @@ from recon.model.units import NS_PER_S
 FEW = 10
 """Keyframes that the contrast is read from: it is that of the whole flight."""
 STEPS_A_KEYFRAME = 1
-"""By which the contrast is bettered."""
+"""Steps by which each keyframe improves the contrast."""
 NEIGHBOURS = (-1, 0), (1, 0), (0, -1), (0, 1), (1, 1), (-1, -1)
 USUAL_SPREAD, USUAL_WORTH = (0.2, 0.15), 3.0
-"""Of contrasts between flights: cameras, haze and suns differ. Neighbouring frames err alike: what
-is usual counts so many times."""
+"""Spread of contrasts between flights: cameras, haze and suns differ. Errors of neighbouring frames
+are alike: the usual contrast counts so many times."""
 DRIFT_SPREAD, LOCKED_SPREAD = (0.016, 0.002), (0.001, 0.0005)
 """Errors of light and colour after a second by which the change between two frames is known; they
 grow with the square root of time."""
@@ -52,7 +52,7 @@ HINT_FLOOR = 1e-6
 COLOUR_NEAR = 0.25
 """Distance from sun or from shade at which a view's colour shows it, as a share of the contrast."""
 COLOUR_SPREAD, ANY_LIGHT = 0.06, 10.0
-"""Of the level that an earlier flight had with a locked camera."""
+"""Spread of the level that an earlier flight had with a locked camera."""
 BETWEEN, MOST_BETWEEN = (0.1, 0.9), 0.6
 """Transmittances that are neither full sun nor full shade, and the share of a view's cells from
 which edges are as wide as the view."""

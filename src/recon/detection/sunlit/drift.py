@@ -21,7 +21,7 @@ from recon.model.shade import FloatMap, MaskMap
 from recon.model.units import NS_PER_S, seconds_to_ns
 
 LONGEST_GAP_S = 20.0
-"""Over a longer one most cells may have changed."""
+"""Longest gap between frames: in a longer one most cells may have changed."""
 LOCK_S = 60.0
 """A camera that sets its exposure automatically does so within a minute under moving clouds; the
 errors of so many frames stay below the limits."""
@@ -30,7 +30,7 @@ LOCKED_LIGHT, LOCKED_COLOUR = 0.15, 0.10
 CLOUD_COLOUR = 0.25
 """Thin cloud dims the whole view too, but makes it bluer by at least 0.4 of that."""
 SMOOTHED_CELLS = 2.0
-"""Of the slopes of shade, in coarse cells: shade is smooth over 30 m, the land's errors are not."""
+"""Smoothing of shade's slopes, in coarse cells: shade is smooth over 30 m, land errors are not."""
 NOISE = 0.03, 0.02
 """Errors of a cell's change of light and of colour."""
 FARTHEST = 3.0

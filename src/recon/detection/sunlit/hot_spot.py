@@ -35,7 +35,7 @@ BETWEEN = 0.06
 which the coarse cells show half at least, and less where a tone curve flattens; shade shows 0.00 to
 0.02."""
 ROUNDS, FARTHEST, EVEN = 5, 3.0, 4.0
-"""Of the fit; standard deviations at which a sample is cut off; bound of the weights."""
+"""Rounds of the fit; standard deviations at which a sample is cut off; bound of the weights."""
 SURE = 3.0
 """Standard errors between the strength and the bound."""
 
@@ -56,8 +56,8 @@ class HotSpot:
     standard_error: float
     least: float
     most: float
-    """Of the strengths on each side of its middle: a hot spot is the same there, moving shade is
-    not."""
+    """Largest of the strengths on each side of its middle: a hot spot has equal ones, moving shade
+    has not."""
 
     @property
     def scene(self) -> FlatScene:

@@ -13,13 +13,13 @@ from recon.model.units import NS_PER_S, seconds_to_ns
 MOST = 24
 """Keyframes: with more, memory and time grow, but the land is not known better."""
 SPACING_S, FIRST_SPACING_S, FIRST_S = 10.0, 5.0, 30.0
-"""In the first shadows move by about the width of their edges; the second holds for the first half
-minute, so that there is an answer soon."""
+"""Time between keyframes, in which shadows move by about the width of their edges; a shorter one in
+the first half minute, so that there is an answer soon."""
 OLDEST_S = 2_400.0
 """The sun moves ten degrees meanwhile."""
 MOVED_AFTER_S, MOVED = 2.0, 0.4
-"""While the drone flies aside, keyframes are denser: the hot spot has moved when its shape differs
-by this share of its strength somewhere (about 3 degrees)."""
+"""Time between keyframes while the drone flies aside, and the change of the hot spot's shape, as a
+share of its strength, from which it has moved (about 3 degrees)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -27,7 +27,7 @@ FloatGrid = npt.NDArray[np.float32]
 Spectra = npt.NDArray[np.complex64]
 
 STEPS = 0.06, 0.045
-"""Of the bins in light and colour: about the noise of a cell."""
+"""Width of the bins in light and colour: about the noise of a cell."""
 LOWEST = -2.2, -1.0
 """Light and colour of the first bin, relative to the level expected."""
 BINS = 59, 56
@@ -40,10 +40,10 @@ OUTLIERS = 2e-3
 WORTH = 12.0
 """A frame's cells are worth so many independent ones: neighbours are wrong together."""
 USUAL_LENGTH = 22.0
-"""Of the curve in standard deviations of noise: what lies on it is as frequent on a longer one."""
+"""Length of the curve in standard deviations of noise: on a longer one cells are as frequent."""
 ENDS_SHARE = 0.12
-"""Of full sun and of full shade each, beside all that lies between. With less the ends are drawn
-outward, where they are frequent; with more, inward to what is most frequent."""
+"""Share of full sun and of full shade each, in addition to all between. With less the ends are
+drawn outward, where they are frequent; with more, inward to what is most frequent."""
 
 
 def counted(light: Values, colour: Values) -> FloatGrid:
@@ -76,7 +76,7 @@ def fits(spectra: Spectra, contrast: Contrast, ends_share: float = ENDS_SHARE) -
 
 
 PADDED = 108, 96
-"""At least `BINS` and twice the `REACH`, and of small prime factors: such sizes transform fast."""
+"""Sizes of at least `BINS` and twice the `REACH` with small prime factors, which transform fast."""
 
 
 @lru_cache(maxsize=256)

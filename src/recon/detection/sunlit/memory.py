@@ -52,14 +52,14 @@ class SunlitMemory:
     """None while nothing shows which is sun and which shade."""
     detail: Detail | None = None
     belief: Belief | None = None
-    """In the level of sun, in the latest frame that was read."""
+    """Belief in the level of sun, in the latest frame that was read."""
     believed_at_ns: int = 0
     correction: Level = UNCHANGED
-    """Of the level of sun that the belief shows, found with the newest keyframe."""
+    """Correction of the belief's level of sun, found with the newest keyframe."""
     belief_drift: Level = UNCHANGED
     """The total drift then."""
     level: Level | None = None
-    """Of sun in the latest frame; None where it is open."""
+    """Level of sun in the latest frame; None while it is undecided."""
     drift: Drift | None = None
     lock_problem: str = ""
     """What has shown that a camera stated to be locked is not; from there on it is not trusted."""

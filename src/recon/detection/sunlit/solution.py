@@ -17,12 +17,12 @@ from recon.model.shade import MaskMap
 LEAST = 4
 """Keyframes for a median over time."""
 KNOWN_SHARE = 0.5
-"""Of the keyframes must show a cell."""
+"""Share of the keyframes that must show a cell."""
 DOUBT = 1e-3
 """A frame is unknown when another level is likelier than this, against the best."""
 LAND_WEIGHT, EARLIER_WEIGHT = 0.5, 6.0
-"""Of the land found from differences, and of an earlier flight's, in samples, against each cell's
-own samples."""
+"""Weights of the land found from differences, and of an earlier flight's, in samples, against each
+cell's own samples."""
 SUN_WEIGHT, SHADE_WEIGHT, EDGE_WEIGHT = 1.0, 0.5, 0.2
 HINT_SPREAD = 0.12, 0.07
 """Errors of light and colour of what was known before."""
@@ -39,13 +39,13 @@ class Solution:
     """What all keyframes together show."""
 
     keyframes: tuple[Keyframe, ...]
-    """With their levels."""
+    """The keyframes with their levels."""
     land: SunlitLand | None
     """None while too little was seen."""
     belief: Belief | None
-    """In the newest keyframe's level."""
+    """Belief in the newest keyframe's level."""
     correction: Level = UNCHANGED
-    """Of that level, once it is decided: see `Course.refined`."""
+    """Correction of that level, once it is decided: see `Course.refined`."""
 
 
 def solved(
