@@ -20,8 +20,8 @@ class Forecaster:
     """The state after a map (R, C), starting from `ForecastState()`. Raises `ValueError` for a map
     that is not newer than the one before."""
     forecast: Callable[[ForecastState, ForecastSettings], SunForecast]
-    """From the newest map: (L, R, C) probabilities for the L leads of the settings, counted from
-    its capture time. Raises `ValueError` before the first map."""
+    """Returns the forecast from the newest map: (L, R, C) probabilities for the L leads of the
+    settings, counted from its capture time. Raises `ValueError` before the first map."""
 
     def after(
         self,

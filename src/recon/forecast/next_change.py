@@ -1,4 +1,4 @@
-"""When the light of a cell changes next: its time to shade, or its time to sun.
+"""Next change of the light of a cell: its time to shade, or its time to sun.
 
 Theory of operation: members follow the shadows upwind, each with a velocity of its own around the
 measured one, and with an error of its own in what it reads there, as wide as the forecast's own
@@ -23,7 +23,7 @@ from recon.model.shade import SUNLIT_TRANSMITTANCE, FloatMap, MaskMap, ShadeMap,
 MEMBERS = 20
 STEP_S = 5.0
 CHANGED_SHARE = 0.5
-"""Of the members, for a change to be predicted."""
+"""Share of the members for a change to be predicted."""
 SPREAD = 0.1, 0.9
 SEED = 12
 WIDEST = 30_000
@@ -37,9 +37,9 @@ class NextChange:
     is_sunlit: MaskMap
     """Now: the change is to shade where true, else to sun."""
     horizon_s: FloatArray
-    """Until when changes are seen coming; 0 where nothing is known."""
+    """Time until which changes are seen coming; 0 where nothing is known."""
     chance: FloatArray
-    """Of a change before the horizon."""
+    """Probability of a change before the horizon."""
     after_s: FloatArray
     """Median time until then; NaN where none is predicted."""
     early_s: FloatArray

@@ -21,7 +21,7 @@ from recon.model.shade import FloatMap, MaskMap, ShadeMap
 Waves: TypeAlias = npt.NDArray[np.complex64]
 
 FADES_OVER_CELLS = 12.0
-"""From the edge of the visible area inwards."""
+"""Width of the fading from the edge of the visible area inwards."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -28,14 +28,14 @@ class SpatialCorrelation:
 
     at_ns: int
     covariance_s: float = 0.0
-    """Of the mean product of their deviations from the prior."""
+    """Sum of the mean product of their deviations from the prior."""
     variance_s: float = 0.0
-    """Of the mean square of these."""
+    """Sum of the mean square of these."""
     change_s: float = 0.0
-    """Of the mean square of their difference in transmittance, the more the nearer they are to
+    """Sum of the mean square of their difference in transmittance, weighted by how near they are to
     half shade."""
     partly_shaded_s: float = 0.0
-    """Of how near to half shade they are: 1 there, 0 in full sun and in full shade."""
+    """Sum of how near they are to half shade: 1 there, 0 in full sun and in full shade."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +60,7 @@ class IssuedForecast:
     grid: GroundGrid
     issued_at_ns: int
     sunlit: Mapping[float, MaskMap]
-    """By lead in seconds."""
+    """Sunlit cells by lead in seconds."""
     seen: MaskMap
     """The cells with a value in its map."""
 
@@ -78,7 +78,7 @@ class ForecastState:
     kept: tuple[ShadeSpectrum, ...] = ()
     """Spectra of earlier maps to compare with, oldest first."""
     agreement: Agreement | None = None
-    """Of all recent pairs of maps."""
+    """Agreement of all recent pairs of maps."""
     correlation: SpatialCorrelation | None = None
     recent: tuple[ShadeMap, ...] = ()
     """Whole maps, oldest first."""
@@ -90,7 +90,7 @@ class ForecastState:
     issued: tuple[IssuedForecast, ...] = ()
     """Oldest first."""
     compared: Mapping[float, Comparison] = field(default_factory=dict)
-    """By lead in seconds."""
+    """Comparisons by lead in seconds."""
 
     @property
     def newest(self) -> ShadeMap:
