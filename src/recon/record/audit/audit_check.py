@@ -28,7 +28,7 @@ class AuditCheck:
     lost: int
     """Entries that the station reported as not written."""
     torn_bytes: int
-    """Of a last line cut short, as a power failure leaves it."""
+    """Bytes of a last line cut short, as by a power failure."""
     is_closed: bool
     """Whether the run ended in order: without, the station runs, was killed, or the end is cut."""
     is_end_known: bool

@@ -39,7 +39,7 @@ START_TYPE = "application/vnd.recon.start+zstd"
 MSGPACK = "msgpack"
 
 MOST_HELD_BYTES = 256 * 1024**2
-"""Of all links whose packets have not ended: ten of the largest images."""
+"""Limit of all links with incomplete packets: ten of the largest images."""
 _LOG_LEVELS = {"alarm.raised": "warning", "alarm.worse": "error", "order.failed": "error"}
 
 

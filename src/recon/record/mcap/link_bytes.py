@@ -67,7 +67,7 @@ class FrameBytes:
     around: bytes
     skip: int
     size_bytes: int
-    """Of the whole packet."""
+    """Size of the whole packet."""
     at_ns: int
     lost: int = 0
     """Bytes before these that never came here."""

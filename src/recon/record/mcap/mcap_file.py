@@ -47,7 +47,7 @@ RECORD_HEAD = struct.Struct("<BQ")
 MESSAGE_HEAD = struct.Struct("<BQHIQQ")
 MESSAGE_FIXED_BYTES = 22
 CHUNK_HEAD = struct.Struct("<QQQI")
-"""Of a chunk's content: first and last time, size and CRC of what it holds."""
+"""Head of a chunk: first and last time, size and CRC of its content."""
 
 
 def compressor() -> zstandard.ZstdCompressor:

@@ -23,7 +23,7 @@ from recon.model.errors import RecordError
 from recon.record.mcap.mcap_file import CHUNK_HEAD, RECORD_HEAD
 
 MOST_RECORD_BYTES = 512 * 1024 * 1024
-"""Of one chunk, packed and unpacked, and of one attachment; ours are a tenth of it."""
+"""Limit of one chunk, packed and unpacked, and of one attachment; ours are a tenth of it."""
 
 MESSAGE_FIELDS = struct.Struct("<HIQQ")
 MAGIC = MCAP0_MAGIC
@@ -57,7 +57,7 @@ class RawRecord:
     opcode: int
     at: int
     length: int
-    """With its head of 9 bytes."""
+    """Length with its head of 9 bytes."""
     content: bytes | None
 
 

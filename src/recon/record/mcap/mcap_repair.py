@@ -31,7 +31,7 @@ class _FoundChunk:
     at: int
     length: int
     end: int
-    """Of the indexes behind it."""
+    """End of the indexes behind it."""
     offsets: dict[int, int] = field(default_factory=dict)
     counts: dict[int, int] = field(default_factory=dict)
 

@@ -39,7 +39,7 @@ class _Chunk:
     length: int
     first_ns: int
     last_ns: int
-    """Of this chunk and all before it."""
+    """Latest time in this chunk and all earlier ones."""
 
 
 class RecordFile:

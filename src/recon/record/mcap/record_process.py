@@ -70,7 +70,7 @@ class RecordProcess:
 
     @property
     def pid(self) -> int | None:
-        """Of the process."""
+        """Return the process's id."""
         return None if self._process is None else self._process.pid
 
     @property

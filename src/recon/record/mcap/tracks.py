@@ -135,4 +135,4 @@ FORMATS: Mapping[str, Callable[[Mapping[str, list[RecordedPosition]]], str]] = {
     ".geojson": geojson,
     ".csv": csv_text,
 }
-"""By the ending of the file to write."""
+"""Formats by the extension of the file to write."""

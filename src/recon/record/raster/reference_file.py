@@ -22,7 +22,7 @@ from recon.model.shade import FloatMap, SunlitReference
 from recon.record.files.atomic_file import replace_file
 
 FOLDER = "references"
-"""In the site's folder."""
+"""Name of the folder in the site's folder."""
 SUFFIX = ".reference"
 FORMAT = "recon-sunlit-reference"
 VERSION = 1
