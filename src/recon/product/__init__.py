@@ -1,1 +1,1 @@
-"""After the flight: which photos are in sun, from a flight's record and the drones' cards."""
+"""Evaluation after the flight: which photos are in sun, from its record and the drones' cards."""

@@ -24,15 +24,15 @@ from recon.record.mcap.tracks import utc_text
 ByteMap = npt.NDArray[np.uint8]
 
 COLOURS = 6
-"""Of vehicles; further ones begin again, with their name beside."""
+"""Number of vehicle colours; further vehicles reuse them, with their name."""
 WIDTH, LEFT, RIGHT = 720.0, 92.0, 8.0
-"""Of the drawings over time, in pixels of the page."""
+"""Width of the drawings over time and its margins, in pixels of the page."""
 MAP_PX = 340.0
 MARGIN_M = 12.0
 SCALE_PX = 34.0
-"""Below a map, for the bar of the scale and the arrow to north."""
+"""Height below a map for the bar of the scale and the arrow to north."""
 MOST_POINTS = 1500
-"""Of one line: more are not seen."""
+"""Most points of one line: more are not seen."""
 
 NOT_SHOWN, SHADE_ONLY = (122, 44, 56, 255), (116, 134, 158, 255)
 SUNLIT, WELL_SUNLIT = (240, 205, 120, 255), (226, 164, 30, 255)

@@ -17,10 +17,10 @@ from scipy.optimize import linprog
 from recon.model.arrays import BoolArray, IntArray
 
 TRIES = 150
-"""To shorten the list; each takes one neighbourhood apart."""
+"""Attempts to shorten the list; each takes one neighbourhood apart."""
 BOUND_CELLS = 1_500
 BOUND_STEPS = 20_000
-"""Of the linear program: a hundred times what fields need."""
+"""Most steps of the linear program: a hundred times what fields need."""
 SEED = 15
 
 

@@ -1,4 +1,4 @@
-"""By how much a camera's clock is off, from the positions of its photos.
+"""Offset of a camera's clock, from the positions of its photos.
 
 A photo's position is where its vehicle was at the photo's true time. So of all offsets the right
 one puts the photos on the vehicle's recorded track. Theory of operation, for the photos of one
@@ -39,7 +39,7 @@ MOST_SEARCHED = 150
 """Photos are enough to find an offset's neighbourhood; all of them refine it."""
 FEWEST = 5
 LEAST_SHARE = 0.15
-"""Of the photos that are left must lie on the track: else they are of another flight."""
+"""Share of the remaining photos that must lie on the track: else they are of another flight."""
 MOST_RIVAL = 0.85
 """Share of the best offset's photos that another one may put on a track too."""
 APART_S = 8.0
@@ -47,7 +47,7 @@ APART_S = 8.0
 LARGEST_SIGMA_S = 0.5
 """Two standard deviations are a second then: shadows move 10 m."""
 LONGEST_GAP_S = 3.0
-"""In a track: over a longer one the way is unknown."""
+"""Longest gap in a track: over a longer one the way is unknown."""
 SYSTEMATIC_S = 0.1
 """Telemetry is later than the aircraft by this much, more or less."""
 LEAST_SIGMA_M = 0.3
@@ -56,7 +56,7 @@ SHIFT_M = 1.5
 ALIKE = 4.0
 COARSEST_EXACT_S = 0.2
 STATED_WITHIN_M = 30.0
-"""With a stated offset a photo belongs to the nearest vehicle, if it was this near."""
+"""Largest distance from the nearest vehicle for a photo with a stated offset to belong to it."""
 SLOWEST_MPS = 2.0
 """Slower drones are where they are for the whole step."""
 

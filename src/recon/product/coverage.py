@@ -18,12 +18,12 @@ from recon.product.footprint import PhotoView
 from recon.product.sun_at import Sunshine
 
 CELL_M = 4.0
-"""As surveys count: finer than shadows' edges are known."""
+"""Cell size, as in surveys: finer than shadows' edges are known."""
 MOST_CELLS = 4_000_000
 ENOUGH_VIEWS = 3
 """A mosaic needs a place on three photos at least."""
 LEAST_CONFIDENCE = 0.05
-"""Below this a shade map knows next to nothing, and a photo does not count as in sun."""
+"""Confidence below which a shade map knows next to nothing: a photo does not count as in sun."""
 JOIN_M = 12.0
 """Places to fly again nearer than this are flown as one."""
 SMALLEST_M2 = 60.0

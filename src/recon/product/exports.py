@@ -129,4 +129,4 @@ FLIGHT_FORMATS: Mapping[str, Callable[[FlightData], bytes]] = {
     ".png": coverage_picture,
     ".json": figures_json,
 }
-"""By the ending of the file to write."""
+"""Formats by the extension of the file to write."""

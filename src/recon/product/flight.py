@@ -33,7 +33,7 @@ from recon.record.mcap.tracks import utc_text
 ByteMap = npt.NDArray[np.uint8]
 
 UNKNOWN = 255
-"""In a `KeptMap`, where nothing is known; 0 to 250 are transmittances of 0 to 1."""
+"""Value of unknown cells in a `KeptMap`; 0 to 250 are transmittances of 0 to 1."""
 FULL = 250
 
 MOST_CELLS = 16_000_000
@@ -42,13 +42,13 @@ MOST_MAPS = 20_000
 LATEST_NS = 2**62
 """A computer's clock in the year 2116; half of what an array of times takes."""
 LONGEST_WITHHELD_NS = 3_600 * NS_PER_S
-"""Of a packet behind damaged bytes: links that bring nothing else are closed long before."""
+"""Longest delay of a packet behind damaged bytes: otherwise silent links close long before."""
 FARTHEST_M = 1e7
-"""From the site's origin: a quarter round the earth."""
+"""Largest distance from the site's origin: a quarter of the way round the earth."""
 MOST_STARTS = 1_000
-"""Of surveys."""
+"""Most starts of surveys."""
 BEFORE_ALL_NS = 0
-"""When surveys were started that run as a record begins."""
+"""Start of surveys that are already running when a record begins."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -72,11 +72,11 @@ class KeptMap:
     """A shade map in a quarter of the memory; arrays are (R, C), row 0 is north."""
 
     at_ns: int
-    """Of the capture."""
+    """Time of the capture."""
     sun: ByteMap
     """Transmittance in 250ths; `UNKNOWN` where nothing is known."""
     confidence: ByteMap
-    """In 255ths."""
+    """Confidence in 255ths."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,12 +119,12 @@ class FlightData:
     frame: LocalFrame
     tracks: Mapping[str, RecordedTrack]
     names: Mapping[str, str] = field(default_factory=dict)
-    """Of vehicles, by serial."""
+    """Names of vehicles by serial."""
     imagers: frozenset[str] = frozenset()
     grid: GroundGrid | None = None
-    """Of all maps; None without any."""
+    """Grid of all maps; None without any."""
     maps: Sequence[KeptMap] = ()
-    """In the order of time."""
+    """Maps in the order of time."""
     surveys: Sequence[FlownSurvey] = ()
     """Those that were started, or were running when the record began."""
     utc_ahead_ns: int = 0
@@ -220,7 +220,7 @@ class _Reader:
     _grid: GroundGrid | None = None
     _maps: list[KeptMap] = field(default_factory=list)
     _surveys: dict[int, FlownSurvey] = field(default_factory=dict)
-    """By id: all that were requested."""
+    """All requested surveys by id."""
     _starts: int = 0
     _serials: dict[int, str] = field(default_factory=dict)
     _links: dict[int, list[TrackRow]] = field(default_factory=dict)

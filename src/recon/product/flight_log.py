@@ -84,9 +84,9 @@ class FlightLog:
     about: Mapping[str, Any] = field(default_factory=dict)
     lines: list[LogLine] = field(default_factory=list)
     batteries: dict[str, list[tuple[int, float]]] = field(default_factory=dict)
-    """By serial: time, and the battery's fraction."""
+    """Time and the battery's fraction, by serial."""
     leads: dict[float, LeadFigures] = field(default_factory=dict)
-    """By lead in seconds; those without a map of their time are absent."""
+    """Figures by lead in seconds; leads without a map of their time are absent."""
 
     def settings(self) -> dict[str, str]:
         """Return the settings by dotted name."""

@@ -30,7 +30,7 @@ START_OF_SCAN, END_OF_IMAGE = b"\xff\xda", b"\xff\xd9"
 
 DIAGONAL_OF_FULL_FRAME_MM = 43.2666
 UNIT_MM = {2: 25.4, 3: 10.0, 4: 1.0, 5: 0.001}
-"""Of FocalPlaneResolutionUnit."""
+"""Millimetres per unit of FocalPlaneResolutionUnit."""
 
 
 class PhotoError(ReconError):
@@ -39,7 +39,7 @@ class PhotoError(ReconError):
 
 @dataclass(frozen=True, slots=True)
 class GimbalAttitude:
-    """Of the camera, by its gimbal: yaw clockwise from north, pitch -90 straight down, in
+    """Attitude of the camera, by its gimbal: yaw clockwise from north, pitch -90 straight down, in
     degrees."""
 
     yaw_deg: float
@@ -52,17 +52,17 @@ class Photo:
 
     path: Path
     name: str
-    """For all that is written about it: unique, without spaces."""
+    """Name in all output about it: unique, without spaces."""
     cols: int
     rows: int
     orientation: int
-    """By EXIF, 1 to 8: how to turn the pixels to stand upright."""
+    """EXIF orientation, 1 to 8: how to turn the pixels to be upright."""
     camera: tuple[str, str, str]
     """Make, model and serial number of the body; empty where not stated."""
     clock_ns: int
     """The camera's clock, read as UTC."""
     clock_step_s: float
-    """Of the clock: 1 where EXIF has whole seconds."""
+    """Step of the clock: 1 where EXIF has whole seconds."""
     latitude_deg: float
     longitude_deg: float
     satellite_ns: int | None
@@ -74,7 +74,7 @@ class Photo:
 
     @property
     def camera_name(self) -> str:
-        """For a person."""
+        """Return the camera's name for a person."""
         return " ".join(part for part in self.camera if part) or "unknown camera"
 
 

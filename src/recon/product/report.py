@@ -77,9 +77,9 @@ class Covered:
     photos: PhotosByCell
     sun: SunByCell
     is_estimated: bool
-    """From tracks: no photos were tagged."""
+    """Whether coverage is estimated from tracks: no photos were tagged."""
     area_m2: float
-    """Of the region."""
+    """Area of the region."""
 
     def share(self, least_sunlit: int) -> float:
         """Return the region's share that so many photos show in sun; 0 asks for photos at all."""
@@ -105,18 +105,18 @@ class FlightReport:
     covered: Covered | None
     """None without shade maps."""
     area: shapely.Geometry | None
-    """Of the surveys, in east-north metres."""
+    """Area of the surveys, in east-north metres."""
     cover: tuple[tuple[int, float], ...] = ()
     """Time, and the share of the region in sun, for each shade map that shows any of it."""
     photo_states: Mapping[str, int] = field(default_factory=dict)
     airborne: Mapping[str, Sequence[tuple[int, int]]] = field(default_factory=dict)
-    """By vehicle's name."""
+    """Times in the air by vehicle's name."""
     alarms: Sequence[AlarmSpan] = ()
     decisions: Sequence[LogLine] = ()
 
     @property
     def airborne_s(self) -> float:
-        """Of all vehicles together."""
+        """Return the time in the air of all vehicles together."""
         spans = [span for each in self.airborne.values() for span in each]
         return sum(end - begin for begin, end in spans) / NS_PER_S
 

@@ -1,4 +1,4 @@
-"""When each cell of a flight's ground was in sun, and how many photos show it so.
+"""Times at which each cell of a flight's ground was in sun, and how many photos show it so.
 
 The shade maps state the sun at their own moments; between them it is as `sun_at` mixes them, so a
 cell's first and last time are known to the seconds between two maps.
@@ -25,7 +25,7 @@ from recon.record.raster.shade_geotiff import CogBand, cog_bytes
 IntMap = npt.NDArray[np.int32]
 
 SUNLIT = round(SUNLIT_TRANSMITTANCE * FULL)
-"""Of a kept map's cells."""
+"""Value from which a kept map's cells are in sun."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

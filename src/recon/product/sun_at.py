@@ -27,12 +27,12 @@ from recon.product.flight import FULL, UNKNOWN, KeptMap
 FloatMap = npt.NDArray[np.float32]
 
 LONGEST_S = 60.0
-"""From a map: farther off it tells nothing. Shadows change their shape within a minute or two."""
+"""Longest time to a map: shadows change their shape within a minute or two."""
 HALVES_S = 20.0
 """The confidence of a map that is moved on: at 10 s detection's errors are averaged less, at 40 s
 shadows' shapes are others."""
 EVERY_S = 10.0
-"""Between maps whose motion is looked at."""
+"""Time between maps whose motion is estimated."""
 LATER_S = 30.0
 STANDS = (0.0, 0.0)
 

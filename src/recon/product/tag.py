@@ -30,13 +30,13 @@ from recon.product.timing import TimedPhoto
 ByteMap = npt.NDArray[np.uint8]
 
 SUNLIT_SHARE = 0.9
-"""Of a photo's known ground, for the photo to be called sunlit."""
+"""Share of a photo's known ground for the photo to be called sunlit."""
 MASK_SCALE = 8
 """A mask's pixel is 8 x 8 of the photo's: decimetres on the ground, edges are known to metres."""
 LEAST_KNOWN = 0.5
-"""Of a photo's ground: with less the photo is called unknown."""
+"""Share of a photo's ground: with less known, the photo is called unknown."""
 WHITE, BLACK = 255, 0
-"""Of a mask: used, and left out."""
+"""Values of a mask: used and excluded."""
 
 
 @dataclass(frozen=True, slots=True)

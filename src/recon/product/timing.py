@@ -26,7 +26,7 @@ from recon.product.footprint import LOWEST_PITCH_DEG, Aim, PhotoView
 from recon.product.photo import Photo
 
 LOWEST_M = 5.0
-"""Above takeoff: a photo on the ground shows a pad."""
+"""Least height above takeoff: a photo on the ground shows a pad."""
 ZONE_STEP_S, ZONE_WITHIN_S = 900.0, 180.0
 """Time zones differ by quarters of an hour; a clock left alone for a year is minutes off."""
 SATELLITES_WITHIN_S = 20.0
@@ -64,7 +64,7 @@ class CameraClock:
     serial: str
     vehicle: str
     offset_s: float
-    """To be added to the camera's clock to get UTC."""
+    """Offset to add to the camera's clock to get UTC."""
     sigma_s: float
     photos: int
     distance_m: float
