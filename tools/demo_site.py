@@ -51,7 +51,7 @@ PADS: Mapping[str, tuple[str | None, tuple[float, float]]] = {
 }
 """Each pad's vehicle and place: further apart than two landing vehicles must be."""
 DECIMALS = 8
-"""Of a degree: a millimetre."""
+"""Decimals of a degree: a millimetre."""
 
 
 def demo_layer_files(frame: LocalFrame) -> dict[str, str]:
@@ -166,7 +166,7 @@ POINTS_EAST_NORTH_M = {
     "H": (40.0, 30.0),
 }
 LOWEST_GO_HOME_HEIGHT_M, GO_HOME_HEIGHT_STEP_M = 40, 8
-"""Above the trees' zone. The imaging drone returns to home at its 120 m."""
+"""Lowest go-home height, above the trees' zone, and step; the imaging drone returns at 120 m."""
 ENDURANCE_MIN = 25
 """The simulated battery's default."""
 

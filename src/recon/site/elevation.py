@@ -29,8 +29,8 @@ COARSEST_CELL_M = 30.0
 FINEST_PIXEL_M, COARSEST_PIXEL_M = 0.01, 100.0
 """The world's free models have 30 or 90 m; in coarser ones whole hills are missing."""
 LARGEST_GAP_M = 10.0
-"""Between the model and an altitude in site.toml or of a pad. More is another datum, feet taken for
-metres, or another place; geoid and ellipsoid are up to 100 m apart, by 30 m in much of America."""
+"""Largest gap between the model and an altitude in site.toml or of a pad. More is another datum,
+feet taken for metres, or another place; geoid and ellipsoid differ by 30 m in much of America."""
 
 
 class ElevationTable(Struct, frozen=True, forbid_unknown_fields=True):

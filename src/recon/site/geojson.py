@@ -26,10 +26,10 @@ from recon.site.reading import convert, read_bounded, refuse_non_finite, shown_v
 LARGEST_LAYER_BYTES = 4 * 1024 * 1024
 MOST_FEATURES = 1_000
 MOST_CORNERS = 10_000
-"""Of one feature: a drawn outline has tens, a surveyed one hundreds."""
+"""Most corners of one feature: a drawn outline has tens, a surveyed one hundreds."""
 GEOMETRIES = ("Polygon", "MultiPolygon", "Point")
 FARTHEST_M = 50_000.0
-"""Of a corner from the origin: more is another place, or latitude and longitude swapped."""
+"""Farthest corner from the origin: more is another place, or swapped latitude and longitude."""
 ACCEPTED_CRS = frozenset(
     {
         "urn:ogc:def:crs:OGC:1.3:CRS84",

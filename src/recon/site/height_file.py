@@ -35,7 +35,7 @@ LARGEST_BLOCK_BYTES = 128 * 1024 * 1024
 """A strip or tile is unpacked whole, whatever is asked of it."""
 HEIGHT_TYPES = frozenset({"int16", "uint16", "int32", "uint32", "float32", "float64"})
 TIFF_STARTS = frozenset({b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"})
-"""Of either byte order, plain and large."""
+"""First bytes of either byte order, plain and large."""
 METRES = frozenset({None, "", "m", "metre", "meter", "metres", "meters"})
 LOWEST_M, HIGHEST_M = -1_000.0, 10_000.0
 """What an altitude in site.toml may be."""

@@ -27,11 +27,11 @@ from recon.site.site import Imager
 
 USUAL_POINTS = "GCPs.txt"
 LARGEST_ALTITUDE_GAP_M = 15.0
-"""Between the control points and the site's ground: more is a geoid height forgotten, or a slip."""
+"""Largest gap between control points and the site's ground: more is a missing geoid height."""
 LARGEST_DISTANCE_M = 5_000.0
-"""Of a control point from the origin: more is another field, or latitude and longitude swapped."""
+"""Farthest control point from the origin: more is another field, or swapped coordinates."""
 LARGEST_MARKED_GAP_M = 100.0
-"""Between the marked frame's telemetry and its solved pose: GNSS and fit are off by metres."""
+"""Largest gap between the marked frame's telemetry and its solved pose: both err by metres."""
 
 
 def imager_from_table(site_file: Path, table: ImagerTable, frame: LocalFrame) -> Imager:

@@ -13,13 +13,13 @@ from collections.abc import Iterator
 from typing import Any
 
 MOST_MEMORY_BYTES = 2 * 1024**3
-"""Of address space: GDAL, PROJ and numpy map 1 GiB before a file is read."""
+"""Limit of address space: GDAL, PROJ and numpy map 1 GiB before a file is read."""
 MOST_CPU_S = 15
 MOST_LAYERS = 20
 DRIVERS = frozenset({"KML", "LIBKML", "ESRI Shapefile", "GPKG", "GeoJSON"})
 """GDAL has many more, of which some read other files or the network when a file asks for it."""
 DECIMALS = 8
-"""Of a degree: a millimetre."""
+"""Decimals of a degree: a millimetre."""
 
 
 class ImportedFileError(Exception):

@@ -28,9 +28,9 @@ LARGEST_IMPORT_BYTES = 8 * 1024 * 1024
 LARGEST_UNPACKED_BYTES = 32 * 1024 * 1024
 MOST_MEMBERS = 200
 MOST_IMPORTED_CORNERS = 20_000
-"""Of all features: about what one save may send."""
+"""Most corners of all features: about what one save may send."""
 LONGEST_WAIT_S = 120.0
-"""For a file's process, on a computer that is busy with a flight: it ends itself far sooner."""
+"""Longest wait for a file's process on a computer busy with a flight; it ends far sooner."""
 FORMATS = "KML, KMZ, Shapefile (zip), GeoPackage or GeoJSON"
 
 _SHAPEFILE_PARTS = (".shp", ".shx", ".dbf", ".prj", ".cpg")

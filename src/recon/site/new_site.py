@@ -8,11 +8,11 @@ from recon.model.geo import GeoPoint
 from recon.site.load import MOST_VEHICLES, SITE_FILE
 
 MOST_LETTERS = 64
-"""Of a name in site.toml."""
+"""Longest name in site.toml."""
 
 LOWEST_GO_HOME_HEIGHT_M, GO_HOME_HEIGHT_STEP_M = 30, 8
 HIGHEST_GO_HOME_HEIGHT_M = 118
-"""Below the default limit of height."""
+"""Highest go-home height, below the default height limit."""
 
 
 def make_site(folder: Path, name: str, origin: GeoPoint, drones: int) -> Path:

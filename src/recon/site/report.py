@@ -121,7 +121,7 @@ def pose_report(solution: PoseSolution) -> list[str]:
 
 
 SUNKEN_M = 5.0
-"""Between a pad's altitude and the ground there."""
+"""Largest difference between a pad's altitude and the ground there."""
 SHARE_SHOWN = 0.001
 SETTINGS = SafetySettings()
 """The gate's minima are the site's limits plus the margins of these."""

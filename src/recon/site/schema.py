@@ -20,7 +20,7 @@ Serial = Annotated[
         description="a text of 1 to 256 printable ASCII characters without spaces",
     ),
 ]
-"""As DJI's serials are; the wire's limit is 256 bytes."""
+"""Serial number, as DJI's; the wire's limit is 256 bytes."""
 Text = Annotated[
     str,
     Meta(
@@ -80,7 +80,7 @@ class ImagerTable(_Table, frozen=True):
     serial: Serial
     placed_by: Literal["control_points", "telemetry"] = "control_points"
     tilt_deg: Annotated[float, Meta(ge=0.0, le=60.0)] | None = None
-    """From straight down to the camera's axis, towards the aircraft's front."""
+    """Angle from straight down to the camera's axis, towards the aircraft's front."""
     control_points_image_size_px: tuple[Pixels, Pixels] | None = None
     camera: FileName = "camera-model.txt"
     control_points: FileName | None = None

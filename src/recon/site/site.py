@@ -22,7 +22,7 @@ from recon.model.vehicle import VehicleProfile
 from recon.safety.failsafe import DEFAULT_MATRIX
 
 RIM_SHARE = 0.98
-"""Of the image circle's radius: its rim is dark, and leaves the view when the camera wobbles."""
+"""Share of the image circle's radius: its rim is dark, and out of view when the camera wobbles."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
