@@ -33,7 +33,7 @@ class Receiver(Enum):
 
 
 class Switch(Enum):
-    """On or off."""
+    """Switch position, on or off."""
 
     ON = "on"
     OFF = "off"

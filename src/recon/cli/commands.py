@@ -161,7 +161,7 @@ COMMANDS = {
     ),
     "openapi": CommandSource("run:openapi_command", "Print the API's OpenAPI document."),
 }
-"""In the order of `recon --help`."""
+"""Commands in the order of `recon --help`."""
 
 
 class LazyGroup(TyperGroup):

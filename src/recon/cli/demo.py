@@ -34,8 +34,8 @@ SIMULATED = "SIM-"
 """The serials of simulated drones begin with it."""
 DEMO_SCENARIO = "cumulus-40.toml"
 DEMO_PLANNER = "sunlit_first"
-"""Of the usual scenario, whose file names the one that others are compared with; this one states
-what it does and why."""
+"""The demo's planner; the usual scenario's file names the one to compare others with, and this one
+states what it does and why."""
 DEMO_SEED = 11
 """Its sky has sun and shadows by turns from the first minute on."""
 

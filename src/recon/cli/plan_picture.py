@@ -22,13 +22,13 @@ LEGEND_COLUMNS = 2
 TITLE_PX, TEXT_PX, NUMBER_PX = 24, 16, 13
 DISC_PX, TAKEOFF_PX, TIP_PX = 12, 5, 12
 FAINT = 0.45
-"""Of a colour, the rest is paper: what is not a row."""
+"""Share of a colour, the rest is paper, for all but rows."""
 
 Colour = tuple[int, int, int]
 
 
 class Theme(Enum):
-    """Of the picture's ground."""
+    """Background of the picture."""
 
     LIGHT = "light"
     DARK = "dark"

@@ -30,7 +30,7 @@ from recon.score.scripted_operator import (
 LOOK_EVERY_S = 1.0
 LIVE_WITHIN_S = 60.0
 TRY_AGAIN_S = 5.0
-"""After a station that did not answer in time: on a busy computer it soon does again."""
+"""Pause after a station did not answer in time: on a busy computer it soon does again."""
 STAGES = {
     "planning": SurveyStage.PLANNING,
     "created": SurveyStage.PLANNED,

@@ -45,7 +45,7 @@ AHEAD = 8
 """Photos waiting for each thread."""
 PROGRESS = "progress.jsonl"
 MOST_OFF_S = 1e9
-"""Of a camera's clock: thirty years, as after its battery was empty."""
+"""Largest offset of a camera's clock: thirty years, as after an empty battery."""
 NO_PHOTO_TAGGED = 1
 
 
