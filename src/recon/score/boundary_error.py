@@ -30,7 +30,7 @@ class EdgeError:
     area: float = 0.0
     """Cells of regions with edges."""
     true_area: float = 0.0
-    """Of these, in truth: 0 where there is no true edge to compare with."""
+    """Cells of these that are true regions: 0 where there is no true edge to compare with."""
 
     def __add__(self, other: "EdgeError") -> "EdgeError":
         return EdgeError(

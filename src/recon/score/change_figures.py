@@ -24,7 +24,7 @@ class ChangeScore:
     came: int = 0
     """Cells that shade came over in time to be predicted."""
     missed: int = 0
-    """Of these, without having been predicted."""
+    """Cells of these for which shade was not predicted."""
     errors: tuple[int, ...] = (0,) * BINS
     """Counts of the error of the time, where shade was predicted and came, in bins of `BIN_S`."""
 

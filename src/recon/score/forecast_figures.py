@@ -12,7 +12,7 @@ from recon.model.shade import SURE, MaskMap, SunForecast
 from recon.score.shade_figures import Overlap, overlap
 
 BINS = 10
-"""Of the probability, of equal width."""
+"""Bins of the probability, of equal width."""
 
 
 class SeenCells(Enum):
@@ -30,7 +30,7 @@ class Calibration:
     predicted: tuple[float, ...] = (0.0,) * BINS
     """Sum of probabilities."""
     sunlit: tuple[int, ...] = (0,) * BINS
-    """In truth."""
+    """Cells truly in sun."""
     cells: tuple[int, ...] = (0,) * BINS
 
     def __add__(self, other: "Calibration") -> "Calibration":

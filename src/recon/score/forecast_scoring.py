@@ -45,7 +45,7 @@ class ForecastScoring:
     """The maps' time at which the sky's is zero."""
     sums: dict[ForecastKey, LeadScore] = field(default_factory=dict)
     changes: ChangeScore = field(default_factory=ChangeScore)
-    """Of the station's own; none of the perfect one, which follows no shadows in the map."""
+    """Changes of the station's own method; the perfect one follows no shadows in the map."""
     _states: dict[str, ForecastState] = field(default_factory=dict)
     _number: int = 0
     _due_s: float = 0.0

@@ -22,11 +22,11 @@ from recon.site import Imager, Site, demo_site_folder
 from recon.site.site import Layers
 
 FENCE_OFF_M = 80.0
-"""Around everything flown over: for turns, gusts and the margin to the fence."""
+"""Margin around everything flown over: for turns, gusts and the margin to the fence."""
 UPWIND_ROOM_M = 350.0
-"""Around an imaging drone that moves upwind."""
+"""Room around an imaging drone that moves upwind."""
 BEYOND_HOME_M = 150.0
-"""Past the farthest corner: the distance limit does not restrict a task."""
+"""Distance past the farthest corner: the distance limit does not restrict a task."""
 ABOVE_IMAGER_M = 10.0
 USUAL_CEILING_M = 120.0
 LOWEST_GO_HOME_M, GO_HOME_SPACING_M = 40.0, 8.0

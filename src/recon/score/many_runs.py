@@ -50,7 +50,7 @@ def on_cores(
 
 
 def _end_with_parent() -> None:
-    """In a process of the pool: end as soon as the command does, also one that was killed.
+    """End a process of the pool as soon as the command ends, even when killed.
 
     Otherwise it would fly its run to the end, and then wait for the next one indefinitely.
     """

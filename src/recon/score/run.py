@@ -129,7 +129,7 @@ class StationRun:
 
     @property
     def in_sun_share(self) -> float:
-        """Of the region's cells, as the survey counts them."""
+        """Return the share of the region's cells that the survey counts as in sun."""
         record = self.record
         if record is None or record.state is None:
             return 0.0

@@ -21,22 +21,22 @@ class RunScore:
     seed: int
     shade: ShadeFigures
     to_right_s: float | None
-    """Until most of the scored cells were first known and right."""
+    """Time until most of the scored cells were first known and right."""
     registration_m: tuple[float, float] | None
     """Median and 95th percentile of the ground images' errors."""
     forecasts: Mapping[ForecastKey, LeadScore]
     in_sun_share: tuple[float, ...]
-    """Of the region, truly on a photo in sun, at each of `SCORE.curve_min` within the limit."""
+    """Share of the region truly imaged in sun, at each of `SCORE.curve_min` within the limit."""
     to_95_imaged_s: float | None
     to_95_in_sun_s: float | None
     counted_in_sun: int
     """Cells that the survey counts as in sun."""
     wrongly_in_sun: int
-    """Of these, on no photo in sun in truth."""
+    """Cells of these that are on no photo in sun in truth."""
     survey_s: float
-    """Until the survey had ended and all drones had landed."""
+    """Time until the survey had ended and all drones had landed."""
     flight_s: float
-    """In the air, all drones together."""
+    """Total time in the air of all drones."""
     missions: int
     photos: int
     shaded_photos: int
@@ -44,7 +44,7 @@ class RunScore:
     """Times that two vehicles in the air came nearer than the separation."""
     landings: int
     low_landings: int
-    """Of these, with less than the battery reserve."""
+    """Landings with less than the battery reserve."""
     end: str
     """Why the survey ended."""
     changes: ChangeScore = field(default_factory=ChangeScore)
@@ -58,7 +58,7 @@ class RunScore:
 
     @property
     def shaded_share(self) -> float | None:
-        """Of the photos on rows, taken in shade."""
+        """Return the share of the photos on rows that were taken in shade."""
         return self.shaded_photos / self.photos if self.photos else None
 
 

@@ -30,9 +30,9 @@ class ScenarioFleet:
     endurance_s: float
     """Hovering, from full to empty."""
     reserve_share: float
-    """Of the battery, never planned with."""
+    """Share of the battery that is never planned with."""
     swap_s: float
-    """On the ground, to change the battery."""
+    """Time on the ground to change the battery."""
     kept_share: float
     """A battery that is this full at landing is not changed."""
 
@@ -47,24 +47,24 @@ class ScenarioImager:
     """The imaging drones, each over a place; each sees a circle of the ground."""
 
     over_m: EastNorth
-    """Of the first one."""
+    """Place of the first one."""
     height_m: float
     radius_m: float
-    """Of the scored ground, if the lens shows as much."""
+    """Radius of the scored ground, if the lens shows as much."""
     cell_m: float
-    """Of shade maps and their score."""
+    """Cell size of shade maps and their score."""
     field_deg: float | None = None
-    """Of a generated site's lens, from its axis; None: as the demonstration's."""
+    """Field of a generated site's lens, from its axis; None: as the demonstration's."""
     tilt_deg: float = 0.0
-    """Of a generated site's camera, from straight down to the front."""
+    """Tilt of a generated site's camera, from straight down to the front."""
     reach_m: float | None = None
-    """Of a generated site's shade maps; None: as the scored ground."""
+    """Reach of a generated site's shade maps; None: as the scored ground."""
     coarsest_m: float = COARSEST_M
     """Ground that a pixel may show, for ideal detection to see it."""
     is_upwind: bool = False
     """Whether the operator moves the first one to where it sees most of the shade to come."""
     also_over_m: tuple[EastNorth, ...] = ()
-    """Of the others."""
+    """Places of the others."""
 
     @property
     def places_m(self) -> dict[str, EastNorth]:
@@ -110,7 +110,7 @@ class CloudRanges:
     """One layer of clouds, before its velocity is drawn."""
 
     layer: LayerSettings
-    """As if its clouds moved north at first."""
+    """The layer, as if its clouds moved north at first."""
     speed_mps: Range
     turn_deg: Range
     """Clockwise from the heading of the layer below; of the lowest layer from north."""
@@ -145,7 +145,7 @@ class Scenario:
     limit_s: float
     """The operator aborts the survey then."""
     files: tuple[Path, ...] = ()
-    """Beside the scenario's own: the site's folder, the file of faults."""
+    """Files besides the scenario's own: the site's folder, the file of faults."""
 
     @property
     def frame(self) -> LocalFrame:

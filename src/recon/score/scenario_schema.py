@@ -106,23 +106,23 @@ class ScenarioImagerTable(Table, frozen=True):
 
     over_m: PlacePair | None = None
     also_over_m: Annotated[list[PlacePair], Meta(max_length=3)] = []
-    """Of further imaging drones, on a generated site."""
+    """Places of further imaging drones, on a generated site."""
     height_m: Annotated[float, Meta(ge=10.0, le=120.0)] | None = None
-    """At most as high as drones may fly in most countries."""
+    """Height of at most what drones may fly in most countries."""
     field_deg: Annotated[float, Meta(ge=30.0, le=85.0)] | None = None
-    """Of a generated site's lens, from its axis: 66, as that of real ones."""
+    """Field of a generated site's lens, from its axis: 66, as that of real ones."""
     tilt_deg: Annotated[float, Meta(ge=0.0, le=60.0)] | None = None
-    """Of a generated site's camera, from straight down to the front."""
+    """Tilt of a generated site's camera, from straight down to the front."""
     coarsest_m: Annotated[float, Meta(ge=0.1, le=100.0)] = COARSEST_M
     """Ground that a pixel may show, for ideal detection to see it."""
     upwind: bool = False
     """The operator has it hover where it sees most of the shade to come."""
     radius_m: Annotated[float, Meta(ge=20.0, le=2000.0)] = 300.0
-    """Of the scored ground, if the lens shows as much."""
+    """Radius of the scored ground, if the lens shows as much."""
     reach_m: Annotated[float, Meta(ge=20.0, le=2000.0)] | None = None
-    """Of a generated site's shade maps, from where it hovers first; as `radius_m` by default."""
+    """Reach of a generated site's shade maps, from its first hover place; by default `radius_m`."""
     cell_m: Annotated[float, Meta(ge=1.0, le=50.0)] = 4.0
-    """Of shade maps and their score; larger for more ground."""
+    """Cell size of shade maps and their score; larger for more ground."""
 
 
 class MethodsTable(Table, frozen=True):
@@ -155,9 +155,9 @@ class CloudsTable(Table, frozen=True):
     speed_mps: RangeValue | None = None
     """5 to 11 m/s."""
     heading_deg: RangeValue | None = None
-    """Of the lowest layer; any."""
+    """Heading of the lowest layer; any."""
     veer_deg: RangeValue | None = None
-    """Of a layer above, clockwise from the heading of the one below; 25 to 70 degrees."""
+    """Veer of a layer above, clockwise from the heading of the one below; 25 to 70 degrees."""
     spectral_slope: float = 2.91
     outer_scale_m: float = 12_000.0
     finest_scale_m: float = 125.0

@@ -22,10 +22,10 @@ from dataclasses import dataclass, field
 from enum import Enum, auto
 
 SETTLED_S = 3.0
-"""After the last drone became ready: until battery and satellite count have arrived."""
+"""Time from the last drone's readiness until battery and satellite count have arrived."""
 REACTION_S = 20.0
 FOUND_AFTER_S = 90.0
-"""Until an assistant has walked to where it came down: longer than any lost link of a scenario."""
+"""Time for an assistant to walk to a downed drone: longer than any lost link of a scenario."""
 
 
 class SurveyStage(Enum):

@@ -21,20 +21,20 @@ class ScoreSettings:
     """An older shade map does not describe the present: its cells count as wrong."""
 
     right_share: float = 0.9
-    """Of the scored cells known and right: the time until then is a figure."""
+    """Share of the scored cells known and right: the time until then is a figure."""
 
     coarse_cell_m: float = 12.0
-    """For that time every map is scored, not one of six: on a ninth of the cells."""
+    """Cell size for that time: every map is scored, not one of six, on a ninth of the cells."""
 
     least_run_s: float = 1_200.0
     """Least length of a run in which detection or forecast is scored: otherwise a sky under which
     the survey ends early would be scored on fewer maps."""
 
     longest_return_s: float = 1_800.0
-    """After the limit: a run then ends even with a drone still in the air."""
+    """Longest time after the limit: a run then ends even with a drone still in the air."""
 
     sample_s: float = 0.1
-    """Between two samples of the true paths."""
+    """Interval between two samples of the true paths."""
 
     separation_m: float = 10.0
     """Two vehicles in the air nearer than this, and nearly level, are a violation."""

@@ -19,7 +19,7 @@ class Overlap:
     """Counts of cells that can be added up over maps."""
 
     both: int = 0
-    """In shade both in truth and as detected."""
+    """Cells in shade both in truth and as detected."""
     either: int = 0
 
     def __add__(self, other: "Overlap") -> "Overlap":
@@ -43,18 +43,18 @@ class ShadeFigures:
 
     cells: int = 0
     shaded: int = 0
-    """In truth."""
+    """Cells truly in shade."""
     unknown: int = 0
     false: int = 0
-    """In sun, called shade."""
+    """Cells in sun, called shade."""
     missed: int = 0
-    """In shade, called sun."""
+    """Cells in shade, called sun."""
     shade: Overlap = field(default_factory=Overlap)
     """Unknown cells count as wrong."""
     mixed: Overlap = field(default_factory=Overlap)
     """The same, over maps with 5 to 95 % of true shade."""
     mixed_ious: tuple[float, ...] = ()
-    """Of each of these maps."""
+    """Intersection over union of each of these maps."""
     transmittance_error: float = 0.0
     """Sum of absolute errors over the known cells."""
     edges: EdgeError = field(default_factory=EdgeError)
@@ -90,7 +90,7 @@ class ShadeFigures:
 
     @property
     def right_share(self) -> float:
-        """Of all cells, known and right."""
+        """Return the share of all cells that are known and right."""
         return (self.known - self.wrong) / self.cells if self.cells else 0.0
 
 

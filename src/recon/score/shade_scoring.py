@@ -29,12 +29,12 @@ class ImagerScore:
 
     shade: ShadeFigures = field(default_factory=ShadeFigures)
     to_right_s: float | None = None
-    """When most cells were first known and right: `SCORE.right_share` of them."""
+    """Time at which most cells were first known and right: `SCORE.right_share` of them."""
     registration_errors_m: list[FloatArray] = field(default_factory=list)
-    """Of points of each ground image."""
+    """Errors of points of each ground image."""
     forecasts: dict[ForecastKey, LeadScore] = field(default_factory=dict)
     changes: ChangeScore = field(default_factory=ChangeScore)
-    """Of the times to shade that the station's own forecasts give."""
+    """Score of the times to shade that the station's own forecasts give."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

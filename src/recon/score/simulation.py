@@ -21,7 +21,7 @@ from recon.site import Imager, Site
 FaultOrChance = TypeVar("FaultOrChance", InjectedFault, RandomFault)
 
 APART = 1_000_003
-"""Between the seeds of two cameras."""
+"""Difference between the seeds of two cameras."""
 IMAGER_ENDURANCE_S = 36_000.0
 """The imaging drone stays up for the whole scenario: its battery changes are not modelled."""
 

@@ -41,7 +41,7 @@ from recon.station.state.survey_record import SurveyRecord
 
 BY = "scripted operator"
 MOVES_EVERY_S = 60.0
-"""Between two moves of the imaging drone: the wind turns in minutes."""
+"""Time between two moves of the imaging drone: the wind turns in minutes."""
 SURVEY_ID = 1
 BATTERY_RULE = "battery_home"
 DESCENDING = (FlightMode.GO_HOME, FlightMode.AUTO_LANDING, FlightMode.CONFIRM_LANDING)

@@ -16,14 +16,14 @@ class SurveyRatios:
     """Surveys over others of the same seeds; None without a seed that both have flown."""
 
     time: Interval | None
-    """To 95 % in sun, the geometric mean of the seeds' ratios. A survey that has not reached it
-    within the limit counts as the limit."""
+    """Ratio of the times to 95 % in sun, the geometric mean of the seeds' ratios. A survey that has
+    not reached it within the limit counts as the limit."""
     lost_share: Interval | None
-    """Of the seeds, those that took longer by more than `LOST_FROM`."""
+    """Share of the seeds that took longer by more than `LOST_FROM`."""
     flight_time: Interval | None
-    """Of all seeds together: a seed in which nothing flies counts too, and has no ratio."""
+    """Ratio over all seeds together: a seed in which nothing flies counts too, and has no ratio."""
     missions: Interval | None
-    """Of all seeds together."""
+    """Ratio over all seeds together."""
 
 
 def survey_ratios(

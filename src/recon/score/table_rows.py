@@ -7,7 +7,7 @@ from recon.score.interval import Interval, interval, ratio, times
 
 Row = tuple[str, ...]
 NOTHING = "-"
-"""For a figure that no run has."""
+"""Text for a figure that no run has."""
 
 
 def row(

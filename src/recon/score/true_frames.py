@@ -1,4 +1,4 @@
-"""When the imaging drone's frames were truly taken, and from where."""
+"""True times and poses at which the imaging drone's frames were taken."""
 
 from collections import deque
 from collections.abc import Mapping
@@ -26,7 +26,7 @@ class TrueFrame:
     """The truth of one frame."""
 
     taken_at_s: float
-    """Since the run's start."""
+    """Time since the run's start."""
     pose: CameraPose
 
 
@@ -35,7 +35,7 @@ class TrueFrames:
     """The frames that one imaging drone's feed has sent."""
 
     captures: deque[CaptureTimes]
-    """In the order in which they were taken."""
+    """Captures in the order in which they were taken."""
     renderer: FieldRenderer
     latency_s: float
     """The latency that the station assumes; added to its capture time it gives the arrival."""
@@ -81,7 +81,7 @@ class FleetFrames:
 
 
 Frames = TrueFrames | FleetFrames
-"""Of one imaging drone, or of all."""
+"""Frames of one imaging drone, or of all."""
 
 
 def ground_seen(true: CameraPose, believed: CameraPose, points_m: FloatArray) -> FloatArray:

@@ -38,7 +38,7 @@ class Photos:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Imaged:
-    """When each cell of the plan was on a photo; infinite where it never was.
+    """Times at which each cell of the plan was on a photo; infinite where it never was.
 
     A photo is shaded when more than half of the region's cells on it lie in shade.
     """
@@ -115,9 +115,9 @@ def _middles_m(plan: SurveyPlan, cells: IntArray) -> tuple[FloatArray, FloatArra
 
 
 AT_HEIGHT_WITHIN_M = 3.0
-"""Of the survey's height: cruise heights to and from rows are 10 m away from it."""
+"""Tolerance of the survey's height: cruise heights to and from rows are 10 m away from it."""
 SLOWEST_ON_ROW_MPS = 0.2
-"""Below this the course is undefined: the drone turns, or waits."""
+"""Speed below which the course is undefined: the drone turns, or waits."""
 COURSE_OVER_S = 0.5
 
 

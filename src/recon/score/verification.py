@@ -37,7 +37,7 @@ class Verification:
 
     methods: Sequence[str]
     step_s: float
-    """Between maps, in the methods' time."""
+    """Step between maps, in the methods' time."""
     settings: ForecastSettings = field(default_factory=ForecastSettings)
     sums: dict[ForecastKey, LeadScore] = field(default_factory=dict)
     _states: dict[str, ForecastState] = field(default_factory=dict)

@@ -135,7 +135,7 @@ class WhatIf:
         self.recorded: MethodPair | None = None
         self.asked: MethodPair | None = None
         self.agreement = Overlap()
-        """Of the shade that both pairs of methods found in the same images."""
+        """Overlap of the shade that both pairs of methods found in the same images."""
         self.same_cells = self.known_cells = 0
         self._detections: dict[str, DetectionState] = {}
         self._forecast: ForecastState | None = None
