@@ -16,7 +16,7 @@ Address = IPv4Address | IPv6Address
 Network = IPv4Network | IPv6Network
 
 MAX_ENTRIES = 256
-"""Of the list, and of a session: four times the vehicles of the largest site."""
+"""Most entries of the list, and of a session: four times the vehicles of the largest site."""
 
 NOT_LISTED = "its serial is not on the list"
 

@@ -27,14 +27,14 @@ from recon.model.units import seconds_to_ns, wrap_degrees
 from recon.model.vehicle import FlightMode, MissionNumbers, VehicleState, VelocityNed
 
 STANDING_SPEED_MPS = 0.5
-"""Below this a vehicle counts as standing: GNSS velocity noise and gusts stay under it."""
+"""Speed below which a vehicle counts as hovering: above GNSS velocity noise and gusts."""
 
 MOVING_SPEED_MPS = 0.5
 LEG_DIRECTION_TOLERANCE_DEG = 30.0
 AT_WAYPOINT_M = 5.0
 
 CAMERA_QUIET_S = 2.0
-"""Without an image for this long after the stop was sent, the feed has stopped."""
+"""Time without an image after the stop was sent, after which the feed has stopped."""
 
 _INSTRUCTION: dict[type, Instruction] = {
     Hover: Instruction.HOLD_SENT,
@@ -65,7 +65,7 @@ class SentContext:
     mode_when_sent: FlightMode | None
     was_flying: bool | None
     mission_id: int | None = None
-    """As reported last."""
+    """Last reported mission id."""
 
 
 def progress(body: Body, sent: SentContext, state: VehicleState, now_ns: int) -> Progress:

@@ -84,7 +84,7 @@ AT_END_M = 5.0
 """A mission that leaves mode 10 farther than this from its end was interrupted."""
 
 GOOD_GNSS_LEVEL = 3
-"""From this level on DJI holds position by GNSS: no reason for a fallback to ATTI."""
+"""Level from which DJI holds position by GNSS: no reason for a fallback to ATTI."""
 
 KIND_OF_MODE: dict[FlightMode, ModeKind] = {
     FlightMode.GPS_WAYPOINT: ModeKind.WAYPOINT,

@@ -20,7 +20,7 @@ PROGRESS_M = 1.0
 LEVEL_MPS = 3.0
 """Faster over the ground it is under way: gusts and GNSS noise stay below."""
 BRAKING_MPS2, SETTLES_S = 2.5, 2.0
-"""Before that it brakes from the speed at its beginning; a mode comes at 1 to 2 Hz."""
+"""Deceleration before it is under way, and a delay: a mode comes at 1 to 2 Hz."""
 
 
 def fold_go_home(state: VehicleState, now_ns: int) -> GoHomeFlight | None:

@@ -28,7 +28,7 @@ FASTEST_MPS = 18.0
 """The SDK's 15 m/s plus tailwind."""
 
 GAP_S = 1.0
-"""After a gap this long the first waypoint may have been passed unnoticed."""
+"""Gap after which the first waypoint may have been passed unnoticed."""
 
 Point = tuple[float, float, float]
 """North, east, up."""

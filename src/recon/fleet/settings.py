@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True, slots=True)
 class AirborneSettings:
-    """When a vehicle is believed in the air or on the ground (`fleet.airborne`)."""
+    """Limits for believing a vehicle in the air or on the ground (`fleet.airborne`)."""
 
     slow_mps: float = 0.5
     """Velocity noise of a vehicle that stands stays below."""
@@ -18,7 +18,7 @@ class AirborneSettings:
     takeoff_height_m: float = 2.0
     """The barometer's usual drift in a flight."""
     landing_gap_s: float = 5.0
-    """In less than this nothing descends and stops its motors."""
+    """Shortest gap in which a vehicle may descend and stop its motors."""
     battery_change_gap_s: float = 15.0
     battery_gain_fraction: float = 0.05
     """A battery in flight only discharges; its gauge errs by a percent or two."""
@@ -41,15 +41,15 @@ class AirborneSettings:
     """Slower than any climb, faster than the air pressure."""
     takeoff_seen_s: float = 1.0
     stands_still_s: float = 60.0
-    """After a longer gap of telemetry it may have been carried to another place to take off."""
+    """Longest gap of telemetry: in a longer one it may have been carried elsewhere to take off."""
 
 
 @dataclass(frozen=True, slots=True)
 class TrustSettings:
-    """When telemetry is believed (`fleet.trust`)."""
+    """Limits for believing telemetry (`fleet.trust`)."""
 
     jump_m: float = 10.0
-    """Beyond the fastest flight: GNSS wanders by metres, a jump is a new fix or an error."""
+    """Distance beyond the fastest flight: GNSS wanders by metres; a jump is a new fix or error."""
     jump_vertical_m: float = 5.0
     together_s: float = 0.05
     burst_s: float = 1.5
@@ -67,9 +67,9 @@ class TrustSettings:
     """A position that stands still while the velocity adds up to this is stuck."""
     stands_m: float = 3.0
     reckoned_mps: float = 0.5
-    """Below, velocities are noise that adds up to nothing."""
+    """Speed below which velocities are noise that adds up to nothing."""
     reckoned_gap_s: float = 1.0
-    """Over longer gaps no velocity is known."""
+    """Longest gap over which the velocity is known."""
     lingers_s: float = 3.0
     """A doubt ends this long after the last packet that showed it: alarms must not flicker."""
     jump_lingers_s: float = 60.0
@@ -79,7 +79,7 @@ class TrustSettings:
     battery_s: float = 10.0
     """A fall within this time; a cell that fails stays down, and counts at once."""
     battery_gap_s: float = 15.0
-    """In a longer gap the battery may have been changed."""
+    """Longest gap in which the battery cannot have been changed."""
     backlog_s: float = 1.0
     """What arrives in the first second after a suspension was sent before it."""
 
@@ -93,8 +93,8 @@ class FleetSettings:
     serial arrived (an app that reconnects while its old socket still looks alive)."""
 
     conflict_silence_s: float = 3.0
-    """In a declared conflict the old link keeps command until it is silent this long: longer than
-    the dropouts of a second or two that running video causes."""
+    """Silence after which the old link loses command in a declared conflict: longer than the
+    dropouts of a second or two that running video causes."""
 
     track_interval_s: float = 1.0
     """The track keeps one point a second: enough to see a path, little to keep."""

@@ -27,7 +27,7 @@ class LinkRecord:
     waits_since_ns: int | None = None
     last_packet_at_ns: int | None = None
     rival_since_ns: int | None = None
-    """When it reported a serial that another open link is bound to."""
+    """Time at which it reported a serial that another open link is bound to."""
     in_conflict: bool = False
     """Whether the bound link delivered a packet after that."""
     packets: int = 0
