@@ -81,9 +81,9 @@ class LandingPad:
 
 
 LAYER_SPACING_M = 10.0
-"""Between two heights that are kept by vehicles above each other: in a fleet return, on the way to
-rows, over the field. The gate keeps 7.5 m at first, and the watchdog holds below 7 m: two
-barometers may drift apart by a metre or two within a flight."""
+"""Vertical spacing of vehicles above each other: in a fleet return, on the way to rows, over the
+field. The gate keeps 7.5 m at first, and the watchdog holds below 7 m: two barometers may drift
+apart by a metre or two within a flight."""
 
 HOVER_DRIFT_M = 2.0
 """What vehicles side by side keep beyond the gate's minimum: one that hovers drifts by a metre or
@@ -98,7 +98,7 @@ class FlightLimits:
     """The open category's ceiling in Europe, 400 ft (122 m) in the United States."""
 
     min_height_above_ground_m: float = 5.0
-    """Above crops, sprinklers and persons; does not apply to takeoff and landing."""
+    """Least height above crops, sprinklers and persons; not for takeoff and landing."""
 
     max_distance_from_home_m: float = 1_000.0
     """A small drone is visible unaided to about half of this; controllers reach farther."""

@@ -461,7 +461,7 @@ class JobEnded:
 
     job_id: int
     input_digest: str = field(default="", kw_only=True, compare=False)
-    """Of all that the job depended on, for the record; empty where it was not run or recorded."""
+    """Digest of all inputs of the job, for the record; empty where it was not run or recorded."""
 
 
 Event = (

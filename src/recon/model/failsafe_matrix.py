@@ -40,7 +40,7 @@ class Activity(Enum):
     HOLDING = "holding"
     """It hovers, or nothing that the station commanded moves it."""
     RETURNING = "returning"
-    """On the way home or landing: by order, in a fleet return, or by its own failsafe."""
+    """Returning home or landing: by order, in a fleet return, or by its own failsafe."""
 
 
 class Reaction(Enum):

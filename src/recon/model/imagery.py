@@ -85,24 +85,24 @@ class Outlook:
     """What a camera on its aircraft shows, whatever the aircraft's place and heading."""
 
     field_rad: float
-    """From the lens's axis to the rim that all frames show."""
+    """Angle from the lens's axis to the rim that all frames show."""
     tilt_rad: float = 0.0
-    """From straight down to the axis."""
+    """Angle from straight down to the axis."""
     off_front_deg: float = 0.0
     """Direction of the tilt, clockwise from the aircraft's front."""
     pixels_per_radian: float = 250.0
-    """Near the axis."""
+    """Resolution near the axis."""
 
 
 class Registration(Enum):
     """How a ground image was georeferenced."""
 
     UNREGISTERED = "unregistered"
-    """By the marked frame's pose and telemetry: errors of metres are possible."""
+    """Placed by the marked frame's pose and telemetry: errors of metres are possible."""
     REGISTERED = "registered"
     """Aligned with a reference frame by its content."""
     LOST = "lost"
-    """As unregistered, and no frame of the last seconds could be aligned."""
+    """Placed as if unregistered, since no frame of the last seconds could be aligned."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -126,4 +126,4 @@ class GroundImage:
     exposure_locked: bool = False
     """Whether the pilot locked exposure and white balance, by the site's file."""
     pixels_per_radian: float = 250.0
-    """Of the lens near its axis; by default a fisheye of 170 degrees at 1280 columns."""
+    """Resolution of the lens near its axis; by default a fisheye of 170 degrees at 1280 columns."""

@@ -14,7 +14,7 @@ class DjiLimits:
     """Missions and virtual sticks; heights are above takeoff, distances in three dimensions."""
 
     max_waypoints: int = 99
-    """In one packet of the ICD; an app may accept fewer (`VehicleProfile.max_waypoints`)."""
+    """Waypoints in one ICD packet; an app may accept fewer (`VehicleProfile.max_waypoints`)."""
     min_waypoints: int = 2
     min_leg_m: float = 0.5
     max_leg_m: float = 2_000.0

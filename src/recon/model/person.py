@@ -10,7 +10,7 @@ NAME = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9._-]{0,31})")
 invisible letters, and no name contains another person's line."""
 
 THIS_COMPUTER = "this computer"
-"""In place of an address: a request over loopback, which needs no login."""
+"""Stands for the address of a request over loopback, which needs no login."""
 
 
 class Role(StrEnum):

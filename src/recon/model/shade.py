@@ -33,10 +33,10 @@ class ShadeMap:
     source_serials: tuple[str, ...]
     """The vehicles that took the frames; empty when unknown to the method."""
     transmittance: FloatMap
-    """In [0, 1]; in sun from `SUNLIT_TRANSMITTANCE` on."""
+    """Transmittance in [0, 1]; in sun from `SUNLIT_TRANSMITTANCE` on."""
     valid: MaskMap
     confidence: FloatMap
-    """In [0, 1]: how much evidence there was, not the distance from the threshold."""
+    """Confidence in [0, 1]: how much evidence there was, not the distance from the threshold."""
     metres_per_pixel: FloatMap
     """Ground size of the longer side of one camera pixel."""
 
@@ -60,7 +60,7 @@ class SunlitReference:
     """
 
     serial: str
-    """Of the vehicle whose camera it belongs to."""
+    """Serial of the vehicle whose camera it belongs to."""
     grid: GroundGrid
     toward_sun_enu: tuple[float, float, float]
     camera_enu_m: tuple[float, float, float]

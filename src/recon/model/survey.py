@@ -45,9 +45,9 @@ class SurveyBudget:
     """Limits after which a survey ends incomplete; None: no limit."""
 
     rounds: int = 6
-    """Of flights over the missing ground, the first included, by planners that have rounds."""
+    """Most rounds of flights over missing ground, the first included, for planners with rounds."""
     time_s: float | None = None
-    """From the start to the beginning of the last flight, pauses included."""
+    """Time from the start to the beginning of the last flight, pauses included."""
     flown_m: float | None = None
     """Total planned length of all missions: a battery budget as a distance."""
 
@@ -186,12 +186,12 @@ class MissionAssignment:
     number: int
     mission: Mission
     length_m: float
-    """From the first waypoint to the last."""
+    """Length from the first waypoint to the last."""
     approach: tuple[LatLon, ...] = ()
     """Corners on the way to the first waypoint, from where the vehicle was, round keep-out zones;
     none where it is straight or none is known."""
     straight_within_m: float | None = None
-    """To a first row this near it may fly at the rows' height. It stays at that height at the end
-    of the last row, since the next mission follows at once. None: always by a layer of its own."""
+    """Largest distance to a first row that it may fly to at the rows' height. It stays there after
+    the last row, since the next mission follows at once. None: always by a layer of its own."""
     stands_by: bool = False
     """Whether it only goes to its first waypoint, in its layer, and waits there."""

@@ -21,7 +21,7 @@ DJI_TIMER_S = (2.0, 3.0, 5.0, 7.0, 10.0, 15.0, 20.0, 30.0, 60.0)
 """What DJI's apps offer as the interval of timed photos."""
 
 FAST_TIMER_S = (0.7, 1.0, *DJI_TIMER_S)
-"""With a fast mechanical shutter, JPEG only."""
+"""Intervals with a fast mechanical shutter, JPEG only."""
 
 
 class SurveyCameraError(ReconError):
@@ -179,7 +179,7 @@ CAMERAS: Mapping[str, CameraModel] = MappingProxyType(
         )
     }
 )
-"""By the name that options and requests use. The L-type payloads are lidars and are left out."""
+"""Cameras by the name that options and requests use, without the L-type payloads (lidars)."""
 
 
 def camera_named(name: str, own: Iterable[CameraModel] = ()) -> CameraModel:

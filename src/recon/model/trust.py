@@ -92,7 +92,7 @@ class GroundStand:
     position: LatLon | None
     height_m: float | None
     signs_since_ns: int | None = None
-    """Since when it shows signs of flight."""
+    """Time since which it shows signs of flight."""
     quiet_since_ns: int | None = None
 
 
@@ -107,7 +107,7 @@ class FlightEvidence:
     flown_at_ns: int | None = None
     flown_height_m: float | None = None
     battery_fraction: float | None = None
-    """At the last report in flight."""
+    """Battery charge at the last report in flight."""
     high_m: float | None = None
     """Greatest height of this half minute, and of the one before."""
     older_high_m: float | None = None
@@ -129,9 +129,9 @@ class Trust:
     place: KnownPlace = KnownPlace()
     jumped: JumpedPlace | None = None
     jump_accepted_at_ns: int | None = None
-    """When a place after a jump was last accepted as the new one."""
+    """Time at which a place after a jump was last accepted as the new one."""
     changed_at_ns: int | None = None
-    """When core telemetry last differed from the packet before it."""
+    """Time at which core telemetry last differed from the packet before it."""
     reckoning: DeadReckoning | None = None
     battery: Stamped[float] = Stamped()
     """A charge of the last seconds, which a sudden fall is compared with."""
@@ -144,4 +144,4 @@ class Trust:
 
 
 NO_TRUST = Trust()
-"""Of a vehicle that has not reported yet."""
+"""Trust of a vehicle that has not reported yet."""

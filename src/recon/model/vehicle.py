@@ -145,7 +145,7 @@ class VehicleProfile:
     camera_interval_s: float | None = None
     """Interval of the camera's timer, started by the pilot: the ICD has no shutter command."""
     priority: int = 0
-    """In a conflict of two vehicles, the one with the lower number is held first."""
+    """Priority in a conflict of two vehicles: the one with the lower number is held first."""
     packet_gap_s: float = 0.1
     """Least time between two packets to the app; some apps read one packet per segment."""
     pad_place: LatLon | None = field(init=False, repr=False, compare=False)
@@ -246,7 +246,7 @@ class VehicleState:
     mission_id: Stamped[int] = Stamped()
     mission_numbers: MissionNumbers = MissionNumbers.UNKNOWN
     newest_mission_id: int = 0
-    """Of its newest mission; 0 if the app reported none, as one that was restarted meanwhile."""
+    """Id of its newest mission; 0 if the app reported none, as one that was restarted meanwhile."""
     core_received_at_ns: int | None = None
     extended_received_at_ns: int | None = None
     image_received_at_ns: int | None = None
