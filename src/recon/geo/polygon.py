@@ -20,7 +20,7 @@ from recon.model.geo import LocalFrame
 ShapeArray = npt.NDArray[np.object_]
 
 DECIMALS = 7
-"""Of a degree in GeoJSON: a centimetre."""
+"""Decimals of a degree in GeoJSON: a centimetre."""
 
 FARTHEST_M = 1e8
 """Farther than any two places on earth; GEOS overflows on far larger numbers."""

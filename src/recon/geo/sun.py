@@ -18,7 +18,7 @@ J2000_UNIX_S = 946_728_000.0
 DAY_S = 86_400.0
 POSITIONS_KEPT = 16_384
 HALVINGS = 30
-"""Of half a day: to a tenth of a millisecond."""
+"""Halvings of half a day: to a tenth of a millisecond."""
 
 
 @dataclass(frozen=True, slots=True)
