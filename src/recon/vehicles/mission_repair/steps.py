@@ -26,13 +26,13 @@ class RepairLimits(DjiLimits):
     cut_path_m: float = 29_900.0
     """Longest path of a part when a path is too long for one mission."""
     slowest_mps: float = 1.0
-    """In place of a speed of 0, which to the SDK means the mission's own speed."""
+    """Speed to use for 0, which to the SDK means the mission's own speed."""
     corner_margin_m: float = 0.01
     """Kept free on a leg between two reduced corners: more than the rounding of 32-bit floats."""
     corner_slack_m: float = 0.005
     """Two corners count as wide as their leg when less than this remains."""
     most_repaired_m: float = 300_000.0
-    """Beyond the range of these aircraft: a longer path is a mistake and is not divided."""
+    """Longest path that is divided: a longer one exceeds the aircraft's range, so is a mistake."""
 
 
 REPAIR_LIMITS = RepairLimits()
