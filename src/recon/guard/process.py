@@ -28,8 +28,8 @@ from recon.vehicles.reports import to_report
 
 TICK_S = 0.05
 ORPHAN_S = 30.0
-"""After the station's death a person has so long to stop all here. Then the connections close, and
-the apps know: what they do without a station is their own setting."""
+"""Time after the station's death for a person to stop all here. Then the connections close, and the
+apps know: what they do without a station is their own setting."""
 READ_BYTES = 256 * 1024
 MOST_SOCKETS = 16
 """Duplicates that may come with one read."""

@@ -44,7 +44,7 @@ class GuardSettings:
 
     repeat_s: float = 0.7
     repeats: int = 3
-    """As the station repeats an emergency order."""
+    """Repeats of a command, as the station repeats an emergency order."""
 
     acts_kept: int = 64
     """What was done and no station knows of; beyond this the oldest go."""
@@ -118,7 +118,7 @@ class GuardState:
 
     links: Mapping[int, Watched] = field(default_factory=dict)
     picture_ns: int | None = None
-    """Of the last picture; None while the station is silent."""
+    """Time of the last picture; None while the station is silent."""
     repeats: Mapping[int, Repeat] = field(default_factory=dict)
     acts: tuple[Act, ...] = ()
     """Not yet known to a station."""
