@@ -6,7 +6,7 @@ from recon.basemap.map_file import MapFile
 from recon.basemap.web_mercator import MapArea, metres_per_pixel
 
 FULL = 0.9995
-"""Of the area: a sliver less is rounding."""
+"""Share of the area that counts as all: a sliver less is rounding."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -29,17 +29,17 @@ from recon.basemap.mbtiles_writer import MBTilesWriter
 from recon.basemap.web_mercator import MapArea
 
 MOST_FETCHED = 20_000
-"""Of one run unless allowed: 0.5 GB, and what a public server bears."""
+"""Most tiles of one run unless allowed: 0.5 GB, and what a public server bears."""
 AT_ONCE = 2
-"""As the usage policies of public servers ask."""
+"""Requests at once, as the usage policies of public servers require."""
 TILE_WITHIN_S = 20.0
 TRIES = 3
 PAUSE_S = 1.0
-"""Before a second try, doubled before the third."""
+"""Pause before a second try, doubled before the third."""
 LONGEST_PAUSE_S = 60.0
 """Whatever a busy server asks for."""
 MOST_FAILURES = 10
-"""In a row: the server is gone, or refuses."""
+"""Most failures in a row: the server is gone, or refuses."""
 USER_AGENT = f"Recon/{version()} (ground control station; offline map of one field)"
 PLACES = ("{z}", "{x}", "{y}")
 OK, NO_CONTENT, NOT_FOUND, GONE = 200, 204, 404, 410

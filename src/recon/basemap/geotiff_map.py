@@ -36,18 +36,18 @@ from recon.basemap.web_mercator import (
 from recon.model.arrays import FloatArray
 
 STARTS = frozenset({b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"})
-"""Of either byte order, plain and large."""
+"""First bytes of either byte order, plain and large."""
 LARGEST_BLOCK_BYTES = 64 * 1024 * 1024
 """A strip or tile is unpacked whole, whatever is asked of it."""
 MOST_READ_PX = 4096
-"""Along an edge, for one tile, of the file or of its best overview."""
+"""Most pixels along an edge, read for one tile from the file or its best overview."""
 LARGEST_SIDE_PX = 16_384
-"""Of a file without overviews: 5 cm over 800 m."""
+"""Largest side of a file without overviews: 5 cm over 800 m."""
 GRID = 17
 """Points along a tile's edge whose places are computed; those between are interpolated."""
 MASK_PX = 1024
 SAMPLES = 20_000
-"""Of the area, to count what the file shows."""
+"""Samples of the area, to count what the file shows."""
 FINER = 1.4
 """A zoom level is the file's own up to pixels so much larger."""
 JPEG_QUALITY = 85

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from recon.basemap.map_file import MapFile
 
 MOST_MEMORY_BYTES = 2 * 1024**3
-"""Of address space: GDAL, PROJ and numpy map 1 GiB before a file is read."""
+"""Limit of address space: GDAL, PROJ and numpy map 1 GiB before a file is read."""
 MOST_OPEN = 4
 NICENESS = 10
 OUT_OF_MEMORY = "expected a map that is read in 2 GiB of memory, got one that needs more"

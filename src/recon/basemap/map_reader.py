@@ -44,7 +44,7 @@ class KnownMap:
     """Changes with the file."""
     info: MapInfo | None = None
     coverage: tuple[ZoomCoverage, ...] = ()
-    """By zoom level, the coarsest first."""
+    """Coverage by zoom level, the coarsest first."""
     problem: str = ""
 
 

@@ -31,7 +31,7 @@ from recon.model.arrays import IntArray
 INSTRUCTIONS_BETWEEN_LOOKS = 10_000
 MOST_FACTS = 100
 WITH_LOG = b"\x02\x02"
-"""In the header: changes go into a file beside it first (WAL)."""
+"""Header bytes of a file whose changes go into another file first (WAL)."""
 
 
 class MBTiles:

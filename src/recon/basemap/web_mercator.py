@@ -23,12 +23,12 @@ DEEPEST_ZOOM = 24
 FARTHEST_LATITUDE_DEG = 85.0511
 """Where the square world ends."""
 TILE_PX = 256
-"""At which zoom levels are counted."""
+"""Tile size at which zoom levels are counted."""
 EQUATOR_M = 2.0 * pi * 6_378_137.0
 MARGIN_M = 100.0
-"""Around a boundary: drones are seen, and return, along its outside."""
+"""Margin around a boundary: drones are seen, and return, along its outside."""
 MOST_TILES = 250_000
-"""Of a zoom level that is judged: 3 km at pixels of 3 cm."""
+"""Most tiles of a zoom level that is judged: 3 km at pixels of 3 cm."""
 
 
 def world_from_globe(longitude_deg: npt.ArrayLike, latitude_deg: npt.ArrayLike) -> FloatArray:
