@@ -36,7 +36,7 @@ class Certificate:
 
     context: ssl.SSLContext
     fingerprint: str
-    """As browsers show it: AB:CD:..."""
+    """Fingerprint as browsers show it: AB:CD:..."""
 
 
 def load_certificate(certificate: Path, key: Path) -> Certificate:

@@ -36,7 +36,7 @@ STEP_BYTES = 64 * 1024
 """A reader must take this much within the patience."""
 
 SEND_BUFFER_BYTES = 128 * 1024
-"""Of a stream's socket. Left to itself a kernel takes megabytes: minutes of states for a slow
+"""Send buffer of a stream's socket. A kernel's default is megabytes: minutes of states for a slow
 radio link, each of them old when it arrives."""
 
 

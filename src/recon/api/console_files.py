@@ -17,7 +17,7 @@ from starlette.types import Scope
 
 COMPRESSED = (".html", ".js", ".css", ".json", ".svg", ".webmanifest")
 SMALLEST_BYTES = 1_024
-"""Below a network packet's size compression saves nothing."""
+"""Size below which, within one network packet, compression saves nothing."""
 LARGEST_BYTES = 16 * 1024 * 1024
 FOR_EVER = "public, max-age=31536000, immutable"
 ASK_AGAIN = "no-cache"

@@ -20,7 +20,7 @@ from recon.model.person import Person, User
 WINDOW_S = 60.0
 FAILURES_PER_ADDRESS = 5
 FAILURES_OVERALL = 50
-"""In one window; further wrong tokens get 429."""
+"""Failures in one window; further wrong tokens get 429."""
 
 MAX_ADDRESSES = 256
 """Addresses with failures that are remembered; the oldest is dropped."""

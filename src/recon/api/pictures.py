@@ -27,7 +27,7 @@ PNG_COMPRESSION = 1
 """The console fetches a new picture every second or so: speed before size."""
 
 PIXELS_PER_CELL = 8
-"""Of pictures: enough for a pattern in a cell."""
+"""Picture pixels per cell: enough for a pattern in a cell."""
 
 SHADE_RGB = (38, 58, 140)
 SUN_RGB = (255, 196, 30)

@@ -31,7 +31,7 @@ TRY_AGAIN_LATER = 1013
 LOGIN_NEEDED = 4401
 """Close code (private use) of a stream without a right token, or whose token ended."""
 MAX_REASON_BYTES = 123
-"""Of a close frame."""
+"""Longest reason of a close frame."""
 
 LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "::1"})
 

@@ -30,7 +30,7 @@ BURST = 20
 """Handshakes that begin at once: a console opens six connections."""
 
 ACCEPT_AGAIN_S = 1.0
-"""After an error of accepting, such as no free file descriptor."""
+"""Pause after an error of accepting, such as no free file descriptor."""
 
 
 class HttpServer(uvicorn.Server):
@@ -53,7 +53,7 @@ class SecuredConnection(HttpConnection):
 
 
 class HandshakePace:
-    """When the next handshake may begin: a token bucket."""
+    """Token bucket that decides when the next handshake may begin."""
 
     def __init__(self) -> None:
         self._full_at_s = 0.0

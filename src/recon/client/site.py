@@ -28,7 +28,7 @@ class SiteDrawing(msgspec.Struct, frozen=True):
     """The layers in the site's folder."""
 
     revision: str
-    """Of what was read: a change of an older revision is refused."""
+    """Revision of what was read: a change of an older revision is refused."""
     features: tuple[SiteFeature, ...]
     locked_reason: str | None
     """Why nothing can be saved; None if it can."""
@@ -50,7 +50,7 @@ class SiteVehicles(msgspec.Struct, frozen=True):
     """The vehicles in the site's folder."""
 
     revision: str
-    """Of what was read: a change of an older revision is refused."""
+    """Revision of what was read: a change of an older revision is refused."""
     vehicles: tuple[SiteVehicle, ...]
     locked_reason: str | None
     """Why nothing can be saved; None if it can."""

@@ -54,7 +54,7 @@ class ImagerStay(msgspec.Struct, frozen=True):
 
 
 class SurveyLight(msgspec.Struct, frozen=True):
-    """Until when a running survey has light, and what it flies without; None where unknown."""
+    """How long a running survey has light, and what it flies without; None where unknown."""
 
     needs_s: float | None
     imagers: tuple[ImagerStay, ...]

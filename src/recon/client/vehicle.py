@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     pass
 
 REPEAT_S = 1.0
-"""After this long without a new state (ten a second) the last is yielded again, older."""
+"""Time without a new state (ten a second) after which the last is yielded again, older."""
 
 
 class Vehicle:

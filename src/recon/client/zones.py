@@ -25,7 +25,7 @@ class TemporaryZoneStatus(msgspec.Struct, frozen=True):
     ring: tuple[tuple[float, float], ...]
     """The closed outline, (longitude, latitude)."""
     radius_m: float | None
-    """Of a circle; None for an outline."""
+    """Radius of a circle; None for an outline."""
     floor_m: float | None
     ceiling_m: float | None
     reason: str

@@ -31,7 +31,7 @@ class GivenRequest(StrictMessage):
 
     @property
     def given_at_ns(self) -> int | None:
-        """When it was given, in nanoseconds; None: now."""
+        """Return when it was given, in nanoseconds; None: now."""
         return None if self.given_at_unix_ms is None else self.given_at_unix_ms * 1_000_000
 
 

@@ -168,7 +168,7 @@ class AbsentImagerView(Message):
 
 
 class SurveyLightView(Message):
-    """Until when a running survey has light, and what it flies without."""
+    """How long a running survey will have light, and what it flies without."""
 
     needs_s: float | None = Field(description="for its missing ground, at its recent pace")
     imagers: list[ImagerOutlookView]

@@ -144,7 +144,7 @@ class FractalField:
 
     @cached_property
     def bands(self) -> tuple[Band, ...]:
-        """From the outer scale down; the last one's middle is the first below twice the finest."""
+        """Return the bands, largest scale first; the last is the first below twice the finest."""
         octaves = log(self.outer_scale_m / self.finest_scale_m, BAND_RATIO)
         shares = [BAND_RATIO**-k for k in range(int(octaves + 0.5) + 1)]
         powers = [
