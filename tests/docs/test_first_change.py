@@ -98,9 +98,9 @@ def failures(root: Path, *tests: str) -> tuple[int, str]:
     return int(found[1]) if found else 0, run.stdout
 
 
-def test_the_page_has_six_steps_in_five_files() -> None:
+def test_the_page_has_seven_steps_in_five_files() -> None:
     assert len({step.file for step in steps()}) == 5
-    assert len(steps()) == 6 == len(re.findall(r"^(?:Create|In) `", PAGE, re.MULTILINE))
+    assert len(steps()) == 7 == len(re.findall(r"^(?:Create|In) `", PAGE, re.MULTILINE))
 
 
 def test_without_its_rows_the_rule_is_refused_and_with_them_it_passes(copy: Path) -> None:
