@@ -56,18 +56,7 @@ fn decode(
 /// The compiled half of `recon.wire`.
 #[pymodule]
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    module.add_class::<records::CoreTelemetry>()?;
-    module.add_class::<packets::ExtendedTelemetry>()?;
-    module.add_class::<image::Image>()?;
-    module.add_class::<records::Acknowledgment>()?;
-    module.add_class::<packets::MessageString>()?;
-    module.add_class::<packets::CompressedImage>()?;
-    module.add_class::<records::VirtualStickCommand>()?;
-    module.add_class::<records::Waypoint>()?;
-    module.add_class::<packets::ExecuteWaypointMission>()?;
-    module.add_class::<records::CameraControl>()?;
-    module.add_class::<records::EmergencyCommand>()?;
-    module.add_class::<packets::UnknownPacket>()?;
+    union::add_packets(module)?;
     module.add_class::<limits::Limits>()?;
     module.add_class::<limits::Counters>()?;
     module.add_class::<deframer::Deframer>()?;

@@ -4,7 +4,7 @@ use crate::packets::{
     CompressedImage, ExecuteWaypointMission, ExtendedTelemetry, MessageString, UnknownPacket,
 };
 use crate::records::{
-    Acknowledgment, CameraControl, CoreTelemetry, EmergencyCommand, VirtualStickCommand,
+    Acknowledgment, CameraControl, CoreTelemetry, EmergencyCommand, VirtualStickCommand, Waypoint,
 };
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -12,6 +12,14 @@ use recon_wire::Packet;
 
 macro_rules! packets {
     ($($name:ident),+) => {
+        /// Adds the class of every packet to the module, and the waypoint's.
+        pub fn add_packets(module: &Bound<'_, PyModule>) -> PyResult<()> {
+            module.add_class::<Waypoint>()?;
+            module.add_class::<Image>()?;
+            $(module.add_class::<$name>()?;)+
+            Ok(())
+        }
+
         /// The Python object of a packet.
         pub fn to_python(py: Python<'_>, packet: Packet) -> PyResult<Py<PyAny>> {
             Ok(match packet {

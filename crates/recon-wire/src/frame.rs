@@ -6,9 +6,8 @@ use crate::error::{Error, SizeRule};
 use crate::field::Reader;
 use crate::limits::Limits;
 use crate::packet::{
-    Acknowledgment, CameraControl, CompressedImage, CoreTelemetry, EmergencyCommand,
-    ExecuteWaypointMission, ExtendedTelemetry, Image, MessageString, Packet, Payload,
-    VirtualStickCommand, too_many,
+    CompressedImage, ExecuteWaypointMission, ExtendedTelemetry, Image, MessageString, Packet,
+    Payload, fixed_bytes, too_many,
 };
 
 /// The sync field, 55975.
@@ -91,11 +90,10 @@ fn claim_before_lengths(
 /// What `size` must satisfy, or how many bytes of the frame are wanted before that is known.
 #[inline]
 fn rule(pid: u8, payload: &[u8], limits: &Limits) -> Result<SizeRule, usize> {
-    const fn fixed(payload_bytes: usize) -> SizeRule {
-        SizeRule::Exactly((OVERHEAD_BYTES + payload_bytes) as u64)
+    if let Some(payload_bytes) = fixed_bytes(pid) {
+        return Ok(SizeRule::Exactly((OVERHEAD_BYTES + payload_bytes) as u64));
     }
     Ok(match pid {
-        CoreTelemetry::PID => fixed(CoreTelemetry::SIZE),
         ExtendedTelemetry::PID => {
             let claimed = u32::from_be_bytes(array_at(payload, 12)?).into();
             text_rule(25, claimed, limits.max_serial_bytes)
@@ -105,16 +103,12 @@ fn rule(pid: u8, payload: &[u8], limits: &Limits) -> Result<SizeRule, usize> {
             let cols = u16::from_be_bytes(array_at(payload, 6)?);
             image_rule((rows, cols), (limits.max_image_rows, limits.max_image_cols))
         }
-        Acknowledgment::PID => fixed(Acknowledgment::SIZE),
         MessageString::PID => {
             let claimed = u32::from_be_bytes(array_at(payload, 1)?).into();
             text_rule(14, claimed, limits.max_message_bytes)
         }
         CompressedImage::PID => SizeRule::Between(13, 13 + u64::from(limits.max_jpeg_bytes)),
-        VirtualStickCommand::PID => fixed(VirtualStickCommand::SIZE),
         ExecuteWaypointMission::PID => SizeRule::Waypoints(limits.max_waypoints.into()),
-        CameraControl::PID => fixed(CameraControl::SIZE),
-        EmergencyCommand::PID => fixed(EmergencyCommand::SIZE),
         _ => SizeRule::Between(9, 9 + u64::from(limits.max_unknown_bytes)),
     })
 }

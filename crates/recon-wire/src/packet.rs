@@ -32,6 +32,8 @@ use crate::limits::Limits;
 pub trait Payload: Sized {
     /// Its packet ID.
     const PID: u8;
+    /// Bytes of every payload of this PID; None when they vary.
+    const FIXED_BYTES: Option<usize> = None;
     /// Bytes of the payload.
     fn payload_bytes(&self) -> usize;
     /// Whether the wire and `limits` can carry it.
@@ -54,6 +56,15 @@ macro_rules! packets {
 
         /// Name and PID of every packet of the document.
         pub const PIDS: &[(&str, u8)] = &[$((stringify!($name), $name::PID)),+];
+
+        /// Bytes of every payload with this PID; None when they vary or the PID is unknown.
+        #[inline]
+        pub(crate) fn fixed_bytes(pid: u8) -> Option<usize> {
+            match pid {
+                $($name::PID => $name::FIXED_BYTES,)+
+                _ => None,
+            }
+        }
 
         impl Packet {
             /// Takes the packet with this PID off the front of a payload.

@@ -5,67 +5,21 @@ Raw numbers exactly as they travel; what they mean is the business of ``recon.ve
 
 from typing import TypeAlias
 
-from recon.wire._native import (
-    Acknowledgment,
-    CameraControl,
-    CompressedImage,
-    CoreTelemetry,
-    Counters,
-    Deframer,
-    EmergencyCommand,
-    ExecuteWaypointMission,
-    ExtendedTelemetry,
-    Image,
-    Limits,
-    MessageString,
-    UnknownPacket,
-    VirtualStickCommand,
-    Waypoint,
-    checksum,
-    decode,
-    encode,
-)
-from recon.wire.errors import FieldError, HashError, ShortError, SizeError, SyncError, WireError
+from recon.wire import _native
+from recon.wire._native import *
+from recon.wire.errors import *
 
 Packet: TypeAlias = (
-    CoreTelemetry
-    | ExtendedTelemetry
-    | Image
-    | Acknowledgment
-    | MessageString
-    | CompressedImage
-    | VirtualStickCommand
-    | ExecuteWaypointMission
-    | CameraControl
-    | EmergencyCommand
-    | UnknownPacket
+    _native.CoreTelemetry
+    | _native.ExtendedTelemetry
+    | _native.Image
+    | _native.Acknowledgment
+    | _native.MessageString
+    | _native.CompressedImage
+    | _native.VirtualStickCommand
+    | _native.ExecuteWaypointMission
+    | _native.CameraControl
+    | _native.EmergencyCommand
+    | _native.UnknownPacket
 )
 """Any packet."""
-
-__all__ = [
-    "Acknowledgment",
-    "CameraControl",
-    "CompressedImage",
-    "CoreTelemetry",
-    "Counters",
-    "Deframer",
-    "EmergencyCommand",
-    "ExecuteWaypointMission",
-    "ExtendedTelemetry",
-    "FieldError",
-    "HashError",
-    "Image",
-    "Limits",
-    "MessageString",
-    "Packet",
-    "ShortError",
-    "SizeError",
-    "SyncError",
-    "UnknownPacket",
-    "VirtualStickCommand",
-    "Waypoint",
-    "WireError",
-    "checksum",
-    "decode",
-    "encode",
-]

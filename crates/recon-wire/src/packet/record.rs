@@ -56,6 +56,7 @@ macro_rules! record {
 
         impl $crate::packet::Payload for $name {
             const PID: u8 = $pid;
+            const FIXED_BYTES: Option<usize> = Some(Self::SIZE);
 
             fn payload_bytes(&self) -> usize {
                 Self::SIZE
