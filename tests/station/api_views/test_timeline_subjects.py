@@ -3,16 +3,18 @@
 import ast
 import re
 from collections.abc import Iterator
+from typing import get_args
 
 from tests.architecture.source import files, tree
 
 from recon.station.api_views.audit_service import KINDS_OF
-from recon.station.state.imager_motion import ImagerRelief, MoveUpwind, SideStep
+from recon.station.state.imager_motion import AnyMotion
 
+RULES = tuple(kind.rule for kind in get_args(AnyMotion))
 FROM_NAMES = {
     "{what}": ("authority", "preflight"),
-    "{motion.rule}": (SideStep.rule, MoveUpwind.rule, ImagerRelief.rule),
-    "{kind.rule}": (SideStep.rule, ImagerRelief.rule),
+    "{motion.rule}": RULES,
+    "{kind.rule}": RULES,
 }
 """What begins a kind that a function is given, by the expression."""
 

@@ -15,7 +15,7 @@ from tests.station.station_world import square_mission
 from recon.model.command import FlyMission, Hover, LandNow, Phase, ReturnHome
 from recon.model.control import AuthorityHolder
 from recon.model.event import AuthorityTaken, OperatorOrder, SeparationHoldSwitched
-from recon.station.api_views.operation_views import fleet_return_view
+from recon.station.api_views.operation_views import operation_fields
 from recon.station.state.fleet_return_record import Stage
 
 FIELD = [(-60, 150, 30), (0, 160, 38), (60, 150, 30), (-80, 220, 34), (0, 240, 30), (80, 220, 34)]
@@ -389,7 +389,7 @@ class TestCalling:
         world.call(*SIX)
         world.runs(20.0)
         driver = world.world.driver
-        shown = fleet_return_view(driver.station, driver.now_ns)
+        shown = operation_fields(driver.station, driver.now_ns)["fleet_return"]
         assert shown is not None
         assert not shown.is_over
         assert [v.wave for v in shown.vehicles] == [1, 1, 1, 2, 2, 2]

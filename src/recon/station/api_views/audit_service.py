@@ -1,11 +1,12 @@
 """The audit as the API's messages: its entries after a number, and the timeline's lines."""
 
 from pathlib import Path
-from typing import Protocol
+from typing import Protocol, get_args
 
 from recon.api import schema
 from recon.api.schema.orders import TimelineSubject
 from recon.record.audit.audit import NumberedEntry, harmless
+from recon.station.state.imager_motion import AnyMotion
 
 KINDS_OF: dict[TimelineSubject, tuple[str, ...]] = {
     "orders": ("order.", "all_stop.", "authority.", "lease.", "sticks."),
@@ -14,9 +15,7 @@ KINDS_OF: dict[TimelineSubject, tuple[str, ...]] = {
     "operations": (
         "survey.",
         "fleet_return.",
-        "side_step.",
-        "move_upwind.",
-        "imager_relief.",
+        *(f"{kind.rule}." for kind in get_args(AnyMotion)),
         "temporary_zone.",
         "site.",
     ),

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 from functools import lru_cache
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 
@@ -169,7 +169,28 @@ def _lon_lat(frame: LocalFrame, places_m: Iterable[EastNorth]) -> list[tuple[flo
     ]
 
 
-def fleet_return_view(station: Station, now_ns: int) -> schema.FleetReturnView | None:
+class OperationFields(TypedDict):
+    """The fields of the state that show operations: the newest one of each kind."""
+
+    fleet_return: schema.FleetReturnView | None
+    side_step: schema.SideStepView | None
+    move_upwind: schema.MoveUpwindView | None
+    imager_relief: schema.ImagerReliefView | None
+    surveys: list[schema.SurveyView]
+
+
+def operation_fields(station: Station, now_ns: int) -> OperationFields:
+    """Return what the state shows of operations."""
+    return OperationFields(
+        fleet_return=_fleet_return(station, now_ns),
+        side_step=_side_step(station, now_ns),
+        move_upwind=_move_upwind(station, now_ns),
+        imager_relief=_imager_relief(station, now_ns),
+        surveys=survey_views(station, now_ns),
+    )
+
+
+def _fleet_return(station: Station, now_ns: int) -> schema.FleetReturnView | None:
     """Return the newest fleet return; None before the first."""
     running = station.fleet_return
     if running is None:
@@ -182,7 +203,7 @@ def fleet_return_view(station: Station, now_ns: int) -> schema.FleetReturnView |
     )
 
 
-def side_step_view(station: Station, now_ns: int) -> schema.SideStepView | None:
+def _side_step(station: Station, now_ns: int) -> schema.SideStepView | None:
     """Return the newest side-step; None before the first."""
     newest = station.imager_motions.of(SideStep)
     if newest is None:
@@ -190,7 +211,7 @@ def side_step_view(station: Station, now_ns: int) -> schema.SideStepView | None:
     return schema.SideStepView(**_motion(newest, now_ns), bearing_deg=newest.bearing_deg)
 
 
-def move_upwind_view(station: Station, now_ns: int) -> schema.MoveUpwindView | None:
+def _move_upwind(station: Station, now_ns: int) -> schema.MoveUpwindView | None:
     """Return the newest move upwind; None before the first."""
     newest = station.imager_motions.of(MoveUpwind)
     if newest is None:
@@ -199,7 +220,7 @@ def move_upwind_view(station: Station, now_ns: int) -> schema.MoveUpwindView | N
     return schema.MoveUpwindView(**_motion(newest, now_ns), place=place)
 
 
-def imager_relief_view(station: Station, now_ns: int) -> schema.ImagerReliefView | None:
+def _imager_relief(station: Station, now_ns: int) -> schema.ImagerReliefView | None:
     """Return the newest relief of an imaging drone; None before the first."""
     newest = station.imager_motions.of(ImagerRelief)
     if newest is None:

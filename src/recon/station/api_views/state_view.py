@@ -14,13 +14,7 @@ from recon.model.imagery import Frame
 from recon.model.units import Stamped, ns_to_seconds
 from recon.model.vehicle import AltitudeReference, VehicleState
 from recon.station.api_views.imaging_views import ground_image_view, shade_view
-from recon.station.api_views.operation_views import (
-    fleet_return_view,
-    imager_relief_view,
-    move_upwind_view,
-    side_step_view,
-    survey_views,
-)
+from recon.station.api_views.operation_views import operation_fields
 from recon.station.api_views.vehicle_views import (
     authority_view,
     doubt_views,
@@ -69,13 +63,9 @@ def state_view(station: Station, around: DriverState, now_ns: int) -> schema.Sta
         stop_latch=_stop_latch(station.stop_latch, now_ns),
         temporary_zones=zone_views(station, now_ns),
         ground_image=ground_image_view(station, now_ns),
-        fleet_return=fleet_return_view(station, now_ns),
-        side_step=side_step_view(station, now_ns),
-        move_upwind=move_upwind_view(station, now_ns),
-        imager_relief=imager_relief_view(station, now_ns),
         shade=shade_view(station, now_ns),
-        surveys=survey_views(station, now_ns),
         replay=around.replay,
+        **operation_fields(station, now_ns),
     )
 
 
