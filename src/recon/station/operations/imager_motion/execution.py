@@ -55,7 +55,9 @@ def after_automatic_begin(
 def not_refused(station: Station, kind: type[AnyMotion]) -> Station:
     """Return the station without a refusal of a kind's automatic start."""
     motions = station.imager_motions.not_refused(kind)
-    return replace(station, imager_motions=motions)
+    return (
+        station if motions is station.imager_motions else replace(station, imager_motions=motions)
+    )
 
 
 def tried(

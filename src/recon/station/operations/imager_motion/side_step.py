@@ -125,8 +125,9 @@ def conditions(station: Station) -> Iterator[Condition]:
         text = f"waits beside its place, its way back is refused: {newest.reason}"
         yield notices.about(station, newest, Severity.WARNING, "waits", text)
     yield from notices.off_its_place(station, newest, "Send it back to where it shows the field")
-    text = "light is unknown, and the imaging drone cannot side-step"
-    yield from notices.cannot_begin(station, SideStep, meant(station) or "", text)
+    if station.imager_motions.start(SideStep).refused is not None:
+        text = "light is unknown, and the imaging drone cannot side-step"
+        yield from notices.cannot_begin(station, SideStep, meant(station) or "", text)
 
 
 def _refused(station: Station, event: Event, now_ns: int) -> AuditEntry | None:
