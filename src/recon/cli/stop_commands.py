@@ -26,7 +26,14 @@ from recon.cli.connection import (
 from recon.cli.guard_stop import STATION_ANSWERS_WITHIN_S, guard_port_of, stop_all_at_guard
 from recon.cli.options import with_options
 from recon.cli.output import Outcome, await_outcomes, print_line, print_outcomes
-from recon.client import ClientError, FleetCommands, OrderStatus, Station, StopAnswer, VehicleAnswer
+from recon.client import (
+    ClientError,
+    FleetCommands,
+    OrderStatus,
+    ResultMessage,
+    Station,
+    VehicleAnswer,
+)
 from recon.client.errors import MaybeSentError, StationUnreachableError
 
 CONFIRMATION_TIMEOUT_S = 15.0
@@ -171,12 +178,12 @@ async def _all_stop(station: Station, wait_s: float, within_s: float | None) -> 
         await station.close()
 
 
-def _are_over(answers: Sequence[StopAnswer], lives: dict[int, OrderStatus]) -> bool:
+def _are_over(answers: Sequence[ResultMessage], lives: dict[int, OrderStatus]) -> bool:
     accepted = [answer.command_id for answer in answers if answer.accepted]
     return all(number in lives and lives[number].phase.is_final for number in accepted)
 
 
-def _stopped(answer: StopAnswer, life: OrderStatus | None, wait_s: float) -> Outcome:
+def _stopped(answer: ResultMessage, life: OrderStatus | None, wait_s: float) -> Outcome:
     is_on_ground = answer.rule == ON_GROUND_RULE
     vehicle = (answer.serial, answer.link_id, answer.vehicle_name)
     if not answer.accepted:

@@ -193,24 +193,6 @@ class AuditLogPage(msgspec.Struct, frozen=True):
     problem: str | None
 
 
-class StopAnswer(msgspec.Struct, frozen=True):
-    """The result of an all stop for one vehicle, or for one link without a serial number."""
-
-    serial: str | None
-    link_id: int | None
-    vehicle_name: str
-    accepted: bool
-    command_id: int
-    rule: str | None
-    reason: str | None
-
-
-class StopMessage(msgspec.Struct, frozen=True):
-    """One answer per vehicle and link."""
-
-    results: tuple[StopAnswer, ...]
-
-
 class PreflightPoint(msgspec.Struct, frozen=True):
     """One item of the checklist; `state` is ok, attention, unknown or fails."""
 

@@ -12,12 +12,12 @@ from recon.client.messages import (
     ImagerReliefStatus,
     LinkStatus,
     MoveUpwindStatus,
+    OrderMessage,
     OrderStatus,
+    ResultMessage,
     SideStepStatus,
     StateMessage,
-    StopAnswer,
     StopLatchStatus,
-    StopMessage,
     VehicleReturn,
 )
 from recon.client.order import OrderApi, VehicleAnswer
@@ -218,14 +218,14 @@ class Station:
         answer = await self._http.post(path, request, AnswerMessage, "an answer about an app")
         return answer.refusal
 
-    async def all_stop_at_once(self) -> tuple[StopAnswer, ...]:
+    async def all_stop_at_once(self) -> tuple[ResultMessage, ...]:
         """Hold all flying vehicles with a single request.
 
         Needs no stream and so no `async with`, and works while the station accepts no further
         readers. Results appear in `commands`; call `close` afterwards.
         """
         message = await self._http.post(
-            "/api/all-stop", None, StopMessage, "results of an all stop"
+            "/api/all-stop", None, OrderMessage, "results of an all stop"
         )
         return message.results
 
