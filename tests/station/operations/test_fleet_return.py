@@ -55,6 +55,7 @@ def flown() -> ReturningWorld:
     return world
 
 
+@pytest.mark.flight
 class TestSixInTwoWaves:
     def test_all_land_on_their_pads(self, flown: ReturningWorld) -> None:
         assert set(flown.stages().values()) == {Stage.LANDED}
@@ -114,6 +115,7 @@ class TestSixInTwoWaves:
         assert flown.alarms() == set()
 
 
+@pytest.mark.flight
 def test_the_control_all_returning_at_one_height_come_too_near() -> None:
     """Why there are layers: the same fleet and pads, the return of the ICD, equal heights.
 
@@ -166,6 +168,7 @@ class TestInterruptions:
         assert {("fleet_return", serial) for serial in left} <= world.alarms()
         assert world.nearest.level_m >= LEAST_LEVEL_M, world.nearest.who
 
+    @pytest.mark.flight
     def test_a_vehicle_with_a_newer_order_is_released(self) -> None:
         world = four_in_the_air()
         world.call(*FOUR)
@@ -179,6 +182,7 @@ class TestInterruptions:
         assert "replaced by land, ordered by test" in member.reason
         assert set(stages.values()) == {Stage.LANDED}
 
+    @pytest.mark.flight
     def test_by_the_order_of_a_person_whose_name_begins_as_the_station_does(self) -> None:
         world = returning_world([(0, 100, 30), (60, 100, 40)], [(0, -20), (0, -20)])
         world.call("SIM-1", "SIM-2")
@@ -200,6 +204,7 @@ class TestInterruptions:
         assert set(world.stages().values()) == {Stage.RELEASED}
         assert all(world.flies(serial) for serial in FOUR)
 
+    @pytest.mark.flight
     def test_one_whose_link_breaks_while_it_waits_is_not_resumed(self) -> None:
         world = four_in_the_air(faults=("restart:SIM-4:20:5",))
         world.call(*FOUR)
@@ -212,6 +217,7 @@ class TestInterruptions:
         assert set(stages.values()) == {Stage.LANDED}
         assert world.nearest.level_m >= LEAST_LEVEL_M, world.nearest.who
 
+    @pytest.mark.flight
     def test_a_short_loss_of_telemetry_in_flight_changes_nothing(self) -> None:
         world = four_in_the_air(faults=("telemetry-dropout:SIM-2:20:4",))
         world.call(*FOUR)
@@ -221,6 +227,7 @@ class TestInterruptions:
         assert set(world.stages().values()) == {Stage.LANDED}
         assert world.nearest.level_m >= LEAST_LEVEL_M, world.nearest.who
 
+    @pytest.mark.flight
     def test_one_whose_app_ignores_its_mission_is_an_alarm_and_the_others_go_on(self) -> None:
         world = four_in_the_air(faults=("ack-then-nothing:SIM-4:8:900",))
         world.call(*FOUR)
@@ -233,6 +240,7 @@ class TestInterruptions:
         holds = [r for r in newest if "was ignored" in r.command.issued_by]
         assert [(r.command.serial, r.command.body) for r in holds] == [("SIM-4", Hover())]
 
+    @pytest.mark.flight
     def test_one_whose_link_breaks_in_flight_lands_without_further_orders(self) -> None:
         world = four_in_the_air(faults=("restart:SIM-1:20:5",))
         world.call(*FOUR)
@@ -245,6 +253,7 @@ class TestInterruptions:
         book = world.world.driver.station.orders.records.values()
         assert [r.command.id for r in book if r.command.serial == "SIM-1"][-1] == given
 
+    @pytest.mark.flight
     def test_one_left_out_stays_an_alarm_when_others_are_called(self) -> None:
         pads = [(0, -20), (0, -20), (60, -20)]
         world = returning_world(FIELD[:3], pads, faults=("restart:SIM-1:10:2",))
@@ -260,6 +269,7 @@ class TestInterruptions:
         assert world.runs_until_over(300.0)
         assert landed_on_its_pad(world, "SIM-1")
 
+    @pytest.mark.flight
     def test_the_hold_takes_a_vehicle_from_guidance(self) -> None:
         world = returning_world([(0, 100, 30)], [(0, 0)])
         world.world.driver.handle(AuthorityTaken("SIM-1", AuthorityHolder.GUIDANCE, "guidance"))
@@ -267,12 +277,14 @@ class TestInterruptions:
         assert world.runs_until_over(300.0)
         assert landed_on_its_pad(world, "SIM-1")
 
+    @pytest.mark.flight
     def test_one_whose_app_refuses_is_reported_with_that(self) -> None:
         world = four_in_the_air(faults=("negative-ack:SIM-4:8:900",))
         world.call(*FOUR)
         assert world.runs_until_over(900.0)
         assert "refused by app" in world.member("SIM-4").reason
 
+    @pytest.mark.flight
     def test_the_alarm_of_one_left_out_ends_with_a_new_order(self) -> None:
         world = four_in_the_air(faults=("negative-ack:SIM-4:8:60",))
         world.call(*FOUR)
@@ -282,6 +294,7 @@ class TestInterruptions:
         world.runs(2.0)
         assert ("fleet_return", "SIM-4") not in world.alarms()
 
+    @pytest.mark.flight
     def test_a_vehicle_that_comes_to_hover_in_the_way_is_flown_around(self) -> None:
         world = four_in_the_air()
         world.call(*FOUR)
@@ -295,6 +308,7 @@ class TestInterruptions:
         assert set(world.stages().values()) == {Stage.LANDED}
         assert world.nearest.level_m >= LEAST_LEVEL_M, world.nearest.who
 
+    @pytest.mark.flight
     def test_a_vehicle_hovering_over_its_pad_leaves_it_out(self) -> None:
         world = four_in_the_air()
         world.call(*FOUR)
@@ -308,6 +322,7 @@ class TestInterruptions:
         assert set(stages.values()) == {Stage.LANDED}
 
 
+@pytest.mark.flight
 class TestOnePad:
     def test_one_at_a_time_with_time_to_carry_each_away(self) -> None:
         world = returning_world(FIELD[:3], [(0, -20)] * 3)

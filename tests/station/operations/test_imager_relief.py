@@ -119,6 +119,7 @@ def flown() -> tuple[RelievedWorld, list[tuple[str, str | None]], dict[str, str]
     return world, entries, on_the_way
 
 
+@pytest.mark.flight
 class TestFlown:
     Flown = tuple[RelievedWorld, list[tuple[str, str | None]], dict[str, str]]
 
@@ -197,6 +198,7 @@ def test_light_is_stated_to_end_where_a_survey_goes_on_or_the_end_is_near(
 class TestWithoutRelief:
     """The baseline: the same survey, and a survey that allows the way home alone."""
 
+    @pytest.mark.flight
     def test_light_becomes_unknown_and_stays_so_and_the_view_states_both(self) -> None:
         world = surveying(None, allowed=False, first=0.39)
         world.runs(62.0)
@@ -222,6 +224,7 @@ class TestWithoutRelief:
         assert (absent.serial, absent.is_on_ground) == (FIRST, True)
         assert absent.gone_age_s > 45.0
 
+    @pytest.mark.flight
     def test_it_is_called_home_when_it_must_leave_and_sent_back_with_a_fresh_battery(self) -> None:
         world = surveying(None, first=0.36)
         assert world.runs_until(lambda: bool(world.alarms()), 60.0)
@@ -272,6 +275,7 @@ class TestForeseen:
         assert outlook.return_due_ns is None
         assert "endurance unknown" in outlook.unknown
 
+    @pytest.mark.flight
     def test_what_the_survey_needs_comes_true_and_a_battery_that_outlasts_it_stays(self) -> None:
         world = surveying(first=0.97, planner="lawnmower_once", region=field(100.0, 60.0))
         world.runs(75.0)
@@ -320,6 +324,7 @@ class TestNotByItself:
         assert world.station.imager_motions.of(ImagerRelief) is None
         assert "Relieve it" in leaves_texts(world)[0]
 
+    @pytest.mark.flight
     def test_where_the_gate_refuses_every_layer(self) -> None:
         world = surveying(zones=(WALL,), spare_pad_m=(-60.0, -20.0), first=SHORT)
         world.runs(2.0)
@@ -331,6 +336,7 @@ class TestNotByItself:
         assert not world.surveyed.fleet.flies(SPARE)
         assert world.surveyed.record().spare_may_take_off  # nothing has used it
 
+    @pytest.mark.flight
     def test_one_left_out_of_the_fleet_return_is_called_again_after_a_minute(self) -> None:
         world = surveying(None, first=AT_ONCE)
         assert world.runs_until(lambda: bool(world.surveyed.fleet.stages()), 10.0)
@@ -348,6 +354,7 @@ class TestNotByItself:
         world.runs(2.0)
         assert holds(world) == 2
 
+    @pytest.mark.flight
     def test_one_that_its_pilot_flies_is_not_called_home_and_an_alarm_states_why(self) -> None:
         world = surveying(None)
         taken = AuthorityTaken(FIRST, AuthorityHolder.PILOT, "bob")
@@ -394,11 +401,13 @@ class TestEndedBefore:
         self.stays(world, "its connection was interrupted")
         assert "Fix the cause and relieve again" in world.alarms()["imager_relief:stopped"]
 
+    @pytest.mark.flight
     def test_by_telemetry_that_is_lost_for_longer(self) -> None:
         world = ordered(faults=("telemetry-dropout:CAM-2:26:6",))
         world.runs(10.0)
         self.stays(world, "no telemetry for 3 s")
 
+    @pytest.mark.flight
     def test_by_its_pilot(self) -> None:
         world = ordered()
         world.app(SPARE).aircraft.pilot_takes()
@@ -416,6 +425,7 @@ class TestEndedBefore:
         assert again is not None
         assert "held by an all stop" in again.reason
 
+    @pytest.mark.flight
     def test_by_control_taken(self) -> None:
         world = ordered()
         taken = AuthorityTaken(SPARE, AuthorityHolder.OPERATOR, "ann", "ann")
@@ -424,6 +434,7 @@ class TestEndedBefore:
         assert world.newest().stage is MotionStage.STOPPED
         assert "taken over by ann" in world.newest().reason
 
+    @pytest.mark.flight
     def test_without_maps_and_ordered_again_it_goes_on_from_the_place(self) -> None:
         world = ordered()
         world.blind_cameras = {SPARE}
@@ -438,6 +449,7 @@ class TestEndedBefore:
         assert world.newest().stage is MotionStage.DONE
         assert world.surveyed.fleet.stages()[FIRST] is Stage.STOPPING
 
+    @pytest.mark.flight
     def test_by_maps_of_other_ground(self) -> None:
         world = ordered()
         world.charges(SPARE, 0.9)
@@ -450,6 +462,7 @@ class TestEndedBefore:
         self.stays(world, "no 3 shade maps in a row within 150 s of its arrival: its shade map")
 
 
+@pytest.mark.flight
 def test_a_relief_by_itself_that_a_person_stops_does_not_begin_again() -> None:
     world = surveying(first=LOW)
     assert world.runs_until(lambda: world.station.imager_motions.of(ImagerRelief) is not None, 60.0)
@@ -464,6 +477,7 @@ def test_a_relief_by_itself_that_a_person_stops_does_not_begin_again() -> None:
     assert world.newest() is stopped
 
 
+@pytest.mark.flight
 def test_a_first_one_that_cannot_be_called_home_in_the_end_is_an_alarm() -> None:
     world = ordered()
     assert world.runs_until(lambda: world.newest().stage is MotionStage.MAPS, 60.0)
@@ -477,6 +491,7 @@ def test_a_first_one_that_cannot_be_called_home_in_the_end_is_an_alarm() -> None
     )
 
 
+@pytest.mark.flight
 def test_a_first_one_that_must_leave_at_once_is_called_home_and_the_relief_follows() -> None:
     """A survey drone crosses above the spare: the relief is refused for the first seconds."""
     world = surveying(first=0.29)

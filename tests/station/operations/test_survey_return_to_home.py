@@ -60,6 +60,7 @@ def done() -> SurveyedWorld:
     return world
 
 
+@pytest.mark.flight
 class TestDone:
     def test_all_stand_on_their_pads_and_are_the_operators(self, done: SurveyedWorld) -> None:
         assert set(done.fleet.stages().values()) == {Stage.LANDED}
@@ -103,6 +104,7 @@ class TestOnTheWayHome:
         assert all(world.fleet.flies(serial) for serial in ("SIM-1", "SIM-2"))
         assert {world.holder("SIM-1"), world.holder("SIM-2")} == {AuthorityHolder.OPERATOR}
 
+    @pytest.mark.flight
     def test_an_abort_holds_them_though_the_survey_is_done(self) -> None:
         world = going_home()
         world.runs(8.0)
@@ -114,6 +116,7 @@ class TestOnTheWayHome:
         world.runs(60.0)
         assert all(world.fleet.flies(serial) for serial in ("SIM-1", "SIM-2"))
 
+    @pytest.mark.flight
     def test_a_hold_takes_one_out_and_the_other_flies_home(self) -> None:
         world = going_home()
         world.runs(3.0)
@@ -123,6 +126,7 @@ class TestOnTheWayHome:
         assert world.fleet.member("SIM-1").stage is Stage.RELEASED
         assert world.holder("SIM-1") is AuthorityHolder.OPERATOR
 
+    @pytest.mark.flight
     def test_a_vehicle_under_pilot_control_is_left_to_the_pilot(self) -> None:
         world = going_home()
         world.driver.handle(AuthorityTaken("SIM-1", AuthorityHolder.PILOT, "the pilot"))
@@ -132,6 +136,7 @@ class TestOnTheWayHome:
         assert len(world.missions("SIM-1")) == before
         assert world.holder("SIM-1") is AuthorityHolder.PILOT
 
+    @pytest.mark.flight
     def test_another_survey_cannot_have_them_before_they_are_home(self) -> None:
         world = going_home()
         world.asks(asked(id=2, name="other"))
@@ -145,6 +150,7 @@ class TestOnTheWayHome:
 
 
 class TestWithoutBattery:
+    @pytest.mark.flight
     def test_low_battery_home_full_battery_joined_done_home(self) -> None:
         """The whole line of a long survey with one battery too few."""
         world = surveyed_world(endurance_s=1_500.0)
@@ -172,6 +178,7 @@ class TestWithoutBattery:
         assert runs_until_home(world, ("SIM-1",), 300.0)
         assert world.holder("SIM-1") is AuthorityHolder.OPERATOR
 
+    @pytest.mark.flight
     def test_one_comes_home_while_the_other_flies_on(self) -> None:
         world = surveyed_world(2, endurance_s=1_500.0)
         world.asks(asked(field(360.0, 120.0)))
@@ -201,6 +208,7 @@ class TestWithoutBattery:
         world.runs(2.0)
         assert ("survey_takeoff", "SIM-1") not in world.fleet.alarms()
 
+    @pytest.mark.flight
     def test_a_hovering_vehicle_with_that_setting_waits(self) -> None:
         world = surveyed_world(endurance_s=1_500.0)
         world.asks(asked(LONG_FIELD, when_done=WhenDone.HOVER))
@@ -210,6 +218,7 @@ class TestWithoutBattery:
         assert world.fleet.flies("SIM-1")
         assert world.fleet.stages() == {}
 
+    @pytest.mark.flight
     def test_a_survey_paused_by_hand_holds_the_one_on_its_way_too(self) -> None:
         world = surveyed_world(endurance_s=1_500.0)
         world.asks(asked(LONG_FIELD))
@@ -227,6 +236,7 @@ class TestWithoutBattery:
         assert world.fleet.flies("SIM-1")
 
 
+@pytest.mark.flight
 def test_a_budget_that_ends_brings_them_home_too() -> None:
     world = surveyed_world()
     world.asks(asked(budget=SurveyBudget(time_s=20.0)))
