@@ -3,9 +3,9 @@
     python -m studies.real_footage --frames 120 --auto-exposure
 
 RECON_DATA names the folder of the real frames. They are relit with drawn clouds
-(`tests/real_footage`), so the truth is known. Frames are laid on the ground by their true poses, or
-with --telemetry by the pose that telemetry gives. Prints for each place and method the figures of
-docs/score.md over the ground that the lens shows, from 30 s on.
+(`tests/real_footage`), so the truth is known. Frames are projected on the ground by their true
+poses, or with --telemetry by the pose that telemetry gives. Prints for each place and method the
+figures of docs/score.md over the ground that the lens shows, from 30 s on.
 """
 
 import argparse
@@ -82,7 +82,9 @@ def main() -> None:
     parser.add_argument("--cols", type=int, default=640, help="columns of the frames")
     parser.add_argument("--methods", nargs="+", default=list(DETECTORS), choices=list(DETECTORS))
     parser.add_argument("--auto-exposure", action="store_true")
-    parser.add_argument("--telemetry", action="store_true", help="lay frames by telemetry's pose")
+    parser.add_argument(
+        "--telemetry", action="store_true", help="project frames by telemetry's pose"
+    )
     options = parser.parse_args()
     folder = Path(os.environ["RECON_DATA"]) / "fisheye"
     print(HEAD, flush=True)

@@ -4,8 +4,8 @@
     python -m studies.shade --scenario cumulus-40 --exposure locked --pose telemetry
     python -m studies.shade --scenario cumulus-20 --earlier 10    what an earlier flight is worth
 
-Frames are rendered at a small size, laid on the ground with the true pose (or telemetry's), and
-kept in a temporary folder for the next call. Unknown cells count as wrong in the IoU. A method
+Frames are rendered at a small size, projected on the ground with the true pose (or telemetry's),
+and kept in a temporary folder for the next call. Unknown cells count as wrong in the IoU. A method
 named like `brightness_ratio:600` remembers so many seconds. What is lost by cause is the difference
 between two calls: true pose or telemetry's, exposure locked or automatic, all minutes or `--after`,
 and `--ceiling`: each map read at the transmittance that divides it best, as with the true level of
@@ -317,7 +317,7 @@ def _rendered(flight: Flight, grid: GroundGrid) -> Iterator[Moment]:
         at_s = flight.every_s * number
         view = CameraView(at_s, number, reported)
         pose = renderer.true_pose(view) if flight.pose == "true" else reported
-        rgb, valid = projector.lay_pixels(renderer.render(view), pose)
+        rgb, valid = projector.project_pixels(renderer.render(view), pose)
         image = GroundImage(
             grid, number, seconds_to_ns(at_s), rgb, valid, pose, serial=SERIAL,
             toward_sun_enu=renderer.sky.sun_at(at_s).toward_enu,

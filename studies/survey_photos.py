@@ -95,7 +95,7 @@ def fly(
 ) -> SurveyFlown:
     """Fly a scenario's survey to its end or for so long, and record it into a folder.
 
-    `is_exact` replaces the maps of ideal detection, which are laid by telemetry, by true ones.
+    `is_exact` replaces the maps of ideal detection, which are projected by telemetry, by true ones.
     """
     run = StationRun(scenario, seed)
     sky = sky_of(scenario, seed)

@@ -82,13 +82,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Score `recon tag` on simulated flights.")
     parser.add_argument("--first-seed", type=int, default=1000)
     parser.add_argument("--exact", type=int, default=4, help="Flights with true shade maps.")
-    parser.add_argument("--ideal", type=int, default=2, help="True maps, laid by telemetry.")
+    parser.add_argument("--ideal", type=int, default=2, help="True maps, projected by telemetry.")
     parser.add_argument("--real", type=int, default=5, help="Flights with detected shade.")
     parser.add_argument("--minutes", type=float, default=8.0, help="Longest flight.")
     options = parser.parse_args()
     for name, method, count in (
         (EXACT, "ideal", options.exact),
-        ("ideal maps, laid by telemetry", "ideal", options.ideal),
+        ("ideal maps, projected by telemetry", "ideal", options.ideal),
         (f"detection by {REAL}", REAL, options.real),
     ):
         if count:

@@ -45,7 +45,7 @@ def maps_of_every_cell(
     return pixels[..., 0], pixels[..., 1]
 
 
-def test_a_frame_of_a_hovering_imager_is_laid_in_under_5_ms_on_one_core(
+def test_a_frame_of_a_hovering_imager_is_projected_in_under_5_ms_on_one_core(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     cv2.setNumThreads(1)
@@ -65,27 +65,27 @@ def test_a_frame_of_a_hovering_imager_is_laid_in_under_5_ms_on_one_core(
     projector = GroundProjector(grid, camera, site.imager.image_circle)
     fixed_maps = ground_maps(grid, camera, poses[0])
 
-    def lay(turn: int) -> object:
-        return projector.lay_pixels(rgb, poses[turn])
+    def project(turn: int) -> object:
+        return projector.project_pixels(rgb, poses[turn])
 
     def remap_only(_: int) -> object:
         return cv2.remap(rgb, *fixed_maps, cv2.INTER_LINEAR)
 
-    def lay_every_cell(turn: int) -> object:
+    def project_every_cell(turn: int) -> object:
         return cv2.remap(rgb, *maps_of_every_cell(grid, camera, poses[turn]), cv2.INTER_LINEAR)
 
-    lay(0)
-    lay_every_cell(0)
-    laid, bare, naive = times_ms(lay, remap_only, lay_every_cell)
+    project(0)
+    project_every_cell(0)
+    projected, bare, naive = times_ms(project, remap_only, project_every_cell)
     with capsys.disabled():
         print(
             f"\nground image {grid.rows}x{grid.cols} from 1280x720, maps and mask included: "
-            f"{np.median(laid):.2f} ms a frame (best {laid.min():.2f}); "
-            f"{np.median(laid) / np.median(bare):.1f}x a bare cv2.remap "
+            f"{np.median(projected):.2f} ms a frame (best {projected.min():.2f}); "
+            f"{np.median(projected) / np.median(bare):.1f}x a bare cv2.remap "
             f"({np.median(bare):.2f} ms), "
-            f"{np.median(naive) / np.median(laid):.1f}x as fast as projecting every cell "
+            f"{np.median(naive) / np.median(projected):.1f}x as fast as projecting every cell "
             f"({np.median(naive):.1f} ms)",
             flush=True,
         )
-    assert laid.min() < MOST_MS_PER_FRAME
-    assert np.median(laid) < np.median(naive) / 4.0
+    assert projected.min() < MOST_MS_PER_FRAME
+    assert np.median(projected) < np.median(naive) / 4.0

@@ -38,7 +38,7 @@ def test_fleet_return(count: int, pads: int) -> None:
     one_by_one_s = sum(fly(one, {}, KEPT, LEAST, SETTINGS, seed=5).lasted_s for one in alone)
     print(
         f"\n{count} vehicles, {pads} pads, {len(plan.layers_up_m)} layers, {len(plan.waves)} "
-        f"waves, {len(plan.left_out)} left out: plan {plan_s * 1e3:.0f} ms, look "
+        f"waves, {len(plan.excluded)} excluded: plan {plan_s * 1e3:.0f} ms, look "
         f"{look_s * 1e3:.1f} ms; all down after {down_s:.0f} s, one by one {one_by_one_s:.0f} s"
     )
     assert plan_s < PLAN_BUDGET_S

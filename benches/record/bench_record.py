@@ -4,7 +4,7 @@
 
 The station of `recon demo` with its simulated drones over TCP, a survey under broken cloud and raw
 1280x720 frames at up to 2 fps, recorded into a temporary folder. The first seconds, in which
-drones take off, are left out. Told are the size by topic, the processor time of the
+drones take off, are excluded. Told are the size by topic, the processor time of the
 process that writes as a share of one core, and that of the event loop for handing steps and bytes
 over.
 """

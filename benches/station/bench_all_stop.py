@@ -5,10 +5,9 @@
 
 A station as `recon run` starts it, with its audit, its log and, if asked for, its record, in a
 process of its own; apps at 10 Hz core and 2 Hz extended telemetry in another, some with raw
-1280x720 images at 5 fps that the station's worker lays on the ground; and a reader of the stream
-of states, as a console; and, if asked for, readers of a base map.
-Again and again one HTTP request orders an all stop. From just before the request is written, these
-are measured:
+1280x720 images at 5 fps that the station's worker projects on the ground; and a reader of the
+stream of states, as a console; and, if asked for, readers of a base map. Again and again one HTTP
+request orders an all stop. From just before the request is written, these are measured:
 
     on the wires   until the station has handed each packet to its socket, as its audit says
     read           until the last app has read its packet, as the apps' process says

@@ -3,7 +3,7 @@
     python -m benches.station.bench_stick_jitter [--apps 8] [--seconds 20] [--shared]
 
 Every vehicle is steered by a goto: each stick is worked out from telemetry, approved by the gate
-and sent, ten a second. Beside it the worker lays frames of 1280 x 720 on the ground without a
+and sent, ten a second. Beside it the worker projects frames of 1280 x 720 on the ground without a
 pause. Jitter is how far the time between two sticks of one vehicle, as its app reads them, is from
 100 ms. The baseline is the same run with the worker idle; ends with 1 when p99 is 20 ms or more.
 
@@ -35,11 +35,11 @@ from recon.model.geo import GeoPoint, LatLon, LocalFrame
 from recon.model.imagery import Frame
 from recon.model.vehicle import AltitudeReference, Failsafe, VehicleProfile
 from recon.site import Site, demo_site_folder, load_site
-from recon.station.imaging.frames import LAY_FRAME
+from recon.station.imaging.frames import PROJECT_FRAME
 from recon.station.kernel.build import first_state
 from recon.station.kernel.driver import AsyncioDriver, freeze_loaded_objects, station_clock
 from recon.station.kernel.worker import JobRunner, ThreadWorker
-from recon.station.state.imaging import LayFrame
+from recon.station.state.imaging import ProjectFrame
 from recon.station.state.steps import Job, JobDropped
 
 LIMIT_MS = 20.0
@@ -47,17 +47,18 @@ SETTLING_S = 2.0
 """Until every app has connected and told where it is; the orders go then."""
 
 FIRST_STICKS = 5
-"""Left out: the first gap brings a stream into its slot of the period."""
+"""Excluded: the first gap brings a stream into its slot of the period."""
 
 
 @dataclass(frozen=True, slots=True)
 class Jitter:
-    """One run: how far each gap between sticks is from 100 ms, and the frames laid beside it."""
+    """One run: how far each gap between sticks is from 100 ms, and the frames projected beside
+    it."""
 
     off_ms: list[float]
     sticks: int
     expected: int
-    frames_laid: int
+    frames_projected: int
     waited_share: float
     """Time the station's thread was ready to run but had no core, per time that it ran."""
 
@@ -70,7 +71,7 @@ class Jitter:
         return (
             f"{name}: p50 {self.at(50):.2f} ms, p99 {self.at(99):.2f} ms, "
             f"most {self.at(100):.2f} ms off 100 ms; "
-            f"{self.sticks} sticks of some {self.expected}, {self.frames_laid} frames laid; "
+            f"{self.sticks} sticks of some {self.expected}, {self.frames_projected} frames; "
             f"the station waited {100 * self.waited_share:.0f} % as long for a core as it ran"
         )
 
@@ -81,8 +82,8 @@ async def measure(apps: int, seconds: float, *, is_worker_busy: bool) -> Jitter:
     driver.links = links = LinkServer(driver.handle, driver.now_ns, LinkSettings())
     await links.start("127.0.0.1", 0)
     ticking = asyncio.create_task(driver.run())
-    laid = [0]
-    worker = _busy_worker(laid) if is_worker_busy else None
+    projected = [0]
+    worker = _busy_worker(projected) if is_worker_busy else None
     freeze_loaded_objects()
     scheduled_ns = ran_and_waited_ns()
     options = ("--flight", "north", "--apps", apps, "--seconds", seconds)
@@ -100,7 +101,11 @@ async def measure(apps: int, seconds: float, *, is_worker_busy: bool) -> Jitter:
     sticks = sum(map(len, arrived_s))
     expected = round(10 * (seconds - SETTLING_S)) * apps
     return Jitter(
-        [1e3 * abs(gap_s - 0.1) for gap_s in gaps_s], sticks, expected, laid[0], waited_ns / ran_ns
+        [1e3 * abs(gap_s - 0.1) for gap_s in gaps_s],
+        sticks,
+        expected,
+        projected[0],
+        waited_ns / ran_ns,
     )
 
 
@@ -132,8 +137,8 @@ def _order_goto(driver: AsyncioDriver, number: int) -> None:
         raise RuntimeError(f"expected an order that is flown, got {record.note}")
 
 
-def _busy_worker(laid: list[int]) -> ThreadWorker:
-    """Return a worker that lays one frame after another, and counts them."""
+def _busy_worker(projected: list[int]) -> ThreadWorker:
+    """Return a worker that projects one frame after another, and counts them."""
     site = load_site(demo_site_folder())
     assert site.imager is not None
     camera = site.imager.camera
@@ -141,11 +146,11 @@ def _busy_worker(laid: list[int]) -> ThreadWorker:
     pixels = rng.integers(0, 256, (camera.rows, camera.cols, 3), dtype=np.uint8)
     frame = Frame(1, site.imager.serial, 0, 0, 0.0, rgb=pixels)
     at = TelemetryReference(*place_deg(0.0, 0.0).values(), 120.0, 10.0)
-    work = Job(1, LAY_FRAME, LayFrame(frame, at, at))
+    work = Job(1, PROJECT_FRAME, ProjectFrame(frame, at, at))
 
     def again(event: Event) -> None:
         if not isinstance(event, JobDropped):
-            laid[0] += 1
+            projected[0] += 1
             worker.submit(work)
 
     deliver: Callable[[Event], None] = again
@@ -177,7 +182,7 @@ def main() -> int:
     print(idle.told("worker idle"))
     busy = uvloop.run(measure(asked.apps, asked.seconds, is_worker_busy=True))
     print(busy.told("worker busy"))
-    is_good = busy.at(99) < LIMIT_MS and busy.frames_laid > 0
+    is_good = busy.at(99) < LIMIT_MS and busy.frames_projected > 0
     is_good = is_good and busy.sticks > 0.95 * busy.expected
     print("good" if is_good else f"FAILED: p99 under {LIMIT_MS:g} ms, no stick lost")
     return 0 if is_good else 1

@@ -34,6 +34,6 @@ station
 A hold that arrived late is a fault when within the last second the vehicle was without telemetry at
 the station for 1 s, or without a living downlink, or obeyed nothing; else the station's.
 
-What this leaves out: the simulator's ground is the plane of a vehicle's first takeoff, so on a
+What this excludes: the simulator's ground is the plane of a vehicle's first takeoff, so on a
 slope heights of a vehicle that came down elsewhere count as wrong (fault) from then on.
 """

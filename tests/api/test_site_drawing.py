@@ -318,7 +318,7 @@ def test_an_import_is_only_shown(editor: Editor) -> None:
     path = "/api/site/import?name=west.geojson"
     answer = editor.client.post(path, content=data).json()
     (found,) = answer["features"]
-    assert (found["name"], answer["left_out"], answer["reason"]) == ("west", 0, None)
+    assert (found["name"], answer["excluded"], answer["reason"]) == ("west", 0, None)
     assert np.allclose(found["geometry"]["coordinates"], [ring(0.001)], atol=1e-8)
     refused = editor.client.post("/api/site/import?name=a.zip", content=b"PK\x03\x04").json()
     assert "zip archive that can be read" in refused["reason"]

@@ -76,15 +76,15 @@ def displacements_m(
     points = np.stack([east[is_near], north[is_near], np.zeros(is_near.sum())], axis=1)
     points[:, :2] += true.position_enu_m[:2]
     shown, expected = (
-        _content(points, laid, taken)
-        for laid, taken in ((estimated, true), (reference, true_reference))
+        _content(points, projected, taken)
+        for projected, taken in ((estimated, true), (reference, true_reference))
     )
     return np.hypot(*(shown - expected)[:, :2].T)
 
 
-def _content(points_m: np.ndarray, laid: CameraPose, taken: CameraPose) -> np.ndarray:
+def _content(points_m: np.ndarray, projected: CameraPose, taken: CameraPose) -> np.ndarray:
     """Which place truly is shown at each point of a ground image, (N, 3)."""
-    rays = (points_m - laid.position_enu_m) @ laid.rotation_enu_camera
+    rays = (points_m - projected.position_enu_m) @ projected.rotation_enu_camera
     rays = rays @ taken.rotation_enu_camera.T
     return taken.position_enu_m - rays * (taken.position_enu_m[2] / rays[:, 2:])
 

@@ -106,14 +106,14 @@ def frame_of_painted_ground(camera: OmnidirectionalCamera, pose: CameraPose) -> 
 @pytest.mark.parametrize(("rows", "cols"), [(720, 1280), (1440, 2560), (540, 960)])
 def test_the_ground_gets_its_own_colours_back(rows: int, cols: int) -> None:
     frame = frame_of_painted_ground(DEMO.scaled_to(rows, cols), POSE)
-    laid, valid = GroundProjector(GRID, DEMO).lay_pixels(frame, POSE)
+    projected, valid = GroundProjector(GRID, DEMO).project_pixels(frame, POSE)
     centres = cell_centres(GRID)
     expected = painted_ground(centres[..., 0], centres[..., 1])
     near = np.hypot(centres[..., 0] - 8.0, centres[..., 1] + 12.0) < 200.0
     assert valid[near].all()
     # One pixel sees up to 3 m of ground out there, over which the pattern changes by some levels.
-    assert np.abs(laid.astype(float) - expected)[near].mean() < 1.5
-    assert np.abs(laid.astype(float) - expected)[near].max() < 20.0
+    assert np.abs(projected.astype(float) - expected)[near].mean() < 1.5
+    assert np.abs(projected.astype(float) - expected)[near].max() < 20.0
 
 
 def frame_of(rgb: np.ndarray | None = None, jpeg: bytes | None = None) -> Frame:
@@ -122,7 +122,7 @@ def frame_of(rgb: np.ndarray | None = None, jpeg: bytes | None = None) -> Frame:
 
 def test_the_ground_image_has_pose_and_time() -> None:
     rgb = np.full((720, 1280, 3), 90, np.uint8)
-    image = GroundProjector(GRID, DEMO).lay(frame_of(rgb), POSE)
+    image = GroundProjector(GRID, DEMO).project(frame_of(rgb), POSE)
     assert (image.frame_id, image.serial, image.captured_at_ns) == (41, "IMAGER", 1_000)
     assert image.registration is Registration.UNREGISTERED
     assert image.rgb.shape == (512, 512, 3)
@@ -131,24 +131,24 @@ def test_the_ground_image_has_pose_and_time() -> None:
     assert image.grid is GRID
 
 
-def test_a_jpeg_frame_is_laid_like_its_pixels() -> None:
+def test_a_jpeg_frame_is_projected_like_its_pixels() -> None:
     _, data = cv2.imencode(".jpg", frame_of_painted_ground(DEMO, POSE)[..., ::-1])
     projector = GroundProjector(GRID, DEMO)
-    image = projector.lay(frame_of(jpeg=data.tobytes()), POSE)
-    rgb, _ = projector.lay_pixels(decode_jpeg(data.tobytes()), POSE)
+    image = projector.project(frame_of(jpeg=data.tobytes()), POSE)
+    rgb, _ = projector.project_pixels(decode_jpeg(data.tobytes()), POSE)
     assert np.array_equal(image.rgb, rgb)
 
 
 def test_cells_outside_the_image_circle_are_invalid_and_black() -> None:
     circle = ImageCircle(DEMO.centre_col_px, DEMO.centre_row_px, 200.0)
     white = np.full((720, 1280, 3), 255, np.uint8)
-    laid, valid = GroundProjector(GRID, DEMO, circle).lay_pixels(white, POSE)
+    projected, valid = GroundProjector(GRID, DEMO, circle).project_pixels(white, POSE)
     pixels = seen_pixels(DEMO, POSE, cell_centres(GRID).reshape(-1, 3))
     radius = np.hypot(*(pixels - (DEMO.centre_col_px, DEMO.centre_row_px)).T).reshape(512, 512)
     assert valid[radius < 198.5].all()
     assert not valid[radius > 201.5].any()
-    assert (laid[valid] == 255).all()
-    assert (laid[~valid] == 0).all()
+    assert (projected[valid] == 255).all()
+    assert (projected[~valid] == 0).all()
     assert 0.1 < valid.mean() < 0.9
 
 
@@ -159,7 +159,7 @@ def test_what_the_lens_cannot_see_is_invalid_however_it_is_turned(
     pose = tilted_pose(0.0, 0.0, 60.0, turn_deg)
     wide = GroundGrid(FRAME, -2_000.0, 2_000.0, 20.0, 200, 200)
     white = np.full((720, 1280, 3), 255, np.uint8)
-    _, valid = GroundProjector(wide, DEMO).lay_pixels(white, pose)
+    _, valid = GroundProjector(wide, DEMO).project_pixels(white, pose)
     rays = (cell_centres(wide).reshape(-1, 3) - pose.position_enu_m) @ pose.rotation_enu_camera
     angle_deg = np.rad2deg(np.arctan2(np.hypot(rays[:, 0], rays[:, 1]), rays[:, 2]))
     col, row = DEMO.project_beyond_range(rays).T
@@ -180,19 +180,19 @@ def test_the_circle_is_searched_until_a_frame_shows_it() -> None:
     lit = np.where(is_lit[..., np.newaxis], np.uint8(200), np.uint8(3)).repeat(3, axis=2)
     dark = np.zeros_like(lit)
     projector = GroundProjector(GRID, DEMO)
-    unmasked = projector.lay_pixels(dark, POSE)[1].mean()
-    masked = projector.lay_pixels(lit, POSE)[1].mean()
-    again = projector.lay_pixels(dark, POSE)[1].mean()
+    unmasked = projector.project_pixels(dark, POSE)[1].mean()
+    masked = projector.project_pixels(lit, POSE)[1].mean()
+    again = projector.project_pixels(dark, POSE)[1].mean()
     assert masked < unmasked
     assert again == masked
 
 
 def test_a_ground_image_is_not_changed_by_the_next_one() -> None:
     projector = GroundProjector(GRID, DEMO)
-    first_rgb, first_valid = projector.lay_pixels(frame_of_painted_ground(DEMO, POSE), POSE)
+    first_rgb, first_valid = projector.project_pixels(frame_of_painted_ground(DEMO, POSE), POSE)
     kept_rgb, kept_valid = first_rgb.copy(), first_valid.copy()
     other = tilted_pose(60.0, 40.0, 80.0, (0.0, 10.0, -70.0))
-    projector.lay_pixels(np.full((720, 1280, 3), 77, np.uint8), other)
+    projector.project_pixels(np.full((720, 1280, 3), 77, np.uint8), other)
     assert np.array_equal(first_rgb, kept_rgb)
     assert np.array_equal(first_valid, kept_valid)
 
@@ -207,12 +207,12 @@ def test_the_mask_leaves_out_the_frames_edge() -> None:
 
 def test_a_frame_of_another_aspect_ratio_is_refused() -> None:
     with pytest.raises(FrameSizeError, match="aspect ratio, got 640 x 480"):
-        GroundProjector(GRID, DEMO).lay(frame_of(np.zeros((480, 640, 3), np.uint8)), POSE)
+        GroundProjector(GRID, DEMO).project(frame_of(np.zeros((480, 640, 3), np.uint8)), POSE)
 
 
 def test_an_unreadable_frame_is_refused() -> None:
     with pytest.raises(FrameDecodeError, match="JPEG: expected a file"):
-        GroundProjector(GRID, DEMO).lay(frame_of(jpeg=b"no picture"), POSE)
+        GroundProjector(GRID, DEMO).project(frame_of(jpeg=b"no picture"), POSE)
 
 
 @pytest.mark.parametrize("up_m", [0.5, 0.0, -40.0, float("nan"), float("inf")])
@@ -236,8 +236,8 @@ def test_a_real_frames_control_points_project_onto_their_marks(fisheye_data: Pat
         middle = (round(point.col_px * 16), round(point.row_px * 16))
         cv2.circle(rgb, middle, 3 * 16, (255, 255, 255), -1, cv2.LINE_AA, shift=4)
         everywhere = ImageCircle(camera.centre_col_px, camera.centre_row_px, 360.0)
-        laid, _ = GroundProjector(grid, camera, everywhere).lay_pixels(rgb, solution.pose)
-        row, col = np.argwhere(laid[..., 0] > 127).mean(axis=0)
+        projected, _ = GroundProjector(grid, camera, everywhere).project_pixels(rgb, solution.pose)
+        row, col = np.argwhere(projected[..., 0] > 127).mean(axis=0)
         east_m = grid.west_m + (col + 0.5) * grid.cell_m
         north_m = grid.north_m - (row + 0.5) * grid.cell_m
         place = enu_from_geo(

@@ -53,7 +53,7 @@ def test_with_the_station_halted_a_person_stops_all_at_its_guard(tmp_path: Path)
         with halted(station.station.pid):
             answer = stop_all(url, "ann")
         assert sorted(answer["held"]) == ["Drone 1", "Drone 2"]
-        assert answer["missed"] == []
+        assert answer["refused"] == []
         station.until(hold)
         assert any("The guard held" in text and "ann" in text for text in alarm_texts(station))
         station.station.line_with('by="ann (guard')  # it is latched here, too
@@ -66,7 +66,7 @@ def test_after_the_stations_death_all_can_be_stopped_and_the_next_one_knows(tmp_
         station.station.send(signal.SIGKILL)
         station.station.wait()
         answer = stop_all(url, "bea")
-        assert sorted(answer["held"] + answer["missed"]) == ["Drone 1", "Drone 2"]
+        assert sorted(answer["held"] + answer["refused"]) == ["Drone 1", "Drone 2"]
         with started(*run_options(tmp_path, station.link_port, guard=True)) as successor:
             successor.line_with('by="bea (guard')
             next_url, _ = addresses(successor)
@@ -123,7 +123,7 @@ def stop_url_of_ready_guard(station: StationProcess) -> str:
     url = station.station.line_with(STOP_LINE).removeprefix(STOP_LINE)
     for _ in range(round(10 * PATIENCE_S)):
         answer = stop_all(url, "tester")
-        if sorted(answer["held"] + answer["missed"]) == ["Drone 1", "Drone 2"]:
+        if sorted(answer["held"] + answer["refused"]) == ["Drone 1", "Drone 2"]:
             return url
         station.until(lambda vehicles: len(vehicles) == 2)
     raise AssertionError(f"the guard never knew both vehicles; last: {answer}")

@@ -35,7 +35,7 @@ def test_tables_go_to_stdout_and_a_stopped_command_goes_on_where_it_was(tmp_path
     assert "seed 8" in both.stderr
     assert "ideal, forecast advection, planner lawnmower_again; 2 seeds" in both.stdout
     assert "| time to 95 % in sun, min |" in both.stdout
-    assert "| shade IoU | 0.9" in both.stdout  # ideal pixels, laid by telemetry
+    assert "| shade IoU | 0.9" in both.stdout  # ideal pixels, projected by telemetry
     assert "| unknown, % | 0.0 |" in both.stdout
     assert "| Brier, not seen |" in both.stdout
     assert "| time to shade, within the horizon |" in both.stdout

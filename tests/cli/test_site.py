@@ -73,7 +73,7 @@ def test_an_import_is_added_or_replaces(folder: Path, tmp_path: Path) -> None:
     second = layer_file(tmp_path / "b.geojson", "west")
     into = ("--as", "survey_regions")
     text = recon_site("import", str(folder), str(first), *into)
-    assert text == "2 imported into survey_regions, 0 left out\n"
+    assert text == "2 imported into survey_regions, 0 excluded\n"
     recon_site("import", str(folder), str(second), *into)
     assert list(load_site(folder).layers.survey_regions) == ["north", "south", "west"]
     recon_site("import", str(folder), str(second), *into, "--replace")

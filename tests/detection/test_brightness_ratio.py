@@ -99,15 +99,15 @@ class TestWhatIsNotKnown:
 
 
 class TestOneGridForAll:
-    def test_frames_laid_where_the_imager_drifts_to_give_maps_that_line_up(self) -> None:
+    def test_frames_projected_where_the_imager_drifts_to_give_maps_that_line_up(self) -> None:
         watch = Watch(9_102, lasts_s=90.0)
         land, shade = Land(watch.seed), watch.shade()
         drift_m = np.random.default_rng(5).uniform(-30.0, 30.0, (100, 2))
         images = []
         for i, at_s in enumerate(np.arange(0.0, 90.0, 2.5)):
             west_m, north_m = -256.0 + drift_m[i, 0], 256.0 + drift_m[i, 1]
-            laid = GroundGrid(GRID.frame, west_m, north_m, 2.0, 256, 256)
-            images.append(Imager(grid=laid).see(land, shade, at_s))
+            projected = GroundGrid(GRID.frame, west_m, north_m, 2.0, 256, 256)
+            images.append(Imager(grid=projected).see(land, shade, at_s))
         fixed = shade_of(watch.images(), METHOD, DetectionSettings(grid=FIELD))
         moved = shade_of(images, METHOD, DetectionSettings(grid=FIELD))
         assert {m.grid for m in (*fixed, *moved)} == {FIELD}

@@ -17,7 +17,7 @@ POSE = CameraPose(LOOKS_DOWN, np.array([3.0, -5.0, HEIGHT_M]))
 SETTINGS = DetectionSettings()
 
 
-def laid(seed: int, grid: GroundGrid) -> GroundImage:
+def projected(seed: int, grid: GroundGrid) -> GroundImage:
     """Random levels, a random third of them not seen."""
     rng = np.random.default_rng(seed)
     rgb = rng.integers(0, 256, (grid.rows, grid.cols, 3), dtype=np.uint8)
@@ -37,7 +37,7 @@ def laid(seed: int, grid: GroundGrid) -> GroundImage:
 def test_a_cell_is_the_mean_of_the_pixels_it_holds(
     seed: int, per_cell: int, right: int, down: int, rows: int, cols: int
 ) -> None:
-    image = laid(seed, GroundGrid(FRAME, -10.0, 30.0, 0.5, 24, 32))
+    image = projected(seed, GroundGrid(FRAME, -10.0, 30.0, 0.5, 24, 32))
     cell_m = 0.5 * per_cell
     field = GroundGrid(FRAME, -10.0 + 0.5 * right, 30.0 - 0.5 * down, cell_m, rows, cols)
     found = cell_light(image, field, SETTINGS)

@@ -78,7 +78,7 @@ def locked_reference(reference: SunlitReference) -> SunlitReference:
 
 def note_of(state: DetectionState) -> str:
     assert state.sunlit is not None
-    return state.sunlit.taken_up.note
+    return state.sunlit.adopted.note
 
 
 class TestTheNextFlight:

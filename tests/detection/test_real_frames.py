@@ -1,4 +1,4 @@
-"""Detection on real fisheye frames, laid on the ground with their own poses.
+"""Detection on real fisheye frames, projected on the ground with their own poses.
 
 There is one frame of each field, so time is simulated: the frame is repositioned with the hover
 wander, its sensor noise and exposure are drawn, and a shadow of known shape darkens its pixels.
@@ -33,7 +33,7 @@ DIFFUSE_SHARES = np.array([0.21, 0.36, 0.50])
 WANDER_M = 0.5
 
 
-def laid(folder: Path, name: str) -> GroundImage:
+def projected(folder: Path, name: str) -> GroundImage:
     """The field's frame on 512 m of ground around its camera."""
     camera = load_camera(folder / "camera-model.txt")
     points = load_control_points(folder / name / "GCPs.txt")
@@ -44,7 +44,7 @@ def laid(folder: Path, name: str) -> GroundImage:
     east_m, north_m, _ = (float(metres) for metres in pose.position_enu_m)
     grid = GroundGrid(frame, east_m - 256.0, north_m + 256.0, 1.0, 512, 512)
     rgb = decode_jpeg((folder / name / "RefFrame.jpeg").read_bytes())
-    found, valid = GroundProjector(grid, camera).lay_pixels(rgb, pose)
+    found, valid = GroundProjector(grid, camera).project_pixels(rgb, pose)
     return GroundImage(grid, 1, 0, found, valid, pose, serial="IMAGER")
 
 
@@ -72,7 +72,7 @@ def under(image: GroundImage, shade: DriftingShade, i: int, seed: int) -> Ground
 
 @pytest.mark.parametrize("name", family(*FIELDS))
 def test_drawn_shadows_are_found_on_real_ground(fisheye_data: Path, name: str) -> None:
-    image = laid(fisheye_data, name)
+    image = projected(fisheye_data, name)
     settings = DetectionSettings(grid=replace(image.grid, cell_m=4.0, rows=128, cols=128))
     # Near enough that a cell has pixels of its own: 8 pixels of the marked frame across.
     east_m, north_m = centres(FIELD)
@@ -101,7 +101,7 @@ def test_drawn_shadows_are_found_on_real_ground(fisheye_data: Path, name: str) -
 def test_a_real_frame_by_itself_gives_a_sound_map_but_no_shade_by_history(
     fisheye_data: Path, name: str
 ) -> None:
-    image = laid(fisheye_data, name)
+    image = projected(fisheye_data, name)
     _, by_otsu = DETECTORS["otsu"](DetectionState(), image, DetectionSettings())
     _, by_ratio = DETECTORS["brightness_ratio"](DetectionState(), image, DetectionSettings())
     assert isinstance(by_otsu, ShadeMap)

@@ -68,7 +68,7 @@ def test_a_real_frame_comes_over_the_wire_and_lies_on_its_field(
 
     assert site.ground_grid is not None
     projector = GroundProjector(site.ground_grid, site.imager.camera, site.imager.image_circle)
-    expected, valid = projector.lay_pixels(sent, site.imager.marked_pose)
+    expected, valid = projector.project_pixels(sent, site.imager.marked_pose)
     assert np.mean(valid == image.valid) > 0.97
     assert np.hypot(*_shift_m(image.rgb, expected, site.ground_grid.cell_m)) < 1.5
 

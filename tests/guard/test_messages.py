@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from recon.guard import messages
 from recon.guard.messages import Lines, LinkPicture
-from recon.guard.watch import Act
+from recon.guard.watch import Intervention
 from recon.model.units import NS_PER_S
 
 NOW_NS = 50 * NS_PER_S
@@ -44,18 +44,18 @@ def test_a_picture_arrives_as_it_was_sent(pictures: list[LinkPicture]) -> None:
 
 @given(
     st.builds(
-        Act,
+        Intervention,
         why=TEXTS,
         serials=st.lists(TEXTS, max_size=3).map(tuple),
         names=st.lists(TEXTS, max_size=3).map(tuple),
-        missed=st.lists(TEXTS, max_size=3).map(tuple),
+        refused=st.lists(TEXTS, max_size=3).map(tuple),
         by=TEXTS | st.none(),
     )
 )
-def test_an_act_arrives_as_it_was_sent(act: Act) -> None:
-    (message,) = Lines().feed(messages.act_line(act))
-    assert message["is"] == messages.ACT
-    assert messages.act_of(message) == act
+def test_an_act_arrives_as_it_was_sent(intervention: Intervention) -> None:
+    (message,) = Lines().feed(messages.intervention_line(intervention))
+    assert message["is"] == messages.INTERVENED
+    assert messages.intervention_of(message) == intervention
 
 
 @given(st.lists(st.integers(1, 9), min_size=1, max_size=6), st.data())

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from recon.guard.stop_port import MOST_BYTES, UNNAMED, StopPort
-from recon.guard.watch import Act
+from recon.guard.watch import Intervention
 
 CONSOLE = "http://127.0.0.1:8080"
 
@@ -22,13 +22,13 @@ class FakeGuard:
         self.has_yielded = False
         self.is_orphan = is_orphan
 
-    def stop_all(self, by: str) -> Act:
+    def stop_all(self, by: str) -> Intervention:
         self.stopped_by.append(by)
-        return Act("all stop at the guard", ("A",), ("Drone 1",), by=by)
+        return Intervention("all stop at the guard", ("A",), ("Drone 1",), by=by)
 
-    def yield_to_next(self) -> tuple[Act, ...]:
+    def yield_to_next(self) -> tuple[Intervention, ...]:
         self.has_yielded = True
-        return (Act("the station has ended", ("A",), ("Drone 1",)),)
+        return (Intervention("the station has ended", ("A",), ("Drone 1",)),)
 
 
 class FakeTransport(asyncio.Transport):
@@ -132,7 +132,7 @@ def test_an_orphan_gives_way_and_tells_what_it_did() -> None:
     guard = FakeGuard(is_orphan=True)
     status, said = answer(spoken(guard, request("/give-way")))
     assert status == 200
-    assert said["acts"][0]["why"] == "the station has ended"
+    assert said["interventions"][0]["why"] == "the station has ended"
     assert guard.has_yielded
 
 

@@ -5,9 +5,9 @@ from dataclasses import replace
 from tests.fleet.reports import core, jittered
 
 from recon.guard.watch import (
-    Act,
     CoreRead,
     GuardState,
+    Intervention,
     LinkGone,
     Picture,
     StationEnded,
@@ -98,7 +98,7 @@ class Guard:
 def test_while_pictures_come_nothing_is_sent() -> None:
     guard = Guard(watched(1, steered=True), watched(2)).beats(60.0)
     assert guard.sent == []
-    assert guard.state.acts == ()
+    assert guard.state.interventions == ()
 
 
 def test_a_silent_stations_steered_vehicles_are_held_and_no_others() -> None:
@@ -108,7 +108,7 @@ def test_a_silent_stations_steered_vehicles_are_held_and_no_others() -> None:
     guard.silent(0.15)
     assert [link_id for _, link_id in guard.sent] == [1, 3]
     why = "the station was silent for 1 s"
-    assert guard.state.acts == (Act(why, ("V-1", "V-3"), ("Drone 1", "Drone 3")),)
+    assert guard.state.interventions == (Intervention(why, ("V-1", "V-3"), ("Drone 1", "Drone 3")),)
 
 
 def test_it_is_repeated_until_pictures_grow_too_old_for_the_gate() -> None:
@@ -131,7 +131,7 @@ def test_with_telemetry_of_its_own_each_link_gets_its_repeats_and_no_more() -> N
 def test_a_station_that_ends_after_its_silence_is_acted_upon_once() -> None:
     guard = Guard(watched(1, steered=True)).silent(1.1).happens(StationEnded())
     assert len(guard.sent) == 1
-    assert len(guard.state.acts) == 1
+    assert len(guard.state.interventions) == 1
 
 
 def test_high_above_the_ground_nothing_goes_out_without_fresh_telemetry() -> None:
@@ -141,7 +141,7 @@ def test_high_above_the_ground_nothing_goes_out_without_fresh_telemetry() -> Non
     guard = Guard(replace(high, vehicle=vehicle)).silent(0.5).happens(StationEnded())
     guard.silent(4.0).happens(AllStopped("ann"))
     assert guard.sent == []
-    assert guard.state.acts[-1].missed == ("Drone 1",)
+    assert guard.state.interventions[-1].refused == ("Drone 1",)
 
 
 def test_one_false_report_of_the_ground_does_not_hide_a_flying_vehicle() -> None:
@@ -157,14 +157,14 @@ def test_a_station_that_speaks_again_ends_the_repeats_and_is_noted_once() -> Non
     assert len(guard.sent) == 1
     guard.beats(5.0)
     assert len(guard.sent) == 1
-    assert len(guard.state.acts) == 1
-    assert noted(guard.state).acts == ()
+    assert len(guard.state.interventions) == 1
+    assert noted(guard.state).interventions == ()
     guard.silent(1.1)
     assert len(guard.sent) == 2
 
 
 def test_a_station_that_never_spoke_is_not_missed() -> None:
-    assert Guard().silent(30.0).state.acts == ()
+    assert Guard().silent(30.0).state.interventions == ()
 
 
 def test_a_vehicle_on_the_ground_is_not_held() -> None:
@@ -175,7 +175,7 @@ def test_a_vehicle_on_the_ground_is_not_held() -> None:
 def test_when_the_station_has_ended_steered_vehicles_are_held_at_once() -> None:
     guard = Guard(watched(1, steered=True), watched(2)).happens(StationEnded())
     assert guard.sent == [(0.0, 1)]
-    assert guard.state.acts[0].why == "the station has ended"
+    assert guard.state.interventions[0].why == "the station has ended"
 
 
 def test_after_its_end_own_telemetry_keeps_an_all_stop_possible() -> None:
@@ -184,8 +184,8 @@ def test_after_its_end_own_telemetry_keeps_an_all_stop_possible() -> None:
         guard.silent(0.1).happens(CoreRead(1, jittered(core(height_m=20.0), number)))
     guard.happens(AllStopped("ann"))
     assert guard.links_sent() == {1}  # nothing is known of the other for half a minute
-    act = guard.state.acts[-1]
-    assert (act.names, act.missed) == (("Drone 1",), ("Drone 2",))
+    intervention = guard.state.interventions[-1]
+    assert (intervention.names, intervention.refused) == (("Drone 1",), ("Drone 2",))
 
 
 def test_telemetry_of_an_unknown_link_changes_nothing() -> None:
@@ -198,8 +198,8 @@ def test_a_persons_all_stop_holds_everything_that_may_fly() -> None:
     guard = Guard(watched(1), watched(2, flying=False), watched(3, steered=True), watched(4))
     guard.happens(AllStopped("ann"))
     assert guard.links_sent() == {1, 3, 4}
-    act = guard.state.acts[-1]
-    assert act == Act(
+    intervention = guard.state.interventions[-1]
+    assert intervention == Intervention(
         "all stop at the guard",
         ("V-1", "V-3", "V-4"),
         ("Drone 1", "Drone 3", "Drone 4"),
@@ -210,7 +210,7 @@ def test_a_persons_all_stop_holds_everything_that_may_fly() -> None:
 def test_what_may_fly_is_named_but_no_takeoff_is_risked() -> None:
     guard = Guard(watched(1, flying=None)).happens(AllStopped("ann"))
     assert guard.sent == []
-    assert guard.state.acts[-1].missed == ("Drone 1",)
+    assert guard.state.interventions[-1].refused == ("Drone 1",)
 
 
 def test_a_link_that_has_gone_is_sent_nothing() -> None:
@@ -228,5 +228,5 @@ def test_what_was_done_is_bounded() -> None:
     guard = Guard(watched(1))
     for number in range(100):
         guard.happens(AllStopped(f"person {number}"))
-    assert len(guard.state.acts) == guard.state.settings.acts_kept
-    assert guard.state.acts[-1].by == "person 99"
+    assert len(guard.state.interventions) == guard.state.settings.interventions_kept
+    assert guard.state.interventions[-1].by == "person 99"

@@ -121,7 +121,7 @@ class Loop:
         return max(along) - length_m
 
     def hardest_demand_mps2(self) -> float:
-        """The largest change of the demanded velocity, zeros of a stop left out."""
+        """The largest change of the demanded velocity, zeros of a stop excluded."""
         return max(
             hypot(
                 b.velocity_north_mps - a.velocity_north_mps,

@@ -99,9 +99,9 @@ def test_plans_of_drawn_scenes(scene: Scene) -> None:
 def check_every_vehicle_is_planned_or_left_out_with_a_reason(
     scene: Scene, plan: ReturnPlan
 ) -> None:
-    named = [f.serial for f in plan.flights] + [left.serial for left in plan.left_out]
+    named = [f.serial for f in plan.flights] + [left.serial for left in plan.excluded]
     assert sorted(named) == sorted(v.serial for v in scene.vehicles)
-    assert all(len(left.reason) > 20 for left in plan.left_out)
+    assert all(len(left.reason) > 20 for left in plan.excluded)
 
 
 def check_layers_are_10_m_apart_between_ground_zones_and_ceiling(
@@ -139,7 +139,7 @@ def check_no_flight_enters_a_keep_out_zone_or_leaves_the_site(
 def check_the_lowest_battery_goes_first_then_the_nearest(scene: Scene, plan: ReturnPlan) -> None:
     """Where nothing is in the way, turn and height follow battery and distance alone."""
     batteries = [scene.vehicle(f.name).battery_fraction or 0.0 for f in plan.flights]
-    if scene.airspace.zones or plan.left_out or not _is_spread(scene):
+    if scene.airspace.zones or plan.excluded or not _is_spread(scene):
         return
     tenths = [int(battery * 10.0) for battery in batteries]
     assert tenths == sorted(tenths)
@@ -181,7 +181,7 @@ class TestFlown:
     ) -> None:
         scene = drawn_scene(seed, count, pads, ceiling_m, zone_count)
         plan = scene.plan()
-        others = {left.name: scene.vehicle(left.name).place_m for left in plan.left_out}
+        others = {left.name: scene.vehicle(left.name).place_m for left in plan.excluded}
         flown = fly(plan, others, KEPT, LEAST, SETTINGS, seed)
         landed = {name for name, flier in flown.fliers.items() if flier.is_on_ground}
         assert landed == {flight.name for flight in plan.flights}
@@ -201,11 +201,11 @@ class TestFlown:
         scene = scene_of(hovering_row(2, row_of_pads(2, 40.0)), ceiling_m=50.0)
         lowest_m, second_m, third_m = scene.plan().layers_up_m
 
-        def layers_m(*taken_up_m: float) -> list[float]:
+        def layers_m(*occupied_m: float) -> list[float]:
             plan = plan_return(
-                scene.vehicles, scene.home, KEPT, SETTINGS, (), 2, taken_up_m=taken_up_m
+                scene.vehicles, scene.home, KEPT, SETTINGS, (), 2, occupied_m=occupied_m
             )
-            assert plan.left_out == ()
+            assert plan.excluded == ()
             return [flight.layer_up_m for flight in plan.flights]
 
         assert layers_m() == [lowest_m, second_m]
@@ -278,36 +278,36 @@ class TestWays:
         across = np.array([(-500.0, 90.0), (500.0, 90.0), (500.0, 110.0), (-500.0, 110.0)])
         wall = keep_out("wall", Region(across))
         scene = scene_of([lone(0.0, 200.0)], zones=(wall,), boundary=box(0.0, 100.0, 420.0))
-        (left,) = scene.plan().left_out
+        (left,) = scene.plan().excluded
         assert "no path to its pad" in left.reason
 
     def test_a_pad_in_a_zone_and_a_vehicle_over_one_have_different_reasons(self) -> None:
         zone = keep_out("house", box(0.0, 200.0, 20.0))
-        over = scene_of([lone(0.0, 200.0)], zones=(zone,)).plan().left_out
+        over = scene_of([lone(0.0, 200.0)], zones=(zone,)).plan().excluded
         assert "it is over the keep-out zone house" in over[0].reason
         pad = Pad("p", 0.0, 200.0, 0.0)
         inside = CalledVehicle("A", "A", (0.0, 0.0, 30.0), 0.0, pad, 0.5)
-        (left,) = scene_of([inside], zones=(zone,)).plan().left_out
+        (left,) = scene_of([inside], zones=(zone,)).plan().excluded
         assert "its pad p is in the keep-out zone house" in left.reason
 
     def test_a_pad_outside_the_fence_is_left_out_with_the_reason(self) -> None:
         vehicle = CalledVehicle("A", "A", (0.0, 100.0, 30.0), 0.0, Pad("p", 0.0, -600.0, 0.0), 0.5)
-        (left,) = scene_of([vehicle], boundary=box(0.0, 100.0, 420.0)).plan().left_out
+        (left,) = scene_of([vehicle], boundary=box(0.0, 100.0, 420.0)).plan().excluded
         assert "its pad p is outside the site" in left.reason
 
     def test_a_vehicle_outside_the_fence_is_left_out_with_the_reason(self) -> None:
-        (left,) = scene_of([lone(0.0, 900.0)], boundary=box(0.0, 100.0, 420.0)).plan().left_out
+        (left,) = scene_of([lone(0.0, 900.0)], boundary=box(0.0, 100.0, 420.0)).plan().excluded
         assert left.reason.startswith("it is outside the site")
 
     def test_no_room_under_the_ceiling_is_the_reason(self) -> None:
-        (left,) = scene_of([lone(0.0, 200.0)], ceiling_m=20.0).plan().left_out
+        (left,) = scene_of([lone(0.0, 200.0)], ceiling_m=20.0).plan().excluded
         assert "above the ceiling" in left.reason
 
     def test_two_that_hover_too_near_are_both_left_to_their_pilots(self) -> None:
         near = CalledVehicle("B", "B", (5.0, 200.0, 32.0), 0.0, Pad("q", 60.0, -40.0, 0.0), 0.9)
         plan = scene_of([lone(0.0, 200.0), near]).plan()
-        assert [left.name for left in plan.left_out] == ["A", "B"]
-        assert "B hovers where it would climb, sink or land" in plan.left_out[0].reason
+        assert [left.name for left in plan.excluded] == ["A", "B"]
+        assert "B hovers where it would climb, sink or land" in plan.excluded[0].reason
 
     def test_one_above_the_other_the_lower_goes_first(self) -> None:
         """The upper would have to sink through the lower one, whatever their batteries say."""

@@ -37,7 +37,7 @@ class RunDigest:
 def parts_of(value: object) -> Iterator[bytes]:
     """Yield everything a value is made of, to the last bit of its numbers and pictures.
 
-    What a dataclass leaves out of its `repr` is left out; sets are sorted. Raises TypeError
+    What a dataclass excludes from its `repr` is excluded; sets are sorted. Raises TypeError
     for what it has no rule for: nothing is passed over in silence.
     """
     match value:

@@ -82,13 +82,13 @@ def ordered_hold(aircraft: Aircraft) -> Flight:
 def ordered_stick(
     aircraft: Aircraft, velocity_mps: FloatArray, up_m: float, timeout_s: float
 ) -> Flight:
-    """A velocity (2,) taken up from now on, kept for its time and the reaction's, and braked."""
+    """A velocity (2,) flown from now on, kept for its time and the reaction's, and braked."""
     flight = Flight(aircraft)
     if aircraft.age_s > 0.0:
         flown_m = aircraft.age_s * aircraft.velocity_mps[:2]
         flight.goes(flight.place_m + flown_m, aircraft.age_s, (flight.low_m, flight.high_m))
     flight.widens((up_m, up_m))
-    _take_up(flight, velocity_mps)
+    _reach_velocity(flight, velocity_mps)
     band_m = (flight.low_m, flight.high_m)
     flight.goes(flight.place_m + timeout_s * velocity_mps, timeout_s, band_m)
     flight.brakes(REACTION_S, np.array([*velocity_mps, 0.0]))
@@ -206,7 +206,7 @@ def _go(flight: Flight, target_m: FloatArray, speed_mps: float) -> Flight:
     return flight
 
 
-def _take_up(flight: Flight, velocity_mps: FloatArray) -> None:
+def _reach_velocity(flight: Flight, velocity_mps: FloatArray) -> None:
     """From the present velocity to another with 2.5 m/s2: a parabola; or its chord and bow."""
     before_mps = flight.aircraft.velocity_mps[:2]
     change_mps = velocity_mps - before_mps

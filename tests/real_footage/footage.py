@@ -92,7 +92,7 @@ def ground_images(
     projector = GroundProjector(grid, place.camera, place.circle)
     for made in frames:
         pose = made.true_pose if is_pose_true else made.believed_pose
-        image = projector.lay(made.frame, pose)
+        image = projector.project(made.frame, pose)
         yield (
             replace(
                 image,

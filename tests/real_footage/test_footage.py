@@ -92,7 +92,7 @@ def test_the_drawn_shade_lies_where_the_truth_says(place: Place) -> None:
     grid = place.grid(cell_m=4.0, side_m=320.0)
     settings = replace(STILL, seed=2, cover=0.4, wobble_deg=0.5, drift_m=2.0)
     clear = GroundProjector(grid, place.camera, place.circle)
-    reference, valid = clear.lay_pixels(in_sun(place), place.marked_pose)
+    reference, valid = clear.project_pixels(in_sun(place), place.marked_pose)
     known = valid & (reference.max(axis=2) < UNSATURATED)
     for image, made in ground_images(place, footage(place, settings, 2), grid, is_pose_true=True):
         green = light_of(image.rgb)[..., 1] / light_of(reference)[..., 1]
@@ -105,7 +105,7 @@ def test_the_drawn_shade_lies_where_the_truth_says(place: Place) -> None:
 def test_a_wobbling_frame_fits_the_ground_by_its_true_pose_only(place: Place) -> None:
     grid = place.grid(cell_m=1.0, side_m=256.0)
     projector = GroundProjector(grid, place.camera, place.circle)
-    reference, _ = projector.lay_pixels(in_sun(place), place.marked_pose)
+    reference, _ = projector.project_pixels(in_sun(place), place.marked_pose)
     moved = replace(STILL, seed=5, wobble_deg=1.5, drift_m=4.0)
     differ = [
         [

@@ -42,7 +42,7 @@ def faults(folder: Path) -> Path:
 
 
 def survey(folder: Path) -> Path:
-    """Two vehicles survey a field, are paused, and are called home."""
+    """Two vehicles survey a field, are paused, and are recalled."""
     world = surveyed_world(2)
     with recording(world.driver, Site("reference"), folder) as record:
         world.asks()

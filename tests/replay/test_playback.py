@@ -131,18 +131,18 @@ def test_the_screens_get_the_recorded_states(name: str) -> None:
                 recorded.numbers = service.numbers
                 seek(replay, ns_to_seconds(item.log_ns - replay.started_at_ns))
                 assert replay.now_ns() == item.log_ns
-                left_out = {"station": True, "replay": True}
-                now = service.state().model_dump(exclude=left_out)
-                assert now == recorded.state().model_dump(exclude=left_out)
+                excluded = {"station": True, "replay": True}
+                now = service.state().model_dump(exclude=excluded)
+                assert now == recorded.state().model_dump(exclude=excluded)
                 _compare_pictures(service, recorded)
 
 
 def _compare_pictures(service: ReplayService, recorded: Service) -> None:
     ground = recorded.ground_image()
     if ground is not None:
-        laid = service.ground_image()
-        assert laid is not None
-        assert ground_png(laid) == ground_png(ground)
+        projected = service.ground_image()
+        assert projected is not None
+        assert ground_png(projected) == ground_png(ground)
     line, again = recorded.driver.station.shade, service.driver.station.shade
     shade, replayed = newest_shade(line), newest_shade(again)
     if shade is not None and line.sun is not None:
@@ -265,7 +265,7 @@ def test_the_timeline_goes_up_to_the_moment_and_marks_over_all() -> None:
 
 
 def copied(
-    path: Path, to: Path, left_out: str = "", start: bytes | None = None, later_ns: int = 0
+    path: Path, to: Path, excluded: str = "", start: bytes | None = None, later_ns: int = 0
 ) -> Path:
     """A copy of a record without a topic, with another start, or with later times."""
     file, channels = McapFile(to, "test"), dict[str, int]()
@@ -274,7 +274,7 @@ def copied(
             if not isinstance(item, RecordMessage):
                 data = start if item.name == START_NAME and start is not None else item.data
                 file.add_attachment(item.name, item.media_type, data, 0)
-            elif item.topic != left_out:
+            elif item.topic != excluded:
                 if item.topic not in channels:
                     channels[item.topic] = file.add_channel(item.topic, item.encoding)
                 at_ns = item.log_ns + later_ns

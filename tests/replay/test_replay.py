@@ -127,7 +127,7 @@ def test_differences_are_paths_to_values() -> None:
 
 
 def rewritten(path: Path, folder: Path, change: Any) -> Path:
-    """The record with its items changed, or left out where `change` returns None."""
+    """The record with its items changed, or excluded where `change` returns None."""
     file = McapFile(folder / "changed.mcap", "test")
     channels: dict[str, int] = {}
     for item in items(path):

@@ -95,12 +95,12 @@ class TestPhases:
             hypot(start_mps, sqrt(change)),
         )
         end_mps = min(max(end_share * speed_mps, slowest_mps), fastest_mps)
-        # What is shorter than a millimetre is left out.
-        left_out_mps = sqrt(2.0 * BRAKING * 2.0 * LEAST_M)
-        assert reached[0][0] == pytest.approx(start_mps, abs=left_out_mps)
-        assert reached[-1][1] == pytest.approx(end_mps, abs=left_out_mps)
+        # What is shorter than a millimetre is excluded.
+        excluded_mps = sqrt(2.0 * BRAKING * 2.0 * LEAST_M)
+        assert reached[0][0] == pytest.approx(start_mps, abs=excluded_mps)
+        assert reached[-1][1] == pytest.approx(end_mps, abs=excluded_mps)
         for (_, before_mps), (after_mps, _) in pairwise(reached):
-            assert after_mps == pytest.approx(before_mps, abs=left_out_mps)
+            assert after_mps == pytest.approx(before_mps, abs=excluded_mps)
         for row, (from_mps, to_mps) in zip(rows, reached, strict=True):
             gains_mps2 = (to_mps - from_mps) / (row[END_S] - row[START_S])
             if gains_mps2 == pytest.approx(0.0, abs=1e-6):
@@ -149,7 +149,7 @@ class TestPhases:
         assert (row[LOW_1], row[HIGH_1]) == (50.0, 50.0)
 
     @pytest.mark.parametrize(("braking_mps2", "count"), [(500.0, 2), (500.1, 1)])
-    def test_a_phase_shorter_than_a_millimetre_is_left_out(
+    def test_a_phase_shorter_than_a_millimetre_is_excluded(
         self, braking_mps2: float, count: int
     ) -> None:
         """1 m/s is lost on a millimetre."""

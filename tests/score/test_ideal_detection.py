@@ -1,4 +1,4 @@
-"""The true sky, laid where the station believes that the frame lies."""
+"""The true sky, projected where the station believes that the frame lies."""
 
 from collections import deque
 from dataclasses import replace
@@ -26,7 +26,7 @@ from recon.sim.camera.settings import CameraSettings
 from recon.sim.fleet import IMAGER_SERIAL
 from recon.sim.world import LayerSettings, Sky, SkySettings
 from recon.station.imaging.shade import ReadShade
-from recon.station.state.imaging import LayFrame, SeenShade
+from recon.station.state.imaging import ProjectFrame, SeenShade
 
 SKY = Sky(SkySettings(seed=5, layers=(LayerSettings(cover=0.5, outer_scale_m=1000.0),)))
 METRES_PER_DEGREE = 111_000.0
@@ -51,7 +51,7 @@ def read(
     marked = rig_of(scenario.frame, imager).marked
     pixels = np.zeros((8, 8, 3), dtype=np.uint8)
     frame = Frame(1, IMAGER_SERIAL, at_ns, at_ns, 0.0, rgb=pixels)
-    image = ideal.lay(LayFrame(frame, telemetry, marked)).image
+    image = ideal.project(ProjectFrame(frame, telemetry, marked)).image
     work = ReadShade(
         image, DetectionState(), ForecastState(), DetectionSettings(), ForecastSettings()
     )
@@ -83,7 +83,9 @@ def test_the_sky_is_that_of_the_true_capture(scenario: Scenario) -> None:
 
 
 def test_a_pose_that_telemetry_has_wrong_shifts_the_map(scenario: Scenario) -> None:
-    """Telemetry reports 8 m north of where the camera is: its ground is laid 8 m too far north."""
+    """Telemetry reports 8 m north of where the camera is: its ground is projected 8 m too far
+    north.
+    """
     marked, pose = marked_of(scenario)
     off = replace(marked, latitude_deg=marked.latitude_deg + 8.0 / METRES_PER_DEGREE)
     shade = read(scenario, 60.0, pose, off)

@@ -150,7 +150,7 @@ def test_the_imager_sees_the_ground_up_to_66_degrees() -> None:
     assert site.ground_grid is not None
     projector = GroundProjector(site.ground_grid, site.imager.camera, site.imager.image_circle)
     grey = np.full((720, 1280, 3), 128, np.uint8)
-    _, valid = projector.lay_pixels(grey, site.imager.marked_pose)
+    _, valid = projector.project_pixels(grey, site.imager.marked_pose)
     assert valid.shape == (544, 544)
     from_middle_m = np.hypot(*(np.mgrid[:544, :544] - 271.5))
     # A cell counts when the pixels around its centre are in the circle as well.

@@ -84,7 +84,7 @@ def test_each_format_gives_the_field_with_its_hole_and_name(format_: str, tmp_pa
     # A UTM zone is off by less than a centimetre after the way there and back.
     assert shapely.hausdorff_distance(read, FIELD) < 1e-7
     assert len(rings) == 2
-    assert found.left_out == 0
+    assert found.excluded == 0
 
 
 def test_points_are_kept_and_lines_counted() -> None:
@@ -97,7 +97,7 @@ def test_points_are_kept_and_lines_counted() -> None:
     data = json.dumps({"type": "FeatureCollection", "features": features}).encode()
     found = read_import("mixed.json", data)
     assert [each.geometry["type"] for each in found.features] == ["Point", "Polygon", "Polygon"]
-    assert found.left_out == 1
+    assert found.excluded == 1
 
 
 ENTITIES = KML.replace("<kml", '<!DOCTYPE a [<!ENTITY b "bb"><!ENTITY c "&b;&b;">]><kml', 1)

@@ -46,7 +46,7 @@ def test_a_real_frame_lies_on_the_ground_of_its_site(becker: Path) -> None:
     jpeg = (becker / "RefFrame.jpeg").read_bytes()
     projector = GroundProjector(site.ground_grid, site.imager.camera, site.imager.image_circle)
     frame = Frame(1, "IMAGER", 10, 5, 0.2, jpeg=jpeg)
-    image = projector.lay(frame, site.imager.marked_pose)
+    image = projector.project(frame, site.imager.marked_pose)
     assert image.valid.mean() > 0.75
     points = becker / "GCPs.txt"
     # Point A is where a pale track forks: brighter than the meadow beside it.

@@ -1,4 +1,4 @@
-"""A site with pads, a fleet in the air over its field, and a station that calls it home."""
+"""A site with pads, a fleet in the air over its field, and a station that recalls it."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace

@@ -97,7 +97,7 @@ for (const theme of THEMES) {
     await applyTheme(page, theme);
     await page.keyboard.press("3");
     const panel = page.getByRole("region", { name: "Survey", exact: true });
-    await expect(panel.getByText("called home")).toBeVisible();
+    await expect(panel.getByText("recalled")).toBeVisible();
     await panel.getByText("New survey").click();
     for (const [width, height] of SIZES) {
       await page.setViewportSize({ width, height });

@@ -22,7 +22,7 @@ class ZoomCoverage:
 def coverage(opened: MapFile, area: MapArea) -> tuple[ZoomCoverage, ...]:
     """Return the coverage of each zoom level of a map, the coarsest first.
 
-    Levels with more tiles over the area than are counted are left out.
+    Levels with more tiles over the area than are counted are excluded.
     """
     found = []
     for zoom in range(opened.info.min_zoom, opened.info.max_zoom + 1):

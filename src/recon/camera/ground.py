@@ -160,19 +160,19 @@ class GroundProjector:
         self._scratch = MapScratch()
         self._whole: cv2.typing.MatLike | None = None
         self._fraction: cv2.typing.MatLike | None = None
-        self._laid: cv2.typing.MatLike | None = None
+        self._projected: cv2.typing.MatLike | None = None
 
-    def lay(self, frame: Frame, pose: CameraPose) -> GroundImage:
+    def project(self, frame: Frame, pose: CameraPose) -> GroundImage:
         """Return the frame as a ground image, marked as unregistered.
 
         Raises `FrameDecodeError` for an unreadable frame, `FrameSizeError` for another aspect ratio
         than the camera's, `PoseError` for a camera that is not above the ground.
         """
-        return self.lay_decoded(frame, decode_frame(frame), pose)
+        return self.project_decoded(frame, decode_frame(frame), pose)
 
-    def lay_decoded(self, frame: Frame, pixels: RgbImage, pose: CameraPose) -> GroundImage:
-        """Return `lay` of a frame whose pixels (rows, cols, 3) are decoded already."""
-        rgb, valid = self.lay_pixels(pixels, pose)
+    def project_decoded(self, frame: Frame, pixels: RgbImage, pose: CameraPose) -> GroundImage:
+        """Return `project` of a frame whose pixels (rows, cols, 3) are decoded already."""
+        rgb, valid = self.project_pixels(pixels, pose)
         return GroundImage(
             grid=self.grid,
             frame_id=frame.id,
@@ -185,8 +185,10 @@ class GroundProjector:
             pixels_per_radian=self.camera.pixels_per_radian,
         )
 
-    def lay_pixels(self, rgb: RgbImage, pose: CameraPose) -> tuple[RgbImage, npt.NDArray[np.bool_]]:
-        """Return (R, C, 3) RGB, black where invalid, and (R, C) validity; raises as `lay`."""
+    def project_pixels(
+        self, rgb: RgbImage, pose: CameraPose
+    ) -> tuple[RgbImage, npt.NDArray[np.bool_]]:
+        """Return (R, C, 3) RGB, black where invalid, and (R, C) validity; raises as `project`."""
         source = self._source(rgb)
         maps = ground_maps(self.grid, source.camera, pose, self._scratch)
         # Fixed-point maps (1/32 px) are twice as fast as float maps, conversion included.
@@ -195,9 +197,11 @@ class GroundProjector:
         )
         seen = cv2.remap(source.mask, *maps, cv2.INTER_NEAREST)
         seen[self._is_too_far(pose)] = 0
-        self._laid = cv2.remap(rgb, self._whole, self._fraction, cv2.INTER_LINEAR, dst=self._laid)
+        self._projected = cv2.remap(
+            rgb, self._whole, self._fraction, cv2.INTER_LINEAR, dst=self._projected
+        )
         # remap samples meaningless pixels beyond the lens: blacken them.
-        shown = cv2.bitwise_and(self._laid, self._laid, mask=seen)
+        shown = cv2.bitwise_and(self._projected, self._projected, mask=seen)
         return shown.astype(np.uint8, copy=False), seen > 0
 
     def _is_too_far(self, pose: CameraPose) -> npt.NDArray[np.bool_]:
@@ -237,7 +241,7 @@ class GroundProjector:
 def source_mask(camera: OmnidirectionalCamera, circle: ImageCircle | None) -> MaskArray:
     """Return (rows, cols) uint8: 255 for pixels in the lens's valid range and image circle, else 0.
 
-    The frame's outermost pixels are left out: interpolation there would reach outside.
+    The frame's outermost pixels are excluded: interpolation there would reach outside.
     """
     mask = np.zeros((camera.rows, camera.cols), dtype=np.uint8)
     cols = np.arange(1, camera.cols - 1, dtype=np.float64)

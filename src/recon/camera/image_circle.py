@@ -22,7 +22,7 @@ LEAST_HIT_SHARE = 0.4
 LARGEST_SPREAD_SHARE = 0.02
 """Share of the radius: edges farther than this from one circle are the scene's, not the rim's."""
 RIM_SHARE = 0.02
-"""Outer part of the radius that is left out: it is dark and blurred."""
+"""Outer part of the radius that is excluded: it is dark and blurred."""
 
 
 @dataclass(frozen=True, slots=True)

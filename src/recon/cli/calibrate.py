@@ -99,7 +99,7 @@ def _boards(photos: list[Path], board: Chessboard) -> list[BoardPhoto]:
         else:
             seen.append(BoardPhoto(photo.name, corners))
     for photo in missing:
-        print(f"{printable(str(photo))}: no whole chessboard found, left out", file=sys.stderr)
+        print(f"{printable(str(photo))}: no whole chessboard found, skipped", file=sys.stderr)
     if not seen:
         raise CalibrationError(
             f"expected a chessboard with {board.rows} x {board.cols} inner corners in the photos, "
@@ -124,7 +124,7 @@ def _print_residuals(calibration: LensCalibration) -> None:
             photo.name,
             f"{photo.rms_px:.2f}",
             f"{np.linalg.norm(photo.residuals_px, axis=1).max():.2f}",
-            f"{photo.is_used.sum()} of {len(photo.is_used)}" if photo.is_used.any() else "left out",
+            f"{photo.is_used.sum()} of {len(photo.is_used)}" if photo.is_used.any() else "excluded",
         )
         for photo in calibration.photos
     ]

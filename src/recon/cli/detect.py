@@ -206,7 +206,7 @@ class RecordedFlight:
         self._registration, found = step(
             self._view, self._registration, frame.rgb, self._start.pose, frame.at_s
         )
-        rgb, valid = self._projector.lay_pixels(frame.rgb, found.pose)
+        rgb, valid = self._projector.project_pixels(frame.rgb, found.pose)
         image = GroundImage(
             grid=self._projector.grid,
             frame_id=number,

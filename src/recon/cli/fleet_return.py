@@ -42,7 +42,7 @@ async def fleet_return_command(
     if wait > 0.0:
         flights = await read_until(read, _are_done, wait)
     _print_flights(flights, as_json)
-    is_good = all(flight.stage not in ("left_out", "released") for flight in flights)
+    is_good = all(flight.stage not in ("excluded", "released") for flight in flights)
     is_over = wait == 0.0 or _are_done(flights)
     return DONE if is_good and is_over else REFUSED
 

@@ -178,8 +178,8 @@ def print_started(started: Started) -> None:
     print_now(f"audit: {started.audit_folder}")
     if started.record_folder:
         print_now(f"records: {started.record_folder}")
-    if started.taken_up:
-        print_now(f"from the last run: {shown(started.taken_up)}; nothing is ordered")
+    if started.resumed:
+        print_now(f"from the last run: {shown(started.resumed)}; nothing is ordered")
     if started.stop_url is not None:
         print_now(f"all stop by the guard: curl -X POST {started.stop_url}")
     print_now(f"console: {started.console_url}")

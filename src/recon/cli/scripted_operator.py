@@ -133,10 +133,10 @@ class _HttpOperator:
         serials = self._scenario.fleet.serials
         is_grounded = survey is None or survey.phase == "done"
         ready = await self._passed_checklists() if is_grounded else frozenset(serials)
-        called_home = {v.serial for v in survey.vehicles if v.has_come_home} if survey else set()
+        recalled = {v.serial for v in survey.vehicles if v.has_come_home} if survey else set()
         drones = [v for v in self._station.vehicles() if v.serial in serials]
         return FieldView(
-            [_drone(each, each.serial in ready, each.serial in called_home) for each in drones],
+            [_drone(each, each.serial in ready, each.serial in recalled) for each in drones],
             None if survey is None else STAGES[survey.phase],
         )
 

@@ -100,8 +100,8 @@ def import_command(
         replace_files(folder, staged.files, what=f"import of {file.name}", by="recon site", utc=utc)
     except OSError as problem:
         raise SiteError(f"{folder} cannot be written: {problem.strerror or problem}") from problem
-    left_out = found.left_out + len(found.features) - len(new)
-    print_line(f"{len(new)} imported into {layer.value}, {left_out} left out")
+    excluded = found.excluded + len(found.features) - len(new)
+    print_line(f"{len(new)} imported into {layer.value}, {excluded} excluded")
 
 
 def opened_site(folder: Path) -> "Site":

@@ -41,7 +41,7 @@ class SurveyNumberError(ClientError):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RowOptions:
-    """How rows are laid over a region, for a plan as for a survey."""
+    """How rows are projected over a region, for a plan as for a survey."""
 
     feature: Annotated[
         str | None, typer.Option("--feature", help="Name of the feature in the file.")

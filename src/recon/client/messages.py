@@ -15,7 +15,7 @@ M = TypeVar("M")
 
 SHOWN_CHARACTERS = 60
 
-ReturnStage = Literal["stopping", "waiting", "ordered", "flying", "landed", "released", "left_out"]
+ReturnStage = Literal["stopping", "waiting", "ordered", "flying", "landed", "released", "excluded"]
 MotionStageName = Literal[
     "aside", "waiting", "back", "upwind", "to_place", "maps", "done", "stopped"
 ]
@@ -96,7 +96,7 @@ class VehicleReturn(msgspec.Struct, frozen=True):
     @property
     def is_done(self) -> bool:
         """Whether the return has finished with this vehicle: landed, released or not included."""
-        return self.stage in ("landed", "released", "left_out")
+        return self.stage in ("landed", "released", "excluded")
 
 
 class FleetReturnMessage(msgspec.Struct, frozen=True):

@@ -72,23 +72,23 @@ def cell_light(image: GroundImage, grid: GroundGrid, settings: DetectionSettings
 
 
 def box_means(
-    values: npt.NDArray[np.float32], laid: GroundGrid, grid: GroundGrid
+    values: npt.NDArray[np.float32], projected: GroundGrid, grid: GroundGrid
 ) -> npt.NDArray[np.float32]:
     """Return (R, C, K) means of (r, c, K) values over boxes as large as a cell of `grid`.
 
     Exact where the cells' edges coincide, else interpolated between boxes. Outside counts as 0.
     """
-    ratio = grid.cell_m / laid.cell_m
+    ratio = grid.cell_m / projected.cell_m
     box = max(1, round(ratio))
     means = cv2.blur(values, (box, box), borderType=cv2.BORDER_CONSTANT)
     # OpenCV writes the mean of an even box half a pixel after the middle of the box.
     middle = -0.5 + (0.5 if box % 2 == 0 else 0.0)
-    first_col = (grid.west_m - laid.west_m) / laid.cell_m + ratio / 2.0 + middle
-    first_row = (laid.north_m - grid.north_m) / laid.cell_m + ratio / 2.0 + middle
-    to_laid = np.array([[ratio, 0.0, first_col], [0.0, ratio, first_row]])
+    first_col = (grid.west_m - projected.west_m) / projected.cell_m + ratio / 2.0 + middle
+    first_row = (projected.north_m - grid.north_m) / projected.cell_m + ratio / 2.0 + middle
+    to_projected = np.array([[ratio, 0.0, first_col], [0.0, ratio, first_row]])
     sampled = cv2.warpAffine(
         means,
-        to_laid,
+        to_projected,
         (grid.cols, grid.rows),
         flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
         borderMode=cv2.BORDER_CONSTANT,

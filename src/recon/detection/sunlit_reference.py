@@ -10,7 +10,7 @@ Theory of operation, per frame:
 4. `contrast.explained` finds each cell's transmittance from its light and colour against full sun.
 
 While nothing shows which is sun and which shade, no cell is valid. What the flight has learned is
-kept as a reference (`sunlit_reference_of`), which the next one takes up: `sunlit.earlier`.
+kept as a reference (`sunlit_reference_of`), which the next one adopts: `sunlit.earlier`.
 """
 
 from dataclasses import replace
@@ -25,7 +25,7 @@ from recon.detection.sunlit.colour import CellColour, cell_colour, upsampled
 from recon.detection.sunlit.contrast import explained
 from recon.detection.sunlit.course import change_between, spread_after
 from recon.detection.sunlit.drift import followed
-from recon.detection.sunlit.earlier import reference_of, taken_up
+from recon.detection.sunlit.earlier import adopted_reference, reference_of
 from recon.detection.sunlit.hot_spot import shape_of
 from recon.detection.sunlit.keyframes import Keyframe, is_due, with_keyframe
 from recon.detection.sunlit.levels import LEAST_CELLS
@@ -49,7 +49,7 @@ def sunlit_reference(
         return state, taken
     state, grid, fine = taken
     coarse = fine.coarse()
-    memory = state.sunlit or SunlitMemory(taken_up(state.references, image, grid, coarse))
+    memory = state.sunlit or SunlitMemory(adopted_reference(state.references, image, grid, coarse))
     memory = memory.with_detail(fine, coarse)
     drift = followed(memory.drift, coarse, memory.land, image.captured_at_ns)
     is_locked = image.exposure_locked or not settings.follows_exposure
@@ -80,7 +80,7 @@ def _with_keyframe(
     if not is_due(memory.keyframes, at_ns, shape):
         return memory
     kept = with_keyframe(memory.keyframes, Keyframe(at_ns, coarse, drift.total, shape))
-    found = solved(kept, memory.land, memory.taken_up.earlier, is_locked)
+    found = solved(kept, memory.land, memory.adopted.earlier, is_locked)
     return replace(
         memory,
         keyframes=found.keyframes,

@@ -38,7 +38,7 @@ def claim(fleet: Fleet, link_id: int, serial: str, now_ns: int) -> Fleet:
         return fleet
     fleet = leave(fleet, link_id, now_ns)
     known = fleet.vehicles.get(serial)
-    if known is None and has_no_room(fleet):
+    if known is None and is_full(fleet):
         unknown = replace(
             fleet.links[link_id],
             claimed_serial=None,
@@ -152,7 +152,7 @@ def may_fly(vehicle: VehicleState) -> bool:
     return is_flying is True or (is_flying is None and vehicle.core_received_at_ns is not None)
 
 
-def has_no_room(fleet: Fleet) -> bool:
+def is_full(fleet: Fleet) -> bool:
     """Return whether the limit of unlinked vehicles that may be flying is reached."""
     hazards = sum(v.link_id is None and may_fly(v) for v in fleet.vehicles.values())
     return hazards >= fleet.settings.vehicles_kept

@@ -11,11 +11,11 @@ from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from recon.guard.watch import Act, Picture, Watched
+from recon.guard.watch import Intervention, Picture, Watched
 from recon.model.units import NS_PER_S, Stamped
 from recon.model.vehicle import VehicleState
 
-ALIVE, ACT = "alive", "act"
+ALIVE, INTERVENED = "alive", "intervention"
 SOCKET, CLOSED, PICTURE, NOTED, OVER = "socket", "closed", "picture", "noted", "over"
 
 
@@ -43,7 +43,7 @@ def closed_line(link_id: int) -> bytes:
 
 
 def noted_line() -> bytes:
-    """The station has taken note of every act."""
+    """The station has taken note of every intervention."""
     return _line({"is": NOTED})
 
 
@@ -80,15 +80,15 @@ def alive_line() -> bytes:
     return _line({"is": ALIVE})
 
 
-def act_line(act: Act) -> bytes:
+def intervention_line(intervention: Intervention) -> bytes:
     """Something the guard did."""
-    return _line({"is": ACT} | asdict(act))
+    return _line({"is": INTERVENED} | asdict(intervention))
 
 
-def act_of(message: dict[str, Any]) -> Act:
+def intervention_of(message: dict[str, Any]) -> Intervention:
     """Return what the guard did."""
-    serials, names, missed = (tuple(message[key]) for key in ("serials", "names", "missed"))
-    return Act(message["why"], serials, names, missed, message["by"])
+    serials, names, refused = (tuple(message[key]) for key in ("serials", "names", "refused"))
+    return Intervention(message["why"], serials, names, refused, message["by"])
 
 
 class Lines:

@@ -19,7 +19,7 @@ from typing import Any
 from recon import wire
 from recon.guard import messages, watch
 from recon.guard.stop_port import StopPort
-from recon.guard.watch import Act, CoreRead, GuardEvent, GuardState, LinkGone, StationEnded
+from recon.guard.watch import CoreRead, GuardEvent, GuardState, Intervention, LinkGone, StationEnded
 from recon.model.event import AllStopped, Tick
 from recon.model.report import CoreReport
 from recon.safety import ApprovedCommand
@@ -57,15 +57,15 @@ class GuardProcess:
             await asyncio.sleep(TICK_S)
             self._handle(Tick())
 
-    def stop_all(self, by: str) -> Act:
+    def stop_all(self, by: str) -> Intervention:
         """Hold every vehicle that may fly, on a person's word; return what was done."""
         self._handle(AllStopped(by))
-        return self.state.acts[-1]
+        return self.state.interventions[-1]
 
-    def yield_to_next(self) -> tuple[Act, ...]:
+    def yield_to_next(self) -> tuple[Intervention, ...]:
         """End, because the next station starts; return what its operators must know."""
         self.is_over.set()
-        return self.state.acts
+        return self.state.interventions
 
     @property
     def is_orphan(self) -> bool:
@@ -73,12 +73,12 @@ class GuardProcess:
         return self._line is None
 
     def _handle(self, event: GuardEvent) -> None:
-        known = len(self.state.acts)
+        known = len(self.state.interventions)
         self.state, hovers = watch.step(self.state, event, self.now_ns())
         for hover in hovers:
             self._write(hover)
-        for act in self.state.acts[known:]:
-            self._say(messages.act_line(act))
+        for intervention in self.state.interventions[known:]:
+            self._say(messages.intervention_line(intervention))
 
     def _write(self, approved: ApprovedCommand) -> None:
         """Write a hover past everything: its bytes are few, and the station's packets whole."""

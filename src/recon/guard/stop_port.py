@@ -1,7 +1,7 @@
 """The guard's port: a person's all stop when the station does not answer. HTTP on loopback.
 
-    POST /all-stop   {"by": name}   -> {"held": [names], "missed": [names]}
-    POST /give-way                  -> {"acts": [...]}; only after the station's death
+    POST /all-stop   {"by": name}   -> {"held": [names], "refused": [names]}
+    POST /give-way                  -> {"interventions": [...]}; only after the station's death
 
 A web page of another origin than the console's is refused, as at the station's own port. One
 request a connection; a connection that sends half of one is closed.
@@ -16,7 +16,7 @@ from urllib.parse import urlsplit
 
 import h11
 
-from recon.guard.watch import Act
+from recon.guard.watch import Intervention
 from recon.model.person import is_name
 
 PATIENCE_S = 2.0
@@ -28,11 +28,11 @@ UNNAMED = "a person at the guard's port"
 class Stops(Protocol):
     """What the port asks for."""
 
-    def stop_all(self, by: str) -> Act:
+    def stop_all(self, by: str) -> Intervention:
         """Hold every vehicle that may fly."""
         ...
 
-    def yield_to_next(self) -> tuple[Act, ...]:
+    def yield_to_next(self) -> tuple[Intervention, ...]:
         """End, for the next station."""
         ...
 
@@ -94,12 +94,16 @@ class StopPort(asyncio.Protocol):
         if asked == (b"OPTIONS", b"/all-stop"):
             return 200, {}
         if asked == (b"POST", b"/all-stop"):
-            act = self._guard.stop_all(_name_in(self._body))
-            return 200, {"held": act.names, "missed": act.missed}
+            intervention = self._guard.stop_all(_name_in(self._body))
+            return 200, {"held": intervention.names, "refused": intervention.refused}
         if asked == (b"POST", b"/give-way"):
             if not self._guard.is_orphan:
                 return 409, {"error": "the station of this guard runs; stop that one first"}
-            return 200, {"acts": [asdict(act) for act in self._guard.yield_to_next()]}
+            return 200, {
+                "interventions": [
+                    asdict(intervention) for intervention in self._guard.yield_to_next()
+                ]
+            }
         return 404, {"error": "expected POST /all-stop"}
 
     def _reply(self, status: int, answer: Mapping[str, Any]) -> None:

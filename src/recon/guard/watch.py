@@ -46,7 +46,7 @@ class GuardSettings:
     repeats: int = 3
     """Repeats of a command, as the station repeats an emergency order."""
 
-    acts_kept: int = 64
+    interventions_kept: int = 64
     """What was done and no station knows of; beyond this the oldest go."""
 
 
@@ -90,7 +90,7 @@ GuardEvent: TypeAlias = Picture | StationEnded | CoreRead | LinkGone | AllStoppe
 
 
 @dataclass(frozen=True, slots=True)
-class Act:
+class Intervention:
     """Something the guard did automatically; `by` is the person of an all stop.
 
     `serials` are of the vehicles that were to be held, `names` of those that a hover was sent to,
@@ -100,7 +100,7 @@ class Act:
     why: str
     serials: tuple[str, ...]
     names: tuple[str, ...]
-    missed: tuple[str, ...] = ()
+    refused: tuple[str, ...] = ()
     by: str | None = None
 
 
@@ -120,7 +120,7 @@ class GuardState:
     picture_ns: int | None = None
     """Time of the last picture; None while the station is silent."""
     repeats: Mapping[int, Repeat] = field(default_factory=dict)
-    acts: tuple[Act, ...] = ()
+    interventions: tuple[Intervention, ...] = ()
     """Not yet known to a station."""
     settings: GuardSettings = GuardSettings()
 
@@ -151,7 +151,7 @@ def step(state: GuardState, event: GuardEvent, now_ns: int) -> Acted:
 
 def noted(state: GuardState) -> GuardState:
     """Return the guard once a station knows what it did."""
-    return replace(state, acts=())
+    return replace(state, interventions=())
 
 
 def _on_tick(state: GuardState, now_ns: int) -> Acted:
@@ -180,14 +180,17 @@ def _hold(
     serials = tuple(one.vehicle.serial for one in asked.values() if one.vehicle.serial is not None)
     outputs: tuple[ApprovedCommand, ...] = ()
     names: list[str] = []
-    missed: list[str] = []
+    refused: list[str] = []
     for link_id, one in asked.items():
         state = _with_repeat(state, link_id, state.settings.repeats, now_ns)
         hover = _hover(state, link_id, now_ns)
         outputs += hover
-        (names if hover else missed).append(one.name)
-    act = Act(why, serials, tuple(names), tuple(missed), by)
-    state = replace(state, acts=(*state.acts, act)[-state.settings.acts_kept :])
+        (names if hover else refused).append(one.name)
+    intervention = Intervention(why, serials, tuple(names), tuple(refused), by)
+    state = replace(
+        state,
+        interventions=(*state.interventions, intervention)[-state.settings.interventions_kept :],
+    )
     return state, outputs
 
 

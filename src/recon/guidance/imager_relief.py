@@ -37,7 +37,7 @@ class ImagerReliefSettings:
     """Traffic in the way passes; the battery does not wait."""
 
     called_again_s: float = 60.0
-    """One that was recalled and hovers again, left out of the fleet return, is called anew."""
+    """One that was recalled and hovers again, excluded from the fleet return, is called anew."""
 
     speed_mps: float = 8.0
     """Speed on the way, as for a move upwind."""

@@ -18,7 +18,7 @@ code.
 One call does a bounded amount of work; while `is_busy`, the driver calls `resume` in turns with
 other links, before it reads on. Each packet is reported with the time at which its last byte was
 read. The waits for the rest of a packet count only time in which the station could read: the driver
-reports in `tick` whether unread bytes wait, and a long time between two calls is left out.
+reports in `tick` whether unread bytes wait, and a long time between two calls is excluded.
 """
 
 from collections.abc import Callable

@@ -21,7 +21,7 @@ TRACK_EVERY_NS = NS_PER_S
 def kml(flight: FlightData) -> bytes:
     """Return the surveys' regions and the vehicles' tracks, on the ground.
 
-    Heights are left out: no app states their datum.
+    Heights are excluded: no app states their datum.
     """
     surveys = "".join(_survey_placemark(flight, each) for each in flight.surveys)
     tracks = "".join(

@@ -17,9 +17,9 @@ from recon.score.perfect_forecast import perfect_forecast
 from recon.score.scenario import PERFECT, Scenario
 from recon.score.true_frames import Frames, ground_seen
 from recon.sim.world import Sky
-from recon.station.imaging.projection import LaidFrame
+from recon.station.imaging.projection import ProjectedFrame
 from recon.station.imaging.shade import ReadShade, ShadeRead, with_forecast
-from recon.station.state.imaging import LayFrame
+from recon.station.state.imaging import ProjectFrame
 
 METRES_PER_PIXEL = 0.5
 
@@ -28,7 +28,8 @@ class IdealDetection:
     """The true sky of each frame, where the station believes that the frame lies.
 
     Latency and pose are the station's: the sky is that of the true capture, seen from the true
-    pose, and is laid on the station's grid by the pose from telemetry. Only the pixels are ideal.
+    pose, and is projected on the station's grid by the pose from telemetry. Only the pixels are
+    ideal.
     """
 
     def __init__(self, scenario: Scenario, sky: Sky, frames: Frames, *, shows_sun: bool) -> None:
@@ -45,7 +46,7 @@ class IdealDetection:
         self._shows_sun = shows_sun
         self._is_forecast_perfect = scenario.methods.forecast == PERFECT
 
-    def lay(self, work: LayFrame) -> LaidFrame:
+    def project(self, work: ProjectFrame) -> ProjectedFrame:
         """Return a frame's time and believed pose, without pixels."""
         marked, now, frame = work.reference, work.telemetry, work.frame
         imager = self._site.imagers[frame.serial]
@@ -63,7 +64,7 @@ class IdealDetection:
             pose,
             serial=frame.serial,
         )
-        return LaidFrame(image)
+        return ProjectedFrame(image)
 
     def read(self, work: ReadShade) -> ShadeRead:
         """Return the true sky of an image as a shade map, and the forecast from it."""

@@ -67,7 +67,7 @@ def ratio(parts: Sequence[tuple[float, float]]) -> Interval | None:
     """Return the sum of first parts over the sum of second parts, one pair per run.
 
     The interval is a percentile bootstrap over whole runs (Efron 1979) with a fixed seed. Runs
-    whose second part is 0 are left out; None without others.
+    whose second part is 0 are excluded; None without others.
     """
     present = np.array(sorted(part for part in parts if part[1] > 0.0), dtype=np.float64)
     if present.size == 0:
@@ -89,7 +89,7 @@ def log_ratio(
     """Return the geometric mean of first over second values, one pair per run.
 
     The interval is Student's t of the logarithms of the runs' ratios: what differs from run to run,
-    but not between the two, drops out. Runs without two positive values are left out; None without
+    but not between the two, drops out. Runs without two positive values are excluded; None without
     others.
     """
     logs = [log(a / b) for a, b in pairs if a is not None and b is not None and a > 0.0 < b]

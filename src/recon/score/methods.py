@@ -21,7 +21,7 @@ from recon.sim.camera.field import FieldRenderer
 from recon.sim.camera.frames import CameraView
 from recon.sim.fleet import SimulationConfig
 from recon.sim.world import Sky
-from recon.station.imaging.frames import LAY_FRAME
+from recon.station.imaging.frames import PROJECT_FRAME
 from recon.station.imaging.shade import READ_SHADE, read_shade
 from recon.station.kernel.worker import JobRunner
 from recon.station.state.settings import StationSettings
@@ -99,7 +99,7 @@ def jobs_of(scenario: Scenario, sky: Sky, frames: Frames) -> JobRunner:
     jobs.replace(READ_SHADE, partial(read_shade, shows_sun=shows_sun))
     if scenario.methods.detection == IDEAL:
         ideal = IdealDetection(scenario, sky, frames, shows_sun=shows_sun)
-        jobs.replace(LAY_FRAME, ideal.lay)
+        jobs.replace(PROJECT_FRAME, ideal.project)
         jobs.replace(READ_SHADE, ideal.read)
     return jobs
 

@@ -53,7 +53,7 @@ class DroneView:
     is_stopped: bool = False
     """The survey gives it no missions until it is started again."""
     is_called_home: bool = False
-    """The survey called it home; after landing it is started again with a good battery."""
+    """The survey recalled it; after landing it is started again with a good battery."""
     is_flying_home: bool = False
     """Called home, it flies its landing mission now."""
     is_in_fleet_return: bool = False

@@ -141,7 +141,7 @@ def refuse_sunken_zones(site_file: Path, site: Site) -> None:
 def highest_ground_m(site: Site, zone: Zone) -> float:
     """Return the highest ground beneath a zone, in the datum of the zone's heights.
 
-    Ground without a height in the elevation model is left out: flights over it are refused.
+    Ground without a height in the elevation model is excluded: flights over it are refused.
     """
     assert site.frame is not None
     if zone.datum is not HeightDatum.WGS84:

@@ -1,4 +1,4 @@
-"""[elevation]: the ground's heights from a GeoTIFF, laid on a grid of the site's local frame.
+"""[elevation]: the ground's heights from a GeoTIFF, sampled on a grid of the site's local frame.
 
 The grid covers the boundary (without one, the pads and the origin) and as far around it as a
 vehicle may fly from home.

@@ -78,11 +78,11 @@ def _read(path: str, most_features: int, most_corners: int, most_in_all: int) ->
     if len(layers) > MOST_LAYERS:
         raise ImportedFileError(f"expected at most {MOST_LAYERS} layers, got {len(layers)}")
     features: list[dict[str, Any]] = []
-    left_out = corners = 0
+    excluded = corners = 0
     for layer in layers:
         for name, geometry in _layer(path, layer, most_features):
             if geometry is None:
-                left_out += 1
+                excluded += 1
                 continue
             if len(features) == most_features:
                 raise ImportedFileError(f"expected at most {most_features} features, got more")
@@ -93,7 +93,7 @@ def _read(path: str, most_features: int, most_corners: int, most_in_all: int) ->
                     "field only, or simplify the shapes"
                 )
             features.append({"name": name, "geometry": geometry})
-    return {"features": features, "left_out": left_out}
+    return {"features": features, "excluded": excluded}
 
 
 def _layer(

@@ -64,10 +64,10 @@ class ImportedFeature:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Imported:
-    """What a file holds; `left_out` counts features that are neither polygons nor points."""
+    """What a file holds; `excluded` counts features that are neither polygons nor points."""
 
     features: tuple[ImportedFeature, ...]
-    left_out: int
+    excluded: int
 
 
 def read_import(name: str, data: bytes) -> Imported:
@@ -81,7 +81,7 @@ def read_import(name: str, data: bytes) -> Imported:
     features = tuple(ImportedFeature(each["name"], each["geometry"]) for each in answer["features"])
     if not features:
         raise SiteError(f"{shown}: expected polygons or points, got none")
-    return Imported(features, answer["left_out"])
+    return Imported(features, answer["excluded"])
 
 
 def _put_safely(shown: str, data: bytes, folder: Path) -> Path:

@@ -112,7 +112,7 @@ def site_digest(folder: Path) -> str:
     The audit records it: which boundary, zones and profiles a flight used.
 
     Files over 256 MiB or beyond the first 200, and unreadable ones, count by name and size. Earlier
-    versions, in `history/`, base maps, in `maps/`, and hidden files are left out.
+    versions, in `history/`, base maps, in `maps/`, and hidden files are excluded.
     """
     total = sha256()
     for number, path in enumerate(sorted(p for p in folder.rglob("*") if _is_in_use(folder, p))):

@@ -90,7 +90,7 @@ class ImagerTable(_Table, frozen=True):
 
 
 class GroundImageTable(_Table, frozen=True):
-    """[ground_image]: the raster frames are laid on, centred on the origin."""
+    """[ground_image]: the raster frames are projected on, centred on the origin."""
 
     width_m: Annotated[float, Meta(gt=0.0, le=20_000.0)] = 512.0
     height_m: Annotated[float, Meta(gt=0.0, le=20_000.0)] = 512.0

@@ -65,7 +65,7 @@ def read_vehicle_rows(folder: Path) -> tuple[VehicleRow, ...]:
 
 
 def stage_vehicles(folder: Path, rows: Sequence[VehicleRow]) -> StagedSite:
-    """Return the site with these vehicles and its site.toml; vehicles that are left out go.
+    """Return the site with these vehicles and its site.toml; vehicles that are excluded go.
 
     Keys that the table does not have stay with their serial. Raises `SiteError` as a start does,
     `VehicleRowError` where it is about one row.

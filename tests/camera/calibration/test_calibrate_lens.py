@@ -64,7 +64,7 @@ def test_noise_is_reported_and_its_effect_is_within_the_stated_deviations() -> N
     assert miss_px < 4.0 * found.centre_sigma_px
 
 
-def test_wrong_corners_and_a_wrong_photo_are_left_out() -> None:
+def test_wrong_corners_and_a_wrong_photo_are_excluded() -> None:
     camera = small_camera()
     photos = board_photos(camera, 10)
     torn = photos[4].corners_px.copy()

@@ -29,12 +29,12 @@ LIMITS = FlightLimits(
 )
 
 
-def refusals(field: Region, fence: Region, shut: tuple[Region, ...], count: int) -> list[Refusal]:
+def refusals(field: Region, fence: Region, closed: tuple[Region, ...], count: int) -> list[Refusal]:
     """What boundary and keep-out say to each mission, of a vehicle that hovers where it begins.
 
     It would hover without its link: the way to the field and home is not the survey's.
     """
-    around = SurveySurroundings(fence, shut, LIMITS.boundary_margin_m)
+    around = SurveySurroundings(fence, closed, LIMITS.boundary_margin_m)
     plan = plan_survey(survey_of(field), FRAME, around)
     if not isinstance(plan, SurveyPlan):
         return []
@@ -44,7 +44,7 @@ def refusals(field: Region, fence: Region, shut: tuple[Region, ...], count: int)
     begun = start(created, [each.serial for each in surveyors], 0)
     assert isinstance(begun, SurveyState)
     state, missions = step(begun, surveyors, 10**10)
-    air = airspace(*map(keep_out_zone, shut), boundary=fence, limits=LIMITS)
+    air = airspace(*map(keep_out_zone, closed), boundary=fence, limits=LIMITS)
     refusals: list[Refusal] = []
     for each in missions:
         east_m, north_m = state.flights[each.serial].corners_m[0]

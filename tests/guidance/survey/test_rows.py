@@ -242,20 +242,20 @@ class TestDirection:
 
 class TestSurroundings:
     def test_rows_keep_off_zones_and_boundary(self) -> None:
-        shut = Region(np.array([(100.0, 60.0), (180.0, 60.0), (180.0, 140.0), (100.0, 140.0)]))
+        closed = Region(np.array([(100.0, 60.0), (180.0, 60.0), (180.0, 140.0), (100.0, 140.0)]))
         field = rectangle()
         plan = plan_survey(
-            survey_of(field), FRAME, SurveySurroundings(field, (shut,), margin_m=5.0)
+            survey_of(field), FRAME, SurveySurroundings(field, (closed,), margin_m=5.0)
         )
         assert isinstance(plan, SurveyPlan)
         for start_m, end_m in flown_m(plan):
             places = start_m + np.linspace(0.0, 1.0, 200)[:, np.newaxis] * (end_m - start_m)
             assert is_inside(field, places).all()
-            assert distance_m(shut, places).min() >= 5.0
+            assert distance_m(closed, places).min() >= 5.0
 
     def test_unreached_area_is_reported(self) -> None:
-        shut = Region(np.array([(100.0, 60.0), (180.0, 60.0), (180.0, 140.0), (100.0, 140.0)]))
-        plan = plan_survey(survey_of(rectangle()), FRAME, SurveySurroundings(keep_out=(shut,)))
+        closed = Region(np.array([(100.0, 60.0), (180.0, 60.0), (180.0, 140.0), (100.0, 140.0)]))
+        plan = plan_survey(survey_of(rectangle()), FRAME, SurveySurroundings(keep_out=(closed,)))
         assert isinstance(plan, SurveyPlan)
         missed = plan.cells.is_inside & ~plan.cells.is_reached
         assert 0 < missed.sum() * plan.cells.cell_m2 < 90.0 * 90.0

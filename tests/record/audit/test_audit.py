@@ -61,7 +61,7 @@ def test_what_is_too_long_for_a_line_leaves_its_details_out() -> None:
     assert len(line) < LONGEST_LINE_BYTES
     read = decode_line(line)
     assert read.text == "the words stay"
-    assert read.details["left_out_bytes"] > LONGEST_LINE_BYTES
+    assert read.details["excluded_bytes"] > LONGEST_LINE_BYTES
 
 
 @pytest.mark.parametrize(

@@ -33,7 +33,7 @@ BEGIN, FLOWN = "begin", "flown"
 
 
 class Plain:
-    """Items are (topic, bytes), written as they are; images are left out when asked to."""
+    """Items are (topic, bytes), written as they are; images are excluded when asked to."""
 
     def begin(self, item: Any, topics: Topics) -> None:
         topics.file.add_attachment("start", "text/plain", b"begun", 0)

@@ -18,7 +18,7 @@ from recon.safety.failsafe import battery_critical as critical_row
 from recon.safety.failsafe import battery_low as low_row
 from recon.safety.failsafe import gnss_lost as gnss_row
 from recon.safety.failsafe import wind as wind_row
-from recon.safety.failsafe.row import FlightFacts, call_home, cells, hold
+from recon.safety.failsafe.row import FlightFacts, cells, hold, recall
 
 
 def since(condition: FailsafeCondition, given: FlightFacts) -> int | None:
@@ -205,7 +205,7 @@ class TestWhatASiteMayChoose:
         assert row.offered(Activity.MISSION) == {Reaction.ALARM, Reaction.HOLD}
 
     def test_cells_as_the_rows_write_them(self) -> None:
-        row = cells(hold(3.0), hold(), call_home(4.0), call_home())
+        row = cells(hold(3.0), hold(), recall(4.0), recall())
         assert row == {
             Activity.MISSION: FailsafeCell(Reaction.HOLD, 3.0),
             Activity.STEERED: FailsafeCell(Reaction.HOLD, 0.0),

@@ -262,7 +262,7 @@ gnss | A: at least 8 satellites are needed; got 7; wait, or move to open sky | s
 gnss | A: GNSS signal level unknown, at least 3 of 5 is needed; wait, or move to open sky | min_level=3
 gnss | A: GNSS signal level must be at least 3 of 5; got 1; wait, or move to open sky | signal_level=1, min_level=3
 gnss | A: GNSS signal level must be at least 4 of 5 before takeoff, to record the home point; got 3; wait, or move to open sky | signal_level=3, min_level=4
-battery | A: the aircraft reports a critically low battery; land it or call it home now
+battery | A: the aircraft reports a critically low battery; land it or recall it now
 battery | A: the aircraft reports a low battery: only motion towards home is accepted
 battery | A: battery warning unknown; check its companion app
 battery | A: the mission needs 40 % of its battery; got 30 %: 6 % to waypoint 2, 8 % home from there, and 25 % reserve; fly less far, or change the battery | battery_fraction=0.3, min_fraction=0.393, reserve_fraction=0.25

@@ -1,4 +1,4 @@
-"""How near pairs come: gaps and closeness at each moment, and which pairs can be left out."""
+"""How near pairs come: gaps and closeness at each moment, and which pairs can be excluded."""
 
 from math import inf
 
@@ -124,7 +124,7 @@ places = st.tuples(
 
 
 @given(st.lists(st.lists(places, min_size=3, max_size=3), min_size=2, max_size=4))
-def test_no_pair_that_comes_too_near_is_left_out(ways: list[list[Cylinder]]) -> None:
+def test_no_pair_that_comes_too_near_is_excluded(ways: list[list[Cylinder]]) -> None:
     ahead = samples(*ways)
     first, second = np.triu_indices(len(ways), k=1)
     close, _, _ = closeness(ahead, first, ahead, second, NEED)

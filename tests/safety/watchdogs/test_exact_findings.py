@@ -71,7 +71,7 @@ class TestBatteryForTheWayHome:
             finding(
                 "battery_home",
                 Severity.CRITICAL,
-                "battery 15%, way home 16%: it may not reach home; land it or call it home now",
+                "battery 15%, way home 16%: it may not reach home; land it or recall it now",
                 1.0,
             )
         ]

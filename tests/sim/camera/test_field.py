@@ -55,7 +55,7 @@ def correlation(a: np.ndarray, b: np.ndarray) -> float:
         (40.0, -70.0, 33.0, 20.0),
     ],
 )
-def test_a_picture_laid_on_the_ground_shows_the_land_where_it_is(
+def test_a_picture_projected_on_the_ground_shows_the_land_where_it_is(
     frames, camera, east_m, north_m, yaw_deg, tilt_deg
 ) -> None:
     """Render, take the picture back to the ground by the camera room, compare with the raster."""

@@ -23,7 +23,7 @@ from recon.site import Site, demo_site_folder, load_site
 from recon.station.api_views.app import create_app
 from recon.station.api_views.order_service import order_of
 from recon.station.api_views.service import Service
-from recon.station.imaging.frames import LAY_FRAME
+from recon.station.imaging.frames import PROJECT_FRAME
 from recon.station.kernel.build import first_state
 from recon.station.kernel.driver import AsyncioDriver
 from recon.vehicles.reports import to_report
@@ -253,4 +253,4 @@ class TestBuild:
 
     def test_without_an_imaging_drone_no_frame_is_projected(self) -> None:
         with pytest.raises(ReconError, match="no imaging drone"):
-            LAY_FRAME.prepare(Site(name="bare"))
+            PROJECT_FRAME.prepare(Site(name="bare"))

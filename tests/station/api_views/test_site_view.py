@@ -63,7 +63,7 @@ def test_the_demonstration_site_is_shown_whole() -> None:
     (outline_m,) = local_m(view.areas[0].rings, site.frame)
     assert site.layers.boundary is not None
     assert outline_m == pytest.approx(site.layers.boundary.outline_m, abs=0.02)
-    assert (view.areas_left_out, view.areas_drawn_within_m) == (0, 0.0)
+    assert (view.areas_excluded, view.areas_drawn_within_m) == (0, 0.0)
     assert [(pad.name, pad.serial, pad.altitude_m) for pad in view.pads][::8] == [
         ("Imager", "SIM-IMAGER", 275.0),
         ("spare", None, 275.0),
@@ -99,7 +99,7 @@ def test_too_many_areas_are_counted_and_what_is_wished_for_goes_first() -> None:
     assert view.areas[0].kind == "boundary"
     assert {area.kind for area in view.areas[1:]} == {"keep_out"}
     assert len(view.areas) == MAX_RINGS
-    assert view.areas_left_out == 302 - MAX_RINGS
+    assert view.areas_excluded == 302 - MAX_RINGS
 
 
 def comb(teeth: int) -> np.ndarray:
@@ -110,11 +110,11 @@ def comb(teeth: int) -> np.ndarray:
     return np.concatenate([out[1:], back[:-1]])
 
 
-def test_what_cannot_be_thinned_is_left_out() -> None:
+def test_what_cannot_be_thinned_is_excluded() -> None:
     site = site_of(*[Region(comb(2_500)) for _ in range(8)])
     view = site_view(site)
     assert corner_count(view) <= MAX_CORNERS
-    assert len(view.areas) + view.areas_left_out == 8
+    assert len(view.areas) + view.areas_excluded == 8
 
 
 @settings(max_examples=examples(60), deadline=None)
@@ -135,7 +135,7 @@ def test_it_is_never_too_much(counts: list[int], teeth_m: float, holes: int) -> 
     ]
     view = site_view(site_of(*regions))
     assert corner_count(view) <= MAX_CORNERS
-    assert len(view.areas) + view.areas_left_out == len(counts)
+    assert len(view.areas) + view.areas_excluded == len(counts)
     assert len(view.model_dump_json()) < 40_000
 
 

@@ -1,4 +1,4 @@
-"""Battery critical: called home at once; one that returns is landed only if the site says so."""
+"""Battery critical: recalled at once; one that returns is landed only if the site says so."""
 
 from tests.station.failsafe.reacting import (
     A,

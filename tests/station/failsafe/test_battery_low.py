@@ -1,4 +1,4 @@
-"""Battery low: called home after 15 s, if no operator has ordered anything else."""
+"""Battery low: recalled after 15 s, if no operator has ordered anything else."""
 
 import pytest
 from tests.station.failsafe.reacting import (
@@ -36,7 +36,7 @@ def test_it_is_called_home_after_15_s(start: object) -> None:
     low_s = drains_to(w, 0.24)
     w.run_for(14.5)
     assert reactions(w) == []
-    assert "the station calls it home in " in alarm_text(w, "battery")
+    assert "the station recalls it in " in alarm_text(w, "battery")
     w.run_for(5.0)
     assert reactions(w) == HOME
     assert issued_s(w) - low_s == pytest.approx(15.0, abs=0.3)

@@ -1,4 +1,4 @@
-"""Strong wind: an alarm; a site may call vehicles home when it lasts."""
+"""Strong wind: an alarm; a site may recall vehicles when it lasts."""
 
 from dataclasses import replace
 

@@ -14,15 +14,15 @@ from recon.model.units import NS_PER_S, Stamped
 from recon.model.vehicle import Attitude, VehicleState
 from recon.station.alarms.conditions import conditions
 from recon.station.imaging.frames import (
-    LAY_FRAME,
     LOST_FOR_S,
+    PROJECT_FRAME,
     started,
     with_frame,
     with_sample,
 )
-from recon.station.imaging.projection import LaidFrame
+from recon.station.imaging.projection import ProjectedFrame
 from recon.station.kernel.step import step
-from recon.station.state.imaging import ImagerFrames, Imaging, LayFrame, LayMarkedFrame
+from recon.station.state.imaging import ImagerFrames, Imaging, LayMarkedFrame, ProjectFrame
 from recon.station.state.station import Station
 from recon.station.state.steps import Job, JobDone, JobDropped, JobFailed
 
@@ -57,7 +57,7 @@ def station_of(*imagers: ImagerFrames) -> Station:
 
 def offered(
     station: Station, captured_at_s: float, *, is_flying: bool = True, serial: str = "IMAGER"
-) -> tuple[Station, Job[LayFrame, LaidFrame] | None]:
+) -> tuple[Station, Job[ProjectFrame, ProjectedFrame] | None]:
     """Return the station after a frame, and the job that it starts."""
     seen = with_frame(station.imaging.imagers[serial], frame(captured_at_s, serial), is_flying)
     imagers = {**station.imaging.imagers, serial: seen}
@@ -128,49 +128,53 @@ def test_one_frame_at_a_time_and_the_newest_of_the_others_waits() -> None:
         assert job is None
     assert only(station).frames_dropped == 2
     kept = RegistrationState(turn=7)
-    laid = LaidFrame(image(Registration.REGISTERED), kept)
-    station, outputs = step(station, JobDone(first.id, LAY_FRAME, laid), 0)
-    (waited,) = (job for job in outputs if isinstance(job, Job) and job.kind is LAY_FRAME)
+    projected = ProjectedFrame(image(Registration.REGISTERED), kept)
+    station, outputs = step(station, JobDone(first.id, PROJECT_FRAME, projected), 0)
+    (waited,) = (job for job in outputs if isinstance(job, Job) and job.kind is PROJECT_FRAME)
     assert waited.input.frame.captured_at_ns == round(4.6 * NS_PER_S)
     assert waited.input.registration is kept
     assert only(station).waiting is None
 
 
-@pytest.mark.parametrize("ends", [JobFailed(1, LAY_FRAME, "damaged"), JobDropped(1, LAY_FRAME)])
+@pytest.mark.parametrize(
+    "ends", [JobFailed(1, PROJECT_FRAME, "damaged"), JobDropped(1, PROJECT_FRAME)]
+)
 def test_a_frame_that_fails_holds_up_none_after_it(ends: Event) -> None:
     station, _ = offered(station_of(observed(5)), 4.0)
     station, _ = offered(station, 4.5)
     station, outputs = step(station, ends, 0)
     assert [job.id for job in outputs if isinstance(job, Job)] == [2]
-    station, _ = step(station, JobFailed(2, LAY_FRAME, "damaged"), 0)
+    station, _ = step(station, JobFailed(2, PROJECT_FRAME, "damaged"), 0)
     _, third = offered(station, 4.9)
     assert third is not None
 
 
 def test_a_lost_registration_is_an_alarm_with_its_reason_until_it_is_found() -> None:
     station, _ = offered(station_of(observed(5)), 4.0)
-    laid = LaidFrame(image(Registration.LOST), problem="5 of 200 features in view found again")
-    station, _ = step(station, JobDone(1, LAY_FRAME, laid), 0)
+    projected = ProjectedFrame(
+        image(Registration.LOST), problem="5 of 200 features in view found again"
+    )
+    station, _ = step(station, JobDone(1, PROJECT_FRAME, projected), 0)
     (alarm,) = (each for each in conditions(station, 0) if each.rule == "registration")
     assert "5 of 200 features" in alarm.text
     assert alarm.after_s == LOST_FOR_S
     station, _ = offered(station, 4.9)
-    landed, _ = step(station, JobFailed(2, LAY_FRAME, "the camera is on the ground"), 0)
+    landed, _ = step(station, JobFailed(2, PROJECT_FRAME, "the camera is on the ground"), 0)
     assert [each for each in conditions(landed, 0) if each.rule == "registration"] == []
-    found = LaidFrame(image(Registration.REGISTERED, captured_at_s=5.0))
-    station, _ = step(station, JobDone(2, LAY_FRAME, found), 0)
+    found = ProjectedFrame(image(Registration.REGISTERED, captured_at_s=5.0))
+    station, _ = step(station, JobDone(2, PROJECT_FRAME, found), 0)
     assert [each for each in conditions(station, 0) if each.rule == "registration"] == []
 
 
 def test_an_older_image_and_the_failure_of_another_job_change_nothing() -> None:
     station, _ = offered(station_of(observed(5)), 4.0)
-    for ends in (JobFailed(7, LAY_FRAME, "damaged"), JobDropped(7, LAY_FRAME)):
+    for ends in (JobFailed(7, PROJECT_FRAME, "damaged"), JobDropped(7, PROJECT_FRAME)):
         assert step(station, ends, 0)[0].imaging is station.imaging
     newest = image(Registration.REGISTERED, captured_at_s=4.0)
-    station, _ = step(station, JobDone(1, LAY_FRAME, LaidFrame(newest)), 0)
+    station, _ = step(station, JobDone(1, PROJECT_FRAME, ProjectedFrame(newest)), 0)
     station, _ = offered(station, 4.5)
-    older = LaidFrame(image(Registration.REGISTERED, captured_at_s=3.0))
-    station, outputs = step(station, JobDone(2, LAY_FRAME, older), 0)
+    older = ProjectedFrame(image(Registration.REGISTERED, captured_at_s=3.0))
+    station, outputs = step(station, JobDone(2, PROJECT_FRAME, older), 0)
     assert only(station).ground_image is newest
     assert outputs == ()
 
@@ -188,13 +192,13 @@ class TestSeveral:
         station, _ = offered(station, 4.2)
         assert first is not None
         kept = RegistrationState(turn=7)
-        laid = LaidFrame(image(Registration.REGISTERED), kept)
-        station, outputs = step(station, JobDone(first.id, LAY_FRAME, laid), 0)
-        (second,) = (job for job in outputs if isinstance(job, Job) and job.kind is LAY_FRAME)
+        projected = ProjectedFrame(image(Registration.REGISTERED), kept)
+        station, outputs = step(station, JobDone(first.id, PROJECT_FRAME, projected), 0)
+        (second,) = (job for job in outputs if isinstance(job, Job) and job.kind is PROJECT_FRAME)
         assert second.input.frame.serial == "OTHER"
         assert second.input.registration is not kept
-        station, outputs = step(station, JobFailed(second.id, LAY_FRAME, "damaged"), 0)
-        (third,) = (job for job in outputs if isinstance(job, Job) and job.kind is LAY_FRAME)
+        station, outputs = step(station, JobFailed(second.id, PROJECT_FRAME, "damaged"), 0)
+        (third,) = (job for job in outputs if isinstance(job, Job) and job.kind is PROJECT_FRAME)
         assert third.input.frame.serial == "IMAGER"
         assert third.input.registration is kept
 

@@ -65,7 +65,7 @@ def test_it_is_aligned_as_badly_as_the_worst() -> None:
         assert not one.exposure_locked
 
 
-def test_an_image_far_older_is_left_out() -> None:
+def test_an_image_far_older_is_excluded() -> None:
     """A drone that is lost leaves an image behind, which must not look like now."""
     old, new = image("A", 1, slice(0, 3), 5.0), image("B", 2, slice(2, 4), 15.1)
     assert newest_images(imaging(old, new)) == (new,)

@@ -14,9 +14,9 @@ from recon.model.imagery import CameraPose, Frame, Registration, RgbImage
 from recon.model.units import seconds_to_ns
 from recon.site import Site, demo_site_folder, load_site
 from recon.station.api_views.imaging_views import ground_image_view
-from recon.station.imaging.projection import LaidFrame, projection
+from recon.station.imaging.projection import ProjectedFrame, projection
 from recon.station.kernel.build import first_state
-from recon.station.state.imaging import LayFrame
+from recon.station.state.imaging import ProjectFrame
 
 
 @pytest.fixture(scope="module")
@@ -31,18 +31,20 @@ class Worker:
         assert site.imager is not None
         self.marked_pose = site.imager.marked_pose
         self.marked = site.imager.marked_frame
-        self.lay = projection(site)
+        self.project = projection(site)
         self.state = RegistrationState()
         self.number = 0
 
-    def lays(self, rgb: RgbImage) -> LaidFrame:
+    def projects(self, rgb: RgbImage) -> ProjectedFrame:
         assert self.marked is not None
         self.number += 1
         at_ns = seconds_to_ns(self.number)
         frame = Frame(self.number, "SIM-IMAGER", at_ns, at_ns, 0.25, rgb=rgb)
-        laid = self.lay(LayFrame(frame, self.marked, self.marked, registration=self.state))
-        self.state = laid.registration
-        return laid
+        projected = self.project(
+            ProjectFrame(frame, self.marked, self.marked, registration=self.state)
+        )
+        self.state = projected.registration
+        return projected
 
 
 def moved(pose: CameraPose) -> CameraPose:
@@ -51,31 +53,31 @@ def moved(pose: CameraPose) -> CameraPose:
     return CameraPose(turn @ pose.rotation_enu_camera, pose.position_enu_m + shift_m)
 
 
-def test_a_frame_is_laid_where_its_content_shows(site: Site) -> None:
+def test_a_frame_is_projected_where_its_content_shows(site: Site) -> None:
     worker = Worker(site)
     start = seen(worker.marked_pose)
     for _ in range(2):
-        first = worker.lays(start)
+        first = worker.projects(start)
         assert first.image.registration is Registration.UNREGISTERED
         assert first.problem
     true = moved(worker.marked_pose)
-    laid = worker.lays(seen(true))
-    assert laid.image.registration is Registration.REGISTERED
-    assert laid.problem == ""
-    assert laid.image.registration_residual_m is not None
-    off_m = displacements_m(laid.image.pose, true, worker.marked_pose, worker.marked_pose)
+    projected = worker.projects(seen(true))
+    assert projected.image.registration is Registration.REGISTERED
+    assert projected.problem == ""
+    assert projected.image.registration_residual_m is not None
+    off_m = displacements_m(projected.image.pose, true, worker.marked_pose, worker.marked_pose)
     assert np.percentile(off_m, 95) < 0.6
 
 
 def test_frames_of_another_size_begin_with_a_reference_of_their_own(site: Site) -> None:
     worker = Worker(site)
     small = seen(worker.marked_pose)
-    worker.lays(small)
-    worker.lays(small)
+    worker.projects(small)
+    worker.projects(small)
     large = np.repeat(np.repeat(small, 2, axis=0), 2, axis=1)
-    worker.lays(large)
-    worker.lays(large)
-    assert worker.lays(large).image.registration is Registration.REGISTERED
+    worker.projects(large)
+    worker.projects(large)
+    assert worker.projects(large).image.registration is Registration.REGISTERED
 
 
 def test_a_lens_without_a_known_circle_is_registered_once_it_is_found(site: Site) -> None:
@@ -83,9 +85,9 @@ def test_a_lens_without_a_known_circle_is_registered_once_it_is_found(site: Site
     bare = site.with_imager(replace(site.imager, image_circle=None))
     worker = Worker(bare)
     black = np.zeros((CAMERA.rows, CAMERA.cols, 3), dtype=np.uint8)
-    assert "image circle" in worker.lays(black).problem
+    assert "image circle" in worker.projects(black).problem
     start = seen(worker.marked_pose)
-    statuses = [worker.lays(start).image.registration for _ in range(3)]
+    statuses = [worker.projects(start).image.registration for _ in range(3)]
     assert statuses[-1] is Registration.REGISTERED
 
 
@@ -100,7 +102,7 @@ def test_without_control_points_the_frame_lies_where_telemetry_has_the_drone(sit
     place = point_from_enu(site.frame, (30.0, -40.0, 0.0))
     now = TelemetryReference(place.latitude_deg, place.longitude_deg, 110.0, 90.0)
     frame = Frame(1, "SIM-IMAGER", 10, 5, 0.25, rgb=seen(Worker(site).marked_pose))
-    pose = projection(bare)(LayFrame(frame, now, start)).image.pose
+    pose = projection(bare)(ProjectFrame(frame, now, start)).image.pose
     assert pose.position_enu_m == pytest.approx([30.0, -40.0, 110.0], abs=0.05)
     # The rows run away from the top, which is the drone's front; the third axis is the optical one.
     assert -pose.rotation_enu_camera[:, 1] == pytest.approx([1.0, 0.0, 0.0], abs=1e-6)
@@ -110,11 +112,11 @@ def test_without_control_points_the_frame_lies_where_telemetry_has_the_drone(sit
 def test_the_ground_image_states_that_telemetry_alone_places_it(site: Site) -> None:
     assert site.imager is not None
     bare = site.with_imager(replace(site.imager, solution=None))
-    laid = Worker(site).lays(seen(Worker(site).marked_pose))
+    projected = Worker(site).projects(seen(Worker(site).marked_pose))
     for shown, expected in ((bare, "telemetry and mount alone"), (site, "of the marked frame")):
         station = first_state(shown)
         ((serial, imager),) = station.imaging.imagers.items()
-        imagers = {serial: replace(imager, ground_image=laid.image)}
+        imagers = {serial: replace(imager, ground_image=projected.image)}
         imaging = replace(station.imaging, imagers=imagers)
         view = ground_image_view(replace(station, imaging=imaging), seconds_to_ns(2))
         assert view is not None

@@ -15,8 +15,8 @@ from recon.model.units import NS_PER_S
 from recon.site import Site
 from recon.station.alarms.conditions import conditions
 from recon.station.api_views.imaging_views import shade_view
-from recon.station.imaging.frames import LAY_FRAME
-from recon.station.imaging.projection import LaidFrame
+from recon.station.imaging.frames import PROJECT_FRAME
+from recon.station.imaging.projection import ProjectedFrame
 from recon.station.imaging.shade import READ_SHADE, ReadShade, seen_cells
 from recon.station.kernel.step import step
 from recon.station.kernel.worker import AnyJob, JobRunner
@@ -49,8 +49,8 @@ def half_image(second: float, serial: str, *, is_east: bool) -> GroundImage:
     return replace(image, captured_at_ns=at_ns, rgb=rgb, valid=valid, serial=serial)
 
 
-def laid(image: GroundImage) -> Event:
-    return JobDone(image.frame_id, LAY_FRAME, LaidFrame(image))
+def projected(image: GroundImage) -> Event:
+    return JobDone(image.frame_id, PROJECT_FRAME, ProjectedFrame(image))
 
 
 def jobs_of(outputs: tuple[Output, ...]) -> list[AnyJob]:
@@ -91,7 +91,7 @@ def line() -> Line:
 
 def test_every_frame_is_read_once_and_in_order(line: Line) -> None:
     for second in range(1, 6):
-        line.happens(laid(ground_image(second)))
+        line.happens(projected(ground_image(second)))
     assert len(line.given) == 1, "one at a time: the memory travels with the job"
     while line.works():
         pass
@@ -101,7 +101,7 @@ def test_every_frame_is_read_once_and_in_order(line: Line) -> None:
 
 def test_shade_is_mapped_where_it_fell(line: Line) -> None:
     for second in range(1, 61):
-        line.happens(laid(ground_image(second, 0.25 if second > 40 else 1.0)))
+        line.happens(projected(ground_image(second, 0.25 if second > 40 else 1.0)))
         line.works()
     shade, sun = line.station.shade.shade, line.station.shade.sun
     assert shade is not None
@@ -121,7 +121,7 @@ def test_shade_is_mapped_where_it_fell(line: Line) -> None:
 
 def test_a_worker_that_is_too_slow_drops_the_oldest_and_counts_them(line: Line) -> None:
     for second in range(1, WAITING_KEPT + 5):
-        line.happens(laid(ground_image(second)))
+        line.happens(projected(ground_image(second)))
     assert line.station.shade.frames_dropped == 3
     while line.works():
         pass
@@ -130,13 +130,13 @@ def test_a_worker_that_is_too_slow_drops_the_oldest_and_counts_them(line: Line) 
 
 def test_black_frames_are_an_alarm_until_a_good_one(line: Line) -> None:
     black = replace(ground_image(1), rgb=np.zeros((128, 128, 3), np.uint8))
-    line.happens(laid(black))
+    line.happens(projected(black))
     line.works()
     assert line.station.shade.frames_rejected == 1
     (alarm,) = [each for each in conditions(line.station, 0) if each.rule == "shade"]
     assert "black" in alarm.text
     assert alarm.after_s > 0.0
-    line.happens(laid(ground_image(2)))
+    line.happens(projected(ground_image(2)))
     line.works()
     assert [each for each in conditions(line.station, 0) if each.rule == "shade"] == []
 
@@ -145,7 +145,7 @@ def test_an_unknown_method_is_an_error_that_names_the_known_ones(line: Line) -> 
     settings = line.station.settings
     detection = replace(settings.detection, method="best")
     line.station = replace(line.station, settings=replace(settings, detection=detection))
-    line.happens(laid(ground_image(1)))
+    line.happens(projected(ground_image(1)))
     line.works()
     assert line.station.shade.error is not None
     assert " or ".join(DETECTORS) in line.station.shade.error
@@ -158,7 +158,7 @@ def test_the_methods_are_the_settings(line: Line) -> None:
     line.station = replace(
         line.station, settings=replace(settings, detection=detection, forecast=forecast)
     )
-    line.happens(laid(ground_image(1, 0.25)))
+    line.happens(projected(ground_image(1, 0.25)))
     line.works()
     assert line.station.shade.sun is not None
     assert line.station.shade.sun.method == "persistence"
@@ -167,7 +167,7 @@ def test_the_methods_are_the_settings(line: Line) -> None:
 
 def test_after_a_dropped_job_the_next_image_is_read(line: Line) -> None:
     for second in (1, 2):
-        line.happens(laid(ground_image(second)))
+        line.happens(projected(ground_image(second)))
     dropped = line.given.pop()
     line.happens(JobDropped(dropped.id, READ_SHADE))
     assert line.station.shade.frames_dropped == 1
@@ -186,8 +186,8 @@ def test_the_same_results_give_the_same_station() -> None:
     first = Line()
     events: list[Event] = []
     for second in range(1, 6):
-        first.happens(laid(ground_image(second)))
-        events.append(laid(ground_image(second)))
+        first.happens(projected(ground_image(second)))
+        events.append(projected(ground_image(second)))
         result = RUNNER.run(first.given.pop(0))
         assert isinstance(result, JobDone)
         first.happens(result)
@@ -214,7 +214,7 @@ def test_the_cells_in_view_are_those_whose_middle_the_image_shows() -> None:
 
 def test_a_forecast_of_unknown_ground_covers_nothing(line: Line) -> None:
     """The first frame of a method that needs several: no cell is known, none is predicted."""
-    line.happens(laid(ground_image(1)))
+    line.happens(projected(ground_image(1)))
     line.works()
     shown = shade_view(line.station, 2 * NS_PER_S)
     assert shown is not None
@@ -241,7 +241,7 @@ class TestSeveralImagingDrones:
         return bool(shade.valid[5, 2]), bool(shade.valid[5, -3])
 
     def sees(self, line: Line, second: float, serial: str) -> None:
-        line.happens(laid(half_image(second, serial, is_east=serial == "EAST")))
+        line.happens(projected(half_image(second, serial, is_east=serial == "EAST")))
         line.works()
 
     def test_one_map_shows_both_halves(self, two: Line) -> None:
@@ -272,7 +272,7 @@ class TestSeveralImagingDrones:
         assert two.station.shade.frames_rejected == 0
         assert two.station.shade.number == 6
 
-    def test_a_map_that_is_too_old_is_left_out(self, two: Line) -> None:
+    def test_a_map_that_is_too_old_is_excluded(self, two: Line) -> None:
         self.sees(two, 1.0, "WEST")
         self.sees(two, 1.0 + TOGETHER_WITHIN_S, "EAST")
         assert self.shown(two) == (True, True)
@@ -292,7 +292,7 @@ class TestSeveralImagingDrones:
         black = replace(
             half_image(1.0, "EAST", is_east=True), rgb=np.zeros((128, 128, 3), np.uint8)
         )
-        two.happens(laid(black))
+        two.happens(projected(black))
         two.works()
         self.sees(two, 1.2, "WEST")
         (alarm,) = [each for each in conditions(two.station, 0) if each.rule == "shade"]

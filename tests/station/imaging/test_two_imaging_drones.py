@@ -67,7 +67,7 @@ def test_the_site_knows_both(site: Site) -> None:
     assert site.imager is site.imagers["SIM-IMAGER"]
 
 
-def test_each_ones_frames_are_laid_where_it_is(driver: VirtualDriver) -> None:
+def test_each_ones_frames_are_projected_where_it_is(driver: VirtualDriver) -> None:
     images = {image.serial: image for image in newest_images(driver.station.imaging)}
     first, second = images["SIM-IMAGER"], images["SIM-SECOND"]
     apart_m = second.pose.position_enu_m - first.pose.position_enu_m

@@ -11,7 +11,7 @@ from tests.station.imagers import imager_of, with_imagers
 from recon.model.event import ClockGap, Event, LinkOpened, PacketReceived, Tick
 from recon.model.units import NS_PER_S
 from recon.site import default_site
-from recon.station.imaging.frames import LAY_FRAME
+from recon.station.imaging.frames import PROJECT_FRAME
 from recon.station.kernel.build import first_state
 from recon.station.kernel.driver import AsyncioDriver, station_clock
 from recon.station.kernel.event_queue import EventQueue
@@ -63,12 +63,12 @@ class TestAsyncioDriver:
                 station_clock(),
                 lambda step: seen.append(step.event),
             )
-            driver.handle_from_thread(JobDropped(0, LAY_FRAME))
+            driver.handle_from_thread(JobDropped(0, PROJECT_FRAME))
             running = asyncio.create_task(driver.run())
             async with asyncio.timeout(PATIENCE_S):
                 while not any(isinstance(event, Tick) for event in seen):
                     await asyncio.sleep(0)
-            dropped = JobDropped(1, LAY_FRAME)
+            dropped = JobDropped(1, PROJECT_FRAME)
             thread = threading.Thread(target=driver.handle_from_thread, args=(dropped,))
             thread.start()
             async with asyncio.timeout(PATIENCE_S):

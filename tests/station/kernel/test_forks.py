@@ -44,7 +44,7 @@ def troubled(seed: int) -> World:
     return w
 
 
-def called_home() -> ReturningWorld:
+def recalled() -> ReturningWorld:
     """Two vehicles whose fleet return is ordered."""
     w = returning_world([(0.0, 30.0, 40.0), (40.0, 30.0, 50.0)], [(0.0, -40.0), (40.0, -40.0)])
     w.call("SIM-1", "SIM-2")
@@ -122,7 +122,7 @@ class TestInTheMiddle:
         assert flown(fork(original)) == flown(original)
 
     def test_of_a_job(self) -> None:
-        original = called_home()
+        original = recalled()
         due = original.world.driver._due
         until(
             original.world,
@@ -139,7 +139,7 @@ class TestInTheMiddle:
 
 
 def test_what_a_test_puts_elsewhere_in_a_fork_stays_there() -> None:
-    original = called_home()
+    original = recalled()
     other = fork(original)
     other.put("SIM-1", (5.0, 5.0, 33.0))
     other.heights_m.clear()

@@ -12,8 +12,8 @@ from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.imagery import CameraPose, GroundImage
 from recon.model.report import ImageReport, MessageReport, MessageSeverity
 from recon.model.units import seconds_to_ns
-from recon.station.imaging.frames import LAY_FRAME
-from recon.station.imaging.projection import LaidFrame
+from recon.station.imaging.frames import PROJECT_FRAME
+from recon.station.imaging.projection import ProjectedFrame
 from recon.station.kernel.step import HANDLERS
 from recon.station.state.settings import StationSettings
 from recon.station.state.station import Station
@@ -69,23 +69,23 @@ def test_a_frame_of_a_link_without_a_serial_is_not_kept() -> None:
 def test_an_older_ground_image_never_replaces_a_newer_one() -> None:
     scene = imaging_scene()
     for captured_at_ns in (5, 9, 7):
-        scene.happens(JobDone(1, LAY_FRAME, LaidFrame(ground_image(captured_at_ns))))
+        scene.happens(JobDone(1, PROJECT_FRAME, ProjectedFrame(ground_image(captured_at_ns))))
     image = imager_of(scene.station).ground_image
     assert image is not None
     assert image.captured_at_ns == 9
 
 
 def test_failed_work_is_an_alarm_until_work_succeeds() -> None:
-    scene = imaging_scene().happens(JobFailed(1, LAY_FRAME, "no pose")).passes(0.1)
+    scene = imaging_scene().happens(JobFailed(1, PROJECT_FRAME, "no pose")).passes(0.1)
     assert scene.alarms() == set()
     scene.passes(scene.station.settings.imaging_trouble_after_s)
     assert scene.alarms() == {"imaging"}
-    scene.happens(JobDone(2, LAY_FRAME, LaidFrame(ground_image(1)))).passes(0.1)
+    scene.happens(JobDone(2, PROJECT_FRAME, ProjectedFrame(ground_image(1)))).passes(0.1)
     assert scene.alarms() == set()
 
 
 def test_a_dropped_frame_is_counted() -> None:
-    scene = imaging_scene().happens(JobDropped(1, LAY_FRAME))
+    scene = imaging_scene().happens(JobDropped(1, PROJECT_FRAME))
     assert imager_of(scene.station).frames_dropped == 1
 
 

@@ -1,4 +1,4 @@
-"""Fleets called home with the real station and simulated apps, in virtual time.
+"""Fleets recalled with the real station and simulated apps, in virtual time.
 
 Distances and places are the simulator's own truth, not what the station believes.
 """
@@ -162,7 +162,7 @@ class TestInterruptions:
         assert stages.pop(taken) is Stage.RELEASED
         assert world.flies(taken)
         landed = {serial for serial, stage in stages.items() if stage is Stage.LANDED}
-        left = {serial for serial, stage in stages.items() if stage is Stage.LEFT_OUT}
+        left = {serial for serial, stage in stages.items() if stage is Stage.EXCLUDED}
         assert len(landed) >= 2
         assert landed | left == set(stages)
         assert {("fleet_return", serial) for serial in left} <= world.alarms()
@@ -210,7 +210,7 @@ class TestInterruptions:
         world.call(*FOUR)
         assert world.runs_until_over(900.0)
         stages = world.stages()
-        assert stages.pop("SIM-4") is Stage.LEFT_OUT
+        assert stages.pop("SIM-4") is Stage.EXCLUDED
         assert world.member("SIM-4").mission_id is None
         assert world.flies("SIM-4")
         assert ("fleet_return", "SIM-4") in world.alarms()
@@ -233,7 +233,7 @@ class TestInterruptions:
         world.call(*FOUR)
         assert world.runs_until_over(900.0)
         stages = world.stages()
-        assert stages.pop("SIM-4") is Stage.LEFT_OUT
+        assert stages.pop("SIM-4") is Stage.EXCLUDED
         assert ("fleet_return", "SIM-4") in world.alarms()
         assert set(stages.values()) == {Stage.LANDED}
         newest = list(world.world.driver.station.orders.records.values())
@@ -259,7 +259,7 @@ class TestInterruptions:
         world = returning_world(FIELD[:3], pads, faults=("restart:SIM-1:10:2",))
         world.call("SIM-1", "SIM-2")
         assert world.runs_until_over(300.0)
-        assert world.member("SIM-1").stage is Stage.LEFT_OUT
+        assert world.member("SIM-1").stage is Stage.EXCLUDED
         world.call("SIM-3")
         world.runs(1.0)
         assert ("fleet_return", "SIM-1") in world.alarms()
@@ -317,7 +317,7 @@ class TestInterruptions:
         world.put("SIM-5", (*world.pads_m[waiting.serial], 10.0))
         assert world.runs_until_over(900.0)
         stages = world.stages()
-        assert stages.pop(waiting.serial) is Stage.LEFT_OUT
+        assert stages.pop(waiting.serial) is Stage.EXCLUDED
         assert "SIM-5 hovers where it would" in world.member(waiting.serial).reason
         assert set(stages.values()) == {Stage.LANDED}
 

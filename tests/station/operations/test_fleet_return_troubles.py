@@ -1,4 +1,4 @@
-"""Failures of a fleet return: the vehicle is left out or released, with a reason."""
+"""Failures of a fleet return: the vehicle is excluded or released, with a reason."""
 
 from dataclasses import replace
 
@@ -30,7 +30,7 @@ ONE_PAD = [(0, -20), (0, -20)]
 
 def reason(world: ReturningWorld, serial: str) -> str:
     member = world.member(serial)
-    assert member.stage is Stage.LEFT_OUT
+    assert member.stage is Stage.EXCLUDED
     assert ("fleet_return", serial) in world.alarms()
     return member.reason
 
@@ -105,7 +105,7 @@ class TestItsFlight:
         before = len(world.world.driver.station.orders.records)
         world.world.app("SIM-1").aircraft.hover()
         assert world.runs_until_over(60.0)
-        assert world.member("SIM-1").stage in (Stage.RELEASED, Stage.LEFT_OUT)
+        assert world.member("SIM-1").stage in (Stage.RELEASED, Stage.EXCLUDED)
         assert world.member("SIM-1").reason
         assert len(world.world.driver.station.orders.records) == before
 
@@ -130,7 +130,7 @@ class TestThePlan:
         world.runs(24.0)
         assert "not planned within 20 s" in reason(world, "SIM-1")
         world.runs(20.0)
-        assert world.member("SIM-1").stage is Stage.LEFT_OUT
+        assert world.member("SIM-1").stage is Stage.EXCLUDED
 
     def test_a_plan_that_is_dropped_is_asked_for_again(self) -> None:
         world = returning_world(ONE, [(0, 0)], plan_takes_s=5.0)

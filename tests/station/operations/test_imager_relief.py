@@ -342,7 +342,7 @@ class TestNotByItself:
         assert world.runs_until(lambda: bool(world.surveyed.fleet.stages()), 10.0)
         returning = world.station.fleet_return
         assert returning is not None
-        left = returning.members[FIRST].at(Stage.LEFT_OUT, world.surveyed.driver.now_ns, "no layer")
+        left = returning.members[FIRST].at(Stage.EXCLUDED, world.surveyed.driver.now_ns, "no layer")
         world.station = replace(world.station, fleet_return=returning.put(left))
         assert holds(world) == 1
         world.runs(5.0)

@@ -17,8 +17,8 @@ from recon.model.imagery import CameraPose, GroundImage
 from recon.model.survey import CellState, SurveyBudget, SurveyPhase
 from recon.safety import gate
 from recon.safety.situation import Situation
-from recon.station.imaging.frames import LAY_FRAME
-from recon.station.imaging.projection import LaidFrame
+from recon.station.imaging.frames import PROJECT_FRAME
+from recon.station.imaging.projection import ProjectedFrame
 from recon.station.state.steps import JobDone
 
 GRID = GroundGrid(LocalFrame(HOME), -40.0, 100.0, 1.0, 140, 200)
@@ -71,7 +71,7 @@ def under_an_imager(vehicles: int = 1) -> SurveyedWorld:
 
 def seen(world: SurveyedWorld, number: int, is_shaded: bool) -> Event:
     image = ground_image(number, world.driver.now_ns, is_shaded)
-    return JobDone(number, LAY_FRAME, LaidFrame(image))
+    return JobDone(number, PROJECT_FRAME, ProjectedFrame(image))
 
 
 def states(state: SurveyState, is_west: bool) -> np.ndarray:

@@ -157,7 +157,7 @@ class TestFleetReturn:
 
     def test_what_flies_into_it_is_held_and_left_out_with_a_reason(self) -> None:
         world = self.called(9.0)
-        assert world.member("SIM-1").stage is Stage.LEFT_OUT
+        assert world.member("SIM-1").stage is Stage.EXCLUDED
         assert "station: zone_ahead" in world.member("SIM-1").reason
         assert ("fleet_return", "SIM-1") in world.alarms()
 

@@ -415,7 +415,7 @@ class TestTaking:
         st.one_of(st.none(), st.floats()),
         st.text(max_size=300),
     )
-    def test_values_out_of_range_are_left_out(
+    def test_values_out_of_range_are_excluded(
         self, height_m: float, offset_m: float, battery: float | None, name: str
     ) -> None:
         scene = CommandedStation().opens(1, core(height_m=height_m), extended("A"))

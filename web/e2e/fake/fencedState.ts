@@ -106,7 +106,7 @@ export function fencedState(elapsed_s: number): StationState {
           ...returning,
           serial: "SN-003",
           vehicle_name: "Cedar",
-          stage: "left_out",
+          stage: "excluded",
           wave: null,
           layer_height_m: null,
           layer_height_above_takeoff_m: null,

@@ -79,7 +79,7 @@ export function surveyedState(elapsed_s: number): StationState {
             ...waits,
             serial: "SN-002",
             vehicle_name: "Birch",
-            not_flying_reason: "called home: battery too low for the remaining rows",
+            not_flying_reason: "recalled: battery too low for the remaining rows",
             decision: null,
           },
           {

@@ -90,7 +90,7 @@ describe("labels of areas", () => {
     );
   });
 
-  it("never cover each other, and one is left out only where each of its places is taken", () => {
+  it("never cover each other, and one is excluded only where each of its places is taken", () => {
     for (let seed = 1; seed <= 50; seed += 1) {
       const random = sequence(seed);
       const wanted = [...Array(12).keys()].map((key) => ({

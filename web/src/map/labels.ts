@@ -70,7 +70,7 @@ export interface MovableLabel<Key, Place> {
 
 /**
  * The place of each label at which it covers no label of a lower rank and nothing that is blocked; a label without such
- * a place is left out. A label keeps the place it had `before` for as long as that is free.
+ * a place is excluded. A label keeps the place it had `before` for as long as that is free.
  */
 export function placeFrames<Key, Place>(
   wanted: readonly MovableLabel<Key, Place>[],

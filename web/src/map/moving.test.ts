@@ -50,7 +50,7 @@ describe("tracks", () => {
     expect(track?.colour).toBe("grey");
   });
 
-  it("lose no end when points too near to be seen are left out", () => {
+  it("lose no end when points too near to be seen are excluded", () => {
     const points = [...Array(100).keys()].map((n): [number, number] => [n * 0.1, 0]);
     expect(thinned(points)).toEqual([
       [0, 0],

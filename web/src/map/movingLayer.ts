@@ -6,7 +6,7 @@ import type { Layer, Scene } from "./scene";
 
 /** The ends of moving lines are this old at most: at 5 m/s the symbol hides them, or nearly so. */
 const REDRAW_S = 0.5;
-/** Points of a track nearer than this on the screen are left out. */
+/** Points of a track nearer than this on the screen are excluded. */
 const LEAST_STEP_PX = 2;
 /** MapLibre's world at zoom 0. */
 const WORLD_PX = 512;

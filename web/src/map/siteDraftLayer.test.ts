@@ -37,7 +37,7 @@ describe("the site being edited, on the map", () => {
       "survey_regions",
       "landing_pads",
       "keep_out",
-      "left_out",
+      "excluded",
     ]);
     expect(shown.map(({ properties }) => properties?.["importIndex"])).toEqual([null, null, 0, 1]);
     expect(shown.map(({ properties }) => properties?.["isSelected"])).toEqual([

@@ -15,16 +15,16 @@ export const DRAFT_FILL = "site-draft-fill";
 export const DRAFT_POINT = "site-draft-point";
 
 /** In place of a layer: a feature of an imported file that is not taken. */
-const LEFT_OUT = "left_out";
+const EXCLUDED = "excluded";
 
 const IS_IMPORT: ExpressionSpecification = ["get", "isImport"];
 const IS_SELECTED: ExpressionSpecification = ["get", "isSelected"];
 const WIDTH: ExpressionSpecification = ["case", IS_SELECTED, 5, 3];
-/** What is taken of a file differs from what is left out by its fill and line too. */
+/** What is taken of a file differs from what is excluded by its fill and line too. */
 const IMPORT_WIDTH: ExpressionSpecification = ["case", IS_SELECTED, 4, 2];
 const OPACITY: ExpressionSpecification = ["case", ["all", IS_IMPORT, IS_SELECTED], 0.35, 0.1];
 
-/** The site being edited: dashed over the fences in force; features of an imported file are dotted, grey while they are left out. */
+/** The site being edited: dashed over the fences in force; features of an imported file are dotted, grey while they are excluded. */
 export class SiteDraftLayer implements Layer {
   private map: MapLibre | null = null;
   private shown: DraftShapes | null = null;
@@ -108,7 +108,7 @@ export function draftFeatures({ features, imported, selectedId }: DraftShapes): 
     shape(rings, isPoint, {
       id: null,
       importIndex,
-      layer: layer ?? LEFT_OUT,
+      layer: layer ?? EXCLUDED,
       isSelected: layer !== null,
       isImport: true,
     }),

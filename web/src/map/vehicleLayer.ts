@@ -13,7 +13,7 @@ import type { Target } from "./targetMarkers";
 import { isInSight, uncoveredOf } from "./uncovered";
 import { type MarkerPress, VehicleMarker } from "./vehicleMarker";
 
-/** Below this zoom heights are left out, except of the selected vehicles. */
+/** Below this zoom heights are excluded, except of the selected vehicles. */
 const HEIGHTS_FROM_ZOOM = 14;
 
 interface Placed {

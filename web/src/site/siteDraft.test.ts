@@ -275,11 +275,11 @@ describe("an imported file", () => {
         { name: "", geometry: polygon },
         { name: "home", geometry: point },
       ],
-      left_out: 2,
+      excluded: 2,
       reason: null,
     };
     await draft.readFile(new File(["x"], "fields.kml"));
-    expect(draft.notice()?.text).toBe("fields.kml: 4 read; 2 neither polygon nor point, left out");
+    expect(draft.notice()?.text).toBe("fields.kml: 4 read; 2 neither polygon nor point, skipped");
     expect(draft.imported().map(({ layer }) => layer)).toEqual([
       "survey_regions",
       "survey_regions",
@@ -299,7 +299,7 @@ describe("an imported file", () => {
   it("with many features takes those that are pressed", async () => {
     const draft = await open();
     const one = { name: "", geometry: polygon };
-    page.site.imported = { features: Array(21).fill(one), left_out: 0, reason: null };
+    page.site.imported = { features: Array(21).fill(one), excluded: 0, reason: null };
     await draft.readFile(new File(["x"], "county.gpkg"));
     expect(draft.imported().every(({ layer }) => layer === null)).toBe(true);
     draft.takeOrLeave(20);
@@ -311,7 +311,7 @@ describe("an imported file", () => {
 
   it("that is refused leaves everything as it is", async () => {
     const draft = await open(FIELD);
-    page.site.imported = { features: [], left_out: 0, reason: "a.zip: expected KML" };
+    page.site.imported = { features: [], excluded: 0, reason: "a.zip: expected KML" };
     await draft.readFile(new File(["x"], "a.zip"));
     expect(draft.notice()).toEqual({
       about: "import",

@@ -39,7 +39,7 @@ interface FeaturePlace {
   readonly featureId: number | null;
 }
 
-/** A feature of an imported file, and what it is to become; null: it is left out. */
+/** A feature of an imported file, and what it is to become; null: it is excluded. */
 export interface ImportChoice {
   readonly name: string;
   readonly rings: readonly Ring[];
@@ -74,7 +74,7 @@ export interface SiteDraft extends SavedDraft<SiteDrawingView, FeaturePlace> {
   redo(): void;
   readFile(file: File): Promise<void>;
   choose(index: number, layer: LayerName | null): void;
-  /** A press on an imported feature: it is taken, or left out. */
+  /** A press on an imported feature: it is taken, or excluded. */
   takeOrLeave(index: number): void;
   addImported(): void;
   dropImported(): void;
@@ -232,13 +232,13 @@ export function createSiteDraft(
     readFile: (file) =>
       draft.ask(
         () => site.readFile(file),
-        ({ features: found, left_out, reason }) => {
+        ({ features: found, excluded, reason }) => {
           if (reason !== null) return draft.note(reason, true, "import");
           const { read, readSome } = text.imports;
           const note =
-            left_out === 0
+            excluded === 0
               ? read(file.name, found.length)
-              : readSome(file.name, found.length, left_out);
+              : readSome(file.name, found.length, excluded);
           draft.note(note, false, "import");
           setImported(choicesOf(found));
         },

@@ -40,7 +40,7 @@ export function fakeSite(): FakeSite {
   return {
     drawing: { ...FIRST, features: [] },
     response: { ...ACCEPTED, feature: null, layers: [], also: [], drawing: null },
-    imported: { features: [], left_out: 0, reason: null },
+    imported: { features: [], excluded: 0, reason: null },
     asked: [],
     vehicles: { ...FIRST, vehicles: [] },
     vehiclesResponse: { ...ACCEPTED, row: null, changes: [], vehicles: null },

@@ -208,7 +208,7 @@ export function station(
       terrain: "flat assumed",
       layers: [],
       areas: [],
-      areas_left_out: 0,
+      areas_excluded: 0,
       areas_drawn_within_m: 0,
       pads: [],
     },

@@ -162,7 +162,7 @@ export function fullState(): StationState {
       alarm(6, { severity: "info", vehicle_name: "", is_active: false }),
     ],
     commands: [
-      command(14, { part: "Rows 3 to 5", repairs: ["Left out 2 points"], takeoff: true }),
+      command(14, { part: "Rows 3 to 5", repairs: ["Excluded 2 points"], takeoff: true }),
       command(15, { kind: "land", phase: "acknowledged", times_sent: 3, sent_altitudes: "WGS84" }),
       command(16, { kind: "mission", phase: "refused_by_station", rule: "flying", note: "No way" }),
     ],
@@ -173,7 +173,7 @@ export function fullState(): StationState {
       called_by: BY,
       age_s: 30,
       is_over: false,
-      vehicles: (["landed", "waiting", "left_out", "flying"] as const).map((stage, index) => ({
+      vehicles: (["landed", "waiting", "excluded", "flying"] as const).map((stage, index) => ({
         ...returning,
         serial: `SN-00${index + 1}`,
         vehicle_name: "Alder",

@@ -87,7 +87,7 @@ class SiteView(Message):
     terrain: Literal["model", "flat assumed"]
     layers: list[LayerView]
     areas: list[AreaView]
-    areas_left_out: int = Field(description="number of areas beyond the limit, not sent")
+    areas_excluded: int = Field(description="number of areas beyond the limit, not sent")
     areas_drawn_within_m: float = Field(
         description="largest error of the simplified outlines; 0 when not simplified"
     )

@@ -63,7 +63,7 @@ class SiteUndoRequest(SiteChangeRequest):
 
 
 class SiteDrawingRequest(SiteChangeRequest):
-    """All layers as they are to be: what is left out is removed."""
+    """All layers as they are to be: what is missing is removed."""
 
     features: list[DrawnFeatureView] = Field(max_length=2_000)
 
@@ -104,7 +104,7 @@ class SiteVehiclesView(SiteFolderView):
 
 
 class SiteVehiclesRequest(SiteChangeRequest):
-    """All vehicles as they are to be: what is left out is removed."""
+    """All vehicles as they are to be: what is missing is removed."""
 
     vehicles: list[SiteVehicleView] = Field(max_length=200)
 
@@ -186,5 +186,5 @@ class ImportedView(Message):
     """Polygons and points of an imported file, in WGS84, or why it was refused."""
 
     features: list[ImportedFeatureView]
-    left_out: int = Field(description="features that are neither polygons nor points")
+    excluded: int = Field(description="features that are neither polygons nor points")
     reason: str | None

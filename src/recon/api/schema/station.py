@@ -84,9 +84,9 @@ class ReturningView(Message):
 
     serial: str
     vehicle_name: str
-    stage: Literal["stopping", "waiting", "ordered", "flying", "landed", "released", "left_out"]
+    stage: Literal["stopping", "waiting", "ordered", "flying", "landed", "released", "excluded"]
     since_age_s: float
-    reason: str | None = Field(description="why it waits, was released or is left out")
+    reason: str | None = Field(description="why it waits, was released or is excluded")
     wave: int | None
     layer_height_m: float | None = Field(description="above the site's ground altitude")
     layer_height_above_takeoff_m: float | None

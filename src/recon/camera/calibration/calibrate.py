@@ -2,7 +2,7 @@
 
 1. The centre for which the boards turn about it best, on a grid around the frame's middle.
 2. The linear solution for that centre (`linear_start`).
-3. Robust least squares over everything (`lens_fit`); then corners that do not fit are left out, and
+3. Robust least squares over everything (`lens_fit`); then corners that do not fit are excluded, and
    photos of which most corners were, and the rest is fitted by plain least squares.
 """
 

@@ -19,7 +19,7 @@ GRID: Color = (205, 205, 205)
 EMPTY: Color = (255, 226, 214)
 """Cells of the view without a corner."""
 COVERED: Color = (222, 240, 222)
-LEFT_OUT: Color = (200, 30, 30)
+EXCLUDED: Color = (200, 30, 30)
 LINES: tuple[Color, ...] = (
     *((31, 119, 180), (255, 127, 14), (44, 160, 44), (148, 103, 189)),
     *((140, 86, 75), (227, 119, 194), (90, 90, 90), (23, 170, 190)),
@@ -35,7 +35,7 @@ def residual_picture(
     """Return (rows, 1280, 3): above, the frame; below, residuals by angle from the axis.
 
     An arrow leads from a corner's predicted pixel to the observed one, lengthened; red ones were
-    left out. Tinted cells have no corner.
+    excluded. Tinted cells have no corner.
     """
     scale = WIDTH_PX / calibration.camera.cols
     rows = max(1, round(calibration.camera.rows * scale))
@@ -48,7 +48,7 @@ def residual_picture(
         _draw_arrows(picture[:rows], photo, scale, longer, LINES[number % len(LINES)])
     text = (
         f"rms {calibration.rms_px:.2f} px, {coverage.share:.0%} of the view covered; arrows: "
-        f"residuals {longer / scale:.0f} times as long, red: left out"
+        f"residuals {longer / scale:.0f} times as long, red: excluded"
     )
     _write(picture, text, (10, 24))
     _draw_plot(picture[rows:], calibration, coverage)
@@ -79,7 +79,7 @@ def _draw_arrows(
     observed = (photo.corners_px + 0.5) * scale - 0.5
     shifts = np.clip(photo.residuals_px * longer, -WIDTH_PX, WIDTH_PX)
     for pixel, shift, is_used in zip(observed, shifts, photo.is_used, strict=True):
-        chosen = color if is_used else LEFT_OUT
+        chosen = color if is_used else EXCLUDED
         start = round(pixel[0]), round(pixel[1])
         end = round(pixel[0] + shift[0]), round(pixel[1] + shift[1])
         cv2.circle(picture, start, 2, chosen, -1, cv2.LINE_AA)
@@ -116,7 +116,7 @@ def _draw_plot(picture: RgbImage, calibration: LensCalibration, coverage: Covera
         within = np.minimum(radii, camera.profile.largest_radius_px)
         angles = np.rad2deg(camera.profile.angle_rad(within))
         for angle, residual, is_used in zip(angles, outward, photo.is_used, strict=True):
-            color = LINES[number % len(LINES)] if is_used else LEFT_OUT
+            color = LINES[number % len(LINES)] if is_used else EXCLUDED
             cv2.circle(picture, (across(angle), down(residual)), 2, color, -1, cv2.LINE_AA)
     _write(picture, "residual outward (px) by angle from the axis (degrees)", (left, 20))
 

@@ -1,7 +1,7 @@
-"""The land in full sun as an earlier flight saw it, taken up by the next one.
+"""The land in full sun as an earlier flight saw it, adopted by the next one.
 
 Theory of operation: a reference is of one camera, at one place, with the sun in one direction: then
-the land's own light, the lens and the hot spot are the same. It is taken up with the first frame
+the land's own light, the lens and the hot spot are the same. It is adopted with the first frame
 whose cells it explains, and is the land from there on, until the flight has seen enough of its own.
 
 An edge of shade in the first frame is then seen as one at once. A frame without an edge is still
@@ -39,8 +39,8 @@ LEAST_EXPLAINED = 0.8
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class TakenUp:
-    """The reference that a flight takes up, if any fits, and what came of looking for it."""
+class AdoptedReference:
+    """The reference that a flight adopts, if any fits, and what came of looking for it."""
 
     earlier: Earlier | None
     note: str
@@ -71,14 +71,16 @@ def reference_of(
     )
 
 
-def taken_up(
+def adopted_reference(
     references: Sequence[SunlitReference], image: GroundImage, grid: GroundGrid, coarse: CellColour
-) -> TakenUp:
+) -> AdoptedReference:
     """Return the reference of the sun nearest to a frame's, if it fits the frame."""
     if not references:
-        return TakenUp(None, "")
+        return AdoptedReference(None, "")
     if image.toward_sun_enu is None:
-        return TakenUp(None, "no earlier flight is used: the direction of the sun is unknown")
+        return AdoptedReference(
+            None, "no earlier flight is used: the direction of the sun is unknown"
+        )
     sun, camera = _three(image.toward_sun_enu), _three(image.pose.position_enu_m)
     fitting = [
         (_angle_deg(each.toward_sun_enu, sun), each)
@@ -93,14 +95,14 @@ def taken_up(
             f"none of {len(references)} earlier flights is used: expected one of {image.serial} on "
             f"this ground grid, with its camera within {NEAREST_M:.0f} m of where it is now"
         )
-        return TakenUp(None, text)
+        return AdoptedReference(None, text)
     off_deg, nearest = min(fitting, key=lambda each: each[0])
     if off_deg > NEAREST_SUN_DEG:
         text = (
             "no earlier flight is used: expected one with the sun within "
             f"{NEAREST_SUN_DEG:.0f} degrees of where it is now, the nearest is {off_deg:.0f} off"
         )
-        return TakenUp(None, text)
+        return AdoptedReference(None, text)
     earlier = _earlier(nearest, image.exposure_locked)
     share = _explained_share(coarse, earlier.land)
     if share < LEAST_EXPLAINED:
@@ -108,9 +110,9 @@ def taken_up(
             f"the earlier flight is not used: it explains {share:.0%} of the land in view, "
             f"expected {LEAST_EXPLAINED:.0%}; the land or the light has changed"
         )
-        return TakenUp(None, text)
+        return AdoptedReference(None, text)
     text = f"of an earlier flight, with the sun {off_deg:.0f} degrees from where it is now"
-    return TakenUp(earlier, text)
+    return AdoptedReference(earlier, text)
 
 
 def _earlier(reference: SunlitReference, is_locked: bool) -> Earlier:

@@ -7,7 +7,7 @@ import numpy as np
 from recon.detection.sunlit.belief import Belief
 from recon.detection.sunlit.colour import CellColour, upsampled
 from recon.detection.sunlit.drift import Drift
-from recon.detection.sunlit.earlier import TakenUp
+from recon.detection.sunlit.earlier import AdoptedReference
 from recon.detection.sunlit.keyframes import Keyframe, SunlitLand
 from recon.detection.sunlit.levels import UNCHANGED, Level
 from recon.model.shade import FloatMap
@@ -45,7 +45,7 @@ class Detail:
 class SunlitMemory:
     """Keyframes, the land in full sun, and the level of sun in the latest frame."""
 
-    taken_up: TakenUp
+    adopted: AdoptedReference
     """What an earlier flight knew of the land."""
     keyframes: tuple[Keyframe, ...] = ()
     land: SunlitLand | None = None

@@ -6,8 +6,8 @@ returns why a planned flight must wait. `mission_of` makes its landing mission.
 
 from recon.guidance.fleet_return.flight import (
     CalledVehicle,
+    ExcludedVehicle,
     Hovering,
-    LeftOut,
     Pad,
     Place,
     ReturnFlight,

@@ -147,7 +147,7 @@ class Hovering:
 
 @dataclass(frozen=True, slots=True)
 class CalledVehicle:
-    """A vehicle that hovers and is called home. `battery_fraction` None: not known, taken for
+    """A vehicle that hovers and is recalled. `battery_fraction` None: not known, taken for
     the lowest."""
 
     serial: str
@@ -200,7 +200,7 @@ class ReturnFlight:
 
 
 @dataclass(frozen=True, slots=True)
-class LeftOut:
+class ExcludedVehicle:
     """A vehicle without a flight, and why, in words for its operator."""
 
     serial: str
@@ -210,11 +210,11 @@ class LeftOut:
 
 @dataclass(frozen=True, slots=True)
 class ReturnPlan:
-    """Flights in the order of their turn, and those left out. `layers_up_m` from the lowest."""
+    """Flights in the order of their turn, and those excluded. `layers_up_m` from the lowest."""
 
     layers_up_m: tuple[float, ...]
     flights: tuple[ReturnFlight, ...]
-    left_out: tuple[LeftOut, ...]
+    excluded: tuple[ExcludedVehicle, ...]
 
     @property
     def waves(self) -> tuple[tuple[ReturnFlight, ...], ...]:
@@ -227,7 +227,7 @@ LEAST_LEG_M = 1.0
 """DJI refuses waypoints nearer than 0.5 m; over its pad a vehicle sinks by this much instead."""
 
 LEAST_CORNER_M = 0.6
-"""A corner nearer than this to the waypoint before it is left out, or DJI would refuse the flight.
+"""A corner nearer than this to the waypoint before it is excluded, or DJI would refuse the flight.
 The way moves by no more than that: less than `detour_slack_m`, which it keeps from all limits."""
 
 
@@ -261,7 +261,7 @@ def mission_of(
 
 
 def _without_short_legs(way_m: Sequence[EastNorth]) -> list[EastNorth]:
-    """Leave out the corners that are too near; where the way begins and ends stays."""
+    """Exclude the corners that are too near; where the way begins and ends stays."""
     kept = [way_m[0]]
     for corner in way_m[1:-1]:
         if _apart_m(kept[-1], corner) >= LEAST_CORNER_M <= _apart_m(corner, way_m[-1]):

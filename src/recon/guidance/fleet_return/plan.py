@@ -10,9 +10,9 @@ on wind and on how long each landing takes.
    (column up or down, level path, column over the pad) is separated from all vehicles that still
    hover; a column that leads away from one that is too near already need not be. Paths avoid
    closed zones by a visibility graph and Dijkstra's search (`ways`).
-   Layers of flights that are under way are not free: a vehicle called home later need not wait.
+   Layers of flights that are under way are not free: a vehicle recalled later need not wait.
 4. When no free layer is left or fits, the next wave begins with all layers free.
-5. A vehicle that fits in no layer while all layers are free is left out, with the reason.
+5. A vehicle that fits in no layer while all layers are free is excluded, with the reason.
 
 Since each flight is separated from everything that hovers after it in the order, the next flight
 can always begin once those under way have landed, whatever happens to them. When a flight may begin
@@ -32,8 +32,8 @@ import shapely  # type: ignore[import-untyped, unused-ignore]
 from recon.guidance.fleet_return.flight import (
     CalledVehicle,
     EastNorth,
+    ExcludedVehicle,
     Hovering,
-    LeftOut,
     Place,
     ReturnFlight,
     ReturnPlan,
@@ -69,12 +69,12 @@ def plan_return(
     settings: FleetReturnSettings,
     others: Sequence[Hovering] = (),
     first_wave: int = 1,
-    taken_up_m: Sequence[float] = (),
+    occupied_m: Sequence[float] = (),
 ) -> ReturnPlan:
     """Return the plan for vehicles that hover. `others` hover too and are not called.
 
-    `separation` is the least one with its slack. `taken_up_m` are the layers of flights that are
-    under way. Everyone named is in a flight or left out.
+    `separation` is the least one with its slack. `occupied_m` are the layers of flights that are
+    under way. Everyone named is in a flight or excluded.
     """
     layers_m = layers_up_m(home, settings, separation)
     search = _Search(vehicles, home, separation, layers_m, others)
@@ -84,7 +84,7 @@ def plan_return(
     free_m = [
         layer_m
         for layer_m in layers_m
-        if all(abs(layer_m - other_m) >= separation.vertical_m for other_m in taken_up_m)
+        if all(abs(layer_m - other_m) >= separation.vertical_m for other_m in occupied_m)
     ]
     while waiting:
         flight = search.next_flight(waiting, free_m, wave)
@@ -96,8 +96,8 @@ def plan_return(
             wave, free_m = wave + 1, list(layers_m)
         else:
             break
-    left_out = tuple(LeftOut(v.serial, v.name, search.reason(v, waiting)) for v in waiting)
-    return ReturnPlan(layers_m, tuple(flights), left_out)
+    excluded = tuple(ExcludedVehicle(v.serial, v.name, search.reason(v, waiting)) for v in waiting)
+    return ReturnPlan(layers_m, tuple(flights), excluded)
 
 
 def _turn(vehicle: CalledVehicle) -> tuple[int, float, str]:
@@ -132,7 +132,7 @@ class _Search:
         self._separation = separation
         self._layers_m = layers_m
         self._others = others
-        self._column_faults = {v.serial: self._shut_column(v) for v in vehicles}
+        self._column_faults = {v.serial: self._closed_column(v) for v in vehicles}
         self._faults: dict[tuple[str, float], _Fault] = {}
 
     def next_flight(
@@ -222,9 +222,9 @@ class _Search:
         self, vehicle: CalledVehicle, layer_m: float, others: Sequence[Hovering]
     ) -> _Fault | None:
         """Return why it cannot climb, sink or land: a zone, or a vehicle that hovers there."""
-        shut = self._column_faults[vehicle.serial]
-        if shut is not None:
-            return _Fault(shut)
+        closed = self._column_faults[vehicle.serial]
+        if closed is not None:
+            return _Fault(closed)
         pad, up_m = vehicle.pad, vehicle.place_m[2]
         own = column(vehicle.place_m[:2], up_m, layer_m)
         landing = column(pad.east_north_m, layer_m, pad.up_m)
@@ -240,7 +240,7 @@ class _Search:
                 return _Fault(reason, frozenset({other.key}))
         return None
 
-    def _shut_column(self, vehicle: CalledVehicle) -> str | None:
+    def _closed_column(self, vehicle: CalledVehicle) -> str | None:
         """Why the vehicle can climb or sink neither where it is nor at its pad."""
         if not self._layers_m:
             return None
@@ -250,9 +250,9 @@ class _Search:
             (f"its pad {pad.name} is in", column(pad.east_north_m, pad.up_m, self._layers_m[0])),
         ):
             here = shapely.Point(*spot.start_m)
-            for piece in self._home.shut:
+            for piece in self._home.closed:
                 reaches = spot.high_m > piece.low_up_m and spot.low_m < piece.high_up_m
                 is_over = shapely.distance(piece.area, here) < self._home.margin_m
-                if piece.is_shut_to_columns and reaches and is_over:
+                if piece.blocks_vertical and reaches and is_over:
                     return f"{words} the keep-out zone {piece.name}"
         return None

@@ -1,6 +1,6 @@
 """Level ways home: what a site's air leaves open, and the shortest way through it.
 
-Straight where nothing is shut, else the shortest around (a visibility graph).
+Straight where nothing is closed, else the shortest around (a visibility graph).
 """
 
 from collections.abc import Iterator, Sequence
@@ -19,10 +19,10 @@ from recon.model.airspace import Airspace, HeightDatum, Region, Zone, ZoneKind
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Shut:
-    """A region that is shut from `low_up_m` to `high_up_m`, either of which may be infinite.
+class ClosedVolume:
+    """A region that is closed from `low_up_m` to `high_up_m`, either of which may be infinite.
 
-    `is_shut_to_columns`: also to climbing and sinking on the spot, as a keep-out zone is; least
+    `blocks_vertical`: also to climbing and sinking on the spot, as a keep-out zone is; least
     heights do not hold for takeoff and landing.
     """
 
@@ -30,20 +30,20 @@ class Shut:
     area: shapely.Geometry
     low_up_m: float
     high_up_m: float
-    is_shut_to_columns: bool
+    blocks_vertical: bool
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WayHome:
-    """The heights that layers may have, what is shut between them, and where the site ends.
+    """The heights that layers may have, what is closed between them, and where the site ends.
 
     `lowest_up_m` above `highest_up_m`: there is no room for a layer. `boundary` None: no fence.
-    `margin_m` is kept to the boundary and to what is shut.
+    `margin_m` is kept to the boundary and to what is closed.
     """
 
     lowest_up_m: float
     highest_up_m: float
-    shut: tuple[Shut, ...]
+    closed: tuple[ClosedVolume, ...]
     boundary: shapely.Geometry | None
     margin_m: float
 
@@ -71,28 +71,28 @@ def way_home(
     least_m = max(limits.min_height_above_ground_m, settings.lowest_layer_m)
     near = shapely.buffer(shapely.MultiPoint(places_m).convex_hull, margin_m + OPEN_WAY_M)
     origin_m = 0.0 if airspace.frame is None else airspace.frame.origin.ellipsoid_height_m
-    shut = tuple(
+    closed = tuple(
         piece
         for zone in airspace.zones
-        for piece in _shut_by(zone, origin_m, ground_up_m, settings)
+        for piece in _closed_by(zone, origin_m, ground_up_m, settings)
     )
     tops_m = [
         piece.high_up_m
-        for piece in shut
+        for piece in closed
         if piece.high_up_m <= highest_m and shapely.intersects(piece.area, near)
     ]
     return WayHome(
         lowest_up_m=max([high_ground_m + least_m, *tops_m]),
         highest_up_m=highest_m,
-        shut=shut,
+        closed=closed,
         boundary=None if airspace.boundary is None else _area(airspace.boundary),
         margin_m=margin_m,
     )
 
 
-def _shut_by(
+def _closed_by(
     zone: Zone, origin_m: float, ground_up_m: tuple[float, float], settings: FleetReturnSettings
-) -> Iterator[Shut]:
+) -> Iterator[ClosedVolume]:
     """What a zone shuts; of uneven ground the side that is safe counts."""
     low_ground_m, high_ground_m = ground_up_m
     area = _area(zone.region)
@@ -106,15 +106,15 @@ def _shut_by(
     if zone.kind is ZoneKind.KEEP_OUT:
         low_m = up_m(zone.floor_m, low_ground_m, -inf) - settings.zone_margin_m
         high_m = up_m(zone.ceiling_m, high_ground_m, inf) + settings.zone_margin_m
-        yield Shut(zone.name, area, low_m, high_m, is_shut_to_columns=True)
+        yield ClosedVolume(zone.name, area, low_m, high_m, blocks_vertical=True)
         return
     margin_m = settings.ceiling_margin_m
     if zone.floor_m is not None:
         floor_m = up_m(zone.floor_m, high_ground_m, -inf) + margin_m
-        yield Shut(zone.name, area, -inf, floor_m, is_shut_to_columns=False)
+        yield ClosedVolume(zone.name, area, -inf, floor_m, blocks_vertical=False)
     if zone.ceiling_m is not None:
         ceiling_m = up_m(zone.ceiling_m, low_ground_m, inf) - margin_m
-        yield Shut(zone.name, area, ceiling_m, inf, is_shut_to_columns=False)
+        yield ClosedVolume(zone.name, area, ceiling_m, inf, blocks_vertical=False)
 
 
 def _area(region: Region) -> shapely.Geometry:
@@ -134,7 +134,7 @@ class ReturnPaths:
 
     def __init__(self, home: WayHome) -> None:
         self._home = home
-        self._shut_by: dict[frozenset[int], shapely.Geometry] = {}
+        self._closed_by: dict[frozenset[int], shapely.Geometry] = {}
         self._found: dict[tuple[EastNorth, EastNorth, frozenset[int]], Way | None] = {}
         self._inside = _shrunk(home.boundary, home.margin_m)
         self._inside_corners = _corners(_shrunk(home.boundary, home.margin_m + CLEARANCE_M))
@@ -142,7 +142,7 @@ class ReturnPaths:
 
     def find(self, start_m: EastNorth, end_m: EastNorth, up_m: float) -> Way | None:
         """Return the shortest way at a height, or None."""
-        key = start_m, end_m, self._shut_pieces(up_m)
+        key = start_m, end_m, self._closed_pieces(up_m)
         if key not in self._found:
             self._found[key] = self._search(start_m, end_m, self._shut(up_m))
         return self._found[key]
@@ -160,45 +160,45 @@ class ReturnPaths:
         return self._search(start_m, end_m, shapely.union_all([self._shut(up_m), *circles]))
 
     def is_in_reach(self, place_m: EastNorth, up_m: float) -> bool:
-        """Return whether a place at a height is inside the site and not shut."""
+        """Return whether a place at a height is inside the site and not closed."""
         return bool(self._is_open(np.array([[place_m, place_m]]), self._shut(up_m))[0])
 
-    def _search(self, start_m: EastNorth, end_m: EastNorth, shut: Any) -> Way | None:
-        shapely.prepare(shut)
-        if self._is_open(np.array([[start_m, end_m]]), shut)[0]:
+    def _search(self, start_m: EastNorth, end_m: EastNorth, closed: Any) -> Way | None:
+        shapely.prepare(closed)
+        if self._is_open(np.array([[start_m, end_m]]), closed)[0]:
             return start_m, end_m
-        around = shapely.buffer(shut, CLEARANCE_M, join_style="mitre", mitre_limit=2.0)
+        around = shapely.buffer(closed, CLEARANCE_M, join_style="mitre", mitre_limit=2.0)
         nodes = np.array([start_m, end_m, *_corners(around), *self._inside_corners])
-        return _shortest(nodes, self._open_legs(nodes, shut))
+        return _shortest(nodes, self._open_legs(nodes, closed))
 
-    def _shut_pieces(self, up_m: float) -> frozenset[int]:
-        shut = enumerate(self._home.shut)
-        return frozenset(n for n, piece in shut if piece.low_up_m < up_m < piece.high_up_m)
+    def _closed_pieces(self, up_m: float) -> frozenset[int]:
+        closed = enumerate(self._home.closed)
+        return frozenset(n for n, piece in closed if piece.low_up_m < up_m < piece.high_up_m)
 
     def _shut(self, up_m: float) -> shapely.Geometry:
-        pieces = self._shut_pieces(up_m)
-        if pieces not in self._shut_by:
-            areas = [self._home.shut[number].area for number in sorted(pieces)]
+        pieces = self._closed_pieces(up_m)
+        if pieces not in self._closed_by:
+            areas = [self._home.closed[number].area for number in sorted(pieces)]
             margin_m = self._home.margin_m
-            self._shut_by[pieces] = shapely.union_all(
+            self._closed_by[pieces] = shapely.union_all(
                 [shapely.buffer(area, margin_m, quad_segs=4) for area in areas]
             )
-        return self._shut_by[pieces]
+        return self._closed_by[pieces]
 
-    def _open_legs(self, nodes: npt.NDArray[np.float64], shut: Any) -> npt.NDArray[np.bool_]:
+    def _open_legs(self, nodes: npt.NDArray[np.float64], closed: Any) -> npt.NDArray[np.bool_]:
         """Which of all legs between nodes are open, (N, N)."""
         count = len(nodes)
         first, second = np.triu_indices(count, 1)
         is_open = np.zeros((count, count), dtype=np.bool_)
         legs = np.stack([nodes[first], nodes[second]], axis=1)
-        is_open[first, second] = self._is_open(legs, shut)
+        is_open[first, second] = self._is_open(legs, closed)
         return is_open | is_open.T
 
-    def _is_open(self, legs_m: npt.NDArray[np.float64], shut: Any) -> npt.NDArray[np.bool_]:
+    def _is_open(self, legs_m: npt.NDArray[np.float64], closed: Any) -> npt.NDArray[np.bool_]:
         lines = shapely.linestrings(legs_m)
         is_point = (legs_m[:, 0] == legs_m[:, 1]).all(axis=1)
         lines[is_point] = shapely.points(legs_m[is_point, 0])
-        is_open: npt.NDArray[np.bool_] = ~shapely.intersects(shut, lines)
+        is_open: npt.NDArray[np.bool_] = ~shapely.intersects(closed, lines)
         if self._inside is not None:
             is_open &= shapely.covers(self._inside, lines)
         return is_open

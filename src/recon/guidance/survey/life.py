@@ -250,12 +250,12 @@ def returning(state: SurveyState, vehicles: Sequence[Surveyor]) -> Mapping[str, 
         decision = state.decisions.get(each.serial)
         if decision is not None and decision.returns:
             reasons[each.serial] = decision.text
-        elif each.time_left_s is not None and not _has_a_row(state, each):
+        elif each.time_left_s is not None and not _can_fly_a_row(state, each):
             reasons[each.serial] = NO_BATTERY
     return reasons
 
 
-def _has_a_row(state: SurveyState, surveyor: Surveyor) -> bool:
+def _can_fly_a_row(state: SurveyState, surveyor: Surveyor) -> bool:
     """Whether the battery lasts for the next row, or to wait for one and then return."""
     plan, own = state.plan, state.waiting.get(surveyor.serial)
     if own:

@@ -143,7 +143,7 @@ def with_positions(
 ) -> CoverageProgress:
     """Return the progress with more of a vehicle's way, oldest first; it counts when settled.
 
-    Positions that are out of order, or too near in time to the one before, are left out; of a
+    Positions that are out of order, or too near in time to the one before, are excluded; of a
     burst the last one is kept, which is the freshest.
     """
     waiting = list(progress.waiting.get(serial, ()))

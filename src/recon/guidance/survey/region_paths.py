@@ -107,7 +107,7 @@ def _corners(area: shapely.Geometry) -> FloatArray:
     inner = shapely.buffer(area, -CLEARANCE_M, join_style="mitre")
     tolerance_m = CLEARANCE_M
     while shapely.get_num_coordinates(inner) > MOST_CORNERS and tolerance_m < COARSEST_M:
-        # What is left out lies farther in than the clearance by as much as it may be off.
+        # What is excluded lies farther in than the clearance by as much as it may be off.
         farther_in = shapely.buffer(area, -CLEARANCE_M - tolerance_m, join_style="mitre")
         inner = shapely.simplify(farther_in, tolerance_m)
         tolerance_m *= 2.0

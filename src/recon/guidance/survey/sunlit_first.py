@@ -21,7 +21,7 @@ once. One call of `sunlit_first`:
 7. One that would wait lands at home instead where that costs little sun: with a good battery to
    wait on the ground, with a low one if a change of battery costs less sun now than later.
    One that waits at the rows' height climbs or sinks to its layer first, out of others' rows.
-8. Rows where a vehicle without telemetry may be are left out, and its own rows: the gate would
+8. Rows where a vehicle without telemetry may be are excluded, and its own rows: the gate would
    refuse them. They are flown once it is in contact again, or dismissed by an operator.
 9. Missions may be replaced under way, mostly at the end of a row (`mission_changes`).
 10. If no vehicle is busy and a round of the lawnmower would image most of what is missing in

@@ -104,7 +104,7 @@ def encode_line(stamped: NumberedEntry, before: str) -> bytes:
     line = _json({**head, "details": harmless(dict(entry.details)), "before": before})
     if len(line) <= LONGEST_LINE_BYTES:
         return line
-    return _json({**head, "details": {"left_out_bytes": len(line)}, "before": before})
+    return _json({**head, "details": {"excluded_bytes": len(line)}, "before": before})
 
 
 def decode_line(line: bytes) -> AuditLine:

@@ -64,7 +64,7 @@ class AuditLog:
         utc_ns: Callable[[], int] = time.time_ns,
         quiet_kinds: frozenset[str] = frozenset(),
     ) -> None:
-        """Take the folder, and the kinds that the timeline leaves out.
+        """Take the folder, and the kinds that the timeline excludes.
 
         Nothing is opened before `start`.
         """

@@ -172,7 +172,7 @@ def _put(folder: Path, files: Files) -> None:
 
 
 def _changes(folder: Path) -> list[SavedChange]:
-    """Return the complete changes, the oldest first; unreadable ones are left out."""
+    """Return the complete changes, the oldest first; unreadable ones are excluded."""
     changes = []
     for entry in (folder / HISTORY_FOLDER).glob("[0-9]*"):
         try:

@@ -9,7 +9,7 @@ costs what came in the last third of a second and one write.
 
 While writing fails it is tried again every second and nothing is taken: what waits, and what is
 dropped, is the sender's affair (`record_process.py`). With less than `IMAGES_STOP_BYTES` left on
-the disk, frames are left out, and their bytes on the links; telemetry, orders and audit are written
+the disk, frames are excluded, and their bytes on the links; telemetry, orders and audit are written
 to the last byte.
 
 A file is called `ground-UTC.mcap` until a vehicle takes off, and `flight-UTC.mcap` from then on. Of

@@ -1,13 +1,13 @@
 """Battery critical: the aircraft's serious warning, 10 % left, or too little for the way home.
 
-It is called home at once. What returns already is not landed where it is by default: that place may
+It is recalled at once. What returns already is not landed where it is by default: that place may
 be water, a road or a person, and only the site knows.
 """
 
 from recon.model.failsafe_matrix import FailsafeCondition, Reaction
 from recon.model.severity import Severity
 from recon.model.vehicle import BatteryWarning, VehicleState
-from recon.safety.failsafe.row import ALARM, NO_FIXED, FailsafeRow, FlightFacts, call_home, cells
+from recon.safety.failsafe.row import ALARM, NO_FIXED, FailsafeRow, FlightFacts, cells, recall
 from recon.safety.watchdogs.battery_home import RULE as BATTERY_HOME
 
 
@@ -45,7 +45,7 @@ ROW = FailsafeRow(
     ends="an operator orders otherwise",
     reactions=frozenset({Reaction.ALARM, Reaction.RETURN, Reaction.LAND}),
     why_no_other="a hold saves no battery, and the alarm cannot be switched off",
-    default=cells(call_home(), call_home(), call_home(), ALARM),
+    default=cells(recall(), recall(), recall(), ALARM),
     after_s=0.0,
     alarm_rules=frozenset({"battery", BATTERY_HOME}),
     find=find,

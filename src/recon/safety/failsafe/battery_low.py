@@ -7,7 +7,7 @@ from recon.model.failsafe_matrix import FailsafeCondition, Reaction
 from recon.model.severity import Severity
 from recon.model.vehicle import BatteryWarning, VehicleState
 from recon.safety.failsafe import battery_critical
-from recon.safety.failsafe.row import ALARM, NO_FIXED, FailsafeRow, FlightFacts, call_home, cells
+from recon.safety.failsafe.row import ALARM, NO_FIXED, FailsafeRow, FlightFacts, cells, recall
 from recon.safety.watchdogs.battery_home import RULE as BATTERY_HOME
 
 AFTER_S = 15.0
@@ -41,7 +41,7 @@ ROW = FailsafeRow(
     ends="an operator orders otherwise",
     reactions=frozenset({Reaction.ALARM, Reaction.RETURN, Reaction.LAND}),
     why_no_other="a hold saves no battery, and the alarm cannot be switched off",
-    default=cells(call_home(AFTER_S), call_home(AFTER_S), call_home(AFTER_S), ALARM),
+    default=cells(recall(AFTER_S), recall(AFTER_S), recall(AFTER_S), ALARM),
     after_s=AFTER_S,
     alarm_rules=frozenset({"battery", BATTERY_HOME}),
     find=find,

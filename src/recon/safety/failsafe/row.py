@@ -142,8 +142,8 @@ def hold(after_s: float = 0.0) -> FailsafeCell:
     return FailsafeCell(Reaction.HOLD, after_s)
 
 
-def call_home(after_s: float = 0.0) -> FailsafeCell:
-    """Return a cell that calls home."""
+def recall(after_s: float = 0.0) -> FailsafeCell:
+    """Return a cell that recalls."""
     return FailsafeCell(Reaction.RETURN, after_s)
 
 

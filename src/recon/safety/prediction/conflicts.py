@@ -19,7 +19,7 @@ from recon.safety.separation_minima import SeparationMinima
 from recon.safety.settings import PredictionSettings
 
 _APART_S = 4.0 * FOREVER_S
-"""Trajectories' times are laid one behind the other on one axis, this far apart."""
+"""Trajectories' times are placed one behind the other on one axis, this far apart."""
 
 CLOSER_M = 0.5
 """Two vehicles led apart may seem this much nearer by the noise of their positions."""

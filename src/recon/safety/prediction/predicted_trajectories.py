@@ -241,7 +241,7 @@ def write_order(predictor: Predictor, body: Body) -> None:
 
 
 def _stick(predictor: Predictor, path: StickFlight) -> None:
-    """The velocity is taken up, kept for the stick's time and the reaction, and braked.
+    """The velocity is reached, kept for the stick's time and the reaction, and braked.
 
     A body-frame stick that turns the vehicle reaches anywhere in a disc: at its own speed or the
     vehicle's present one, whichever is faster.
@@ -254,7 +254,7 @@ def _stick(predictor: Predictor, path: StickFlight) -> None:
         writer.grows(reach_m, path.timeout_s + settings.stick.reaction_s, FlightPart.STEERED)
         return
     velocity = path.east_north_mps()
-    _take_up(predictor, velocity)
+    _reach_velocity(predictor, velocity)
     writer.moves(
         writer.east_m + velocity[0] * path.timeout_s,
         writer.north_m + velocity[1] * path.timeout_s,
@@ -281,7 +281,7 @@ def _climbs(predictor: Predictor, band_m: tuple[float, float]) -> None:
     writer.widens(*band_m)
 
 
-def _take_up(predictor: Predictor, velocity: tuple[float, float]) -> None:
+def _reach_velocity(predictor: Predictor, velocity: tuple[float, float]) -> None:
     """Write the change to the stick's velocity: a parabola, within its bow of the chord."""
     writer, settings = predictor.writer, predictor.settings
     east_mps, north_mps, _up_mps = predictor.motion.velocity_mps

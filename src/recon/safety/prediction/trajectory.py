@@ -135,7 +135,7 @@ class TrajectoryWriter:
 
 
 _APART_S = 4.0 * FOREVER_S
-"""Vehicles' times are laid one behind the other on one axis, this far apart."""
+"""Vehicles' times are placed one behind the other on one axis, this far apart."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -38,7 +38,7 @@ def _warned(vehicle: VehicleState, is_away: bool) -> Refusal | None:
     warning = vehicle.battery_warning.value
     if warning is BatteryWarning.SERIOUS:
         return _refused(
-            vehicle, "the aircraft reports a critically low battery; land it or call it home now"
+            vehicle, "the aircraft reports a critically low battery; land it or recall it now"
         )
     if not is_away or warning is BatteryWarning.NONE:
         return None

@@ -27,10 +27,10 @@ def _compared(
     least, reserve = picture.energy.landing_fraction, _reserve(picture)
     figures = f"battery {has:.0%}, way home {needs:.0%}"
     if has < needs + least and not (watched.is_coming_down and has >= needs):
-        text = f"{figures}: it may not reach home; land it or call it home now"
+        text = f"{figures}: it may not reach home; land it or recall it now"
         yield watched.finding(RULE, Severity.CRITICAL, text, after_s=1.0)
     elif has < needs + reserve and not watched.is_coming_down:
-        text = f"{figures}: less than the reserve of {reserve:.0%} would be left; call it home"
+        text = f"{figures}: less than the reserve of {reserve:.0%} would be left; recall it"
         yield watched.finding(RULE, Severity.WARNING, text, after_s=1.0)
 
 

@@ -27,7 +27,7 @@ _SHARED_RULES: Mapping[str, tuple[FailsafeCondition, ...]] = {
 }
 _WILL: Mapping[Reaction, str] = {
     Reaction.HOLD: "the station holds it",
-    Reaction.RETURN: "the station calls it home",
+    Reaction.RETURN: "the station recalls it",
     Reaction.LAND: "the station lands it",
 }
 MAX_NAMES = 8

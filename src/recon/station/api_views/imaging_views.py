@@ -66,7 +66,7 @@ def shade_view(station: Station, now_ns: int) -> schema.ShadeLineView | None:
         frames_dropped=line.frames_dropped,
         rejected=_by_imager(station, {s: each.reason for s, each in line.rejected.items()}) or None,
         error=line.error,
-        reference=_by_imager(station, {s: m.taken_up.note for s, m in memories.items()}),
+        reference=_by_imager(station, {s: m.adopted.note for s, m in memories.items()}),
         lock_problem=_by_imager(station, {s: m.lock_problem for s, m in memories.items()}),
         map=None if line.shade is None else _map(line.shade, line.seen, line.number, now_ns),
         forecast=None if line.sun is None else _forecast(line.sun, line, now_ns),

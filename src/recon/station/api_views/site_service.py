@@ -31,19 +31,19 @@ class FileImports:
     async def read(self, name: str, data: bytes) -> schema.ImportedView:
         """Return the polygons and points of a file, or why it is refused."""
         if self._reading.locked():
-            return schema.ImportedView(features=[], left_out=0, reason=IMPORT_IS_BUSY)
+            return schema.ImportedView(features=[], excluded=0, reason=IMPORT_IS_BUSY)
         try:
             async with self._reading:
                 found = await asyncio.to_thread(read_import, name, data)
         except ReconError as problem:
-            return schema.ImportedView(features=[], left_out=0, reason=str(problem))
+            return schema.ImportedView(features=[], excluded=0, reason=str(problem))
         features = [
             schema.ImportedFeatureView(
                 name=each.name, geometry=schema.DrawnGeometry.model_validate(each.geometry)
             )
             for each in found.features
         ]
-        return schema.ImportedView(features=features, left_out=found.left_out, reason=None)
+        return schema.ImportedView(features=features, excluded=found.excluded, reason=None)
 
 
 @dataclass(slots=True)

@@ -1,7 +1,7 @@
 """The site, as the API sends it: facts, limits, and outlines to draw, bounded in number.
 
 The view is part of every state, so outlines of many corners are simplified; the view has the
-largest error and the number of areas left out. Rules use the site's own outlines.
+largest error and the number of areas excluded. Rules use the site's own outlines.
 """
 
 from collections.abc import Iterator
@@ -64,7 +64,7 @@ def site_view(site: Site) -> schema.SiteView:
         terrain="flat assumed" if site.elevation is None else "model",
         layers=_layers(site),
         areas=[] if site.frame is None else [_area(a, site.frame) for a in drawn],
-        areas_left_out=len(areas) - len(drawn),
+        areas_excluded=len(areas) - len(drawn),
         areas_drawn_within_m=within_m,
         pads=[_pad(pad) for pad in site.airspace.landing_pads],
     )
@@ -101,7 +101,7 @@ def _few(areas: list[_Area]) -> list[_Area]:
 def _thinned(areas: list[_Area]) -> tuple[list[_Area], float]:
     """Return areas with few enough corners together, and how far off their edges may be.
 
-    The tolerance is doubled until it does. What cannot be thinned so far is left out, last first.
+    The tolerance is doubled until it does. What cannot be thinned so far is excluded, last first.
     """
     thin, within_m = areas, 0.0
     while sum(area.corner_count for area in thin) > MAX_CORNERS:

@@ -69,7 +69,7 @@ def _add_audit(app: FastAPI, service: Service) -> None:
     ) -> schema.TimelineView:
         """What happened in this run, the newest first: of all vehicles or one, before a number.
 
-        Positions and details are left out; the audit has them.
+        Positions and details are excluded; the audit has them.
         """
         return timeline_of(service.audit_log, serial, about, before, at_most)
 

@@ -27,7 +27,7 @@ from typing import Any
 
 from recon.guard import messages
 from recon.guard.messages import LinkPicture
-from recon.guard.watch import Act
+from recon.guard.watch import Intervention
 from recon.model.control import Commanded
 from recon.model.errors import describe_fault
 from recon.model.event import GuardActed, StationFaulted
@@ -187,15 +187,23 @@ class GuardLine:
             if message["is"] == messages.ALIVE:
                 self._unanswered = 0
                 continue
-            self.take(messages.act_of(message))
+            self.take(messages.intervention_of(message))
             self._unsent.append((messages.noted_line(), None))
         self._flush()
 
-    def take(self, act: Act) -> None:
+    def take(self, intervention: Intervention) -> None:
         """Take note of something that a guard did."""
-        self._driver.handle(GuardActed(act.why, act.serials, act.names, act.missed, act.by))
-        if act.by is not None:
-            self._service.orders.all_stop(Person(act.by, Role.OPERATOR, "guard's port"))
+        self._driver.handle(
+            GuardActed(
+                intervention.why,
+                intervention.serials,
+                intervention.names,
+                intervention.refused,
+                intervention.by,
+            )
+        )
+        if intervention.by is not None:
+            self._service.orders.all_stop(Person(intervention.by, Role.OPERATOR, "guard's port"))
 
     def _ended(self) -> None:
         self._hang_up()
@@ -235,7 +243,7 @@ def _is_steered(station: Station, vehicle: VehicleState) -> bool:
     return control.stream is not None or control.intent.commanded is Commanded.STICK
 
 
-def take_over_from_orphan(folder: Path) -> tuple[Act, ...]:
+def take_over_from_orphan(folder: Path) -> tuple[Intervention, ...]:
     """Have the guard of a station that has died here close its connections; return what it did."""
     try:
         port = int((folder / PORT_FILE).read_text(encoding="ascii"))
@@ -245,13 +253,15 @@ def take_over_from_orphan(folder: Path) -> tuple[Act, ...]:
     try:
         connection.request("POST", "/give-way", headers={"Content-Length": "0"})
         answer = json.loads(connection.getresponse().read(MOST_ANSWER_BYTES))
-        acts = tuple(messages.act_of(act) for act in answer["acts"])
+        interventions = tuple(
+            messages.intervention_of(intervention) for intervention in answer["interventions"]
+        )
     except (OSError, ValueError, KeyError, TypeError, http.client.HTTPException):
         return ()
     finally:
         connection.close()
     _wait_until_free(port)
-    return acts
+    return interventions
 
 
 def _wait_until_free(port: int) -> None:

@@ -150,8 +150,8 @@ class ReplayService(Service):
         images = newest_images(self.driver.station.imaging)
         if self.playback is None:
             return mosaic(images)
-        laid = (self.playback.laid(each) for each in images)
-        return mosaic([each for each in laid if each is not None])
+        projected = (self.playback.projected(each) for each in images)
+        return mosaic([each for each in projected if each is not None])
 
 
 def replay_service(replay: ReplayStation) -> ReplayService:

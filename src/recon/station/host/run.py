@@ -103,7 +103,7 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
             audit_folder=str(begun.log.folder),
             record_folder=folder or "",
             apps_listed=None if config.apps is None else len(config.apps),
-            taken_up=_taken_up(station, (*begun.troubles, *last_run.troubles)),
+            resumed=_resumed_state(station, (*begun.troubles, *last_run.troubles)),
         )
         await serve(config, driver, service, doors, lambda: on_start(started), stack)
 
@@ -167,7 +167,7 @@ def _start_guard(
     stack: AsyncExitStack,
 ) -> GuardLine | None:
     """Start the guard, after the one of a station that has died here has given way."""
-    acts = take_over_from_orphan(folder)
+    interventions = take_over_from_orphan(folder)
     if config.stop_port is None:
         return None
     stop_socket = listen("127.0.0.1", config.stop_port, "--stop-port")
@@ -175,8 +175,8 @@ def _start_guard(
     service.guard_stop_url = line.stop_url
     stack.callback(line.close)
     line.write_port(folder)
-    for act in acts:
-        line.take(act)
+    for intervention in interventions:
+        line.take(intervention)
     guarding = asyncio.create_task(line.run())
     stack.callback(guarding.cancel)
     return line
@@ -254,7 +254,7 @@ def _settings(config: RunConfig) -> StationSettings:
     )
 
 
-def _taken_up(station: Station, troubles: tuple[str, ...]) -> str:
+def _resumed_state(station: Station, troubles: tuple[str, ...]) -> str:
     """Return what an operator must know after a run that ended in flight."""
     names = [
         station.fleet.vehicles[serial].display_name

@@ -77,7 +77,7 @@ class Started:
     """What other computers use; None when they reach nothing."""
     app_url: str | None = None
     """Address for apps on other devices, as in QR codes; None when they cannot connect."""
-    taken_up: str = ""
+    resumed: str = ""
     """What this run continues from the last one, in words; empty if nothing."""
 
 

@@ -2,8 +2,8 @@
 
 A frame carries no capture time and no telemetry. It is given the telemetry nearest to its estimated
 capture time, relative to the frame on which the site's control points were marked; the worker
-aligns it by its content from there. One frame is laid at a time, of whichever imaging drone has
-waited longest; of each drone the newest one waits.
+aligns it by its content from there. One frame is projected at a time, of whichever imaging drone
+has waited longest; of each drone the newest one waits.
 """
 
 from collections.abc import Iterator
@@ -14,14 +14,14 @@ from recon.model.report import ImageReport
 from recon.model.units import ns_to_seconds, seconds_to_ns
 from recon.model.vehicle import VehicleProfile, VehicleState
 from recon.station.imaging import shade
-from recon.station.imaging.projection import LaidFrame, projection
+from recon.station.imaging.projection import ProjectedFrame, projection
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.imaging import (
     ImagerFrames,
     ImagerSample,
     Imaging,
-    LayFrame,
     LayMarkedFrame,
+    ProjectFrame,
 )
 from recon.station.state.station import Station
 from recon.station.state.steps import Job, JobKind, Stepped
@@ -96,7 +96,7 @@ def _utc_s(station: Station, frame: Frame) -> float | None:
 def with_frame(
     imager: ImagerFrames, frame: Frame, is_flying: bool, captured_utc_s: float | None = None
 ) -> ImagerFrames:
-    """Return the state in which a frame waits to be laid, in place of one that waited before.
+    """Return the state in which a frame waits to be projected, in place of one that waited before.
 
     It does not without telemetry at its capture, or without a marked frame on the ground.
     """
@@ -109,7 +109,7 @@ def with_frame(
             return imager
         reference = sample.telemetry
     dropped = imager.frames_dropped + (imager.waiting is not None)
-    waiting = LayFrame(frame, sample.telemetry, reference, captured_utc_s)
+    waiting = ProjectFrame(frame, sample.telemetry, reference, captured_utc_s)
     if imager.marked_pose is not None:
         waiting = LayMarkedFrame(
             frame, sample.telemetry, reference, captured_utc_s, marked_pose=imager.marked_pose
@@ -127,7 +127,7 @@ def started(station: Station, imaging: Imaging) -> Stepped:
     imager = imaging.imagers[serial]
     imaging = _with_imager(imaging, replace(imager, waiting=None))
     imaging = replace(imaging, job_id=number, job_serial=serial, next_job_id=number + 1)
-    job = Job(number, LAY_FRAME, replace(work, registration=imager.registration))
+    job = Job(number, PROJECT_FRAME, replace(work, registration=imager.registration))
     return replace(station, imaging=imaging), (job,)
 
 
@@ -177,14 +177,16 @@ def sample_at(samples: tuple[ImagerSample, ...], at_ns: int) -> ImagerSample | N
     return nearest
 
 
-def _laid(station: Station, job_id: int, laid: LaidFrame, _now_ns: int) -> Stepped:
+def _projected(station: Station, job_id: int, projected: ProjectedFrame, _now_ns: int) -> Stepped:
     """Keep a ground image unless a newer one is there already, and read it for shade."""
-    imaging, image = station.imaging, laid.image
+    imaging, image = station.imaging, projected.image
     imager = imaging.imagers.get(image.serial)
     if imager is None:
         return station, ()
     if job_id == imaging.job_id:
-        imager = replace(imager, registration=laid.registration, registration_problem=laid.problem)
+        imager = replace(
+            imager, registration=projected.registration, registration_problem=projected.problem
+        )
         imaging = replace(imaging, job_id=None)
     latest = imager.ground_image
     is_newer = latest is None or latest.captured_at_ns <= image.captured_at_ns
@@ -197,7 +199,7 @@ def _laid(station: Station, job_id: int, laid: LaidFrame, _now_ns: int) -> Stepp
     return station, (*next_job, *outputs)
 
 
-def _not_laid(station: Station, job_id: int, error: str, _now_ns: int) -> Stepped:
+def _not_projected(station: Station, job_id: int, error: str, _now_ns: int) -> Stepped:
     imaging = station.imaging
     if job_id != imaging.job_id:
         return station, ()
@@ -217,7 +219,7 @@ def _ended(station: Station, imager: ImagerFrames) -> Stepped:
     return started(station, replace(_with_imager(station.imaging, imager), job_id=None))
 
 
-LAY_FRAME: JobKind[LayFrame, LaidFrame] = JobKind(
-    "lay_frame", projection, _laid, _not_laid, _dropped
+PROJECT_FRAME: JobKind[ProjectFrame, ProjectedFrame] = JobKind(
+    "project_frame", projection, _projected, _not_projected, _dropped
 )
 """Aligns a frame and projects it on the site's ground grid."""

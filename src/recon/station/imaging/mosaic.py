@@ -11,7 +11,7 @@ WORST_FIRST = (Registration.LOST, Registration.UNREGISTERED, Registration.REGIST
 
 
 def newest_images(imaging: Imaging) -> tuple[GroundImage, ...]:
-    """Return each imaging drone's newest ground image, the newest first, without those left out."""
+    """Return each imaging drone's newest ground image, the newest first, without those excluded."""
     every = (each.ground_image for each in imaging.imagers.values())
     known = sorted((image for image in every if image is not None), key=_captured_ns, reverse=True)
     return tuple(

@@ -23,14 +23,14 @@ from recon.model.replacing import replace
 from recon.model.units import ns_to_seconds
 from recon.model.vehicle import VehicleProfile
 from recon.site import Imager, Site
-from recon.station.state.imaging import LayFrame, LayMarkedFrame
+from recon.station.state.imaging import LayMarkedFrame, ProjectFrame
 
 SETTINGS = RegistrationSettings()
 _SEARCHING = "the image circle is not found in the frames yet"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class LaidFrame:
+class ProjectedFrame:
     """A ground image, what registration keeps, and why the frame was not aligned, if so."""
 
     image: GroundImage
@@ -57,7 +57,7 @@ class LensViews:
         return self._newest
 
 
-def projection(site: Site) -> Callable[[LayFrame], LaidFrame]:
+def projection(site: Site) -> Callable[[ProjectFrame], ProjectedFrame]:
     """Return the work on one frame for a site; raises `ReconError` without an imaging drone."""
     if not site.imagers or site.frame is None or site.ground_grid is None:
         raise ReconError("the site has no imaging drone with a ground grid")
@@ -67,24 +67,24 @@ def projection(site: Site) -> Callable[[LayFrame], LaidFrame]:
         for serial, imager in site.imagers.items()
     }
 
-    def lay(work: LayFrame) -> LaidFrame:
+    def project(work: ProjectFrame) -> ProjectedFrame:
         imager, views = site.imagers[work.frame.serial], lenses[work.frame.serial]
         rgb = decode_frame(work.frame)
         state, found = _registered(views, work, rgb, _telemetry_pose(site, imager, frame, work))
         image = replace(
-            views.projector.lay_decoded(work.frame, rgb, found.pose),
+            views.projector.project_decoded(work.frame, rgb, found.pose),
             registration=found.registration,
             registration_residual_m=found.residual_m,
             toward_sun_enu=_toward_sun_enu(frame, work.captured_utc_s),
             exposure_locked=imager.exposure_locked,
         )
-        return LaidFrame(image, state, found.problem)
+        return ProjectedFrame(image, state, found.problem)
 
-    return lay
+    return project
 
 
 def _registered(
-    views: LensViews, work: LayFrame, rgb: RgbImage, prior: CameraPose
+    views: LensViews, work: ProjectFrame, rgb: RgbImage, prior: CameraPose
 ) -> tuple[RegistrationState, RegisteredPose]:
     view = views.view_for(rgb)
     if view is None:
@@ -93,7 +93,9 @@ def _registered(
     return step(view, work.registration, rgb, prior, ns_to_seconds(work.frame.captured_at_ns))
 
 
-def _telemetry_pose(site: Site, imager: Imager, frame: LocalFrame, work: LayFrame) -> CameraPose:
+def _telemetry_pose(
+    site: Site, imager: Imager, frame: LocalFrame, work: ProjectFrame
+) -> CameraPose:
     """Return the camera's pose at capture by the marked frame and telemetry."""
     marked, now = work.reference, work.telemetry
     mount = site.profiles.get(imager.serial, VehicleProfile(imager.serial)).mount

@@ -18,7 +18,7 @@ class ReturnSettings:
     """Longest time until a held aircraft hovers: 6 s from 15 m/s, and up to 2 s to the hold."""
 
     telemetry_within_s: float = 3.0
-    """A waiting vehicle without telemetry for so long may do anything: it is left out."""
+    """A waiting vehicle without telemetry for so long may do anything: it is excluded."""
 
     judged_again_s: float = 1.0
     """A flight that the gate refuses for now is judged again after this."""
@@ -43,7 +43,7 @@ class ReturnSettings:
 
     moved_m: float = 10.0
     """A waiting vehicle this far from where it was has been moved by its pilot, or drifts without
-    holding its position; either way it is left out."""
+    holding its position; either way it is excluded."""
 
     hovers_after_s: float = 3.0
     """A flight out of its mission and its landing for so long was ended by the pilot, the app or

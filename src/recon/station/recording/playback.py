@@ -50,7 +50,7 @@ STEPS_AHEAD_NS = seconds_to_ns(1.25 * KEYFRAME_S)
 """Further ahead, a keyframe is nearer than the present state."""
 LONGEST_NS = seconds_to_ns(14 * 86_400.0)
 LATE_NS = seconds_to_ns(5.0)
-"""A frame is laid on the ground, a map recorded, within so long of its capture."""
+"""A frame is projected on the ground, a map recorded, within so long of its capture."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,7 +83,7 @@ class Playback:
         images = {t for t in self._file.topics if t.endswith(("/image", "/jpeg"))}
         self._played_topics = {STEPS_TOPIC, KEYFRAMES_TOPIC, SHADE_TOPIC, SUN_TOPIC, *images}
         self._projector: tuple[str, GroundProjector] | None = None
-        self._laid: GroundImage | None = None
+        self._projected: GroundImage | None = None
         self._is_astray = False
         """Whether a move ended at damage: what comes after it in the file is not the next event."""
         self._begin()
@@ -133,12 +133,12 @@ class Playback:
                 return replace(newest, rgb=report.rgb, jpeg=report.jpeg)
         return None
 
-    def laid(self, image: GroundImage) -> GroundImage | None:
+    def projected(self, image: GroundImage) -> GroundImage | None:
         """Return a ground image of the state with its pixels: its frame, projected again."""
         with self._lock:
-            kept = self._laid
+            kept = self._projected
             if kept is None or (kept.serial, kept.frame_id) != (image.serial, image.frame_id):
-                kept = self._laid = self._project(image)
+                kept = self._projected = self._project(image)
         if kept is None:
             return None
         return replace(image, rgb=kept.rgb, valid=kept.valid)
@@ -158,7 +158,7 @@ class Playback:
             projector = GroundProjector(grid, imager.camera, imager.image_circle)
             self._projector = image.serial, projector
         with suppress(ReconError, ValueError):
-            return self._projector[1].lay_decoded(frame, decode_frame(frame), image.pose)
+            return self._projector[1].project_decoded(frame, decode_frame(frame), image.pose)
         return None
 
     def _read_start(self) -> FlightStart:
@@ -252,7 +252,7 @@ class Playback:
             event = self._event(item)
             if event is not None:
                 # The state between keyframes lacks what jobs gave. An event that it cannot take
-                # is left out: the next keyframe has what it did.
+                # is excluded: the next keyframe has what it did.
                 with suppress(Exception):
                     self._station, _ = step(self._station, event, item.log_ns)
 

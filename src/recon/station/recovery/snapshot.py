@@ -208,7 +208,7 @@ def _unidentified(station: Station, now_ns: int) -> Iterable[tuple[str, VehicleS
 
 
 def _stop_latch(station: Station) -> StopLatchSnapshot | None:
-    """A release beyond the limit is left out: that vehicle is latched again."""
+    """A release beyond the limit is excluded: that vehicle is latched again."""
     latch = station.stop_latch
     if latch is None:
         return None

@@ -22,19 +22,19 @@ class Stage(Enum):
     LANDED = "landed"
     RELEASED = "released"
     """Its pilot or a newer order controls it now."""
-    LEFT_OUT = "left_out"
+    EXCLUDED = "excluded"
     """It is not flown home: the operator must see to it."""
 
 
-ENDED = (Stage.LANDED, Stage.RELEASED, Stage.LEFT_OUT)
+ENDED = (Stage.LANDED, Stage.RELEASED, Stage.EXCLUDED)
 UNDER_WAY = (Stage.ORDERED, Stage.FLYING)
 
 
 @dataclass(frozen=True, slots=True)
 class ReturningVehicle:
-    """One vehicle that was called home.
+    """One vehicle that was recalled.
 
-    `reason`: why it waits, was released or is left out. `link_id` is its link when it was
+    `reason`: why it waits, was released or is excluded. `link_id` is its link when it was
     called: telemetry on another link may be of another flight. `hold_id` and `mission_id`
     are the return's own orders to it. `clears` names the vehicle that must first be carried off
     its pad.
@@ -71,7 +71,7 @@ class ReturningVehicle:
 
 @dataclass(frozen=True, slots=True)
 class FleetReturn:
-    """All vehicles called home, by serial. `frame` is the frame of the plan's positions."""
+    """All vehicles recalled, by serial. `frame` is the frame of the plan's positions."""
 
     by: str
     called_at_ns: int

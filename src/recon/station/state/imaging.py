@@ -32,7 +32,7 @@ class ImagerSample:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class LayFrame:
+class ProjectFrame:
     """A frame to project, the telemetry at its capture, and that of the marked frame."""
 
     frame: Frame
@@ -45,7 +45,7 @@ class LayFrame:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class LayMarkedFrame(LayFrame):
+class LayMarkedFrame(ProjectFrame):
     """A frame to project by a pose that was marked in this run.
 
     A type of its own: without such a pose a job's input is what earlier records have.
@@ -79,21 +79,21 @@ class ImagerFrames:
     registration: RegistrationState = field(default_factory=RegistrationState)
     registration_problem: str = ""
     """Why the newest frame was not aligned; empty if it was."""
-    waiting: LayFrame | LayMarkedFrame | None = None
+    waiting: ProjectFrame | LayMarkedFrame | None = None
     frames_dropped: int = 0
     latest_error: str | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Imaging:
-    """The site's imaging drones, and the one job that lays a frame of one of them."""
+    """The site's imaging drones, and the one job that projects a frame of one of them."""
 
     imagers: Mapping[str, ImagerFrames] = field(default_factory=lambda: NONE)
     """Frames by serial, in the order of the site's file."""
     job_id: int | None = None
     """Id of the running job."""
     job_serial: str = ""
-    """The imaging drone whose frame it lays."""
+    """The imaging drone whose frame it projects."""
     next_job_id: int = 1
 
 

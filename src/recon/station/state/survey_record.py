@@ -53,7 +53,7 @@ class SurveyMember:
 
     `number` and `command_id` are its newest mission's, as the survey and the station count.
     `may_take_off` is the operator's permission, for one takeoff. `stop_reason`: why it gets no
-    mission until it is started again. `return_reason`: why it was called home. `unsent_since_ns`:
+    mission until it is started again. `return_reason`: why it was recalled. `unsent_since_ns`:
     since when no mission could be sent to it, for reasons that time may end.
     """
 

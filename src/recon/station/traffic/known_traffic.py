@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from recon.fleet import pairing
-from recon.fleet.identity import has_no_room, without
+from recon.fleet.identity import is_full, without
 from recon.model.command import FlyMission, Phase
 from recon.model.control import Commanded, Intent
 from recon.model.event import HazardDismissed
@@ -32,7 +32,7 @@ def in_the_air(station: Station) -> Iterator[tuple[VehicleState, str | None]]:
     """Yield every vehicle, and every link without one, that flies or was last known to.
 
     With it the serial that is claimed for it: a link in conflict, or one that waits to be admitted,
-    claims another vehicle's. A dismissed hazard area is left out until new telemetry arrives.
+    claims another vehicle's. A dismissed hazard area is excluded until new telemetry arrives.
     """
     dismissed = station.watchdog_state.dismissed
     for serial, vehicle in station.fleet.vehicles.items():
@@ -129,7 +129,7 @@ def dismiss(station: Station, event: HazardDismissed, now_ns: int) -> Station:
     received_at_ns = station.fleet.vehicles[event.serial].core_received_at_ns
     dismissed = {**watch.dismissed, event.serial: received_at_ns}
     station = replace(station, watchdog_state=replace(watch, dismissed=dismissed))
-    return _with_room(station) if has_no_room(station.fleet) else station
+    return _with_room(station) if is_full(station.fleet) else station
 
 
 def _with_room(station: Station) -> Station:

@@ -13,7 +13,7 @@ export const BRIEF_MS = 400;
 /** A button that acts after being held for its time while its subject stays the same. */
 export function GuardButton(props: {
   label: string;
-  /** What the label leaves out, such as the vehicle's name; follows it in the accessible name. */
+  /** What the label excludes, such as the vehicle's name; follows it in the accessible name. */
   of?: string;
   hold_ms: number;
   /** Changes whenever the button's action changes; empty disables it. */

@@ -117,7 +117,7 @@ function Returning(props: { vehicle: ReturningView }) {
 
 /** Whether an operator must act: the station does not fly this vehicle home. */
 export function needsOperator({ stage }: ReturningView): boolean {
-  return stage === "left_out";
+  return stage === "excluded";
 }
 
 export function landedCount(view: FleetReturnView): number {

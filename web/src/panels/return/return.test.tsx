@@ -28,7 +28,7 @@ const VIEW: FleetReturnView = {
   vehicles: [
     returning("A", { stage: "landed" }),
     returning("B", { wave: 2, stage: "waiting", reason: "pad in use by A" }),
-    returning("C", { wave: null, stage: "left_out", reason: "height unknown" }),
+    returning("C", { wave: null, stage: "excluded", reason: "height unknown" }),
     returning("D"),
   ],
 };

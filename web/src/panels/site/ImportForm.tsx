@@ -8,7 +8,7 @@ import { formatQuantity } from "../../text/quantities";
 import { FileButton } from "../FileButton";
 import { NoticeLine } from "./NoticeLine";
 
-const LEFT_OUT = "";
+const EXCLUDED = "";
 
 /** A file of another program: read by the station, shown dotted on the map, and added as it is chosen here. */
 export function ImportForm() {
@@ -79,11 +79,11 @@ function Choice(props: { choice: ImportChoice; index: number }) {
         </span>
         <select
           class="field"
-          value={props.choice.layer ?? LEFT_OUT}
+          value={props.choice.layer ?? EXCLUDED}
           onChange={(event) =>
             siteDraft.choose(
               props.index,
-              event.currentTarget.value === LEFT_OUT
+              event.currentTarget.value === EXCLUDED
                 ? null
                 : (event.currentTarget.value as LayerName),
             )
@@ -92,7 +92,7 @@ function Choice(props: { choice: ImportChoice; index: number }) {
           <For each={fitting()}>
             {(layer) => <option value={layer}>{text.siteLayers[layer].name}</option>}
           </For>
-          <option value={LEFT_OUT}>{text.imports.leave}</option>
+          <option value={EXCLUDED}>{text.imports.leave}</option>
         </select>
       </label>
     </li>

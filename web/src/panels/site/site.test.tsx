@@ -200,7 +200,7 @@ describe("an imported file", () => {
         { name: "west", geometry: polygon },
         { name: "<b>east</b>", geometry: polygon },
       ],
-      left_out: 0,
+      excluded: 0,
       reason: null,
     };
     const section = find(page.root, ".site-import");

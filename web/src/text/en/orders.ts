@@ -199,7 +199,7 @@ export const fleetReturn = {
     flying: "flying home",
     landed: "landed",
     released: "under other control",
-    left_out: "not included",
+    excluded: "not included",
   } satisfies Record<ReturningView["stage"], string>,
   since: (age: string, height: string | null, pad: string | null) =>
     [

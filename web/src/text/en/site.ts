@@ -100,12 +100,12 @@ export const imports = {
   choose: "Choose what each becomes. A press on its shape takes it or leaves it out.",
   list: "Imported features",
   add: (count: number) => `Add ${plural(count, "feature")}`,
-  leaveAll: "Leave out all",
-  leave: "Leave out",
+  leaveAll: "Exclude all",
+  leave: "Exclude",
   unnamed: (number: number) => `Feature ${number}`,
   read: (file: string, count: number) => `${file}: ${count} read`,
   readSome: (file: string, count: number, left: number) =>
-    `${file}: ${count} read; ${left} neither polygon nor point, left out`,
+    `${file}: ${count} read; ${left} neither polygon nor point, skipped`,
 };
 
 /** The site's vehicles as a table. */

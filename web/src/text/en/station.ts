@@ -5,7 +5,7 @@ import type { FlightFile, LinkView, TimelineSubject } from "../../protocol";
 export const connection = {
   lost: "No connection to the station.",
   noData: "No data received yet.",
-  /** `age` is an element that screen readers leave out. */
+  /** `age` is an element that screen readers exclude. */
   dataIsOld: (age: JSX.Element): JSX.Element => ["All data below is ", age, " old."],
   reconnecting: (reason: string, attempt: number) =>
     `${reason}; reconnecting (attempt ${attempt}).`,

@@ -6,7 +6,7 @@ memory only: after a restart no fleet return continues.
 """
 
 from recon.model.event import FleetReturnOrdered
-from recon.station.operations.fleet_return.commands import audit_entries, call_home
+from recon.station.operations.fleet_return.commands import audit_entries, recall
 from recon.station.operations.fleet_return.conditions import conditions
 from recon.station.operations.fleet_return.execution import advance
 from recon.station.operations.operation import Operation
@@ -16,6 +16,6 @@ FLEET_RETURN = Operation(
     name="fleet return",
     tick=advance,
     conditions=conditions,
-    commands=(on(FleetReturnOrdered, call_home),),
+    commands=(on(FleetReturnOrdered, recall),),
     audit=audit_entries,
 )

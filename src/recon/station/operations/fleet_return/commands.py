@@ -19,7 +19,7 @@ from recon.station.state.steps import Output, Stepped
 RULE = "fleet_return"
 
 
-def call_home(station: Station, event: FleetReturnOrdered, now_ns: int) -> Stepped:
+def recall(station: Station, event: FleetReturnOrdered, now_ns: int) -> Stepped:
     """Begin a fleet return, or let more vehicles join the one under way.
 
     Each serial gets one order, with a number of its own: the hold that it begins with, or a
@@ -54,7 +54,7 @@ def join(station: Station, hold: OperatorOrder, by: str, now_ns: int) -> Stepped
 
 
 def refusal(station: Station, serial: str) -> Refusal | None:
-    """Return why a vehicle cannot be called home, else None; the gate judges its hold.
+    """Return why a vehicle cannot be recalled, else None; the gate judges its hold.
 
     One controlled by guidance is taken from it by the hold, as by any other order.
     """
@@ -68,7 +68,7 @@ def refusal(station: Station, serial: str) -> Refusal | None:
         return Refusal(
             RULE,
             f"{name} is controlled by the pilot ({authority.reason}); ask the pilot, take control, "
-            "then call it home",
+            "then recall it",
         )
     running = station.fleet_return
     member = None if running is None else running.members.get(serial)
@@ -82,7 +82,7 @@ def audit_entries(
 ) -> Iterator[AuditEntry]:
     """Yield an entry for the command; what follows is orders, which have their own."""
     if isinstance(event, FleetReturnOrdered):
-        text = f"{len(event.serials)} vehicles are called home in layers"
+        text = f"{len(event.serials)} vehicles are recalled in layers"
         details = {"first_id": event.first_command_id, "serials": list(event.serials)}
         yield AuditEntry("fleet_return.ordered", text, event.by, details=details)
 

@@ -14,14 +14,14 @@ RULE_PAD = "pad_to_clear"
 
 
 def conditions(station: Station) -> Iterator[Condition]:
-    """Yield what an operator must see to: vehicles left out, pads to be cleared."""
+    """Yield what an operator must see to: vehicles excluded, pads to be cleared."""
     running = station.fleet_return
     if running is None:
         return
     for member in running.members.values():
         if is_still_left(station, member):
             text = (
-                f"{member.name} is left out of the fleet return: {member.reason}. Order its own "
+                f"{member.name} is excluded from the fleet return: {member.reason}. Order its own "
                 "return home (it climbs to the aircraft's go-home height first), land it, or let "
                 "its pilot fly it back"
             )

@@ -2,7 +2,7 @@
 
 Each vehicle goes through stages (`Stage`); five times a second they are read anew:
 
-- *Stopping*: it was commanded to hold. At rest within 12 s it waits; else it is left out.
+- *Stopping*: it was commanded to hold. At rest within 12 s it waits; else it is excluded.
 - *Waiting*: it hovers. When none is stopping, the worker plans all that wait: a layer, a wave and a
   landing mission each. Then the first vehicle in turn begins whose layer, pad and path are free,
   and only one at a time, for each changes what others may do. A refusal of the gate that time may
@@ -10,11 +10,11 @@ Each vehicle goes through stages (`Stage`); five times a second they are read an
   that wait are blocked by something that does not end without a command, or temporary zones have
   changed, they are planned again.
 - *Ordered*, then *flying*: its mission was approved; telemetry shows it.
-- Ends: *landed*; *released*, when its pilot or a newer order controls it; *left out*, when anything
+- Ends: *landed*; *released*, when its pilot or a newer order controls it; *excluded*, when anything
   else went wrong, with an alarm and its reason. Nothing that went wrong is resumed automatically.
 
-A vehicle whose mission was ignored is held when it is left out: begun late, the mission would cross
-the paths of others. At the end, what guidance had called home goes back to the operator.
+A vehicle whose mission was ignored is held when it is excluded: begun late, the mission would cross
+the paths of others. At the end, what guidance had recalled goes back to the operator.
 """
 
 from dataclasses import replace
@@ -89,7 +89,7 @@ def _with_zones_of_now(station: Station, running: FleetReturn) -> FleetReturn:
 
 
 def _hand_back_ended(station: Station, now_ns: int) -> Station:
-    """Give vehicles that guidance called home back to the operator at their end.
+    """Give vehicles that guidance recalled back to the operator at their end.
 
     Those given to guidance again since then stay with it.
     """
@@ -105,7 +105,7 @@ def _hand_back_ended(station: Station, now_ns: int) -> Station:
 def _hold_late_starters(station: Station, running: FleetReturn, now_ns: int) -> Stepped:
     """Hold vehicles whose mission was ignored: begun now, it would cross the paths of others."""
     outputs: list[Output] = []
-    for member in running.at(Stage.LEFT_OUT):
+    for member in running.at(Stage.EXCLUDED):
         record = station.orders.records.get(member.mission_id or 0)
         if member.since_ns != now_ns or record is None or record.phase is not Phase.TIMED_OUT:
             continue
@@ -127,7 +127,7 @@ def _begin_one(
         for member in ready:
             flight = traffic.from_here(member)
             if flight is None:
-                running = running.put(member.at(Stage.LEFT_OUT, now_ns, MOVED))
+                running = running.put(member.at(Stage.EXCLUDED, now_ns, MOVED))
                 continue
             hindered = traffic.hindrance(flight, running)
             running = running.put(member.waits_for(hindered or ""))

@@ -37,7 +37,7 @@ AROUND_M = 50.0
 def in_the_air(station: Station, frame: LocalFrame) -> dict[str, Hovering]:
     """Return the last known position of everything that flies, or may; by serial, or by link.
 
-    Vehicles without any known position are left out: the gate refuses all motion because of them.
+    Vehicles without any known position are excluded: the gate refuses all motion because of them.
     """
     flying = {
         serial: vehicle
@@ -145,7 +145,7 @@ class ReturnPlanRequest:
     separation: Separation
     settings: ReturnSettings
     first_wave: int
-    taken_up_m: tuple[float, ...]
+    occupied_m: tuple[float, ...]
     """Layers of the flights that are under way."""
 
 
@@ -162,7 +162,7 @@ def make_plan(work: ReturnPlanRequest) -> ReturnPlan:
         settings,
         work.others,
         work.first_wave,
-        work.taken_up_m,
+        work.occupied_m,
     )
 
 
@@ -174,12 +174,12 @@ def ask(
         within_s = settings.planned_within_s
         if now_ns - running.planning_since_ns < seconds_to_ns(within_s):
             return running, ()
-        return _left_out(running, f"it was not planned within {within_s:g} s", now_ns), ()
+        return _excluded(running, f"it was not planned within {within_s:g} s", now_ns), ()
     vehicles: list[CalledVehicle] = []
     for member in running.at(Stage.WAITING):
         found = returning(station, member.serial, running.frame)
         if isinstance(found, str):
-            running = running.put(member.at(Stage.LEFT_OUT, now_ns, found))
+            running = running.put(member.at(Stage.EXCLUDED, now_ns, found))
         else:
             vehicles.append(found)
     if not vehicles:
@@ -199,10 +199,10 @@ def _planned(station: Station, job_id: int, plan: ReturnPlan, now_ns: int) -> St
         member = running.members[flight.serial]
         if member.stage is Stage.WAITING:
             running = running.put(replace(member, flight=flight))
-    for left in plan.left_out:
+    for left in plan.excluded:
         member = running.members[left.serial]
         if member.stage is Stage.WAITING:
-            running = running.put(member.at(Stage.LEFT_OUT, now_ns, left.reason))
+            running = running.put(member.at(Stage.EXCLUDED, now_ns, left.reason))
     turns = tuple(flight.serial for flight in plan.flights)
     return replace(station, fleet_return=replace(running, turns=turns)), ()
 
@@ -212,7 +212,7 @@ def _not_planned(station: Station, job_id: int, error: str, now_ns: int) -> Step
     if running is None or running.planning_since_ns != job_id:
         return station, ()
     reason = f"its flight home could not be planned: {error}"
-    return replace(station, fleet_return=_left_out(running, reason, now_ns)), ()
+    return replace(station, fleet_return=_excluded(running, reason, now_ns)), ()
 
 
 def _dropped(station: Station, job_id: int, _now_ns: int) -> Stepped:
@@ -260,8 +260,8 @@ def _wave(member: ReturningVehicle) -> int:
     return 0 if member.flight is None or is_waiting else member.flight.wave
 
 
-def _left_out(running: FleetReturn, reason: str, now_ns: int) -> FleetReturn:
+def _excluded(running: FleetReturn, reason: str, now_ns: int) -> FleetReturn:
     for member in running.at(Stage.WAITING):
         if member.flight is None:
-            running = running.put(member.at(Stage.LEFT_OUT, now_ns, reason))
+            running = running.put(member.at(Stage.EXCLUDED, now_ns, reason))
     return replace(running, planning_since_ns=None)

@@ -35,7 +35,7 @@ def updated(
         return member
     vehicle = station.fleet.vehicles.get(member.serial)
     if vehicle is None:
-        return member.at(Stage.LEFT_OUT, now_ns, "it was removed from the fleet")
+        return member.at(Stage.EXCLUDED, now_ns, "it was removed from the fleet")
     taken = _taken(station, member, now_ns)
     if taken is not None:
         return taken
@@ -43,7 +43,7 @@ def updated(
         return _under_way(station, member, vehicle, settings, now_ns)
     broken = _broken(vehicle, member, settings, now_ns)
     if broken is not None:
-        return member.at(Stage.LEFT_OUT, now_ns, broken)
+        return member.at(Stage.EXCLUDED, now_ns, broken)
     if vehicle.is_flying.value is False:
         return member.at(Stage.LANDED, now_ns, "it landed on its own or was landed by its pilot")
     return _stopping(member, vehicle, settings, now_ns)
@@ -66,16 +66,16 @@ def newest_motion(station: Station, serial: str, *, own: bool = True) -> OrderRe
 
 
 def is_still_left(station: Station, member: ReturningVehicle) -> bool:
-    """Return whether a vehicle left out still flies, without any order since."""
+    """Return whether a vehicle excluded still flies, without any order since."""
     vehicle = station.fleet.vehicles.get(member.serial)
-    if member.stage is not Stage.LEFT_OUT or vehicle is None or vehicle.is_flying.value is False:
+    if member.stage is not Stage.EXCLUDED or vehicle is None or vehicle.is_flying.value is False:
         return False
     newest = newest_motion(station, member.serial)
     return newest is None or newest.command.issued_at_ns <= member.since_ns
 
 
 def _taken(station: Station, member: ReturningVehicle, now_ns: int) -> ReturningVehicle | None:
-    """The vehicle released or left out, if another holder or a newer order controls it."""
+    """The vehicle released or excluded, if another holder or a newer order controls it."""
     if station.is_stopped(member.serial):
         return member.at(Stage.RELEASED, now_ns, "it is held by an all stop")
     authority = station.control(member.serial).authority
@@ -91,13 +91,13 @@ def _taken(station: Station, member: ReturningVehicle, now_ns: int) -> Returning
         return member.at(Stage.RELEASED, now_ns, words)
     if isinstance(command.body, Hover) and member.stage not in UNDER_WAY:
         return None  # it hovers anyway
-    return member.at(Stage.LEFT_OUT, now_ns, words)
+    return member.at(Stage.EXCLUDED, now_ns, words)
 
 
 def _broken(
     vehicle: VehicleState, member: ReturningVehicle, settings: ReturnSettings, now_ns: int
 ) -> str | None:
-    """Why a vehicle that waits is left out: its connection was interrupted since the call."""
+    """Why a vehicle that waits is excluded: its connection was interrupted since the call."""
     if vehicle.link_id != member.link_id:
         return "its connection was interrupted since it was called; nothing resumes automatically"
     if not _has_telemetry(vehicle, settings.telemetry_within_s, now_ns):
@@ -125,7 +125,7 @@ def _stopping(
     if now_ns - member.since_ns < seconds_to_ns(settings.stands_within_s):
         return member
     within_s = settings.stands_within_s
-    return member.at(Stage.LEFT_OUT, now_ns, f"it did not stop within {within_s:g} s of its hold")
+    return member.at(Stage.EXCLUDED, now_ns, f"it did not stop within {within_s:g} s of its hold")
 
 
 def _under_way(
@@ -139,7 +139,7 @@ def _under_way(
     if vehicle.is_flying.value is False and (vehicle.core_received_at_ns or 0) > member.since_ns:
         return member.at(Stage.LANDED, now_ns)
     if record is not None and record.phase in _NOT_FLOWN:
-        return member.at(Stage.LEFT_OUT, now_ns, f"its {mission_end_text(record)}")
+        return member.at(Stage.EXCLUDED, now_ns, f"its {mission_end_text(record)}")
     if member.stage is not Stage.ORDERED:
         return _still_flying(member, vehicle, settings, now_ns)
     is_flown = record is not None and record.phase in _FLOWN
@@ -162,7 +162,7 @@ def _still_flying(
     if now_ns - since_ns < seconds_to_ns(settings.hovers_after_s):
         return member
     words = mode.value.name.lower().replace("_", " ")
-    return member.at(Stage.LEFT_OUT, now_ns, f"its mission ended before it landed ({words})")
+    return member.at(Stage.EXCLUDED, now_ns, f"its mission ended before it landed ({words})")
 
 
 def _is_in_return_mode(vehicle: VehicleState, member: ReturningVehicle) -> bool:

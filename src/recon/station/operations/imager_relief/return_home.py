@@ -11,7 +11,7 @@ from recon.station.state.steps import Stepped
 
 
 def refusal(station: Station, serial: str, by: str, person: str, now_ns: int) -> Refusal | None:
-    """Return why guidance cannot call an imaging drone home; the gate judges its hold."""
+    """Return why guidance cannot recall an imaging drone; the gate judges its hold."""
     taken = AuthorityTaken(serial, AuthorityHolder.GUIDANCE, by, person)
     return commands.refusal(station, serial) or handover.refusal(station, taken, now_ns)
 

@@ -66,7 +66,7 @@ def _of_vehicle(
         )
     elif record.is_over and _hovers_since(station, record, member):
         why = "" if member.stop_reason is None else f"; it had stopped: {member.stop_reason}"
-        text = f"hovers: survey {name} is over{why}. Call it home, or give it an order"
+        text = f"hovers: survey {name} is over{why}. Recall it, or give it an order"
         yield _about(station, member, RULE_LEFT, text)
 
 

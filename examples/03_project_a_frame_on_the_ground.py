@@ -1,6 +1,6 @@
 """Project a fisheye frame onto the ground: the demo site's lens and pose, a chessboard image.
 
-Run: uv run python examples/03_lay_a_frame_on_the_ground.py [OUTPUT.tif]
+Run: uv run python examples/03_project_a_frame_on_the_ground.py [OUTPUT.tif]
 """
 
 import sys
@@ -30,7 +30,7 @@ def main() -> None:
     frame = Frame(1, site.imager.serial, 0, 0, 0.0, rgb=np.repeat(board[..., None], 3, axis=2))
 
     projector = GroundProjector(site.ground_grid, site.imager.camera, site.imager.image_circle)
-    image = projector.lay(frame, solution.pose)
+    image = projector.project(frame, solution.pose)
     print(f"ground image: {image.rgb.shape}, {image.valid.mean():.0%} of the grid covered")
     if len(sys.argv) > 1:
         write_ground_image(Path(sys.argv[1]), image)
