@@ -3,7 +3,8 @@
 An app reports its serial (extended telemetry) about a second after its first core telemetry. Until
 then its vehicle exists twice: as an unidentified link, and as the hazard area of a vehicle whose
 telemetry is lost. After a restart that is so for every vehicle in the air. Without a grace period
-the watchdogs would find each vehicle too near to itself. So a vehicle is excluded from their picture:
+the watchdogs would find each vehicle too near to itself. So a vehicle is excluded from their
+picture:
 
 - *unidentified link*: from its first flying telemetry without a serial, for `serial_wait_s`; then
   it counts as a vehicle of its own, with an alarm.
