@@ -539,7 +539,7 @@ def test_a_file_that_begins_in_flight_gives_the_same(flight: Any, tmp_path: Path
 def test_a_failed_record_is_an_alarm_until_it_is_written_again() -> None:
     scene = world(1)
     driver = scene.driver
-    driver.handle(RecordFailed("less than 2 GiB are free in /x: the record goes on without images"))
+    driver.handle(RecordFailed("less than 2 GiB are free on /: recording continues without images"))
     scene.run_for(0.2)
     (alarm,) = (a for a in driver.station.alarms.alarms.values() if a.condition.rule == "record")
     assert "without images. Flying continues: free disk space" in alarm.condition.text

@@ -1,7 +1,7 @@
 """Tiles of a server, fetched into an MBTiles file before leaving base.
 
 A few requests at a time, each bounded in time and size and read as it is; redirects are not
-followed. Tiles that are in the file are not asked for again, so an interrupted fetch goes on where
+followed. Tiles that are in the file are not asked for again, so an interrupted fetch resumes where
 it stopped.
 """
 
@@ -37,7 +37,7 @@ TRIES = 3
 PAUSE_S = 1.0
 """Pause before a second try, doubled before the third."""
 LONGEST_PAUSE_S = 60.0
-"""Whatever a busy server asks for."""
+"""Longest pause, whatever a busy server asks for."""
 MOST_FAILURES = 10
 """Most failures in a row: the server is gone, or refuses."""
 USER_AGENT = f"Recon/{version()} (ground control station; offline map of one field)"
@@ -210,7 +210,7 @@ class _Run:
         if self._failures >= MOST_FAILURES:
             raise BaseMapError(
                 f"{self.server.host}: expected tiles, got {MOST_FAILURES} failures in a row, the "
-                f"last: {problem}; try again later, it goes on where it stopped"
+                f"last: {problem}; try again later, it resumes where it stopped"
             )
 
     async def _tries(self, key: Key) -> bytes | None:

@@ -43,7 +43,7 @@ LARGEST_DIRECTORY_BYTES = 2 * 1024 * 1024
 """Packed; the format's writers make them of some 10 kB."""
 LARGEST_UNPACKED_BYTES = 16 * 1024 * 1024
 MOST_DIRECTORIES = 64
-"""Kept unpacked."""
+"""Most directories kept unpacked."""
 DEEPEST = 4
 """Directories above a tile, by the specification."""
 DAMAGED = "expected a whole PMTiles file, got a damaged one; copy or export it again"

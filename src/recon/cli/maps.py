@@ -83,7 +83,7 @@ def fetch_command(
 ) -> None:
     """Fetch tiles of the site's ground from a tile server into its folder, for offline use.
 
-    Ask the server's licence first. An interrupted fetch goes on where it stopped.
+    Ask the server's licence first. An interrupted fetch resumes where it stopped.
     """
     from recon.basemap.fetch import fetch, needed_tiles
     from recon.site.reading import MAPS_FOLDER

@@ -37,7 +37,7 @@ STAGES = {
     "running": SurveyStage.FLYING,
     "done": SurveyStage.FINISHED,
 }
-"""Phases in which the operator goes on; in any other it stops."""
+"""Phases in which the operator continues; in any other it stops."""
 
 Report = Callable[[str], None]
 
@@ -45,7 +45,7 @@ Report = Callable[[str], None]
 async def fly_surveys(url: str, scenario: Scenario, report: Report) -> None:
     """Fly one survey after the other until someone stops one, or the station refuses one.
 
-    A station that does not answer is asked again, and the survey under way goes on.
+    A station that does not answer is asked again, and the running survey continues.
     """
     report_new, survey = _Report(report), _PlannedSurvey(scenario.name)
     while True:

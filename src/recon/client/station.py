@@ -145,7 +145,7 @@ class Station:
     async def side_step(self, serial: str | None = None) -> Refusal | None:
         """Have an imaging drone fly 25 m aside and back; None on success.
 
-        By default the one whose light is unknown, or the site's first. It goes on after this call;
+        By default the one whose light is unknown, or the site's first. It continues after the call;
         `side_stepping` has the progress, a hold stops it.
         """
         request = {"serial": serial, "given_at_unix_ms": self._order_api.station_time_ms()}
@@ -164,7 +164,7 @@ class Station:
         """Have an imaging drone take the place of another; None on success.
 
         By default the same one returns to its own place. `takeoff` allows it to leave the ground.
-        It goes on after this call; `relieving` has the progress, a hold stops it.
+        It continues after the call; `relieving` has the progress, a hold stops it.
         """
         request = {
             "serial": serial,

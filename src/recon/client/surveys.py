@@ -59,7 +59,7 @@ class SurveyLight(msgspec.Struct, frozen=True):
     needs_s: float | None
     imagers: tuple[ImagerStay, ...]
     unknown_in_s: float | None
-    """Until the last imaging drone must return; None if the survey is done by then."""
+    """Time until the last imaging drone must return; None if the survey is done by then."""
     unknown_for_s: float | None
     without_age_s: float | None
     without_m2: float | None

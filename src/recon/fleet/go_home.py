@@ -15,7 +15,7 @@ from recon.model.units import ns_to_seconds
 from recon.model.vehicle import FlightMode, GoHomeFlight, VehicleState
 
 PROGRESS_M = 1.0
-"""Nearer or higher by less is noise of GNSS and barometer."""
+"""Least progress, in distance or height: less is noise of GNSS and barometer."""
 
 LEVEL_MPS = 3.0
 """Faster over the ground it is under way: gusts and GNSS noise stay below."""

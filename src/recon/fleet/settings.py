@@ -62,7 +62,7 @@ class TrustSettings:
     frozen_mps: float = 0.3
     """A vehicle that moves cannot send the same position for a second."""
     frozen_s: float = 5.0
-    """Nor one that hovers: attitude and GNSS jitter in their last digits."""
+    """Longest time without a change in a hover: attitude and GNSS jitter in their last digits."""
     reckoned_m: float = 20.0
     """A position that stands still while the velocity adds up to this is stuck."""
     stands_m: float = 3.0

@@ -1,7 +1,7 @@
 """Whether telemetry is believed: each packet is judged before it becomes part of a vehicle's state.
 
 Theory of operation. A core packet that is not plausible is not telemetry: nothing of it enters the
-state and the age of core telemetry goes on, so that everything that acts on late and lost telemetry
+state and the age of core telemetry grows, so that everything that acts on late and lost telemetry
 acts (neutral setpoint after 1 s, gate, hazard area after 3 s). Its doubt is in the state, with a
 sentence, until `lingers_s` after the last packet that shows it:
 
@@ -302,7 +302,7 @@ def _between_s(before_ns: int, now_ns: int, limits: TrustSettings) -> float:
 
 
 def _stays_off(trust: Trust, report: CoreReport) -> bool:
-    """Return whether a packet goes on with a run of jumped ones, rather than the believed track.
+    """Return whether a packet continues a run of jumped ones, rather than the believed track.
 
     The allowance grows with time: without this question it would take in a jump without a word.
     """

@@ -9,7 +9,7 @@ from recon.model.shade import FloatMap, ShadeMap
 from recon.model.units import seconds_to_ns
 
 CONFIDENCE_HALVES_S = 3.0
-"""Of a map that is moved on: shadows change their shape, and the velocity is not exact."""
+"""Time that halves a moved map's confidence: shadows change shape; the velocity is inexact."""
 
 
 def moved_on(shade: ShadeMap, velocity_mps: tuple[float, float] | None, seconds: float) -> ShadeMap:

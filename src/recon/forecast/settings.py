@@ -45,7 +45,7 @@ class ForecastSettings:
     agreement_memory_s: float = 60.0
     """Time constant of fading of older pairs: wind changes over minutes."""
     velocity_step_mps: float = 0.5
-    """Of the agreement by velocity: a cell in 8 s."""
+    """Step of the agreement by velocity: a cell in 8 s."""
     peak_mps: float = 3.0
     """Half width of the area around the best velocity without rivals."""
     slowest_pooled_mps: float = 1.0
@@ -57,8 +57,8 @@ class ForecastSettings:
     soft_edge_per_s: float = 0.0007
     soft_edge_per_m: float = 0.0008
     most_soft_edge: float = 0.4
-    """As `soft_edge`, of shadows that are followed: they keep their edges, less so with the lead,
-    and least where another place must stand for the one upwind."""
+    """Soft edge, as `soft_edge`, of shadows that are followed: they keep their edges, less so with
+    the lead, and least where another place must stand for the one upwind."""
     followed_for_s: float = 60.0
     """Shade that has left the view is followed for so long: one seen cell in twelve is wrong then
     by its motion alone."""
@@ -73,21 +73,21 @@ class ForecastSettings:
     correlation_lag_m: float = 160.0
     """Distance at which the correlation of shade is measured: a third of a view."""
     usual_correlation: float = 0.8
-    """Of a cell's deviation from the prior to that of a cell so far away, under usual skies."""
+    """Correlation of deviations from the prior of cells so far apart, under usual skies."""
     usual_correlation_s: float = 6.0
     """Weight of the usual correlation: half a minute of maps with as much sun as shade."""
     least_correlation: float = 0.02
     most_correlation: float = 0.9
     usual_change: float = 0.15
-    """Of the transmittance between partly shaded cells `correlation_lag_m` apart in usual skies.
-    Soft edges are so much wider or narrower than these as it is larger or smaller in this flight:
-    0.02 under even thin cloud. Fitted to Brier scores likewise, seeds 0 to 39."""
+    """Change of the transmittance between partly shaded cells `correlation_lag_m` apart in usual
+    skies. Soft edges scale with this flight's change over the usual one: it is 0.02 under uniform
+    thin cloud. Fitted to Brier scores likewise, seeds 0 to 39."""
     usual_change_s: float = 0.3
     """Weight of the usual change: less than one map that is all partly shaded."""
     shade_memory_s: float = 3_000.0
     """Time constant of the same for shadows that are followed: they change their shape."""
     usual_speed_mps: float = 6.0
-    """Of shadows whose motion is not known: what shades a place now has moved on so far."""
+    """Speed of shadows of unknown motion: what shades a place now has moved on so far."""
     least_pooled_contrast: float = 0.02
     """Standard deviation of the transmittance below which maps are not compared."""
     hindcast_lead_s: tuple[float, ...] = (15.0, 30.0, 60.0, 120.0, 300.0)

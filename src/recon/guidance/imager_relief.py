@@ -2,7 +2,7 @@
 
 An imaging drone hovers until its charge is what the way home and the reserve take. Its use is read
 from the changes of the charge that it reports, in whole percent; so the moment is known to about a
-quarter of a minute. How long a survey goes on follows from its missing ground and its recent pace.
+quarter of a minute. How long a survey lasts follows from its missing ground and its recent pace.
 
 The spare one flies to the place in a layer of its own, so that both may hover there together.
 """

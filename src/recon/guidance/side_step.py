@@ -31,7 +31,7 @@ class SideStepSettings:
     """A way takes 10 s; one that takes longer than this is not flown as it was ordered."""
 
     gate_waits_s: float = 30.0
-    """So long the way back is tried again while the gate refuses it; then the vehicle holds."""
+    """Time for which a refused way back is tried again; then the vehicle holds."""
 
     judged_again_s: float = 1.0
 
@@ -46,10 +46,10 @@ class SideStepSettings:
     """An older shade map does not show the present light."""
 
     automatic_every_s: float = 300.0
-    """Between two automatic ones: the sky changes in minutes, and each interrupts the view."""
+    """Shortest time between two automatic ones: the sky changes in minutes; each costs view."""
 
     refused_again_s: float = 60.0
-    """After a refusal, before it is tried again."""
+    """Time after a refusal before the next attempt."""
 
 
 SIDE_STEP_SETTINGS = SideStepSettings()

@@ -67,7 +67,7 @@ class SteeringSettings:
     """Slow enough that learning itself leaves the demand steady."""
 
     longest_push_mps: float = 2.0
-    """More is no wind that an aircraft lets through, but an aircraft that does not obey."""
+    """Longest correction for wind: beyond it the aircraft does not obey."""
 
     resting_mps: float = 0.5
     """Speed below which a vehicle counts as hovering: above GNSS velocity noise and gusts."""
@@ -111,7 +111,7 @@ class KinematicState:
 
 @dataclass(frozen=True, slots=True)
 class Steered:
-    """One demand, and what the next one goes on from.
+    """One demand, and what the next one starts from.
 
     `push_*` is the wind's push as learnt so far; `recent` are the velocities lately demanded
     (north, east), with their times.

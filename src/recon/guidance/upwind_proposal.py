@@ -35,7 +35,7 @@ STATED_LEAD_S = 60.0
 
 @dataclass(frozen=True, slots=True)
 class MoveUpwindSettings:
-    """When an imaging drone flies upwind automatically, for a survey that allows it."""
+    """Limits of an imaging drone's automatic flights upwind, for a survey that allows them."""
 
     asked_every_s: float = 10.0
     """Time between two proposals: the wind turns in minutes; one costs the worker 12 ms or more."""
@@ -52,7 +52,7 @@ class MoveUpwindSettings:
     anew. Velocities measured in the first half minute of shade still change."""
 
     every_s: float = 180.0
-    """Between two automatic ones: the wind turns in minutes, and a flight takes half of one."""
+    """Shortest time between two automatic ones: the wind turns in minutes; a flight takes 30 s."""
 
     refused_again_s: float = 60.0
     """Time after a refusal before the next attempt."""
@@ -80,7 +80,7 @@ class UpwindQuestion:
     """Velocity of the shadows, east and north."""
     view: GroundView
     followed_for_s: float
-    """So long shade that has left the view is followed."""
+    """Time for which shade that has left the view is followed."""
     position: LatLon
     height_above_takeoff_m: float
     yaw_deg: float

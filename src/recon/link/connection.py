@@ -107,7 +107,7 @@ class Connection(asyncio.BufferedProtocol):
         self._end(self.session)
 
     def _end(self, session: Session) -> None:
-        """Handle some of the last events; with more left, go on in the loop's next turn."""
+        """Handle some of the last events; with more left, continue in the loop's next turn."""
         is_sound = False
         with self._isolated():
             self._advance(session)
@@ -212,7 +212,7 @@ class Connection(asyncio.BufferedProtocol):
             self._work()
 
     def _work(self) -> None:
-        """Handle some events; with more left, stop reading and go on in the loop's next turn."""
+        """Handle some events; with more left, stop reading and continue in the loop's next turn."""
         if self.session is None or self._is_lost:
             return
         with self._isolated():

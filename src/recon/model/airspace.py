@@ -113,7 +113,7 @@ class FlightLimits:
     """Two barometers drift apart by a few metres in an hour; layers are `LAYER_SPACING_M` apart."""
 
     boundary_margin_m: float = 5.0
-    """Kept to the boundary and to keep-out zones: GNSS error and a gust."""
+    """Margin to the boundary and to keep-out zones: GNSS error and a gust."""
 
     battery_reserve_fraction: float = 0.25
     """Battery fraction that must remain after the return home."""

@@ -96,7 +96,7 @@ class HoldPosition:
 
 
 SteeredBody = GoTo | Nudge | HoldPosition
-"""Not on the wire: the station turns them into a stream of `VirtualStick`."""
+"""Orders that are not on the wire: the station steers them by `VirtualStick`."""
 WireBody = Hover | LandNow | ReturnHome | StartCamera | StopCamera | FlyMission | VirtualStick
 Body = WireBody | SteeredBody
 

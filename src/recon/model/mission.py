@@ -18,7 +18,7 @@ class DjiLimits:
     min_waypoints: int = 2
     min_leg_m: float = 0.5
     max_leg_m: float = 2_000.0
-    """Also from the first waypoint to the last."""
+    """Longest leg; also limits the distance from the first waypoint to the last."""
     max_path_m: float = 30_000.0
     min_height_m: float = -200.0
     max_height_m: float = 500.0
@@ -32,7 +32,7 @@ class DjiLimits:
     fastest_mps: float = 25.0
     """Ground speed in strong wind that none of these aircraft exceeds; telemetry is held to it."""
     fastest_vertical_mps: float = 12.0
-    """Twice what they climb and sink at (5 to 6 m/s, 8 m/s for the fastest): gusts add to it."""
+    """Fastest vertical speed: twice the usual climb and sink (5 to 8 m/s), as gusts add to it."""
 
 
 DJI = DjiLimits()

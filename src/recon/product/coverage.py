@@ -27,7 +27,7 @@ LEAST_CONFIDENCE = 0.05
 JOIN_M = 12.0
 """Places to fly again nearer than this are flown as one."""
 SMALLEST_M2 = 60.0
-"""Less than four cells at a region's edge are not worth a flight."""
+"""Smallest missing area worth a flight: more than four cells at a region's edge."""
 SIMPLER_M = 1.0
 
 

@@ -126,7 +126,7 @@ class FlightData:
     maps: Sequence[KeptMap] = ()
     """Maps in the order of time."""
     surveys: Sequence[FlownSurvey] = ()
-    """Those that were started, or were running when the record began."""
+    """Surveys that were started, or were running when the record began."""
     utc_ahead_ns: int = 0
     trouble: str = ""
     """Why reading ended early; empty if it did not."""

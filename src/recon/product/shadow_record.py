@@ -37,7 +37,7 @@ class SunByCell:
     last_ns: npt.NDArray[np.int64]
     """0 where no map shows the cell in sun."""
     maps: IntMap
-    """That show the cell."""
+    """Number of maps that show the cell."""
     sunlit_maps: IntMap
 
     @property

@@ -26,7 +26,7 @@ NEAR_PAD_M = 10.0
 pilot steps aside."""
 
 FEW_PLACES = 16
-"""So many are sooner worked out one by one than all at once."""
+"""Number of places up to which one by one is faster than all at once."""
 
 TAKEOFF_POINTS_KEPT = 256
 """Their heights, more than vehicles fly: they are asked for with every stick and every look."""

@@ -90,8 +90,8 @@ class EnergySettings:
     """An app that tells no wind is taken to be in some."""
 
     landing_fraction: float = 0.10
-    """Left when a way home ends, reserve or not: at about this charge aircraft land by themselves,
-    wherever they are."""
+    """Charge left when a way home ends, reserve or not: at about this charge aircraft land
+    automatically, wherever they are."""
 
     stick: StickBounds = StickBounds(reaction_s=0.0, braking_mps2=None)
     """A stick is counted for its timeout only: braking takes no energy that hovering does not."""
@@ -140,7 +140,7 @@ class FenceSettings:
     and when it goes up."""
 
     zone_vertical_margin_m: float = 5.0
-    """Kept above and below a keep-out zone: barometers drift by metres within an hour."""
+    """Margin above and below a keep-out zone: barometers drift by metres within an hour."""
 
     not_worse_m: float = 0.01
     """A vehicle that already breaks a rule may be moved if that makes it no worse; this is for
@@ -202,7 +202,7 @@ class PredictionSettings:
 
     climb_mps: float = 3.0
     sink_mps: float = 4.0
-    """What aircraft of all sizes do at most by themselves on the way home and down."""
+    """Fastest automatic climb and descent of aircraft of all sizes on the way home."""
 
     slow_climb_mps: float = 2.0
     """What they climb and sink at least when they change height for an order."""
@@ -274,7 +274,7 @@ class GoHomeSettings:
     climb_mps: float = 1.0
     """Climbing slower than this, it no longer climbs."""
     off_height_s: float = 1.5
-    """So long it is off its height before an alarm: go-home climbs at 2 m/s and more, and levels
+    """Time that it is off its height before an alarm: go-home climbs at 2 m/s and more, and levels
     within half a second."""
 
     off_track_m: float = 10.0

@@ -36,7 +36,7 @@ class StationFacts:
 
 
 NO_FACTS = StationFacts()
-"""Nothing is known: no mission is flown."""
+"""Facts of an unknown station, with which no mission is flown."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -75,7 +75,7 @@ def drawn_region(drawn: DrawnZone, frame: LocalFrame) -> Region:
 
 
 def _faults(drawn: DrawnZone, frame: LocalFrame) -> Iterator[str]:
-    """Only the first one is asked for: what comes after a fault may rely on its absence."""
+    """Yield faults; only the first is used, as later checks may rely on its absence."""
     if not 0 < len(drawn.reason.strip()) <= MOST_REASON:
         yield f"a reason of 1 to {MOST_REASON} characters is needed, for those who read the alarm"
     yield from _height_faults(drawn)

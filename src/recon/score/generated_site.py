@@ -34,9 +34,9 @@ LOWEST_GO_HOME_M, GO_HOME_SPACING_M = 40.0, 8.0
 large fleets."""
 BELOW_CEILING_M = 5.0
 IMAGER_PRIORITY = 10
-"""In a conflict the imaging drone is held last: it observes the whole field."""
+"""Priority that holds the imaging drone last in a conflict: it observes the whole field."""
 IMAGE_CIRCLE_RADIUS_PX = 274.1
-"""Of the demonstration's lens, as its site.toml states it."""
+"""Radius for the demonstration's lens, as its site.toml states it."""
 IMAGE_CELLS_PER_CELL = 4
 """Ground images are finer than shade maps by this."""
 

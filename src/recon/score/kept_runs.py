@@ -1,4 +1,4 @@
-"""Finished runs on disk, one file per seed, so that a stopped command goes on where it was.
+"""Finished runs on disk, one file per seed, so that a stopped command resumes where it was.
 
 The folder's name holds a digest of all that a run follows from beside its seed: the scenario's
 files, the methods, the rooms of Recon that fly it and the libraries that compute. Whatever of

@@ -40,7 +40,7 @@ class ScoreSettings:
     """Two vehicles in the air nearer than this, and nearly level, are a violation."""
 
     separation_up_m: float = 5.0
-    """Farther apart in height they are not; survey layers are 10 m apart."""
+    """Height difference from which they are none; survey layers are 10 m apart."""
 
 
 SCORE = ScoreSettings()

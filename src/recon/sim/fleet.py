@@ -62,7 +62,7 @@ class SimulationConfig:
     hover_on_ground: HoverOnGround = HoverOnGround.NOTHING
     airborne: Airborne = Airborne.IMAGER
     wanders: bool = False
-    """Survey vehicles fly back and forth by themselves until commanded otherwise."""
+    """Survey vehicles fly back and forth automatically until commanded otherwise."""
     altitude_bias_m: float | None = None
     """None draws one per vehicle, up to plus or minus 40 m."""
     endurance_s: float = 1500.0

@@ -146,7 +146,7 @@ class _AppShell:
         One packet per send, because some stations take a read for a packet.
         """
         packets = self.app.advance(time.monotonic_ns(), link)
-        # `advance` was called all the same: time goes on for an app whose packets are dropped.
+        # `advance` was called all the same: time continues for an app whose packets are dropped.
         if writer.transport.get_write_buffer_size() < WRITE_BUFFER_BYTES:
             for packet in packets:
                 writer.write(packet)

@@ -215,7 +215,7 @@ def test_a_first_setpoint_that_is_refused_leaves_a_return_as_it_is() -> None:
     assert (ended.outputs, ended.holds) == ((), ())
     assert ended.station.control(SERIAL).stream is None
     (alarm,) = ended.station.alarms.alarms.values()
-    assert alarm.condition.text.endswith("it goes out; nothing was sent, it goes on as before")
+    assert alarm.condition.text.endswith("it goes out; nothing was sent, it continues as before")
 
 
 def fence_alarms(s: Steered) -> list[str]:

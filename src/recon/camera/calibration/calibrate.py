@@ -21,7 +21,7 @@ from recon.camera.radial_profile import RadialProfile
 from recon.model.arrays import FloatArray
 
 FEWEST_PHOTOS = 3
-"""Fewer leave the centre and the coefficients undetermined."""
+"""Fewest photos that determine the centre and the coefficients."""
 CENTRE_REACH_SHARE = 0.06
 """Share of the frame's width from its middle within which the centre is searched."""
 OUTLIER_SIGMAS = 6.0

@@ -67,7 +67,7 @@ class RegistrationSettings:
     """Least height of the camera where a reference begins: lower, an error of height in telemetry
     is too large a share of it, and the ground seen too small."""
     references: int = 5
-    """Kept; each takes about 1 MB."""
+    """References kept; each takes about 1 MB."""
     hand_on_share: float = 0.45
     """A frame with a smaller share of inliers becomes a reference as well, while it still fits."""
     hand_on_apart_s: float = 5.0

@@ -15,10 +15,10 @@ class FleetReturnSettings:
     """Height above the highest ground on the ways: over vans, masts and trees at a field's edge."""
 
     ceiling_margin_m: float = 1.0
-    """Left below the ceiling: an aircraft overshoots a climb by less than this."""
+    """Margin below the ceiling: an aircraft overshoots a climb by less than this."""
 
     zone_margin_m: float = 6.0
-    """Left above a zone that is flown over: as much as between two vehicles."""
+    """Margin above a zone that is flown over: as much as between two vehicles."""
 
     horizontal_slack_m: float = HOVER_DRIFT_M
     """Added to the gate's minimum."""
@@ -36,7 +36,7 @@ class FleetReturnSettings:
     """No survey aircraft climbs or sinks faster on its own: the least time of a flight."""
 
     over_pad_m: float = 3.0
-    """Nearer than this a vehicle counts as over its pad."""
+    """Distance from its pad within which a vehicle counts as over it."""
 
     at_layer_m: float = 2.0
-    """Nearer than this a vehicle counts as in its layer."""
+    """Height difference within which a vehicle counts as in its layer."""

@@ -93,7 +93,7 @@ class SurveyEstimate:
 
     @property
     def photos_in_all(self) -> int:
-        """That a timer takes which runs from takeoff to landing: what a card must hold."""
+        """Return the photos that a timer takes from takeoff to landing: what a card must hold."""
         return sum(
             ceil(flight.time_s / self.timer_s) for drone in self.drones for flight in drone.flights
         )

@@ -29,7 +29,7 @@ INSIDE = 0.8
 """Share of the limits for vertices off the wanted height."""
 
 BETWEEN_M = 0.2
-"""Kept to the limits, for what lies between two such places."""
+"""Margin to the limits, for what lies between two such places."""
 
 OFF_COST, RAISED_COST = 0.01, 0.02
 """Cost, in waypoints, of one off the wanted height, so that it is taken only to save others."""

@@ -2,7 +2,7 @@
 
 Pieces of neighbouring rows that face one another, one to one, make a chain that is flown as a
 serpentine. Where a hole or a bay divides rows a chain ends and others begin; these are put in the
-order of the shortest tour among those that always go on to the nearest end of a chain.
+order of the shortest tour among those that always continue at the nearest end of a chain.
 """
 
 from collections.abc import Iterator, Sequence
@@ -110,7 +110,7 @@ MOST_TOURS = 16
 def _tours(
     entries: Sequence[tuple[Route, ...]], lattice: RowLattice, start_m: AlongAcross | None
 ) -> Iterator[Route]:
-    """Tours that go on to the nearest chain, begun at each of the entries nearest to the start."""
+    """Yield tours over the nearest chains, begun at each of the entries nearest to the start."""
     firsts = [(index, first) for index, entry in enumerate(entries) for first in entry]
     firsts.sort(key=lambda first: between_m(first[1][:1], lattice, start_m))
     for index, first in firsts[:MOST_TOURS]:

@@ -1,8 +1,8 @@
 """The flight over a vehicle's share of segments that images the most ground in sun soonest.
 
 A beam search (Lowerre 1976) in time. A node is a place, a moment, and which segments are taken by
-then; from it the flight goes on along the row, changes to an end of what is left on a near row, or
-waits. Nodes are sorted into steps of time; of each step only the best go on, compared by what they
+then; from it the flight continues along a row, changes to an end of what is left on a near row, or
+waits. Nodes are sorted into steps of time; of each step only the best are kept, by what they
 have gained and by what the time that each has left is worth. A gain is the missing ground times the
 probability of sun at that moment; later gains count less, since what comes late may not come. Each
 gap that a flight leaves in a row costs a stop later, so it counts against it.
@@ -152,8 +152,8 @@ class Search:
         yield node._replace(at_s=at_s, heading=WAITS, gain_m2=0.0, before=node)
 
     def _entries(self, node: Node) -> set[tuple[int, int]]:
-        """Where a flight may go on on the nearest rows that have something left in sun, now or when
-        it may come there: at the ends of what is left, and of what will be in sun of it."""
+        """Return where a flight may continue on the nearest rows with something left in sun, now or
+        when it arrives: at the ends of what is left, and of what will be in sun of it."""
         when = min(int(node.at_s / self._step_s) + 1, len(self._fade) - 1)
         left: list[tuple[float, list[int]]] = []
         for row, numbers in self._rows.items():
@@ -273,7 +273,7 @@ def _soon(probability: FloatArray, settings: SurveySettings) -> BoolArray:
 
 
 def _goes_on(node: Node, following: Node, parts: Sequence[Segment]) -> bool:
-    """Whether a flight goes on along the same row in the same direction."""
+    """Whether a flight continues along the same row in the same direction."""
     here = parts[node.segment]
     on = here.after if node.heading == AHEAD else here.before
     return (

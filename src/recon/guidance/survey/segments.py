@@ -21,7 +21,7 @@ NewestForecast = Callable[[], SunForecast | None]
 """Returns the newest forecast; a planner calls it once it decides, since making one takes time."""
 
 NONE = -1
-"""Instead of the number of a segment, where it has no such neighbour."""
+"""Number of a missing neighbour of a segment."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,7 +25,7 @@ class SurveySettings:
     """What is narrower in both directions is a drawn corner, not a piece of field."""
 
     kept_off_m: float = 0.5
-    """Kept beyond the margin to boundary and keep-out zones, so that rounding never breaks it."""
+    """Added to the margin to boundary and keep-out zones, so that rounding never breaks it."""
 
     turning_mps2: float = 2.5
     """What aircraft brake and start with: a stop costs speed over this."""
@@ -67,8 +67,8 @@ class SurveySettings:
     """Shade maps farther off in time do not count: shadows move at 10 m/s."""
 
     light_shown_s: float = 150.0
-    """Over about this long it is remembered how often shade maps show a cell's light: longer than
-    an imaging drone side-steps."""
+    """Time over which the station averages how often shade maps show a cell's light: longer than a
+    side-step."""
 
     light_shown_from: float = 0.25
     """A cell that fewer maps show lies outside the imaging drone's view, or at its edge: it cannot
@@ -135,7 +135,7 @@ class SurveySettings:
     """Flights that are followed at each step; twice as many image no more."""
 
     rows_looked_at: int = 5
-    """Nearest rows with something left in sun on which a flight may go on."""
+    """Nearest rows with something left in sun on which a flight may continue."""
 
     way_s: float = 40.0
     """Time to reach one of these rows: it must be in sun within this."""

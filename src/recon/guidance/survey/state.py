@@ -63,7 +63,7 @@ class AssignedMission:
     is_chosen: bool = False
     """Whether it is for its vehicle alone, not a share of a round: another is chosen if refused."""
     is_beside_closed: bool = False
-    """There was closed ground when it was given: its rows are what was left beside."""
+    """Whether ground was closed when it was given: its rows are what was left beside."""
     is_in_any_light: bool = False
     """Given without known light, and not decided on since."""
 

@@ -42,7 +42,7 @@ STEEPEST = 0.5
 """Steepest slope from a corner at which the next step's waypoint is within the limits."""
 
 CLIMB_SPARE_M = 1.0
-"""Kept to the site's height limits along a leg."""
+"""Margin to the site's height limits along a leg."""
 
 
 @dataclass(frozen=True, eq=False)

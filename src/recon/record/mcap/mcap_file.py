@@ -38,7 +38,7 @@ PROFILE = "recon"
 ABOUT_NAME, STEPS_TOPIC = "recon/about.json", "/recon/steps"
 """Written by the station; read by it for a replay, and after the flight without it."""
 KEYFRAMES_TOPIC = "/recon/keyframes"
-"""The station's state every two seconds: a replay in the console goes on from one of them."""
+"""The station's state every two seconds: a replay in the console starts from one of them."""
 
 CHUNK_BYTES = 4 * 1024 * 1024
 """A raw frame of 1280 x 720 and what comes with it: a seek unpacks little."""

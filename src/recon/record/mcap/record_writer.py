@@ -110,7 +110,7 @@ class RecordWriter:
         if not self._has_images:
             return (
                 f"less than {IMAGES_STOP_BYTES // 1024**3} GiB are free in {self.folder}: "
-                "the record goes on without images"
+                "recording continues without images"
             )
         return self._faults
 

@@ -1,7 +1,7 @@
 """A ring of bytes in memory that two processes share: one writes, the other reads.
 
 Writing is a copy: no system call, no lock that the reader could hold, and the interpreter is not
-given away, so the writer goes on at once. Counter `HEAD` has the bytes that were written so far,
+given away, so the writer continues at once. Counter `HEAD` has the bytes that were written so far,
 `TAIL` those that were read; each is set by one side only, after its copy, and by one store:
 `struct.pack_into` would set it to 0 first, and the other process would read that.
 """

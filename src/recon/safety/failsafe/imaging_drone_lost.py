@@ -1,6 +1,6 @@
 """An imaging drone lost in flight: for the others, ground image and sun forecast grow old.
 
-Their flights stay as safe as they were, so an alarm is enough; a survey goes on without new shade.
+Their flights stay as safe as they were, so an alarm is enough: surveys continue without new shade.
 """
 
 from recon.model.failsafe_matrix import FailsafeCondition, Reaction

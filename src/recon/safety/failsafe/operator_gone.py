@@ -2,7 +2,7 @@
 
 Only that edge counts: not a station without any client so far, nor a command of the shell, which
 connects for a moment, nor the page of an observer. A steered vehicle is held by its stream as soon
-as its own client goes. A mission goes on for a minute, the time to open the console again; after
+as its own client goes. A mission continues for a minute, the time to open the console again; after
 that its alarms would be seen by no operator.
 """
 

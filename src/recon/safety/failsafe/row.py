@@ -72,7 +72,7 @@ OFFERED: Mapping[Activity, frozenset[Reaction]] = {
     Activity.HOLDING: frozenset(Reaction) - {Reaction.HOLD},
     Activity.RETURNING: frozenset(Reaction) - {Reaction.HOLD, Reaction.RETURN},
 }
-"""Nothing weaker than what is under way: what holds is not held, what returns is landed at most."""
+"""Reactions stronger than the activity: no hold while holding, only a landing while returning."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -20,7 +20,7 @@ from recon.safety.prediction.trajectory import (
 from recon.safety.settings import PredictionSettings
 
 LONGEST_RISE_S = 10.0
-"""A climb that was under way is taken to go on this long at most."""
+"""Longest time that a climb under way is assumed to continue."""
 
 
 @dataclass(frozen=True, slots=True)

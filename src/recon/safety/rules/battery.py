@@ -10,7 +10,7 @@ from recon.safety.situation import Situation
 
 RULE = "battery"
 ROUNDING = 1e-9
-"""So that 0.62 is 62 percent, and not 63 or 61."""
+"""Rounding that makes 0.62 show as 62 percent, not 63 or 61."""
 
 
 def battery(command: Command, situation: Situation) -> Refusal | None:

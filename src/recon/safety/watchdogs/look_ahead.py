@@ -170,7 +170,7 @@ def _held(flies: Samples, times_s: FloatArray, prediction: PredictionSettings) -
         return (values[:, last] - values[:, last - 1])[:, np.newaxis] / step_s
 
     def brakes(values: FloatArray, mps2: FloatArray | float) -> FloatArray:
-        """Each value goes on at its speed at `last`, which falls to nothing."""
+        """Extrapolate each value at its speed at `last`, which falls to zero."""
         mps = speed_mps(values)
         lasts_s = np.minimum(braked_s, np.abs(mps) / np.maximum(mps2, 1e-9))
         gone: FloatArray = mps * lasts_s - 0.5 * np.sign(mps) * mps2 * lasts_s**2

@@ -182,7 +182,7 @@ class TrafficPicture:
 
     @property
     def predicted(self) -> tuple[WatchedVehicle, ...]:
-        """Those that `ahead` is of."""
+        """Return the vehicles of `ahead`."""
         return self.flying + self.lost
 
     @cached_property

@@ -190,7 +190,7 @@ def _flight(vehicle: VehicleState, now_ns: int, settings: StationSettings) -> It
 
 
 def _resumed(station: Station, vehicle: VehicleState) -> Iterator[Condition]:
-    """A mission of the station that goes on after its pilot took over and let go."""
+    """A mission of the station that still runs after its pilot took over and let go."""
     control = station.control(vehicle.serial)
     is_pilots = control.authority.holder is AuthorityHolder.PILOT
     if not is_pilots or vehicle.flight_mode.value is not FlightMode.GPS_WAYPOINT:

@@ -49,7 +49,7 @@ def _imager(station: Station, serial: str, now_ns: int) -> schema.ImagerOutlookV
 
 
 def _absent(station: Station, now_ns: int) -> list[schema.AbsentImagerView]:
-    """Those with a place that do not hover there."""
+    """Return the imaging drones with a place that do not hover there."""
     at_work = imagers_at_work(station)
     return [
         schema.AbsentImagerView(
@@ -64,7 +64,7 @@ def _absent(station: Station, now_ns: int) -> list[schema.AbsentImagerView]:
 
 
 def unknown_from_s(leaves_s: Sequence[float | None], needs_s: float | None) -> float | None:
-    """Return when the last imaging drone must return, if the survey goes on then; else None.
+    """Return when the last imaging drone must return, if the survey still runs then; else None.
 
     None where one's time is not known. What a survey needs is not known for its first minutes: then
     only what is near is stated, or every survey would begin with a warning.

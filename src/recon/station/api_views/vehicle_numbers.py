@@ -25,7 +25,7 @@ class VehicleNumbers:
         self._changed = changed
         self._profiles = NO_PROFILES
         self._numbers = self._given
-        """Those in force."""
+        """Numbers in force."""
 
     def of(self, fleet: Fleet) -> Mapping[str, int]:
         """Return the number of each serial: the site's vehicles first, then by first contact."""

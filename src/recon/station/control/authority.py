@@ -2,7 +2,7 @@
 
 Taking over is explicit, and the pilot at the remote control always has priority. Nothing here
 sends anything to a vehicle, and what waits unsent is withdrawn. What a vehicle was commanded to do
-goes on until its new holder orders something else, but setpoint streams end at once (`stream_ends`
+continues until its new holder orders another thing, but setpoint streams end at once (`stream_ends`
 compares the holder at each packet).
 """
 

@@ -1,7 +1,7 @@
 """Control of a vehicle changes hands: between holders, and from one person to another.
 
 `authority` decides about holders, `operator_lease` about persons. What the person before steered
-ends: neutral setpoint, then hold. A mission goes on until the new person orders something else, as
+ends: neutral setpoint, then hold. A mission continues until the new person orders another thing, as
 with every change of the holder; its next part is refused, and then the vehicle holds.
 """
 

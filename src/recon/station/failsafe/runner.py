@@ -44,7 +44,7 @@ _STREAMS_OWN = frozenset({FailsafeCondition.TELEMETRY_LOST, FailsafeCondition.OP
 """A setpoint stream ends automatically for these, with a hold."""
 
 _SHOWN_BY_THE_STATION = frozenset({FailsafeCondition.LINK_LOST, FailsafeCondition.TELEMETRY_LOST})
-"""These cannot be from before a restart: they begin with telemetry of this run."""
+"""Conditions that cannot predate a restart: they begin with telemetry of this run."""
 
 ORDERED_BODIES: Mapping[Reaction, Hover | ReturnHome | LandNow] = {
     Reaction.HOLD: Hover(),

@@ -38,7 +38,7 @@ LOAD_AFTER_S = 2.0
 
 
 class Worker(Protocol):
-    """Whatever runs heavy jobs."""
+    """Anything that runs heavy jobs."""
 
     def submit(self, job: AnyJob) -> None:
         """Take a job; its end comes back as an event."""

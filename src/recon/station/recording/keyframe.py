@@ -1,4 +1,4 @@
-"""Keyframes of a record: the station's state every two seconds, from which a seek goes on.
+"""Keyframes of a record: the station's state every two seconds, from which a seek starts.
 
 A keyframe is a `Station` without what a screen does not need (the memories of registration,
 detection and forecast) and without what stands in the record already: pixels, shade maps and
@@ -76,7 +76,7 @@ class DueKeyframe:
     maps_at_ns: int | None = None
     """Time of recording of the newest shade map; None if it is not in this file."""
     changed: frozenset[str] = frozenset()
-    """Those of settings and airspace that are not as at the file's beginning."""
+    """Names among settings and airspace that differ from the file's beginning."""
 
 
 class Keyframes:

@@ -60,7 +60,7 @@ from recon.station.state.station import Station
 from recon.station.state.steps import Job, JobDone, JobDropped, JobFailed, Output, StepTaken
 
 AFTER_LANDING_S = 30.0
-"""Vehicles that change batteries and go on belong to one flight for so long."""
+"""Time in which vehicles that change batteries and fly again belong to one flight."""
 GROUND_FILE_S = 300.0
 """A flight's file has at most so much of the time before it."""
 RESTART_AFTER_S = 5.0
@@ -275,7 +275,7 @@ class Recorder:
             data = next(filter(None, self._pieces)) if has_time else next(self._pieces)
             if not data:
                 return ()
-        except Exception as fault:  # steps go on: they are what a flight is explained by
+        except Exception as fault:  # steps continue: they are what a flight is explained by
             self._fault = f"a replay in the console lacks states: {describe_fault(fault)}"
         self._pieces = None
         head = STEP_HEAD.pack(item.number, item.now_ns, 0)

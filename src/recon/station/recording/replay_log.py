@@ -24,7 +24,7 @@ from recon.station.audit.flight_entries import POSITION_KIND
 
 MOST_ENTRIES = 500_000
 MOST_MARKS = 2_000
-"""More than a slider has pixels."""
+"""Most marks: more than a slider has pixels."""
 MARKED_KINDS: dict[str, Literal["alarm", "order"]] = {
     "alarm.raised": "alarm",
     "alarm.worse": "alarm",

@@ -5,7 +5,7 @@ Theory of operation. Two states:
     paused --play, not at the end--> playing
     playing --pause, or the end is reached--> paused
 
-In both a seek sets the position; playing goes on from there. The position is a function of the
+In both a seek sets the position; playing continues from there. The position is a function of the
 computer's monotonic time, which is an argument.
 """
 

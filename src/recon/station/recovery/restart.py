@@ -14,7 +14,7 @@ Nothing is sent. For `settle_s` the apps reconnect and one alarm lists the vehic
 missing (`traffic/identity_grace.py`). When a restored vehicle reports again, `recheck` compares
 position, height, altitude offset and battery with the snapshot: if they cannot belong to the same
 flight, the restored takeoff point is dropped, because every height and every way home depends on
-it. If no snapshot can be read, the start goes on without one and raises an alarm.
+it. If no snapshot can be read, the start continues without one and raises an alarm.
 """
 
 from collections.abc import Iterator, Mapping

@@ -19,7 +19,7 @@ class MotionStage(Enum):
     """Life cycle of a motion; nothing resumes one that has stopped."""
 
     ASIDE = "aside"
-    """On the way from its place, to side-step."""
+    """Flying from its place for a side-step."""
     WAITING = "waiting"
     """Holding beside its place: the gate refuses the way back for now."""
     BACK = "back"
@@ -127,7 +127,7 @@ MotionT = TypeVar("MotionT", bound=AnyMotion)
 
 @dataclass(frozen=True, slots=True)
 class AutomaticStart:
-    """When a motion of a kind may begin automatically again, and why the last one could not."""
+    """Earliest time of the next automatic motion of a kind, and why the last one was refused."""
 
     due_ns: int = 0
     refused: str | None = None

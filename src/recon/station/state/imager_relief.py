@@ -18,11 +18,11 @@ class HoverPlace:
 
 @dataclass(frozen=True, slots=True)
 class ImagerOutlook:
-    """When an imaging drone that hovers must return; None with the reason while that is unknown."""
+    """Time at which a hovering imaging drone must return; None with the reason while unknown."""
 
     return_due_ns: int | None
     return_due_in_s: float = 0.0
-    """At the last check, a second ago at most."""
+    """Time left at the last check, a second ago at most."""
     unknown: str = ""
 
 
@@ -45,7 +45,7 @@ class SurveyOutlook:
 
 @dataclass(frozen=True, slots=True)
 class Recall:
-    """For which survey an imaging drone was recalled automatically, and when."""
+    """The survey for which an imaging drone was recalled automatically, and the time."""
 
     survey_id: int
     at_ns: int

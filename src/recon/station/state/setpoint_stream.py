@@ -30,7 +30,7 @@ class StreamSettings:
     """Largest age of telemetry, as for the gate; beyond it a neutral setpoint is sent."""
 
     resumes_s: float = 3.0
-    """Telemetry that comes back within this goes on with the stream. Later the vehicle may be
+    """Telemetry that comes back within this resumes the stream. Later the vehicle may be
     anywhere, and its operator may have turned to something else."""
 
     neutral_to_hold_s: float = 0.15

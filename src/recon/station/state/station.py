@@ -108,9 +108,9 @@ class Station:
     fleet_return: FleetReturn | None = None
     """The newest fleet return of this run."""
     imager_motions: ImagerMotions = field(default_factory=ImagerMotions)
-    """Of this run. Writers: `operations/imager_motion` and `operations/imager_relief`."""
+    """Motions of this run. Writers: `operations/imager_motion` and `operations/imager_relief`."""
     reliefs: Reliefs = field(default_factory=Reliefs)
-    """Of this run. Writer: `operations/imager_relief`."""
+    """Reliefs of this run. Writer: `operations/imager_relief`."""
     watchdog_state: WatchdogState = field(default_factory=WatchdogState)
     """Findings, holds and switches of the watchdogs."""
     failsafe_state: FailsafeState = field(default_factory=FailsafeState)

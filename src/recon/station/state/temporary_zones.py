@@ -9,7 +9,7 @@ from recon.model.temporary_zone import TemporaryZone
 
 @dataclass(frozen=True, slots=True)
 class TemporaryZones:
-    """Those in force by id, the oldest first; an id is never used twice, also after a restart.
+    """Temporary zones in force by id, oldest first; an id is never reused, even after a restart.
 
     `changes` counts what was drawn and ended: plans made before the newest change are old.
     """

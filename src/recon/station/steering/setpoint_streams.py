@@ -8,9 +8,9 @@ Theory of operation. A stream binds one vehicle to one order. At each beat (`adv
    at once and the hold follows. Causes: the link changed, telemetry older than `resumes_s`, another
    holder of authority, no stick mode within `obeyed_s`, the gate refused a setpoint, the connection
    that owns the order closed, or a fault in the station. If the gate refuses the very first
-   setpoint, nothing is sent: the vehicle goes on as before the order, as after any refusal.
+   setpoint, nothing is sent: the vehicle continues as before the order, as after any refusal.
 4. Else the next velocity is computed from telemetry, judged by the gate and sent. With telemetry
-   older than `max_telemetry_age_s` a neutral setpoint is sent instead; the stream goes on.
+   older than `max_telemetry_age_s` a neutral setpoint is sent instead; the stream continues.
 
 The order is *sent* with its first packet, *started* when telemetry shows stick mode, *done* on
 arrival. From then on the stream holds the place, for `hold_at_most_s`. A newer order to move or a

@@ -215,7 +215,7 @@ def end_unsent(
     """End a stream of which nothing was sent: its order fails, with an alarm, and the vehicle goes
     on as before. A hold would end a return on its way, or leave it standing inside a zone."""
     station = change_phase(update.station, stream, Phase.FAILED, now_ns, why)
-    station = _alarm(station, stream, f"{why}; nothing was sent, it goes on as before", now_ns)
+    station = _alarm(station, stream, f"{why}; nothing was sent, it continues as before", now_ns)
     return release(replace(update, station=station), serial)
 
 

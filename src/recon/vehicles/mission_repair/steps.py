@@ -28,7 +28,7 @@ class RepairLimits(DjiLimits):
     slowest_mps: float = 1.0
     """Speed to use for 0, which to the SDK means the mission's own speed."""
     corner_margin_m: float = 0.01
-    """Kept free on a leg between two reduced corners: more than the rounding of 32-bit floats."""
+    """Margin on a leg between two reduced corners: more than the rounding of 32-bit floats."""
     corner_slack_m: float = 0.005
     """Two corners count as wide as their leg when less than this remains."""
     most_repaired_m: float = 300_000.0

@@ -9,4 +9,4 @@ from recon.station.operations.imager_motion.move_upwind import MOVE_UPWIND
 from recon.station.operations.imager_motion.side_step import SIDE_STEP
 
 IMAGER_MOTIONS = (SIDE_STEP, MOVE_UPWIND)
-"""In the order of their ticks; a fault in one leaves the other running."""
+"""All motions in the order of their ticks; a fault in one leaves the other running."""

@@ -13,7 +13,7 @@ from recon.station.state.imager_motion import AnyMotion, MotionStage, MotionT
 from recon.station.state.station import Station
 
 OFF_PLACE_M = 5.0
-"""Nearer to its place a vehicle needs not be sent there: frames are positioned by telemetry."""
+"""Distance from its place below which a vehicle need not move: telemetry positions frames."""
 
 
 def about(

@@ -188,7 +188,7 @@ def _arrived(station: Station, current: SideStep, now_ns: int) -> Stepped:
 
 
 def _wait(station: Station, current: SideStep, settings: SideStepSettings, now_ns: int) -> Stepped:
-    """Beside its place: have the gate judge the leg back again, for a while."""
+    """Wait beside its place: have the gate judge the leg back again, for a while."""
     if not _is_held_aside(station, current):
         return stopped(station, current, HOLD_ENDED, now_ns), ()
     if now_ns - current.since_ns > seconds_to_ns(settings.gate_waits_s):

@@ -1,4 +1,4 @@
-"""Since when light is mostly unknown below each imaging drone, from each new shade map."""
+"""How long light has been mostly unknown below each imaging drone, from each new shade map."""
 
 from dataclasses import replace
 

@@ -1,7 +1,7 @@
 """Automatic reliefs and recalls: for a running survey that allows them.
 
-A relief begins two and a half minutes before it must, if the survey goes on after its imaging drone
-has to return. A drone that must return is recalled, relieved or not: its battery ends; a relief
+A relief begins two and a half minutes before it must, if the survey would outlast its imaging
+drone's stay. A drone that must return is recalled, relieved or not: its battery ends; a relief
 that was refused until then still follows. Both are ordered for the person who started the survey,
 and refused for the same reasons as when a person asks.
 

@@ -8,7 +8,7 @@
 The one that flies goes in a layer of its own, 10 m above the other's height or more. Both hover at
 the place until the newer one's maps show seven tenths of the ground whose light the other knows; so
 no moment is without light. A relief that stops holds its vehicle where it is, with an alarm: mostly
-its camera or site file is at fault, best seen in place, and an order from there goes on with the
+its camera or site file is at fault, best seen in place, and an order from there resumes at the
 maps. The relieved one stays until its battery is at the return threshold, whatever becomes of the
 relief.
 """
