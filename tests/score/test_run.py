@@ -19,10 +19,12 @@ from recon.score.run_score import shares_by, time_to_share
 from recon.score.scenario import TRUE_MOTION
 from recon.score.true_paths import TruePath, encounters, times_begun
 from recon.sim.app.app import AppSettings, SimulatedApp
+from recon.sim.app.faults import parse_fault
 from recon.sim.fleet import IMAGER_SERIAL
 from recon.sim.flight.aircraft import Aircraft
 from recon.sim.flight.flight_modes import PositionHold
 from recon.sim.flight.kinematics import AircraftMotion
+from recon.sim.fork import fork
 
 TINY = CALM.replace("[200.0, 0.0],", "[90.0, 0.0],").replace(
     "[200.0, 150.0], [0.0, 150.0]", "[90.0, 60.0], [0.0, 60.0]"
@@ -43,8 +45,17 @@ def guidance_alone(scenario: Scenario) -> Scenario:
 
 
 @pytest.fixture(scope="module")
-def clear(folder: Path) -> RunScore:
-    return run(guidance_alone(small(folder, CLEAR)), 3)
+def started(folder: Path) -> StationRun:
+    """A survey of a field in sun, its drones on their rows."""
+    begun = StationRun(guidance_alone(small(folder, CLEAR)), 3)
+    while begun.now_s < 38.0:
+        begun.advance_a_second()
+    return begun
+
+
+@pytest.fixture(scope="module")
+def clear(started: StationRun) -> RunScore:
+    return fork(started).score()
 
 
 @pytest.fixture(scope="module")
@@ -193,19 +204,32 @@ def test_frames_that_stop_leave_maps_unknown(folder: Path) -> None:
     assert 0 < found.unknown < found.cells
 
 
-def flown_to_the_surveys_end(scenario: Scenario, at_most_s: float) -> StationRun:
+def flown_to_the_surveys_end(flown: StationRun, at_most_s: float) -> StationRun:
     """Advance until the survey is over, landed or not."""
-    flown = StationRun(scenario, 3)
     while not (flown.record is not None and flown.record.is_over) and flown.now_s < at_most_s:
         flown.advance_a_second()
     return flown
 
 
+def test_a_fork_of_a_run_is_the_run(started: StationRun) -> None:
+    """Truth, operator and scores too: each reads the apps of its own world."""
+    ends = []
+    for each in (fork(started), fork(fork(started))):
+        for _ in range(3):
+            each.advance_a_second()
+        paths = [path.places_m for path in each.drones]
+        ends.append((repr(each.driver.station), repr(each.shade_score), paths))
+    assert ends[0] == ends[1]
+    assert [len(path.at_s) for path in each.drones] > [len(path.at_s) for path in started.drones]
+
+
 @pytest.mark.flight
 @pytest.mark.parametrize("fault", ["gnss-loss:1:40:10", "telemetry-dropout:2:40:9"])
-def test_a_survey_is_completed_after_a_fault(folder: Path, fault: str) -> None:
-    text = CLEAR.replace("[site]", f'faults = ["{fault}"]\n[site]')
-    flown = flown_to_the_surveys_end(guidance_alone(small(folder, text)), 400.0)
+def test_a_survey_is_completed_after_a_fault(started: StationRun, fault: str) -> None:
+    flown, injected = fork(started), parse_fault(fault)
+    serial = flown.scenario.fleet.serials[int(injected.vehicle) - 1]
+    flown.apps.connected[serial].app.inject(injected)
+    flown = flown_to_the_surveys_end(flown, 400.0)
     assert flown.in_sun_share > 0.99
     assert all(path.flown_s > 0.0 for path in flown.drones)
 
@@ -243,7 +267,7 @@ def test_rows_longer_than_the_shade_history_count_in_sun(folder: Path) -> None:
     text = CLEAR.replace("90.0", "1200.0").replace("60.0]", "40.0]")
     wide = "field_deg = 83.0\ncoarsest_m = 70.0\nradius_m = 700.0\ncell_m = 20.0"
     text = text.replace("radius_m = 160.0", wide)
-    flown = flown_to_the_surveys_end(guidance_alone(small(folder, text)), 600.0)
+    flown = flown_to_the_surveys_end(StationRun(guidance_alone(small(folder, text)), 3), 600.0)
     assert flown.record is not None
     assert flown.record.state is not None
     assert flown.record.state.reason == "Complete: all reachable ground photographed in sun"

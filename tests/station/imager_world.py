@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 from math import hypot
 
 import numpy as np
+from tests.flown_once import flown_once
 from tests.station.imagers import with_imagers
 from tests.station.station_world import HOME
 from tests.station.surveyed_world import SurveyedWorld, surveyed_world
@@ -98,6 +99,7 @@ class ImagerWorld:
         return sun_position(LatLon(HOME.latitude_deg, HOME.longitude_deg), at_s).azimuth_deg
 
 
+@flown_once
 def imager_world(
     others: int = 0,
     *,

@@ -7,6 +7,7 @@ follows is the station's own: the map of all drones, its age, and the relief.
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from tests.flown_once import flown_once
 from tests.station.imager_world import GRID
 from tests.station.imagers import with_imagers
 from tests.station.returning_world import returning_world
@@ -158,6 +159,7 @@ def _forecast(shade: ShadeMap) -> SunForecast:
     return sun
 
 
+@flown_once
 def relieved_world(
     surveying: int = 0, *, spare_pad_m: tuple[float, float] = (0.0, -20.0), **options: object
 ) -> RelievedWorld:

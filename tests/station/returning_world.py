@@ -6,6 +6,7 @@ from itertools import combinations
 from math import hypot
 
 import numpy as np
+from tests.flown_once import flown_once
 from tests.ready import ready_airspace, ready_profile, ready_site
 from tests.station.station_world import HOME, World
 
@@ -127,6 +128,7 @@ class ReturningWorld:
                 self.nearest.level_m, self.nearest.who = level_m, f"{one} and {other}"
 
 
+@flown_once
 def returning_world(
     places_m: Sequence[tuple[float, float, float]],
     pads_m: Sequence[tuple[float, float]],

@@ -9,6 +9,7 @@ from recon.model.command import Body, Phase
 from recon.model.event import OperatorOrder
 from recon.model.geo import GeoPoint
 from recon.model.mission import Mission, Waypoint
+from recon.model.units import NS_PER_S
 from recon.model.vehicle import AltitudeReference, VehicleState
 from recon.sim.app.app import SimulatedApp
 from recon.sim.app.faults import parse_fault
@@ -40,6 +41,12 @@ class World(ConnectedApps):
         self._next_order += 1
         self.driver.handle(OperatorOrder(order_id, body, "test", serial=serial, takeoff=takeoff))
         return order_id
+
+    def fails(self, text: str) -> None:
+        """A fault of one vehicle begins, its start counted from now."""
+        fault = parse_fault(text)
+        start_s = self.driver.now_ns / NS_PER_S + fault.start_s
+        self.app(fault.vehicle).inject(replace(fault, start_s=start_s))
 
     def record(self, order_id: int) -> OrderRecord:
         return self.driver.station.orders.records[order_id]

@@ -2,6 +2,7 @@
 
 from math import hypot
 
+from tests.flown_once import flown_once
 from tests.station.imager_world import IMAGER, ImagerWorld, imager_world
 from tests.station.surveyed_world import asked
 
@@ -15,6 +16,7 @@ from recon.station.recording.keyframe import without_recorded
 from recon.station.state.imager_motion import MotionStage, SideStep
 
 
+@flown_once
 def surveying(*, allowed: bool = True) -> ImagerWorld:
     """A survey drone at work, and an imaging drone that hovers away from the rows."""
     world = imager_world(1, place_m=(60.0, 200.0))

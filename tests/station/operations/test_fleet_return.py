@@ -9,12 +9,14 @@ from random import Random
 
 import pytest
 from tests.examples import IS_THOROUGH
+from tests.flown_once import flown_once
 from tests.station.returning_world import LEAST_LEVEL_M, ReturningWorld, returning_world
 from tests.station.station_world import square_mission
 
 from recon.model.command import FlyMission, Hover, LandNow, Phase, ReturnHome
 from recon.model.control import AuthorityHolder
 from recon.model.event import AuthorityTaken, OperatorOrder, SeparationHoldSwitched
+from recon.model.units import NS_PER_S
 from recon.station.api_views.operation_views import operation_fields
 from recon.station.state.fleet_return_record import Stage
 
@@ -36,9 +38,41 @@ def six_in_the_air(pads: list[tuple[int, int]] = CROSSED, **options: object) -> 
 FOUR = SIX[:4]
 
 
-def four_in_the_air(**options: object) -> ReturningWorld:
+@flown_once
+def four_in_the_air() -> ReturningWorld:
     """The first four with room for two layers, 20 and 30 m; a fifth hovers and is not called."""
-    return returning_world(FIELD[:5], CROSSED[:5], max_height_m=33.0, **options)  # type: ignore[arg-type]
+    nearer = [(east_m, north_m - 80, up_m) for east_m, north_m, up_m in FIELD[:5]]
+    return returning_world(nearer, CROSSED[:5], max_height_m=33.0)
+
+
+@flown_once
+def first_wave() -> ReturningWorld:
+    """All four are called: SIM-1 and SIM-2 fly home, SIM-3 and SIM-4 wait."""
+    world = four_in_the_air()
+    world.call(*FOUR)
+    world.runs(8.0)
+    assert [world.member(serial).stage for serial in FOUR] == [Stage.FLYING] * 2 + [
+        Stage.WAITING
+    ] * 2
+    return world
+
+
+@flown_once
+def first_wave_descends() -> ReturningWorld:
+    """The same a little later: SIM-3 and SIM-4 wait for some seconds more."""
+    world = first_wave()
+    world.runs(24.0)
+    assert [world.member(serial).stage for serial in FOUR[2:]] == [Stage.WAITING] * 2
+    return world
+
+
+@flown_once
+def one_refused() -> ReturningWorld:
+    """All four are called, and the app of SIM-4 refuses its mission."""
+    world = first_wave_descends()
+    world.world.fails("negative-ack:SIM-4:0:30")
+    assert world.runs_until_over(900.0)
+    return world
 
 
 def landed_on_its_pad(world: ReturningWorld, serial: str) -> bool:
@@ -125,8 +159,9 @@ def test_the_control_all_returning_at_one_height_come_too_near() -> None:
     world.world.driver.handle(SeparationHoldSwitched(is_on=False, by="test"))
     for serial in SIX:
         world.world.order(serial, ReturnHome())
-    world.runs(120.0)
-    assert world.nearest.level_m < LEAST_LEVEL_M
+    while world.nearest.level_m >= LEAST_LEVEL_M:
+        assert world.world.driver.now_ns < 120 * NS_PER_S
+        world.runs(1.0)
 
 
 @pytest.mark.drawn
@@ -151,9 +186,7 @@ def test_drawn_fleets_land_by_the_real_gate_on_shared_pads(seed: int) -> None:
 
 class TestInterruptions:
     def test_a_pilot_takes_one_and_the_others_continue(self) -> None:
-        world = four_in_the_air()
-        world.call(*FOUR)
-        world.runs(20.0)
+        world = first_wave()
         (taken, *_) = [m.serial for m in map(world.member, FOUR) if m.stage is Stage.FLYING]
         world.world.driver.handle(AuthorityTaken(taken, AuthorityHolder.PILOT, "the pilot"))
         world.world.app(taken).aircraft.hover()
@@ -170,9 +203,7 @@ class TestInterruptions:
 
     @pytest.mark.flight
     def test_a_vehicle_with_a_newer_order_is_released(self) -> None:
-        world = four_in_the_air()
-        world.call(*FOUR)
-        world.runs(15.0)
+        world = first_wave_descends()
         waiting = [m for m in map(world.member, FOUR) if m.stage is Stage.WAITING]
         world.world.order(waiting[-1].serial, LandNow())
         assert world.runs_until_over(900.0)
@@ -195,9 +226,7 @@ class TestInterruptions:
         assert world.member(waiting).stage is Stage.RELEASED
 
     def test_all_stop_ends_it_for_all_that_are_held(self) -> None:
-        world = four_in_the_air()
-        world.call(*FOUR)
-        world.runs(20.0)
+        world = first_wave()
         for serial in FOUR:
             world.world.order(serial, Hover())
         world.runs(60.0)
@@ -206,8 +235,8 @@ class TestInterruptions:
 
     @pytest.mark.flight
     def test_one_whose_link_breaks_while_it_waits_is_not_resumed(self) -> None:
-        world = four_in_the_air(faults=("restart:SIM-4:20:5",))
-        world.call(*FOUR)
+        world = first_wave_descends()
+        world.world.fails("restart:SIM-4:0:5")
         assert world.runs_until_over(900.0)
         stages = world.stages()
         assert stages.pop("SIM-4") is Stage.EXCLUDED
@@ -219,18 +248,16 @@ class TestInterruptions:
 
     @pytest.mark.flight
     def test_a_short_loss_of_telemetry_in_flight_changes_nothing(self) -> None:
-        world = four_in_the_air(faults=("telemetry-dropout:SIM-2:20:4",))
-        world.call(*FOUR)
-        world.runs(19.0)
-        assert world.member("SIM-2").stage is Stage.FLYING
+        world = first_wave()
+        world.world.fails("telemetry-dropout:SIM-2:1:4")
         assert world.runs_until_over(900.0)
         assert set(world.stages().values()) == {Stage.LANDED}
         assert world.nearest.level_m >= LEAST_LEVEL_M, world.nearest.who
 
     @pytest.mark.flight
     def test_one_whose_app_ignores_its_mission_is_an_alarm_and_the_others_go_on(self) -> None:
-        world = four_in_the_air(faults=("ack-then-nothing:SIM-4:8:900",))
-        world.call(*FOUR)
+        world = first_wave_descends()
+        world.world.fails("ack-then-nothing:SIM-4:0:900")
         assert world.runs_until_over(900.0)
         stages = world.stages()
         assert stages.pop("SIM-4") is Stage.EXCLUDED
@@ -242,10 +269,8 @@ class TestInterruptions:
 
     @pytest.mark.flight
     def test_one_whose_link_breaks_in_flight_lands_without_further_orders(self) -> None:
-        world = four_in_the_air(faults=("restart:SIM-1:20:5",))
-        world.call(*FOUR)
-        world.runs(15.0)
-        assert world.member("SIM-1").stage is Stage.FLYING
+        world = first_wave()
+        world.world.fails("restart:SIM-1:1:5")
         given = world.member("SIM-1").mission_id
         assert world.runs_until_over(900.0)
         assert set(world.stages().values()) == {Stage.LANDED}
@@ -279,16 +304,11 @@ class TestInterruptions:
 
     @pytest.mark.flight
     def test_one_whose_app_refuses_is_reported_with_that(self) -> None:
-        world = four_in_the_air(faults=("negative-ack:SIM-4:8:900",))
-        world.call(*FOUR)
-        assert world.runs_until_over(900.0)
-        assert "refused by app" in world.member("SIM-4").reason
+        assert "refused by app" in one_refused().member("SIM-4").reason
 
     @pytest.mark.flight
     def test_the_alarm_of_one_left_out_ends_with_a_new_order(self) -> None:
-        world = four_in_the_air(faults=("negative-ack:SIM-4:8:60",))
-        world.call(*FOUR)
-        assert world.runs_until_over(900.0)
+        world = one_refused()
         assert ("fleet_return", "SIM-4") in world.alarms()
         world.world.order("SIM-4", LandNow())
         world.runs(2.0)
@@ -296,9 +316,7 @@ class TestInterruptions:
 
     @pytest.mark.flight
     def test_a_vehicle_that_comes_to_hover_in_the_way_is_flown_around(self) -> None:
-        world = four_in_the_air()
-        world.call(*FOUR)
-        world.runs(10.0)
+        world = first_wave_descends()
         (waiting, *_) = [m for m in map(world.member, FOUR) if m.stage is Stage.WAITING]
         assert waiting.flight is not None
         start, end = waiting.flight.way_m[0], waiting.flight.way_m[-1]
@@ -310,9 +328,7 @@ class TestInterruptions:
 
     @pytest.mark.flight
     def test_a_vehicle_hovering_over_its_pad_leaves_it_out(self) -> None:
-        world = four_in_the_air()
-        world.call(*FOUR)
-        world.runs(10.0)
+        world = first_wave_descends()
         (waiting, *_) = [m for m in map(world.member, FOUR) if m.stage is Stage.WAITING]
         world.put("SIM-5", (*world.pads_m[waiting.serial], 10.0))
         assert world.runs_until_over(900.0)

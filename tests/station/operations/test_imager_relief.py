@@ -5,6 +5,7 @@ from math import dist
 
 import numpy as np
 import pytest
+from tests.flown_once import flown_once
 from tests.station.relieved_world import (
     FIRST,
     FIRST_UP_M,
@@ -50,6 +51,7 @@ WALL = Zone(
 )
 
 
+@flown_once
 def surveying(
     spare: str | None = SPARE,
     *,
@@ -79,6 +81,7 @@ def surveying(
     return world
 
 
+@flown_once
 def ordered(**options: object) -> RelievedWorld:
     """A relief that a person has ordered, under way for 20 s."""
     world = relieved_world(**options)  # type: ignore[arg-type]

@@ -6,6 +6,7 @@ from math import hypot, radians
 
 import numpy as np
 import pytest
+from tests.flown_once import flown_once
 from tests.station.imager_world import GRID, IMAGER, ImagerWorld, imager_world
 from tests.station.surveyed_world import SURVEY_ID, asked
 
@@ -71,6 +72,7 @@ def starts(world: ImagerWorld) -> None:
     world.surveyed.driver.handle(started)
 
 
+@flown_once
 def surveying(*, allowed: bool = True, **options: object) -> ImagerWorld:
     """A survey drone at work, and an imaging drone above the middle of its field."""
     world = imager_world(1, place_m=(0.0, 0.0), height_m=118.0, **options)  # type: ignore[arg-type]

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tests.flown_once import flown_once
 from tests.station.surveyed_world import SURVEY_ID, SurveyedWorld, asked, field, surveyed_world
 
 from recon.model.airspace import HeightDatum, Zone, ZoneKind
@@ -144,15 +145,20 @@ class TestStart:
         assert world.phase(2) is SurveyPhase.CREATED
 
 
+@flown_once
+def half_flown() -> SurveyedWorld:
+    world = two_ends()
+    world.asks(asked(field(360.0)))
+    world.starts("SIM-1", "SIM-2")
+    world.runs(30.0)
+    assert len(world.missions()) == 2
+    return world
+
+
 class TestStopped:
     @pytest.fixture
     def flying(self) -> SurveyedWorld:
-        world = two_ends()
-        world.asks(asked(field(360.0)))
-        world.starts("SIM-1", "SIM-2")
-        world.runs(30.0)
-        assert len(world.missions()) == 2
-        return world
+        return half_flown()
 
     def test_a_pause_holds_its_vehicles_and_orders_no_more_missions(
         self, flying: SurveyedWorld

@@ -5,6 +5,7 @@ from random import Random
 
 import pytest
 from tests.examples import IS_THOROUGH
+from tests.flown_once import flown_once
 from tests.station.surveyed_world import SurveyedWorld, asked, field, surveyed_world
 
 from recon.model.command import FlyMission, Hover, LandNow
@@ -87,6 +88,7 @@ class TestDone:
         }
 
 
+@flown_once
 def going_home(when_done: WhenDone = WhenDone.RETURN_HOME) -> SurveyedWorld:
     """Two whose survey has just ended."""
     world = surveyed_world(2)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tests.flown_once import flown_once
 from tests.station.returning_world import ReturningWorld, returning_world
 from tests.station.surveyed_world import SURVEY_ID, SurveyedWorld, asked, field, surveyed_world
 
@@ -29,6 +30,7 @@ def person(
     return ZoneDrawn(DrawnZone(TemporaryZoneKind.PERSON, circle, "sprinkler"), "Ann")
 
 
+@flown_once
 def surveying(count: int = 1) -> SurveyedWorld:
     """A field of 200 m by 80 m, some rows of which have been flown."""
     world = surveyed_world(count, pads=((0.0, -40.0), (200.0, -40.0)))

@@ -143,16 +143,24 @@ class SimulatedApp:
         """The mission being uploaded, and when it is flown."""
         self._link_orders: deque[LinkOrder] = deque()
         name = f"{settings.seed}/{settings.serial}/faults"
-        self._plan = FaultSchedule(settings.faults, name, self._start_ns)
+        self._plan = FaultSchedule(name, self._start_ns)
         self._aircraft_faults = AircraftFaults(aircraft, self._altitude, name)
         self._is_silent = False
         self._now_ns = self._start_ns
-        self._fault_events = sorted(self._one_off_events(), key=_DUE_NS)
+        self._fault_events: list[tuple[int, Callable[[], None]]] = []
+        for fault in settings.faults:
+            self.inject(fault)
         self._log: deque[str] = deque(maxlen=64)
         # Real apps are not synchronised: telemetry starts at a random phase of the first period.
         phase_ns = random.randrange(CORE_PERIOD_NS)
         self._next_core_ns = self._start_ns + phase_ns
         self._next_extended_ns = self._start_ns + phase_ns
+
+    def inject(self, fault: InjectedFault) -> None:
+        """Add a fault to those that are to happen, or have."""
+        self._plan.add(fault)
+        self._fault_events += self._one_off_events(fault)
+        self._fault_events.sort(key=_DUE_NS)
 
     def connected(self, now_ns: int, link: int = MAIN_LINK) -> None:
         """Start a connection with the greeting; it replaces an older one of this number."""
@@ -379,17 +387,16 @@ class SimulatedApp:
             for packet in packets:
                 self._send(packet, MAIN_LINK, now_ns)
 
-    def _one_off_events(self) -> Iterator[tuple[int, Callable[[], None]]]:
-        """Yield begin and end times of one-off faults, each with its action."""
-        for fault in self.settings.faults:
-            begin_ns = self._start_ns + seconds_to_ns(fault.start_s)
-            if fault.kind in LINK_FAULTS:
-                yield begin_ns, partial(self._begin_link_fault, fault)
-            elif fault.kind in AIRCRAFT_FAULTS:
-                yield begin_ns, partial(self._begin_aircraft_fault, fault)
-                end_ns = fault.end_ns(self._start_ns)
-                if end_ns is not None:
-                    yield end_ns, partial(self._aircraft_faults.end, fault.kind)
+    def _one_off_events(self, fault: InjectedFault) -> Iterator[tuple[int, Callable[[], None]]]:
+        """Yield begin and end times of a one-off fault, each with its action."""
+        begin_ns = self._start_ns + seconds_to_ns(fault.start_s)
+        if fault.kind in LINK_FAULTS:
+            yield begin_ns, partial(self._begin_link_fault, fault)
+        elif fault.kind in AIRCRAFT_FAULTS:
+            yield begin_ns, partial(self._begin_aircraft_fault, fault)
+            end_ns = fault.end_ns(self._start_ns)
+            if end_ns is not None:
+                yield end_ns, partial(self._aircraft_faults.end, fault.kind)
 
     def _run_fault_event(self, now_ns: int) -> None:
         _due_ns, action = self._fault_events.pop(0)

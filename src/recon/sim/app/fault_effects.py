@@ -1,6 +1,6 @@
 """What active faults do to packets and to the aircraft; all random values come from the seed."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from math import nan
 from random import Random
 
@@ -31,15 +31,17 @@ MOST_CHANGED_BYTES = 3
 class FaultSchedule:
     """Which faults of one vehicle are active when, and what they do to its packets."""
 
-    def __init__(self, faults: Iterable[InjectedFault], seed: str, start_ns: int) -> None:
+    def __init__(self, seed: str, start_ns: int) -> None:
         self._by_kind: dict[FaultKind, list[InjectedFault]] = {}
-        for fault in faults:
-            self._by_kind.setdefault(fault.kind, []).append(fault)
         self._start_ns = start_ns
         self._delays = Random(f"{seed}/delays")
         self._changes = Random(f"{seed}/changes")
         self._flaws = Random(f"{seed}/frames")
         self._repeated: dict[type, wire.Packet] = {}
+
+    def add(self, fault: InjectedFault) -> None:
+        """Add a fault."""
+        self._by_kind.setdefault(fault.kind, []).append(fault)
 
     def active(self, kind: FaultKind, now_ns: int) -> InjectedFault | None:
         """Return the active fault of a kind (the last listed of several), else None."""
