@@ -2,6 +2,7 @@
 
 import threading
 from collections import defaultdict, deque
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
 from random import Random
@@ -32,6 +33,13 @@ class Counter:
     def add(self, more: int = 1) -> int:
         self.count += more
         return self.count
+
+
+@dataclass(frozen=True, slots=True)
+class Act:
+    """Cannot change, but what it does may."""
+
+    now: Callable[[], int]
 
 
 def test_frozen_values_packets_and_fixed_arrays_are_shared() -> None:
@@ -81,6 +89,14 @@ def test_methods_partials_and_closures_act_on_the_fork() -> None:
     forked, *acts = fork((counter, counter.add, partial(counter.add, 10), closure))
     assert [act() for act in acts] == [1, 11, 17]
     assert (forked.count, counter.count) == (17, 0)
+
+
+def test_a_frozen_value_with_a_closure_is_copied_with_what_the_closure_captured() -> None:
+    counter = Counter()
+    forked, act = fork((counter, Act(lambda: counter.add())))
+    assert act.now() == forked.count == 1
+    assert counter.count == 0
+    assert fork([fixed := Act(int)])[0] is fixed
 
 
 def test_a_closure_that_names_itself_is_copied() -> None:

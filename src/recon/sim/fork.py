@@ -7,7 +7,7 @@ the rest. So it costs milliseconds, however much the station's state remembers.
 
 import pickle
 from copy import copy
-from dataclasses import dataclass, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass
 from enum import Enum
 from functools import cache
 from io import BytesIO
@@ -20,7 +20,7 @@ from recon import wire
 
 WorldT = TypeVar("WorldT")
 
-SHARED = (Enum, type, np.dtype, MappingProxyType, ModuleType)
+SHARED = (Enum, type, type(None), np.dtype, MappingProxyType, ModuleType)
 
 
 def fork(world: WorldT) -> WorldT:
@@ -98,7 +98,15 @@ def _is_shared(value: Any) -> bool:
         return not value.flags.writeable
     if isinstance(value, FunctionType):
         return value.__closure__ is None
-    return _is_frozen(type(value))  # type: ignore[arg-type]
+    kind: Any = type(value)
+    return _is_frozen(kind) and all(_is_shared(getattr(value, f)) for f in _functions(kind))
+
+
+@cache
+def _functions(kind: Any) -> tuple[str, ...]:
+    """Fields of a frozen dataclass that hold a function: what it captured may change."""
+    found = fields(kind) if is_dataclass(kind) else ()
+    return tuple(each.name for each in found if "Callable" in str(each.type))
 
 
 @cache

@@ -1,17 +1,24 @@
 """Forks of a world in virtual time: equal to the bit under the same input, and never in touch."""
 
 import random
-from collections.abc import Callable
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import fields, is_dataclass
+from functools import partial
+from io import BytesIO
+from types import FunctionType, MethodType
 
 import pytest
 from tests.oracles.run_digest import RunDigest
 from tests.station.returning_world import ReturningWorld, returning_world
 from tests.station.station_world import World, square_mission, world
 
+from recon.link.session import Session
 from recon.link.tap import Direction
 from recon.model.command import FlyMission, Hover, LandNow, ReturnHome
+from recon.sim.app.app import SimulatedApp
 from recon.sim.fake_link import FakeLink
-from recon.sim.fork import fork
+from recon.sim.fork import _Code, _Pickler, fork
 from recon.station.kernel.virtual import JobEnd, VirtualDriver
 
 RUNS_S = 6.0
@@ -40,6 +47,14 @@ def troubled(seed: int) -> World:
         wanders=True,
     )
     w.run_for(2.0)
+    w.order("SIM-1", FlyMission(square_mission()))
+    return w
+
+
+def ordered() -> World:
+    """A vehicle that is ordered to fly a mission."""
+    w = world()
+    w.run_for(3.0)
     w.order("SIM-1", FlyMission(square_mission()))
     return w
 
@@ -110,6 +125,19 @@ class TestInTheMiddle:
         )
         assert flown(fork(original)) == flown(original)
 
+    @pytest.mark.parametrize("step", ["_pending", "_start"])
+    def test_of_a_mission_that_its_app_takes(self, step: str) -> None:
+        original = ordered()
+        until(original, lambda: bool(getattr(original.app("SIM-1"), step)))
+        other = fork(original)
+        ends = []
+        for each in (other, original):
+            watched = Watched(each.driver)
+            each.run_for(15.0)
+            ends.append((watched.value(), each.app("SIM-1").aircraft.motion))
+        assert ends[0] == ends[1]
+        assert other.app("SIM-1").aircraft.motion.north_m > 3.0
+
     def test_of_bytes_under_way(self) -> None:
         original = troubled(5)
         until(original, lambda: len(original.driver._due) > 1)
@@ -136,6 +164,34 @@ class TestInTheMiddle:
             ends.append((watched.value(), each.heights_m, each.nearest))
         assert ends[0] == ends[1]
         assert set(original.stages()) == {"SIM-1", "SIM-2"}
+
+
+def test_what_forks_share_holds_nothing_that_changes() -> None:
+    original = ordered()
+    until(original, lambda: bool(original.app("SIM-1")._start))
+    pickler = _Pickler(BytesIO())
+    pickler.dump(original)
+    changing = (random.Random, deque, bytearray, MethodType, partial, Session, SimulatedApp)
+    shared = [each for each in pickler.aside if not isinstance(each, _Code)]
+    for value in parts(shared, set()):
+        assert not isinstance(value, changing), value
+        assert not (isinstance(value, FunctionType) and value.__closure__), value
+
+
+def parts(value: object, seen: set[int]) -> Iterator[object]:
+    """Yield a value, and all values in its fields and items."""
+    if id(value) in seen:
+        return
+    seen.add(id(value))
+    yield value
+    if isinstance(value, Mapping):
+        value = list(value.items())
+    if isinstance(value, tuple | list | frozenset | set):
+        for each in value:
+            yield from parts(each, seen)
+    elif is_dataclass(value) and not isinstance(value, type):
+        for each in fields(value):
+            yield from parts(getattr(value, each.name), seen)
 
 
 def test_what_a_test_puts_elsewhere_in_a_fork_stays_there() -> None:
