@@ -120,7 +120,7 @@ def test_undo_takes_back_one_change_after_the_other_also_of_the_layers_editor(
         ({"camera": "mini3"}, "Camera: expected a survey camera. Camera 'mini3' not found;"),
         ({"serial": "with space"}, "Serial: expected a text of 1 to 256 printable ASCII"),
         ({"serial": "00000"}, "Serial: expected an aircraft's own serial, got the placeholder"),
-        ({"serial": "SIM-2"}, "Serial SIM-2 stands in the table twice"),
+        ({"serial": "SIM-2"}, "Serial SIM-2 is in the table twice"),
     ],
 )
 @pytest.mark.parametrize("end", ["", "/check"])

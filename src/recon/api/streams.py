@@ -181,7 +181,7 @@ class AuditStream:
     """Sends every audit entry to every reader, in order, from a number on."""
 
     def __init__(self, page_after: Callable[[int, int], AuditPage]) -> None:
-        """`page_after` returns at most so many entries after a number."""
+        """`page_after` returns the entries after a number, up to a limit."""
         self._page_after = page_after
         self._readers = 0
 

@@ -100,7 +100,7 @@ class FetchCount:
 
     @property
     def done(self) -> int:
-        """All that are settled."""
+        """Return the number of finished tiles."""
         return self.present + self.fetched + self.missing + self.failed
 
 

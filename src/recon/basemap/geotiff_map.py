@@ -49,7 +49,7 @@ MASK_PX = 1024
 SAMPLES = 20_000
 """Samples of the area, to count what the file shows."""
 FINER = 1.4
-"""A zoom level is the file's own up to pixels so much larger."""
+"""Factor on the file's pixel size up to which a zoom level is its own."""
 JPEG_QUALITY = 85
 _OTHER_FILES = re.compile(r"nadgrids=(?!@null\b)|geoidgrids|PARAMETERFILE", re.IGNORECASE)
 """What makes PROJ look for a file that the reference system names."""

@@ -91,7 +91,7 @@ class MapArea:
         return (south + north) / 2.0
 
     def points(self, about: int) -> FloatArray:
-        """Return world coordinates (N, 2) of about so many places all over the area."""
+        """Return world coordinates (N, 2) of about that many places all over the area."""
         west, north, east, south = self._shape.bounds
         inside = self._shape.area / max((east - west) * (south - north), 1e-300)
         step = ((east - west) * (south - north) * inside / about) ** 0.5

@@ -29,5 +29,5 @@ def sight2_m2(grid: GroundGrid, camera_enu_m: FloatArray) -> FloatArray:
 def farthest_sight_m(
     height_m: float, pixels_per_radian: float, most_metres_per_pixel: float
 ) -> float:
-    """Return the line of sight at which a pixel shows so much ground along its longer side."""
+    """Return the line of sight at which a pixel shows this much ground along its longer side."""
     return sqrt(most_metres_per_pixel * height_m * pixels_per_radian)

@@ -317,7 +317,7 @@ def _fleet(plan: SurveyPlan, site: Site, drones: int) -> list[Surveyor]:
 def _needs(
     plan: SurveyPlan, site: Site, drones: Sequence[Surveyor], endurance_min: float | None
 ) -> tuple[SurveyEstimate, Consumption]:
-    """Return the estimate of drones that begin with full batteries where they stand."""
+    """Return the estimate of drones that begin with full batteries where they are."""
     height_m = plan.survey.height_m
     uses = least_enduring(site, endurance_min, height_m)
     level_s = uses.level_flight_s(1.0, height_m, site.limits.battery_reserve_fraction)

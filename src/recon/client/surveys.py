@@ -41,7 +41,7 @@ class SurveyVehicle(msgspec.Struct, frozen=True):
     has_come_home: bool
     """Returned home for the survey and landed: it can be added again."""
     takes_off_automatically: bool
-    """It stands, and takes off as soon as there are rows for it."""
+    """Whether it takes off from the ground as soon as there are rows for it."""
 
 
 class ImagerStay(msgspec.Struct, frozen=True):

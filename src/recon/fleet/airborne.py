@@ -13,7 +13,7 @@ A *landing* is believed when the vehicle was slow (under 0.5 m/s) for 1 s of suc
 
 - its last report in flight was in a landing mode, it has come down by 1 m in that mode, and has not
   moved since; or
-- it stands within 15 m of its takeoff point and 2 m of its takeoff height; or
+- it is within 15 m of its takeoff point and 2 m of its takeoff height; or
 - its takeoff point is unknown, a gap of telemetry was long enough to descend, and it is at takeoff
   height after it; or
 - its battery was changed in a gap (only on the ground can it rise).
@@ -340,7 +340,7 @@ def _ground_height_m(
     now_ns: int,
     settings: AirborneSettings,
 ) -> float | None:
-    """Return the height of the ground it stands on: slow changes are the air pressure's."""
+    """Return the height of the ground below it: slow changes are the air pressure's."""
     height_m, ground_m = report.height_above_takeoff_m, stood.height_m
     if height_m is None or ground_m is None:
         return ground_m if height_m is None else height_m

@@ -8,7 +8,7 @@ class AirborneSettings:
     """Limits for believing a vehicle in the air or on the ground (`fleet.airborne`)."""
 
     slow_mps: float = 0.5
-    """Velocity noise of a vehicle that stands stays below."""
+    """Speed that velocity noise on the ground stays below."""
     slow_s: float = 1.0
     """Ten packets: a wrong flag in one or two of them lands nothing."""
     landing_s: float = 1.5

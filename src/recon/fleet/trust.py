@@ -227,7 +227,7 @@ def _as_old_as(state: VehicleState, since_ns: int) -> VehicleState:
 def _reckoning(
     trust: Trust, report: CoreReport, now_ns: int, limits: TrustSettings
 ) -> DeadReckoning | None:
-    """Return the displacement by velocity since the position last moved; None while it stands."""
+    """Return the displacement by velocity since the position last moved; None while it rests."""
     position, velocity, before = report.position, report.velocity_ned, trust.reckoning
     if position is None or velocity is None:
         return None

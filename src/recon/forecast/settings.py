@@ -60,7 +60,7 @@ class ForecastSettings:
     """Soft edge, as `soft_edge`, of shadows that are followed: they keep their edges, less so with
     the lead, and least where another place must stand for the one upwind."""
     followed_for_s: float = 60.0
-    """Shade that has left the view is followed for so long: one seen cell in twelve is wrong then
+    """Time for which shade out of view is followed: one seen cell in twelve is wrong then
     by its motion alone."""
     followed_memory_s: float = 300.0
     """Time constant of the confidence in it."""

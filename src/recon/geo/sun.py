@@ -71,7 +71,7 @@ def sun_position(place: LatLon, utc_s: float) -> SunPosition:
 def utc_at_elevation(
     place: LatLon, near_utc_s: float, elevation_deg: float, *, is_rising: bool
 ) -> float:
-    """Return when the sun stands at an elevation, before or after the noon nearest to a time.
+    """Return when the sun is at an elevation, before or after the noon nearest to a time.
 
     Raises `ValueError` where the sun does not reach it on that day.
     """

@@ -30,7 +30,7 @@ class ImagerReliefSettings:
     minutes."""
 
     early_s: float = 150.0
-    """An automatic relief begins so much before it must: for refusals, and for its shade method to
+    """Time by which an automatic relief begins early: for refusals, and for its shade method to
     learn the ground while both are there."""
 
     refused_again_s: float = 15.0

@@ -39,7 +39,7 @@ class SideStepSettings:
     """Share of the ground in view from which on light counts as mostly unknown."""
 
     unknown_for_s: float = 20.0
-    """Light must be unknown for so long before the imaging drone moves. Edges of shade pass six
+    """Time that light must be unknown before the imaging drone moves. Edges of shade pass six
     times an hour: most flat views stay flat for minutes, and surveys are flown in them."""
 
     map_within_s: float = 10.0
@@ -65,7 +65,7 @@ def bearings_deg(sun_azimuth_deg: float | None) -> tuple[float, ...]:
 
 
 def place_aside(place: LatLon, bearing_deg: float, distance_m: float) -> LatLon:
-    """Return the place so many metres from another in a direction."""
+    """Return the place at a distance from another in a direction."""
     bearing = radians(bearing_deg)
     return moved_m(place, distance_m * cos(bearing), distance_m * sin(bearing))
 

@@ -78,7 +78,7 @@ class UpwindPlace:
         return (now + float(np.mean(later))) / 2.0
 
     def predicted_at(self, lead_s: float) -> float:
-        """Return the share of the field predicted so long ahead, between leads interpolated."""
+        """Return the share of the field predicted at a lead, interpolated between leads."""
         return float(np.interp(lead_s, LEAD_S, self.predicted))
 
 
@@ -92,7 +92,7 @@ def seen_from(
 ) -> UpwindPlace:
     """Return what a place sees of a field, given as points (N, 2) east and north in metres.
 
-    The shadows' velocity is east and north. For so long shade that has left the view is followed.
+    The shadows' velocity is east and north. Shade that has left the view is followed for a while.
     """
     ahead = np.array([sin(radians(heading_deg)), cos(radians(heading_deg))])
     axes = np.column_stack([ahead, (ahead[1], -ahead[0])])

@@ -1,4 +1,4 @@
-"""The TCP server for companion apps: the connections that stand, and what they share.
+"""The TCP server for companion apps: the open connections, and what they share.
 
 Beyond `max_links` a connection takes the place of an unidentified link without telemetry, or is
 refused. What else all links share is in `shared_limits`; `connection` is one app's socket.
@@ -24,7 +24,7 @@ class SocketWatch(Protocol):
     """Takes a duplicate of each connection's socket: the station's guard."""
 
     def opened(self, link_id: int, sock: Any) -> None:
-        """A connection stands; `sock` is closed with it."""
+        """Take an open connection; `sock` is closed with it."""
         ...
 
     def closed(self, link_id: int) -> None:
@@ -54,7 +54,7 @@ class LinkServer:
         self.ended: dict[int, Session] = {}
         """The latest sessions that are over, for their counters."""
         self.unfinished: dict[int, Connection] = {}
-        """Connections whose bytes are not all searched yet: those that stand, and closed ones."""
+        """Connections whose bytes are not all searched yet, open and closed ones."""
         self._budget = BufferBudget(settings.buffer_budget_bytes, settings.max_links)
         self._alarms = LimitAlarms(settings.limit_alarm_s)
         self._next_link_id = 1
@@ -88,7 +88,7 @@ class LinkServer:
             await asyncio.sleep(0)
 
     def sessions(self) -> dict[int, Session]:
-        """Return the sessions that stand and those lately ended, by link."""
+        """Return the open sessions and the recently ended ones, by link."""
         standing = (c.session for c in self.connections.values() if c.session is not None)
         return self.ended | {session.link_id: session for session in standing}
 
@@ -147,14 +147,14 @@ class LinkServer:
             self.handle(event)
 
     def add(self, connection: Connection) -> None:
-        """Take a new connection among those that stand."""
+        """Add a new connection to the open ones."""
         self.connections[connection.link_id] = connection
         self.unfinished[connection.link_id] = connection
         if self.watch is not None:
             self.watch.opened(connection.link_id, connection.socket)
 
     def forget(self, session: Session) -> None:
-        """Take a session that is over from those that stand; the oldest ended one goes."""
+        """Remove an ended session from the open ones; drop the oldest ended one."""
         self.connections.pop(session.link_id, None)
         self.ended[session.link_id] = session
         if self.watch is not None:

@@ -6,7 +6,7 @@ from enum import StrEnum
 
 LONGEST_NAME = 32
 NAME = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9._-]{0,31})")
-"""Names stand in audit lines and on terminals: one ASCII word, so that no two look alike by
+"""Names appear in audit lines and on terminals: one ASCII word, so that no two look alike by
 invisible letters, and no name contains another person's line."""
 
 THIS_COMPUTER = "this computer"

@@ -85,7 +85,7 @@ class GroundReports:
 
 @dataclass(frozen=True, slots=True)
 class GroundStand:
-    """Where a vehicle believed on the ground stands; the height follows the barometer's drift."""
+    """Position of a vehicle believed on the ground; the height follows the barometer's drift."""
 
     since_ns: int
     at_ns: int

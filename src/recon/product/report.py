@@ -223,7 +223,7 @@ def _off_height_m(request: Survey, heights_m: npt.NDArray[np.float64]) -> float:
 
 
 def _thinned(at_ns: IntArray, part: slice, least_ns: int) -> Iterator[int]:
-    """Yield the indices of times that are so far apart."""
+    """Yield the indices of times that are at least `least_ns` apart."""
     last_ns = None
     for index, each_ns in enumerate(at_ns[part].tolist(), start=part.start):
         if last_ns is None or each_ns - last_ns >= least_ns:

@@ -1,11 +1,11 @@
-"""One point of the preflight checklist, and how it stands."""
+"""One point of the preflight checklist, and its state."""
 
 from dataclasses import dataclass
 from enum import Enum
 
 
 class CheckState(Enum):
-    """How a point stands, the best first."""
+    """State of a point, the best first."""
 
     OK = "ok"
     ATTENTION = "attention"
@@ -27,7 +27,7 @@ class Check:
 
     @property
     def holds_back(self) -> bool:
-        """Whether no mission is flown while it stands like this."""
+        """Whether no mission is flown in this state."""
         return self.state in (CheckState.FAILS, CheckState.UNKNOWN)
 
 

@@ -59,7 +59,7 @@ def places_m(frame: LocalFrame, places: Iterable[OnGlobe]) -> FloatArray:
 def home(vehicle: VehicleState) -> LatLon | None:
     """Return where the vehicle would go home to.
 
-    On the ground it is where the vehicle stands, for there it will take off. In the air it is where
+    On the ground it is the vehicle's position, since it will take off there. In the air it is where
     the station observed its takeoff, or else its own pad: the aircraft does not report its home.
     """
     if vehicle.is_flying.value is False and vehicle.position.value is not None:

@@ -7,7 +7,7 @@ loaded seconds over endurance.
 
 - A leg costs its level part at the leg's speed and, after that, its vertical part: climbing while
   flying is no cheaper than one after the other. Unless the mission is curved, each leg begins and
-  ends standing still.
+  ends at rest.
 - A waypoint costs its loiter and the turn of its gimbal.
 - The way home from a point costs the climb to the go-home height, the straight way at that height,
   and the landing. While that height is unknown, the highest the site allows is assumed.
@@ -55,7 +55,7 @@ class Consumption:
         return loaded_s * self.wind_load / self.endurance_s
 
     def leg(self, start: Point, end: Point, speed_mps: float, *, stops: bool = True) -> float:
-        """Return the fraction for one leg; with `stops` it begins and ends standing still."""
+        """Return the fraction for one leg; with `stops` it begins and ends at rest."""
         s = self.settings
         level_m, up_m = _distance_m(start, end), end[2] - start[2]
         level_s = level_m / max(speed_mps, s.slowest_mps)
@@ -246,7 +246,7 @@ def mission_need(uses: Consumption, points: Sequence[Point], mission: Mission) -
 
 
 def _pause_s(mission: Mission, number: int, uses: Consumption) -> float:
-    """How long the mission stands at one waypoint for its actions."""
+    """How long the mission stops at one waypoint for its actions."""
     waypoint = mission.waypoints[number]
     turns_s = 0.0 if waypoint.gimbal_pitch_deg is None else uses.settings.gimbal_s
     return (waypoint.loiter_s or 0.0) + turns_s

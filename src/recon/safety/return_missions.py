@@ -1,4 +1,4 @@
-"""Missions that only bring a vehicle down: what holds a flight back must not hold its end back."""
+"""Missions that only bring a vehicle down: checks that prevent a flight do not apply."""
 
 from itertools import pairwise
 from typing import Final

@@ -113,7 +113,7 @@ class BlindStopSettings:
     """The fastest of DJI's aircraft that fly missions sinks at 9 m/s; one more for the air."""
 
     height_error_m: float = 5.0
-    """A barometer's error, and what stands or grows on the ground."""
+    """A barometer's error, and obstacles and plants on the ground."""
 
     fastest_mps: float = DJI.fastest_mps
     """How far it may have come over higher ground."""
@@ -194,7 +194,7 @@ class PredictionSettings:
 
     free_s: float = 5.0
     """A vehicle without a commanded motion may be flown by a pilot. It may use its speed in
-    any direction for this long; a standing one is taken to stand, and watched."""
+    any direction for this long; a hovering one is assumed to stay, and watched."""
 
     stands_s: float = 30.0
     """What follows a steered order: a place is held this long before others must fear it no more;
@@ -285,7 +285,7 @@ class GoHomeSettings:
     off_track_s: float = 2.0
 
     no_progress_s: float = 10.0
-    """Neither nearer nor higher for so long. It turns and brakes from 15 m/s in 8 s."""
+    """Longest time neither nearer nor higher. It turns and brakes from 15 m/s in 8 s."""
 
     lands_within_m: float = 10.0
     """Largest distance of a landing from home or pad: GNSS (2.5 m each) and go-home precision."""

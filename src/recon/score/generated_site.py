@@ -89,7 +89,7 @@ def _pads(
 
 
 def _hovered_m(imager: ScenarioImager, room_m: float) -> Iterable[EastNorth]:
-    """Yield the corners of where imaging drones may hover; the first one moves so far."""
+    """Yield the corners of where imaging drones may hover; the first one moves `room_m`."""
     east_m, north_m = imager.over_m
     yield (east_m - room_m, north_m - room_m)
     yield (east_m + room_m, north_m + room_m)

@@ -28,7 +28,7 @@ def one_by_one(
 def on_cores(
     scenario: Scenario, seeds: Sequence[int], jobs: int, report: Report | None = None
 ) -> Iterator[RunScore]:
-    """Yield the runs, flown by so many processes of this machine; `report` is called in them.
+    """Yield the runs, flown by `jobs` processes of this machine; `report` is called in them.
 
     Raises `ScenarioError` when one of them ends before its run.
     """

@@ -4,7 +4,7 @@ Theory of operation. `decide` is called about once a second with a `FieldView` a
 
     no survey    plan one when all drones have been ready for SETTLED_S
     planned      start it with all drones, takeoff allowed
-    flying       start a drone (again) that stands with a good battery, or hovers without a task;
+    flying       start a drone (again) on the ground with a good battery, or hovers without a task;
                  command return to home where a low-battery alarm is active and it is not returning;
                  dismiss the hazard area of one that has been lost in the air for FOUND_AFTER_S
     finished     nothing; with `repeats`, plan the next survey when all batteries are good again
@@ -64,7 +64,7 @@ class DroneView:
     """A pilot holds control authority; the operator takes it back before a start."""
 
     def stands_with(self, least_share: float) -> bool:
-        """Whether it stands with a battery at least this full."""
+        """Whether it is on the ground with a battery at least this full."""
         share = self.battery_fraction
         return self.is_live and self.is_flying is False and (share or 0.0) >= least_share
 
@@ -195,7 +195,7 @@ class ScriptedOperator:
                 yield StartDrones((each.serial,))
 
     def _needs_start(self, drone: DroneView) -> bool:
-        """Whether a live drone has no task and could fly: it hovers, or stands with its battery."""
+        """Whether a live drone has no task and could fly: it hovers, or is ready on the ground."""
         if not drone.is_live:
             return False
         if drone.is_flying is True:
@@ -220,7 +220,7 @@ class ScriptedOperator:
             yield CallHome(stopped[0])
 
     def _lasts(self, what: str, holds: bool, now_s: float, for_s: float = REACTION_S) -> bool:
-        """Whether a condition has held for so long; the time starts again when it has."""
+        """Whether a condition has held for `for_s`; the time starts again when it has."""
         if not holds:
             self._since_s.pop(what, None)
             return False

@@ -63,7 +63,7 @@ class DrawnFeatureError(SiteError):
     """What is wrong with the feature at `index` in the order in which they were given."""
 
     def __init__(self, index: int, problem: str) -> None:
-        """Take the sentence without the file that it would stand in."""
+        """Take the sentence without the file that it is about."""
         super().__init__(problem)
         self.index = index
 

@@ -71,7 +71,7 @@ class Imported:
 
 
 def read_import(name: str, data: bytes) -> Imported:
-    """Return the polygons and points of a file; `name` stands in errors. Raises `SiteError`."""
+    """Return the polygons and points of a file; `name` appears in errors. Raises `SiteError`."""
     shown = ascii(PurePosixPath(name).name)[1:-1][:80] or "the file"
     if len(data) > LARGEST_IMPORT_BYTES:
         raise SiteError(f"{shown}: expected at most {LARGEST_IMPORT_BYTES} bytes, got {len(data)}")

@@ -143,7 +143,7 @@ class LayersTable(_Table, frozen=True):
 
 
 class LimitsTable(_Table, frozen=True):
-    """[limits]: absent keys keep the defaults of `FlightLimits`, whose reasons stand there."""
+    """[limits]: absent keys keep the defaults of `FlightLimits`, whose reasons are there."""
 
     max_height_above_ground_m: Annotated[float, Meta(ge=20.0, le=500.0)] | None = None
     """DJI's own bounds of the height an aircraft can be limited to."""

@@ -121,7 +121,7 @@ class Site:
 
     @property
     def airspace(self) -> Airspace:
-        """Limits, zones and pads of the site; with pads that stand only in a profile."""
+        """Limits, zones and pads of the site; with pads that only a profile has."""
         layered = self.layers.landing_pads
         owners = {pad.serial for pad in layered}
         own = (

@@ -52,7 +52,7 @@ def last_own_line(block: Sequence[str]) -> int:
 def with_keys(
     block: Sequence[str], name: str, columns: Collection[str], values: Mapping[str, Any]
 ) -> list[str]:
-    """Return a section in which, of `columns`, exactly `values` are set; new ones stand last.
+    """Return a section in which, of `columns`, exactly `values` are set; new ones come last.
 
     An inner table that is one of `columns` becomes a key.
     """

@@ -50,7 +50,7 @@ class VehicleRowError(SiteError):
     """What is wrong with the row at `index` in the order in which they were given."""
 
     def __init__(self, index: int, problem: str) -> None:
-        """Take the sentence without the file that it would stand in."""
+        """Take the sentence without the file that it is about."""
         super().__init__(problem)
         self.index = index
 
@@ -89,7 +89,7 @@ def stage_vehicles(folder: Path, rows: Sequence[VehicleRow]) -> StagedSite:
 
 
 def _refuse_invalid(rows: Sequence[VehicleRow]) -> None:
-    """Raise `VehicleRowError` for values that no vehicle has, before they stand in a file."""
+    """Raise `VehicleRowError` for values that no vehicle has, before they are written to a file."""
     for index, row in enumerate(rows):
         values = _values(row)
         try:
@@ -98,7 +98,7 @@ def _refuse_invalid(rows: Sequence[VehicleRow]) -> None:
             key, _, rest = validation_error(problem, values, VehicleTable, "").partition(": ")
             raise VehicleRowError(index, _sentence(key, rest)) from problem
         if row.serial in {other.serial for other in rows[:index]}:
-            raise VehicleRowError(index, f"Serial {row.serial} stands in the table twice")
+            raise VehicleRowError(index, f"Serial {row.serial} is in the table twice")
 
 
 def _sentence(key: str | None, rest: str) -> str:

@@ -80,7 +80,7 @@ def test_a_file_that_others_can_write_is_refused(tmp_path: Path) -> None:
         (b"format = 1\n" + ROW.replace("anna", "a\u0430".encode().decode()).encode(), "name must"),
         (b"format = 1\n" + ROW.replace(HASH, "b" * 63).encode(), "64 hexadecimal digits"),
         (b"format = 1\n" + ROW.replace(HASH, "B" * 64).encode(), "64 hexadecimal digits"),
-        (b"format = 1\n" + ROW.encode() * 2, "each name must stand once"),
+        (b"format = 1\n" + ROW.encode() * 2, "each name must appear once"),
         (b"format = 1\n" + ROW.encode() + ROW.replace("anna", "ANNA").encode(), "each name"),
         (b"format = 1\n" + ROW.encode() + ROW.replace("anna", "b").encode(), "same token"),
         (b"format = 1\n" + ROW.encode() * (MAX_USERS + 1), "length <= 64"),

@@ -8,7 +8,7 @@ from recon.api.schema.message import Message, StrictMessage
 
 
 class ReplayView(Message):
-    """Where a replay stands in its record; a state's `time_ns` is the record's own time."""
+    """Where a replay is in its record; a state's `time_ns` is the record's own time."""
 
     file: str
     duration_s: float

@@ -59,7 +59,7 @@ class RegistrationSettings:
     lost_after_s: float = 3.0
     """Time without a registered frame."""
     new_start_after_s: float = 30.0
-    """Lost for so long, a new reference begins from telemetry: the drone has flown elsewhere."""
+    """Time lost after which a new reference begins from telemetry: the drone flew elsewhere."""
     largest_speed_mps: float = 2.0
     """Largest speed of the drone where a reference begins from telemetry: a frame's capture time is
     known to a quarter of a second only, in which it would move by metres."""

@@ -90,7 +90,7 @@ class Belief:
 
 
 def worth(after_s: float) -> float:
-    """Return how many independent cells a frame is worth, so long after the one before."""
+    """Return how many independent cells a frame is worth, by the time since the one before."""
     return WORTH * min(1.0, after_s / WORTH_S)
 
 

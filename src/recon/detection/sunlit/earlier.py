@@ -33,7 +33,7 @@ NEAREST_SUN_DEG = 12.0
 NEAREST_M = 30.0
 """Distance of the cameras: beyond, the lens's own light falls on other cells."""
 NOISES = 3.0
-"""A cell is explained within so many standard deviations of light and colour."""
+"""Standard deviations of light and colour within which a cell is explained."""
 LEAST_EXPLAINED = 0.8
 """Share of a frame's cells: a field that was mown or ploughed since explains far fewer."""
 

@@ -38,7 +38,7 @@ REACH = 21, 20
 OUTLIERS = 2e-3
 """Share of cells that are anything: vehicles, errors of place."""
 WORTH = 12.0
-"""A frame's cells are worth so many independent ones: neighbours are wrong together."""
+"""Number of independent cells that a frame's are worth: errors of neighbours are alike."""
 USUAL_LENGTH = 22.0
 """Length of the curve in standard deviations of noise: on a longer one cells are as frequent."""
 ENDS_SHARE = 0.12

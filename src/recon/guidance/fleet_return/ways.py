@@ -122,7 +122,7 @@ def _area(region: Region) -> shapely.Geometry:
 
 
 CLEARANCE_M = 0.25
-"""Corners of a way stand this far off what they go around, so that rounding never touches it."""
+"""Distance of a way's corners from what they go around, so that rounding never touches it."""
 
 CORNERS_OF_A_CIRCLE = 12
 

@@ -267,7 +267,7 @@ def _flight(
 
 
 def _mission_s(plan: SurveyPlan, track: Track, start_m: EastNorth) -> float:
-    """How long a mission takes with the way to it, standing at corners included."""
+    """How long a mission takes with the way to it, stops at corners included."""
     settings, speed_mps = plan.settings, plan.survey.speed_mps
     end_m = track.corners_m[-1]
     used_s = flight_time_s(track, speed_mps, start_m, end_m, settings)

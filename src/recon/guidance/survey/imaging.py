@@ -41,7 +41,7 @@ def longest_photo_m(
     """Return how far apart two photos of a row may be for its front overlap.
 
     Where rows have waypoints within, a photo must show what lies beside a stop before the aircraft
-    gets there, or after it has left: what it sees standing does not count.
+    gets there, or after it has left: what it sees in a hover does not count.
     """
     along_m = camera.along_m(height_m)
     seen_m = along_m - 2.0 * DEFAULT.place_slack_m

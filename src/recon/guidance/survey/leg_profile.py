@@ -50,7 +50,7 @@ class ProfileLimits:
     climb_m: float
     """Climb between the ends of one leg, up or down."""
     step_m: float
-    """Waypoints stand this far apart, or up to twice as near."""
+    """Distance between waypoints, or down to half of it."""
 
 
 def leg_profile(
@@ -60,7 +60,7 @@ def leg_profile(
     wanted_m: Callable[[FloatArray], FloatArray],
     limits: ProfileLimits,
 ) -> tuple[Vertex, ...]:
-    """Return the waypoints between the ends of a leg, which stand at `ends_up_m`.
+    """Return the waypoints between the ends of a leg, which are at `ends_up_m`.
 
     `wanted_m` returns the heights (N,) wanted at (N, 2) places.
     """

@@ -225,7 +225,7 @@ def _nearer_half(rows: Route, plan: SurveyPlan) -> Route:
 
 
 def _fly_in_more_sun(choice: VehicleChoice, left: Passing) -> Step | None:
-    """Fly what is in sun instead of what is left, if that is worth a new mission."""
+    """Fly sunlit ground instead of the mission's rest, if that is worth a new mission."""
     alone, expected, plan = _without_mission(choice), choice.expected, choice.plan
     free = alone.free()
     legs = alone.begun_at_once(alone.share(free)) if free.any() else ()

@@ -22,7 +22,7 @@ def own_share(
 ) -> BoolArray:
     """Return (S,): a vehicle's part of the `free` (S,) segments, by row and along.
 
-    Vehicles stand in the order in which they, or the ends of their missions, lie across. Those on a
+    Vehicles are in the order in which they, or the ends of their missions, lie across. Those on a
     mission get less, and ground without sun counts `least_worth`.
     """
     across_m = {each.serial: _next_across_m(each, flights, plan) for each in able}
@@ -53,7 +53,7 @@ def _busy_s(flight: AssignedMission | None, now_ns: int) -> float:
 
 
 def finished_together_s(busy_s: FloatArray, work_s: float) -> float:
-    """Return when vehicles that are busy for (N,) seconds finish so much work together, if each
+    """Return when vehicles that are busy for (N,) seconds finish this work together, if each
     takes its part as soon as it can."""
     ordered = np.sort(busy_s)
     for count in range(1, len(ordered)):

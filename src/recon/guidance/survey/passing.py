@@ -34,7 +34,7 @@ class Passing:
         return sum(each.missing_m2 for each in self.passes)
 
     def lit_m2(self, expected: ExpectedSun, later_s: float = 0.0, patience_s: float = inf) -> float:
-        """Return the ground expected in sun when it is passed, if all begins so much later.
+        """Return the ground expected in sun when it is passed, with a start later by `later_s`.
 
         With a patience, ground passed after that long counts for a third, as in a search.
         """

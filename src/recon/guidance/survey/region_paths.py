@@ -14,7 +14,7 @@ from recon.guidance.survey.lattice import EastNorth
 from recon.model.arrays import FloatArray
 
 CLEARANCE_M = 0.25
-"""Corners of a way stand this far off the edge, so that rounding never crosses it."""
+"""Distance of a way's corners from the edge, so that rounding never crosses it."""
 
 OFF_PLACE_M = 3.0
 """A vehicle at the end of a row is no farther off it: GNSS and braking."""

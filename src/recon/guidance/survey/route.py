@@ -203,7 +203,7 @@ def _cut(leg: RowLeg, most_m: float, lattice: RowLattice, least_m: float) -> tup
 
 
 def _mark_within(leg: RowLeg, first_m: float, lattice: RowLattice) -> float:
-    """The last mark that is at most so far from where a leg begins."""
+    """Return the last mark within a distance of where a leg begins."""
     if leg.is_reversed:
         return lattice.mark_at_or_after_m(leg.piece.end_m - first_m)
     return lattice.mark_at_or_before_m(leg.piece.start_m + first_m)

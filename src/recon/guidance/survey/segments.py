@@ -175,7 +175,7 @@ def _persisting(
     now_ns: int,
     settings: SurveySettings,
 ) -> FloatArray:
-    """(K, N): what is in sun or shade stays so, the less surely the longer ago it was seen."""
+    """(K, N): sun or shade persists, the less surely the longer ago it was seen."""
     cells, is_on = _cells_of(shade.grid, grid, missing)
     is_known = shade.valid[cells] & is_on
     with np.errstate(invalid="ignore"):

@@ -202,7 +202,7 @@ class SurveySettings:
     """Share of a mission's missing ground expected in sun from which on its rest is flown."""
 
     replacement_gain_share: float = 0.25
-    """It is replaced if that brings so much more ground into sun, as a share of what is flown
+    """Gain of ground in sun from which it is replaced, as a share of what is flown
     meanwhile."""
 
     clear_sky_probability: float = 0.85
@@ -236,7 +236,7 @@ class SurveySettings:
     """Ground in shade counts this much when shares are made: it must be flown some time."""
 
     standby_s: float = 60.0
-    """A vehicle on the ground takes off so long before sun is expected at its first row."""
+    """Time by which a vehicle takes off before sun is expected at its first row."""
 
     standby_m: float = 30.0
     """A vehicle this near to its next row waits where it is."""

@@ -194,7 +194,7 @@ class CoverageFigures:
 
 
 def figures(state: SurveyState) -> CoverageFigures:
-    """Return the figures of a survey as it stands."""
+    """Return the present figures of a survey."""
     cells, progress, inside = state.plan.cells, state.progress, state.plan.cells.is_inside
     not_in_sun, is_known = progress.state == CellState.IN_SHADE, progress.is_sun_known
     return CoverageFigures(

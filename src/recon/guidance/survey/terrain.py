@@ -282,7 +282,7 @@ class _GroundAround:
 
 
 def _part(model: GroundGrid, lattice: GroundGrid, cell_m: float, around_m: float) -> GroundGrid:
-    """The cells of a model, or finer ones, that reach so far around a lattice."""
+    """Return the cells of a model, or finer ones, that reach around a lattice."""
     left = floor((lattice.west_m - around_m - model.west_m) / cell_m)
     top = floor((model.north_m - lattice.north_m - around_m) / cell_m)
     cols = ceil((lattice.east_m + around_m - model.west_m) / cell_m) - left

@@ -97,7 +97,7 @@ class VehicleChoice:
 
     def _is_worth_taking_off(self, flight: Flight) -> bool:
         """Whether what it flies first has sun: one that flies in shade until then has less of its
-        battery when sun comes, or stands at home."""
+        battery when sun comes, or has landed."""
         most = max(leg.probability for leg in self.committed(flight))
         return most >= self.settings.takeoff_probability
 

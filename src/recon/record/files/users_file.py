@@ -144,7 +144,7 @@ def _user(path: Path, table: _UserTable) -> User:
 def _require_distinct(path: Path, users: Sequence[User]) -> None:
     names = [user.name.casefold() for user in users]
     if len(set(names)) < len(names):
-        raise RecordError(f"{path}: each name must stand once; letter case does not distinguish")
+        raise RecordError(f"{path}: each name must appear once; letter case does not distinguish")
     if len({user.token_sha256 for user in users}) < len(users):
         raise RecordError(
             f"{path}: two users have the same token; renew one with `recon user renew`"

@@ -219,7 +219,7 @@ class Codec:
         for each in dataclasses.fields(kind):
             if each.init:
                 hint = _substituted(hints[each.name], variables)
-                # Numbers of numpy may stand in a field of numbers: only these stay as they are.
+                # Numbers of numpy may be in a field of numbers: only these stay as they are.
                 plain = hint if hint in (str, bytes) else None
                 is_required = each.default is MISSING and each.default_factory is MISSING
                 codec = None if plain is not None else self._both(hint)

@@ -19,7 +19,7 @@ LARGE_BYTES = 4096
 def digest(value: Any) -> bytes:
     """Return the digest of a value of dataclasses, collections, arrays, numbers and text.
 
-    Of other objects only the type counts: they hold prepared forms of what stands beside them. A
+    Of other objects only the type counts: they hold prepared forms of fields beside them. A
     field at its default is passed over: a type that gains one keeps the digests of its values.
     """
     state = blake2b(digest_size=DIGEST_BYTES)

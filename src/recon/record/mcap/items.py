@@ -19,7 +19,7 @@ STEP_HEAD = struct.Struct("<QqH")
 COMPRESSION = 1
 """Zstandard's level: fast, because frames are most of a record."""
 BULK_BYTES = 16 * 1024
-"""Bytes of so long a read are part of an image."""
+"""Size of a read from which its bytes are part of an image."""
 
 
 class ItemKind(IntEnum):
@@ -38,7 +38,7 @@ class ItemKind(IntEnum):
 
 
 class Beginning(msgspec.Struct, frozen=True):
-    """What stands at the beginning of a file."""
+    """The beginning of a file."""
 
     at_ns: int
     start: bytes

@@ -1,7 +1,7 @@
 """The raw bytes of the links in a flight record, each frame in it once.
 
-A frame's pixels, or its JPEG, stand in the topic of its images; the bytes of its link refer to them
-and hold what stands around them. Read together they are the link's bytes exactly.
+A frame's pixels, or its JPEG, are in the topic of its images; the bytes of its link refer to them
+and hold what is around them. Read together they are the link's bytes exactly.
 
 `LinkStream` holds the bytes of one app until the step of their packet comes: it states where the
 packet begins and ends, and whether it is an image. Bytes that have waited `HALF_FRAME_S` are
@@ -37,7 +37,7 @@ Picture = RawImage | CompressedImage
 class LinkMessage(msgspec.Struct, frozen=True, omit_defaults=True):
     """A message of that topic: what came by one read, or left by one write.
 
-    With a `frame`, `data` stands around that image's payload, the last two bytes behind it, and the
+    With a `frame`, `data` is around that image's payload, the last two bytes behind it, and the
     message is for all of that from byte `skip` on. `lost` bytes before it are not in the record.
     """
 
@@ -184,7 +184,7 @@ _PICTURES: dict[str, type[RawImage] | type[CompressedImage]] = {
 
 
 class Pictures:
-    """The newest frame of a record: its bytes and its step stand right behind it."""
+    """The newest frame of a record: its bytes and its step are right behind it."""
 
     def __init__(self) -> None:
         self._newest: RecordMessage | None = None
@@ -209,7 +209,7 @@ class Pictures:
 
 
 def link_bytes(file: BinaryIO) -> Iterator[LinkBytes]:
-    """Yield the bytes of every link; the file stands behind MCAP's first 8 bytes.
+    """Yield the bytes of every link; the file is positioned behind MCAP's first 8 bytes.
 
     Raises `RecordError` where the file ends early or is damaged, after what came before.
     """

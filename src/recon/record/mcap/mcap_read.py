@@ -175,7 +175,7 @@ _READ = frozenset((Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE, Opcode.CHUNK, 
 
 
 def raw_records(file: BinaryIO, at: int, is_read: Callable[[int], bool]) -> Iterator[RawRecord]:
-    """Yield the records of a file's top level from byte `at` on, where the file stands.
+    """Yield the records of a file's top level from byte `at` on, the file's position.
 
     Content is read of those that `is_read` names by opcode. Ends at the last whole record's end;
     raises `DamagedMcapError` for a record that cannot be one.
@@ -200,7 +200,7 @@ def raw_records(file: BinaryIO, at: int, is_read: Callable[[int], bool]) -> Iter
 
 
 def _skip(file: BinaryIO, length: int) -> bool:
-    """Go on behind so many bytes; return whether they are all there."""
+    """Skip so many bytes; return whether they are all there."""
     if not file.seekable():
         return len(file.read(length)) == length
     return length == 0 or (file.seek(length - 1, 1) >= 0 and len(file.read(1)) == 1)
@@ -226,7 +226,7 @@ def unpacked_chunk(content: bytes, at: int) -> bytes:
 
 def _unpacked(name: bytes, packed: bytes, size: int) -> bytes:
     if name == b"zstd":
-        # The frame's own statement of its size would be allocated as it stands.
+        # The frame's own statement of its size would be allocated unchecked.
         stated = zstandard.frame_content_size(packed)
         if stated not in (-1, size):
             raise DamagedMcapError(f"a chunk of {size} bytes holds a frame of {stated}")

@@ -92,7 +92,7 @@ def _is_read(opcode: int) -> bool:
 
 
 class _Found:
-    """What stands in a file, in its order."""
+    """The content of a file, in its order."""
 
     def __init__(self, descriptor: int) -> None:
         self._descriptor = descriptor
@@ -174,7 +174,7 @@ class _Found:
         start = chunk.at + RECORD_HEAD.size
         head = os.pread(self._descriptor, CHUNK_HEAD.size, start)
         first_ns, last_ns, size, _crc = CHUNK_HEAD.unpack(head)
-        # Our own chunks: the name "zstd" and two sizes stand before the content.
+        # Our own chunks: the name "zstd" and two sizes precede the content.
         packed_bytes = chunk.length - RECORD_HEAD.size - CHUNK_HEAD.size - 16
         return ChunkIndex(
             chunk_length=chunk.length,

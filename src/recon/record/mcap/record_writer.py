@@ -61,7 +61,7 @@ class Messages(Protocol):
     """Makes messages of items."""
 
     def begin(self, item: Any, topics: Topics) -> None:
-        """Write what stands at the beginning of a file."""
+        """Write the beginning of a file."""
 
     def write(self, item: Any, topics: Topics, *, with_images: bool) -> None:
         """Write one item."""

@@ -1,6 +1,6 @@
 """Battery critical: the aircraft's serious warning, 10 % left, or too little for the way home.
 
-It is recalled at once. What returns already is not landed where it is by default: that place may
+It is recalled at once. A returning vehicle is not landed in place by default: that place may
 be water, a road or a person, and only the site knows.
 """
 

@@ -1,7 +1,7 @@
 """Geofence: about to leave the boundary or to enter a keep-out zone, or beyond it already.
 
 The watchdog `fences` finds it and gives the hold in its own time; a cell only decides whether it
-may. What lands or returns is not stopped on its way.
+may. A landing or return is not stopped.
 """
 
 from recon.model.failsafe_matrix import Activity, FailsafeCondition, Reaction

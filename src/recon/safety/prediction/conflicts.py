@@ -50,7 +50,7 @@ def first_conflict(
     not.
 
     To another that is too near already, for the first seconds only coming nearer counts, if `own`
-    `may_lead_apart`: one that stands on the ground is not in the air yet, and stays there.
+    `may_lead_apart`: one on the ground is not in the air yet, and stays there.
     """
     if not others:
         return None

@@ -132,7 +132,7 @@ def vehicle_motion(
 def height_drift_m(
     state: VehicleState, now_ns: int, settings: PredictionSettings, ahead_s: float = 0.0
 ) -> float:
-    """Return how far a vehicle's height may have drifted by now, or so many seconds ahead."""
+    """Return how far a vehicle's height may have drifted by now, or `ahead_s` from now."""
     since_ns = state.airborne_since_ns
     if since_ns is None:
         return 0.0

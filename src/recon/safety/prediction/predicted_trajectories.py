@@ -194,7 +194,7 @@ def _reach_m(
 def _flown_m(
     speed_mps: float, age_s: float, intent: Intent, seconds: float, settings: PredictionSettings
 ) -> float:
-    """How far a vehicle flies at most from its place `age_s` ago until so many seconds from now."""
+    """Return how far it flies at most from its place `age_s` ago until `seconds` from now."""
     is_commanded = intent.commanded in (Commanded.MISSION, Commanded.STICK, Commanded.RETURN)
     fastest_mps = max(speed_mps, settings.unknown_speed_mps if is_commanded else 0.0)
     lasts_s = age_s + max(seconds, settings.stick_horizon_s)
@@ -204,7 +204,7 @@ def _flown_m(
 def _band_m(
     motion: VehicleMotion, intent: Intent, seconds: float, settings: PredictionSettings
 ) -> tuple[float, float]:
-    """The heights it can be at within so many seconds."""
+    """Return the heights that it can reach within `seconds`."""
     if motion.age_s > settings.stale_s or intent.commanded in (Commanded.LAND, Commanded.RETURN):
         return -ALL_HEIGHTS_M, ALL_HEIGHTS_M
     heights_m = [intent.target_height_above_takeoff_m]

@@ -68,7 +68,7 @@ def near_pairs(
 
 @lru_cache(maxsize=8)
 def _all_pairs(count: int) -> tuple[IntArray, IntArray]:
-    """Every pair of so many, the same at each look; as large as all of one look's arrays."""
+    """Return all pairs of `count`, the same at each look; as large as all of one look's arrays."""
     return np.triu_indices(count, k=1)
 
 

@@ -3,8 +3,8 @@
 What is looked at is where each vehicle is, and the way it will go in 1.25 times the time in which
 it would cover its stopping distance: straight on, or along its commanded path. A vehicle that
 is about to go out, or into a keep-out zone, is held. One that is there already is alarmed about,
-and held only while it goes deeper. What lands or returns is not stopped on its way, and what a
-pilot leads is alarmed about only.
+and held only while it goes deeper. A landing or return is not stopped, and a vehicle under
+pilot control only raises an alarm.
 """
 
 from collections.abc import Iterator, Sequence
@@ -101,7 +101,7 @@ def _keep_out(picture: TrafficPicture, way: Way, zone: PreparedZone) -> Iterator
 
 
 def _heights(picture: TrafficPicture, way: Way, zone: PreparedZone) -> Iterator[Finding]:
-    """Heights are alarmed about and not held: standing too low or too high is no better.
+    """Yield alarms about heights, without a hold: hovering too low or too high is no better.
 
     An unknown height is neither.
     """

@@ -62,7 +62,7 @@ class Reach(NamedTuple):
     """Added to its band of heights where vehicles are compared."""
 
     def radius_m(self, seconds: float) -> float:
-        """Return how far from its last place it comes until so many seconds from now."""
+        """Return how far from its last place it comes until `seconds` from now."""
         return self.fastest_mps * (self.age_s + seconds) + self.slack_m
 
 
@@ -183,7 +183,7 @@ def way_ahead_s(
 
 
 def _cylinder(reach: Reach, seconds: float, plane: TangentPlane, height_m: float) -> Cylinder:
-    """What a vehicle can reach in so many seconds, in the site's frame, at its origin's height."""
+    """Return what a vehicle can reach in `seconds`, in the site's frame, at its origin's height."""
     place = reach.place
     east_m, north_m, _up_m = plane.enu_m(place.latitude_deg, place.longitude_deg, height_m)
     return Cylinder(east_m, north_m, reach.radius_m(seconds), reach.low_m, reach.high_m)

@@ -83,7 +83,7 @@ def extinction(excess: FloatArray, largest_depth: float) -> FloatArray:
     """Return the beam's share behind a cloud whose field is `excess` softnesses over the threshold.
 
     The optical depth grows e-fold per softness up to about `largest_depth`. At the threshold half
-    of the beam passes; if the layer never dims so much, half of its depth stands there.
+    of the beam passes; if the layer never dims so much, half of its depth applies there.
     """
     half = log(2.0)
     # Chosen such that the transmittance at the threshold (excess 0) is one half.

@@ -44,7 +44,7 @@ class Service:
     recording: Callable[[], Path | None] = lambda: None
     """This run's record, once there is one."""
     replay: Callable[[], schema.ReplayView | None] = lambda: None
-    """Where a replay stands; None on a live station."""
+    """Position of a replay; None on a live station."""
     numbers: VehicleNumbers = field(default_factory=VehicleNumbers)
     drawing: SiteService = field(init=False)
     """The layers in the site's folder."""

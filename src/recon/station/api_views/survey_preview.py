@@ -1,4 +1,4 @@
-"""What a planned survey will take with named vehicles, as they stand now; nothing changes."""
+"""What a planned survey will take with named vehicles, as they are now; nothing changes."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, replace

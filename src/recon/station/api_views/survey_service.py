@@ -84,7 +84,7 @@ class SurveyService:
         return self._taken(survey_id) if refusal is None else _refused(refusal)
 
     def view(self, survey_id: int) -> schema.SurveyView | None:
-        """Return a survey as it stands."""
+        """Return a survey in its present state."""
         station = self.driver.station
         record = station.surveys.records.get(survey_id)
         return None if record is None else survey_view(station, record, self.driver.now_ns())

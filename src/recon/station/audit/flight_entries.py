@@ -101,7 +101,7 @@ def _has_flown(vehicle: VehicleState) -> bool | None:
 def _trust_entries(
     old: VehicleState | None, station: Station, vehicle: VehicleState
 ) -> Iterator[AuditEntry]:
-    """Yield an entry for a new home, and for each doubt that begins or is settled."""
+    """Yield an entry for a new home, and for each doubt that begins or is resolved."""
     home = vehicle.takeoff_point
     if home is not None and (old is None or old.takeoff_point != home):
         place = f"{home.latitude_deg:.6f}, {home.longitude_deg:.6f}"

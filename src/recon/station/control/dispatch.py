@@ -17,7 +17,7 @@ RULE = "dispatch"
 """Rule of refusals outside the gate: an order that has ended, a fault in judging it."""
 
 SAME_MOMENT_S = 0.05
-"""What leaves within a tick of its approval was judged by the facts of that moment."""
+"""Time of a tick: orders sent within it were judged by the facts of that moment."""
 
 
 def objection(station: Station, approved: ApprovedCommand, now_ns: int) -> Refusal | None:

@@ -84,7 +84,7 @@ def after_stream(
 
 
 def with_held_place(station: Station, serial: str) -> Station:
-    """Return the station with the place known that a vehicle holds, once it stands there."""
+    """Return the station with the place known that a vehicle holds, once it hovers there."""
     control, vehicle = station.control(serial), station.fleet.vehicles[serial]
     intent, tracking = control.intent, control.tracking
     if intent.commanded is not Commanded.HOLD or intent.target is not None:

@@ -39,7 +39,7 @@ _RECENT_S = 0.5
 """A vehicle with newer telemetry is tracked at each of its packets, and not at ticks as well."""
 
 FLOWN_BY_HAND_MPS = 2.0
-"""An aircraft in position mode without stick input stands: gusts and GNSS noise stay below."""
+"""Speed that an aircraft in position mode stays below without stick input: gusts, GNSS noise."""
 
 _LASTING = (Verdict.PILOT, Verdict.FAILSAFE)
 _UNCONFIRMED_EMERGENCY = (Instruction.HOLD_SENT, Instruction.RETURN_SENT, Instruction.LAND_SENT)
@@ -107,7 +107,7 @@ def on_order_begun(
 def hold_here(station: Station, serial: str, now_ns: int) -> Station:
     """Return the station with a vehicle that holds where it is, its order finished.
 
-    The place it holds is known once it stands.
+    The place it holds is known once it hovers.
     """
     vehicle = station.fleet.vehicles[serial]
     intent = Intent(Commanded.HOLD, now_ns)

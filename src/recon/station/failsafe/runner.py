@@ -10,7 +10,7 @@ is an occurrence:
        +-- absent again (pending: at once; else after 3 s, batteries: at the landing)
 
 The reaction is an order like any other, placed by the kernel: judged by the gate, repeated,
-confirmed, audited. It is given once per occurrence, so that an operator's later order stands. It is
+confirmed, audited. It is given once per occurrence, so an operator's later order prevails. It is
 not given to a pilot's vehicle, on the ground or where that is uncertain, under an all stop, or
 where something at least as strong is under way. While the link is lost nothing can be sent: that
 row orders when telemetry is back. What a vehicle shows right after a restart is from before it.

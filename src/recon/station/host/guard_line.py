@@ -41,7 +41,7 @@ from recon.station.state.station import Station
 BEAT_S = 0.1
 RESTART_S = 1.0
 MOST_UNANSWERED = 50
-"""Beats, 5 s: so long a busy computer may keep it from running."""
+"""Beats in 5 s, for which a busy computer may keep it from running."""
 STARTS_WITHIN = 250
 """Beats, 25 s: from its start to its first answer."""
 ENDS_WITHIN_S = 2.0

@@ -52,7 +52,7 @@ class ReplayStation:
     def __init__(
         self, path: Path, playback: Playback, now_s: Callable[[], float] = time.monotonic
     ) -> None:
-        """Stand at the record's beginning, paused. `now_s` is the computer's monotonic clock."""
+        """Begin at the record's start, paused. `now_s` is the computer's monotonic clock."""
         self.links = None
         self.started_at_ns = playback.begins_ns
         self.log = RecordedLog(path, self.now_ns, playback.ends_ns)
@@ -77,7 +77,7 @@ class ReplayStation:
         """Take no event: what is replayed has happened."""
 
     def view(self) -> schema.ReplayView:
-        """Return where the replay stands."""
+        """Return where the replay is."""
         return schema.ReplayView(
             file=self._name,
             duration_s=self._since_begin_s(self.playback.ends_ns),
@@ -117,7 +117,7 @@ class ReplayStation:
                 await self.follow(is_exact=self._transport.speed <= FASTEST_EXACT)
 
     async def follow(self, *, is_exact: bool) -> None:
-        """Show the moment at which the transport stands."""
+        """Show the transport's moment."""
         async with self._moving:
             self._transport = now = self._transport.as_of(self._now_s())
             try:

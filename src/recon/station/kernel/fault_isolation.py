@@ -99,7 +99,7 @@ def run_watchdogs_isolated(station: Station, now_ns: int) -> Stepped:
 
 
 def raise_alarms_isolated(station: Station, now_ns: int) -> Stepped:
-    """Raise alarms; if that fails, keep those that stand and add the faults'."""
+    """Raise alarms; if that fails, keep the present ones and add the faults'."""
     try:
         return raise_alarms(station, now_ns)
     except Exception as fault:

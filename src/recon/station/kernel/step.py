@@ -104,7 +104,7 @@ def _link_closed(station: Station, event: LinkClosed, now_ns: int) -> Stepped:
 
 
 def _app_refused(station: Station, event: AppRefused, now_ns: int) -> Stepped:
-    """What flies on the link stays a hazard: a refusal does not state where it is."""
+    """Keep the link's vehicle as a hazard: a refusal does not state where it is."""
     if pairing.refusal_to_refuse(station.fleet, event) is None:
         station = known_traffic.keep_lost(station, event.link_id)
     return _fleet(station, event, now_ns)

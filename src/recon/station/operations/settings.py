@@ -39,7 +39,7 @@ class ReturnSettings:
     alarm requests it."""
 
     same_pad_m: float = 5.0
-    """Pads nearer than this count as one: two vehicles could not stand on both."""
+    """Pads nearer than this count as one: two vehicles do not fit."""
 
     moved_m: float = 10.0
     """A waiting vehicle this far from where it was has been moved by its pilot, or drifts without
@@ -72,10 +72,10 @@ class SurveyTimes:
     is stopped: its telemetry or link needs attention, and no takeoff comes as a surprise."""
 
     asked_again_within_s: float = 5.0
-    """A planner that still wants a refused mission asks within a step or two after it may."""
+    """A planner that still needs a refused mission asks within a step or two after it may."""
 
     takeoff_waits_s: float = 10.0
-    """A person who starts a survey expects its vehicles to take off now. One that stands longer and
+    """A person who starts a survey expects its vehicles to take off now. One that waits longer and
     may still take off automatically is an alarm."""
 
     home_waits_s: float = 60.0

@@ -1,7 +1,7 @@
 """Keyframes of a record: the station's state every two seconds, from which a seek starts.
 
 A keyframe is a `Station` without what a screen does not need (the memories of registration,
-detection and forecast) and without what stands in the record already: pixels, shade maps and
+detection and forecast) and without what is in the record already: pixels, shade maps and
 forecasts. `restored` puts the last two back from their topics; pixels are read when asked for.
 So a keyframe takes some tens of kB, and a state that a replay shows is the recorded one.
 """
@@ -30,7 +30,7 @@ from recon.station.state.steps import StepTaken
 from recon.station.state.survey_record import NumberedBuffer, SurveyRecord
 
 KEYFRAME_S = 2.0
-"""A seek steps through the events of so long at most; each takes 1 to 2 ms of the station."""
+"""Longest time of events that a seek steps through; each takes 1 to 2 ms of the station."""
 
 SAMPLES_KEPT = 30
 """Telemetry samples kept of an imaging drone, for the frames of the next seconds."""

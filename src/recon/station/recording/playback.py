@@ -50,7 +50,7 @@ STEPS_AHEAD_NS = seconds_to_ns(1.25 * KEYFRAME_S)
 """Further ahead, a keyframe is nearer than the present state."""
 LONGEST_NS = seconds_to_ns(14 * 86_400.0)
 LATE_NS = seconds_to_ns(5.0)
-"""A frame is projected on the ground, a map recorded, within so long of its capture."""
+"""Time from a capture within which its frame is projected, or its map recorded."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -193,7 +193,7 @@ class Playback:
             )
 
     def _begin(self, first: int = 0) -> None:
-        """Stand at the file's first state, or before a chunk of it."""
+        """Go to the file's first state, or before a chunk of it."""
         self._items = self._file.messages(first, None, self._played_topics)
         self._next: RecordMessage | None = None
         self._pictures = Pictures()
@@ -202,7 +202,7 @@ class Playback:
         self._station, self._at_ns = self.start.station, self.begins_ns
 
     def _seek(self, to_ns: int) -> None:
-        """Stand at the last keyframe up to a moment, at the file's beginning without one."""
+        """Go to the last keyframe up to a moment, at the file's beginning without one."""
         last = self._file.chunk_before(to_ns)
         first = min(last, self._file.chunk_reaching(to_ns - STEPS_AHEAD_NS))
         while True:

@@ -1,7 +1,7 @@
-"""How the station's values stand in a record: the codec's special cases, and a file's start.
+"""How the station's values are recorded: the codec's special cases, and a file's start.
 
-Pixels stand in the topics of images; an event names its frame by number. The result of a job does
-not stand in the file: jobs are pure, so a replay runs them again; a digest of its input stands at
+Pixels are in the topics of images; an event names its frame by number. The result of a job does
+not enter the file: jobs are pure, so a replay runs them again; a digest of its input is at
 its end. Orders are outputs: they are compared, and read for that only.
 """
 
@@ -119,7 +119,7 @@ class EndOfJob:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FrameReport:
-    """An image report as it stands in the record: its pixels are in the frame of that number; 0:
+    """An image report as it is in the record: its pixels are in the frame of that number; 0:
     they were not recorded."""
 
     target_fps_hz: float | None

@@ -62,7 +62,7 @@ from recon.station.state.steps import Job, JobDone, JobDropped, JobFailed, Outpu
 AFTER_LANDING_S = 30.0
 """Time in which vehicles that change batteries and fly again belong to one flight."""
 GROUND_FILE_S = 300.0
-"""A flight's file has at most so much of the time before it."""
+"""Longest time before a flight that its file has."""
 RESTART_AFTER_S = 5.0
 RESTART_WITHIN_S = 30.0
 """A record that cannot be replayed is better than none."""

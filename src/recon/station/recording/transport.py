@@ -1,4 +1,4 @@
-"""Where a replay stands: a clock that plays at any speed, pauses, and jumps.
+"""Position of a replay: a clock that plays at any speed, pauses, and jumps.
 
 Theory of operation. Two states:
 

@@ -17,7 +17,7 @@ class ReactionOutcome(Enum):
     REFUSED = "refused"
     """Not sent; tried again a few times."""
     LEFT = "left"
-    """Nothing will be ordered: an operator's newer order stands, or it is from before a restart."""
+    """No order will follow: an operator's newer order prevails, or it is from before a restart."""
 
 
 @dataclass(frozen=True, slots=True)

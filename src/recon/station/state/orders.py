@@ -97,7 +97,7 @@ class OrderRecord:
     follows: int | None = None
     """For a stop: the order to take off that it follows (`control/takeoff_stops`)."""
     waiting_link_ids: tuple[int, ...] = ()
-    """Links whose queue it may still stand in: dropped by one, it can yet be sent by another."""
+    """Links whose queue may still have it: dropped by one, it can yet be sent by another."""
     is_refused_by_app: bool = False
     """An app has refused an emergency order that is still repeated."""
     alarm: str | None = None

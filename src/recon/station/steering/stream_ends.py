@@ -212,8 +212,8 @@ def abort(
 def end_unsent(
     update: StreamUpdate, serial: str, stream: SetpointStream, why: str, now_ns: int
 ) -> StreamUpdate:
-    """End a stream of which nothing was sent: its order fails, with an alarm, and the vehicle goes
-    on as before. A hold would end a return on its way, or leave it standing inside a zone."""
+    """End a stream of which nothing was sent: its order fails, with an alarm, and the vehicle
+    continues as before. A hold would end a return on its way, or leave it inside a zone."""
     station = change_phase(update.station, stream, Phase.FAILED, now_ns, why)
     station = _alarm(station, stream, f"{why}; nothing was sent, it continues as before", now_ns)
     return release(replace(update, station=station), serial)

@@ -1,6 +1,6 @@
 """The watchdog runner: ten times a second the watchdogs check a picture of all traffic.
 
-Their findings become alarms. A finding may want a vehicle held: the runner returns a `HoldRequest`,
+Their findings become alarms. A finding may require a hold: the runner returns a `HoldRequest`,
 the kernel places it as an order like any other (judged by the gate, on record, repeated until
 telemetry shows it), and reports the outcome with `after_hold`. A hold that was refused is requested
 again after `hold_retry_s`; one that was sent lasts until a newer order or the landing.
@@ -31,7 +31,7 @@ from recon.station.traffic.known_traffic import in_the_air
 
 @dataclass(frozen=True, slots=True)
 class HoldRequest:
-    """A vehicle that the watchdogs want held, why, and how fast it flies now."""
+    """A vehicle that the watchdogs hold, why, and how fast it flies now."""
 
     serial: str
     finding: Finding
@@ -41,7 +41,7 @@ class HoldRequest:
 def run(
     station: Station, now_ns: int, watchdogs: Iterable[Watchdog]
 ) -> tuple[Station, tuple[HoldRequest, ...]]:
-    """Return the station with the watchdogs' findings, if it is time, and the holds they want."""
+    """Return the station with the watchdogs' findings, if it is time, and their holds."""
     run_at_ns, settings = station.watchdog_state.run_at_ns, station.settings.safety.watchdogs
     if run_at_ns is not None and now_ns - run_at_ns < seconds_to_ns(settings.period_s):
         return station, ()
@@ -173,7 +173,7 @@ def after_hold(station: Station, request: HoldRequest, why_not: str | None, now_
 
 
 def _requests(findings: Iterable[Finding], picture: TrafficPicture) -> tuple[HoldRequest, ...]:
-    """One hold for each vehicle that a finding wants held; the last finding gives the reason."""
+    """Return one hold for each vehicle that needs one; the last finding gives the reason."""
     wanted = {finding.holds: finding for finding in findings if finding.holds is not None}
     speeds_mps = {
         one.state.serial: one.motion.speed_mps for one in picture.flying if one.motion is not None

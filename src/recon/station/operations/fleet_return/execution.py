@@ -53,7 +53,7 @@ from recon.station.state.station import Station, take_id
 from recon.station.state.steps import Output, Stepped
 
 WAITING_RULES = ("separation", "link_age")
-"""Rules of the gate whose refusals may end with time; any other refusal stands."""
+"""Rules of the gate whose refusals may end with time; any other refusal is final."""
 
 MOVED = "it moved while it waited: its pilot flies it, or it drifts"
 
@@ -228,7 +228,7 @@ def _replanned_if_stuck(running: FleetReturn, settings: ReturnSettings, now_ns: 
 def _vehicle_on_pad(
     running: FleetReturn, flight: ReturnFlight, settings: ReturnSettings, now_ns: int
 ) -> str | None:
-    """The vehicle that landed on this pad and might still stand there when this one arrives."""
+    """The vehicle that landed on this pad and might still be there when this one arrives."""
     arrives_ns = now_ns + seconds_to_ns(least_time_s(flight, settings.plan))
     clearing_ns = seconds_to_ns(settings.pad_clearing_s)
     for other in running.at(Stage.LANDED):

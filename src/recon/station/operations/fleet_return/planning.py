@@ -100,7 +100,7 @@ def separation(
 
 
 def is_same_pad(one: Pad, other: Pad, settings: ReturnSettings) -> bool:
-    """Return whether two pads are so near that only one vehicle can stand there."""
+    """Return whether two pads are so near that only one vehicle fits."""
     return dist(one.east_north_m, other.east_north_m) < settings.same_pad_m
 
 

@@ -34,7 +34,7 @@ from recon.station.state.station import Station
 from recon.station.state.survey_record import SurveyRecord
 
 RESOLUTION = 0.01
-"""A charge is reported in whole percent: it may be less by so much."""
+"""Resolution of a charge: reports are in whole percent, so it may be less by this."""
 
 PACE_EVERY_S = 10.0
 """Interval between two samples of a survey's pace: counting cells takes 0.1 ms."""

@@ -111,7 +111,7 @@ def is_on_ground(station: Station, member: SurveyMember) -> bool:
 
 
 def takes_off_automatically(station: Station, record: SurveyRecord, member: SurveyMember) -> bool:
-    """Return whether a vehicle stands, and takes off as soon as there are rows for it."""
+    """Return whether a vehicle on the ground takes off as soon as there are rows for it."""
     is_guided = station.control(member.serial).authority.holder is AuthorityHolder.GUIDANCE
     is_ready = member.may_take_off and member.stop_reason is None and member.return_reason is None
     return record.is_running and is_ready and is_guided and is_on_ground(station, member)

@@ -50,8 +50,8 @@ def _of_vehicle(
         yield _about(station, member, RULE, f"{text}. Check it, then start it again")
     elif takes_off_automatically(station, record, member):
         text = (
-            f"stands, and takes off automatically as soon as survey {name} has rows for it. Keep "
-            "clear of it, and pause the survey before anyone goes there"
+            f"on the ground, and takes off automatically as soon as survey {name} has rows for it. "
+            "Keep clear of it, and pause the survey before anyone goes there"
         )
         condition = _about(station, member, RULE_TAKEOFF, text)
         yield replace(condition, after_s=SURVEY_TIMES.takeoff_waits_s)
