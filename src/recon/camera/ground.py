@@ -37,7 +37,7 @@ BENDING = 0.85
 height): 0.46 measured for a camera pointing straight down, 0.77 for a tilt of 60 degrees; a test
 over random poses checks it."""
 LEAST_HEIGHT_M = 1.0
-"""Lower, the camera is on the ground and sees no field."""
+"""Least height: below it the camera is on the ground and sees no field."""
 
 
 class MapScratch:

@@ -18,7 +18,7 @@ TABLE_ROWS = 4096
 """Radii in the table: linear interpolation alone is accurate to about 0.0001 px."""
 
 NEWTON_STEPS = 2
-"""Each step squares the error of the table; two reach rounding."""
+"""Newton steps: each squares the error of the table; two reach rounding."""
 
 LEAST_SLOPE_SHARE = 0.2
 """Share of the angle per pixel at the centre. With less, the polynomial is about to fold back: no

@@ -37,7 +37,7 @@ DEMO_PLANNER = "sunlit_first"
 """The demo's planner; the usual scenario's file names the one to compare others with, and this one
 states what it does and why."""
 DEMO_SEED = 11
-"""Its sky has sun and shadows by turns from the first minute on."""
+"""Seed whose sky alternates between sun and shadows from the first minute on."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

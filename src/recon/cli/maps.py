@@ -144,7 +144,7 @@ def _map_lines(known: "KnownMap") -> list[str]:
 
 
 def _percent(share: float) -> str:
-    """Never 100 % for less, never 0 % for more."""
+    """Return a share as text: never 100 % for less, never 0 % for more."""
     return "< 1 %" if 0.0 < share < 0.01 else f"{int(100.0 * share)} %"
 
 

@@ -39,7 +39,7 @@ class SurveyVehicle(msgspec.Struct, frozen=True):
     not_flying_reason: str | None
     refused: str | None
     has_come_home: bool
-    """Returned home for the survey and landed: it can be added again."""
+    """Whether it returned for the survey and landed: it can be added again."""
     takes_off_automatically: bool
     """Whether it takes off from the ground as soon as there are rows for it."""
 

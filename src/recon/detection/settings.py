@@ -30,7 +30,7 @@ class DetectionSettings:
     sun gives 0.15, broken cloud or a low sun 0.35."""
 
     window_s: float = 120.0
-    """Longer than the median shadow (88 s), short compared with the sun's motion."""
+    """Time window: longer than the median shadow (88 s), short compared with the sun's motion."""
 
     samples: int = 24
     """Samples per cell in the window: one per 5 s, in which a shadow moves less than its edge."""

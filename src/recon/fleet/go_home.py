@@ -18,7 +18,7 @@ PROGRESS_M = 1.0
 """Least progress, in distance or height: less is noise of GNSS and barometer."""
 
 LEVEL_MPS = 3.0
-"""Faster over the ground it is under way: gusts and GNSS noise stay below."""
+"""Ground speed from which it is under way: gusts and GNSS noise stay below."""
 BRAKING_MPS2, SETTLES_S = 2.5, 2.0
 """Deceleration before it is under way, and a delay: a mode comes at 1 to 2 Hz."""
 

@@ -34,11 +34,11 @@ class AirborneSettings:
     doubt_s: float = 2.0
     """A landing is believed a second after it: what takes longer is a contradiction."""
     sign_mps: float = 2.0
-    """Faster than a vehicle on the ground is carried."""
+    """Speed faster than a vehicle on the ground is carried."""
     sign_m: float = 5.0
     signs_s: float = 1.0
     pressure_drift_mps: float = 0.05
-    """Slower than any climb, faster than the air pressure."""
+    """Height rate slower than any climb, faster than the air pressure."""
     takeoff_seen_s: float = 1.0
     stands_still_s: float = 60.0
     """Longest gap of telemetry: in a longer one it may have been carried elsewhere to take off."""

@@ -39,7 +39,7 @@ class ForecastSettings:
     """Radius of the local mean that is subtracted before comparing, so that the edge of the visible
     area, which does not move, has no weight."""
     smooth_cells: float = 2.0
-    """Smaller details are noise: all phases have equal weight, and most are of small details."""
+    """Size below which details are noise: phases have equal weight, mostly of small details."""
     longest_pair_s: float = 40.0
     """Maps are compared with all kept ones up to this old."""
     agreement_memory_s: float = 60.0

@@ -30,7 +30,7 @@ LEAST_NOW = 0.5
 """Share of the field that stays in view, of the most that any place shows: drones fly there now."""
 FARTHEST_UPWIND_M, FARTHEST_ASIDE_M = 320.0, 80.0
 LEAST_SPEED_MPS = 0.5
-"""Slower shadows come from nowhere in particular: the place above the field is the best."""
+"""Least speed of shadows: slower ones have no direction, and the place above the field is best."""
 
 
 @dataclass(frozen=True, slots=True)

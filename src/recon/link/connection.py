@@ -53,7 +53,7 @@ class Connection(asyncio.BufferedProtocol):
 
     @property
     def socket(self) -> Any:
-        """Its socket, as asyncio lends it; None without one."""
+        """Return its socket, as asyncio lends it; None without one."""
         return None if self._transport is None else self._transport.get_extra_info("socket")
 
     @property

@@ -323,7 +323,7 @@ class SideStepOrdered:
     person: str = ""
     survey_id: int | None = None
     serial: str | None = None
-    """Which one; None: the one whose light is unknown, or the site's first."""
+    """Imaging drone; None: the one whose light is unknown, or the site's first."""
 
 
 @dataclass(frozen=True, slots=True)

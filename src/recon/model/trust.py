@@ -14,13 +14,13 @@ class DoubtKind(Enum):
     """Why telemetry is not believed."""
 
     GROUND_REPORT = "ground_report"
-    """It reports on the ground, and nothing else shows a landing."""
+    """A report on the ground, while nothing else shows a landing."""
     FLIGHT_SIGNS = "flight_signs"
-    """It reports on the ground, and moves, climbs or flies a mission."""
+    """A report on the ground, while it moves, climbs or flies a mission."""
     JUMP = "position_jump"
     FROZEN = "frozen_telemetry"
     STANDSTILL = "position_stands_still"
-    """Its position does not follow from its velocity."""
+    """A position that does not follow from the velocity."""
     BATTERY = "battery_doubted"
 
 

@@ -227,7 +227,7 @@ class VehicleState:
     profile: VehicleProfile | None = None
     is_simulated: bool = False
     is_flying: Stamped[bool] = Stamped()
-    """Believed (`fleet.airborne`), not as reported; None: it may be in the air."""
+    """Believed state (`fleet.airborne`), not the reported one; None: it may be in the air."""
     reported_is_flying: Stamped[bool] = Stamped()
     position: Stamped[LatLon] = Stamped()
     height_above_takeoff_m: Stamped[float] = Stamped()
@@ -256,7 +256,7 @@ class VehicleState:
     altitude_offset_at_takeoff_m: float | None = None
     takeoff_point: LatLon | None = None
     airborne_since_ns: int | None = None
-    """Its takeoff, or first telemetry in flight when that was not observed; None on the ground."""
+    """Time of takeoff, or of first telemetry in flight if not observed; None on the ground."""
     rival_link_ids: tuple[int, ...] = ()
     """Other open links that claim this serial, until identity is resolved."""
     in_conflict: bool = False

@@ -58,7 +58,7 @@ COARSEST_EXACT_S = 0.2
 STATED_WITHIN_M = 30.0
 """Largest distance from the nearest vehicle for a photo with a stated offset to belong to it."""
 SLOWEST_MPS = 2.0
-"""Slower drones are where they are for the whole step."""
+"""Speed below which drones count as being in one place for the whole step."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -38,7 +38,7 @@ class StatedCamera:
     """What a person states of the camera; None where it is estimated, or read from EXIF."""
 
     clock_offset_s: float | None = None
-    """Added to every camera's clock to get UTC."""
+    """Offset to add to every camera's clock to get UTC."""
     across_deg: float | None = None
     """Field along the longer side."""
 

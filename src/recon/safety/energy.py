@@ -262,7 +262,7 @@ def _dearest(uses: Consumption, points: Sequence[Point], legs: Sequence[float]) 
 
 
 def _vertical(up_m: float, settings: EnergySettings) -> float:
-    """Loaded seconds of a climb, or of a descent."""
+    """Return the loaded seconds of a climb, or of a descent."""
     if up_m > 0.0:
         return up_m / settings.climb_mps * settings.climb_load
     return -up_m / settings.sink_mps * settings.sink_load

@@ -62,7 +62,7 @@ class EnergySettings:
 
     climb_mps: float = 2.0
     sink_mps: float = 2.0
-    """Slower than aircraft can (2.6 and 3.2 m/s and more), for what takes longer costs more."""
+    """Descent rate, slower than aircraft can (2.6 m/s and more): a longer descent costs more."""
 
     landing_mps: float = 1.5
     """Go-home's landing on average: 3 m/s high up, under 1 m/s near the ground."""
@@ -365,7 +365,7 @@ class SafetySettings:
     blind_stop: BlindStopSettings = field(default_factory=BlindStopSettings)
 
     given_at_most_s: float = 5.0
-    """Later than this an order to move no longer fits what its person saw: as an order's expiry."""
+    """Largest age of an order to move: a later one no longer fits what its person saw."""
 
     clock_ahead_s: float = 2.0
     """A client counts in the station's clock, or in one set by NTP: within a second or two."""
@@ -378,7 +378,7 @@ class SafetySettings:
     """Motion is ordered on core telemetry this young at most: at 15 m/s a second is 15 m, as far as
     two vehicles are kept apart."""
     motion_extended_s: float = 3.0
-    """Extended telemetry comes at 1 to 2 Hz: older, its mode, battery and GNSS may not hold."""
+    """Largest age of extended telemetry (1 to 2 Hz): older, mode, battery and GNSS may not hold."""
 
     min_satellites: int = 8
     """Six give a position; with two more one may go behind a tree and it still holds."""
@@ -421,7 +421,7 @@ class SafetySettings:
     """An app holds a stick's velocity this long on its own: at 15 m/s already 75 m."""
 
     min_steering_mps: float = 0.1
-    """Slower than GNSS velocity noise is no speed to steer at."""
+    """Least speed to steer at: lower ones are within GNSS velocity noise."""
     max_nudge_m: float = 100.0
     """A nudge is judged by eye; farther is a goto, which names its place."""
 

@@ -20,7 +20,7 @@ MOST_CORNERS = 64
 
 LEAST_RADIUS_M = 1.0
 MOST_RADIUS_M = 2_000.0
-"""Larger than what a drone in sight can reach: to clear more sky, stop all."""
+"""Largest radius: more than a drone in sight can reach. To clear more sky, stop all."""
 MOST_ACROSS_M = 2.0 * MOST_RADIUS_M
 FARTHEST_M = 10_000.0
 """Largest distance from the site's origin: farther is an error, such as swapped coordinates."""

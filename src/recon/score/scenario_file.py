@@ -32,7 +32,7 @@ from recon.site.reading import validation_error
 
 LARGEST_BYTES = 1_000_000
 LOWEST_SUN_DEG = 5.0
-"""Lower, there is no shade to tell from sun."""
+"""Lowest sun: below it there is no shade to distinguish from sun."""
 AT_LINE = re.compile(r"at line (\d+)")
 
 

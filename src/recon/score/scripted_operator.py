@@ -44,20 +44,20 @@ class DroneView:
 
     serial: str
     is_ready: bool = False
-    """Its telemetry is live; over the API, its preflight checklist is passed too."""
+    """Whether its telemetry is live; over the API, also its preflight checklist is passed."""
     is_live: bool = False
     is_flying: bool | None = None
     is_descending: bool = False
-    """It returns to home or lands, by its own flight mode."""
+    """Whether it returns to home or lands, by its own flight mode."""
     battery_fraction: float | None = None
     is_stopped: bool = False
     """The survey gives it no missions until it is started again."""
     is_called_home: bool = False
     """The survey recalled it; after landing it is started again with a good battery."""
     is_flying_home: bool = False
-    """Called home, it flies its landing mission now."""
+    """Whether it flies its landing mission now, after a recall."""
     is_in_fleet_return: bool = False
-    """It is being returned, or waits for its turn."""
+    """Whether it is being returned, or waits for its turn."""
     has_battery_alarm: bool = False
     """The watchdog that compares battery and way home has an active alarm."""
     is_under_pilot: bool = False

@@ -11,7 +11,7 @@ class ScoreSettings:
     """Minutes at which the share of the region in sun is printed."""
 
     score_maps_every_s: float = 30.0
-    """Shade maps of one sky differ little over shorter times."""
+    """Interval of scored shade maps: those of one sky differ little over shorter times."""
 
     score_forecasts_every_s: float = 60.0
     lead_s: tuple[float, ...] = (15.0, 30.0, 60.0, 90.0, 120.0, 180.0, 300.0, 600.0)

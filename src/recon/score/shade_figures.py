@@ -50,7 +50,7 @@ class ShadeFigures:
     missed: int = 0
     """Cells in shade, called sun."""
     shade: Overlap = field(default_factory=Overlap)
-    """Unknown cells count as wrong."""
+    """Overlap in shade; unknown cells count as wrong."""
     mixed: Overlap = field(default_factory=Overlap)
     """The same, over maps with 5 to 95 % of true shade."""
     mixed_ious: tuple[float, ...] = ()

@@ -50,7 +50,7 @@ FIRST_ORDER = 101
 
 @dataclass(slots=True)
 class StationOperator:
-    """Called once a second with the station's state."""
+    """Scripted operator, called once a second with the station's state."""
 
     survey: Survey
     operator: ScriptedOperator

@@ -25,7 +25,7 @@ MOST_CELLS = 1_000_000
 FINEST_CELL_M = 1.0
 """Finer models show plants, not ground."""
 COARSEST_CELL_M = 30.0
-"""Unless the area asks for more cells than are allowed."""
+"""Coarsest cell, unless the area asks for more cells than are allowed."""
 FINEST_PIXEL_M, COARSEST_PIXEL_M = 0.01, 100.0
 """The world's free models have 30 or 90 m; in coarser ones whole hills are missing."""
 LARGEST_GAP_M = 10.0

@@ -132,7 +132,7 @@ class Pad:
 
     @property
     def east_north_m(self) -> EastNorth:
-        """Its place on the ground."""
+        """Return its place on the ground."""
         return self.east_m, self.north_m
 
 

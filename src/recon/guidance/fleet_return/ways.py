@@ -186,7 +186,7 @@ class ReturnPaths:
         return self._closed_by[pieces]
 
     def _open_legs(self, nodes: npt.NDArray[np.float64], closed: Any) -> npt.NDArray[np.bool_]:
-        """Which of all legs between nodes are open, (N, N)."""
+        """Return which of all legs between nodes are open, (N, N)."""
         count = len(nodes)
         first, second = np.triu_indices(count, 1)
         is_open = np.zeros((count, count), dtype=np.bool_)

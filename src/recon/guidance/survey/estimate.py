@@ -140,7 +140,7 @@ class PlanFigures:
 
     region_m2: float
     reached_m2: float
-    """Imaged by the rows with certainty."""
+    """Area that the rows image with certainty."""
     least_height_above_ground_m: float | None
     most_height_above_ground_m: float | None
     """Largest height of rows over the region, for any of the drones; None: ground unknown."""

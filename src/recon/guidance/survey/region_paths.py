@@ -94,7 +94,7 @@ class RegionPaths:
         return [(int(each), dist(self._corners[each], place_m)) for each in open_to]
 
     def _is_open(self, places_m: FloatArray, end_m: EastNorth) -> npt.NDArray[np.bool_]:
-        """Which of N places see one straight, (N,)."""
+        """Return which of N places see one straight, (N,)."""
         ends = np.broadcast_to(np.array(end_m), places_m.shape)
         legs = shapely.linestrings(np.stack([places_m, ends], axis=1))
         is_inside: npt.NDArray[np.bool_] = shapely.covers(self.area, legs)

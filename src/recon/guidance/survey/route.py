@@ -74,7 +74,7 @@ def between_m(route: Sequence[RowLeg], lattice: RowLattice, start_m: AlongAcross
 
 
 def _facing(here: Sequence[Piece], there: Sequence[Piece]) -> dict[Piece, Piece]:
-    """Which pieces of two rows face one another and no other."""
+    """Return which pieces of two rows face one another and no other."""
     facing = {a: [b for b in there if _overlap(a, b)] for a in here}
     faced = {b: [a for a in here if _overlap(a, b)] for b in there}
     return {

@@ -152,7 +152,7 @@ def _merged(spans: Sequence[Span]) -> list[Span]:
 
 
 STEP_DEG = 15.0
-"""Tried all round, besides the directions of the longest edges."""
+"""Step of the directions tried all round, besides those of the longest edges."""
 
 MOST_EDGES = 16
 

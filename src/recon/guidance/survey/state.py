@@ -182,10 +182,10 @@ class CoverageFigures:
     """Certain to be on photos of the rows; less than the region where rows had to be cut."""
     not_yet_m2: float
     in_shade_m2: float
-    """Imaged with the light known, and not certainly in sun."""
+    """Area imaged in known light, and not certainly in sun."""
     in_sun_m2: float
     sun_unknown_m2: float
-    """Imaged while no shade map had a value: neither in sun nor in shade."""
+    """Area imaged while no shade map had a value: neither in sun nor in shade."""
     not_shown_m2: float
     """Reached ground that shade maps do not show: it is imaged in unknown light."""
     time_to_95_imaged_s: float | None

@@ -217,7 +217,7 @@ def _nodes(grid: GroundGrid) -> FloatArray:
 
 
 def _inside(area: shapely.Geometry, grid: GroundGrid) -> BoolArray:
-    """Which centres of a grid's cells lie in an area, (rows * cols,)."""
+    """Return which centres of a grid's cells lie in an area, (rows * cols,)."""
     inside: BoolArray = shapely.contains_xy(area, _nodes(grid))
     return inside
 

@@ -80,7 +80,7 @@ HEIGHT = Point("go_home_height", "Go-home height")
 
 
 def go_home_height(vehicle: VehicleState, situation: Situation) -> Check:
-    """It is set, valid, below the ceiling, separated from others' heights, and clears zones."""
+    """Check that it is set, valid, below the ceiling, clear of others' heights and of zones."""
     height_m = None if vehicle.profile is None else vehicle.profile.go_home_height_m
     if height_m is None:
         return HEIGHT.unknown(

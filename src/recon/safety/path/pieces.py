@@ -90,7 +90,7 @@ class Kind(IntEnum):
     """What a piece of a path is."""
 
     FLIGHT = 0
-    """Flown on the station's word: the way there, a leg, what a stick may cover."""
+    """Part flown by the station's order: the way there, a leg, what a stick may cover."""
     CORNER = 1
     """Where a curved mission may fly at a waypoint: the hull of the corner."""
     CLIMB = 2

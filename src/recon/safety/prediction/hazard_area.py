@@ -94,7 +94,7 @@ def hazard_trajectories(hazard: HazardArea) -> tuple[Trajectory, ...]:
 
 
 def _plausible_mps(motion: VehicleMotion, intent: Intent) -> float:
-    """Its last speed, or the commanded one when that is higher."""
+    """Return its last speed, or the commanded one when that is higher."""
     commanded_mps = 0.0
     if intent.commanded is Commanded.MISSION and intent.mission is not None:
         commanded_mps = max(w.speed_mps for w in intent.mission.waypoints)

@@ -18,7 +18,7 @@ import numpy.typing as npt
 from recon.model.arrays import FloatArray
 
 FOREVER_S = 1.0e6
-"""Longer than any battery; times never go beyond, so that sums stay finite."""
+"""Time longer than any battery; times never go beyond, so that sums stay finite."""
 
 ALL_HEIGHTS_M = 1.0e5
 """Band of a vehicle whose height is unknown: above and below every aircraft."""

@@ -59,7 +59,7 @@ class Reach(NamedTuple):
     age_s: float
     slack_m: float
     drift_m: float = 0.0
-    """Added to its band of heights where vehicles are compared."""
+    """Drift added to its band of heights where vehicles are compared."""
 
     def radius_m(self, seconds: float) -> float:
         """Return how far from its last place it comes until `seconds` from now."""

@@ -36,7 +36,7 @@ class AppBehaviour:
     altitude_reference: AltitudeReference = AltitudeReference.TAKEOFF
     hover_on_ground: HoverOnGround = HoverOnGround.NOTHING
     altitude_bias_m: float = 0.0
-    """Added to every absolute altitude in the app, the home altitude included."""
+    """Bias of every absolute altitude in the app, the home altitude included."""
     reports_mission_id: bool = True
     """False: MissionID in telemetry is always 0, as from some apps in the field."""
     sdk: SdkLimits = field(default_factory=SdkLimits)

@@ -40,7 +40,7 @@ class HomeAltitude:
     true_m: float
     bias_m: float = 0.0
     fault_m: float = 0.0
-    """Added by a fault: NaN when DJI gives none, a step when it gives another flight's."""
+    """Error added by a fault: NaN when DJI gives none, a step when it gives another flight's."""
 
     @property
     def believed_m(self) -> float:

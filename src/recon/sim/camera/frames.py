@@ -152,7 +152,7 @@ class Black:
 
 @dataclass(frozen=True, slots=True)
 class Torn:
-    """Shifted sideways from one row down, as when two frames are mixed."""
+    """A frame shifted sideways from one row down, as when two frames are mixed."""
 
     row_share: float
     shift_share: float

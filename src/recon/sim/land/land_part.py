@@ -73,7 +73,7 @@ MARGIN_PX = 6
 FRACTION_BITS = 4
 """OpenCV draws at sixteenths of a pixel."""
 SMALLEST_CROWN_PX = 0.6
-"""Smaller crowns are not drawn: they would be larger than their share of a coarse pixel."""
+"""Smallest crown drawn: smaller ones would exceed their share of a coarse pixel."""
 
 
 @dataclass(frozen=True, slots=True)

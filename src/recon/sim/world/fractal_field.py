@@ -39,7 +39,7 @@ class Band:
     stream: tuple[int, ...]
     scale_m: float
     outer_share: float
-    """Its scale over the field's outer scale."""
+    """Ratio of its scale to the field's outer scale."""
     strength: float
     lifetime_s: float
     slope: float

@@ -21,7 +21,7 @@ from recon.sim.world.keyframes import FloatImage
 
 SUN_DIAMETER_RAD = 0.0093
 LOWEST_ELEVATION_DEG = 5.0
-"""Lower elevations are taken as this one: shadows would reach to the horizon."""
+"""Lowest elevation used; with lower ones shadows would reach to the horizon."""
 
 MOST_EXCESS = 18.0
 EXCESS_STEP = 0.05

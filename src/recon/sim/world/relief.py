@@ -73,7 +73,7 @@ class Relief:
 
     @cached_property
     def _amplitudes_m(self) -> FloatArray:
-        """Longer waves are higher; their sum has the standard deviation of the settings."""
+        """Return amplitudes, larger for longer waves, with the settings' deviation of the sum."""
         # A power of 1.2 gives gentle short waves; the sum of sines has variance sum(a^2) / 2.
         raw = self._lengths_m**1.2
         together = float(np.sqrt(0.5 * np.sum(raw * raw)))

@@ -70,7 +70,7 @@ class LayerSettings:
     outer_scale_m: float = 12_000.0
     """The largest structures: they make the cover differ from hour to hour."""
     finest_scale_m: float = 40.0
-    """Smaller details are lost in the penumbra of a cloud at 1.4 km."""
+    """Finest scale: smaller details are lost in the penumbra of a cloud at 1.4 km."""
     softness: float = 0.28
     """Optical depth grows e-fold over this part of the field's deviation: edges of 20 to 200 m.
     Measured days have 0.02 to 1 (docs/world.md)."""

@@ -220,7 +220,7 @@ def _stop_latch(station: Station) -> Iterator[Condition]:
 
 
 def _temporary_zones(station: Station, now_ns: int) -> Iterator[Condition]:
-    """Each zone in force: other operators must see it; shortly before its end all the more."""
+    """Yield each zone in force: other operators must see it, above all shortly before its end."""
     for zone in station.temporary_zones.in_force.values():
         severity, until = Severity.INFO, "until a person ends it"
         if zone.ends_at_ns is not None:

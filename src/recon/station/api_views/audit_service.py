@@ -29,7 +29,7 @@ class KeptEntries(Protocol):
 
     @property
     def path(self) -> Path | None:
-        """Its file, if there is one."""
+        """Return its file, if there is one."""
 
     @property
     def problem(self) -> str | None:

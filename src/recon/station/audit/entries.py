@@ -204,7 +204,7 @@ def _authorities(before: Station, after: Station, changed: Changed) -> Iterator[
 
 
 def _leases(before: Station, after: Station, changed: Changed) -> Iterator[AuditEntry]:
-    """Each change of the person who operates a vehicle; not each order of the same one."""
+    """Yield each change of the person who operates a vehicle; not each order of the same one."""
     for serial, control in changed:
         lease, was = control.lease, before.control(serial).lease
         person = None if lease is None else lease.person

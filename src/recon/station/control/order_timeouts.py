@@ -164,7 +164,7 @@ def _is_confirmed(record: OrderRecord) -> bool:
 def _flying_rivals(
     station: Station, record: OrderRecord, target: VehicleState
 ) -> tuple[VehicleState, ...]:
-    """Other links that claim the serial and fly: an emergency order is for them too."""
+    """Return flying links that claim the same serial: an emergency order is for them too."""
     if not record.command.is_emergency:
         return ()
     links = (station.fleet.links[link_id] for link_id in target.rival_link_ids)

@@ -68,7 +68,7 @@ def _stick_height_m(control: VehicleControl) -> float | None:
 
 
 def _traffic(station: Station, command: Command, serial: str, now_ns: int) -> tuple[Traffic, ...]:
-    """Every other vehicle in flight by its last telemetry, or about to take off."""
+    """Return every other vehicle in flight by its last telemetry, or about to take off."""
     about_to = tuple(
         Traffic(state, intent)
         for state, intent in about_to_fly(station, now_ns)

@@ -14,7 +14,7 @@ from recon.station.steering.kinematic_state import kinematic_state, refusal_with
 
 OLDEST_FORECAST_S = 60.0
 LEAST_HEIGHT_M = 10.0
-"""Lower, it sees no field from anywhere."""
+"""Least height: below it the camera sees no field from anywhere."""
 
 
 def proposed(

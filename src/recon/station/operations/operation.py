@@ -29,7 +29,7 @@ class Operation:
     name: str
     """Name in a fault's alarm, such as "advancing the survey"."""
     tick: Callable[[Station, int], Stepped]
-    """Its step on every tick, 20 times a second."""
+    """Performs its step on every tick, 20 times a second."""
     conditions: Callable[[Station], Iterator[Condition]]
     """What an operator must see to."""
     commands: tuple[Handled, ...] = ()

@@ -36,7 +36,7 @@ SAMPLES_KEPT = 30
 """Telemetry samples kept of an imaging drone, for the frames of the next seconds."""
 NO_PIXELS = np.zeros((0, 0, 3), np.uint8)
 _SELDOM = ("settings", "airspace")
-"""Changed by a drawing, if ever: excluded while they are as at the file's beginning."""
+"""Fields changed by a drawing, if ever: excluded while they are as at the file's beginning."""
 _LARGE = ("fleet", "orders")
 """Fields that are nearly all of a keyframe when there are many vehicles."""
 _ALWAYS = tuple(each.name for each in fields(Station) if each.name not in _SELDOM)

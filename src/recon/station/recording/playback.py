@@ -47,7 +47,7 @@ from recon.station.recording.replay import read_start, report_of, step_message
 from recon.station.state.station import Station
 
 STEPS_AHEAD_NS = seconds_to_ns(1.25 * KEYFRAME_S)
-"""Further ahead, a keyframe is nearer than the present state."""
+"""Distance ahead beyond which a keyframe is nearer than the present state."""
 LONGEST_NS = seconds_to_ns(14 * 86_400.0)
 LATE_NS = seconds_to_ns(5.0)
 """Time from a capture within which its frame is projected, or its map recorded."""

@@ -67,7 +67,7 @@ class FlightStart:
     scenario: str = ""
     """The simulated world, as `score/truth.py` states it; empty for real aircraft."""
     running_jobs: int = 0
-    """Started before this record: their results are not in it, so a replay ends at the first."""
+    """Jobs started before this record: it lacks their results, so a replay ends at the first."""
 
     @classmethod
     def now(

@@ -318,10 +318,7 @@ def on_answered(record: OrderRecord, event: CommandAnswered, now_ns: int) -> Ord
 
 
 def on_dropped(record: OrderRecord, event: CommandDropped, now_ns: int) -> OrderRecord:
-    """It left a queue unsent. That ends it only when no other link can send it, nor has.
-
-    A stop that the gate refused at its sending is judged again with its next repeat.
-    """
+    """Return an order that left a queue unsent: ended only if no other link has or can send it."""
     record = no_longer_waiting(record, event.link_id)
     if event.phase is Phase.REFUSED_BY_STATION and record.next_repeat_ns is not None:
         return record

@@ -45,7 +45,7 @@ class FlightAlarmSettings:
     """DJI's aircraft lean by 25 to 35 degrees at most, in sport mode by 42."""
     tilt_s: float = 0.5
     max_descent_mps: float = 9.0
-    """They sink at 3 to 6 m/s, the fastest at 8."""
+    """Fastest expected descent: vehicles sink at 3 to 6 m/s, the fastest at 8."""
     descent_s: float = 0.3
     slow_answer_s: float = 1.0
     """Longest time from an order's sending to its acknowledgment: apps acknowledge when they have

@@ -39,7 +39,7 @@ class NumberedBuffer(Generic[T]):
 
 
 SURVEYS_KEPT = 16
-"""Each has its cells, up to a few MB; the oldest that has ended is forgotten for a new one."""
+"""Most surveys: each has up to a few MB of cells; the oldest ended one is dropped for a new one."""
 
 PhaseWord = Literal["planning", "refused", "created", "running", "paused", "aborted", "done"]
 
@@ -82,7 +82,7 @@ class SurveyRecord:
     refusal: Refusal | None = None
     started_by: str = ""
     person: str = ""
-    """Who started it, by name."""
+    """Name of the person who started it."""
     members: Mapping[str, SurveyMember] = field(default_factory=lambda: MappingProxyType({}))
     spare_may_take_off: bool = False
     """The operator's permission for the spare imaging drone, for one relief automatically."""
@@ -104,7 +104,7 @@ class SurveyRecord:
 
     @property
     def phase(self) -> tuple[PhaseWord, str]:
-        """Its phase, and the reason for it in words."""
+        """Return its phase, and the reason for it in words."""
         if self.refusal is not None:
             return "refused", self.refusal.reason
         if self.state is None:

@@ -287,7 +287,7 @@ def _ends_sharp(part: list[NumberedWaypoint], limits: RepairLimits) -> list[Numb
 def _narrower_than_legs(
     part: list[NumberedWaypoint], limits: RepairLimits
 ) -> list[NumberedWaypoint]:
-    """Each leg in turn; radii only shrink, so legs that fit stay fitting."""
+    """Return waypoints whose radii fit each leg; radii only shrink, so earlier legs still fit."""
     fitted = list(part)
     for index, (a, b) in enumerate(pairwise(part)):
         leg_m = a.distance_m(b)

@@ -105,7 +105,7 @@ def is_same_pad(one: Pad, other: Pad, settings: ReturnSettings) -> bool:
 
 
 def _pad(station: Station, vehicle: VehicleState, frame: LocalFrame) -> Pad | None:
-    """Its own pad, from the site's layer or its profile; else its takeoff point."""
+    """Return its own pad, from the site's layer or its profile; else its takeoff point."""
     for pad in station.airspace.airspace.landing_pads:
         if pad.serial is not None and pad.serial == vehicle.serial:
             return _pad_at(station, pad.name, pad.place, frame)
