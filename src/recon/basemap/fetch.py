@@ -29,7 +29,7 @@ from recon.basemap.mbtiles_writer import MBTilesWriter
 from recon.basemap.web_mercator import MapArea
 
 MOST_FETCHED = 20_000
-"""Most tiles of one run unless allowed: 0.5 GB, and what a public server bears."""
+"""Most tiles of one run unless allowed: 0.5 GB, acceptable for a public server."""
 AT_ONCE = 2
 """Requests at once, as the usage policies of public servers require."""
 TILE_WITHIN_S = 20.0

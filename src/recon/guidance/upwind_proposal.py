@@ -48,7 +48,7 @@ class MoveUpwindSettings:
     of its shade in the next two minutes. Smaller gains are within the measured velocity's error."""
 
     better_for_s: float = 30.0
-    """Better for so long before it moves; a place better by less than `LEAST_GAIN` begins the time
+    """Time for which a place is better before a move; a gain below `LEAST_GAIN` begins the time
     anew. Velocities measured in the first half minute of shade still change."""
 
     every_s: float = 180.0

@@ -1,6 +1,6 @@
 """The figures of a flight's report: coverage in sun, times in the air, alarms, decisions.
 
-What is shown is what the record states; without tagged photos the covered ground is estimated from
+The report shows what the record states; without tagged photos the covered ground is estimated from
 the tracks and the survey's camera, and called so.
 """
 

@@ -67,7 +67,7 @@ class PreparedAirspace:
         self._ground = _ground(airspace)
 
     def with_temporary_zones(self, zones: Iterable[PreparedZone]) -> "PreparedAirspace":
-        """Return the site's airspace with these zones beside its own, and no others.
+        """Return the site's airspace with these zones besides its own, and no others.
 
         Boundary, ground and the site's zones are shared, not prepared again. Raises `ValueError`
         for zones without the frame whose metres they are in.
@@ -84,7 +84,7 @@ class PreparedAirspace:
 
     @property
     def temporary_zones(self) -> tuple[PreparedZone, ...]:
-        """The zones beside the site's own."""
+        """The zones besides the site's own."""
         return self.zones[len(self._site_zones) :]
 
     def _take_zones(self, zones: tuple[PreparedZone, ...]) -> None:

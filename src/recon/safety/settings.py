@@ -197,8 +197,8 @@ class PredictionSettings:
     any direction for this long; a hovering one is assumed to stay, and watched."""
 
     stands_s: float = 30.0
-    """What follows a steered order: a place is held this long before others must fear it no more;
-    from then on each new order is judged anew, and the watchdog looks ahead."""
+    """Time that a place is assumed to be held after a steered order; from then on each new order is
+    judged anew, and the watchdog looks ahead."""
 
     climb_mps: float = 3.0
     sink_mps: float = 4.0

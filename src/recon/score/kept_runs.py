@@ -1,6 +1,6 @@
 """Finished runs on disk, one file per seed, so that a stopped command resumes where it was.
 
-The folder's name holds a digest of all that a run follows from beside its seed: the scenario's
+The folder's name holds a digest of all that a run follows from besides its seed: the scenario's
 files, the methods, the rooms of Recon that fly it and the libraries that compute. Whatever of
 these changes, older runs are no longer found.
 """

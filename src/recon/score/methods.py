@@ -105,7 +105,7 @@ def jobs_of(scenario: Scenario, sky: Sky, frames: Frames) -> JobRunner:
 
 
 def _shows_sun(scenario: Scenario) -> bool:
-    """Whether each forecast is read, beside what surveys decide by and scores compare: the truth
+    """Whether each forecast is read, besides what surveys decide by and scores compare: the truth
     replaces it, an imaging drone moves upwind by it, or several merge their maps by it."""
     imager = scenario.imager
     return scenario.methods.forecast == PERFECT or imager.is_upwind or len(imager.places_m) > 1

@@ -84,7 +84,7 @@ class Methods:
     detection: str = IDEAL
     forecast: str = "advection"
     compared: tuple[str, ...] = ()
-    """Forecast methods that are scored beside the station's own, on the same maps."""
+    """Forecast methods that are scored besides the station's own, on the same maps."""
     scores_maps: bool = True
     """Whether shade maps and forecasts are scored; without that a run ends with the survey."""
 
@@ -118,7 +118,7 @@ class CloudRanges:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Scenario:
-    """Everything that a run needs beside its seed, which replaces `wind.seed`.
+    """Everything that a run needs besides its seed, which replaces `wind.seed`.
 
     The seed also draws the clouds' velocity and, from `conditions`, the sun's elevation, light,
     camera and link.

@@ -48,7 +48,7 @@ DRIFT_SPREAD, LOCKED_SPREAD = (0.016, 0.002), (0.001, 0.0005)
 """Errors of light and colour after a second by which the change between two frames is known; they
 grow with the square root of time."""
 HINT_FLOOR = 1e-6
-"""How likely what is known beside the frames is wrong altogether."""
+"""Probability that knowledge besides the frames is altogether wrong."""
 COLOUR_NEAR = 0.25
 """Distance from sun or from shade at which a view's colour shows it, as a share of the contrast."""
 COLOUR_SPREAD, ANY_LIGHT = 0.06, 10.0

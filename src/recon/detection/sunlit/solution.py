@@ -108,7 +108,7 @@ def _levels(
     """Return the belief in every keyframe's level, and the level; None where it is open.
 
     What the keyframes show by themselves counts first; then what was known before; then what the
-    hot spot shows. Minutes of sun that is nearly even can look like shade that is: where the hot
+    hot spot shows. Minutes of nearly uniform sun can look like uniform shade: where the hot
     spot contradicts, the next one decides.
     """
     course = Course.over(stack, land, earlier)
@@ -135,7 +135,7 @@ def _is_contradicted(stack: Stack, land: SunlitLand, levels: Hints) -> bool:
 
 
 def _hinted(middles: list[Level], hints: Hints) -> FloatGrid:
-    """Return what is known beside the evidence, as log likelihoods (K, grid)."""
+    """Return what is known besides the evidence, as log likelihoods (K, grid)."""
     found = np.zeros((len(middles), *(2 * reach + 1 for reach in REACH)), np.float32)
     for i, (middle, level) in enumerate(zip(middles, hints, strict=True)):
         if level is not None:

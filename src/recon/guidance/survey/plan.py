@@ -131,7 +131,7 @@ RULE = "survey"
 class SurveySurroundings:
     """What a site leaves to fly over; rows and the ways between them keep `margin_m` to it.
 
-    What the gate asks besides (heights, ways to the first row and home) is not looked at here.
+    The gate's other rules (heights, ways to the first row and home) are not checked here.
     """
 
     boundary: Region | None = None

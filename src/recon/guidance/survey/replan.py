@@ -18,7 +18,7 @@ from recon.model.command import Refusal
 from recon.model.survey import SurveyPhase
 
 LEAST_LEG_M = 1.0
-"""What is left of a row must be this long: less is rounding."""
+"""Least length of a row's rest: less is rounding."""
 
 
 def replanned(

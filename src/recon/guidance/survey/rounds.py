@@ -114,7 +114,7 @@ def wait_or_pause(state: SurveyState, able: Mapping[str, Surveyor], now_ns: int)
 
 
 def _share_again(state: SurveyState, free: Mapping[str, Surveyor], now_ns: int) -> Step:
-    """Share left-over rows among able vehicles; wait while one is to be asked for again."""
+    """Share left-over rows among able vehicles; wait while one is to be requested again."""
     if any(serial in free and now_ns < each.again_ns for serial, each in state.refusals.items()):
         return state, ()
     pieces = [leg.piece for route in state.waiting.values() for leg in route]

@@ -110,7 +110,7 @@ class SurveySettings:
     """Most positions of each vehicle that wait to count: at 10 Hz, far more than settling takes."""
 
     retry_s: float = 15.0
-    """A mission refused while others flew is asked for again after this: by then they are
+    """A mission refused while others flew is requested again after this: by then they are
     elsewhere."""
 
     retry_soon_s: float = 3.0
@@ -278,7 +278,7 @@ class SurveySettings:
     """Observed sun or shade is worth a third after this long, and nothing from then on."""
 
     way_home_waits_s: float = 60.0
-    """A vehicle that waits for others' rows keeps this beside its return: there it may wait too."""
+    """Reserve besides the return for a vehicle that waits for others' rows: it may wait there."""
 
     enough_share: float = 0.99
     """Share of the cells that rows reach from which on a survey is done; a cell or two at an edge

@@ -79,7 +79,7 @@ class AssignedMission:
 
     @property
     def unflown_m(self) -> float:
-        """What is left of its length, as far as its rows show."""
+        """Return the rest of its length, as far as its rows show."""
         left_m = sum(leg.piece.length_m for leg in self.rows_left)
         return left_m / sum(leg.piece.length_m for leg in self.route) * self.length_m
 

@@ -210,12 +210,12 @@ class McapFile:
         self._unwritten += record
 
     def add_message(self, channel_id: int, sequence: int, log_ns: int, data: bytes) -> None:
-        """Add a message to the chunk in hand; its time is in ns, from 0 up."""
+        """Add a message to the open chunk; its time is in ns, from 0 up."""
         self._chunk.add(channel_id, sequence, max(0, log_ns), data)
 
     @property
     def is_chunk_full(self) -> bool:
-        """Whether the chunk in hand should be written."""
+        """Whether the open chunk should be written."""
         return self._chunk.size >= CHUNK_BYTES
 
     def flush(self) -> None:

@@ -1,4 +1,4 @@
-"""Predicted sun as a GeoTIFF beside the map it was made from: its place, its cells."""
+"""Predicted sun as a GeoTIFF beside the map it was made from, with its place and cells."""
 
 import warnings
 from pathlib import Path

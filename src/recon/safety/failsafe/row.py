@@ -43,7 +43,7 @@ class SharedFacts(NamedTuple):
 
 
 class FlightFacts(NamedTuple):
-    """One vehicle in the air, and what the station knows beside its state.
+    """One vehicle in the air, and what the station knows besides its state.
 
     `link_opened_at_ns` is None while it has no open link. `findings` are the watchdogs' about it,
     by rule.

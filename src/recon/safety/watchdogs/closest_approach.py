@@ -17,7 +17,7 @@ from recon.safety.prediction.trajectory import Samples
 from recon.safety.separation_minima import SeparationMinima
 
 DEPTH_WEIGHT = 0.1
-"""How much depth counts beside the gaps: enough to tell which of two ways leads deeper in."""
+"""Weight of depth besides the gaps: enough to tell which of two ways leads deeper in."""
 
 
 @dataclass(frozen=True, slots=True)

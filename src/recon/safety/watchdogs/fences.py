@@ -1,8 +1,8 @@
 """Looks ahead for the boundary and for zones: alarms, and stops what is about to leave or enter.
 
-What is looked at is where each vehicle is, and the way it will go in 1.25 times the time in which
+It checks where each vehicle is, and the way it will go in 1.25 times the time in which
 it would cover its stopping distance: straight on, or along its commanded path. A vehicle that
-is about to go out, or into a keep-out zone, is held. One that is there already is alarmed about,
+is about to go out, or into a keep-out zone, is held. One that is there already raises an alarm,
 and held only while it goes deeper. A landing or return is not stopped, and a vehicle under
 pilot control only raises an alarm.
 """

@@ -73,12 +73,12 @@ def hold_outcome(held: CommandedHold | None, refused: str) -> str:
 
 
 class WatchedVehicle(NamedTuple):
-    """A vehicle that flies or may, and what the station knows beside its state.
+    """A vehicle that flies or may, and what the station knows besides its state.
 
     `motion` is None while it has never reported a position; `hazard` is set while telemetry is
     lost. `stick_quiet_s` is the time since the last stick of a stream, None without a stream.
     `hold_refused` is the reason a hold could not be given to it just now. `alarm_only` has the
-    conditions for which the site's failsafe matrix has it alarmed about and not held.
+    conditions for which the site's failsafe matrix asks for an alarm without a hold.
     """
 
     state: VehicleState

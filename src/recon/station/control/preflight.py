@@ -24,7 +24,7 @@ def read_clock(station: Station, event: ClockRead, now_ns: int) -> Station:
 
 
 def facts(station: Station, vehicle: VehicleState | None) -> StationFacts:
-    """Return what a vehicle's checklist needs beside its own state."""
+    """Return what a vehicle's checklist needs besides its own state."""
     clock = station.clock
     return StationFacts(
         clock=None if clock is None else ClockReading(clock.wall_ns, clock.set_by_ns),

@@ -11,7 +11,7 @@ _LEFT_TO_THE_WATCHDOG = (FailsafeCondition.GEOFENCE, Activity.RETURNING)
 
 
 def alarm_only(station: Station, vehicle: VehicleState) -> frozenset[FailsafeCondition]:
-    """Return the conditions for which a vehicle is alarmed about and not held."""
+    """Return the conditions for which a vehicle gets an alarm and no hold."""
     rows = station.settings.failsafe_matrix.rows
     weak = [
         (condition, activity)

@@ -23,7 +23,7 @@ def require_announceable(link_host: str) -> None:
 def announce(site: str, bound: Iterable[str], port: int, last: AsyncExitStack) -> None:
     """Announce a site's station at the addresses that phones reach of those it is bound to.
 
-    It begins and ends beside the station, for each takes a second, and `last` must end after the
+    It begins and ends beside the station, as each takes a second, and `last` must end after the
     links. A failure is logged: apps connect by the address.
     """
     announcement = Announcement(f"{site} on {socket.gethostname()}", app_hosts(bound), port)

@@ -134,7 +134,7 @@ def _packet(station: Station, event: PacketReceived, now_ns: int) -> Stepped:
 def _reported(
     station: Station, vehicle: VehicleState, report: Report, received_at_ns: int
 ) -> Stepped:
-    """What a report means beside its part in the vehicle's state."""
+    """Apply a report's effects besides its part in the vehicle's state."""
     match report:
         case ImageReport():
             return frames.on_frame(station, vehicle, report, received_at_ns)

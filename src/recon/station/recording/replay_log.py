@@ -1,6 +1,6 @@
 """The audit of a recorded flight, for a replay's timeline and for the marks of its slider.
 
-A thread reads it through the whole record, beside the replay; what was read so far is there to see.
+A thread reads it through the whole record during the replay; what was read so far is shown.
 Of a moment it has the entries up to then.
 """
 

@@ -1,4 +1,4 @@
-"""Writes the recovery snapshot beside the event loop, on a thread of its own.
+"""Writes the recovery snapshot outside the event loop, on a thread of its own.
 
 The event loop only hands over the newest station, which is an immutable value. The thread writes
 it every half second, and at once when an order begins or ends, authority changes, a temporary zone

@@ -192,7 +192,7 @@ def unsent(record: OrderRecord, phase: Phase, at_ns: int, note: str) -> OrderRec
 def shown(record: OrderRecord, seen: Progress, at_ns: int) -> OrderRecord:
     """Return the record after what telemetry shows of it.
 
-    What is shown of an order that has ended is a word beside its end, and the end of its alarm.
+    An order that has ended shows a word beside its end, and the end of its alarm.
     """
     if seen < Progress.CONFIRMED:
         return record

@@ -63,7 +63,7 @@ def recall_if_due(
     motion, again_ns = station.imager_motions.under_way(), seconds_to_ns(settings.called_again_s)
     for serial in imagers_at_work(station):
         if motion is not None and motion.serial == serial:
-            continue  # it flies as ordered; the failsafe matrix has the last word
+            continue  # it flies as ordered; the failsafe matrix decides
         outlook = station.reliefs.outlooks.get(serial)
         if outlook is None or outlook.return_due_ns is None or outlook.return_due_ns > now_ns:
             continue

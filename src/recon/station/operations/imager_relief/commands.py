@@ -133,7 +133,7 @@ def _cannot_leave(station: Station, event: ReliefOrdered, now_ns: int) -> Refusa
 def _layers_up_m(
     station: Station, event: ReliefOrdered, at: HoverPlace, now_ns: int
 ) -> tuple[float, ...]:
-    """The heights above the site beside the one that hovers there, the nearest first."""
+    """Return heights above the site near the one that hovers there, the nearest first."""
     hovering = station.fleet.vehicles[event.relieved]
     base_m = takeoff_up_m(station.airspace, hovering)
     if base_m is None:

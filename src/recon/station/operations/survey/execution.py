@@ -6,7 +6,7 @@ an operator starts, pauses or aborts it; it becomes done, or pauses itself, by i
 1. On a tick, at most once a second, the survey that has waited longest is due. The outcome of each
    vehicle's mission is read: a vehicle whose mission ended unfinished is stopped until an operator
    starts it again. If its mission was ignored it is held, for it might begin late. One that was not
-   sent, for a reason that time may end, is asked for again (`unsent_missions`).
+   sent, for a reason that may pass, is requested again (`unsent_missions`).
 2. The worker counts the positions and shade maps since the last step, and decides which vehicle
    flies what next. One step at a time; after 30 s without an answer it counts as lost. A command
    to the survey meanwhile makes the answer count for nothing.

@@ -1,4 +1,4 @@
-"""Missions of a survey that were not sent, and are asked for again when time may end the reason.
+"""Missions of a survey that were not sent, and are requested again if the reason may pass.
 
 Theory of operation. A mission is judged when it is ordered and, if it had to wait, at the moment of
 sending. Telemetry may be late then for a moment, the link may just have closed, other vehicles may
@@ -27,7 +27,7 @@ ASKS_AGAIN = "; it is asked for again every few seconds"
 
 _NEVER_LEFT = (Phase.EXPIRED, Phase.FAILED)
 """Ends of an unsent order: too long in the queue, or the link closed. An order that a newer one has
-superseded is not asked for again."""
+superseded is not requested again."""
 
 
 def may_end(refusal: Refusal) -> bool:
