@@ -55,12 +55,12 @@ LEAST_ROLE: dict[tuple[str, str], Role] = {
     ("GET", "/api/site/vehicles"): Role.OBSERVER,
     ("GET", "/api/site/calibration/frame.jpg"): Role.OBSERVER,
     ("GET", "/api/replay/marks"): Role.OBSERVER,
-    # Of a replay, which orders nothing; a live station refuses it.
+    # A replay orders nothing; a live station refuses it.
     ("POST", "/api/replay"): Role.OBSERVER,
     (STREAM, "/api/stream"): Role.OBSERVER,
     (STREAM, "/api/audit/stream"): Role.OBSERVER,
     ("POST", "/api/all-stop"): Role.OBSERVER,
-    # By kind: see `order_role` and `authority_role`.
+    # The role depends on the kind: see `order_role` and `authority_role`.
     ("POST", "/api/orders"): Role.PILOT,
     ("POST", "/api/orders/check"): Role.PILOT,
     ("POST", "/api/vehicle/authority"): Role.PILOT,
@@ -79,7 +79,7 @@ LEAST_ROLE: dict[tuple[str, str], Role] = {
     ("POST", "/api/imager-relief"): Role.OPERATOR,
     ("POST", "/api/surveys"): Role.OPERATOR,
     ("POST", "/api/surveys/{survey_id}/start"): Role.OPERATOR,
-    # Of regions to survey; boundary, zones and pads need an administrator: see `EditedSite`.
+    # Regions to survey only; boundary, zones and pads need an administrator: see `EditedSite`.
     ("POST", "/api/site/drawing"): Role.OPERATOR,
     ("POST", "/api/site/drawing/check"): Role.OPERATOR,
     ("POST", "/api/site/drawing/undo"): Role.OPERATOR,

@@ -83,7 +83,7 @@ class OpenMaps:
         except OSError as problem:
             return {"problem": f"cannot be read: {problem.strerror or problem}"}, b""
         except Exception as problem:
-            # Of a damaged file in a library; its words are for programmers.
+            # A library's error for a damaged file; its words are for programmers.
             print(f"{question['name']!a}: {problem!r}"[:500], file=sys.stderr)
             return {"problem": "expected a whole map file, got a damaged one; export it again"}, b""
 

@@ -151,7 +151,7 @@ def unknown_heights(motions: Sequence[VehicleMotion]) -> BoolArray | None:
     homes_m = np.array([motion.home_m or (np.nan, np.nan) for motion in motions])
     east_m, north_m = homes_m.T[:, :, np.newaxis]
     apart_m = np.hypot(east_m - east_m.T, north_m - north_m.T)
-    # Of an unknown home the comparison is False.
+    # For an unknown home the comparison is False.
     return np.asarray(~((known & known[:, np.newaxis]) | (apart_m <= SAME_GROUND_M)))
 
 

@@ -237,5 +237,5 @@ def _at_m(picture: TrafficPicture, index: IntArray) -> FloatArray:
 def _is_near_home(motions: Sequence[VehicleMotion]) -> BoolArray:
     homes_m = np.array([motion.home_m or (np.nan, np.nan) for motion in motions])
     east_m, north_m = (_last_known_m(motions) - homes_m).T
-    # Of an unknown home the comparison is False.
+    # For an unknown home the comparison is False.
     return np.asarray(np.hypot(east_m, north_m) <= NEAR_HOME_M)
