@@ -110,7 +110,7 @@ test-web: web/node_modules/.stamp ## Tests of the console
 
 test-e2e: setup web ## Console tests in a headless browser with a running station
 	@tools/chromium.sh
-	npm --prefix web run e2e --silent
+	RECON_E2E_DIST=dist npm --prefix web run e2e --silent
 
 android-core: ## Build the companion app's core, its runnable jar and the adapter, with their tests (needs a JDK 17 and Maven)
 	@tools/require.sh java mvn

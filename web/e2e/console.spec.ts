@@ -11,23 +11,21 @@ import { cornerFaults, overlaps } from "./layoutFaults";
 import { faintTexts, smallTargets, smallTexts } from "./legibility";
 import { drawnShare } from "./mapPicture";
 import { openPanel } from "./openPanel";
-import { applyTheme, THEMES } from "./themes";
+import { inEachTheme } from "./themes";
 
 /** Widths from a phone to a wall display, pixels. */
 const WIDTHS = [360, 480, 600, 700, 800, 1024, 1099, 1100, 1440, 2560];
 
-for (const theme of THEMES) {
-  test(`is legible at every width: ${theme.name}`, async ({ page }) => {
-    await page.emulateMedia({ colorScheme: theme.colorScheme });
-    await FakeStation.behind(page, busyState(0));
-    await page.goto("/");
-    await expect(page.locator("button.craft")).toHaveCount(5);
-    await page.keyboard.press("1");
-    await applyTheme(page, theme);
-    await page.locator(".status-button").click();
+test("is legible at every width in each theme", async ({ page }) => {
+  await FakeStation.behind(page, busyState(0));
+  await page.goto("/");
+  await expect(page.locator("button.craft")).toHaveCount(5);
+  await page.keyboard.press("1");
+  await page.locator(".status-button").click();
+  await inEachTheme(page, async (theme) => {
     for (const width of [1440, 800, 360]) {
       await page.setViewportSize({ width, height: 1000 });
-      const where = `${width} px wide`;
+      const where = `${theme.name}, ${width} px wide`;
       expect(await smallTexts(page), where).toEqual([]);
       expect(await smallTargets(page), where).toEqual([]);
       expect(await faintTexts(page), where).toEqual([]);
@@ -37,26 +35,23 @@ for (const theme of THEMES) {
       expect(overflow, where).toBeLessThanOrEqual(0);
     }
   });
-}
+});
 
-for (const theme of THEMES) {
-  test(`keeps all stop in the upper right corner at every width: ${theme.name}`, async ({
-    page,
-  }) => {
-    await page.emulateMedia({ colorScheme: theme.colorScheme });
-    await FakeStation.behind(page, busyState(0));
-    await page.goto("/");
-    await expect(page.locator("button.craft")).toHaveCount(5);
-    await applyTheme(page, theme);
+test("keeps all stop in the upper right corner at every width in each theme", async ({ page }) => {
+  await FakeStation.behind(page, busyState(0));
+  await page.goto("/");
+  await expect(page.locator("button.craft")).toHaveCount(5);
+  await inEachTheme(page, async (theme) => {
     for (const width of WIDTHS) {
       await page.setViewportSize({ width, height: 900 });
-      expect(await cornerFaults(page), `${width} px wide`).toEqual([]);
-      expect(await overlaps(page, "header button, header .tag")).toEqual([]);
-      expect(await overlaps(page, ".orders button")).toEqual([]);
-      expect(await smallTargets(page), `${width} px wide`).toEqual([]);
+      const where = `${theme.name}, ${width} px wide`;
+      expect(await cornerFaults(page), where).toEqual([]);
+      expect(await overlaps(page, "header button, header .tag"), where).toEqual([]);
+      expect(await overlaps(page, ".orders button"), where).toEqual([]);
+      expect(await smallTargets(page), where).toEqual([]);
     }
   });
-}
+});
 
 test("gives the whole window to the map at every width, and nothing scrolls", async ({ page }) => {
   await FakeStation.behind(page, busyState(0));

@@ -39,7 +39,6 @@ test("64 drones stay readable: list, alarms by cause, clusters", async ({ page }
     await expect(page.locator(".craft-cluster").first()).toBeVisible();
     await expect(page.getByRole("button", { name: /vehicle 11 Drone 11/ })).toBeVisible();
   });
-  await page.screenshot({ path: "screens/fleet-64-clusters.png" });
 });
 
 test("a height on the map is in sight as a whole or not shown, wherever the map is moved", async ({

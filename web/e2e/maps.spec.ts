@@ -9,7 +9,7 @@ import { drawnShare } from "./mapPicture";
 import { runRecon, startReplay, startStation } from "./stationProcess";
 import { applyTheme, THEMES } from "./themes";
 
-const CONNECT_WITHIN_MS = 60_000;
+const CONNECT_WITHIN_MS = 180_000;
 const RING = [
   [-93.6054, 41.9],
   [-93.6014, 41.9],
@@ -30,6 +30,9 @@ const BOUNDARY = {
 
 /** A lines-only map has a few hundredths. */
 const MOSTLY_DRAWN = 0.5;
+
+// One folder of maps for the file.
+test.describe.configure({ mode: "default" });
 
 let folder: string;
 test.beforeAll(async () => {

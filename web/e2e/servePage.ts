@@ -7,12 +7,14 @@ import { build, preview } from "vite";
 const ROOT = fileURLToPath(new URL("..", import.meta.url));
 
 /**
- * Builds the page into a temporary folder and serves it on a free port, so that concurrent runs do not
- * interfere. Tests get the address in `RECON_E2E_PAGE`.
+ * Serves the page on a free port; tests get the address in `RECON_E2E_PAGE`. The page is the one built in
+ * `RECON_E2E_DIST`, else it is built into a temporary folder, so that concurrent runs do not interfere.
  */
 export default async function servePage(): Promise<() => Promise<void>> {
-  const outDir = await mkdtemp(join(tmpdir(), "recon-console-"));
-  await build({ root: ROOT, logLevel: "warn", build: { outDir, emptyOutDir: true } });
+  const built = process.env["RECON_E2E_DIST"];
+  const outDir = built ?? (await mkdtemp(join(tmpdir(), "recon-console-")));
+  if (built === undefined)
+    await build({ root: ROOT, logLevel: "warn", build: { outDir, emptyOutDir: true } });
   const server = await preview({
     root: ROOT,
     logLevel: "warn",
@@ -26,6 +28,6 @@ export default async function servePage(): Promise<() => Promise<void>> {
   process.env["RECON_E2E_PAGE"] = `http://127.0.0.1:${address.port}`;
   return async () => {
     await server.close();
-    await rm(outDir, { recursive: true });
+    if (built === undefined) await rm(outDir, { recursive: true });
   };
 }

@@ -11,7 +11,7 @@ const OWN_UV = ".tools/bin/uv";
 const UV = existsSync(join(PROJECT, OWN_UV)) ? OWN_UV : "uv";
 const COMMAND =
   process.env["RECON_E2E_COMMAND"] ?? `${UV} run --locked recon demo --http-port 0 --link-port 0`;
-const STARTS_WITHIN_MS = 90_000;
+const STARTS_WITHIN_MS = 180_000;
 const ENDS_WITHIN_MS = 10_000;
 
 /** A station with simulated vehicles in its own process. */

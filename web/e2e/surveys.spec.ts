@@ -1,22 +1,10 @@
 import { expect, type Locator, type Page, test } from "@playwright/test";
-import { fieldPicture } from "./fake/picture";
-import { FakeStation } from "./fake/station";
-import { surveyedState, WAYS } from "./fake/surveyedState";
-import { cornerFaults, overlaps } from "./layoutFaults";
-import { faintTexts, smallTargets, smallTexts } from "./legibility";
 import { startStation } from "./stationProcess";
-import { applyTheme, THEMES } from "./themes";
 
 /** The imaging drone renders its first frame before it connects, which is slow on a busy machine. */
-const CONNECT_WITHIN_MS = 60_000;
+const CONNECT_WITHIN_MS = 180_000;
 /** Vehicles taking off side by side wait for each other; a refused mission is retried after 15 s. */
 const FLIES_WITHIN_MS = 60_000;
-
-/** A laptop's and a phone's page, pixels. */
-const SIZES = [
-  [1440, 900],
-  [360, 740],
-] as const;
 
 async function hold(page: Page, button: Locator, until: () => Promise<void>): Promise<void> {
   await button.focus();
@@ -64,7 +52,6 @@ test("plans a survey of a site region, flies it with two vehicles, pauses and ab
       await page.getByRole("button", { name: "Map and overlay" }).click();
       await page.getByLabel("Coverage").check();
       expect((await cells).status()).toBe(200);
-      await page.screenshot({ path: "screens/survey-flown.png" });
     });
 
     await test.step("a short press pauses it, a long one aborts it", async () => {
@@ -80,37 +67,3 @@ test("plans a survey of a site region, flies it with two vehicles, pauses and ab
     await station.stop();
   }
 });
-
-for (const theme of THEMES) {
-  test(`is legible during surveys: ${theme.name}`, async ({ page }) => {
-    await page.emulateMedia({ colorScheme: theme.colorScheme });
-    const fake = await FakeStation.behind(page, surveyedState(0));
-    fake.ways = WAYS;
-    fake.showPicture(await fieldPicture(page));
-    await page.goto("/");
-    const begin_ms = performance.now();
-    const timer = setInterval(
-      () => fake.send(surveyedState((performance.now() - begin_ms) / 1000)),
-      100,
-    );
-    page.once("close", () => clearInterval(timer));
-    await applyTheme(page, theme);
-    await page.keyboard.press("3");
-    const panel = page.getByRole("region", { name: "Survey", exact: true });
-    await expect(panel.getByText("recalled")).toBeVisible();
-    await panel.getByText("New survey").click();
-    for (const [width, height] of SIZES) {
-      await page.setViewportSize({ width, height });
-      const where = `${width} px wide`;
-      expect(await smallTexts(page), where).toEqual([]);
-      expect(await smallTargets(page), where).toEqual([]);
-      expect(await faintTexts(page), where).toEqual([]);
-      expect(await cornerFaults(page), where).toEqual([]);
-      expect(await overlaps(page, ".survey-form label, .section-buttons button")).toEqual([]);
-      await panel.evaluate((one) => one.scrollIntoView());
-      await page.screenshot({ path: `screens/survey-${theme.name}-${width}.png` });
-      await panel.locator("form").evaluate((form) => form.scrollIntoView({ block: "end" }));
-      await page.screenshot({ path: `screens/survey-new-${theme.name}-${width}.png` });
-    }
-  });
-}

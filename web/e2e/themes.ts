@@ -1,4 +1,4 @@
-import { expect, type Page } from "@playwright/test";
+import { expect, type Page, test } from "@playwright/test";
 
 /** The page's three themes: the computer's colour scheme, and whether high contrast is on. */
 export const THEMES = [
@@ -8,6 +8,20 @@ export const THEMES = [
 ] as const;
 
 export type PageTheme = (typeof THEMES)[number];
+
+/** Puts an open page through its themes, as one page: a new one takes seconds to draw its map. */
+export async function inEachTheme(
+  page: Page,
+  look: (theme: PageTheme) => Promise<void>,
+): Promise<void> {
+  for (const theme of THEMES) {
+    await test.step(theme.name, async () => {
+      await page.emulateMedia({ colorScheme: theme.colorScheme });
+      await applyTheme(page, theme);
+      await look(theme);
+    });
+  }
+}
 
 /** Switches an open page to high contrast if `theme` has it. */
 export async function applyTheme(page: Page, theme: PageTheme): Promise<void> {
