@@ -253,7 +253,7 @@ class TestWithoutRelief:
 def leaves_texts(world: RelievedWorld) -> list[str]:
     """All texts of the alarm that a drone must return, ended or not."""
     book = world.station.alarms.alarms.values()
-    return [a.condition.text for a in book if a.condition.key.startswith("imager_relief:leaves")]
+    return [a.condition.text for a in book if a.condition.key.startswith("imager_relief:return")]
 
 
 class TestForeseen:
