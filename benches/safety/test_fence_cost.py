@@ -2,7 +2,7 @@
 
 python -m pytest benches/safety -p no:cacheprovider -s
 
-The naive loop beside them walks flights and ways home in steps of 16 m in plain Python and asks
+The naive loop beside them walks flights and routes home in steps of 16 m in plain Python and asks
 every edge of the boundary: a rougher answer to one question of many.
 """
 
@@ -176,7 +176,7 @@ def test_a_long_curved_mission(hilly: bool) -> None:
 
 
 def naive_room_m(path: PathVolume) -> float:
-    """How near the path comes to the boundary: flights and ways home in steps, edge by edge."""
+    """How near the path comes to the boundary: flights and routes home in steps, edge by edge."""
     edges = list(zip(L_SHAPE, [*L_SHAPE[1:], L_SHAPE[0]], strict=True))
     home_east_m, home_north_m = float(path.home_m[0]), float(path.home_m[1])
     nearest_m = inf

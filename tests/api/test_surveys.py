@@ -217,12 +217,12 @@ class TestLooks:
     def test_one_without_rows_gives_the_reason(self, client: Client) -> None:
         asked = {**ASKED, "speed_mps": 14.0}
         number = client.post("/api/surveys", json=asked).json()["survey"]["id"]
-        error = client.get(f"/api/surveys/{number}/ways").json()["error"]
+        error = client.get(f"/api/surveys/{number}/paths").json()["error"]
         assert error.startswith(f"Survey {number} has no rows: ")
 
     def test_rows_lie_in_the_field(self, client: Client) -> None:
         number = client.post("/api/surveys", json=ASKED).json()["survey"]["id"]
-        ways = client.get(f"/api/surveys/{number}/ways").json()
+        ways = client.get(f"/api/surveys/{number}/paths").json()
         places = np.array([place for row in ways["rows"] for place in row])
         west, south = np.array(SQUARE).min(axis=0)
         east, north = np.array(SQUARE).max(axis=0)

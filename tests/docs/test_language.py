@@ -39,6 +39,6 @@ def test_terms_code_and_ordinary_english_are_free(tmp_path: Path) -> None:
     text = (
         "A setpoint stream leads to a hold; `if x is None` is code; the watchdog holds it.\n"
         "Nobody who was told and heard the advice says so any more; people said it.\n"
-        "A crewed aircraft is on its way home.\n"
+        "A crewed aircraft is returning home.\n"
     )
     assert found_in(tmp_path, text) == []

@@ -1,4 +1,4 @@
-"""A vehicle of known motion, steered over a way that delays: the truth against the steering.
+"""A vehicle of known motion, steered over a path that delays: the truth against the steering.
 
 The airframe is the simulator's: it follows a demanded velocity with 2.5 m/s2 and a demanded height
 within its climb rates. Telemetry is taken at 10 Hz and comes late, in bursts; sticks take effect
@@ -55,14 +55,14 @@ class Way:
 class Loop:
     """The closed loop; `trace` is the true motion every 0.1 s, `demands` what was asked for."""
 
-    way: Way
+    path: Way
     motion: AircraftMotion = field(default_factory=lambda: AircraftMotion(height_m=30.0))
     now_ns: int = 0
     trace: list[AircraftMotion] = field(default_factory=list)
     demands: list[Steered] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        self.rng = Random(self.way.seed)
+        self.rng = Random(self.path.seed)
         self.limits = Limits()
         self.reports: deque[tuple[int, AircraftMotion]] = deque()
         self.sticks: deque[tuple[int, Steered]] = deque()
@@ -80,7 +80,7 @@ class Loop:
         if self.last is None:
             return None
         received_ns, motion = self.last
-        sigma = self.way.noise_m
+        sigma = self.path.noise_m
         return KinematicState(
             moved_m(
                 START,
@@ -133,7 +133,7 @@ class Loop:
 
     def _report(self, is_blind: bool) -> None:
         if not is_blind:
-            late_s = self.way.telemetry_s + self.way.jitter_s * self.rng.random()
+            late_s = self.path.telemetry_s + self.path.jitter_s * self.rng.random()
             due_ns = self.now_ns + round(late_s * 1e9)
             if self.reports:
                 due_ns = max(due_ns, self.reports[-1][0])
@@ -150,7 +150,7 @@ class Loop:
         else:
             self.steered = steer(self.steered, goal, seen, self.now_ns, SETTINGS)
         self.demands.append(self.steered)
-        self.sticks.append((self.now_ns + round(self.way.stick_s * 1e9), self.steered))
+        self.sticks.append((self.now_ns + round(self.path.stick_s * 1e9), self.steered))
 
     def _arrive(self) -> None:
         while self.reports and self.reports[0][0] <= self.now_ns:
@@ -159,14 +159,14 @@ class Loop:
             self.flown = self.sticks.popleft()[1]
 
     def _move(self) -> None:
-        way, seconds = self.way, STEP_NS / 1e9
+        path, seconds = self.path, STEP_NS / 1e9
         # A gust comes and goes within seconds (first-order, 2 s).
-        self.gust = [0.995 * gust + 0.1 * self.rng.gauss(0.0, way.gust_mps) for gust in self.gust]
+        self.gust = [0.995 * gust + 0.1 * self.rng.gauss(0.0, path.gust_mps) for gust in self.gust]
         if self.flown is None:
             return
         demand = VelocityDemand(
-            self.flown.velocity_north_mps + way.wind_north_mps + self.gust[0],
-            self.flown.velocity_east_mps + way.wind_east_mps + self.gust[1],
+            self.flown.velocity_north_mps + path.wind_north_mps + self.gust[0],
+            self.flown.velocity_east_mps + path.wind_east_mps + self.gust[1],
             hold_height_mps(self.motion.height_m, self.flown.height_above_takeoff_m, self.limits),
             self.flown.yaw_deg,
         )

@@ -57,7 +57,7 @@ class Flier:
         self.waits_s = self.rng.uniform(0.5, 4.0)
         self.targets_m = [
             (*self.place_m[:2], layer_m),
-            *((east_m, north_m, layer_m) for east_m, north_m in flight.way_m[1:]),
+            *((east_m, north_m, layer_m) for east_m, north_m in flight.path_m[1:]),
             (pad.east_m, pad.north_m, pad.up_m + 0.3),
         ]
 
@@ -94,7 +94,7 @@ class Flown:
     most_at_a_pad: int = 0
     lasted_s: float = 0.0
     heights: list[tuple[float, dict[str, tuple[float, float]]]] = field(default_factory=list)
-    """Every second: height and way to the pad of each in the air."""
+    """Every second: height and path to the pad of each in the air."""
 
 
 def fly(

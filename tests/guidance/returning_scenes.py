@@ -11,10 +11,10 @@ from recon.guidance.fleet_return import (
     FleetReturnSettings,
     Pad,
     ReturnPlan,
+    RouteHome,
     Separation,
-    WayHome,
     plan_return,
-    way_home,
+    route_home,
 )
 from recon.model.airspace import Airspace, FlightLimits, HeightDatum, Region, Zone, ZoneKind
 from recon.model.geo import GeoPoint, LocalFrame
@@ -35,7 +35,7 @@ class Scene:
 
     vehicles: tuple[CalledVehicle, ...]
     airspace: Airspace
-    home: WayHome
+    home: RouteHome
 
     def plan(self) -> ReturnPlan:
         return plan_return(self.vehicles, self.home, KEPT, SETTINGS)
@@ -71,7 +71,7 @@ def scene_of(
     airspace = Airspace(limits, FRAME, boundary, zones)
     points = [v.place_m[:2] for v in vehicles] + [v.pad.east_north_m for v in vehicles]
     ground = (LOW_GROUND_M, HIGH_GROUND_M)
-    return Scene(tuple(vehicles), airspace, way_home(airspace, ground, points, SETTINGS))
+    return Scene(tuple(vehicles), airspace, route_home(airspace, ground, points, SETTINGS))
 
 
 def drawn_scene(

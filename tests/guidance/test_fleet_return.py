@@ -213,7 +213,7 @@ class TestFlown:
         assert layers_m(lowest_m, second_m, third_m) == [lowest_m, second_m]
 
     def test_all_at_one_height_would_come_too_near(self) -> None:
-        """The control: the same ways without layers, begun together, and the checker sees it."""
+        """The control: the same paths without layers, begun together, and the checker sees it."""
         vehicles = hovering_row(5, list(reversed(row_of_pads(5, 40.0))))
         plan = scene_of(vehicles, ceiling_m=70.0).plan()
         lowest_m = plan.layers_up_m[0]
@@ -232,13 +232,13 @@ class TestWays:
         zone = keep_out("barn", box(0.0, 100.0, 20.0), ceiling_m=30.0)
         plan = scene_of([lone(0.0, 200.0)], zones=(zone,)).plan()
         assert plan.layers_up_m[0] == pytest.approx(30.0 + HIGH_GROUND_M + 6.0)
-        assert len(plan.flights[0].way_m) == 2
+        assert len(plan.flights[0].path_m) == 2
 
     def test_a_zone_without_a_top_is_flown_around(self) -> None:
         zone = keep_out("road", box(0.0, 100.0, 20.0))
         (flight,) = scene_of([lone(0.0, 200.0)], zones=(zone,)).plan().flights
-        length_m = sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(flight.way_m))
-        assert len(flight.way_m) > 2
+        length_m = sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(flight.path_m))
+        assert len(flight.path_m) > 2
         assert 240.0 < length_m < 265.0
 
     def test_a_zone_far_from_every_way_raises_no_layer(self) -> None:
@@ -247,7 +247,7 @@ class TestWays:
         assert plan.layers_up_m[0] == pytest.approx(HIGH_GROUND_M + 20.0)
 
     def test_a_zone_outside_the_hull_is_kept_clear_of_by_a_detour(self) -> None:
-        """The short way around the road leads out of the hull, across the barn's corner."""
+        """The short path around the road leads out of the hull, across the barn's corner."""
         road = keep_out("road", box(30.0, 100.0, 40.0))
         barn = keep_out("barn", box(-60.0, 60.0, 43.0))
         scene = scene_of([lone(0.0, 200.0)], zones=(road, barn))
@@ -270,9 +270,9 @@ class TestWays:
             "B", "B", (3.0, 260.0, 40.0), 0.0, Pad("q", 40.0, -40.0, 0.0), 0.9
         )
         low, high = scene_of(vehicles, zones=(zone,)).plan().flights
-        assert (low.layer_up_m, len(low.way_m)) == (pytest.approx(23.0), 2)
+        assert (low.layer_up_m, len(low.path_m)) == (pytest.approx(23.0), 2)
         assert high.layer_up_m == pytest.approx(33.0)
-        assert len(high.way_m) > 2
+        assert len(high.path_m) > 2
 
     def test_a_wall_from_fence_to_fence_leaves_no_way(self) -> None:
         across = np.array([(-500.0, 90.0), (500.0, 90.0), (500.0, 110.0), (-500.0, 110.0)])
@@ -327,7 +327,7 @@ def lone(east_m: float, north_m: float, name: str = "A") -> CalledVehicle:
 def sampled(flight: ReturnFlight) -> np.ndarray:
     corners = [
         flight.start_m,
-        *((east_m, north_m, flight.layer_up_m) for east_m, north_m in flight.way_m),
+        *((east_m, north_m, flight.layer_up_m) for east_m, north_m in flight.path_m),
         (*flight.pad.east_north_m, flight.pad.up_m),
     ]
     return np.concatenate(

@@ -34,8 +34,8 @@ def flight(
     pad: tuple[float, float] = (0.0, 0.0),
     layer_m: float = 20.0,
 ) -> ReturnFlight:
-    way = (start[:2], pad)
-    return ReturnFlight(name, name, start, 0.0, Pad(f"pad {name}", *pad, 0.0), layer_m, way, 1)
+    path = (start[:2], pad)
+    return ReturnFlight(name, name, start, 0.0, Pad(f"pad {name}", *pad, 0.0), layer_m, path, 1)
 
 
 class TestDistance:
@@ -115,7 +115,7 @@ def test_the_least_time_is_that_of_the_way_and_both_columns() -> None:
 
 class TestHindrance:
     def test_a_crossing_below_waits_until_the_other_has_passed(self) -> None:
-        """B would sink through the way of A, which is below and not yet past."""
+        """B would sink through the path of A, which is below and not yet past."""
         under = flight("A", (-100.0, 100.0, 20.0), (100.0, 100.0), 20.0)
         upper = flight("B", (0.0, 200.0, 60.0), (0.0, 100.0), 28.0)
         before = claim_left(under, (-50.0, 100.0, 20.0), SETTINGS)
@@ -125,7 +125,7 @@ class TestHindrance:
 
     def test_who_hovers_in_the_way_is_named(self) -> None:
         hovering = [Hovering("c", "C", (10.0, 100.0, 22.0))]
-        assert hindrance(flight(), [], [], hovering, KEPT) == "C hovers too near to its way"
+        assert hindrance(flight(), [], [], hovering, KEPT) == "C hovers too near to its path"
 
     def test_an_earlier_turn_that_would_be_hindered_goes_first(self) -> None:
         crossing = whole_claim(flight("B", (-100.0, 100.0, 20.0), (100.0, 100.0), 20.0))

@@ -1,4 +1,4 @@
-"""When an imaging drone must return, what a survey needs, and the way to its place."""
+"""When an imaging drone must return, what a survey needs, and the leg to its place."""
 
 import numpy as np
 import pytest

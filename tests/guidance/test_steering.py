@@ -43,7 +43,7 @@ def seen(
     return KinematicState(moved_m(START, north_m, 0.0), velocity_north_mps, 0.0, 30.0, 0.0, age_s)
 
 
-ways = st.builds(
+paths = st.builds(
     Way,
     telemetry_s=st.floats(0.05, 0.3),
     jitter_s=st.floats(0.0, 0.25),
@@ -57,22 +57,24 @@ bearings = st.tuples(st.floats(-150.0, 150.0), st.floats(-150.0, 150.0)).filter(
 
 class TestClosedLoop:
     @settings(max_examples=examples(40), deadline=None)
-    @given(ways, bearings, st.floats(-15.0, 30.0), st.floats(1.0, 15.0))
+    @given(paths, bearings, st.floats(-15.0, 30.0), st.floats(1.0, 15.0))
     def test_it_arrives_and_does_not_overshoot_in_still_air(
-        self, way: Way, to_m: tuple[float, float], up_m: float, speed_mps: float
+        self, path: Way, to_m: tuple[float, float], up_m: float, speed_mps: float
     ) -> None:
-        loop, to = Loop(way), goal(*to_m, up_m, speed_mps)
+        loop, to = Loop(path), goal(*to_m, up_m, speed_mps)
         loop.fly(to, 25.0 + hypot(*to_m) / speed_mps + abs(up_m))
         assert loop.distance_m(to) < 0.2
         assert loop.has_arrived(to)
         assert loop.overshoot_m(to) <= STILL_AIR_OVERSHOOT_M
 
     @settings(max_examples=examples(40), deadline=None)
-    @given(ways, bearings, st.floats(-1.0, 1.0), st.floats(-1.0, 1.0), st.floats(0.0, 0.15))
+    @given(paths, bearings, st.floats(-1.0, 1.0), st.floats(-1.0, 1.0), st.floats(0.0, 0.15))
     def test_it_arrives_within_a_metre_in_wind(
-        self, way: Way, to_m: tuple[float, float], north: float, east: float, noise: float
+        self, path: Way, to_m: tuple[float, float], north: float, east: float, noise: float
     ) -> None:
-        windy = replace(way, wind_north_mps=north, wind_east_mps=east, gust_mps=0.15, noise_m=noise)
+        windy = replace(
+            path, wind_north_mps=north, wind_east_mps=east, gust_mps=0.15, noise_m=noise
+        )
         loop, to = Loop(windy), goal(*to_m, speed_mps=8.0)
         loop.fly(to, 45.0 + hypot(*to_m) / 6.0)
         assert loop.distance_m(to) < 1.0
@@ -86,11 +88,11 @@ class TestClosedLoop:
         assert loop.distance_m(to) < 0.2
 
     @settings(max_examples=examples(30), deadline=None)
-    @given(ways, bearings, st.floats(2.0, 15.0), st.floats(-8.0, 8.0))
+    @given(paths, bearings, st.floats(2.0, 15.0), st.floats(-8.0, 8.0))
     def test_what_is_asked_for_stays_within_its_bounds(
-        self, way: Way, to_m: tuple[float, float], speed_mps: float, moving_mps: float
+        self, path: Way, to_m: tuple[float, float], speed_mps: float, moving_mps: float
     ) -> None:
-        loop = Loop(way, AircraftMotion(height_m=30.0, velocity_east_mps=moving_mps))
+        loop = Loop(path, AircraftMotion(height_m=30.0, velocity_east_mps=moving_mps))
         loop.fly(goal(*to_m, 20.0, speed_mps, 170.0), 40.0)
         assert loop.hardest_demand_mps2() <= 2.0 + 1e-6
         fastest_mps = max(hypot(d.velocity_north_mps, d.velocity_east_mps) for d in loop.demands)

@@ -49,7 +49,7 @@ PLACES_M: dict[str, tuple[float, float]] = {
     "SIM-7": (190.0, -60.0),
 }
 """East and north of the origin: the middle of what each drone flies over, away from the others'
-ways home."""
+routes home."""
 HALF_ROW_M = 20.0
 ROWS_NORTH_M = (-20.0, 0.0, 20.0)
 LOWEST_M, LAYERS_APART_M = 40.0, 8.0

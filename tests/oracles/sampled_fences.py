@@ -135,7 +135,7 @@ def mission_pieces(
             _corner(waypoints_m[i - 1 : i + 2], float(radii_m[i]))
             for i in range(1, len(waypoints_m) - 1)
         ]
-    return _with_way_home(aircraft, pieces, waypoints_m[-1] if land_at_end else None)
+    return _with_route_home(aircraft, pieces, waypoints_m[-1] if land_at_end else None)
 
 
 def goto_pieces(aircraft: Aircraft, target_m: FloatArray) -> list[Piece]:
@@ -144,7 +144,7 @@ def goto_pieces(aircraft: Aircraft, target_m: FloatArray) -> list[Piece]:
     begin[2] += np.clip(end[2] - begin[2], -HEIGHT_NOISE_M, HEIGHT_NOISE_M)
     offset = end[:2] - begin[:2]
     end[:2] += OVERSHOOT_M * offset / max(float(np.hypot(*offset)), 1e-9)
-    return _with_way_home(aircraft, [_leg(begin, end, is_entry=True)], None)
+    return _with_route_home(aircraft, [_leg(begin, end, is_entry=True)], None)
 
 
 def stick_pieces(
@@ -179,7 +179,7 @@ def _corner(triple_m: FloatArray, radius_m: float) -> Piece:
     return Piece("flight", points, min(heights), max(heights))
 
 
-def _with_way_home(
+def _with_route_home(
     aircraft: Aircraft, flights: list[Piece], lands_at: FloatArray | None
 ) -> list[Piece]:
     pieces = list(flights)
@@ -192,7 +192,7 @@ def _with_way_home(
             pieces.append(Piece("climb", flight.points_m, flight.low_m, top_m, entry))
             lines = [_between(point, aircraft.home_m[:2]) for point in flight.points_m]
             low_m = max(flight.low_m, aircraft.go_home_m)
-            pieces.append(Piece("way home", np.concatenate(lines), low_m, top_m, entry))
+            pieces.append(Piece("route home", np.concatenate(lines), low_m, top_m, entry))
         pieces.append(Piece("landing", aircraft.home_m[np.newaxis, :2], -np.inf, max(tops)))
     elif aircraft.failsafe == "land":
         pieces += [Piece("landing", f.points_m, -np.inf, f.high_m, f.is_entry) for f in flights]

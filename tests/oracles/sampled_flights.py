@@ -47,7 +47,7 @@ Band = tuple[float, float]
 class Aircraft:
     """A vehicle `age_s` ago: place (3,) and velocity (3,) as east, north, up, metres and m/s.
 
-    `home_m` is (2,), `takeoff_m` the height of its takeoff point and `go_home_m` of its way home.
+    `home_m` is (2,), `takeoff_m` the height of its takeoff point and `go_home_m` of its route home.
     """
 
     here_m: FloatArray
@@ -196,7 +196,7 @@ class Flight:
 
 
 def leg_seconds(far_m: float, start_mps: float, speed_mps: float, end_mps: float) -> float:
-    """Return how long a straight way takes: speed is gained, kept and lost at 2.5 m/s2."""
+    """Return how long a straight path takes: speed is gained, kept and lost at 2.5 m/s2."""
     if far_m < 1e-3:
         return 0.0
     peak_mps = sqrt((start_mps**2 + end_mps**2) / 2.0 + BRAKING_MPS2 * far_m)

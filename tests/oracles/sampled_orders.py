@@ -161,7 +161,7 @@ def without_command(aircraft: Aircraft) -> Flight:
 def hidden(aircraft: Aircraft, known_mps: float) -> list[FloatArray]:
     """Where a vehicle with lost telemetry may be, at all times: volumes as (N, 9) samples.
 
-    Its circle at the largest, its way home, and the column of its landing there.
+    Its circle at the largest, its route home, and the column of its landing there.
     """
     rise_m = max(0.0, float(aircraft.velocity_mps[2])) * min(aircraft.age_s, 10.0)
     top_m = float(aircraft.here_m[2]) + rise_m
@@ -172,9 +172,9 @@ def hidden(aircraft: Aircraft, known_mps: float) -> list[FloatArray]:
     here_m = aircraft.here_m[np.newaxis, :2]
     volumes = [_always(here_m, -ALL_HEIGHTS_M, top_m, largest_m)]
     if aircraft.goes_home:
-        way_m = aircraft.home_m - here_m[0]
-        share = np.linspace(0.0, 1.0, 2 + int(np.hypot(*way_m) / STEP_M))
-        line_m = here_m + share[:, np.newaxis] * way_m
+        path_m = aircraft.home_m - here_m[0]
+        share = np.linspace(0.0, 1.0, 2 + int(np.hypot(*path_m) / STEP_M))
+        line_m = here_m + share[:, np.newaxis] * path_m
         volumes.append(_always(line_m, float(aircraft.here_m[2]), top_m, CORRIDOR_M))
         home_m = aircraft.home_m[np.newaxis]
         volumes.append(_always(home_m, -ALL_HEIGHTS_M, top_m, CORRIDOR_M))
@@ -182,7 +182,7 @@ def hidden(aircraft: Aircraft, known_mps: float) -> list[FloatArray]:
 
 
 def go_home_top_m(aircraft: Aircraft) -> float:
-    """How high the way home is: the go-home height unless already higher."""
+    """How high the route home is: the go-home height unless already higher."""
     here_m = float(aircraft.here_m[2])
     if aircraft.go_home_m is None:
         return here_m + UNKNOWN_CLIMB_M

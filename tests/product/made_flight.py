@@ -60,8 +60,8 @@ class Rows:
 
     def place(self, at_s: npt.ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
         """East, north and heading at times since the flight's start."""
-        way_m = np.clip((np.asarray(at_s, float) - self.starts_s) * SPEED_MPS, 0.0, None)
-        row, along_m = np.divmod(way_m, SIDE_M + ROW_M)
+        path_m = np.clip((np.asarray(at_s, float) - self.starts_s) * SPEED_MPS, 0.0, None)
+        row, along_m = np.divmod(path_m, SIDE_M + ROW_M)
         on_row = np.minimum(along_m, SIDE_M)
         east = self.west_m + ROW_M * row + np.clip(along_m - SIDE_M, 0.0, ROW_M)
         is_north = row % 2 == 0

@@ -103,13 +103,13 @@ class TestReport:
 
     @pytest.mark.parametrize("swapped", [False, True])
     def test_it_names_the_first_part_of_the_way_of_either(self, swapped: bool) -> None:
-        """First 10 m apart and at one height, then 2 m and 6 m, of another part of its way."""
+        """First 10 m apart and at one height, then 2 m and 6 m, of another part of its path."""
         comes = writer_at(10.0)
         comes.waits(5.0, 3)
         comes.moves(10.0, 0.0, 1.0, 4, band_m=(46.0, 46.0))
         comes.moves(2.0, 0.0, 20.0, 4)
-        way = comes.trajectory("A")
-        found = conflict(OTHER, way) if swapped else conflict(way, OTHER)
+        path = comes.trajectory("A")
+        found = conflict(OTHER, path) if swapped else conflict(path, OTHER)
         assert found is not None
         assert (found.other_part if swapped else found.own_part) == 3
         assert (found.horizontal_m, found.vertical_m) == (10.0, 0.0)

@@ -88,8 +88,8 @@ class TestLeg:
 
 class TestHome:
     def test_it_climbs_first_flies_straight_and_lands_from_there(self) -> None:
-        climb, way, landing = 10.0 * 1.6, (10.0 + 3.2) * 1.25, 40.0 + 15.0
-        assert CALM.home((80.0, 0.0, 40.0)) == per_mille(climb + way + landing)
+        climb, path, landing = 10.0 * 1.6, (10.0 + 3.2) * 1.25, 40.0 + 15.0
+        assert CALM.home((80.0, 0.0, 40.0)) == per_mille(climb + path + landing)
 
     def test_higher_than_the_go_home_height_it_stays_there(self) -> None:
         assert CALM.home((0.0, 80.0, 90.0)) == per_mille((10.0 + 3.2) * 1.25 + 60.0 + 15.0)
@@ -104,19 +104,20 @@ class TestHome:
     def test_between_two_points_home_is_never_dearer_than_from_the_dearer_end(
         self, a: Point, b: Point
     ) -> None:
-        """Why asking at the ends of legs is enough: the way flown and the way home are convex."""
+        """Why asking at the ends of legs is enough: the path flown and the route home are
+        convex."""
         flown = CALM.leg(a, b, 8.0, stops=False)
         dearest = max(CALM.home(a), flown + CALM.home(b))
         for share in (0.1, 0.5, 0.9):
             between = tuple(x + share * (y - x) for x, y in zip(a, b, strict=True))
             here: Point = (between[0], between[1], between[2])
-            stop = CALM.fraction(8.0 / 2.5 * 1.25)  # a way home of no length does not brake
+            stop = CALM.fraction(8.0 / 2.5 * 1.25)  # a route home of no length does not brake
             assert share * flown + CALM.home(here) <= dearest + stop + 1e-9
 
 
 class TestPath:
     def test_the_dearest_point_of_all_counts(self) -> None:
-        """Out and back: at the far end home is farthest, and the way back is no saving."""
+        """Out and back: at the far end home is farthest, and the path back is no saving."""
         out, far = (0.0, 0.0, 60.0), (400.0, 0.0, 60.0)
         need = path_need(CALM, [out, far, out], 10.0)
         leg, back = CALM.leg(out, far, 10.0), CALM.home(far)
@@ -124,8 +125,8 @@ class TestPath:
         assert need.whole == leg + back
 
     def test_a_longer_way_on_near_home_is_dearer_in_the_end(self) -> None:
-        way = [(0.0, 0.0, 60.0), (50.0, 0.0, 60.0)] * 10
-        assert path_need(CALM, way, 10.0).at == 19
+        path = [(0.0, 0.0, 60.0), (50.0, 0.0, 60.0)] * 10
+        assert path_need(CALM, path, 10.0).at == 19
 
     def test_staying_is_dearest_where_it_is(self) -> None:
         here = (300.0, 0.0, 60.0)
@@ -137,8 +138,8 @@ class TestPath:
         assert path_need(CALM, [here, here], 5.0).at == 0
 
     @given(st.lists(points, min_size=2, max_size=8), st.floats(1.0, 15.0))
-    def test_nothing_flown_on_top_makes_it_cheaper(self, way: list[Point], speed: float) -> None:
-        wholes = [path_need(CALM, way[:count], speed).whole for count in range(1, len(way) + 1)]
+    def test_nothing_flown_on_top_makes_it_cheaper(self, path: list[Point], speed: float) -> None:
+        wholes = [path_need(CALM, path[:count], speed).whole for count in range(1, len(path) + 1)]
         assert wholes == sorted(wholes)
 
 
@@ -233,7 +234,7 @@ class TestVehicle:
         assert uses is not None
         assert uses.wind_load == load
 
-    def test_the_way_home_from_where_it_is(self) -> None:
+    def test_the_route_home_from_where_it_is(self) -> None:
         away = replace(PLACE, latitude_deg=PLACE.latitude_deg + 0.001, longitude_deg=-93.601)
         state = vehicle(position=away)
         here = place_of(state)

@@ -23,8 +23,8 @@ from recon.safety.energy import (
     mission_points,
     need_of,
     path_need,
+    path_of,
     place_of,
-    way_of,
 )
 
 NOW = situation()
@@ -60,24 +60,24 @@ def stick(x: float, y: float, frame: StickFrame = StickFrame.GROUND) -> VirtualS
 def test_a_way_leads_from_here_to_the_end(
     body: Body, end: tuple[float, float, float], speed_mps: float
 ) -> None:
-    way = way_of(body, OUT, ENERGY)
-    assert way is not None
-    assert way[0][0] == place_of(OUT) == pytest.approx((100.0, 0.0, 40.0), abs=0.05)
-    assert way[0][1] == pytest.approx(end, abs=0.05)
-    assert way[1] == pytest.approx(speed_mps)
+    path = path_of(body, OUT, ENERGY)
+    assert path is not None
+    assert path[0][0] == place_of(OUT) == pytest.approx((100.0, 0.0, 40.0), abs=0.05)
+    assert path[0][1] == pytest.approx(end, abs=0.05)
+    assert path[1] == pytest.approx(speed_mps)
 
 
 def test_a_bodys_velocity_counts_as_away_from_home_wherever_that_is() -> None:
     south_west = replace(OUT, position=Stamped(LatLon(41.9991, -93.6012), 0))
-    way = way_of(stick(10.0, 0.0, StickFrame.BODY), south_west, ENERGY)
-    assert way is not None
-    (north_m, east_m, _), (end_north_m, end_east_m, _) = way[0]
+    path = path_of(stick(10.0, 0.0, StickFrame.BODY), south_west, ENERGY)
+    assert path is not None
+    (north_m, east_m, _), (end_north_m, end_east_m, _) = path[0]
     assert end_north_m / end_east_m == pytest.approx(north_m / east_m)
     assert end_north_m < north_m < 0.0
 
 
 def test_holding_leads_nowhere() -> None:
-    assert way_of(HoldPosition(), OUT, ENERGY) == ([place_of(OUT)], 0.0)
+    assert path_of(HoldPosition(), OUT, ENERGY) == ([place_of(OUT)], 0.0)
 
 
 @pytest.mark.parametrize(
@@ -131,9 +131,9 @@ def test_what_it_needs_is_that_of_its_way() -> None:
     uses = consumption(OUT, NOW.airspace, NOW.settings.energy)
     assert uses is not None
     for body in (goto(300.0), stick(3.0, 4.0)):
-        way = way_of(body, OUT, ENERGY)
-        assert way is not None
-        assert need_of(uses, OUT, body) == path_need(uses, *way)
+        path = path_of(body, OUT, ENERGY)
+        assert path is not None
+        assert need_of(uses, OUT, body) == path_need(uses, *path)
     points = mission_points(OUT, mission().mission)
     assert points is not None
     assert need_of(uses, OUT, mission()) == mission_need(uses, points, mission().mission)

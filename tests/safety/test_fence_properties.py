@@ -44,9 +44,9 @@ def test_it_is_allowed_if_every_sample_of_the_path_is_inside(
     points = np.random.default_rng(seed).uniform(-20.0, 350.0, (4, 2))
     body = mission(*((*point, 40.0) for point in points))
     air = airspace(boundary=shape, limits=replace(WIDE, boundary_margin_m=margin_m))
-    way = np.concatenate([[(0.0, 0.0)], points])
+    path = np.concatenate([[(0.0, 0.0)], points])
     share = np.linspace(0.0, 1.0, 80)[:, np.newaxis]
-    legs = np.concatenate([a + share * (b - a) for a, b in pairwise(way)])
+    legs = np.concatenate([a + share * (b - a) for a, b in pairwise(path)])
     samples = np.concatenate([legs * factor for factor in np.linspace(0.0, 1.0, 40)])
     worst_m = float(Polygon(shape).distance_to_edge_m(samples).min())
     if asked(boundary, body, air) is None:
@@ -58,7 +58,7 @@ def test_it_is_allowed_if_every_sample_of_the_path_is_inside(
 
 @given(seed=st.integers(0, 1_000_000), by_m=st.floats(0.0, 60.0))
 def test_a_narrower_boundary_allows_nothing_more(seed: int, by_m: float) -> None:
-    """For a vehicle that is inside the narrower one: outside, only the way back in is open."""
+    """For a vehicle that is inside the narrower one: outside, only the path back in is open."""
     random = np.random.default_rng(seed)
     points = random.uniform(-60.0, 420.0, (3, 2))
     here = random.uniform(-40.0, 300.0, 2)
@@ -75,7 +75,7 @@ def test_a_narrower_boundary_allows_nothing_more(seed: int, by_m: float) -> None
 def test_a_larger_or_higher_keep_out_zone_allows_nothing_more(
     seed: int, by_m: float, grows_m: float
 ) -> None:
-    """For a vehicle that is clear of the larger one: inside, only the way out is open."""
+    """For a vehicle that is clear of the larger one: inside, only the path out is open."""
     random = np.random.default_rng(seed)
     points = random.uniform(-150.0, 250.0, (3, 2))
     heights_m = random.uniform(20.0, 80.0, 3)
@@ -132,9 +132,9 @@ def test_heights_above_ground_are_kept_at_every_sample_of_the_path(seed: int) ->
     height_m = float(random.uniform(10.0, 60.0))
     body = mission(*((*point, height_m) for point in points))
     state = flier(0.0, 0.0, height_m, go_home_m=height_m)
-    way = np.concatenate([[(0.0, 0.0)], points])
+    path = np.concatenate([[(0.0, 0.0)], points])
     share = np.linspace(0.0, 1.0, 60)[:, np.newaxis]
-    legs = np.concatenate([a + share * (b - a) for a, b in pairwise(way)])
+    legs = np.concatenate([a + share * (b - a) for a, b in pairwise(path)])
     samples = np.concatenate([legs * factor for factor in np.linspace(0.02, 1.0, 50)])
     far = samples[np.hypot(*samples.T) > 5.0]
     takeoff_m = float(air.ground_up_m(np.zeros((1, 2)))[0])

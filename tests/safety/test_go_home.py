@@ -41,7 +41,7 @@ def goes_home(
     home: tuple[float, float] | None = (0.0, 0.0),
     go_home_m: float | None = 60.0,
 ) -> VehicleState:
-    """A vehicle on its way home, asked to keep 60 m."""
+    """A vehicle returning home, asked to keep 60 m."""
     state = aircraft("B", place, height_m, velocity, home=home, mode=mode, go_home_m=go_home_m)
     return replace(state, go_home=flight)
 
@@ -98,7 +98,7 @@ OFF_TRACK = GoHomeDeviation(
                 "height",
                 Severity.CRITICAL,
                 f"goes home too low: {HEIGHTS} 20 m. Zones and other vehicles' layers may be in "
-                f"its way: {HOLD}",
+                f"its path: {HOLD}",
                 1.5,
             ),
         ),

@@ -1,4 +1,4 @@
-"""Where a vehicle with lost telemetry may be: a circle that grows, its way home, its landing."""
+"""Where a vehicle with lost telemetry may be: a circle that grows, its route home, its landing."""
 
 from dataclasses import replace
 
@@ -59,10 +59,10 @@ def test_one_that_does_not_go_home_has_a_circle_only(failsafe: Failsafe) -> None
     assert len(hazard_trajectories(found)) == 1
 
 
-def test_its_circle_grows_and_its_way_home_and_landing_are_as_wide_as_a_corridor() -> None:
+def test_its_circle_grows_and_its_route_home_and_landing_are_as_wide_as_a_corridor() -> None:
     """Lost for 5 s at 10 m/s it is within 50 m, and within 150 m after 10 s more."""
     moving = aircraft("B", (40.0, 300.0), 80.0, (10.0, 0.0, 0.0), age_s=5.0)
-    circle, way, landing = trajectories = hazard_trajectories(lost(moving))
+    circle, path, landing = trajectories = hazard_trajectories(lost(moving))
     assert [one.name for one in trajectories] == ["B"] * 3
     found = sample([one.rows for one in trajectories], [0.0, 5.0, 10.0, 900.0])
     corridor_m = [SETTINGS.corridor_m] * 4
@@ -70,7 +70,7 @@ def test_its_circle_grows_and_its_way_home_and_landing_are_as_wide_as_a_corridor
     assert found.radius_m[1:].tolist() == [corridor_m, corridor_m]
     for one, line_m in (
         (circle, [300.0, 40.0, 300.0, 40.0]),
-        (way, [300.0, 40.0, 0.0, 0.0]),
+        (path, [300.0, 40.0, 0.0, 0.0]),
         (landing, [0.0, 0.0, 0.0, 0.0]),
     ):
         assert one.rows[-1, [EAST_0, NORTH_0, EAST_1, NORTH_1]] == pytest.approx(line_m, abs=0.1)

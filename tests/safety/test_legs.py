@@ -253,7 +253,7 @@ class TestStop:
 def test_a_rounded_corner_may_leave_its_legs_by_half_its_reach(
     angle_deg: float, back_m: float, on_m: float, radius_m: float, bulge_m: float, turned: float
 ) -> None:
-    """Wherever the corner is, whichever way it points, left or right."""
+    """Wherever the corner is, whichever path it points, left or right."""
     corner = 70.0, -30.0
     for after in (turned + angle_deg * pi / 180.0, turned - angle_deg * pi / 180.0):
         before_m = corner[0] + back_m * cos(turned), corner[1] + back_m * sin(turned)

@@ -172,7 +172,7 @@ class TestReach:
             (PLACE, 0.0, BACK, 150.0, 75.0 + 60.0),
         ],
     )
-    def test_of_one_that_is_lost_or_returns_it_is_its_hazard_area_and_its_way_home(
+    def test_of_one_that_is_lost_or_returns_it_is_its_hazard_area_and_its_route_home(
         self,
         home: tuple[float, float] | None,
         age_s: float,

@@ -103,7 +103,7 @@ class TestMission:
 
     def test_the_way_there_and_the_legs(self) -> None:
         assert pieces(path(self.square, flier(20.0, -10.0, 40.0)), Kind.FLIGHT) == [
-            ("the way to waypoint 1", [[20, -10], [100, 0], [100, 0]], 41.0, 50.0, True),
+            ("the leg to waypoint 1", [[20, -10], [100, 0], [100, 0]], 41.0, 50.0, True),
             ("leg 1 to 2", [[100, 0], [100, 100], [100, 100]], 30.0, 50.0, False),
             ("leg 2 to 3", [[100, 100], [0, 100], [0, 100]], 30.0, 30.0, False),
         ]
@@ -131,30 +131,30 @@ class TestMission:
         found = path(self.square, flier(20.0, -10.0, 40.0, go_home_m=35.0))
         assert pieces(found, Kind.CLIMB)[1:] == [
             (
-                "the climb before the way home from leg 1 to 2",
+                "the climb before the route home from leg 1 to 2",
                 [[100, 0], [100, 100], [100, 100]],
                 30.0,
                 50.0,
                 False,
             ),
             (
-                "the climb before the way home from leg 2 to 3",
+                "the climb before the route home from leg 2 to 3",
                 [[100, 100], [0, 100], [0, 100]],
                 30.0,
                 35.0,
                 False,
             ),
         ]
-        assert pieces(found, Kind.WAY_HOME) == [
+        assert pieces(found, Kind.ROUTE_HOME) == [
             (
-                "the way home from the way to waypoint 1",
+                "the route home from the leg to waypoint 1",
                 [[20, -10], [100, 0], [0, 0]],
                 41.0,
                 50.0,
                 True,
             ),
-            ("the way home from leg 1 to 2", [[100, 0], [100, 100], [0, 0]], 35.0, 50.0, False),
-            ("the way home from leg 2 to 3", [[100, 100], [0, 100], [0, 0]], 35.0, 35.0, False),
+            ("the route home from leg 1 to 2", [[100, 0], [100, 100], [0, 0]], 35.0, 50.0, False),
+            ("the route home from leg 2 to 3", [[100, 100], [0, 100], [0, 0]], 35.0, 35.0, False),
         ]
         assert pieces(found, Kind.LANDING) == [
             ("the landing at home", [[0, 0], [0, 0], [0, 0]], -INF, 50.0, False)
@@ -162,20 +162,20 @@ class TestMission:
 
     def test_an_unknown_go_home_height_may_be_any(self) -> None:
         found = path(self.square, flier(go_home_m=None))
-        assert pieces(found, Kind.WAY_HOME)[2][2:4] == (30.0, INF)
+        assert pieces(found, Kind.ROUTE_HOME)[2][2:4] == (30.0, INF)
         assert pieces(found, Kind.CLIMB)[2][2:4] == (30.0, INF)
-        assert pieces(path(self.square, vehicle(None)), Kind.WAY_HOME)[2][2:4] == (30.0, INF)
-        index = int(np.flatnonzero(found.of_kinds(Kind.WAY_HOME))[2])
+        assert pieces(path(self.square, vehicle(None)), Kind.ROUTE_HOME)[2][2:4] == (30.0, INF)
+        index = int(np.flatnonzero(found.of_kinds(Kind.ROUTE_HOME))[2])
         assert found.heights(index) == "30.0 m to an unknown go-home height above takeoff"
         assert found.height_parameters(index) == {"lowest_above_takeoff_m": 30.0}
 
-    def test_an_aircraft_that_hovers_by_itself_has_no_way_home(self) -> None:
+    def test_an_aircraft_that_hovers_by_itself_has_no_route_home(self) -> None:
         found = path(self.square, flier(failsafe=Failsafe.HOVER))
         assert len(found.pieces) == 3
 
     def test_one_that_lands_by_itself_may_land_anywhere_on_the_way(self) -> None:
         found = path(self.square, flier(failsafe=Failsafe.LAND))
-        assert pieces(found, Kind.WAY_HOME) == pieces(found, Kind.CLIMB) == []
+        assert pieces(found, Kind.ROUTE_HOME) == pieces(found, Kind.CLIMB) == []
         assert pieces(found, Kind.LANDING)[1] == (
             "the landing at leg 1 to 2",
             [[100, 0], [100, 100], [100, 100]],
@@ -185,7 +185,7 @@ class TestMission:
         )
 
     def test_an_unset_failsafe_goes_home(self) -> None:
-        assert pieces(path(self.square, flier(failsafe=None)), Kind.WAY_HOME)
+        assert pieces(path(self.square, flier(failsafe=None)), Kind.ROUTE_HOME)
 
     def test_it_lands_at_its_end(self) -> None:
         body = replace(self.square, mission=replace(self.square.mission, land_at_end=True))
@@ -222,10 +222,10 @@ class TestMission:
         """Other rules refuse these; nothing falls over."""
         assert [piece[0] for piece in pieces(path(mission()), Kind.FLIGHT)] == ["the place to hold"]
         one = path(mission((9.0, 0.0, 40.0), curved=True))
-        assert [piece[0] for piece in pieces(one, Kind.FLIGHT)] == ["the way to waypoint 1"]
+        assert [piece[0] for piece in pieces(one, Kind.FLIGHT)] == ["the leg to waypoint 1"]
 
     @given(seed=st.integers(0, 10_000), radius_m=st.floats(0.2, 60.0), share=st.floats(0.0, 1.0))
-    def test_the_way_home_from_a_corner_lies_in_its_legs_triangles_and_itself(
+    def test_the_route_home_from_a_corner_lies_in_its_legs_triangles_and_itself(
         self, seed: int, radius_m: float, share: float
     ) -> None:
         random = np.random.default_rng(seed)
@@ -234,10 +234,10 @@ class TestMission:
         found = path(body)
         corner = found.pieces.triangles_m[found.of_kinds(Kind.CORNER)][0]
         begin = random.dirichlet([1.0, 1.0, 1.0]) @ corner
-        on_way_home = begin + share * (found.home_m[:2] - begin)
-        covers = found.of_kinds(Kind.CORNER, Kind.WAY_HOME)
+        on_route_home = begin + share * (found.home_m[:2] - begin)
+        covers = found.of_kinds(Kind.CORNER, Kind.ROUTE_HOME)
         assert any(
-            is_within(triangle, on_way_home) for triangle in found.pieces.triangles_m[covers]
+            is_within(triangle, on_route_home) for triangle in found.pieces.triangles_m[covers]
         )
 
 
@@ -253,9 +253,9 @@ class TestSteered:
     def test_a_goto_flies_straight_and_may_pass_its_target(self) -> None:
         found = path(goto(100.0, 0.0, 60.0), flier(0.0, 0.0, 40.0))
         assert pieces(found, Kind.FLIGHT) == [
-            ("the way to the target", [[0, 0], [103, 0], [103, 0]], 41.0, 60.0, True)
+            ("the leg to the target", [[0, 0], [103, 0], [103, 0]], 41.0, 60.0, True)
         ]
-        assert pieces(found, Kind.WAY_HOME)[0][4] is True
+        assert pieces(found, Kind.ROUTE_HOME)[0][4] is True
 
     def test_a_nudge_counts_from_the_vehicle(self) -> None:
         found = path(Nudge(north_m=4.0, east_m=-3.0, up_m=-0.5), flier(50.0, 50.0, 40.0))
@@ -287,10 +287,10 @@ def test_a_takeoff_climbs_on_the_spot_and_may_go_home_from_there() -> None:
     top_m = 3.0 + SafetySettings().prediction.takeoff_height_m
     assert pieces(found, Kind.FLIGHT) == [("the takeoff", column, 4.0, top_m, True)]
     assert pieces(found, Kind.CLIMB) == [
-        ("the climb before the way home from the takeoff", column, 4.0, 60.0, True)
+        ("the climb before the route home from the takeoff", column, 4.0, 60.0, True)
     ]
-    assert pieces(found, Kind.WAY_HOME) == [
-        ("the way home from the takeoff", [[20, -10], [20, -10], [0, 0]], 60.0, 60.0, True)
+    assert pieces(found, Kind.ROUTE_HOME) == [
+        ("the route home from the takeoff", [[20, -10], [20, -10], [0, 0]], 60.0, 60.0, True)
     ]
 
 
@@ -299,7 +299,7 @@ class TestStick:
         """5 m/s for 2 s are 10 m, and 5 m more to brake with 2.5 m/s2."""
         found = path(stick(3.0, 4.0, 45.0, 2.0), flier(10.0, 0.0, 40.0))
         assert pieces(found, Kind.FLIGHT) == [
-            ("the stick's way", [[10, 0], [22, 9], [22, 9]], 41.0, 45.0, True)
+            ("the stick's path", [[10, 0], [22, 9], [22, 9]], 41.0, 45.0, True)
         ]
         assert len(found.pieces) == 1
 
@@ -307,7 +307,7 @@ class TestStick:
     def test_a_zero_stays(self, frame: StickFrame) -> None:
         found = path(stick(0.0, 0.0, 20.0, frame=frame), flier(10.0, 0.0, 40.0))
         assert pieces(found, Kind.FLIGHT) == [
-            ("the stick's way", [[10, 0], [10, 0], [10, 0]], 20.0, 39.0, True)
+            ("the stick's path", [[10, 0], [10, 0], [10, 0]], 20.0, 39.0, True)
         ]
 
     def test_the_wires_numbers_count(self) -> None:

@@ -120,11 +120,11 @@ class TestLegs:
     ) -> None:
         intent = flies(route((30.0, 0.0), (60.0, 0.0), (60.0, 40.0), (0.0, 0.0)), passed)
         whole = written(aircraft(), intent, exactly=exactly)
-        ways = [row for row in whole if row[PART] >= 0]
-        assert len(ways) == (4 - passed) * (3 if exactly else 1)
-        for until_s in (row[START_S] for row in ways):
+        paths = [row for row in whole if row[PART] >= 0]
+        assert len(paths) == (4 - passed) * (3 if exactly else 1)
+        for until_s in (row[START_S] for row in paths):
             short = written(aircraft(), intent, until_s=until_s, exactly=exactly)
-            asked = [row for row in ways if row[START_S] <= until_s]
+            asked = [row for row in paths if row[START_S] <= until_s]
             assert [row for row in short if row[PART] >= 0] == asked
 
 
@@ -137,7 +137,7 @@ class TestCurved:
 
     def test_a_leg_has_the_bulge_of_the_corners_at_its_ends_and_no_other(self) -> None:
         """A corner of 20 m at a right angle bulges by 10 m, one of 10 m by 5 m."""
-        ways = (
+        paths = (
             waypoint(0.0, 0.0, corner_radius_m=90.0),
             waypoint(100.0, 0.0, corner_radius_m=10.0),
             waypoint(100.0, 100.0, corner_radius_m=20.0),
@@ -145,11 +145,11 @@ class TestCurved:
             waypoint(300.0, 100.0, corner_radius_m=90.0),
             waypoint(400.0, 100.0, corner_radius_m=90.0),
         )
-        rows = written(aircraft(), flies(Mission(ways, curved=True)), exactly=False)
+        rows = written(aircraft(), flies(Mission(paths, curved=True)), exactly=False)
         assert parts(rows) == [0, 1, 2, 3, 4, 5, FlightPart.HOVERING]
         found = [float(sample([[row]], [row[END_S]]).radius_m[0, 0]) for row in rows]
         assert found == pytest.approx([0.0, 5.0, 10.0, 10.0, 0.0, 0.0, 0.0], abs=0.01)
-        straight = written(aircraft(), flies(replace(Mission(ways), curved=False)), exactly=False)
+        straight = written(aircraft(), flies(replace(Mission(paths), curved=False)), exactly=False)
         assert sample([straight], [row[START_S] for row in straight]).radius_m.max() == 0.0
 
 

@@ -1,4 +1,4 @@
-"""The way an order sends its vehicle on, row by row, and until when traffic is predicted."""
+"""The path an order sends its vehicle on, row by row, and until when traffic is predicted."""
 
 import pytest
 from tests.safety.traffic import SETTINGS, aircraft, at, flies, route, seen

@@ -244,7 +244,7 @@ class TestOtherIntents:
         flown = where(unknown, Intent(Commanded.RETURN), 180.0)
         assert (flown.low_m[0, 0], flown.high_m[0, 0]) == (40.0, 540.0)
 
-    def test_one_that_is_under_way_home_is_not_waited_for(self) -> None:
+    def test_one_that_is_under_route_home_is_not_waited_for(self) -> None:
         under_way = aircraft(place=(0.0, 200.0), velocity=(0.0, -10.0, 0.0))
         flown = where(under_way, Intent(Commanded.RETURN), 10.0)
         assert flown.east_m[0] == pytest.approx([100.0], abs=1.0)
@@ -424,16 +424,16 @@ class TestAgainstAnIntegrator:
         coordinate = st.floats(-150.0, 150.0)
         heights = st.sampled_from([4.0, 36.0, 40.0, 44.0, 48.0, 80.0])
         places = st.tuples(coordinate, coordinate, heights)
-        ways = [data.draw(st.lists(places, min_size=3, max_size=5)) for _ in range(2)]
+        paths = [data.draw(st.lists(places, min_size=3, max_size=5)) for _ in range(2)]
         rates = [data.draw(st.floats(0.93, 1.07)) for _ in range(2)]
         delays = [data.draw(st.floats(0.0, 7.0)), 0.0]
         climb_first = [data.draw(st.booleans()) for _ in range(2)]
         own, other = (
-            aircraft(name, way[0][:2], way[0][2]) for name, way in zip("AB", ways, strict=True)
+            aircraft(name, path[0][:2], path[0][2]) for name, path in zip("AB", paths, strict=True)
         )
-        traffic = Traffic(other, flies(route(*ways[1][1:]), 0))
-        refusal = judged(route(*ways[0][1:]), own, traffic)
-        nearest = _least_closeness(ways, rates, delays, climb_first)
+        traffic = Traffic(other, flies(route(*paths[1][1:]), 0))
+        refusal = judged(route(*paths[0][1:]), own, traffic)
+        nearest = _least_closeness(paths, rates, delays, climb_first)
         if refusal is None:
             assert nearest >= 0.98
 
@@ -451,19 +451,19 @@ class TestAgainstAnIntegrator:
         own, other = aircraft("A", (0.0, 0.0)), aircraft("B", (0.0, 100.0))
         meets = Traffic(other, flies(route((0.0, 50.0), (0.0, -50.0)), 0))
         leaves = Traffic(other, flies(route((0.0, 120.0), (0.0, 300.0)), 0))
-        way = route((0.0, 10.0), (0.0, 60.0))
-        assert judged(way, own, meets) is not None
-        assert judged(way, own, leaves) is None
+        path = route((0.0, 10.0), (0.0, 60.0))
+        assert judged(path, own, meets) is not None
+        assert judged(path, own, leaves) is None
 
 
 def _least_closeness(
-    ways: list[list[tuple[float, float, float]]],
+    paths: list[list[tuple[float, float, float]]],
     rates: list[float],
     delays: list[float],
     climb_first: list[bool],
 ) -> float:
     """Two flown at 10 Hz, stopping at each waypoint, each at its own rate and after its delay."""
-    each = zip(ways, rates, delays, climb_first, strict=True)
+    each = zip(paths, rates, delays, climb_first, strict=True)
     tracks = [_flown(*one) for one in each]
     longest = max(len(track) for track in tracks)
     one, other = (
@@ -477,15 +477,15 @@ def _least_closeness(
 
 
 def _flown(
-    way: list[tuple[float, float, float]], rate: float, delay_s: float, climbs_first: bool
+    path: list[tuple[float, float, float]], rate: float, delay_s: float, climbs_first: bool
 ) -> np.ndarray:
     """Positions each tenth of a second: 5 m/s, 2.5 m/s2, up and down at 2.5 or 3 m/s."""
-    track = [way[0]] * max(1, round(delay_s * 10))
+    track = [path[0]] * max(1, round(delay_s * 10))
     if climbs_first:
-        rises = round(10.0 * abs(way[1][2] - way[0][2]) / 2.5)
-        track += [(*way[0][:2], z) for z in np.linspace(way[0][2], way[1][2], rises + 1)]
-        way = [track[-1], *way[1:]]
-    for start, end in pairwise(way):
+        rises = round(10.0 * abs(path[1][2] - path[0][2]) / 2.5)
+        track += [(*path[0][:2], z) for z in np.linspace(path[0][2], path[1][2], rises + 1)]
+        path = [track[-1], *path[1:]]
+    for start, end in pairwise(path):
         long_m = hypot(end[0] - start[0], end[1] - start[1])
         gone, speed = 0.0, 0.0
         climb_s = abs(end[2] - start[2]) / 3.0

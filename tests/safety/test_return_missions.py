@@ -36,7 +36,7 @@ def out_at(metres: float, **changes: object) -> VehicleState:
 
 
 @pytest.mark.parametrize(
-    ("way", "only_lands"),
+    ("path", "only_lands"),
     [
         (landing(300.0, 0.0), True),
         (landing(300.0, 9.9), True),
@@ -49,9 +49,9 @@ def out_at(metres: float, **changes: object) -> VehicleState:
         (landing(0.0, 200.0, 0.0), False),
     ],
 )
-def test_it_lands_at_home_and_makes_no_long_detour(way: Mission, only_lands: bool) -> None:
-    """From 300 m away the whole way may be 650 m long."""
-    assert only_lands is leads_home(way, out_at(300.0), OPEN_AIRSPACE)
+def test_it_lands_at_home_and_makes_no_long_detour(path: Mission, only_lands: bool) -> None:
+    """From 300 m away the whole path may be 650 m long."""
+    assert only_lands is leads_home(path, out_at(300.0), OPEN_AIRSPACE)
 
 
 def test_an_end_exactly_as_far_from_home_as_it_may_be_leads_home(
@@ -65,18 +65,18 @@ def test_an_end_exactly_as_far_from_home_as_it_may_be_leads_home(
 
 
 def test_a_way_of_exactly_the_longest_length_leads_home(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Out and back to where it is: the whole way is the detour."""
-    way, here = landing(20.0, 0.0), out_at(0.0)
+    """Out and back to where it is: the whole path is the detour."""
+    path, here = landing(20.0, 0.0), out_at(0.0)
     out_m = horizontal_distance_m(north(0.0), north(20.0))
     monkeypatch.setattr(
         return_missions, "DETOUR_M", out_m + horizontal_distance_m(north(20.0), north(0.0))
     )
-    assert leads_home(way, here, OPEN_AIRSPACE)
+    assert leads_home(path, here, OPEN_AIRSPACE)
 
 
 def test_a_pause_on_the_way_is_another_purpose() -> None:
-    way = landing(300.0, 0.0)
-    paused = replace(way, waypoints=(replace(way.waypoints[0], loiter_s=0.0), way.waypoints[1]))
+    path = landing(300.0, 0.0)
+    paused = replace(path, waypoints=(replace(path.waypoints[0], loiter_s=0.0), path.waypoints[1]))
     assert not leads_home(paused, out_at(300.0), OPEN_AIRSPACE)
 
 

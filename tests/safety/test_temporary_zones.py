@@ -123,13 +123,13 @@ class TestAtTheGate:
             "A: leg 1 to 2 goes through the keep-out zone 'person 3 (temporary)' (up to 30 m above"
         )
 
-    def test_the_way_home_above_its_ceiling_is_no_reason_to_refuse(self) -> None:
+    def test_the_route_home_above_its_ceiling_is_no_reason_to_refuse(self) -> None:
         body = mission((220.0, 0.0, 25.0), (300.0, 0.0, 25.0))
         beyond = flier(220.0, 0.0, 25.0, go_home_m=60.0)
         assert asked(keep_out, body, with_zone(), beyond) is None
         aircraft = replace(PERSON, kind=TemporaryZoneKind.CREWED_AIRCRAFT, ceiling_m=None)
         text = reason(asked(keep_out, body, with_zone(aircraft), beyond))
-        assert "the way home" in text
+        assert "the route home" in text
         assert "crewed aircraft 3 (temporary)" in text
 
     def test_a_vehicle_in_it_may_be_led_out_and_not_deeper(self) -> None:

@@ -92,7 +92,7 @@ class TestWhatItChanges:
         ),
         (
             {"wind": {"returning": "return"}},
-            "expected 'alarm' or 'land', got 'return': it is on the way home already",
+            "expected 'alarm' or 'land', got 'return': it is on the route home already",
         ),
         (
             {"wind": {"holding": "hold"}},

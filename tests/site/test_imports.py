@@ -81,7 +81,7 @@ def test_each_format_gives_the_field_with_its_hole_and_name(format_: str, tmp_pa
     assert feature.name == "north field"
     rings = feature.geometry["coordinates"]
     read = shapely.Polygon(rings[0], rings[1:])
-    # A UTM zone is off by less than a centimetre after the way there and back.
+    # A UTM zone is off by less than a centimetre after the path there and back.
     assert shapely.hausdorff_distance(read, FIELD) < 1e-7
     assert len(rings) == 2
     assert found.excluded == 0

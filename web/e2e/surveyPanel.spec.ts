@@ -14,7 +14,7 @@ const SIZES = [
 
 test("is legible during surveys in each theme", async ({ page }) => {
   const fake = await FakeStation.behind(page, surveyedState(0));
-  fake.ways = WAYS;
+  fake.paths = WAYS;
   fake.showPicture(await fieldPicture(page));
   await page.goto("/");
   const begin_ms = performance.now();

@@ -47,7 +47,7 @@ test("plans a survey of a site region, flies it with two vehicles, pauses and ab
     });
 
     await test.step("its rows and coverage are on the map", async () => {
-      expect((await (await ways).json()).rows.length).toBeGreaterThan(3);
+      expect((await (await paths).json()).rows.length).toBeGreaterThan(3);
       const cells = page.waitForResponse(/\/api\/surveys\/\d+\/cells\.png/);
       await page.getByRole("button", { name: "Map and overlay" }).click();
       await page.getByLabel("Coverage").check();

@@ -40,7 +40,7 @@ LEAST_ROLE: dict[tuple[str, str], Role] = {
     ("GET", "/api/upwind-place"): Role.OBSERVER,
     ("GET", "/api/surveys"): Role.OBSERVER,
     ("GET", "/api/surveys/{survey_id}"): Role.OBSERVER,
-    ("GET", "/api/surveys/{survey_id}/ways"): Role.OBSERVER,
+    ("GET", "/api/surveys/{survey_id}/paths"): Role.OBSERVER,
     ("GET", "/api/surveys/{survey_id}/cells.png"): Role.OBSERVER,
     ("GET", "/api/flights"): Role.OBSERVER,
     ("GET", "/api/flights/{name}"): Role.OBSERVER,

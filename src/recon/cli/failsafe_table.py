@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from recon.cli.output import print_line, print_table
 from recon.client.messages import FailsafeCellStatus, FailsafeRowStatus
 
-COLUMNS = ("when", "in a mission", "steered", "holding", "on the way home")
+COLUMNS = ("when", "in a mission", "steered", "holding", "on the route home")
 
 
 def print_failsafe_matrix(rows: Sequence[FailsafeRowStatus]) -> None:

@@ -123,8 +123,8 @@ def _record_reads(source: BinaryIO) -> Iterator[Read]:
     from recon.record.mcap.link_bytes import link_bytes
 
     for each in link_bytes(source):
-        way = "from app" if each.is_from_app else "to app"
-        yield Read(each.data, f"link {each.link_id} {way}", min(each.at_ns, LATEST_NS))
+        direction = "from app" if each.is_from_app else "to app"
+        yield Read(each.data, f"link {each.link_id} {direction}", min(each.at_ns, LATEST_NS))
 
 
 def _exactly(source: BinaryIO, count: int) -> bytes:

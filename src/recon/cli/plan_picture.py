@@ -122,11 +122,11 @@ def _draw_site(ground: _Map, region: Region, site: SurveySurroundings | None) ->
 def _draw_flights(
     ground: _Map, plan: SurveyPlan, needs: SurveyEstimate, takeoffs_m: Sequence[EastNorth]
 ) -> None:
-    """Ways first, rows above them, and the numbers of drones on top."""
+    """Paths first, rows above them, and the numbers of drones on top."""
     flights = flights_in_order(needs)
     for drone, flight in flights:
         faint = ground.faint(_colour(drone))
-        for track in _ways_m(flight, takeoffs_m[drone]):
+        for track in _paths_m(flight, takeoffs_m[drone]):
             ground.line(track, faint, 1)
     for drone, flight in flights:
         for ends in row_ends_m(plan, flight):
@@ -140,8 +140,8 @@ def _draw_flights(
         _disc(ground.picture, ground.px(flight.tracks_m[0][:1])[0].tolist(), drone)
 
 
-def _ways_m(flight: PlannedFlight, takeoff_m: EastNorth) -> list[tuple[EastNorth, ...]]:
-    """Return the missions of a flight, with the way to the first and back from the last."""
+def _paths_m(flight: PlannedFlight, takeoff_m: EastNorth) -> list[tuple[EastNorth, ...]]:
+    """Return the missions of a flight, with the leg to the first and back from the last."""
     first, last = flight.tracks_m[0][0], flight.tracks_m[-1][-1]
     return [(takeoff_m, first), *flight.tracks_m, (last, takeoff_m)]
 

@@ -64,19 +64,19 @@ def distance_to_m(waypoint: Waypoint, position: LatLon, height_m: float | None) 
 def _past_the_near_ones(mission: Mission, passed: int, seen: Seen) -> int:
     points = mission.waypoints
     while passed < len(points):
-        way_m = _offset(seen.position, seen.height_m, points[passed])
-        if _norm(way_m) > NEAR_M or _comes_nearer(way_m, seen.velocity, mission.curved):
+        path_m = _offset(seen.position, seen.height_m, points[passed])
+        if _norm(path_m) > NEAR_M or _comes_nearer(path_m, seen.velocity, mission.curved):
             break
         passed += 1
     return passed
 
 
-def _comes_nearer(way_m: Point, velocity: VelocityNed | None, is_curved: bool) -> bool:
+def _comes_nearer(path_m: Point, velocity: VelocityNed | None, is_curved: bool) -> bool:
     """Whether a vehicle is still on its way to a waypoint near it; one that flies through the
     waypoints of a curved mission is so in the vertical only."""
     if velocity is None:
         return False
-    towards = (0.0, 0.0, way_m[2]) if is_curved else way_m
+    towards = (0.0, 0.0, path_m[2]) if is_curved else path_m
     far_m = _norm(towards)
     if far_m <= AT_M:
         return False

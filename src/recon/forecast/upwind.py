@@ -1,4 +1,4 @@
-"""What is upwind of each cell, and for how long the way there is in view."""
+"""What is upwind of each cell, and for how long the path there is in view."""
 
 from typing import TypeAlias
 

@@ -1,8 +1,9 @@
-"""The relief of an imaging drone: when it must return, what shows as much, and the way there.
+"""The relief of an imaging drone: when it must return, what shows as much, and the path there.
 
-An imaging drone hovers until its charge is what the way home and the reserve take. Its use is read
-from the changes of the charge that it reports, in whole percent; so the moment is known to about a
-quarter of a minute. How long a survey lasts follows from its missing ground and its recent pace.
+An imaging drone hovers until its charge is what the route home and the reserve take. Its use is
+read from the changes of the charge that it reports, in whole percent; so the moment is known to
+about a quarter of a minute. How long a survey lasts follows from its missing ground and its recent
+pace.
 
 The spare one flies to the place in a layer of its own, so that both may hover there together.
 """
@@ -49,7 +50,7 @@ class ImagerReliefSettings:
     """Climb rate of the energy model."""
 
     late_by_s: float = 60.0
-    """Allowance for gusts and headwind, in addition to the time that the way takes."""
+    """Allowance for gusts and headwind, in addition to the time that the path takes."""
 
     telemetry_within_s: float = 3.0
     """Largest age of telemetry, as in a fleet return: beyond it a vehicle may do anything."""
@@ -199,7 +200,7 @@ def layers_m(
     """Yield heights beside one that is taken, the nearest first.
 
     All are above the same point; `apart_m` is the least distance. Below it is one layer more: the
-    way home of the one above begins with a descent into a layer of the fleet return.
+    route home of the one above begins with a descent into a layer of the fleet return.
     """
     settings = RELIEF_SETTINGS
     least_m = max(settings.layer_m, apart_m)
@@ -235,7 +236,7 @@ def relief_mission(
 
 
 def transit_time_s(here: LatLon, up_m: float, place: LatLon) -> float:
-    """Return how long the way takes: takeoff, climb or descent by `up_m`, and across."""
+    """Return how long the path takes: takeoff, climb or descent by `up_m`, and across."""
     settings = RELIEF_SETTINGS
     across_s = horizontal_distance_m(here, place) / settings.speed_mps
     return settings.takeoff_s + abs(up_m) / settings.climb_mps + across_s

@@ -28,10 +28,10 @@ class SideStepSettings:
     """25 m in about 10 s: at one frame in 2 s enough of them on the way, without motion blur."""
 
     leg_within_s: float = 60.0
-    """A way takes 10 s; one that takes longer than this is not flown as it was ordered."""
+    """A path takes 10 s; one that takes longer than this is not flown as it was ordered."""
 
     gate_waits_s: float = 30.0
-    """Time for which a refused way back is tried again; then the vehicle holds."""
+    """Time for which a refused path back is tried again; then the vehicle holds."""
 
     judged_again_s: float = 1.0
 

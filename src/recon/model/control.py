@@ -74,7 +74,7 @@ class Intent:
     """What a vehicle is doing by command of the station.
 
     `mission` is set for MISSION: the part last sent, with its first `passed` waypoints flown (0:
-    on the way to the first). `target`, `target_height_above_takeoff_m` and `speed_mps` are set for
+    on the leg to the first). `target`, `target_height_above_takeoff_m` and `speed_mps` are set for
     STICK (for a single stick only the height). `command_id` is the order that commanded it.
     """
 

@@ -188,7 +188,7 @@ class MissionAssignment:
     length_m: float
     """Length from the first waypoint to the last."""
     approach: tuple[LatLon, ...] = ()
-    """Corners on the way to the first waypoint, from where the vehicle was, round keep-out zones;
+    """Corners on the leg to the first waypoint, from where the vehicle was, round keep-out zones;
     none where it is straight or none is known."""
     straight_within_m: float | None = None
     """Largest distance to a first row that it may fly to at the rows' height. It stays there after

@@ -25,7 +25,7 @@ DEFAULT_CEILING_M: Mapping[TemporaryZoneKind, float | None] = MappingProxyType(
 )
 """Ceilings above ground; None: all heights. Persons and machines are kept clear below usual go-home
 heights (40 m and up): with a higher ceiling every flight whose failsafe would cross the zone on its
-way home is refused. A crewed aircraft may be at any height."""
+route home is refused. A crewed aircraft may be at any height."""
 
 
 @dataclass(frozen=True, slots=True)

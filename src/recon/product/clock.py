@@ -47,7 +47,7 @@ APART_S = 8.0
 LARGEST_SIGMA_S = 0.5
 """Two standard deviations are a second then: shadows move 10 m."""
 LONGEST_GAP_S = 3.0
-"""Longest gap in a track: over a longer one the way is unknown."""
+"""Longest gap in a track: over a longer one the path is unknown."""
 SYSTEMATIC_S = 0.1
 """Telemetry is later than the aircraft by this much, more or less."""
 LEAST_SIGMA_M = 0.3

@@ -9,12 +9,12 @@ loaded seconds over endurance.
   flying is no cheaper than one after the other. Unless the mission is curved, each leg begins and
   ends at rest.
 - A waypoint costs its loiter and the turn of its gimbal.
-- The way home from a point costs the climb to the go-home height, the straight way at that height,
-  and the landing. While that height is unknown, the highest the site allows is assumed.
+- The route home from a point costs the climb to the go-home height, the straight path at that
+  height, and the landing. While that height is unknown, the highest the site allows is assumed.
 
-The way home is dearest at the end of a leg: along it, both the way flown and the straight way home
-are convex. So it is enough to ask at the legs' ends. Points are (north_m, east_m, height_m): from
-home, height above takeoff. `docs/energy-model.md` explains it for pilots.
+The route home is dearest at the end of a leg: along it, both the path flown and the straight route
+home are convex. So it is enough to ask at the legs' ends. Points are (north_m, east_m, height_m):
+from home, height above takeoff. `docs/energy-model.md` explains it for pilots.
 """
 
 from collections.abc import Sequence
@@ -37,8 +37,8 @@ from recon.safety.settings import EnergySettings
 Point = tuple[float, float, float]
 """North and east of home, and above takeoff, in metres."""
 
-Way = tuple[Sequence[Point], float]
-"""The points of a way from home, the first where the vehicle is, and the speed in m/s."""
+FlownPath = tuple[Sequence[Point], float]
+"""The points of a path from home, the first where the vehicle is, and the speed in m/s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +65,7 @@ class Consumption:
         return self.fraction(level_s * s.level_load + vertical)
 
     def home(self, point: Point) -> float:
-        """Return the fraction for the way home from a point, landing included."""
+        """Return the fraction for the route home from a point, landing included."""
         s = self.settings
         height_m = max(point[2], self.go_home_height_m)
         above: Point = (0.0, 0.0, height_m)
@@ -94,7 +94,7 @@ class Consumption:
 class Need:
     """What a path asks of the battery: the most, at any of its points, to fly there and then home.
 
-    `flown` is the share used until there, `back` the way home from there, `at` the number of that
+    `flown` is the share used until there, `back` the route home from there, `at` the number of that
     point in the path; 0 is where it starts.
     """
 
@@ -142,7 +142,7 @@ def place_of(vehicle: VehicleState) -> Point | None:
 def fraction_to_get_home(
     vehicle: VehicleState, airspace: PreparedAirspace, settings: EnergySettings
 ) -> float | None:
-    """Return the share of a full battery that the way home takes from where a vehicle is now.
+    """Return the share of a full battery that the route home takes from where a vehicle is now.
 
     From straight above its takeoff point it is the landing's. None when its endurance, its place
     or its home is unknown.
@@ -152,12 +152,12 @@ def fraction_to_get_home(
 
 
 def need_of(uses: Consumption, vehicle: VehicleState, body: Body) -> Need | None:
-    """Return what an order to move needs, the way home included; None while that is unknown."""
+    """Return what an order to move needs, the route home included; None while that is unknown."""
     if isinstance(body, FlyMission):
         points = mission_points(vehicle, body.mission)
         return None if points is None else mission_need(uses, points, body.mission)
-    way = way_of(body, vehicle, uses.settings)
-    return None if way is None else path_need(uses, *way)
+    path = path_of(body, vehicle, uses.settings)
+    return None if path is None else path_need(uses, *path)
 
 
 def leads_away(
@@ -170,15 +170,15 @@ def leads_away(
     """
     if isinstance(body, FlyMission):
         return not leads_home(body.mission, vehicle, airspace)
-    way = way_of(body, vehicle, settings)
-    if way is None:
+    path = path_of(body, vehicle, settings)
+    if path is None:
         return True
-    points, _ = way
+    points, _ = path
     start_m, end_m = (hypot(point[0], point[1]) for point in (points[0], points[-1]))
     return end_m > start_m + settings.nearer_m
 
 
-def way_of(body: Body, vehicle: VehicleState, settings: EnergySettings) -> Way | None:
+def path_of(body: Body, vehicle: VehicleState, settings: EnergySettings) -> FlownPath | None:
     """Return where a steered order or a stick leads; None when place or home is unknown."""
     here, base = place_of(vehicle), home(vehicle)
     if here is None or base is None:
@@ -207,7 +207,8 @@ def _stick_end(here: Point, path: StickFlight, settings: EnergySettings) -> Poin
 
 
 def path_need(uses: Consumption, points: Sequence[Point], speed_mps: float) -> Need:
-    """Return what straight legs at one speed need, from the first point, the way home included."""
+    """Return what straight legs at one speed need, from the first point, the route home
+    included."""
     legs = [uses.leg(start, end, speed_mps) for start, end in pairwise(points)]
     return _dearest(uses, points, legs)
 
@@ -228,9 +229,9 @@ def mission_points(vehicle: VehicleState, mission: Mission) -> list[Point] | Non
 
 
 def mission_need(uses: Consumption, points: Sequence[Point], mission: Mission) -> Need:
-    """Return what a mission needs, from where the vehicle is on, the way home included.
+    """Return what a mission needs, from where the vehicle is on, the route home included.
 
-    The way to the first waypoint is flown at that waypoint's speed; each waypoint's actions cost
+    The path to the first waypoint is flown at that waypoint's speed; each waypoint's actions cost
     before its leg. One that lands at its end still must be able to come home from there.
     """
     stops = not mission.curved
@@ -253,7 +254,7 @@ def _pause_s(mission: Mission, number: int, uses: Consumption) -> float:
 
 
 def _dearest(uses: Consumption, points: Sequence[Point], legs: Sequence[float]) -> Need:
-    """The point from which flown way and way home together take most; the first of equals."""
+    """The point from which flown path and route home together take most; the first of equals."""
     needs = (
         Need(flown, uses.home(points[at]), at)
         for at, flown in enumerate(accumulate(legs, initial=0.0))

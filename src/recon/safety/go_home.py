@@ -1,4 +1,4 @@
-"""Whether an aircraft goes home as the site asks: its height, its way, its landing.
+"""Whether an aircraft goes home as the site asks: its height, its path, its landing.
 
 The ICD carries neither the go-home height nor the home point that are set in an aircraft, so both
 are judged by what telemetry shows while it goes home: ordered, or as its own failsafe. A
@@ -30,7 +30,7 @@ HEIGHT, TRACK, PROGRESS, LANDING = "height", "track", "progress", "landing"
 
 
 class GoHomeDeviation(NamedTuple):
-    """One way in which a flight home differs: a sentence without the vehicle's name, and how long
+    """One path in which a flight home differs: a sentence without the vehicle's name, and how long
     it must last before it is an alarm."""
 
     kind: str
@@ -94,7 +94,7 @@ def seen_height_m(vehicle: VehicleState, settings: GoHomeSettings = SETTINGS) ->
 
 
 def is_off_track(vehicle: VehicleState, settings: GoHomeSettings = SETTINGS) -> bool:
-    """Return whether it goes home and is beside the straight way to the home that the station
+    """Return whether it goes home and is beside the straight path to the home that the station
     believes, or turns away from it."""
     flight = vehicle.go_home
     if flight is None or flight.level_from is None or not _is_level(vehicle, flight, settings):
@@ -109,8 +109,8 @@ def is_off_track(vehicle: VehicleState, settings: GoHomeSettings = SETTINGS) -> 
     along_mps = (north_m * velocity.north_mps + east_m * velocity.east_mps) / far_m
     if along_mps < cos(radians(settings.off_track_deg)) * speed_mps:
         return True
-    way_north_m, way_east_m = offset_north_east_m(flight.level_from, there)
-    across_m = abs(way_north_m * east_m - way_east_m * north_m) / hypot(way_north_m, way_east_m)
+    path_north_m, path_east_m = offset_north_east_m(flight.level_from, there)
+    across_m = abs(path_north_m * east_m - path_east_m * north_m) / hypot(path_north_m, path_east_m)
     return across_m > settings.off_track_m
 
 

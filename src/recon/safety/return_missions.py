@@ -12,26 +12,26 @@ from recon.safety.datum import NEAR_PAD_M, home
 
 LONGEST_DETOUR: Final = 2.0
 DETOUR_M: Final = 50.0
-"""A way round a zone is at most twice as long as the straight one, and near its end 50 m more."""
+"""A path round a zone is at most twice as long as the straight one, and near its end 50 m more."""
 
 
 def leads_home(mission: Mission, vehicle: VehicleState, airspace: PreparedAirspace) -> bool:
     """Return whether a mission only brings a vehicle from the air to a place of its own.
 
     It lands at its end, within 10 m of where the vehicle took off, of its pad, or of a pad for any;
-    it pauses nowhere, and its way, from where the vehicle is, is the straight one or a detour.
+    it pauses nowhere, and its path, from where the vehicle is, is the straight one or a detour.
     """
     here = vehicle.position.value
     if vehicle.is_flying.value is not True or here is None or not mission.land_at_end:
         return False
     if any(waypoint.loiter_s is not None for waypoint in mission.waypoints):
         return False
-    way = [here, *(_place(waypoint) for waypoint in mission.waypoints)]
+    path = [here, *(_place(waypoint) for waypoint in mission.waypoints)]
     places = _own_places(vehicle, airspace)
-    if not any(horizontal_distance_m(way[-1], place) <= NEAR_PAD_M for place in places):
+    if not any(horizontal_distance_m(path[-1], place) <= NEAR_PAD_M for place in places):
         return False
-    flown_m = sum(horizontal_distance_m(a, b) for a, b in pairwise(way))
-    return flown_m <= LONGEST_DETOUR * horizontal_distance_m(here, way[-1]) + DETOUR_M
+    flown_m = sum(horizontal_distance_m(a, b) for a, b in pairwise(path))
+    return flown_m <= LONGEST_DETOUR * horizontal_distance_m(here, path[-1]) + DETOUR_M
 
 
 def _own_places(vehicle: VehicleState, airspace: PreparedAirspace) -> list[LatLon]:

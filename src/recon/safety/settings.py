@@ -90,7 +90,7 @@ class EnergySettings:
     """An app that tells no wind is taken to be in some."""
 
     landing_fraction: float = 0.10
-    """Charge left when a way home ends, reserve or not: at about this charge aircraft land
+    """Charge left when a route home ends, reserve or not: at about this charge aircraft land
     automatically, wherever they are."""
 
     stick: StickBounds = StickBounds(reaction_s=0.0, braking_mps2=None)
@@ -202,7 +202,7 @@ class PredictionSettings:
 
     climb_mps: float = 3.0
     sink_mps: float = 4.0
-    """Fastest automatic climb and descent of aircraft of all sizes on the way home."""
+    """Fastest automatic climb and descent of aircraft of all sizes on the route home."""
 
     slow_climb_mps: float = 2.0
     """What they climb and sink at least when they change height for an order."""
@@ -246,7 +246,7 @@ class PredictionSettings:
     an hour differ by half a metre, which layers of 10 m allow (docs/decisions/0014)."""
 
     corridor_m: float = 10.0
-    """Half the width of a way home: GNSS error, wind, and where home really is."""
+    """Half the width of a route home: GNSS error, wind, and where home really is."""
 
     escape_s: float = 20.0
     """Two vehicles already too near each other may be led apart: for this long only getting nearer
@@ -278,7 +278,7 @@ class GoHomeSettings:
     within half a second."""
 
     off_track_m: float = 10.0
-    """Largest distance from the straight way home: half the width kept clear (`corridor_m`)."""
+    """Largest distance from the straight route home: half the width kept clear (`corridor_m`)."""
     off_track_deg: float = 40.0
     """Largest angle between its velocity and the direction of home: a crosswind of 6 m/s at 10 m/s
     of airspeed causes 31 degrees without correction."""

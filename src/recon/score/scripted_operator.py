@@ -59,7 +59,7 @@ class DroneView:
     is_in_fleet_return: bool = False
     """Whether it is being returned, or waits for its turn."""
     has_battery_alarm: bool = False
-    """The watchdog that compares battery and way home has an active alarm."""
+    """The watchdog that compares battery and route home has an active alarm."""
     is_under_pilot: bool = False
     """A pilot holds control authority; the operator takes it back before a start."""
 

@@ -20,7 +20,7 @@ _WHAT_IT_DOES = {
     Activity.MISSION: "in a mission",
     Activity.STEERED: "steered",
     Activity.HOLDING: "holding already",
-    Activity.RETURNING: "on the way home already",
+    Activity.RETURNING: "on the route home already",
 }
 
 

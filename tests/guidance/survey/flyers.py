@@ -65,7 +65,7 @@ class Flyer:
     home_m: Place | None = None
     ended_mission: int = 0
     flown_s: float = 0.0
-    way: list[tuple[Place, float]] = field(default_factory=list)
+    path: list[tuple[Place, float]] = field(default_factory=list)
     number: int | None = None
     heading_rad: float = 0.0
     next_photo_s: float = 0.0
@@ -76,7 +76,7 @@ class Flyer:
         """Begin a mission."""
         places = east_north(given.mission, plan)
         speeds = [point.speed_mps for point in given.mission.waypoints]
-        self.way = list(zip(places, [speeds[0], *speeds], strict=False))
+        self.path = list(zip(places, [speeds[0], *speeds], strict=False))
         self.number = given.number
 
     def move(self) -> None:
@@ -87,7 +87,7 @@ class Flyer:
         if self.waited_s > 0.0:
             self.waited_s -= STEP_S
             return
-        (goal, cruise_mps), *_ = self.way
+        (goal, cruise_mps), *_ = self.path
         east_m, north_m = goal[0] - self.place_m[0], goal[1] - self.place_m[1]
         far_m = hypot(east_m, north_m)
         braking_mps = (2.0 * ACCELERATION_MPS2 * far_m) ** 0.5
@@ -102,17 +102,17 @@ class Flyer:
     @property
     def is_flying(self) -> bool:
         """Whether it has a mission."""
-        return bool(self.way)
+        return bool(self.path)
 
     def _arrive(self, goal: Place) -> None:
         self.place_m, self.speed_mps, self.waited_s = goal, 0.0, TURN_S
-        self.way.pop(0)
-        if not self.way and self.number is not None:
+        self.path.pop(0)
+        if not self.path and self.number is not None:
             self.ended_mission, self.number = self.number, None
 
     def stop(self) -> None:
         """Give the mission up."""
-        self.way = []
+        self.path = []
         if self.number is not None:
             self.ended_mission, self.number = self.number, None
 

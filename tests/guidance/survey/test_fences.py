@@ -32,7 +32,7 @@ LIMITS = FlightLimits(
 def refusals(field: Region, fence: Region, closed: tuple[Region, ...], count: int) -> list[Refusal]:
     """What boundary and keep-out say to each mission, of a vehicle that hovers where it begins.
 
-    It would hover without its link: the way to the field and home is not the survey's.
+    It would hover without its link: the leg to the field and home is not the survey's.
     """
     around = SurveySurroundings(fence, closed, LIMITS.boundary_margin_m)
     plan = plan_survey(survey_of(field), FRAME, around)
@@ -75,6 +75,6 @@ def test_the_gate_lets_an_l_shape_through_that_is_its_own_fence(count: int) -> N
 
 
 def test_a_zone_across_the_field_ends_a_mission() -> None:
-    """The way over to the other part is a mission's way to its first row: the gate's to judge."""
+    """The path over to the other part is a mission's path to its first row: the gate's to judge."""
     across = Region(np.array([(120.0, -50.0), (160.0, -50.0), (160.0, 250.0), (120.0, 250.0)]))
     assert refusals(rectangle(), rectangle(), (across,), 1) == []

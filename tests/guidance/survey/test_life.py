@@ -138,8 +138,8 @@ class SurveyLife(RuleBasedStateMachine):
     @invariant()
     def numbers_rise_and_lengths_add_up(self) -> None:
         assert [each.number for each in self.given] == list(range(1, len(self.given) + 1))
-        way_m = sum(each.length_m for each in self.given) - self.given_back_m
-        assert abs(way_m - self.state.flown_m) < 1e-3
+        path_m = sum(each.length_m for each in self.given) - self.given_back_m
+        assert abs(path_m - self.state.flown_m) < 1e-3
 
     @invariant()
     def only_a_running_one_has_flights(self) -> None:

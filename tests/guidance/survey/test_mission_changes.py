@@ -198,8 +198,8 @@ class TestClosedGround:
         assert state.decisions["S-1"].text.startswith(
             "keeps clear of Drone 3, without telemetry; flies row"
         )
-        way = shapely.linestrings(state.flights["S-1"].corners_m)
-        assert not shapely.intersects(closed_ground([LOST]), way)
+        path = shapely.linestrings(state.flights["S-1"].corners_m)
+        assert not shapely.intersects(closed_ground([LOST]), path)
         assert decided(lit(9.0), place, state=state, now_s=9.0, closed=[LOST])[1] == ()
 
     def test_without_other_rows_it_flies_on_and_looks_again_later(self) -> None:

@@ -289,14 +289,14 @@ class TestCrossing:
         plan = planned(survey_of(rectangle(), bearing_deg=bearing_deg))
         cells = plan.cells
         one = tuple(plan.lattice.along_across_m([place])[0].tolist())
-        way = (one, (one[0] + move[0], one[1] + move[1]))
+        path = (one, (one[0] + move[0], one[1] + move[1]))
         end_ns = start_ns + seconds_to_ns(1.0)
-        cross = crossing(cells, plan.lattice, plan.swath, way, (start_ns, end_ns))
+        cross = crossing(cells, plan.lattice, plan.swath, path, (start_ns, end_ns))
         first = np.full(cells.is_inside.shape, np.inf)
         last = np.full(cells.is_inside.shape, -np.inf)
         for share in np.linspace(0.0, 1.0, 401):
-            along_m = cells.along_m - (way[0][0] + share * move[0])
-            across_m = cells.across_m - (way[0][1] + share * move[1])
+            along_m = cells.along_m - (path[0][0] + share * move[0])
+            across_m = cells.across_m - (path[0][1] + share * move[1])
             seen = np.abs(along_m) <= plan.swath.half_along_m
             seen &= np.abs(across_m) <= plan.swath.half_across_m
             first[seen] = np.minimum(first[seen], share)

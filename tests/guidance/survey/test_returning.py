@@ -57,17 +57,17 @@ def test_an_empty_battery_is_called_and_a_full_one_flies() -> None:
     assert set(after.flights) == {HERE[1].serial}
 
 
-def test_who_waits_for_what_others_leave_keeps_enough_for_the_way_home() -> None:
+def test_who_waits_for_what_others_leave_keeps_enough_for_the_route_home() -> None:
     positions = with_time(None, None)
     after = stepped(STATE, positions)
     first, second = (each.serial for each in positions)
     flights = {second: after.flights[second]}
     waits = replace(after, flights=flights, waiting={})
     settings, speed_mps = after.plan.settings, after.plan.survey.speed_mps
-    way_s = 100.0 / speed_mps + settings.way_home_waits_s
+    transit_s = 100.0 / speed_mps + settings.route_home_waits_s
     far = replace(positions[0], place_m=(0.0, 60.0), home_m=(0.0, -40.0))
     for spare_s, called in ((1.0, ()), (-1.0, (first,))):
-        left_s = (way_s + spare_s) / settings.flight_time_share
+        left_s = (transit_s + spare_s) / settings.flight_time_share
         assert returning(waits, [replace(far, time_left_s=left_s)]) == dict.fromkeys(
             called, NO_BATTERY
         )

@@ -41,10 +41,10 @@ def missions(plan: SurveyPlan, count: int) -> tuple[SurveyState, tuple[MissionAs
 
 
 def cost_m(plan: SurveyPlan, route: Route) -> float:
-    """What a route costs to fly, reckoned from its corners alone: its way, and stops."""
+    """What a route costs to fly, reckoned from its corners alone: its path, and stops."""
     corners = [place for leg in route for place in leg.ends_m(plan.lattice, 0.0)]
-    way_m = sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(corners))
-    return way_m + COST.stop_m * (len(corners) - 1)
+    path_m = sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(corners))
+    return path_m + COST.stop_m * (len(corners) - 1)
 
 
 def covered(pieces: Sequence[Piece]) -> dict[int, list[tuple[float, float]]]:
@@ -84,8 +84,8 @@ class TestRoute:
         route = route_of(plan.pieces, plan.lattice, (0.0, 0.0))
         rows_m = sum(piece.length_m for piece in plan.pieces)
         corners = [place for leg in route for place in leg.ends_m(plan.lattice, 0.0)]
-        way_m = sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(corners))
-        assert way_m < 1.2 * rows_m
+        path_m = sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(corners))
+        assert path_m < 1.2 * rows_m
 
 
 class TestShares:
@@ -170,8 +170,8 @@ class TestMissions:
         _state, given = missions(planned(survey_of(holed())), 3)
         for each in given:
             places = [LatLon(w.latitude_deg, w.longitude_deg) for w in each.mission.waypoints]
-            way_m = sum(horizontal_distance_m(a, b) for a, b in pairwise(places))
-            assert way_m == pytest.approx(each.length_m, rel=1e-3)
+            path_m = sum(horizontal_distance_m(a, b) for a, b in pairwise(places))
+            assert path_m == pytest.approx(each.length_m, rel=1e-3)
 
     @pytest.mark.parametrize("field", [l_shape(), holed(), rectangle()], ids="LHR")
     def test_dji_takes_them_as_they_are(self, field: Region) -> None:

@@ -154,7 +154,7 @@ class TestSurveys:
         assert flights.state.phase is SurveyPhase.RUNNING
         assert flyers[0].flown_s < 160.0
         assert flights.state.decisions["S-1"].text == (
-            "waits: its battery lasts for no row, the way there and the return"
+            "waits: its battery lasts for no row, the path there and the return"
         )
         assert 0.0 < figures(flights.state).in_sun_m2 < figures(flights.state).region_m2
 
@@ -195,8 +195,8 @@ class TestSurveys:
         assert {each.text for each in state.decisions.values()} == {
             "waits: Drone 3, without telemetry, may be where rows are left"
         }
-        ways = [shapely.linestrings(east_north(m.mission, plan)) for m in flights.given]
-        assert not shapely.intersects(ground, ways).any()
+        paths = [shapely.linestrings(east_north(m.mission, plan)) for m in flights.given]
+        assert not shapely.intersects(ground, paths).any()
         far = shapely.buffer(ground, 90.0)
         middles = shapely.points(middles_m(plan.cells.grid)).reshape(state.progress.state.shape)
         is_far = plan.cells.is_reached & ~shapely.covers(far, middles)

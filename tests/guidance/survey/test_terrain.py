@@ -139,9 +139,9 @@ class TestWaypoints:
     def test_they_are_the_same_to_and_fro(self) -> None:
         terrain = over(hills(1, 0.5)).terrain
         assert terrain is not None
-        way = terrain.between((10.0, 50.0), (290.0, 70.0))
-        assert len(way) > 1
-        assert terrain.between((290.0, 70.0), (10.0, 50.0)) == way[::-1]
+        path = terrain.between((10.0, 50.0), (290.0, 70.0))
+        assert len(path) > 1
+        assert terrain.between((290.0, 70.0), (10.0, 50.0)) == path[::-1]
 
     def test_along_a_plane_none_is_added(self) -> None:
         plan = over(slope)

@@ -30,7 +30,7 @@ from recon.safety.rules.min_height import min_height
 def refusals(ground: Ground, height_m: float, *, above_ground: bool = True) -> list[Refusal]:
     """What the height rules say to a mission over all rows, of a vehicle at its beginning.
 
-    It hovers there, took off at the origin and would hover without its link: its ways there and
+    It hovers there, took off at the origin and would hover without its link: its paths there and
     home are not the survey's.
     """
     air = airspace(limits=FlightLimits(), elevation=model(ground, frame=FRAME))

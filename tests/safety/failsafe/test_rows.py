@@ -102,7 +102,7 @@ class TestBattery:
         landed = facts(battery_fraction=0.05, is_flying=False).vehicle
         assert critical_row.left_in_flight(landed) == 1.0
 
-    def test_by_the_way_home(self) -> None:
+    def test_by_the_route_home(self) -> None:
         for severity, low, critical in (
             (Severity.ERROR, None, None),
             (Severity.WARNING, ago_ns(2.0), None),

@@ -127,7 +127,7 @@ class TestUnknown:
     def test_endurance_and_how_to_tell_it(self, profile: VehicleProfile | None) -> None:
         refusal_text = reason(HoldPosition(), replace(out(), profile=profile))
         assert refusal_text == (
-            "endurance unknown, so the way home cannot be checked; write "
+            "endurance unknown, so the route home cannot be checked; write "
             'endurance_min = MINUTES under [[vehicles]] serial = "A" in site.toml'
         )
 
@@ -139,7 +139,7 @@ class TestUnknown:
     @pytest.mark.parametrize("lost", [{"position": Stamped()}, {"takeoff_point": None}])
     def test_place_or_home(self, lost: dict[str, object]) -> None:
         assert reason(FAR, out(**lost)) == (
-            "position or home unknown, so the way home cannot be checked"
+            "position or home unknown, so the route home cannot be checked"
         )
 
 

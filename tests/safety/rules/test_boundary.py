@@ -1,4 +1,4 @@
-"""The boundary is kept along whole legs, corners, the way there and the way home."""
+"""The boundary is kept along whole legs, corners, the path there and the route home."""
 
 from dataclasses import replace
 
@@ -71,14 +71,14 @@ class TestMissions:
     def test_the_way_to_the_first_waypoint_counts(self) -> None:
         assert is_allowed(self.inside, flier(0.0, 0.0))
         assert refusal_text(self.inside, flier(300.0, 0.0)).startswith(
-            "A: the way to waypoint 1 goes 100.0 m beyond"
+            "A: the leg to waypoint 1 goes 100.0 m beyond"
         )
 
-    def test_the_way_home_counts(self) -> None:
+    def test_the_route_home_counts(self) -> None:
         """Its legs are in one arm, its home is in the other."""
         away = flier(0.0, 300.0, takeoff_point=flier(300.0, 0.0).position.value)
         assert refusal_text(self.inside, away).startswith(
-            "A: the way home from the way to waypoint 1 goes 100.0 m beyond"
+            "A: the route home from the leg to waypoint 1 goes 100.0 m beyond"
         )
 
     def test_unless_the_aircraft_hovers_by_itself(self) -> None:
@@ -88,7 +88,7 @@ class TestMissions:
 
     def test_a_home_in_the_margin_is_no_home_to_come_to(self) -> None:
         state = flier(0.0, 0.0, takeoff_point=flier(0.0, -46.0).position.value)
-        assert "the way home from" in refusal_text(self.inside, state)
+        assert "the route home from" in refusal_text(self.inside, state)
         assert "comes within 4.00 m" in refusal_text(self.inside, state)
 
     def test_a_rounded_corner_counts(self) -> None:
@@ -124,7 +124,7 @@ class TestSteered:
         assert is_allowed(goto(0.0, north_m)) is allowed
 
     def test_a_goto_across_the_notch_is_refused(self) -> None:
-        assert "the way to the target" in refusal_text(goto(0.0, 300.0), flier(300.0, 0.0))
+        assert "the leg to the target" in refusal_text(goto(0.0, 300.0), flier(300.0, 0.0))
 
     def test_a_nudge_is_measured_from_the_vehicle(self) -> None:
         assert is_allowed(Nudge(0.0, 10.0, 0.0), flier(30.0, 300.0))
@@ -160,7 +160,7 @@ class TestAlreadyOutside:
 
     def test_farther_out_is_not(self) -> None:
         assert refusal_text(stick(0.0, 1.0), self.out) == (
-            "A: the stick's way goes 21.2 m beyond the site's boundary; the vehicle is 20.00 m "
+            "A: the stick's path goes 21.2 m beyond the site's boundary; the vehicle is 20.00 m "
             "outside now and may only be moved back in"
         )
 
@@ -173,10 +173,10 @@ class TestAlreadyOutside:
         body = mission((40.0, 300.0, 40.0), (47.0, 300.0, 40.0), (0.0, 100.0, 40.0))
         assert refusal_text(body, self.out).endswith("it must stay inside, 5 m from the edge")
 
-    def test_its_way_home_may_go_no_farther_out_either(self) -> None:
-        """From far up the notch the way home leads through the middle of it: a stick may help."""
+    def test_its_route_home_may_go_no_farther_out_either(self) -> None:
+        """From far up the notch the route home leads through the middle of it: a stick may help."""
         deep = flier(300.0, 55.0, takeoff_point=flier(20.0, 390.0).position.value)
-        assert "the way home from the way to the target" in refusal_text(goto(300.0, 0.0), deep)
+        assert "the route home from the leg to the target" in refusal_text(goto(300.0, 0.0), deep)
         assert is_allowed(stick(-5.0, 0.0), deep)
 
     @pytest.mark.parametrize(("east_mps", "allowed"), [(-0.5, True), (0.5, False)])
@@ -192,7 +192,7 @@ class TestAlreadyOutside:
         assert "is 0.50 m inside now" in refusal_text(stick(0.0, 0.1), flier(49.5, 300.0))
 
     def test_on_the_margin_itself_it_may_be_moved_inwards(self) -> None:
-        """The margin is counted as kept only beyond it: there, the way in must still be open."""
+        """The margin is counted as kept only beyond it: there, the path in must still be open."""
         state = flier(45.0, 300.0)
         fence = CORNERED.boundary
         assert fence is not None
@@ -222,7 +222,7 @@ class TestAlreadyOutside:
         west_m = float(path.pieces.triangles_m[..., 0].min())
         east = airspace(boundary=square(west_m, -400.0, 400.0, 400.0))
         assert reason(asked(boundary, touches, east, away)) == (
-            "A: the way to waypoint 1 comes within 0.00 m of the site's boundary; it must stay "
+            "A: the leg to waypoint 1 comes within 0.00 m of the site's boundary; it must stay "
             "inside, 5 m from the edge"
         )
 

@@ -271,13 +271,13 @@ preflight | A: preflight checklist not passed: Go-home height: go-home height no
 speed | Speed at waypoint 1 must be at most 4 m/s; got 5.00 m/s | speed_mps=5, max_mps=4
 home_distance | A: leg 1 to 2 must stay within 100 m of home; got 304.1 m | distance_from_home_m=304.138, max_m=100
 boundary | A: leg 1 to 2 goes 200.0 m beyond the site's boundary; it must stay inside, 5 m from the edge | distance_inside_m=-200, min_m=5
-boundary | A: the way to the target comes within 2.00 m of the site's boundary; it must stay inside, 5 m from the edge | distance_inside_m=2, min_m=5
-boundary | A: the way to the target goes 13.0 m beyond the site's boundary; the vehicle is 5.00 m outside now and may only be moved back in | distance_inside_m=-13, min_m=5
+boundary | A: the leg to the target comes within 2.00 m of the site's boundary; it must stay inside, 5 m from the edge | distance_inside_m=2, min_m=5
+boundary | A: the leg to the target goes 13.0 m beyond the site's boundary; the vehicle is 5.00 m outside now and may only be moved back in | distance_inside_m=-13, min_m=5
 keep_out | A: leg 1 to 2 goes through the keep-out zone 'yard' at 40.0 m above takeoff; the margin is 5 m horizontally | zone=yard, gap_m=0, min_m=5, min_vertical_m=5
-keep_out | A: the way to the target comes within 3.00 m of the keep-out zone 'yard' (up to 60 m above ground) at 40.0 m above takeoff; the margin is 5 m horizontally or 5 m vertically | zone=yard, gap_m=3, min_m=5, min_vertical_m=5
+keep_out | A: the leg to the target comes within 3.00 m of the keep-out zone 'yard' (up to 60 m above ground) at 40.0 m above takeoff; the margin is 5 m horizontally or 5 m vertically | zone=yard, gap_m=3, min_m=5, min_vertical_m=5
 height_zones | A: leg 1 to 2 is at 40.0 m above takeoff in the height zone 'yard'; fly no lower than 50 m above ground there | zone=yard, lowest_above_takeoff_m=40, highest_above_takeoff_m=40, min_m=50, max_m=60
 height_zones | A: leg 1 to 2 is at 40.0 m above takeoff in the height zone 'yard'; fly no higher than 30 m above ground there | zone=yard, lowest_above_takeoff_m=40, highest_above_takeoff_m=40, max_m=30
-min_height | A: the way to waypoint 1 must be at least 45 m above ground (flat ground assumed) outside takeoff and landing; got 40.0 m; climb straight up first (a mission's first waypoint may be above the vehicle) | height_above_ground_m=40, min_m=45
+min_height | A: the leg to waypoint 1 must be at least 45 m above ground (flat ground assumed) outside takeoff and landing; got 40.0 m; climb straight up first (a mission's first waypoint may be above the vehicle) | height_above_ground_m=40, min_m=45
 max_height | A: leg 1 to 2 must be at most 30 m above ground (flat ground assumed); got 40.0 m | height_above_ground_m=40, max_m=30
 max_height | Height must be at most 30 m above takeoff; got 60.0 m | height_above_takeoff_m=60, max_m=30
 separation | A: B may be in the air at an unknown position: land it or dismiss it

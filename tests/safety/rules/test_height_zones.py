@@ -62,13 +62,13 @@ class TestFloor:
     def test_the_margin_belongs_to_the_zone(self, east_m: float, allowed: bool) -> None:
         assert is_allowed(mission((0.0, 9.0, 40.0), (east_m, 0.0, 40.0)), FLOOR) is allowed
 
-    def test_the_way_home_counts(self) -> None:
+    def test_the_route_home_counts(self) -> None:
         body = mission((250.0, 0.0, 60.0), (250.0, 90.0, 60.0))
         state = flier(250.0, 0.0, 60.0, go_home_m=40.0)
         assert is_allowed(body, FLOOR, state)  # it goes home as high as it is
         low = mission((250.0, 0.0, 45.0), (250.0, 90.0, 45.0))
         state = flier(250.0, 0.0, 45.0, go_home_m=40.0)
-        assert "the way home from the way to waypoint 1 is at 45.0 m" in refusal_text(
+        assert "the route home from the leg to waypoint 1 is at 45.0 m" in refusal_text(
             low, FLOOR, state
         )
 
@@ -109,7 +109,7 @@ class TestCeiling:
     def test_the_go_home_height_counts(self) -> None:
         state = flier(0.0, 0.0, 40.0, go_home_m=60.0)
         assert (
-            "the climb before the way home from leg 1 to 2 is at 40.0 m to 60.0 m"
+            "the climb before the route home from leg 1 to 2 is at 40.0 m to 60.0 m"
             in refusal_text(across(40.0), CEILING, state)
         )
         unknown = flier(0.0, 0.0, 40.0, go_home_m=None)

@@ -66,7 +66,7 @@ def test_home_is_where_it_took_off() -> None:
 def test_the_first_way_is_judged() -> None:
     body = mission((310.0, 0.0, 40.0), (290.0, 50.0, 40.0))
     assert (
-        refusal_text(body) == "A: the way to waypoint 1 must stay within 300 m of home; got 310.0 m"
+        refusal_text(body) == "A: the leg to waypoint 1 must stay within 300 m of home; got 310.0 m"
     )
 
 

@@ -50,7 +50,7 @@ def across(height_m: float) -> Body:
 
 
 def over(height_m: float, **changes: float) -> VehicleState:
-    """A vehicle over the yard whose way home is as high."""
+    """A vehicle over the yard whose route home is as high."""
     return flier(150.0, 0.0, height_m, go_home_m=changes.get("go_home_m", height_m))
 
 
@@ -70,12 +70,12 @@ class TestBeside:
             "A: leg 1 to 2 goes through the keep-out zone 'yard' at 40.0 m above takeoff"
         )
 
-    def test_so_are_the_way_there_the_way_home_and_corners(self) -> None:
+    def test_so_are_the_way_there_the_route_home_and_corners(self) -> None:
         there = mission((250.0, 0.0, 40.0), (250.0, 90.0, 40.0))
-        assert "the way to waypoint 1 goes through" in refusal_text(there)
+        assert "the leg to waypoint 1 goes through" in refusal_text(there)
         beyond = flier(250.0, 0.0)
         assert refusal_text(there, state=beyond).startswith(
-            "A: the way home from the way to waypoint 1"
+            "A: the route home from the leg to waypoint 1"
         )
         assert is_allowed(there, state=flier(250.0, 0.0, failsafe=Failsafe.HOVER))
         cut = ((80.0, -60.0, 40.0), (80.0, 80.0, 40.0), (-100.0, -100.0, 40.0))
@@ -132,20 +132,20 @@ class TestAboveAndBelow:
         body = mission((90.0, 0.0, 30.0), (300.0, 0.0, 130.0))
         assert "at 30.0 m to 130.0 m above takeoff" in refusal_text(body, LOW)
 
-    def test_the_climb_before_the_way_home_must_not_pass_through_a_band(self) -> None:
+    def test_the_climb_before_the_route_home_must_not_pass_through_a_band(self) -> None:
         state = flier(0.0, 0.0, 40.0, go_home_m=100.0)
         assert refusal_text(across(40.0), BAND, state).startswith(
-            "A: the climb before the way home from leg 1 to 2 goes through"
+            "A: the climb before the route home from leg 1 to 2 goes through"
         )
         assert is_allowed(across(40.0), BAND, flier(0.0, 0.0, 40.0, go_home_m=50.0))
 
-    def test_the_way_home_is_at_the_go_home_height(self) -> None:
+    def test_the_route_home_is_at_the_go_home_height(self) -> None:
         low_home = flier(0.0, 0.0, 50.0, go_home_m=30.0)
         assert is_allowed(across(50.0), LOW, low_home)  # it stays as high as it is
         band_home = flier(250.0, 0.0, 40.0, go_home_m=70.0)
         beside = mission((250.0, 0.0, 40.0), (250.0, 90.0, 40.0))
         assert refusal_text(beside, BAND, band_home).startswith(
-            "A: the way home from the way to waypoint"
+            "A: the route home from the leg to waypoint"
         )
 
     def test_an_unknown_go_home_height_may_be_any(self) -> None:
@@ -234,7 +234,7 @@ class TestSticks:
         assert is_allowed(stick(0.0, 0.0, 41.0), LOW, over(42.0))
         assert is_allowed(stick(0.0, 0.0, 45.1), LOW, over(60.0))
         assert not is_allowed(stick(0.0, 0.0, 44.9), LOW, over(60.0))
-        assert "the stick's way goes through" in refusal_text(
+        assert "the stick's path goes through" in refusal_text(
             stick(0.0, 0.0, 37.9), LOW, over(60.0)
         )
         assert is_allowed(stick(0.0, 0.0, 59.0), HIGH, over(58.0))
@@ -283,9 +283,9 @@ class TestAlreadyInside:
         assert "leg 1 to 2 comes within 2.00 m" in refusal_text(body, state=self.inside)
         assert is_allowed(mission((50.0, 0.0, 40.0), (90.0, 0.0, 40.0)), state=self.inside)
 
-    def test_its_way_home_may_go_no_deeper_either(self) -> None:
+    def test_its_route_home_may_go_no_deeper_either(self) -> None:
         far = flier(170.0, 0.0, 40.0)
-        assert "the way home from the nudge" in refusal_text(Nudge(0.0, 60.0, 0.0), state=far)
+        assert "the route home from the nudge" in refusal_text(Nudge(0.0, 60.0, 0.0), state=far)
 
     def test_just_above_the_ceiling_it_may_not_sink(self) -> None:
         """3 m above the ceiling, 40 m: too close, and moved up or sideways it is no worse."""

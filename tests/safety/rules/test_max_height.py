@@ -1,4 +1,4 @@
-"""The greatest height above ground, the way home included."""
+"""The greatest height above ground, the route home included."""
 
 from dataclasses import replace
 
@@ -55,7 +55,7 @@ class TestFlatGround:
     def test_the_limit(self, height_m: float, allowed: bool) -> None:
         assert is_allowed(level(height_m)) is allowed
         assert allowed or refusal_text(level(height_m)) == (
-            "A: the way to waypoint 1 must be at most 100 m above ground (flat ground "
+            "A: the leg to waypoint 1 must be at most 100 m above ground (flat ground "
             "assumed); got 100.0 m"
         )
 
@@ -81,7 +81,7 @@ class TestTheWayHome:
         state = flier(go_home_m=go_home_m)
         assert is_allowed(level(40.0), state=state) is allowed
         assert allowed or refusal_text(level(40.0), state=state) == (
-            "A: the way home from the way to waypoint 1 must be at most 100 m above ground (flat "
+            "A: the route home from the leg to waypoint 1 must be at most 100 m above ground (flat "
             "ground assumed); got 101.0 m; set a lower go-home height in the aircraft and in "
             "site.toml"
         )
@@ -113,11 +113,11 @@ class TestValleys:
             "A: leg 1 to 2 must be at most 100 m above ground; got 101.0 m"
         )
 
-    def test_a_valley_under_the_way_home_counts(self) -> None:
+    def test_a_valley_under_the_route_home_counts(self) -> None:
         beyond = mission((300.0, 20.0, 60.0), (300.0, 100.0, 60.0))
         state = flier(300.0, -60.0, 60.0, go_home_m=90.0)
         assert refusal_text(beyond, over(PIT), state).startswith(
-            "A: the way home from the way to waypoint 1"
+            "A: the route home from the leg to waypoint 1"
         )
         assert is_allowed(beyond, over(PIT), flier(300.0, -60.0, 60.0, go_home_m=60.0))
 

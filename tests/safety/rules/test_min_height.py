@@ -60,7 +60,7 @@ class TestFlatGround:
     def test_the_limit(self, height_m: float, allowed: bool) -> None:
         assert is_allowed(level(height_m)) is allowed
         assert allowed or refusal_text(level(height_m)) == (
-            "A: the way to waypoint 1 must be at least 10 m above ground (flat ground assumed) "
+            "A: the leg to waypoint 1 must be at least 10 m above ground (flat ground assumed) "
             "outside takeoff and landing; got 10.0 m"
         )
 
@@ -101,7 +101,7 @@ class TestHills:
         body = mission((0.0, -60.0, 20.0), (300.0, -60.0, 20.0))
         assert is_allowed(body, over(HILL), flier(0.0, 0.0, 20.0, failsafe=Failsafe.HOVER))
 
-    def test_a_hill_under_the_way_home_counts(self) -> None:
+    def test_a_hill_under_the_route_home_counts(self) -> None:
         far = mission((300.0, 100.0, 60.0), (300.0, 20.0, 60.0))
         low_home = flier(300.0, 100.0, 60.0, go_home_m=30.0)
         assert is_allowed(far, over(HILL), low_home)
@@ -109,7 +109,7 @@ class TestHills:
         state = flier(300.0, -80.0, 30.0, go_home_m=30.0)
         assert is_allowed(low, over(HILL), state)
         wide = mission((300.0, -60.0, 30.0), (300.0, 120.0, 30.0))
-        assert "the way home from leg 1 to 2 must be" in refusal_text(wide, over(HILL), state)
+        assert "the route home from leg 1 to 2 must be" in refusal_text(wide, over(HILL), state)
         assert "got -5.0 m" in refusal_text(wide, over(HILL), state)
         assert is_allowed(wide, over(HILL), replace(state, profile=flier(go_home_m=50.0).profile))
 

@@ -289,14 +289,14 @@ class TestUnseen:
         ("failsafe", "passes"),
         [(Failsafe.GO_HOME, False), (None, False), (Failsafe.HOVER, True), (Failsafe.LAND, True)],
     )
-    def test_its_way_home_is_kept_clear_of(self, failsafe: Failsafe | None, passes: bool) -> None:
+    def test_its_route_home_is_kept_clear_of(self, failsafe: Failsafe | None, passes: bool) -> None:
         hazard = aircraft("B", (0.0, 800.0), failsafe=failsafe, age_s=60.0)
         crossing = route((-100.0, 400.0, 50.0), (100.0, 400.0, 50.0))
         found = judged(crossing, aircraft("A", (-100.0, 400.0), 50.0), hazard)
         assert (found is None) is passes
 
     @pytest.mark.parametrize(("height_m", "passes"), [(30.0, True), (50.0, False), (70.0, True)])
-    def test_the_way_home_has_all_heights_between(self, height_m: float, passes: bool) -> None:
+    def test_the_route_home_has_all_heights_between(self, height_m: float, passes: bool) -> None:
         hazard = aircraft("B", (0.0, 800.0), age_s=60.0)
         crossing = route((-100.0, 400.0, height_m), (100.0, 400.0, height_m))
         found = judged(crossing, aircraft("A", (-100.0, 400.0), height_m), hazard)

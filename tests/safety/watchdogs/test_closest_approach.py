@@ -18,9 +18,9 @@ Cylinder = tuple[float, float, float, float, float]
 """East, north, low, high and radius."""
 
 
-def samples(*ways: list[Cylinder]) -> Samples:
+def samples(*paths: list[Cylinder]) -> Samples:
     """Vehicles at their moments."""
-    return Samples(*np.array(ways, dtype=np.float64).transpose(2, 0, 1))
+    return Samples(*np.array(paths, dtype=np.float64).transpose(2, 0, 1))
 
 
 def gaps(
@@ -103,19 +103,19 @@ class TestPairsThatAreNear:
         self, east_m: float, north_m: float, low_m: float, high_m: float, is_near: bool
     ) -> None:
         stands = [(east_m, north_m, low_m, high_m, 2.0)] * 3
-        for ways in ([[*self.WAY], stands], [stands, [*self.WAY]]):
-            first, second = near_pairs(samples(*ways), NEED)
+        for paths in ([[*self.WAY], stands], [stands, [*self.WAY]]):
+            first, second = near_pairs(samples(*paths), NEED)
             assert [*zip(first, second, strict=True)] == ([(0, 1)] if is_near else [])
 
     def test_reach_counts_from_where_each_one_is(self) -> None:
         """Each flies 30 m north and 40 m east from 500 m off the origin, 109 m beside the other."""
-        ways = [
+        paths = [
             [(east_m, 500.0, 40.0, 40.0, 0.0), (east_m + 40.0, 530.0, 40.0, 40.0, 0.0)]
             for east_m in (500.0, 609.0)
         ]
-        assert len(near_pairs(samples(*ways), NEED)[0]) == 1
-        ways[1] = [(611.0, 500.0, 40.0, 40.0, 0.0), (651.0, 530.0, 40.0, 40.0, 0.0)]
-        assert len(near_pairs(samples(*ways), NEED)[0]) == 0
+        assert len(near_pairs(samples(*paths), NEED)[0]) == 1
+        paths[1] = [(611.0, 500.0, 40.0, 40.0, 0.0), (651.0, 530.0, 40.0, 40.0, 0.0)]
+        assert len(near_pairs(samples(*paths), NEED)[0]) == 0
 
 
 places = st.tuples(
@@ -124,9 +124,9 @@ places = st.tuples(
 
 
 @given(st.lists(st.lists(places, min_size=3, max_size=3), min_size=2, max_size=4))
-def test_no_pair_that_comes_too_near_is_excluded(ways: list[list[Cylinder]]) -> None:
-    ahead = samples(*ways)
-    first, second = np.triu_indices(len(ways), k=1)
+def test_no_pair_that_comes_too_near_is_excluded(paths: list[list[Cylinder]]) -> None:
+    ahead = samples(*paths)
+    first, second = np.triu_indices(len(paths), k=1)
     close, _, _ = closeness(ahead, first, ahead, second, NEED)
     too_near = {
         (int(a), int(b))

@@ -28,8 +28,8 @@ from recon.safety.temporary_zones import prepared_temporary_zone
 from recon.safety.watchdogs import Finding
 from recon.safety.watchdogs.battery_home import battery_home
 from recon.safety.watchdogs.go_home import go_home
+from recon.safety.watchdogs.route_home_zones import route_home_zones
 from recon.safety.watchdogs.telemetry import heights, link, sticks
-from recon.safety.watchdogs.way_home_zones import way_home_zones
 
 
 def finding(
@@ -71,7 +71,7 @@ class TestBatteryForTheWayHome:
             finding(
                 "battery_home",
                 Severity.CRITICAL,
-                "battery 15%, way home 16%: it may not reach home; land it or recall it now",
+                "battery 15%, route home 16%: it may not reach home; land it or recall it now",
                 1.0,
             )
         ]
@@ -79,7 +79,7 @@ class TestBatteryForTheWayHome:
             finding(
                 "battery_home",
                 Severity.WARNING,
-                "battery 30%, way home 16%: less than the reserve of 25% would be left; call it "
+                "battery 30%, route home 16%: less than the reserve of 25% would be left; call it "
                 "home",
                 1.0,
             )
@@ -190,7 +190,7 @@ class TestGoingHome:
 
 class TestTheWayHome:
     def zone(self, ceiling_m: float | None = None, east_m: float = 100.0) -> PreparedAirspace:
-        """A zone of 20 m round a place on the way home from the east, with a margin of 10 m."""
+        """A zone of 20 m round a place on the route home from the east, with a margin of 10 m."""
         kind = TemporaryZoneKind.CREWED_AIRCRAFT
         drawn = DrawnZone(kind, Circle(place(east_m, 0.0), 20.0), "rescue", ceiling_m=ceiling_m)
         zone = prepared_temporary_zone(TemporaryZone(1, drawn, "Ann", 0), FRAME)
@@ -198,12 +198,12 @@ class TestTheWayHome:
 
     def test_whole(self) -> None:
         name = "crewed aircraft 1 (temporary)"
-        assert looks(way_home_zones, flier(200.0, 0.0), airspace=self.zone()) == [
+        assert looks(route_home_zones, flier(200.0, 0.0), airspace=self.zone()) == [
             finding(
-                f"way_home_zone:{name}",
+                f"route_home_zone:{name}",
                 Severity.WARNING,
-                f"its way home leads through the keep-out zone {name!r}: without its link it would "
-                "fly through it; lead it to the other side, or land it",
+                f"its route home leads through the keep-out zone {name!r}: without its link it "
+                "would fly through it; lead it to the other side, or land it",
                 1.0,
             )
         ]
@@ -212,7 +212,7 @@ class TestTheWayHome:
         above = flier(200.0, 0.0, 25.0, go_home_m=60.0)
         low = replace(flier(200.0, 0.0, 25.0, go_home_m=28.0), serial="B", link_id=2)
         for state in ((above, low), (low, above)):
-            found = looks(way_home_zones, *state, airspace=self.zone(30.0))
+            found = looks(route_home_zones, *state, airspace=self.zone(30.0))
             assert [each.serial for each in found] == ["B"]
 
     def test_the_boundary_margin_belongs_to_the_zone(self) -> None:
@@ -220,9 +220,9 @@ class TestTheWayHome:
         margin_m = airspace().airspace.limits.boundary_margin_m
         assert margin_m > 2.0
         for beside_m, count in ((21.0, 1), (20.5 + margin_m, 0)):
-            way = flier(200.0, beside_m, 25.0, go_home_m=60.0, takeoff_point=place(0.0, beside_m))
-            assert len(looks(way_home_zones, way, airspace=self.zone())) == count
+            path = flier(200.0, beside_m, 25.0, go_home_m=60.0, takeoff_point=place(0.0, beside_m))
+            assert len(looks(route_home_zones, path, airspace=self.zone())) == count
         for east_m, count in ((21.0, 1), (21.0 + margin_m, 0)):
-            way = flier(200.0, 0.0, 25.0, go_home_m=60.0)
-            found = looks(way_home_zones, way, airspace=self.zone(30.0, east_m))
+            path = flier(200.0, 0.0, 25.0, go_home_m=60.0)
+            found = looks(route_home_zones, path, airspace=self.zone(30.0, east_m))
             assert len(found) == count

@@ -64,12 +64,12 @@ class Surveyor:
     def watched(self, now_ns: int) -> WatchedVehicle:
         start, end = self.places[self.leg], self.places[self.leg + 1]
         long_m = abs(end[0] - start[0]) + abs(end[1] - start[1])
-        way = ((end[0] - start[0]) / long_m, (end[1] - start[1]) / long_m)
+        path = ((end[0] - start[0]) / long_m, (end[1] - start[1]) / long_m)
         seen = tuple(
             at + self.gone_m * w + b + self.rng.gauss(0.0, 0.5)
-            for at, w, b in zip(start, way, self.bias_m, strict=True)
+            for at, w, b in zip(start, path, self.bias_m, strict=True)
         )
-        velocity = tuple(self.speed_mps * w + self.rng.gauss(0.0, 0.25) for w in way)
+        velocity = tuple(self.speed_mps * w + self.rng.gauss(0.0, 0.25) for w in path)
         state = aircraft(
             self.serial,
             (seen[0], seen[1]),

@@ -18,7 +18,7 @@ from recon.model.vehicle import VehicleState
 from recon.safety import PreparedAirspace
 from recon.safety.temporary_zones import prepared_temporary_zone
 from recon.safety.watchdogs import Finding
-from recon.safety.watchdogs.fences import fences, way_ahead
+from recon.safety.watchdogs.fences import fences, path_ahead
 
 SITE = site()
 ORIGIN_HEIGHT_M = 275.0
@@ -274,9 +274,9 @@ class TestWayAhead:
     def corners_north_m(self, state: VehicleState, **settings: float) -> list[float]:
         now = picture(state, airspace=SITE)
         now = replace(now, settings=replace(now.settings, **settings))
-        way = way_ahead(now, FRAME)
-        assert way.triangles_m[0, :, 0] == pytest.approx([0.0] * 3, abs=1e-6)
-        return [float(north_m) for north_m in way.triangles_m[0, :, 1]]
+        path = path_ahead(now, FRAME)
+        assert path.triangles_m[0, :, 0] == pytest.approx([0.0] * 3, abs=1e-6)
+        return [float(north_m) for north_m in path.triangles_m[0, :, 1]]
 
     def test_its_middle_is_at_half_its_time(self) -> None:
         """From 9 m/s: a second's reaction and 1.8 s of braking time, 1.25 times: 3.5 s."""

@@ -1,4 +1,4 @@
-"""How near vehicles are to a hazard area with a way home: a circle, a corridor, a landing."""
+"""How near vehicles are to a hazard area with a route home: a circle, a corridor, a landing."""
 
 from dataclasses import replace
 
@@ -14,7 +14,7 @@ NEED = SeparationMinima(10.0, 5.0)
 AREA = HazardArea("B", 4.0, 100.0, 200.0, 20.0, 5.0, 60.0, 30.0, 50.0, None, 40.0, 8.0)
 """At 100 m east and 200 m north, 20 m wide and growing to 60 m; its corridor is 16 m wide."""
 HOME = replace(AREA, home_m=(400.0, 600.0))
-"""Its way home is 500 m long, towards 3 east and 4 north."""
+"""Its route home is 500 m long, towards 3 east and 4 north."""
 
 
 def shares(
@@ -56,7 +56,7 @@ def test_the_circle_grows_to_its_largest(after_s: float, radius_m: float) -> Non
         (-300.0, 400.0, 480.0),
     ],
 )
-def test_the_way_home_ends_where_it_lands(along_m: float, beside_m: float, gap_m: float) -> None:
+def test_the_route_home_ends_where_it_lands(along_m: float, beside_m: float, gap_m: float) -> None:
     east_m = 100.0 + 0.6 * along_m - 0.8 * beside_m
     north_m = 200.0 + 0.8 * along_m + 0.6 * beside_m
     assert horizontal_m(HOME, east_m, north_m) == pytest.approx(gap_m)
@@ -85,8 +85,8 @@ def test_height_separates_from_the_circle_and_from_the_landing(
 @pytest.mark.parametrize(
     ("up_m", "closeness"), [(53.0, 0.6), (60.0, 2.0), (37.0, 0.6), (30.0, 2.0), (45.0, 0.5)]
 )
-def test_the_way_home_keeps_above_the_height_it_begins_at(up_m: float, closeness: float) -> None:
-    """5 m beside its corridor, half-way."""
+def test_the_route_home_keeps_above_the_height_it_begins_at(up_m: float, closeness: float) -> None:
+    """5 m beside its corridor, half-path."""
     assert shares(HOME, 250.0 - 0.8 * 13.0, 400.0 + 0.6 * 13.0, up_m)[0] == pytest.approx(closeness)
 
 
@@ -98,9 +98,9 @@ def test_no_height_above_it_separates_where_heights_cannot_be_compared(
 
 
 @pytest.mark.parametrize(("up_m", "closeness"), [(500.0, -0.08), (10.0, -0.08), (45.0, -0.88)])
-def test_no_height_separates_from_the_way_home_where_heights_cannot_be_compared(
+def test_no_height_separates_from_the_route_home_where_heights_cannot_be_compared(
     up_m: float, closeness: float
 ) -> None:
-    """In the middle of its corridor, half-way: 8 m deep, which is a tenth of 0.8 nearer."""
+    """In the middle of its corridor, half-path: 8 m deep, which is a tenth of 0.8 nearer."""
     found = shares(HOME, 250.0, 400.0, up_m, is_height_known=False)
     assert found[0] == pytest.approx(closeness)

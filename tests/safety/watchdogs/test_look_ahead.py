@@ -169,7 +169,7 @@ class TestAside:
     def test_at_a_waypoint_the_legs_before_and_after_are_commanded_too(
         self, passed: int, bearings_deg: set[int]
     ) -> None:
-        """Half-way to each of the five waypoints, and half-way along the last leg at the end."""
+        """Half-path to each of the five waypoints, and half-path along the last leg at the end."""
         flown = flies(SQUARE, passed)
         place = {0: (-50.0, 0.0), 1: (50.0, 0.0), 2: (100.0, 50.0), 3: (50.0, 100.0)}
         here = place.get(passed, (0.0, 50.0))
@@ -277,7 +277,7 @@ def braked_m(start_m: float, speed_mps: float, mps2: float, after_s: float) -> f
     ],
 )
 def test_if_held_it_flies_on_for_the_reaction_time_and_brakes(velocity: Velocity) -> None:
-    """At 2.5 m/s2 along its way, and at 2 m/s2 in height."""
+    """At 2.5 m/s2 along its path, and at 2 m/s2 in height."""
     east_mps, north_mps, up_mps = velocity
     times_s = np.arange(41) * 0.25
     low_mps, speed_mps = 0.5 * up_mps, hypot(east_mps, north_mps)

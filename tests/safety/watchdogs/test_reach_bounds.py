@@ -19,8 +19,8 @@ from recon.safety.watchdogs.reach import (
     Reach,
     near_each_other,
     near_limits,
+    path_ahead_s,
     reach_of,
-    way_ahead_s,
 )
 
 PREDICTION = SETTINGS.prediction
@@ -209,7 +209,7 @@ class TestWayAhead:
         self, speed_mps: float, seconds: float
     ) -> None:
         settings = replace(SETTINGS.watchdogs, horizon_s=4.0)
-        assert way_ahead_s(speed_mps, settings, PREDICTION) == pytest.approx(seconds)
+        assert path_ahead_s(speed_mps, settings, PREDICTION) == pytest.approx(seconds)
 
 
 def circle(north_m: float, east_m: float, up_m: float = 40.0, *, radius_m: float = 40.0) -> Reach:

@@ -93,8 +93,8 @@ def test_holding_is_never_predicted_to_bring_a_pair_nearer(block: int) -> None:
             holds += 1
             now = picture(*pair)
             flies_on, stops = now.ahead.as_it_flies, now.ahead.if_held
-            ways = [stops if serial == finding.holds else flies_on for serial in ("A", "B")]
-            instead = nearest((ways[0], 0), (ways[1], 1), now)
+            paths = [stops if serial == finding.holds else flies_on for serial in ("A", "B")]
+            instead = nearest((paths[0], 0), (paths[1], 1), now)
             nothing = nearest((flies_on, 0), (flies_on, 1), now)
             assert instead >= min(1.0, nothing) - 1e-9, pair
     assert conflicts > 150

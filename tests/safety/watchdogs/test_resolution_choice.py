@@ -75,14 +75,14 @@ def held_of(*vehicles: WatchedVehicle) -> str | None:
 
 class TestTheOrderOfYielding:
     def test_decides_between_holds_that_keep_the_minima(self) -> None:
-        """Held, A stops 25 m before the other's way and B 20 m, or the other way round."""
+        """Held, A stops 25 m before the other's path and B 20 m, or the other way round."""
         for a_m, b_m in ((55.0, 50.0), (50.0, 55.0)):
             a, b = crossing(10.0, a_m, 10.0, b_m)
             assert held_of(a, b) == "B"
             assert held_of(a, in_context(b.state, is_imager=True)) == "A"
 
     def test_gives_way_to_the_hold_that_alone_keeps_the_minima(self) -> None:
-        """The slow one stops 10 m before the other's way; held, the fast one keeps 20 m."""
+        """The slow one stops 10 m before the other's path; held, the fast one keeps 20 m."""
         a, b = crossing(5.0, 30.0, 2.2, 13.2)
         assert held_of(a, b) == "A"
         assert held_of(in_context(a.state, holder=AuthorityHolder.PILOT), b) == "B"
@@ -91,7 +91,7 @@ class TestTheOrderOfYielding:
         assert held_of(a, in_context(b.state, holder=AuthorityHolder.PILOT)) == "A"
 
     def test_gives_way_to_the_hold_that_keeps_more_distance(self) -> None:
-        """Held, one stops 12 m before the other's way, and the other 5 m before its."""
+        """Held, one stops 12 m before the other's path, and the other 5 m before its."""
         assert held_of(*crossing(4.0, 19.2, 3.0, 9.8)) == "A"
         assert held_of(*crossing(3.0, 9.8, 4.0, 19.2)) == "B"
 

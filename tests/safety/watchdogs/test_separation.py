@@ -316,7 +316,7 @@ class TestHazards:
         for height_m, count in ((50.0, 0), (46.0, 1), (10.0, 1)):
             assert len(looks(separation, self.hazard, aircraft("A", (0.0, 5.0), height_m))) == count
 
-    def test_its_way_home_is_kept_clear_of(self) -> None:
+    def test_its_route_home_is_kept_clear_of(self) -> None:
         hazard = aircraft("G", (0.0, 800.0), age_s=60.0)
         for place, height_m, count in (
             ((20.0, 400.0), 50.0, 1),
@@ -329,7 +329,7 @@ class TestHazards:
             assert len(looks(separation, hazard, aircraft("A", place, height_m))) == count, place
 
     def test_one_that_may_continue_its_mission_is_predicted_to(self) -> None:
-        """Sent 900 m east at 5 m/s and lost for 100 s: half-way, give or take 50 m."""
+        """Sent 900 m east at 5 m/s and lost for 100 s: half-path, give or take 50 m."""
         mission = route((0.0, 0.0), (0.0, 900.0))
         state = aircraft("G", velocity=(0.0, 5.0, 0.0), age_s=100.0, failsafe=Failsafe.HOVER)
         hazard = in_context(state, intent=flies(mission, 1))

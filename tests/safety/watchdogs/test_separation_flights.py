@@ -1,4 +1,4 @@
-"""Pairs on their way into each other, flown at 100 Hz, with and without the watchdog.
+"""Pairs on their path into each other, flown at 100 Hz, with and without the watchdog.
 
 The stated minimum: 15 m, or 6 m in height. All conflicts are in sight ten seconds before.
 """

@@ -48,14 +48,14 @@ class TestBattery:
         ("fraction", "expected"),
         [(0.9, []), (0.3, [Severity.WARNING]), (0.15, [Severity.CRITICAL]), (None, [])],
     )
-    def test_it_compares_with_what_the_way_home_takes(
+    def test_it_compares_with_what_the_route_home_takes(
         self, fraction: float | None, expected: list[Severity]
     ) -> None:
         assert severities(looks(battery_home, self.state(fraction))) == expected
 
     def test_its_text_has_both_numbers(self) -> None:
         (found,) = looks(battery_home, self.state(0.15))
-        assert found.text.startswith("A: battery 15%, way home 1")
+        assert found.text.startswith("A: battery 15%, route home 1")
 
     @pytest.mark.parametrize(("fraction", "count"), [(0.3, 0), (0.2, 0), (0.05, 1)])
     def test_one_coming_home_needs_only_the_way_itself(self, fraction: float, count: int) -> None:

@@ -209,7 +209,7 @@ def test_the_gates_energy_model_is_more_pessimistic_than_a_flight(
 
 @pytest.mark.parametrize("wind_mps", [0.0, 4.9, 7.9, 9.9])
 @pytest.mark.parametrize("height_m", [10.0, 90.0])
-def test_the_gates_way_home_is_more_pessimistic_than_the_flown_one(
+def test_the_gates_route_home_is_more_pessimistic_than_the_flown_one(
     flights, wind_mps: float, height_m: float
 ) -> None:
     aircraft = in_wind(replace(STEADY, speed_10m_mps=wind_mps), -400.0, height_m)

@@ -76,8 +76,8 @@ def test_a_return_takes_its_climb_leg_and_landing(flights) -> None:
     climb_s = flights.fly_until(aircraft, lambda a: a.motion.height_m >= 61.0)
     assert climb_s == pytest.approx(31.0 / 2.6, abs=2.0)
     assert aircraft.motion.north_m == -300.0
-    way_s = flights.fly_until(aircraft, lambda a: a.flight_mode is FlightMode.AUTO_LANDING)
-    assert way_s == pytest.approx(300.0 / 10.0 + 10.0 / 5.0 + 10.0 / 4.0, abs=2.5)
+    transit_s = flights.fly_until(aircraft, lambda a: a.flight_mode is FlightMode.AUTO_LANDING)
+    assert transit_s == pytest.approx(300.0 / 10.0 + 10.0 / 5.0 + 10.0 / 4.0, abs=2.5)
     down_s = flights.fly_until(aircraft, lambda a: a.is_on_ground)
     # 3 m/s to 6 m, 0.8 m/s to the stop at 0.3 m, a second for the confirmation, the rest.
     assert down_s == pytest.approx(56.0 / 3.0 + 5.7 / 0.8 + 1.0 + 0.3 / 0.8, abs=3.0)

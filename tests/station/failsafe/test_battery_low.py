@@ -75,7 +75,7 @@ def test_an_order_in_time_leaves_the_decision_to_the_operator() -> None:
     assert "an operator's order stands" in alarm_text(w, "battery")
 
 
-def test_one_on_its_way_home_is_left_alone() -> None:
+def test_one_on_its_route_home_is_left_alone() -> None:
     w = in_mission()
     w.order(A, ReturnHome())
     w.run_for(2.0)

@@ -24,7 +24,7 @@ FIELD = [(-60, 150, 30), (0, 160, 38), (60, 150, 30), (-80, 220, 34), (0, 240, 3
 """Six that hover over a field, east, north, up."""
 
 CROSSED = [(45, -20), (-15, -20), (-45, -20), (75, -20), (15, -20), (-75, -20)]
-"""Their pads in a row, each on the other side of it: their ways cross."""
+"""Their pads in a row, each on the other side of it: their paths cross."""
 
 SIX = [f"SIM-{number}" for number in range(1, 7)]
 LOW_CEILING_M = 43.0
@@ -319,7 +319,7 @@ class TestInterruptions:
         world = first_wave_descends()
         (waiting, *_) = [m for m in map(world.member, FOUR) if m.stage is Stage.WAITING]
         assert waiting.flight is not None
-        start, end = waiting.flight.way_m[0], waiting.flight.way_m[-1]
+        start, end = waiting.flight.path_m[0], waiting.flight.path_m[-1]
         ahead = (0.8 * start[0] + 0.2 * end[0], 0.8 * start[1] + 0.2 * end[1])
         world.put("SIM-5", (*ahead, waiting.flight.layer_up_m))
         assert world.runs_until_over(900.0)
@@ -378,7 +378,7 @@ class TestCalling:
         assert answers[2][1].startswith("flying")
         assert answers[3][1].startswith("reachable")
         again = world.called("SIM-1")
-        assert "already on its way home" in again[0][1]
+        assert "already returning home" in again[0][1]
         assert list(world.stages()) == ["SIM-1"]
 
     def test_one_called_later_joins(self) -> None:

@@ -99,8 +99,8 @@ def test_the_rules_are_asked_for_real() -> None:
     vehicle_there = CalledVehicle("A", "A", (0.0, 200.0, 30.0), 0.0, Pad("p", 0.0, -40.0, 0.0), 0.5)
     scene = scene_of([vehicle_there], zones=(zone,), boundary=box(0.0, 100.0, 420.0))
     (flight,) = scene.plan().flights
-    straight = replace(flight, way_m=(flight.way_m[0], flight.way_m[-1]))
-    outside = replace(flight, way_m=(flight.way_m[0], (0.0, 900.0), flight.way_m[-1]))
+    straight = replace(flight, path_m=(flight.path_m[0], flight.path_m[-1]))
+    outside = replace(flight, path_m=(flight.path_m[0], (0.0, 900.0), flight.path_m[-1]))
     for flown, rule in ((straight, keep_out_rule), (outside, boundary)):
         mission = mission_of(flown, FRAME, flown.start_m, SETTINGS, 15.0)
         refusal = rule(command(FlyMission(mission)), judged(scene, flown))

@@ -199,7 +199,7 @@ def test_light_is_stated_to_end_where_a_survey_goes_on_or_the_end_is_near(
 
 
 class TestWithoutRelief:
-    """The baseline: the same survey, and a survey that allows the way home alone."""
+    """The baseline: the same survey, and a survey that allows the route home alone."""
 
     @pytest.mark.flight
     def test_light_becomes_unknown_and_stays_so_and_the_view_states_both(self) -> None:
@@ -265,10 +265,10 @@ class TestForeseen:
         assert outlook.return_due_ns is not None
         in_s = (outlook.return_due_ns - world.surveyed.driver.now_ns) / 1e9
         home_s = 1.2 * (FIRST_UP_M / 1.5 + 15.0 + 50.0 / 8.0 + 8.0 / 2.5)
-        """Landing, the way and its stop, in wind that is not reported."""
+        """Landing, the path and its stop, in wind that is not reported."""
         reserve = 0.25 + 0.01
         left_s = (
-            (world.battery(FIRST) - reserve) * 1500.0 - home_s - SURVEY_DEFAULT.way_home_waits_s
+            (world.battery(FIRST) - reserve) * 1500.0 - home_s - SURVEY_DEFAULT.route_home_waits_s
         )
         assert in_s == pytest.approx(left_s, abs=20.0)  # a percent is 15 s
 
@@ -370,7 +370,7 @@ class TestNotByItself:
 
 
 def holds(world: RelievedWorld) -> int:
-    """The holds that began the first one's way home."""
+    """The holds that began the first one's route home."""
     records = world.station.orders.records.values()
     return sum(
         each.command.serial == FIRST
@@ -562,7 +562,7 @@ class TestRefused:
         assert entry.kind == "imager_relief.refused"
         assert world.station.control(SPARE).authority is before.control(SPARE).authority
 
-    def test_below_a_low_ceiling_it_goes_underneath_and_leaves_the_way_home_free(self) -> None:
+    def test_below_a_low_ceiling_it_goes_underneath_and_leaves_the_route_home_free(self) -> None:
         world = relieved_world(max_height_m=50.0)
         world.orders()
         assert world.newest().height_above_takeoff_m == pytest.approx(FIRST_UP_M - 20.0, abs=0.5)

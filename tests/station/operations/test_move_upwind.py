@@ -123,7 +123,7 @@ def alarms(world: ImagerWorld) -> dict[str, str]:
     return {each.key: each.text for each in conditions if each.rule == "move_upwind"}
 
 
-def ways(world: ImagerWorld) -> list[GoTo]:
+def paths(world: ImagerWorld) -> list[GoTo]:
     records = world.station.orders.records.values()
     return [
         each.command.body
@@ -165,8 +165,8 @@ class TestFlown:
 
     def test_one_goto_of_guidance_passed_the_gate(self, flown: Flown) -> None:
         world = flown[0]
-        (way,) = ways(world)
-        assert way.target == newest(world).place
+        (path,) = paths(world)
+        assert path.target == newest(world).place
         order = world.station.orders.records[newest(world).command_id]
         assert order.command.role is AuthorityHolder.GUIDANCE
         assert "survey field" in order.command.issued_by
@@ -244,7 +244,7 @@ def test_a_refused_one_is_an_alarm_and_is_tried_again_after_a_minute() -> None:
 
 
 def test_the_gate_refuses_a_way_through_a_zone() -> None:
-    """The place is free; the straight way there is not."""
+    """The place is free; the straight path there is not."""
     wall = Region(np.array([[-30.0, -900.0], [-20.0, -900.0], [-20.0, 900.0], [-30.0, 900.0]]))
     world = surveying(zones=(Zone("wall", ZoneKind.KEEP_OUT, wall),))
     blowing(world, 2.0)
@@ -253,7 +253,7 @@ def test_the_gate_refuses_a_way_through_a_zone() -> None:
     assert not has_begun(world)
     assert "wall" in alarms(world)["move_upwind:refused"]
     assert world.holder() is AuthorityHolder.OPERATOR
-    assert ways(world) == []
+    assert paths(world) == []
 
 
 class TestEndedBefore:
@@ -265,13 +265,13 @@ class TestEndedBefore:
         assert ended.stage is MotionStage.STOPPED
         assert why in ended.reason
         off_m = world.off_m()
-        count = len(ways(world))
+        count = len(paths(world))
         blowing(world, 11.0)
         if world.station.imager_motions.upwind.better_since_ns is not None:
             better_for_long(world)
         blowing(world, 2.0)
         assert newest(world) is ended
-        assert len(ways(world)) == count
+        assert len(paths(world)) == count
         assert hypot(world.off_m()[0] - off_m[0], world.off_m()[1] - off_m[1]) < 1.5
         assert world.station.control(IMAGER).stream is None
 
@@ -345,7 +345,7 @@ class TestEndedBefore:
         better_for_long(world)
         blowing(world, 2.0)
         assert newest(world) is ended
-        assert len(ways(world)) == 1
+        assert len(paths(world)) == 1
 
 
 class TestNeverWithASideStep:

@@ -50,10 +50,10 @@ class TestFlown:
 
     def test_both_ways_passed_the_gate_as_guidance(self, flown: tuple[ImagerWorld, float]) -> None:
         records = flown[0].station.orders.records.values()
-        ways = [each for each in records if isinstance(each.command.body, GoTo)]
-        assert len(ways) == 2
-        assert {each.command.role for each in ways} == {AuthorityHolder.GUIDANCE}
-        assert all(each.phase in (Phase.DONE, Phase.SUPERSEDED) for each in ways)
+        paths = [each for each in records if isinstance(each.command.body, GoTo)]
+        assert len(paths) == 2
+        assert {each.command.role for each in paths} == {AuthorityHolder.GUIDANCE}
+        assert all(each.phase in (Phase.DONE, Phase.SUPERSEDED) for each in paths)
 
     def test_it_ends_with_the_aircrafts_own_hold_and_the_operator(
         self, flown: tuple[ImagerWorld, float]

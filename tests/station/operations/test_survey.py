@@ -60,9 +60,9 @@ class TestFlownByTwo:
         assert ("survey_over", "SIM-1") in flown.fleet.alarms()
 
     def test_the_flown_paths_are_kept(self, flown: SurveyedWorld) -> None:
-        ways = flown.record().flown
-        assert {serial for serial, _ in ways} == {"SIM-1", "SIM-2"}
-        assert min(len(way) for way in ways.values()) > 10
+        paths = flown.record().flown
+        assert {serial for serial, _ in paths} == {"SIM-1", "SIM-2"}
+        assert min(len(path) for path in paths.values()) > 10
 
 
 class TestBeforeTheStart:
@@ -185,7 +185,7 @@ class TestStopped:
     def test_a_paused_survey_leaves_its_vehicles_to_the_next_one(
         self, flying: SurveyedWorld
     ) -> None:
-        """It still counts their positions, which are on the way to the other survey's rows."""
+        """It still counts their positions, which are on the leg to the other survey's rows."""
         flying.pauses()
         flying.runs(5.0)
         flying.asks(asked(field(200.0, 80.0), id=2, name="other"))
@@ -326,7 +326,7 @@ class TestApproach:
         return world
 
     @staticmethod
-    def ways_m(world: SurveyedWorld) -> list[float]:
+    def paths_m(world: SurveyedWorld) -> list[float]:
         bodies = [
             each.command.body
             for each in world.missions()
@@ -337,13 +337,13 @@ class TestApproach:
     def test_it_is_flown_at_the_nearest_height_that_the_zones_allow(self) -> None:
         strip = field(400.0, 10.0, west_m=-150.0, south_m=-25.0)
         wires = Zone("wires", ZoneKind.HEIGHT, strip, 52.0, None, HeightDatum.GROUND)
-        assert self.ways_m(self.flown()) == [50.0]
-        assert self.ways_m(self.flown(wires)) == [60.0]
+        assert self.paths_m(self.flown()) == [50.0]
+        assert self.paths_m(self.flown(wires)) == [60.0]
 
     def test_no_two_share_a_height_that_a_zone_moves_them_to(self) -> None:
         strip = field(400.0, 10.0, west_m=-150.0, south_m=-25.0)
         wires = Zone("wires", ZoneKind.HEIGHT, strip, 60.0, None, HeightDatum.GROUND)
-        heights_m = self.ways_m(self.flown(wires, count=2))
+        heights_m = self.paths_m(self.flown(wires, count=2))
         assert min(heights_m) >= 60.0
         assert len(set(heights_m)) == len(heights_m)
 

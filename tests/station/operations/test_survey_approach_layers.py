@@ -37,15 +37,15 @@ def over(ground: Ground) -> tuple[Terrain, PreparedAirspace]:
     return plan.terrain, PreparedAirspace(Airspace(frame=FRAME, elevation=elevation))
 
 
-def way(number: int) -> tuple[FloatArray, FloatArray]:
+def path(number: int) -> tuple[FloatArray, FloatArray]:
     """From a pad south of the field to a row's beginning, and the end of the last row."""
     pad_m, first_m = (100.0 * number, -40.0), (100.0 * number, 20.0 + 30.0 * number)
     return np.array([pad_m, first_m]), np.array([290.0 - 80.0 * number, 150.0])
 
 
-def places_of(way_m: FloatArray, end_m: FloatArray) -> FloatArray:
+def places_of(path_m: FloatArray, end_m: FloatArray) -> FloatArray:
     share = np.linspace(0.0, 1.0, 200)[:, np.newaxis]
-    return np.concatenate([way_m[0] * (1.0 - share) + way_m[1] * share, end_m[np.newaxis]])
+    return np.concatenate([path_m[0] * (1.0 - share) + path_m[1] * share, end_m[np.newaxis]])
 
 
 @settings(max_examples=20, deadline=None)
@@ -57,9 +57,9 @@ def test_no_two_vehicles_share_a_layer_and_none_meets_rows_or_ground(
     terrain, air = over(ground)
     found: list[list[float]] = []
     for number in range(3):
-        way_m, end_m = way(number)
-        layers_m = layers_over_terrain_m(terrain, air, way_m, end_m, number, 3)
-        places_m = places_of(way_m, end_m)
+        path_m, end_m = path(number)
+        layers_m = layers_over_terrain_m(terrain, air, path_m, end_m, number, 3)
+        places_m = places_of(path_m, end_m)
         wanted_m, ground_m = terrain.up_m(places_m), ground(*places_m.T)
         for layer_m in layers_m:
             assert np.abs(layer_m - wanted_m).min() >= LAYER_SPACING_M - 0.5
@@ -73,18 +73,18 @@ def test_no_two_vehicles_share_a_layer_and_none_meets_rows_or_ground(
 
 def test_over_flat_ground_they_are_multiples_of_a_layer_off_the_rows_the_nearest_first() -> None:
     terrain, air = over(flat)
-    assert layers_over_terrain_m(terrain, air, *way(0), 0, 2) == pytest.approx(
+    assert layers_over_terrain_m(terrain, air, *path(0), 0, 2) == pytest.approx(
         [50.0, 30.0, 70.0, 90.0, 110.0]
     )
-    assert layers_over_terrain_m(terrain, air, *way(1), 1, 2) == pytest.approx(
+    assert layers_over_terrain_m(terrain, air, *path(1), 1, 2) == pytest.approx(
         [60.0, 20.0, 80.0, 100.0]
     )
 
 
 def test_up_a_slope_a_vehicle_on_the_low_side_stays_lower_than_the_highest_rows() -> None:
     terrain, air = over(slope)
-    way_m, end_m = np.array([(0.0, -40.0), (0.0, 20.0)]), np.array([10.0, 150.0])
-    layers_m = layers_over_terrain_m(terrain, air, way_m, end_m, 0, 2)
+    path_m, end_m = np.array([(0.0, -40.0), (0.0, 20.0)]), np.array([10.0, 150.0])
+    layers_m = layers_over_terrain_m(terrain, air, path_m, end_m, 0, 2)
     assert terrain.highest_up_m > 65.0
     assert layers_m[0] < terrain.highest_up_m
 

@@ -134,7 +134,7 @@ class TestDrawnOnItsRows:
 
 class TestFleetReturn:
     def called(self, seconds: float) -> ReturningWorld:
-        """Two vehicles on their way home, and a zone on the first one's, so long after the call."""
+        """Two vehicles returning home, and a zone on the first one's, so long after the call."""
         world = returning_world([(0, 120, 30), (60, 120, 40)], [(0, -20), (60, -20)])
         driver = world.world.driver
         world.call("SIM-1", "SIM-2")
@@ -155,7 +155,7 @@ class TestFleetReturn:
         member = world.member("SIM-1")
         assert member.stage is Stage.LANDED, member.reason
         assert member.flight is not None
-        assert len(member.flight.way_m) > 2
+        assert len(member.flight.path_m) > 2
 
     def test_what_flies_into_it_is_held_and_left_out_with_a_reason(self) -> None:
         world = self.called(9.0)

@@ -83,7 +83,7 @@ def test_returns_in_wind_and_gusts_are_no_alarm(seed: int) -> None:
     assert not any(made.flies(serial) for serial in made.pads_m)
 
 
-def test_a_landing_ordered_on_the_way_home_is_no_alarm() -> None:
+def test_a_landing_ordered_on_the_route_home_is_no_alarm() -> None:
     made = returning_world(PLACES_M[:1], PADS_M[:1])
     made.world.order("SIM-1", ReturnHome())
     made.runs(12.0)

@@ -32,7 +32,7 @@ def in_air(scene: CommandedStation) -> list[str]:
 
 
 class TestHazard:
-    def test_it_grows_at_its_last_speed_up_to_150_m_and_has_a_way_home(self) -> None:
+    def test_it_grows_at_its_last_speed_up_to_150_m_and_has_a_route_home(self) -> None:
         scene = stale(4.0)
         view = hazard_view(scene.station, scene.station.fleet.vehicles["A"], scene.now_ns)
         assert view is not None

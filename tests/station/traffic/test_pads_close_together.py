@@ -60,7 +60,7 @@ def closeness(made: ReturningWorld) -> float:
 
 
 def drawn(seed: int) -> Homecoming:
-    """Any two ways home: from above or from the side, landing or returning, one later or not."""
+    """Any two routes home: from above or from the side, landing or returning, one later or not."""
     rng = Random(seed)
     bodies: list[Body] = [rng.choice((LandNow(), ReturnHome(), ReturnHome())) for _pad in PADS_M]
     places: list[Place] = []

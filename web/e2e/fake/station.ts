@@ -13,7 +13,7 @@ import type {
   SiteVehiclesView,
   StationState,
   SurveyCameraView,
-  SurveyWays,
+  SurveyPaths,
 } from "../../src/protocol";
 
 const MINI_3_PRO: SurveyCameraView = {
@@ -76,7 +76,7 @@ export class FakeStation {
   /** The base maps of the site's folder. */
   maps: BaseMapsView = { maps: [], note: "No map in the site's folder maps" };
   /** Answer for any survey's paths. */
-  ways: SurveyWays | null = null;
+  paths: SurveyPaths | null = null;
   private sockets: WebSocketRoute[] = [];
   private isReachable = true;
   private picture: Buffer | null = null;
@@ -137,7 +137,7 @@ export class FakeStation {
     if (path === "/api/orders/check")
       return this.checkOrder(JSON.parse(body ?? "{}") as OrderRequest);
     if (path.endsWith("/preflight") && this.preflight !== null) return { json: this.preflight };
-    if (path.endsWith("/ways") && this.ways !== null) return { json: this.ways };
+    if (path.endsWith("/ways") && this.paths !== null) return { json: this.paths };
     if (path === "/api/site/drawing" && body === null) return { json: this.drawing };
     if (path === "/api/site/vehicles" && body === null) return { json: this.vehicles };
     if (path.startsWith("/api/site/vehicles")) return { json: this.vehiclesResult };

@@ -1,4 +1,4 @@
-import type { StationState, SurveyWays } from "../../src/protocol";
+import type { StationState, SurveyPaths } from "../../src/protocol";
 import { shadeLine, survey, surveyLight } from "../../src/testing/fakeField";
 import { area, at, station, vehicle } from "../../src/testing/fakeState";
 
@@ -104,7 +104,7 @@ export function surveyedState(elapsed_s: number): StationState {
 }
 
 /** The survey's rows, a current mission, and flown paths. */
-export const WAYS: SurveyWays = {
+export const WAYS: SurveyPaths = {
   survey_id: ID,
   rows: ROWS,
   flying: [{ serial: "SN-001", number: 2, places: [at(0, -70), at(0, 70), at(30, 70)] }],

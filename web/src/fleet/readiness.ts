@@ -159,7 +159,7 @@ function conditionsOf(vehicle: VehicleView, behindS: number): Condition[] {
   return found;
 }
 
-/** Whether the aircraft reports a battery warning; its thresholds account for the pack and the way home. */
+/** Whether the aircraft reports a battery warning; its thresholds account for the pack and the route home. */
 export function hasBatteryWarning(vehicle: Pick<VehicleView, "battery_warning">): boolean {
   const warning = vehicle.battery_warning.value;
   return warning !== null && plainWords(warning) !== "none";

@@ -1,6 +1,6 @@
 /** Stripes that fill an area, drawn once as a tile that repeats. */
 export interface Hatch {
-  /** Whether stripes run both ways. */
+  /** Whether stripes run both paths. */
   readonly isCrossed: boolean;
   /** The tile's side, which is the distance between stripes along an edge; pixels. */
   readonly tile_px: number;

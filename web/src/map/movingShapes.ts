@@ -17,7 +17,7 @@ export interface Shape {
   readonly dash_px: readonly number[];
 }
 
-/** What moves with the vehicles, from bottom to top: hazard areas, tracks, ways of steered vehicles and of fly-here. */
+/** What moves with the vehicles, from bottom to top: hazard areas, tracks, paths of steered vehicles and of fly-here. */
 export function movingShapes(scene: Scene, colours: Colours): Shape[] {
   const { vehicles } = scene.state;
   const trails = vehicles.flatMap((vehicle) => trailOf(vehicle, scene.behindS, colours) ?? []);
@@ -74,13 +74,13 @@ function hazardShapes(hazard: HazardShape, colour: string): Shape[] {
   const corridor =
     from === undefined || to === undefined ? [] : band(from, to, hazard.corridorHalfWidth_m);
   if (corridor.length > 0) rings.push(corridor);
-  const way = from !== undefined && to !== undefined && corridor.length > 0 ? [from, to] : [];
+  const leg = from !== undefined && to !== undefined && corridor.length > 0 ? [from, to] : [];
   return [
     ...rings.map(
       (points): Shape => ({ points, colour, opacity: 0.18, width_px: null, dash_px: [] }),
     ),
     ...rings.map((points) => line(points, colour, 2.5, [8, 5])),
-    ...(way.length === 0 ? [] : [line(way, colour, 2, [2, 4])]),
+    ...(leg.length === 0 ? [] : [line(leg, colour, 2, [2, 4])]),
   ];
 }
 

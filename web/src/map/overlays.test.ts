@@ -5,7 +5,7 @@ import { shadeLine, survey } from "../testing/fakeField";
 import { station } from "../testing/fakeState";
 import { settled } from "../testing/renderPage";
 import { createOverlay, ForecastLayer, ShadeLayer, SurveyCellsLayer } from "./overlays";
-import { wayFeatures } from "./surveyRowsLayer";
+import { pathFeatures } from "./surveyRowsLayer";
 
 /** The parts of MapLibre an overlay uses; records calls. */
 function fakeMap() {
@@ -116,7 +116,7 @@ describe("a survey's paths", () => {
       [1, 2],
       [3, 4],
     ];
-    const features = wayFeatures({
+    const features = pathFeatures({
       survey_id: 7,
       rows: [line],
       flying: [{ serial: "A", number: 1, places: line }],

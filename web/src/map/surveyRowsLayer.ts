@@ -1,6 +1,6 @@
 import type { Feature } from "geojson";
 import type { Map as MapLibre } from "maplibre-gl";
-import type { SurveyWays } from "../protocol";
+import type { SurveyPaths } from "../protocol";
 import type { SurveyRequests } from "../source/surveyRequests";
 import { shownSurvey } from "../text/survey";
 import type { Colours } from "./colours";
@@ -23,7 +23,7 @@ export class SurveyRowsLayer implements Layer {
   private isFetching = false;
   private notBefore_ns = 0;
 
-  constructor(private readonly surveys: Pick<SurveyRequests, "ways">) {}
+  constructor(private readonly surveys: Pick<SurveyRequests, "paths">) {}
 
   add(map: MapLibre, colours: Colours): void {
     this.map = map;
@@ -57,13 +57,13 @@ export class SurveyRowsLayer implements Layer {
       this.draw("", null);
       return;
     }
-    const key = `${survey.id}:${survey.phase}:${survey.missions}:${survey.ways}`;
+    const key = `${survey.id}:${survey.phase}:${survey.missions}:${survey.paths}`;
     const isNew = key !== this.shown;
     if (!isNew || this.isFetching || scene.state.time_ns < this.notBefore_ns) return;
     this.isFetching = true;
     this.notBefore_ns = scene.state.time_ns + REPEAT_NS;
     void this.surveys
-      .ways(survey.id)
+      .paths(survey.id)
       .then((outcome) => {
         if (outcome.kind === "answered") this.draw(key, outcome.value);
       })
@@ -79,15 +79,15 @@ export class SurveyRowsLayer implements Layer {
     }
   }
 
-  private draw(key: string, ways: SurveyWays | null): void {
+  private draw(key: string, paths: SurveyPaths | null): void {
     if (this.map === null || key === this.shown) return;
     this.shown = key;
-    setFeatures(this.map, SOURCE, ways === null ? [] : wayFeatures(ways));
+    setFeatures(this.map, SOURCE, paths === null ? [] : pathFeatures(paths));
   }
 }
 
 /** The lines of a survey's paths, each with its kind. */
-export function wayFeatures(ways: SurveyWays): Feature[] {
+export function pathFeatures(paths: SurveyPaths): Feature[] {
   const line = (places: readonly (readonly [number, number])[], kind: string): Feature[] =>
     places.length < 2
       ? []
@@ -98,8 +98,8 @@ export function wayFeatures(ways: SurveyWays): Feature[] {
           ),
         ];
   return [
-    ...ways.rows.flatMap((row) => line(row, PLANNED)),
-    ...ways.flying.flatMap(({ places }) => line(places, FLYING)),
-    ...ways.flown.flatMap(({ places }) => line(places, FLOWN)),
+    ...paths.rows.flatMap((row) => line(row, PLANNED)),
+    ...paths.flying.flatMap(({ places }) => line(places, FLYING)),
+    ...paths.flown.flatMap(({ places }) => line(places, FLOWN)),
   ];
 }

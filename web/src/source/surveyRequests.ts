@@ -1,4 +1,4 @@
-import type { NewSurvey, SurveyRequest, SurveyResponse, SurveyWays } from "../protocol";
+import type { NewSurvey, SurveyRequest, SurveyResponse, SurveyPaths } from "../protocol";
 import { answered, CHANGE, PLANNING, READ, type StationHttp } from "./stationHttp";
 
 export type SurveyRequests = ReturnType<typeof surveyRequests>;
@@ -40,12 +40,12 @@ export function surveyRequests(http: StationHttp, stationNowMs: () => number | n
     },
     /** The survey cameras that a plan may name. */
     cameras: () => answered(READ, (signal) => client.GET("/api/cameras", { signal })),
-    ways: (survey_id: number) => {
+    paths: (survey_id: number) => {
       const params = { path: { survey_id } };
       return answered(
         READ,
-        (signal) => client.GET("/api/surveys/{survey_id}/ways", { params, signal }),
-        (data) => data as SurveyWays,
+        (signal) => client.GET("/api/surveys/{survey_id}/paths", { params, signal }),
+        (data) => data as SurveyPaths,
       );
     },
     cells: (id: number, number: number) =>

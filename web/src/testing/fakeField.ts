@@ -107,7 +107,7 @@ export function survey(id: number, changes: Partial<SurveyView> = {}): SurveyVie
     },
     cells: { number: 1200, ...fieldGrid() },
     rows: 8,
-    ways: 40,
+    paths: 40,
     ...changes,
   };
 }

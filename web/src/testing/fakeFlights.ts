@@ -68,7 +68,7 @@ export function fakeSurveyRequests(flights: FakeFlights, requests: PageRequests)
       return answered({ ...flights.estimate, drones });
     },
     cameras: async () => answered([MINI_3_PRO]),
-    ways: noPicture,
+    paths: noPicture,
     cells: noPicture,
   };
 }

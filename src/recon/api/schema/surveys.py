@@ -208,7 +208,7 @@ class SurveyView(Message):
     figures: SurveyFiguresView | None
     cells: SurveyCellsView | None
     rows: int = Field(description="number of planned rows or parts of rows")
-    ways: int = Field(description="rises as flown paths grow")
+    paths: int = Field(description="rises as flown paths grow")
 
 
 class SurveyCameraView(Message):
@@ -263,7 +263,7 @@ class SurveyEstimateView(Message):
     warnings: list[str]
 
 
-class SurveyWay(Message):
+class SurveyPath(Message):
     """The path of one mission: (longitude, latitude) of its corners."""
 
     serial: str
@@ -271,13 +271,13 @@ class SurveyWay(Message):
     places: list[tuple[float, float]]
 
 
-class SurveyWays(Message):
+class SurveyPaths(Message):
     """A survey's rows, each from end to end; the missions in flight; the paths flown so far."""
 
     survey_id: int
     rows: list[list[tuple[float, float]]]
-    flying: list[SurveyWay]
-    flown: list[SurveyWay]
+    flying: list[SurveyPath]
+    flown: list[SurveyPath]
 
 
 class SurveyResponse(ActionResponse):

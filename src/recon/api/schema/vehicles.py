@@ -80,7 +80,7 @@ class FrameView(Message):
 
 
 class HazardView(Message):
-    """The hazard area of a lost vehicle: a growing circle, and a corridor on its way home.
+    """The hazard area of a lost vehicle: a growing circle, and a corridor returning home.
 
     It stays until telemetry returns, or an operator has located the vehicle and dismisses it.
     """

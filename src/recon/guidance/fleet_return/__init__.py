@@ -15,6 +15,7 @@ from recon.guidance.fleet_return.flight import (
     Separation,
     mission_of,
 )
+from recon.guidance.fleet_return.paths import RouteHome, route_home
 from recon.guidance.fleet_return.plan import plan_return
 from recon.guidance.fleet_return.settings import FleetReturnSettings
 from recon.guidance.fleet_return.turn import (
@@ -25,4 +26,3 @@ from recon.guidance.fleet_return.turn import (
     least_time_s,
     whole_claim,
 )
-from recon.guidance.fleet_return.ways import WayHome, way_home

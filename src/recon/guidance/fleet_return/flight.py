@@ -60,9 +60,9 @@ def leads_away(from_up_m: float, to_up_m: float, other_up_m: float) -> bool:
     return abs(gap_m) >= PARTING_M and (to_up_m - from_up_m) * gap_m <= 0.0
 
 
-def level_legs(way_m: Sequence[EastNorth], up_m: float) -> tuple[Volume, ...]:
-    """Return the level pieces along a way."""
-    return tuple(Volume(start, end, up_m, up_m) for start, end in pairwise(way_m))
+def level_legs(path_m: Sequence[EastNorth], up_m: float) -> tuple[Volume, ...]:
+    """Return the level pieces along a path."""
+    return tuple(Volume(start, end, up_m, up_m) for start, end in pairwise(path_m))
 
 
 def are_apart(ones: Iterable[Volume], others: Iterable[Volume], separation: Separation) -> bool:
@@ -165,9 +165,9 @@ class CalledVehicle:
 
 @dataclass(frozen=True, slots=True)
 class ReturnFlight:
-    """One way home: up or down to the layer on the spot, along `way_m` in it, down at the pad.
+    """One route home: up or down to the layer on the spot, along `path_m` in it, down at the pad.
 
-    `way_m` begins over the vehicle's place and ends over its pad, at least two points. `wave`
+    `path_m` begins over the vehicle's place and ends over its pad, at least two points. `wave`
     counts from 1.
     """
 
@@ -177,16 +177,16 @@ class ReturnFlight:
     takeoff_up_m: float
     pad: Pad
     layer_up_m: float
-    way_m: tuple[EastNorth, ...]
+    path_m: tuple[EastNorth, ...]
     wave: int
 
     @property
     def volumes(self) -> tuple[Volume, ...]:
-        """Every place it passes, in order: its column, its way, the pad's column."""
+        """Every place it passes, in order: its column, its path, the pad's column."""
         east_m, north_m, up_m = self.start_m
         return (
             column((east_m, north_m), up_m, self.layer_up_m),
-            *level_legs(self.way_m, self.layer_up_m),
+            *level_legs(self.path_m, self.layer_up_m),
             column(self.pad.east_north_m, self.layer_up_m, self.pad.up_m),
         )
 
@@ -228,7 +228,7 @@ LEAST_LEG_M = 1.0
 
 LEAST_CORNER_M = 0.6
 """A corner nearer than this to the waypoint before it is excluded, or DJI would refuse the flight.
-The way moves by no more than that: less than `detour_slack_m`, which it keeps from all limits."""
+The path moves by no more than that: less than `detour_slack_m`, which it keeps from all limits."""
 
 
 def mission_of(
@@ -243,11 +243,11 @@ def mission_of(
     The first waypoint is over that place, so that the aircraft climbs or sinks on the spot, however
     its app flies to a first waypoint.
     """
-    way_m = _without_short_legs([place_m[:2], *flight.way_m[1:]])
-    up_m = [flight.layer_up_m] * len(way_m)
-    if _apart_m(way_m[0], way_m[-1]) < LEAST_LEG_M:
+    path_m = _without_short_legs([place_m[:2], *flight.path_m[1:]])
+    up_m = [flight.layer_up_m] * len(path_m)
+    if _apart_m(path_m[0], path_m[-1]) < LEAST_LEG_M:
         up_m[-1] -= LEAST_LEG_M
-    flat_m = np.column_stack([np.array(way_m), np.zeros(len(way_m))])
+    flat_m = np.column_stack([np.array(path_m), np.zeros(len(path_m))])
     latitude_deg, longitude_deg, _ = geo_from_enu(frame, flat_m)
     speed = min(speed_mps, settings.speed_mps)
     return Mission(
@@ -260,13 +260,13 @@ def mission_of(
     )
 
 
-def _without_short_legs(way_m: Sequence[EastNorth]) -> list[EastNorth]:
-    """Exclude the corners that are too near; where the way begins and ends stays."""
-    kept = [way_m[0]]
-    for corner in way_m[1:-1]:
-        if _apart_m(kept[-1], corner) >= LEAST_CORNER_M <= _apart_m(corner, way_m[-1]):
+def _without_short_legs(path_m: Sequence[EastNorth]) -> list[EastNorth]:
+    """Exclude the corners that are too near; where the path begins and ends stays."""
+    kept = [path_m[0]]
+    for corner in path_m[1:-1]:
+        if _apart_m(kept[-1], corner) >= LEAST_CORNER_M <= _apart_m(corner, path_m[-1]):
             kept.append(corner)
-    return [*kept, way_m[-1]]
+    return [*kept, path_m[-1]]
 
 
 def _apart_m(one: EastNorth, other: EastNorth) -> float:

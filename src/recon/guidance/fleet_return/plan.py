@@ -9,7 +9,7 @@ on wind and on how long each landing takes.
 3. The first vehicle that can have a free layer gets the lowest one from which its whole flight
    (column up or down, level path, column over the pad) is separated from all vehicles that still
    hover; a column that leads away from one that is too near already need not be. Paths avoid
-   closed zones by a visibility graph and Dijkstra's search (`ways`).
+   closed zones by a visibility graph and Dijkstra's search (`paths`).
    Layers of flights that are under way are not free: a vehicle recalled later need not wait.
 4. When no free layer is left or fits, the next wave begins with all layers free.
 5. A vehicle that fits in no layer while all layers are free is excluded, with the reason.
@@ -44,14 +44,14 @@ from recon.guidance.fleet_return.flight import (
     leads_away,
     point,
 )
+from recon.guidance.fleet_return.paths import ReturnPaths, RouteHome
 from recon.guidance.fleet_return.settings import FleetReturnSettings
-from recon.guidance.fleet_return.ways import ReturnPaths, WayHome
 
 NO_WAY = "no path to its pad in any layer around keep-out zones and hovering vehicles"
 
 
 def layers_up_m(
-    home: WayHome, settings: FleetReturnSettings, separation: Separation
+    home: RouteHome, settings: FleetReturnSettings, separation: Separation
 ) -> tuple[float, ...]:
     """Return the heights of all layers, from the lowest; none where there is no room."""
     room_m = home.highest_up_m - home.lowest_up_m
@@ -64,7 +64,7 @@ def layers_up_m(
 
 def plan_return(
     vehicles: Sequence[CalledVehicle],
-    home: WayHome,
+    home: RouteHome,
     separation: Separation,
     settings: FleetReturnSettings,
     others: Sequence[Hovering] = (),
@@ -122,13 +122,13 @@ class _Search:
     def __init__(
         self,
         vehicles: Sequence[CalledVehicle],
-        home: WayHome,
+        home: RouteHome,
         separation: Separation,
         layers_m: Sequence[float],
         others: Sequence[Hovering],
     ) -> None:
         self._home = home
-        self._ways = ReturnPaths(home)
+        self._paths = ReturnPaths(home)
         self._separation = separation
         self._layers_m = layers_m
         self._others = others
@@ -151,7 +151,7 @@ class _Search:
         """Return why a vehicle has no flight."""
         room_m = self._home.highest_up_m - self._home.lowest_up_m
         if not isfinite(room_m):
-            return "the height of the ground is not known everywhere on the ways home"
+            return "the height of the ground is not known everywhere on the routes home"
         if not self._layers_m:
             return (
                 "there is no height to return in: the lowest one above ground and zones is "
@@ -171,7 +171,7 @@ class _Search:
         if known is not None and known.while_hovering <= hovering.keys():
             return known
         others = [other for key, other in hovering.items() if key != vehicle.serial]
-        found = self._column_fault(vehicle, layer_m, others) or self._way(vehicle, layer_m, others)
+        found = self._column_fault(vehicle, layer_m, others) or self._path(vehicle, layer_m, others)
         if isinstance(found, _Fault):
             self._faults[vehicle.serial, layer_m] = found
             return found
@@ -186,13 +186,13 @@ class _Search:
             wave,
         )
 
-    def _way(
+    def _path(
         self, vehicle: CalledVehicle, layer_m: float, others: Sequence[Hovering]
     ) -> tuple[EastNorth, ...] | _Fault:
         start_m, end_m = vehicle.place_m[:2], vehicle.pad.east_north_m
-        alone = self._ways.find(start_m, end_m, layer_m)
+        alone = self._paths.find(start_m, end_m, layer_m)
         if alone is None:
-            return _Fault(self._no_way(vehicle, layer_m))
+            return _Fault(self._no_path(vehicle, layer_m))
         near = [other for other in others if self._is_near_height(other.place_m, layer_m)]
         spots = [other.place_m[:2] for other in near]
         circle_m = self._separation.horizontal_m
@@ -200,16 +200,16 @@ class _Search:
             distance_to_leg_m(spot, *leg) >= circle_m for spot in spots for leg in pairwise(alone)
         ):
             return alone
-        around = self._ways.find_around(start_m, end_m, layer_m, spots, circle_m)
+        around = self._paths.find_around(start_m, end_m, layer_m, spots, circle_m)
         return around or _Fault(NO_WAY, frozenset(other.key for other in near))
 
     def _is_near_height(self, place_m: Place, layer_m: float) -> bool:
         return abs(place_m[2] - layer_m) < self._separation.vertical_m
 
-    def _no_way(self, vehicle: CalledVehicle, layer_m: float) -> str:
-        if not self._ways.is_in_reach(vehicle.pad.east_north_m, layer_m):
+    def _no_path(self, vehicle: CalledVehicle, layer_m: float) -> str:
+        if not self._paths.is_in_reach(vehicle.pad.east_north_m, layer_m):
             where = f"its pad {vehicle.pad.name}"
-        elif not self._ways.is_in_reach(vehicle.place_m[:2], layer_m):
+        elif not self._paths.is_in_reach(vehicle.place_m[:2], layer_m):
             where = "it"
         else:
             return NO_WAY

@@ -26,7 +26,7 @@ from recon.guidance.fleet_return.settings import FleetReturnSettings
 
 def least_time_s(flight: ReturnFlight, settings: FleetReturnSettings) -> float:
     """Return how long a flight takes at least, from its order to the ground at its pad."""
-    level_m = sum(dist(a, b) for a, b in pairwise(flight.way_m))
+    level_m = sum(dist(a, b) for a, b in pairwise(flight.path_m))
     upright_m = abs(flight.layer_up_m - flight.start_m[2]) + flight.layer_up_m - flight.pad.up_m
     return level_m / settings.speed_mps + upright_m / settings.fastest_upright_mps
 
@@ -82,7 +82,7 @@ def hindrance(
     for other_one in hovering:
         place_m = other_one.place_m
         if not are_apart(flight.volumes_past(place_m), [point(place_m)], separation):
-            return f"{other_one.name} hovers too near to its way"
+            return f"{other_one.name} hovers too near to its path"
     for earlier in before:
         if not are_apart(volumes, earlier.volumes, separation):
             return f"{earlier.name} goes first"
@@ -109,7 +109,7 @@ def places_left(
     leg = _leg(flight, place_m, settings)
     if leg is None:
         return (here, *everything)
-    rest_m = (place_m[:2], *flight.way_m[leg + 1 :])
+    rest_m = (place_m[:2], *flight.path_m[leg + 1 :])
     return (here, *level_legs(rest_m, flight.layer_up_m), landing)
 
 
@@ -119,9 +119,9 @@ def _is_over_pad(flight: ReturnFlight, place_m: Place, settings: FleetReturnSett
 
 
 def _leg(flight: ReturnFlight, place_m: Place, settings: FleetReturnSettings) -> int | None:
-    """The first leg of the way that the vehicle is on; the first, for a way may meet itself."""
-    for index in range(len(flight.way_m) - 1):
-        beside_m = distance_to_leg_m(place_m[:2], *flight.way_m[index : index + 2])
+    """The first leg of the way that the vehicle is on; the first, for a path may meet itself."""
+    for index in range(len(flight.path_m) - 1):
+        beside_m = distance_to_leg_m(place_m[:2], *flight.path_m[index : index + 2])
         if beside_m <= settings.horizontal_slack_m:
             return index
     return None

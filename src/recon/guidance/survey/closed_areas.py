@@ -19,7 +19,8 @@ from recon.model.arrays import BoolArray
 
 @dataclass(frozen=True, slots=True)
 class ClosedArea:
-    """A circle, and the way home of a vehicle that may return; the gate's margins are included."""
+    """A circle, and the route home of a vehicle that may return; the gate's margins are
+    included."""
 
     name: str
     """The vehicle's name, for operators."""
@@ -40,8 +41,8 @@ def closed_ground(areas: Sequence[ClosedArea]) -> shapely.Geometry:
     for each in areas:
         parts.append(shapely.buffer(shapely.Point(each.place_m), each.radius_m))
         if each.home_m is not None:
-            way = shapely.linestrings([each.place_m, each.home_m])
-            parts.append(shapely.buffer(way, each.corridor_half_m))
+            path = shapely.linestrings([each.place_m, each.home_m])
+            parts.append(shapely.buffer(path, each.corridor_half_m))
     return shapely.union_all(parts)
 
 
@@ -60,6 +61,6 @@ def closed_segments(ground: shapely.Geometry, segments: Segments, plan: SurveyPl
 
 def is_open(ground: shapely.Geometry, track: Track) -> bool:
     """Return whether no part of a track lies on closed ground."""
-    way = shapely.linestrings(track.corners_m) if len(track.corners_m) > 1 else None
+    path = shapely.linestrings(track.corners_m) if len(track.corners_m) > 1 else None
     place = shapely.Point(track.corners_m[0])
-    return not shapely.intersects(ground, place if way is None else way)
+    return not shapely.intersects(ground, place if path is None else path)

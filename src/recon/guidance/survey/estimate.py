@@ -247,7 +247,7 @@ def _flight(
     """Fly missions until the battery lasts for no further row; also return the rest.
 
     As in flight: a mission is planned with a share of what is left, and what it did not use gives
-    another one. It also ends where no way leads on to the next row.
+    another one. It also ends where no path leads on to the next row.
     """
     vehicle = replace(vehicle, home_m=vehicle.home_m or vehicle.place_m)
     tracks: list[Track] = []
@@ -267,7 +267,7 @@ def _flight(
 
 
 def _mission_s(plan: SurveyPlan, track: Track, start_m: EastNorth) -> float:
-    """How long a mission takes with the way to it, stops at corners included."""
+    """How long a mission takes with the leg to it, stops at corners included."""
     settings, speed_mps = plan.settings, plan.survey.speed_mps
     end_m = track.corners_m[-1]
     used_s = flight_time_s(track, speed_mps, start_m, end_m, settings)
@@ -313,7 +313,7 @@ def _photos(plan: SurveyPlan, row_m: float) -> int:
 def _too_far(plan: SurveyPlan, first: Route, vehicle: Surveyor) -> str:
     track, _ = longest_mission(plan, first, replace(vehicle, time_left_s=None))
     home_m = vehicle.home_m or vehicle.place_m
-    assert track is not None  # one row has no way between rows
+    assert track is not None  # one row has no path between rows
     speed_mps, settings = plan.survey.speed_mps, plan.settings
     needs_s = flight_time_s(track, speed_mps, vehicle.place_m, home_m, settings)
     has_s = (vehicle.time_left_s or 0.0) * settings.flight_time_share

@@ -14,7 +14,7 @@ from recon.model.survey import Survey
 @dataclass(frozen=True, slots=True)
 class Swath:
     """`half_across_m` and `half_along_m` are what counts of the footprint, `photo_m` lies between
-    two photos, and `least_row_m` is the shortest way that has a photo for sure."""
+    two photos, and `least_row_m` is the shortest path that has a photo for sure."""
 
     half_across_m: float
     half_along_m: float
@@ -42,7 +42,7 @@ class Swath:
 
     @property
     def least_row_m(self) -> float:
-        """The shortest way flown: a little over one photo distance, so that one falls on it."""
+        """The shortest path flown: a little over one photo distance, so that one falls on it."""
         return 1.05 * self.photo_m
 
 

@@ -77,7 +77,7 @@ def leg_profile(
 
 
 class _Vertices:
-    """Vertices at every step of a leg, each at one of a few heights; and the best way to each."""
+    """Vertices at every step of a leg, each at one of a few heights; and the best path to each."""
 
     def __init__(
         self,

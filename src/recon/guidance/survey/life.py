@@ -265,8 +265,8 @@ def _can_fly_a_row(state: SurveyState, surveyor: Surveyor) -> bool:
     if legs:
         return _lasts_for_any(state, legs, surveyor)
     assert surveyor.time_left_s is not None  # asked only with a known flight time
-    way_m = dist(surveyor.place_m, surveyor.home_m or surveyor.place_m)
-    needed_s = way_m / plan.survey.speed_mps + plan.settings.way_home_waits_s
+    path_m = dist(surveyor.place_m, surveyor.home_m or surveyor.place_m)
+    needed_s = path_m / plan.survey.speed_mps + plan.settings.route_home_waits_s
     return needed_s <= surveyor.time_left_s * plan.settings.flight_time_share
 
 

@@ -96,9 +96,9 @@ def on_closed_ground(
             continue
         if _is_taking_off(flight, able[serial], state.plan):
             continue
-        way_m = tuple(_ends_left_m(flight, state.plan))
+        path_m = tuple(_ends_left_m(flight, state.plan))
         is_out = is_open(ground, Track((able[serial].place_m,)))
-        if way_m and is_out and not is_open(ground, Track(way_m)):
+        if path_m and is_out and not is_open(ground, Track(path_m)):
             found.append(serial)
     return tuple(found)
 
@@ -146,7 +146,7 @@ def _has_opened(choice: VehicleChoice) -> bool:
 def before_first_row_in_any_light(
     state: SurveyState, able: Mapping[str, Surveyor]
 ) -> tuple[str, ...]:
-    """Return the vehicles on the way to the first row of a mission given in unknown light."""
+    """Return the vehicles on the leg to the first row of a mission given in unknown light."""
     return tuple(
         serial
         for serial, flight in state.flights.items()
@@ -200,7 +200,7 @@ def _in_want_of_sun(choice: VehicleChoice, able: Mapping[str, Surveyor], lit_m2:
     """The vehicles without a mission, or with one in shade, while little that is free is in sun."""
     state, expected, settings = choice.state, choice.expected, choice.settings
     free = choice.free()
-    soon = expected.moments_s <= settings.way_s
+    soon = expected.moments_s <= settings.transit_s
     sun = expected.probability[free][:, soon].mean(axis=1)
     if float(expected.missing_m2[free] @ sun) > settings.hand_on_free_share * lit_m2:
         return set()

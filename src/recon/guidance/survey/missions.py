@@ -24,7 +24,7 @@ LEAST_LEG_M = 1.0
 
 @dataclass(frozen=True, slots=True)
 class Track:
-    """A route with its ways between rows: the corners in east-north metres of the site.
+    """A route with its paths between rows: the corners in east-north metres of the site.
 
     Of a survey above ground, waypoints that follow the ground are among them, and `up_m` is the
     height at each, up of the frame; empty: all are at the survey's height above takeoff.
@@ -51,10 +51,10 @@ def track_of(
     route: Route,
     lattice: RowLattice,
     lead_m: float,
-    ways: RegionPaths,
+    paths: RegionPaths,
     terrain: Terrain | None = None,
 ) -> Track | None:
-    """Return where a route leads; between rows inside the ways' area, None where it has no way.
+    """Return where a route leads; between rows inside the paths' area, None where it has no path.
 
     With a terrain it follows that.
     """
@@ -62,7 +62,7 @@ def track_of(
     for leg in route:
         start_m, end_m = _east_north(leg.ends_m(lattice, lead_m), lattice)
         if corners:
-            between = ways.between(corners[-1], start_m)
+            between = paths.between(corners[-1], start_m)
             if between is None:
                 return None
             corners += between
@@ -74,19 +74,19 @@ def track_of(
 def flight_time_s(
     track: Track, speed_mps: float, start_m: EastNorth, home_m: EastNorth, settings: SurveySettings
 ) -> float:
-    """Return how long a track takes with the way to it and the way home, stops included."""
+    """Return how long a track takes with the leg to it and the route home, stops included."""
     stops = len(track.corners_m) + 1
-    way_m = dist(start_m, track.corners_m[0]) + dist(track.corners_m[-1], home_m)
+    path_m = dist(start_m, track.corners_m[0]) + dist(track.corners_m[-1], home_m)
     climbing_s = track.climbing_s(speed_mps, settings.climb_mps)
-    moving_s = (track.length_m + way_m) / speed_mps + climbing_s
+    moving_s = (track.length_m + path_m) / speed_mps + climbing_s
     return moving_s + stops * speed_mps / settings.turning_mps2
 
 
 def approach_of(
-    track: Track, start_m: EastNorth, ways: RegionPaths, frame: LocalFrame
+    track: Track, start_m: EastNorth, paths: RegionPaths, frame: LocalFrame
 ) -> tuple[LatLon, ...]:
-    """Return the corners on the way from a place to a track, as far as the ways' area has one."""
-    corners_m = ways.between(ways.inside(start_m), ways.inside(track.corners_m[0]))
+    """Return the corners on the way from a place to a track, as far as the paths' area has one."""
+    corners_m = paths.between(paths.inside(start_m), paths.inside(track.corners_m[0]))
     if not corners_m:
         return ()
     flat_m = np.column_stack([np.array(corners_m), np.zeros(len(corners_m))])

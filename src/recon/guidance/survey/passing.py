@@ -60,8 +60,8 @@ def passing(
     at_s, place_m = starts_s, start_m
     for leg in route:
         begins_m, ends_m = leg.ends_m(lattice, 0.0)
-        way_m = dist(begins_m, place_m)
-        at_s += way_m / pace.speed_mps + pace.stop_s
+        path_m = dist(begins_m, place_m)
+        at_s += path_m / pace.speed_mps + pace.stop_s
         for number in np.flatnonzero(segments.under([leg])).tolist():
             part = segments.parts[number]
             low_m, high_m = max(leg.piece.start_m, part.start_m), min(leg.piece.end_m, part.end_m)

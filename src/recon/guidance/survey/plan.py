@@ -129,9 +129,9 @@ RULE = "survey"
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SurveySurroundings:
-    """What a site leaves to fly over; rows and the ways between them keep `margin_m` to it.
+    """What a site leaves to fly over; rows and the paths between them keep `margin_m` to it.
 
-    The gate's other rules (heights, ways to the first row and home) are not checked here.
+    The gate's other rules (heights, paths to the first row and home) are not checked here.
     """
 
     boundary: Region | None = None
@@ -160,7 +160,7 @@ class SurveyPlan:
     counted_swath: Swath
     """What of the swath counts as imaged: all of it, or the row's own band."""
     pieces: tuple[Piece, ...]
-    ways: RegionPaths
+    paths: RegionPaths
     cells: CoverageCells
     terrain: Terrain | None = None
     """The wanted heights of a survey above ground; None: it is above takeoff."""
@@ -170,8 +170,8 @@ class SurveyPlan:
     """Waypoints within rows that follow the ground, on average."""
 
     def track(self, route: Route) -> Track | None:
-        """Return where a route leads; None where no way leads from a row to the next."""
-        return track_of(route, self.lattice, self.swath.lead_m, self.ways, self.terrain)
+        """Return where a route leads; None where no path leads from a row to the next."""
+        return track_of(route, self.lattice, self.swath.lead_m, self.paths, self.terrain)
 
     def height_above_takeoff_m(
         self, place_m: EastNorth, takeoff_up_m: float | None
@@ -288,7 +288,7 @@ def plan_survey(
         terrain = terrain_over(survey, flyable, air.elevation, air.limits, settings)
     if isinstance(terrain, str):
         return Refusal(RULE, terrain)
-    ways = RegionPaths(flyable)
+    paths = RegionPaths(flyable)
     cells = cells_over(area, frame, survey.cell_m, lattice, pieces, swath)
     if not cells.is_reached.any():
         return Refusal(
@@ -299,7 +299,7 @@ def plan_survey(
     counted = _counted_swath(survey, swath, lattice, settings)
     ground_m = ground_range_m(area, air.elevation, settings.terrain_cell_m)
     plan = SurveyPlan(
-        survey, frame, settings, lattice, swath, counted, pieces, ways, cells, terrain, ground_m
+        survey, frame, settings, lattice, swath, counted, pieces, paths, cells, terrain, ground_m
     )
     return plan if terrain is None else replace(plan, stops_per_m=_stops_per_m(plan, terrain))
 

@@ -51,7 +51,7 @@ class PositionSample:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class InView:
-    """Cells of a window that are in view at the end of a way: since when, and since when sunlit.
+    """Cells of a window that are in view at the end of a path: since when, and since when sunlit.
 
     `NEVER` where they are not.
     """
@@ -102,7 +102,7 @@ class CoverageProgress:
     waiting: Mapping[str, tuple[PositionSample, ...]] = field(
         default_factory=lambda: MappingProxyType({})
     )
-    """Positions by serial whose way from the first on does not count yet."""
+    """Positions by serial whose path from the first on does not count yet."""
     in_view: Mapping[str, InView] = field(default_factory=lambda: MappingProxyType({}))
     imaged_95_at_ns: int | None = None
     in_sun_95_at_ns: int | None = None
@@ -141,7 +141,7 @@ def with_shade(progress: CoverageProgress, shade: ShadeMap, plan: SurveyPlan) ->
 def with_positions(
     progress: CoverageProgress, serial: str, seen: Sequence[PositionSample], plan: SurveyPlan
 ) -> CoverageProgress:
-    """Return the progress with more of a vehicle's way, oldest first; it counts when settled.
+    """Return the progress with more of a vehicle's path, oldest first; it counts when settled.
 
     Positions that are out of order, or too near in time to the one before, are excluded; of a
     burst the last one is kept, which is the freshest.
@@ -173,7 +173,7 @@ def count_settled(progress: CoverageProgress, plan: SurveyPlan, now_ns: int) -> 
     waiting = dict(progress.waiting)
     for serial, number in due.items():
         for a, b in pairwise(waiting[serial][:number]):
-            counting.way(serial, a, b)
+            counting.path(serial, a, b)
         waiting[serial] = waiting[serial][number - 1 :]
     return _with_95_times(
         replace(counting.result(), waiting=MappingProxyType(waiting)), plan, until_ns
@@ -192,7 +192,7 @@ def _with_95_times(progress: CoverageProgress, plan: SurveyPlan, at_ns: int) -> 
 
 
 class _Counter:
-    """Counts ways on a copy of the progress."""
+    """Counts paths on a copy of the progress."""
 
     def __init__(self, progress: CoverageProgress, plan: SurveyPlan) -> None:
         self._plan = plan
@@ -211,8 +211,8 @@ class _Counter:
             in_view=MappingProxyType(self._in_view),
         )
 
-    def way(self, serial: str, a: PositionSample, b: PositionSample) -> None:
-        """Count a vehicle's way between two positions."""
+    def path(self, serial: str, a: PositionSample, b: PositionSample) -> None:
+        """Count a vehicle's path between two positions."""
         plan = self._plan
         before = self._in_view.pop(serial, None)
         if before is not None and before.at_ns != a.at_ns:
@@ -262,8 +262,8 @@ class _Counter:
 
 
 def _off_height_m(plan: SurveyPlan, ends: Sequence[PositionSample]) -> float | None:
-    """How far a way's ends are at most off the heights that its mission may have there; None: it is
-    not known."""
+    """How far a path's ends are at most off the heights that its mission may have there; None: it
+    is not known."""
     below_m, above_m = 0.0, 0.0
     if plan.terrain is not None:
         below_m, above_m = plan.settings.terrain_below_m, plan.settings.terrain_above_m
@@ -284,9 +284,9 @@ def is_flown_as_planned(
     moved_m: tuple[float, float],
     off_m: float,
 ) -> bool:
-    """Whether a way is flown as the rows are: height, course, speed, and no gap in time.
+    """Whether a path is flown as the rows are: height, course, speed, and no gap in time.
 
-    `moved_m` is the way along and across the rows, `off_m` how far it is off the planned height.
+    `moved_m` is the path along and across the rows, `off_m` how far it is off the planned height.
     """
     took_s = ns_to_seconds(times_ns[1] - times_ns[0])
     if not 0.0 < took_s <= settings.longest_gap_s:

@@ -14,7 +14,7 @@ from recon.guidance.survey.lattice import EastNorth
 from recon.model.arrays import FloatArray
 
 CLEARANCE_M = 0.25
-"""Distance of a way's corners from the edge, so that rounding never crosses it."""
+"""Distance of a path's corners from the edge, so that rounding never crosses it."""
 
 OFF_PLACE_M = 3.0
 """A vehicle at the end of a row is no farther off it: GNSS and braking."""
@@ -27,7 +27,7 @@ COARSEST_M = 50.0
 
 
 class RegionPaths:
-    """Shortest ways in one area; what it has worked out it keeps."""
+    """Shortest paths in one area; what it has worked out it keeps."""
 
     def __init__(self, area: shapely.Geometry) -> None:
         self.area = area
@@ -36,7 +36,7 @@ class RegionPaths:
         shapely.prepare(area)
 
     def between(self, start_m: EastNorth, end_m: EastNorth) -> tuple[EastNorth, ...] | None:
-        """Return the corners on the way, none where it is straight; None where there is no way."""
+        """Return the corners on the way, none where it is straight; None where there is no path."""
         if self._is_open(np.array([start_m]), end_m)[0]:
             return ()
         return self._around(start_m, end_m)
@@ -77,11 +77,11 @@ class RegionPaths:
         return None if best is None else self._back(best[1], before)
 
     def _back(self, corner: int, before: dict[int, int]) -> tuple[EastNorth, ...]:
-        way: list[EastNorth] = []
+        path: list[EastNorth] = []
         while corner >= 0:
-            way.append((float(self._corners[corner][0]), float(self._corners[corner][1])))
+            path.append((float(self._corners[corner][0]), float(self._corners[corner][1])))
             corner = before[corner]
-        return tuple(reversed(way))
+        return tuple(reversed(path))
 
     def _neighbours(self, corner: int) -> list[tuple[int, float]]:
         if corner not in self._seen:

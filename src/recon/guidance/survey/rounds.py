@@ -146,7 +146,7 @@ def _hand_out(
         given, missions = _give_missions(replace(state, waiting=shared_out), free, now_ns)
         if missions:
             return replace(given, reason=f"round {state.round}"), missions
-    reason = "waiting: no battery lasts for the next row, the way there and the return"
+    reason = "waiting: no battery lasts for the next row, the path there and the return"
     return replace(state, reason=reason), ()
 
 
@@ -202,7 +202,7 @@ def assign(
     purpose = f"survey {survey.name}: round {state.round}"
     track = Track(flight.corners_m, flight.up_m)
     mission = mission_of(track, survey, frame, purpose, surveyor.takeoff_up_m)
-    approach = approach_of(track, surveyor.place_m, state.plan.ways, frame)
+    approach = approach_of(track, surveyor.place_m, state.plan.paths, frame)
     waiting = {**state.waiting, serial: rest}
     if not rest:
         del waiting[serial]
@@ -223,8 +223,8 @@ def longest_mission(
 ) -> tuple[Track | None, int]:
     """Return the longest beginning of a route that the battery lasts for, and how many legs it has.
 
-    It ends where there is no way on to the next row: what comes then is a mission of its own, and
-    the gate judges the way there. It also ends before what `may_fly` rules out.
+    It ends where there is no path on to the next row: what comes then is a mission of its own, and
+    the gate judges the path there. It also ends before what `may_fly` rules out.
     """
 
     def track(count: int) -> Track | None:
@@ -242,7 +242,8 @@ def longest_mission(
 
 
 def battery_lasts(plan: SurveyPlan, track: Track | None, surveyor: Surveyor) -> bool:
-    """Return whether there is a track and the battery lasts for it, and the ways there and home."""
+    """Return whether there is a track and the battery lasts for it, and the paths there and
+    home."""
     if track is None or surveyor.time_left_s is None:
         return track is not None
     home_m = surveyor.home_m or surveyor.place_m

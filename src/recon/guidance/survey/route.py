@@ -210,7 +210,7 @@ def _mark_within(leg: RowLeg, first_m: float, lattice: RowLattice) -> float:
 
 
 def _length_m(route: Route, lattice: RowLattice, cost: Cost) -> float:
-    """How long a route is with the ways between its legs and its stops."""
+    """How long a route is with the paths between its legs and its stops."""
     rows_m = sum(leg.piece.length_m + cost.stop_m for leg in route)
     return rows_m + sum(_between_m(a, b, lattice) + cost.stop_m for a, b in pairwise(route))
 

@@ -111,7 +111,7 @@ def _piece(row: int, span: Span, chords: Sequence[Span], swath: Swath) -> Piece:
 def _inside(
     pieces: Sequence[Piece], flyable: shapely.Geometry, lattice: RowLattice, swath: Swath
 ) -> Iterator[Piece]:
-    """The parts of pieces whose flown way, lead and all, stays in what may be flown over."""
+    """The parts of pieces whose flown path, lead and all, stays in what may be flown over."""
     shapely.prepare(flyable)
     for piece in pieces:
         across_m = lattice.row_across_m(piece.row)

@@ -65,7 +65,7 @@ class Flight:
 
 @dataclass(frozen=True, slots=True)
 class Pace:
-    """How fast a vehicle flies: `stop_s` for each corner, `layer_s` for a way in its layer."""
+    """How fast a vehicle flies: `stop_s` for each corner, `layer_s` for a path in its layer."""
 
     speed_mps: float
     stop_s: float
@@ -173,11 +173,11 @@ class Search:
         part, pace = self._parts[segment], self._pace
         entry_m = part.start_m if heading == AHEAD else part.end_m
         across_m = abs(part.across_m - node.place_m[1])
-        way_m = hypot(entry_m - node.place_m[0], across_m)
+        path_m = hypot(entry_m - node.place_m[0], across_m)
         arrives_s = node.at_s + (0.0 if node.heading == WAITS else pace.stop_s / 2.0)
-        if way_m > 1.0:
-            arrives_s += way_m / pace.speed_mps + pace.stop_s
-        is_near = way_m <= self._settings.near_m if node.segment == NONE else (
+        if path_m > 1.0:
+            arrives_s += path_m / pace.speed_mps + pace.stop_s
+        is_near = path_m <= self._settings.near_m if node.segment == NONE else (
             across_m <= self._settings.near_rows * self._lattice.spacing_m
         )  # fmt: skip
         return arrives_s if is_near else arrives_s + pace.layer_s
@@ -263,10 +263,11 @@ class Search:
 
 
 def _soon(probability: FloatArray, settings: SurveySettings) -> BoolArray:
-    """(S, K): whether flying over a segment is worth it at a moment, or within `way_s` of it."""
+    """(S, K): whether flying over a segment is worth it at a moment, or within `transit_s` of
+    it."""
     is_worth = probability >= settings.least_sun_probability
     soon = is_worth.copy()
-    for later in range(1, 1 + int(settings.way_s / settings.moment_s)):
+    for later in range(1, 1 + int(settings.transit_s / settings.moment_s)):
         soon[:, :-later] |= is_worth[:, later:]
     found: BoolArray = soon
     return found

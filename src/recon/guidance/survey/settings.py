@@ -137,7 +137,7 @@ class SurveySettings:
     rows_looked_at: int = 5
     """Nearest rows with something left in sun on which a flight may continue."""
 
-    way_s: float = 40.0
+    transit_s: float = 40.0
     """Time to reach one of these rows: it must be in sun within this."""
 
     expected_rate: float = 0.8
@@ -160,7 +160,7 @@ class SurveySettings:
     """Distance to a row within which a vehicle flies at the rows' height, if the gate approves."""
 
     near_rows: float = 2.6
-    """Rows this far apart are within one mission; farther ones cost the way in a layer."""
+    """Rows this far apart are within one mission; farther ones cost the path in a layer."""
 
     start_s: float = 3.5
     """Time from the decision until a hovering aircraft moves: upload and start."""
@@ -189,8 +189,8 @@ class SurveySettings:
     are back by then."""
 
     handed_on_s: float = 30.0
-    """Rows are handed on to a vehicle without any if that saves as much: its way there, and another
-    mission, take half of it."""
+    """Rows are handed on to a vehicle without any if that saves as much: its path there, and
+    another mission, take half of it."""
 
     hand_on_free_share: float = 0.2
     """Rows are handed on only if the free ground in sun is at most this share of the mission's."""
@@ -245,7 +245,7 @@ class SurveySettings:
     """A waiting vehicle looks for a flight again after this."""
 
     battery_change_away_s: float = 300.0
-    """The way home, landing, another battery, takeoff and the way back."""
+    """The route home, landing, another battery, takeoff and the path back."""
 
     battery_kept_fraction: float = 0.5
     """A battery that is this full after a landing stays in; a lower one is changed."""
@@ -254,7 +254,7 @@ class SurveySettings:
     """Battery above a site's large reserve: a vehicle that flies rows is above the reserve."""
 
     ground_wait_away_s: float = 150.0
-    """The way home, landing, takeoff with the same battery and the way back."""
+    """The route home, landing, takeoff with the same battery and the path back."""
 
     saved_battery_gain: float = 0.25
     """A wait in the air costs a quarter of it later, in a change of battery, if one is needed."""
@@ -277,7 +277,7 @@ class SurveySettings:
     shade_persists_s: float = 120.0
     """Observed sun or shade is worth a third after this long, and nothing from then on."""
 
-    way_home_waits_s: float = 60.0
+    route_home_waits_s: float = 60.0
     """Reserve besides the return for a vehicle that waits for others' rows: it may wait there."""
 
     enough_share: float = 0.99

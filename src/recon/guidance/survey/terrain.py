@@ -33,7 +33,7 @@ from recon.model.units import HECTARE_M2
 ROUNDING_M = 1e-6
 
 MOST_LEGS_KEPT = 4_096
-"""Legs whose waypoints are remembered: a survey has up to some hundred rows and ways."""
+"""Legs whose waypoints are remembered: a survey has up to some hundred rows and paths."""
 
 LEAST_CLIMB_M = 5.0
 """Least climb along one leg where the site's height limits leave less: then the gate decides."""

@@ -217,7 +217,7 @@ class VehicleChoice:
         return self.fly(self._allowed(route))
 
     def _images_little(self, route: Route) -> bool:
-        """Whether nearly all the time of these rows would be for the way there."""
+        """Whether nearly all the time of these rows would be for the path there."""
         passed = self.passing(route)
         rate_m2ps = self.plan.survey.speed_mps * self.plan.lattice.spacing_m
         return (
@@ -276,7 +276,7 @@ class VehicleChoice:
         may_fly = partial(is_open, closed_ground(state.closed)) if state.closed else None
         track, count = longest_mission(self.plan, route, self.surveyor, may_fly)
         if track is None:
-            text = "waits: its battery lasts for no row, the way there and the return"
+            text = "waits: its battery lasts for no row, the path there and the return"
             return self.wait(text, self.settings.retry_s)
         passed = self.passing(route[:count])
         sun = passed.lit_m2(self.expected) / max(passed.missing_m2, 1.0)

@@ -1,4 +1,4 @@
-"""Which cells are in view while a vehicle flies a straight way, from when to when."""
+"""Which cells are in view while a vehicle flies a straight path, from when to when."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -57,12 +57,12 @@ def crossing(
     cells: CoverageCells,
     lattice: RowLattice,
     swath: Swath,
-    way: tuple[AlongAcross, AlongAcross],
+    path: tuple[AlongAcross, AlongAcross],
     times_ns: tuple[int, int],
 ) -> Crossing:
-    """Return what is in view on a way in metres along and across; the footprint lies along."""
-    window = _window(cells.grid, lattice, swath, way)
-    (start_along, start_across), (end_along, end_across) = way
+    """Return what is in view on a path in metres along and across; the footprint lies along."""
+    window = _window(cells.grid, lattice, swath, path)
+    (start_along, start_across), (end_along, end_across) = path
     first_a, last_a = _shares(
         cells.along_m[window.index], start_along, end_along, swath.half_along_m
     )
@@ -92,20 +92,20 @@ def _shares(
     cell_m: FloatArray, start_m: float, end_m: float, half_m: float
 ) -> tuple[FloatArray, FloatArray]:
     """Return from which to which share of the way a cell is within `half_m`, on one axis."""
-    way_m = end_m - start_m
-    if abs(way_m) < STANDING_M:
+    path_m = end_m - start_m
+    if abs(path_m) < STANDING_M:
         is_near = np.abs(cell_m - start_m) <= half_m
         return np.where(is_near, -np.inf, np.inf), np.where(is_near, np.inf, -np.inf)
-    one = (cell_m - half_m - start_m) / way_m
-    other = (cell_m + half_m - start_m) / way_m
+    one = (cell_m - half_m - start_m) / path_m
+    other = (cell_m + half_m - start_m) / path_m
     return np.minimum(one, other), np.maximum(one, other)
 
 
 def _window(
-    grid: GroundGrid, lattice: RowLattice, swath: Swath, way: tuple[AlongAcross, AlongAcross]
+    grid: GroundGrid, lattice: RowLattice, swath: Swath, path: tuple[AlongAcross, AlongAcross]
 ) -> Window:
     """The cells round all that the footprint passes over."""
-    (one_along, one_across), (other_along, other_across) = way
+    (one_along, one_across), (other_along, other_across) = path
     middle_m = ((one_along + other_along) / 2.0, (one_across + other_across) / 2.0)
     half_along_m = abs(other_along - one_along) / 2.0 + swath.half_along_m
     half_across_m = abs(other_across - one_across) / 2.0 + swath.half_across_m

@@ -95,7 +95,7 @@ def go_home_height(vehicle: VehicleState, situation: Situation) -> Check:
     if low:
         return HEIGHT.attention(
             f"{height_m:g} m does not clear {', '.join(low)}",
-            "orders whose way home crosses it are refused; set a greater height to clear it",
+            "orders whose route home crosses it are refused; set a greater height to clear it",
         )
     return HEIGHT.ok(f"{height_m:g} m above takeoff")
 

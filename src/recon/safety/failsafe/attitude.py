@@ -31,7 +31,7 @@ ROW = FailsafeRow(
     begins="tilted by more than 45 degrees",
     ends="it is level again",
     reactions=frozenset({Reaction.ALARM, Reaction.HOLD, Reaction.LAND}),
-    why_no_other="an aircraft that tilts so far flies no way home, and the alarm cannot be "
+    why_no_other="an aircraft that tilts so far flies no route home, and the alarm cannot be "
     "switched off",
     default=cells(ALARM, ALARM, ALARM, ALARM),
     after_s=2.0,

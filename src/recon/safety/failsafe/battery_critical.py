@@ -1,4 +1,4 @@
-"""Battery critical: the aircraft's serious warning, 10 % left, or too little for the way home.
+"""Battery critical: the aircraft's serious warning, 10 % left, or too little for the route home.
 
 It is recalled at once. A returning vehicle is not landed in place by default: that place may
 be water, a road or a person, and only the site knows.

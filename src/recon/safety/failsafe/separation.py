@@ -1,7 +1,7 @@
 """Separation: two vehicles, or one and a hazard area, come too near.
 
 The watchdog `separation` finds it, chooses whom to hold, and when; a cell only decides whether a
-vehicle in that activity may be held. One on the way home is held last. The switch for all holds
+vehicle in that activity may be held. One on the route home is held last. The switch for all holds
 stays (`recon separation-hold`).
 """
 

@@ -4,7 +4,7 @@
 `HoldPath`, `TakeoffClimb`). Three kinds of question use them, each in the form it needs:
 
 - fences, heights and keep-out zones: volumes without times (`volumes.py`), everything the vehicle
-  may touch, the way home by its own failsafe included;
+  may touch, the route home by its own failsafe included;
 - energy: points and a speed (`recon.safety.energy`);
 - separation: rows with times and uncertainty (`recon.safety.prediction`).
 

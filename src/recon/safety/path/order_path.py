@@ -100,7 +100,7 @@ def order_path(body: Body, vehicle: VehicleState) -> OrderPath:
             return mission
         case GoTo():
             return StraightFlight(
-                body.target, body.height_above_takeoff_m, body.speed_mps, "the way to the target"
+                body.target, body.height_above_takeoff_m, body.speed_mps, "the leg to the target"
             )
         case Nudge() if vehicle.position.value is not None:
             target = moved_m(vehicle.position.value, body.north_m, body.east_m)

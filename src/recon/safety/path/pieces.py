@@ -90,12 +90,12 @@ class Kind(IntEnum):
     """What a piece of a path is."""
 
     FLIGHT = 0
-    """Part flown by the station's order: the way there, a leg, what a stick may cover."""
+    """Part flown by the station's order: the path there, a leg, what a stick may cover."""
     CORNER = 1
     """Where a curved mission may fly at a waypoint: the hull of the corner."""
     CLIMB = 2
     """Straight up from a flight or a corner to the go-home height."""
-    WAY_HOME = 3
+    ROUTE_HOME = 3
     """Straight home at the go-home height, from every point of a flight."""
     LANDING = 4
     """Straight down to the ground: at the end, at home, or by the aircraft's failsafe."""
@@ -104,8 +104,8 @@ class Kind(IntEnum):
 _WORDS = {
     Kind.FLIGHT: "{}",
     Kind.CORNER: "{}",
-    Kind.CLIMB: "the climb before the way home from {}",
-    Kind.WAY_HOME: "the way home from {}",
+    Kind.CLIMB: "the climb before the route home from {}",
+    Kind.ROUTE_HOME: "the route home from {}",
     Kind.LANDING: "the landing at {}",
 }
 
@@ -203,7 +203,7 @@ class PathVolume:
     @cached_property
     def held_to_heights(self) -> IntArray:
         """The indices of the pieces that the site's height limits are for: not climbs, landings."""
-        return np.flatnonzero(self.of_kinds(Kind.FLIGHT, Kind.CORNER, Kind.WAY_HOME))
+        return np.flatnonzero(self.of_kinds(Kind.FLIGHT, Kind.CORNER, Kind.ROUTE_HOME))
 
     def of_kinds(self, *kinds: Kind) -> BoolArray:
         """Return which pieces are of these kinds, (N,)."""

@@ -1,6 +1,6 @@
 """Path volumes: everything that an order may make its vehicle touch, for rules about places.
 
-A vehicle sets out from its last known position. On the way to a mission's first waypoint it may fly
+A vehicle sets out from its last known position. On the leg to a mission's first waypoint it may fly
 at every height between; so it may on a leg, a goto, a nudge, and while a stick changes its height.
 The height it sets out from counts as up to 1 m nearer to where it goes (`height_noise_m`).
 """
@@ -84,24 +84,24 @@ def _pieces(path: OrderPath, begin: Departure, limits: SafetySettings) -> Pieces
 
 
 def mission_pieces(mission: Mission, departure: Departure, settings: FenceSettings) -> Pieces:
-    """The way to the first waypoint, the legs, a curved mission's corners, ways home, the end."""
+    """The way to the first waypoint, the legs, a curved mission's corners, routes home, the end."""
     points_m = np.empty((len(mission.waypoints), 3))
     points_m[:, :2] = places_m(departure.frame, mission.waypoints)
     points_m[:, 2] = [waypoint.height_above_takeoff_m for waypoint in mission.waypoints]
     points_m[:, 2] += departure.takeoff_m
     is_entry = np.arange(len(points_m)) == 0
-    way_m = np.concatenate([departure.here_m[np.newaxis], points_m])
-    way_m[0, 2] = _setting_out_m(departure, float(way_m[1, 2]), settings)
-    flown = legs_between(way_m, _leg_names(len(points_m)), is_entry=is_entry)
+    path_m = np.concatenate([departure.here_m[np.newaxis], points_m])
+    path_m[0, 2] = _setting_out_m(departure, float(path_m[1, 2]), settings)
+    flown = legs_between(path_m, _leg_names(len(points_m)), is_entry=is_entry)
     if mission.curved:
         flown = joined(flown, _corners(mission, points_m))
-    pieces = joined(flown, ways_home(flown, departure))
-    return joined(pieces, _landing(way_m[-1])) if mission.land_at_end else pieces
+    pieces = joined(flown, routes_home(flown, departure))
+    return joined(pieces, _landing(path_m[-1])) if mission.land_at_end else pieces
 
 
 def _leg_names(count: int) -> tuple[str, ...]:
     return (
-        "the way to waypoint 1",
+        "the leg to waypoint 1",
         *(f"leg {number} to {number + 1}" for number in range(1, count)),
     )
 
@@ -120,7 +120,8 @@ def _landing(point_m: FloatArray) -> Pieces:
 
 
 def straight_pieces(path: StraightFlight, departure: Departure, settings: FenceSettings) -> Pieces:
-    """Return the flight to the target by closed-loop sticks, with overshoot, and the ways home."""
+    """Return the flight to the target by closed-loop sticks, with overshoot, and the routes
+    home."""
     height_m = path.height_above_takeoff_m
     assert height_m is not None  # a departure has a height
     target_m = places_m(departure.frame, [path.target])[0]
@@ -130,19 +131,19 @@ def straight_pieces(path: StraightFlight, departure: Departure, settings: FenceS
         target_m = target_m + settings.steering_overshoot_m / distance_m * offset_m
     up_m = departure.takeoff_m + height_m
     flown = _from_here(departure, (*target_m.tolist(), up_m), path.name, settings)
-    return joined(flown, ways_home(flown, departure))
+    return joined(flown, routes_home(flown, departure))
 
 
 def hold_pieces(departure: Departure, settings: FenceSettings) -> Pieces:
-    """The place where the vehicle is; its way home is no newer than it is."""
+    """The place where the vehicle is; its route home is no newer than it is."""
     return _from_here(departure, departure.here_m.tolist(), "the place to hold", settings)
 
 
 def takeoff_pieces(departure: Departure, height_m: float, settings: FenceSettings) -> Pieces:
-    """Straight up to the height that a takeoff by hover ends at, and the ways home from there."""
+    """Straight up to the height that a takeoff by hover ends at, and the routes home from there."""
     top_m = departure.here_m + np.array([0.0, 0.0, height_m])
     flown = _from_here(departure, top_m.tolist(), "the takeoff", settings)
-    return joined(flown, ways_home(flown, departure))
+    return joined(flown, routes_home(flown, departure))
 
 
 def stick_pieces(path: StickFlight, departure: Departure, settings: FenceSettings) -> Pieces:
@@ -150,12 +151,12 @@ def stick_pieces(path: StickFlight, departure: Departure, settings: FenceSetting
 
     In the body's frame the direction turns with the vehicle from its present yaw to the stick's: a
     fan, or the whole circle when the yaw is not known or the turn is nearly half a circle. Every
-    height between the present one and the stick's. No way home: the next stick, the zero at the
+    height between the present one and the stick's. No route home: the next stick, the zero at the
     end or the aircraft's own failsafe follow within seconds.
     """
     up_m = departure.takeoff_m + path.height_above_takeoff_m
     reach_m = path.reach_m(settings.stick)
-    name = "the stick's way"
+    name = "the stick's path"
     east_m, north_m, _up_m = departure.here_m.tolist()
     if path.speed_mps == 0.0:
         return _from_here(departure, (east_m, north_m, up_m), name, settings)
@@ -218,11 +219,11 @@ def _from_here(
     )
 
 
-def ways_home(flown: Pieces, departure: Departure) -> Pieces:
+def routes_home(flown: Pieces, departure: Departure) -> Pieces:
     """Return what may follow at every point of what is flown, by the aircraft's failsafe.
 
     Going home: a climb to the go-home height (where it is lower), then straight home at that
-    height or the higher one it has, and down. From a flight these ways fill the triangle of the
+    height or the higher one it has, and down. From a flight these routes fill the triangle of the
     flight and home; those of a corner lie in the corner and in its legs' triangles. Landing: from
     everywhere straight down. Hovering: nothing.
     """
@@ -241,13 +242,13 @@ def _going_home(flown: Pieces, departure: Departure) -> Pieces:
     flights = flown.only(flown.kinds == Kind.FLIGHT)
     triangles_m = flights.triangles_m.copy()
     return_m = np.maximum(flights.low_m, least_m), np.maximum(flights.high_m, most_m)
-    # A flight is a leg (start, end, end): the way home starts anywhere on it.
+    # A flight is a leg (start, end, end): the route home starts anywhere on it.
     triangles_m[:, 2] = departure.home_m[:2]
-    ways = _like(flights, Kind.WAY_HOME, triangles_m, *return_m)
+    routes = _like(flights, Kind.ROUTE_HOME, triangles_m, *return_m)
     home_m = np.broadcast_to(departure.home_m[:2], (1, 3, 2))
     highest_m = np.array([return_m[1].max()])
     return joined(
-        climbs, ways, block(Kind.LANDING, home_m, np.array([-np.inf]), highest_m, (HOME,))
+        climbs, routes, block(Kind.LANDING, home_m, np.array([-np.inf]), highest_m, (HOME,))
     )
 
 

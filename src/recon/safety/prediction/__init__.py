@@ -11,8 +11,8 @@ that turn). Two users read it at different resolution:
 
 While telemetry is younger than `stale_s` a vehicle follows its intent; without an intent it may use
 its present speed in any direction for `free_s`. After `stale_s` it is a `HazardArea`: a circle that
-grows with its last speed, the ground below, and its way home; if it was sent a mission, the mission
-counts as well. A hazard area ends with new telemetry or by an operator's dismissal.
+grows with its last speed, the ground below, and its route home; if it was sent a mission, the
+mission counts as well. A hazard area ends with new telemetry or by an operator's dismissal.
 """
 
 from recon.model.arrays import BoolArray

@@ -169,7 +169,7 @@ def _now(
 ) -> _Now:
     """How near the others are from here.
 
-    Here is all the way since its last telemetry: a leaving vehicle was nearer then.
+    Here is all the path since its last telemetry: a leaving vehicle was nearer then.
     """
     here = sample([own.rows], [0.0])
     now = sample([trajectory.rows for trajectory in others], [0.0])
@@ -178,7 +178,7 @@ def _now(
     starts_m = np.column_stack([now.east_m[:, 0], now.north_m[:, 0]])
     ends_m = starts_m.copy()
     radius_m = now.radius_m[:, 0]
-    # A hazard area is all of its way home now, and as wide as it may grow.
+    # A hazard area is all of its route home now, and as wide as it may grow.
     whole = theirs.first[:-1]
     is_hazard = theirs.part[whole] == FlightPart.HAZARD
     starts_m[is_hazard] = theirs.starts_m[whole[is_hazard]]

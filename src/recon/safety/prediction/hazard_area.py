@@ -1,6 +1,6 @@
 """The hazard area of a vehicle with lost telemetry: everywhere it may be.
 
-It is somewhere in a circle about its last place, or on its way home. The circle grows with its last
+It is somewhere in a circle about its last place, or returning home. The circle grows with its last
 plausible speed and reaches down to the ground, for its battery ends somewhere.
 """
 
@@ -74,7 +74,7 @@ def hazard_area_of(
 
 
 def hazard_trajectories(hazard: HazardArea) -> tuple[Trajectory, ...]:
-    """Return the hazard area's volumes as trajectories: the circle, the way home, the landing."""
+    """Return the hazard area's volumes as trajectories: the circle, the route home, the landing."""
     circle = TrajectoryWriter(hazard.east_m, hazard.north_m, hazard.low_m, hazard.high_m)
     circle.radius_m = hazard.radius_m
     if hazard.radius_m < hazard.largest_m:
@@ -83,13 +83,13 @@ def hazard_trajectories(hazard: HazardArea) -> tuple[Trajectory, ...]:
     circle.stays(FlightPart.HAZARD)
     writers = [circle]
     if hazard.home_m is not None:
-        way = TrajectoryWriter(hazard.east_m, hazard.north_m, hazard.corridor_low_m, hazard.high_m)
-        way.radius_m = hazard.corridor_half_m
-        way.moves(*hazard.home_m, FOREVER_S, FlightPart.HAZARD)
+        path = TrajectoryWriter(hazard.east_m, hazard.north_m, hazard.corridor_low_m, hazard.high_m)
+        path.radius_m = hazard.corridor_half_m
+        path.moves(*hazard.home_m, FOREVER_S, FlightPart.HAZARD)
         landing = TrajectoryWriter(*hazard.home_m, hazard.low_m, hazard.high_m)
         landing.radius_m = hazard.corridor_half_m
         landing.stays(FlightPart.HAZARD)
-        writers += [way, landing]
+        writers += [path, landing]
     return tuple(writer.trajectory(hazard.name) for writer in writers)
 
 

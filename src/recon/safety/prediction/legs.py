@@ -1,4 +1,4 @@
-"""Straight ways flown with limited acceleration, and stopping: rows for a trajectory."""
+"""Straight paths flown with limited acceleration, and stopping: rows for a trajectory."""
 
 from math import atan2, cos, hypot, sin, sqrt
 from typing import NamedTuple
@@ -26,7 +26,7 @@ Phase = tuple[float, float, float, float]
 
 
 class Leg(NamedTuple):
-    """A straight way to a place: the heights at its end, the speeds at its start, in it and at its
+    """A straight path to a place: the heights at its end, the speeds at its start, in it and at its
     end, and which part of the flight it is."""
 
     east_m: float

@@ -44,7 +44,7 @@ class VehicleMotion(NamedTuple):
     """A vehicle at its last telemetry, `age_s` ago.
 
     `low_m` and `high_m` are equal but for a vehicle of unknown height. `velocity_mps` is
-    east, north, up. `go_home_up_m` is the height of its way home, as seen once that differs
+    east, north, up. `go_home_up_m` is the height of its route home, as seen once that differs
     from what is asked, None when it is not known; `home_m` the place in the plane.
     """
 

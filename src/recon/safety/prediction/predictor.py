@@ -263,7 +263,7 @@ class Predictor:
 
 
 def go_home_top_m(motion: VehicleMotion, settings: PredictionSettings) -> float:
-    """Return the height of the way home: the go-home height unless already higher."""
+    """Return the height of the route home: the go-home height unless already higher."""
     if motion.go_home_up_m is None:
         return min(motion.high_m + settings.unknown_climb_m, ALL_HEIGHTS_M)
     return max(motion.high_m, motion.go_home_up_m)

@@ -49,7 +49,7 @@ _WORDS = {
     FlightPart.HOVERING: "while it hovers",
     FlightPart.LANDING: "while it lands",
     FlightPart.CLIMBING_HOME: "while it climbs to go home",
-    FlightPart.GOING_HOME: "on its way home",
+    FlightPart.GOING_HOME: "returning home",
     FlightPart.STOPPING: "while it stops",
     FlightPart.STEERED: "under the sticks",
     FlightPart.GOING_TO: "on its way to its target",

@@ -1,4 +1,4 @@
-"""The battery suffices for the way home and a reserve from every point of a flight."""
+"""The battery suffices for the route home and a reserve from every point of a flight."""
 
 from math import ceil, floor, isfinite
 
@@ -58,7 +58,7 @@ def _short(
     if uses is None:
         return _refused(
             vehicle,
-            "endurance unknown, so the way home cannot be checked; write endurance_min = MINUTES "
+            "endurance unknown, so the route home cannot be checked; write endurance_min = MINUTES "
             f'under [[vehicles]] serial = "{vehicle.serial}" in site.toml',
         )
     has = vehicle.battery_fraction.value
@@ -66,7 +66,7 @@ def _short(
         return _refused(vehicle, "battery charge unknown; check its companion app")
     need = need_of(uses, vehicle, body)
     if need is None:
-        return _refused(vehicle, "position or home unknown, so the way home cannot be checked")
+        return _refused(vehicle, "position or home unknown, so the route home cannot be checked")
     left = _reserve(situation) if is_away else energy.landing_fraction
     return None if need.whole + left <= has else _too_little(vehicle, body, need, left, has)
 

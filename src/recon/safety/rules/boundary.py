@@ -1,4 +1,4 @@
-"""The site's boundary is kept along the whole path, the way home included."""
+"""The site's boundary is kept along the whole path, the route home included."""
 
 import numpy as np
 import numpy.typing as npt
@@ -16,10 +16,10 @@ RULE = "boundary"
 def boundary(command: Command, situation: Situation) -> Refusal | None:
     """Refuse a path that is not inside the site's boundary by its margin everywhere.
 
-    Every flight, corner, way home and landing must be in the boundary, more than
+    Every flight, corner, route home and landing must be in the boundary, more than
     `boundary_margin_m` from its edge and its holes' edges, at every height. A vehicle that is
     already closer to the edge, or outside, may be moved if every piece that begins where it is (its
-    way home from there too) goes no farther out than it is now; all else must keep the margin.
+    route home from there too) goes no farther out than it is now; all else must keep the margin.
     A stick without velocity moves nowhere and is not judged. Without a boundary nothing is refused.
     """
     fence = situation.airspace.boundary

@@ -15,7 +15,7 @@ ROUNDING_M = 1e-6
 def home_distance(command: Command, situation: Situation) -> Refusal | None:
     """Refuse a path of which any point is farther than `max_distance_from_home_m` from home.
 
-    The distance is horizontal. Flights count: a corner and the way home are nowhere farther than
+    The distance is horizontal. Flights count: a corner and the route home are nowhere farther than
     the legs they begin on. A piece that begins where the vehicle is may go as far as the vehicle is
     now. A stick without velocity moves nowhere and is not judged.
     """

@@ -1,4 +1,4 @@
-"""Keep-out zones are kept out of along the whole path, the way home included."""
+"""Keep-out zones are kept out of along the whole path, the route home included."""
 
 import numpy as np
 
@@ -115,10 +115,10 @@ def _refusal(zone: PreparedZone, path: PathVolume, index: int, situation: Situat
     margin_m = situation.airspace.airspace.limits.boundary_margin_m
     vertical_m = situation.settings.fences.zone_vertical_margin_m
     gap_m = float(zone.polygon.gap_m(path.footprints.only(np.array([index])))[0])
-    way = "goes through" if gap_m == 0.0 else f"comes within {gap_m:.2f} m of"
+    verb = "goes through" if gap_m == 0.0 else f"comes within {gap_m:.2f} m of"
     return Refusal(
         RULE,
-        f"{path.subject(index)} {way} the keep-out zone {zone.zone.name!r}{_extent(zone.zone)} at "
+        f"{path.subject(index)} {verb} the keep-out zone {zone.zone.name!r}{_extent(zone.zone)} at "
         f"{path.heights(index)}; the margin is {margin_m:g} m horizontally"
         f"{_vertically(zone.zone, vertical_m)}",
         parameters={

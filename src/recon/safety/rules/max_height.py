@@ -1,4 +1,4 @@
-"""No path is higher above ground than the site allows, the way home included."""
+"""No path is higher above ground than the site allows, the route home included."""
 
 from math import inf
 
@@ -19,8 +19,8 @@ RULE = "max_height"
 def max_height(command: Command, situation: Situation) -> Refusal | None:
     """Refuse a path that goes too high above ground.
 
-    Every flight, corner and way home must be at most `max_height_above_ground_m` above the lowest
-    ground under the whole piece; without an elevation model the ground is assumed flat. A way
+    Every flight, corner and route home must be at most `max_height_above_ground_m` above the lowest
+    ground under the whole piece; without an elevation model the ground is assumed flat. A path
     home is at the go-home height; while that is unknown, the path is refused. A piece that begins
     where the vehicle is may be as high above the lowest ground under it as the vehicle is above
     ground now. A stick without velocity may be `stop_slack_m` higher; while the vehicle's
@@ -103,7 +103,7 @@ def _refusal(path: PathVolume, index: int, situation: Situation) -> Refusal:
         return Refusal(RULE, f"{what} goes over ground outside the site's elevation model")
     above_m = float(pieces.high_m[index]) - lowest_m
     flat = " (flat ground assumed)" if is_ground_assumed_flat(situation.airspace) else ""
-    is_home = pieces.kinds[index] == Kind.WAY_HOME
+    is_home = pieces.kinds[index] == Kind.ROUTE_HOME
     lower = "; set a lower go-home height in the aircraft and in site.toml" if is_home else ""
     return Refusal(
         RULE,

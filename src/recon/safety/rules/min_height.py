@@ -17,11 +17,11 @@ _CLIMB_FIRST = "; climb straight up first (a mission's first waypoint may be abo
 def min_height(command: Command, situation: Situation) -> Refusal | None:
     """Refuse a path that comes too near to the ground.
 
-    Every flight, corner and way home must be at least `min_height_above_ground_m` above the highest
-    ground under the whole piece; without an elevation model the ground is assumed flat. Exempt
-    are landings and what keeps to a column of takeoff or landing: see `columns`. Outside the
-    elevation model the path is refused. A stick without velocity may be `stop_slack_m`
-    lower; where the vehicle's position is unknown, it is not judged.
+    Every flight, corner and route home must be at least `min_height_above_ground_m` above the
+    highest ground under the whole piece; without an elevation model the ground is assumed flat.
+    Exempt are landings and what keeps to a column of takeoff or landing: see `columns`. Outside the
+    elevation model the path is refused. A stick without velocity may be `stop_slack_m` lower; where
+    the vehicle's position is unknown, it is not judged.
     """
     path = path_volume(command, situation)
     if path is None:

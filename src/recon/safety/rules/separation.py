@@ -13,7 +13,7 @@ passes is not held a second later). Two vehicles that violate the minima already
 for `escape_s` only volumes nearer than now count. That is for vehicles in the air: one on the
 ground is apart as long as it stays there, and takes off when the other is out of the way.
 
-A vehicle whose telemetry is lost is a hazard area about its last position and along its way home;
+A vehicle whose telemetry is lost is a hazard area about its last position and along its route home;
 one that was sent a mission may also still fly it.
 
 Order of work, cheapest first: bounds of the order's trajectory, vehicles that can reach them,

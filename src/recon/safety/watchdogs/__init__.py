@@ -21,6 +21,7 @@ from recon.safety.settings import WatchdogSettings
 from recon.safety.watchdogs.battery_home import battery_home
 from recon.safety.watchdogs.fences import fences
 from recon.safety.watchdogs.go_home import go_home
+from recon.safety.watchdogs.route_home_zones import route_home_zones
 from recon.safety.watchdogs.separation import separation
 from recon.safety.watchdogs.telemetry import heights, link, sticks
 from recon.safety.watchdogs.traffic_picture import (
@@ -32,7 +33,6 @@ from recon.safety.watchdogs.traffic_picture import (
     hold_outcome,
     plane_of,
 )
-from recon.safety.watchdogs.way_home_zones import way_home_zones
 
 Watchdog = Callable[[TrafficPicture], Iterable[Finding]]
 
@@ -41,7 +41,7 @@ WATCHDOGS: tuple[Watchdog, ...] = (
     fences,
     battery_home,
     go_home,
-    way_home_zones,
+    route_home_zones,
     link,
     heights,
     sticks,

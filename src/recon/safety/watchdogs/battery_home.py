@@ -1,4 +1,4 @@
-"""Compares each vehicle's battery with what the way home takes from where it is now."""
+"""Compares each vehicle's battery with what the route home takes from where it is now."""
 
 from collections.abc import Iterator
 
@@ -25,7 +25,7 @@ def _compared(
 ) -> Iterator[Finding]:
     """Yield a critical finding below the landing minimum, a warning to return below the reserve."""
     least, reserve = picture.energy.landing_fraction, _reserve(picture)
-    figures = f"battery {has:.0%}, way home {needs:.0%}"
+    figures = f"battery {has:.0%}, route home {needs:.0%}"
     if has < needs + least and not (watched.is_coming_down and has >= needs):
         text = f"{figures}: it may not reach home; land it or recall it now"
         yield watched.finding(RULE, Severity.CRITICAL, text, after_s=1.0)

@@ -120,11 +120,11 @@ def hazard_closeness(
     if hazard.home_m is not None:
         landing_m = np.hypot(ahead.east_m - hazard.home_m[0], ahead.north_m - hazard.home_m[1])
         landing_m -= hazard.corridor_half_m
-        way_m = _to_way_m(ahead, hazard, hazard.home_m) - hazard.corridor_half_m
+        path_m = _to_path_m(ahead, hazard, hazard.home_m) - hazard.corridor_half_m
         beside_m = np.maximum(over_m, under_m)
         least = np.minimum(least, _shares(landing_m, vertical_m, need))
-        least = np.minimum(least, _shares(way_m, beside_m, need))
-        horizontal_m = np.minimum(horizontal_m, np.minimum(landing_m, way_m))
+        least = np.minimum(least, _shares(path_m, beside_m, need))
+        horizontal_m = np.minimum(horizontal_m, np.minimum(landing_m, path_m))
     return Gaps(least, horizontal_m, vertical_m)
 
 
@@ -150,7 +150,7 @@ def _shares(horizontal_m: FloatArray, vertical_m: FloatArray, need: SeparationMi
     return np.where(shares < 1.0, shares + DEPTH_WEIGHT * np.minimum(level, 0.0), shares)
 
 
-def _to_way_m(ahead: Samples, hazard: HazardArea, home_m: tuple[float, float]) -> FloatArray:
+def _to_path_m(ahead: Samples, hazard: HazardArea, home_m: tuple[float, float]) -> FloatArray:
     """How far each is from the straight line home."""
     along = np.array(home_m) - (hazard.east_m, hazard.north_m)
     squared = max(float(along @ along), 1e-9)

@@ -25,7 +25,7 @@ direction, does something else: a pilot's stick turns a mission without changing
 wind carries off what cannot fly against it. A rounded right angle is never farther from both its
 legs than 45 degrees."""
 ASIDE_MPS = 2.0
-LEAST_WAY_M = 1.0
+LEAST_DIRECTION_M = 1.0
 """A nearer place has no direction worth comparing."""
 
 _MODES = {
@@ -129,14 +129,16 @@ def _brakes(motion: VehicleMotion, braking: Braking, prediction: PredictionSetti
 def _flies_aside(motion: VehicleMotion, intent: Intent) -> bool:
     if motion.speed_mps < ASIDE_MPS:
         return False
-    ways = [way for way in _commanded_directions(motion, intent) if hypot(*way) >= LEAST_WAY_M]
+    directions = [
+        each for each in _commanded_directions(motion, intent) if hypot(*each) >= LEAST_DIRECTION_M
+    ]
     least_mps = ASIDE_COSINE * motion.speed_mps
-    return bool(ways) and all(_along_mps(motion, way) < least_mps for way in ways)
+    return bool(directions) and all(_along_mps(motion, each) < least_mps for each in directions)
 
 
-def _along_mps(motion: VehicleMotion, way_m: Point) -> float:
+def _along_mps(motion: VehicleMotion, path_m: Point) -> float:
     east_mps, north_mps, _up_mps = motion.velocity_mps
-    return (way_m[0] * east_mps + way_m[1] * north_mps) / hypot(*way_m)
+    return (path_m[0] * east_mps + path_m[1] * north_mps) / hypot(*path_m)
 
 
 def _commanded_directions(motion: VehicleMotion, intent: Intent) -> Iterator[Point]:
@@ -147,15 +149,15 @@ def _commanded_directions(motion: VehicleMotion, intent: Intent) -> Iterator[Poi
         first = max(0, intent.passed - 2)
         waypoints = intent.mission.waypoints[first : intent.passed + 2]
         stops_m = [motion.plane.east_north_m(waypoint) for waypoint in waypoints]
-        yield from (_way(here_m, stop_m) for stop_m in stops_m[intent.passed - first :][:1])
-        yield from (_way(a_m, b_m) for a_m, b_m in pairwise(stops_m))
+        yield from (_direction(here_m, stop_m) for stop_m in stops_m[intent.passed - first :][:1])
+        yield from (_direction(a_m, b_m) for a_m, b_m in pairwise(stops_m))
     elif intent.target is not None:
-        yield _way(here_m, motion.plane.east_north_m(intent.target))
+        yield _direction(here_m, motion.plane.east_north_m(intent.target))
     elif intent.commanded is Commanded.RETURN and motion.home_m is not None:
-        yield _way(here_m, motion.home_m)
+        yield _direction(here_m, motion.home_m)
 
 
-def _way(from_m: Point, to_m: Point) -> Point:
+def _direction(from_m: Point, to_m: Point) -> Point:
     return to_m[0] - from_m[0], to_m[1] - from_m[1]
 
 

@@ -152,16 +152,16 @@ def near_limits(
     settings: WatchdogSettings,
     prediction: PredictionSettings,
 ) -> set[int]:
-    """Return which vehicles can reach a fence or a height limit in their way ahead.
+    """Return which vehicles can reach a fence or a height limit in their path ahead.
 
-    The way ahead ends at most one sample later than its time. Most vehicles are cleared by plain
+    The path ahead ends at most one sample later than its time. Most vehicles are cleared by plain
     comparisons of numbers; only the rest are asked of the polygon and the ground.
     """
     plane, height_m = tangent_plane(frame), frame.origin.ellipsoid_height_m
     cylinders = {
         number: _cylinder(
             reach,
-            way_ahead_s(reach.fastest_mps, settings, prediction) + settings.sample_s,
+            path_ahead_s(reach.fastest_mps, settings, prediction) + settings.sample_s,
             plane,
             height_m,
         )
@@ -174,10 +174,10 @@ def near_limits(
     return near | _may_leave(airspace, cylinders) | _may_break_heights(airspace, cylinders)
 
 
-def way_ahead_s(
+def path_ahead_s(
     speed_mps: float, settings: WatchdogSettings, prediction: PredictionSettings
 ) -> float:
-    """Return the time of the way ahead of a vehicle at this speed: in it fences are looked for."""
+    """Return the time of the path ahead of a vehicle at this speed: in it fences are looked for."""
     stop_s = prediction.reaction_s + speed_mps / (2.0 * prediction.braking_mps2)
     return min(settings.fence_factor * stop_s, settings.horizon_s)
 

@@ -94,7 +94,7 @@ class Lens:
 
     @cached_property
     def _share(self) -> FloatArray:
-        """The same, of the way to the rim."""
+        """The same, of the radius."""
         camera = self.camera
         return self._radius_px / min(self._circle.radius_px, max(camera.rows, camera.cols) / 2.0)
 

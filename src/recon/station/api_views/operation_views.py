@@ -66,28 +66,28 @@ def survey_view(station: Station, record: SurveyRecord, now_ns: int) -> schema.S
         figures=None if state is None else _figures(state),
         cells=None if state is None else _cells(state),
         rows=0 if state is None else state.plan.row_count,
-        ways=sum(len(way) for way in record.flown.values()),
+        paths=sum(len(path) for path in record.flown.values()),
     )
 
 
-def survey_ways(record: SurveyRecord) -> schema.SurveyWays | None:
+def survey_paths(record: SurveyRecord) -> schema.SurveyPaths | None:
     """Return the planned rows, the missions in flight and the flown paths; None without rows."""
     state = record.state
     if state is None:
         return None
     frame = state.plan.frame
-    return schema.SurveyWays(
+    return schema.SurveyPaths(
         survey_id=record.survey.id,
         rows=[_lon_lat(frame, row) for row in state.plan.rows_m],
         flying=[
-            schema.SurveyWay(
+            schema.SurveyPath(
                 serial=serial, number=each.number, places=_lon_lat(frame, each.corners_m)
             )
             for serial, each in state.flights.items()
         ],
         flown=[
-            schema.SurveyWay(serial=serial, number=number, places=_lon_lat(frame, way))
-            for (serial, number), way in record.flown.items()
+            schema.SurveyPath(serial=serial, number=number, places=_lon_lat(frame, path))
+            for (serial, number), path in record.flown.items()
         ],
     )
 

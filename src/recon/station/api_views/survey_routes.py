@@ -62,10 +62,10 @@ def _add_views(app: FastAPI, service: Service) -> None:
         known = service.surveys.view(survey_id)
         return found(known, "" if known is not None else _unknown_survey(service, survey_id))
 
-    @app.get("/api/surveys/{survey_id}/ways", responses=PROBLEMS)
-    async def ways(survey_id: int) -> schema.SurveyWays:
+    @app.get("/api/surveys/{survey_id}/paths", responses=PROBLEMS)
+    async def paths(survey_id: int) -> schema.SurveyPaths:
         """A survey's planned rows, the missions in flight, and the paths flown so far."""
-        rows = service.surveys.ways(survey_id)
+        rows = service.surveys.paths(survey_id)
         return found(rows, "" if rows is not None else _no_rows(service, survey_id))
 
     @app.get("/api/surveys/{survey_id}/estimate", responses=PROBLEMS)

@@ -18,7 +18,7 @@ from recon.model.survey_camera import CAMERAS, CameraModel, SurveyCameraError, c
 from recon.site import Site
 from recon.site.geojson import Feature, regions_of
 from recon.station.api_views import RunningStation, outcome_of
-from recon.station.api_views.operation_views import cells_number, survey_view, survey_ways
+from recon.station.api_views.operation_views import cells_number, survey_paths, survey_view
 from recon.station.api_views.survey_preview import Preview, survey_preview
 from recon.station.operations.survey.commands import start_refusal, stop_refusal
 from recon.station.operations.survey.planning import NO_SITE
@@ -89,10 +89,10 @@ class SurveyService:
         record = station.surveys.records.get(survey_id)
         return None if record is None else survey_view(station, record, self.driver.now_ns())
 
-    def ways(self, survey_id: int) -> schema.SurveyWays | None:
+    def paths(self, survey_id: int) -> schema.SurveyPaths | None:
         """Return a survey's planned rows and flown paths; None without rows."""
         record = self.driver.station.surveys.records.get(survey_id)
-        return None if record is None else survey_ways(record)
+        return None if record is None else survey_paths(record)
 
     def preview(self, survey_id: int, serials: Sequence[str]) -> Preview | None:
         """Return what estimates a survey with these vehicles; None without rows."""

@@ -107,7 +107,7 @@ def hazard_view(station: Station, vehicle: VehicleState, now_ns: int) -> schema.
     if found is None or place is None:
         return None
     home_place = home(vehicle) if found.home_m is not None else None
-    way = [] if home_place is None else [_lon_lat(place), _lon_lat(home_place)]
+    path = [] if home_place is None else [_lon_lat(place), _lon_lat(home_place)]
     return schema.HazardView(
         dismissal_name=dismissed_by(station, vehicle),
         age_s=found.age_s,
@@ -116,7 +116,7 @@ def hazard_view(station: Station, vehicle: VehicleState, now_ns: int) -> schema.
         radius_m=found.radius_m,
         growth_mps=found.growth_mps,
         largest_radius_m=found.largest_m,
-        corridor=way,
+        corridor=path,
         corridor_half_width_m=found.corridor_half_m,
     )
 

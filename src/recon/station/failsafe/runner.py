@@ -259,7 +259,7 @@ def _is_due(occurrence: Occurrence, cell: FailsafeCell, flight: _Flight) -> bool
 
 
 def _is_back(flight: _Flight, occurrence: Occurrence) -> bool:
-    """Whether telemetry of both kinds has come since: an old flight mode may hide a way home."""
+    """Whether telemetry of both kinds has come since: an old flight mode may hide a route home."""
     mode_at_ns = flight.vehicle.extended_received_at_ns
     is_new = mode_at_ns is not None and mode_at_ns > occurrence.since_ns
     return occurrence.seen_ns != flight.now_ns and is_new

@@ -6,7 +6,7 @@ from recon.station.state.station import Station
 
 
 def imagers_at_work(station: Station) -> tuple[str, ...]:
-    """Return the serials of those in the air and not on their way home, in the site's order."""
+    """Return the serials of those in the air and not returning home, in the site's order."""
     return tuple(
         serial
         for serial in station.imaging.imagers

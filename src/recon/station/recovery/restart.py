@@ -13,7 +13,7 @@ Theory of operation. A snapshot of the last run is read before the first event. 
 Nothing is sent. For `settle_s` the apps reconnect and one alarm lists the vehicles that are still
 missing (`traffic/identity_grace.py`). When a restored vehicle reports again, `recheck` compares
 position, height, altitude offset and battery with the snapshot: if they cannot belong to the same
-flight, the restored takeoff point is dropped, because every height and every way home depends on
+flight, the restored takeoff point is dropped, because every height and every route home depends on
 it. If no snapshot can be read, the start continues without one and raises an alarm.
 """
 
@@ -157,7 +157,7 @@ def recheck(station: Station, serial: str | None, now_ns: int) -> Station:
     mismatch = flight_mismatch(last, vehicle, now_ns, settings)
     if mismatch is None:
         return station
-    # The takeoff point of another flight would make every height and every way home wrong.
+    # The takeoff point of another flight would make every height and every route home wrong.
     unknown = replace(vehicle, takeoff_point=None, altitude_offset_at_takeoff_m=None)
     fleet = replace(station.fleet, vehicles={**station.fleet.vehicles, serial: unknown})
     station = replace(station, fleet=fleet)

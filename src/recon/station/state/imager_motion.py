@@ -21,7 +21,7 @@ class MotionStage(Enum):
     ASIDE = "aside"
     """Flying from its place for a side-step."""
     WAITING = "waiting"
-    """Holding beside its place: the gate refuses the way back for now."""
+    """Holding beside its place: the gate refuses the path back for now."""
     BACK = "back"
     """Flying back."""
     UPWIND = "upwind"
@@ -79,7 +79,7 @@ class SideStep(ImagerMotion):
 
     bearing_deg: float
     judged_at_ns: int = 0
-    """When the way back was last judged."""
+    """When the path back was last judged."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

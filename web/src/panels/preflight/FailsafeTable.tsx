@@ -15,7 +15,7 @@ export function FailsafeTable(props: { rows: readonly FailsafeRowView[] }) {
               <th scope="col">{text.failsafe.mission}</th>
               <th scope="col">{text.failsafe.steered}</th>
               <th scope="col">{text.failsafe.holding}</th>
-              <th scope="col">{text.failsafe.wayHome}</th>
+              <th scope="col">{text.failsafe.routeHome}</th>
             </tr>
           </thead>
           <tbody>

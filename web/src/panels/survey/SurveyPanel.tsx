@@ -49,7 +49,7 @@ interface SurveyProps {
 
 function SurveySection(props: SurveyProps) {
   const is = (...phases: SurveyView["phase"][]) => phases.includes(props.survey.phase);
-  /** Vehicles to list; of a finished survey only those still on their way home. */
+  /** Vehicles to list; of a finished survey only those still returning home. */
   const active = () =>
     props.survey.vehicles.filter(
       ({ not_flying_reason }) => !is("done", "aborted") || not_flying_reason !== null,
@@ -152,7 +152,7 @@ function Start(props: SurveyProps) {
   );
 }
 
-/** Pauses or aborts; aborting a finished survey holds its vehicles on their way home. */
+/** Pauses or aborts; aborting a finished survey holds its vehicles returning home. */
 function Stop(props: SurveyProps & { word: keyof typeof text.surveys.stops }) {
   const { source } = useConsole();
   const word = () => (props.word === "hold" ? "abort" : props.word);

@@ -104,7 +104,7 @@ export const hazard = {
   name: "Hazard area",
   noTelemetry: (age: string) => `No telemetry for ${age}.`,
   where: (radius: string) =>
-    `The vehicle may be anywhere within ${radius} of its last position, or on its way home. Other vehicles keep clear until telemetry returns.`,
+    `The vehicle may be anywhere within ${radius} of its last position, or returning home. Other vehicles keep clear until telemetry returns.`,
   clear: "Clear hazard area",
   clearWhen: "Only if the aircraft is confirmed on the ground or under manual control.",
 };
@@ -140,6 +140,6 @@ export const failsafe = {
   mission: "Mission",
   steered: "Steered",
   holding: "Holding",
-  wayHome: "Way home",
+  routeHome: "Route home",
   cell: (action: string, usual: string) => `${action} (default: ${usual})`,
 };

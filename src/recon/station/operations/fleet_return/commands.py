@@ -73,7 +73,7 @@ def refusal(station: Station, serial: str) -> Refusal | None:
     running = station.fleet_return
     member = None if running is None else running.members.get(serial)
     if member is not None and member.stage not in ENDED:
-        return Refusal(RULE, f"{name} is already on its way home, or waits for its turn")
+        return Refusal(RULE, f"{name} is already returning home, or waits for its turn")
     return None
 
 

@@ -188,7 +188,7 @@ class _Traffic:
         if dist(start_m, place_m) > self._settings.moved_m:
             return None
         return replace(
-            member.flight, start_m=place_m, way_m=(place_m[:2], *member.flight.way_m[1:])
+            member.flight, start_m=place_m, path_m=(place_m[:2], *member.flight.path_m[1:])
         )
 
     def hindrance(self, flight: ReturnFlight, running: FleetReturn) -> str | None:

@@ -16,7 +16,7 @@ from recon.guidance.fleet_return import (
     ReturnPlan,
     Separation,
     plan_return,
-    way_home,
+    route_home,
 )
 from recon.model.airspace import Airspace
 from recon.model.geo import GeoPoint, LocalFrame
@@ -154,7 +154,7 @@ def make_plan(work: ReturnPlanRequest) -> ReturnPlan:
     spots = [v.place_m[:2] for v in work.vehicles]
     spots += [v.pad.east_north_m for v in work.vehicles]
     settings = work.settings.plan
-    home = way_home(work.airspace, work.ground_up_m, spots, settings)
+    home = route_home(work.airspace, work.ground_up_m, spots, settings)
     return plan_return(
         work.vehicles,
         home,

@@ -122,7 +122,7 @@ def conditions(station: Station) -> Iterator[Condition]:
     text = f"side-steps for its survey: {distance_m:g} m and back, light is unknown"
     yield from notices.automatic_motion(station, newest, text)
     if newest is not None and newest.stage is MotionStage.WAITING:
-        text = f"waits beside its place, its way back is refused: {newest.reason}"
+        text = f"waits beside its place, its path back is refused: {newest.reason}"
         yield notices.about(station, newest, Severity.WARNING, "waits", text)
     yield from notices.off_its_place(station, newest, "Send it back to where it shows the field")
     if station.imager_motions.start(SideStep).refused is not None:
@@ -192,7 +192,7 @@ def _wait(station: Station, current: SideStep, settings: SideStepSettings, now_n
     if not _is_held_aside(station, current):
         return stopped(station, current, HOLD_ENDED, now_ns), ()
     if now_ns - current.since_ns > seconds_to_ns(settings.gate_waits_s):
-        why = f"its way back was refused for {settings.gate_waits_s:g} s: {current.reason}"
+        why = f"its path back was refused for {settings.gate_waits_s:g} s: {current.reason}"
         return held(station, current, why, now_ns)
     if now_ns - current.judged_at_ns < seconds_to_ns(settings.judged_again_s):
         return station, ()

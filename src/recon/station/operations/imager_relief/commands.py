@@ -103,7 +103,7 @@ def _busy(station: Station, event: ReliefOrdered, now_ns: int) -> Refusal | None
     if other is not None:
         return Refusal(RULE, f"{other.name} {other.doing} already")
     if is_in_the_air(station, serial) and is_going_home(station, serial):
-        return Refusal(RULE, f"{name} is on its way home; hold it first, or let it land")
+        return Refusal(RULE, f"{name} is returning home; hold it first, or let it land")
     if is_up is not True and not event.takeoff:
         return Refusal(RULE, f"{name} is not in the air, and takeoff was not allowed")
     if is_up is True and not is_at_rest(station, vehicle):
@@ -220,7 +220,7 @@ def _gimbal_deg(station: Station, vehicle: VehicleState) -> float | None:
 
 
 def _too_short(station: Station, vehicle: VehicleState, command: Command) -> Refusal | None:
-    """Why its battery gives too little time at the place; the gate judged the way itself."""
+    """Why its battery gives too little time at the place; the gate judged the path itself."""
     uses = consumption(vehicle, station.airspace, station.settings.safety.energy)
     has = vehicle.battery_fraction.value
     need = None if uses is None else need_of(uses, vehicle, command.body)

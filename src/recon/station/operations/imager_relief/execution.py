@@ -1,8 +1,8 @@
-"""The execution of a relief: one mission to the place, shade maps from there, the way home.
+"""The execution of a relief: one mission to the place, shade maps from there, the route home.
 
     to_place --its mission is flown to the end--> maps: its camera is switched on if it is quiet
     maps --three shade maps in a row that show the ground--> done: the relieved one is recalled
-    either --pilot, another order, all stop, telemetry or connection lost, the way or the maps late,
+    either --pilot, another order, all stop, telemetry or connection lost, flight or maps late,
              what ends any motion (`imager_motion/execution.py`)--> stopped
 
 The one that flies goes in a layer of its own, 10 m above the other's height or more. Both hover at

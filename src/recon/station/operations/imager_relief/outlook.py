@@ -81,9 +81,9 @@ def checked(
 def imager_outlook(station: Station, serial: str, now_ns: int) -> ImagerOutlook:
     """Return when an imaging drone in the air must return, by its reports.
 
-    Its charge then is what the way home and the site's reserve take, or the charge at which the
+    Its charge then is what the route home and the site's reserve take, or the charge at which the
     failsafe matrix recalls it, whichever is more; and a minute beside, as survey vehicles keep:
-    its way home may wait for others' rows.
+    its route home may wait for others' rows.
     """
     vehicle, energy = station.fleet.vehicles[serial], station.settings.safety.energy
     if vehicle.battery_warning.value in (BatteryWarning.LOW, BatteryWarning.SERIOUS):
@@ -101,7 +101,7 @@ def imager_outlook(station: Station, serial: str, now_ns: int) -> ImagerOutlook:
     reserve = station.airspace.airspace.limits.battery_reserve_fraction
     use = use_per_s(charges) or uses.fraction(1.0)
     needed = max(home + reserve, station.settings.low_battery_fraction) + RESOLUTION
-    needed += use * SURVEY_DEFAULT.way_home_waits_s
+    needed += use * SURVEY_DEFAULT.route_home_waits_s
     at_ns = return_due_ns(charges[-1], use, needed)
     return ImagerOutlook(at_ns, ns_to_seconds(at_ns - now_ns))
 

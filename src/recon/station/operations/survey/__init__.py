@@ -2,7 +2,7 @@
 
 `commands` has what operators may command, `planning` the worker's jobs, `execution` the step on a
 tick, `mission_dispatch` how missions become orders, `availability` which vehicles can fly, and
-`return_to_home` their way home. Surveys live in memory only: after a restart none continues.
+`return_to_home` their route home. Surveys live in memory only: after a restart none continues.
 """
 
 from recon.model.event import SurveyRequested, SurveyStarted, SurveyStopped

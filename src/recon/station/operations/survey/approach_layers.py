@@ -1,7 +1,7 @@
 """Heights for approaches: each vehicle of a survey has layers of its own, away from all rows.
 
 Above takeoff, all rows have one height, and layers lie above and below it. Above ground, rows have
-any height between the lowest and the highest wanted one along a vehicle's way. Layers are then
+any height between the lowest and the highest wanted one along a vehicle's path. Layers are then
 counted from the highest wanted height of the whole survey, so that no two vehicles share one
 wherever they took off, and a vehicle takes those of its own that are clear of the rows on its way.
 """
@@ -23,7 +23,7 @@ LOWEST_M = 20.0
 """No approach is lower: trees and buildings are in a zone, or lower than this."""
 
 EVERY_M = 5.0
-"""Wanted heights are looked up along a way at places this far apart: their lattice is as fine."""
+"""Wanted heights are looked up along a path at places this far apart: their lattice is as fine."""
 
 ROUNDING_M = 0.01
 
@@ -42,17 +42,18 @@ def layers_above_takeoff_m(
 def layers_over_terrain_m(
     terrain: Terrain,
     airspace: PreparedAirspace,
-    way_m: FloatArray,
+    path_m: FloatArray,
     end_m: FloatArray,
     number: int,
     count: int,
 ) -> list[float]:
-    """Return a vehicle's layers above its way (N, 2) to its first row and above the end of its last
-    one, (2,), up of the frame; the nearest to the rows first. None may be free of ground and rows.
+    """Return a vehicle's layers above its path (N, 2) to its first row and above the end of its
+    last one, (2,), up of the frame; the nearest to the rows first. None may be free of ground and
+    rows.
     """
-    wanted_m = terrain.up_m(np.concatenate([_along(way_m), end_m[np.newaxis]]))
+    wanted_m = terrain.up_m(np.concatenate([_along(path_m), end_m[np.newaxis]]))
     low_m, high_m = float(wanted_m.min()), float(wanted_m.max())
-    floor_m, ceiling_m = _heights_allowed_m(airspace, np.concatenate([way_m, end_m[np.newaxis]]))
+    floor_m, ceiling_m = _heights_allowed_m(airspace, np.concatenate([path_m, end_m[np.newaxis]]))
 
     def off_rows_m(layer_m: float) -> float:
         return max(layer_m - high_m, low_m - layer_m)
@@ -72,10 +73,10 @@ def layers_over_terrain_m(
     return sorted(free_m, key=lambda each: (off_rows_m(each), -each))
 
 
-def _along(way_m: FloatArray) -> FloatArray:
-    """The places of a way, and more of them in between."""
-    places = [way_m[:1]]
-    for a, b in pairwise(way_m):
+def _along(path_m: FloatArray) -> FloatArray:
+    """The places of a path, and more of them in between."""
+    places = [path_m[:1]]
+    for a, b in pairwise(path_m):
         pieces = 1 + int(hypot(*(b - a)) / EVERY_M)
         share = np.linspace(0.0, 1.0, pieces + 1)[1:, np.newaxis]
         places.append(a * (1.0 - share) + b * share)
@@ -83,7 +84,7 @@ def _along(way_m: FloatArray) -> FloatArray:
 
 
 def _heights_allowed_m(airspace: PreparedAirspace, places_m: FloatArray) -> tuple[float, float]:
-    """The lowest and the highest height for a level flight along a way, up of the frame."""
+    """The lowest and the highest height for a level flight along a path, up of the frame."""
     starts, ends = places_m[:-1], places_m[1:]
     lowest_m, highest_m = airspace.ground_within_up_m(np.stack([starts, ends, ends], axis=1))
     most_m = airspace.airspace.limits.max_height_above_ground_m - SPARE_M

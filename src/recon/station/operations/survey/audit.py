@@ -34,7 +34,7 @@ def survey_entries(
             kind = "aborted" if is_aborted else "paused"
             text = f"is {kind}; its vehicles hold"
             if record is not None and record.is_over and refusal is None:
-                kind, text = "held", "is over; vehicles on their way home hold"
+                kind, text = "held", "is over; vehicles returning home hold"
             yield _command(kind, _name(before, number), text, by, refusal, {"id": number})
     if after.surveys is not before.surveys:
         yield from _changes(before, event, after)

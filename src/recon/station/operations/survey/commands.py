@@ -168,7 +168,7 @@ def _stopped(
     if record.state is None:
         return Refusal(RULE, f"the rows of the survey {record.survey.name} are still being planned")
     if record.is_over and any(is_under_way(station, each) for each in record.members.values()):
-        return record.state  # unchanged; its vehicles on their way home are held
+        return record.state  # unchanged; its vehicles returning home are held
     if event.is_aborted:
         return abort(record.state, now_ns)
     return pause(record.state, now_ns)
@@ -193,7 +193,7 @@ def _vehicle_refusal(
     running = station.fleet_return
     member = None if running is None else running.members.get(serial)
     if member is not None and member.stage not in ENDED:
-        return Refusal(RULE, f"{name} is on its way home; hold it first, or let it land")
+        return Refusal(RULE, f"{name} is returning home; hold it first, or let it land")
     if vehicle.is_flying.value is False and not event.takeoff:
         return Refusal(RULE, f"{name} is on the ground; allow takeoff for this start")
     return None

@@ -78,7 +78,7 @@ def _about_battery(station: Station, member: SurveyMember) -> str:
 
 
 def _waits_long(station: Station, member: SurveyMember) -> Iterator[Condition]:
-    """A vehicle that waits long for its way home: its battery is limited."""
+    """A vehicle that waits long for its route home: its battery is limited."""
     running = station.fleet_return
     returning = None if running is None else running.members.get(member.serial)
     if returning is not None and returning.stage in (Stage.STOPPING, Stage.WAITING):

@@ -163,8 +163,8 @@ def _own_layers_m(
     here, takeoff_m = vehicle.position.value, takeoff_up_m(air, vehicle)
     if plan is None or plan.terrain is None or frame is None or here is None or takeoff_m is None:
         return layers_above_takeoff_m(first.height_above_takeoff_m, number, count, limits)
-    *way_m, end_m = places_m(frame, [here, *given.approach, first, last])
-    up_m = layers_over_terrain_m(plan.terrain, air, np.array(way_m), end_m, number, count)
+    *path_m, end_m = places_m(frame, [here, *given.approach, first, last])
+    up_m = layers_over_terrain_m(plan.terrain, air, np.array(path_m), end_m, number, count)
     layers_m = [round(each - takeoff_m, 2) for each in up_m]
     return layers_m or [first.height_above_takeoff_m]
 
@@ -226,7 +226,7 @@ def with_approaches(
     """Return the mission with an approach in each of the vehicle's own layers: straight up or down,
     across, onto the first row; and off the last row to the same height, if it `ends_in_layer`.
 
-    The way across turns at `corners`; zones are left to the gate.
+    The path across turns at `corners`; zones are left to the gate.
     """
     flown = tuple(_with_approach(mission, vehicle, layer_m, corners) for layer_m in layers_m)
     if ends_in_layer:
@@ -252,8 +252,8 @@ def _with_approach(
     above, *turns = _turns(plain, (here, *corners))
     if is_near:
         return replace(mission, waypoints=(above, *mission.waypoints))
-    way = (above, *turns, plain)
-    approach = (replace(each, height_above_takeoff_m=layer_m) for each in way)
+    path = (above, *turns, plain)
+    approach = (replace(each, height_above_takeoff_m=layer_m) for each in path)
     return replace(mission, waypoints=(*approach, *mission.waypoints))
 
 

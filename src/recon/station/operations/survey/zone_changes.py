@@ -121,8 +121,8 @@ def _zone_on_the_way(station: Station, member: SurveyMember) -> PreparedZone | N
     points_m = places_m(frame, places)
     legs_m = np.stack([points_m[:-1], points_m[1:], points_m[1:]], axis=1)
     margin_m = station.airspace.airspace.limits.boundary_margin_m
-    ways = Footprints(legs_m)
-    crossed = (each for each in zones if not each.polygon.is_clear_of(ways, margin_m).all())
+    paths = Footprints(legs_m)
+    crossed = (each for each in zones if not each.polygon.is_clear_of(paths, margin_m).all())
     return next(crossed, None)
 
 

@@ -22,15 +22,15 @@ def box_with_hole() -> shapely.Polygon:
     )
 
 
-def found(ways: RegionPaths, start: Place, end: Place) -> list[Place]:
-    """The whole way, ends and all."""
-    between = ways.between(start, end)
+def found(paths: RegionPaths, start: Place, end: Place) -> list[Place]:
+    """The whole path, ends and all."""
+    between = paths.between(start, end)
     assert between is not None
     return [start, *between, end]
 
 
-def length_m(way: list[Place]) -> float:
-    return sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(way))
+def length_m(path: list[Place]) -> float:
+    return sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(path))
 
 
 def test_where_nothing_is_in_the_way_it_is_straight() -> None:
@@ -38,10 +38,10 @@ def test_where_nothing_is_in_the_way_it_is_straight() -> None:
 
 
 def test_round_a_hole_by_the_shorter_side() -> None:
-    way = found(RegionPaths(box_with_hole()), (20.0, 30.0), (80.0, 30.0))
+    path = found(RegionPaths(box_with_hole()), (20.0, 30.0), (80.0, 30.0))
     shortest_m = 2.0 * hypot(20.0, 10.0) + 20.0
-    assert shortest_m <= length_m(way) < shortest_m + 1.0
-    assert all(north_m < 20.0 for _, north_m in way[1:-1])
+    assert shortest_m <= length_m(path) < shortest_m + 1.0
+    assert all(north_m < 20.0 for _, north_m in path[1:-1])
 
 
 def test_where_there_is_no_way_there_is_none() -> None:
@@ -55,13 +55,13 @@ def test_round_things_are_taken_with_few_corners() -> None:
         .buffer(100.0, quad_segs=600)
         .difference(shapely.Point(0, 0).buffer(50.0, quad_segs=600))
     )
-    ways = RegionPaths(rough)
-    assert len(ways._corners) <= MOST_CORNERS
-    way = found(ways, (-80.0, 0.0), (80.0, 0.0))
-    assert shapely.covers(rough, shapely.LineString(way))
+    paths = RegionPaths(rough)
+    assert len(paths._corners) <= MOST_CORNERS
+    path = found(paths, (-80.0, 0.0), (80.0, 0.0))
+    assert shapely.covers(rough, shapely.LineString(path))
     angle = np.arccos(50.0 / 80.0)
     shortest_m = 2.0 * (80.0 * np.sin(angle)) + 50.0 * (np.pi - 2.0 * angle)
-    assert shortest_m <= length_m(way) < 1.03 * shortest_m
+    assert shortest_m <= length_m(path) < 1.03 * shortest_m
 
 
 @settings(max_examples=examples(40), deadline=None)
@@ -79,14 +79,14 @@ def test_ways_between_all_rows_of_a_drawn_field_stay_inside(seed: int) -> None:
             ]
         )
     ]
-    area = plan.ways.area
+    area = plan.paths.area
     for _ in range(10):
         start, end = (ends[int(i)] for i in rng.integers(0, len(ends), 2))
         if shapely.distance(*(_part(area, place) for place in (start, end))) > 0.0:
-            assert plan.ways.between(start, end) is None
+            assert plan.paths.between(start, end) is None
             continue
-        way = found(plan.ways, start, end)
-        assert start == end or shapely.covers(area, shapely.LineString(way))
+        path = found(plan.paths, start, end)
+        assert start == end or shapely.covers(area, shapely.LineString(path))
 
 
 def _part(area: shapely.Geometry, place: Place) -> shapely.Geometry:
@@ -99,11 +99,11 @@ def _part(area: shapely.Geometry, place: Place) -> shapely.Geometry:
 def test_no_way_over_three_corners_is_shorter(seed: int) -> None:
     """Every chain of up to two corners of the area, tried one by one."""
     rng = np.random.default_rng(seed)
-    ways = RegionPaths(box_with_hole())
+    paths = RegionPaths(box_with_hole())
     start, end = ((float(e), float(n)) for e, n in rng.uniform((0, 25), (39, 75), (2, 2)))
     end = (100.0 - end[0], end[1])
-    found_m = length_m(found(ways, start, end))
-    corners = [(float(e), float(n)) for e, n in ways._corners]
+    found_m = length_m(found(paths, start, end))
+    corners = [(float(e), float(n)) for e, n in paths._corners]
     area = box_with_hole()
     tried = [
         length_m([start, a, b, end])

@@ -1,4 +1,4 @@
-"""Level ways home: what a site's air leaves open, and the shortest way through it.
+"""Level routes home: what a site's air leaves open, and the shortest path through it.
 
 Straight where nothing is closed, else the shortest around (a visibility graph).
 """
@@ -34,7 +34,7 @@ class ClosedVolume:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class WayHome:
+class RouteHome:
     """The heights that layers may have, what is closed between them, and where the site ends.
 
     `lowest_up_m` above `highest_up_m`: there is no room for a layer. `boundary` None: no fence.
@@ -52,13 +52,13 @@ OPEN_WAY_M = 10.0
 """The layers lie above a zone whose edge is this near to the hull of all vehicles and pads."""
 
 
-def way_home(
+def route_home(
     airspace: Airspace,
     ground_up_m: tuple[float, float],
     places_m: Sequence[EastNorth],
     settings: FleetReturnSettings,
-) -> WayHome:
-    """Return what holds for ways between these places (vehicles' and pads').
+) -> RouteHome:
+    """Return what holds for paths between these places (vehicles' and pads').
 
     `ground_up_m` is the lowest and the highest ground on the ways. A zone near the hull of the
     places is flown over where its top leaves room under the ceiling. Every other zone is flown
@@ -81,7 +81,7 @@ def way_home(
         for piece in closed
         if piece.high_up_m <= highest_m and shapely.intersects(piece.area, near)
     ]
-    return WayHome(
+    return RouteHome(
         lowest_up_m=max([high_ground_m + least_m, *tops_m]),
         highest_up_m=highest_m,
         closed=closed,
@@ -122,7 +122,7 @@ def _area(region: Region) -> shapely.Geometry:
 
 
 CLEARANCE_M = 0.25
-"""Distance of a way's corners from what they go around, so that rounding never touches it."""
+"""Distance of a path's corners from what they go around, so that rounding never touches it."""
 
 CORNERS_OF_A_CIRCLE = 12
 
@@ -130,9 +130,9 @@ Way = tuple[EastNorth, ...]
 
 
 class ReturnPaths:
-    """Finds ways in one site's air at any height; keeps what it has worked out."""
+    """Finds paths in one site's air at any height; keeps what it has worked out."""
 
-    def __init__(self, home: WayHome) -> None:
+    def __init__(self, home: RouteHome) -> None:
         self._home = home
         self._closed_by: dict[frozenset[int], shapely.Geometry] = {}
         self._found: dict[tuple[EastNorth, EastNorth, frozenset[int]], Way | None] = {}
@@ -141,7 +141,7 @@ class ReturnPaths:
         shapely.prepare(self._inside)
 
     def find(self, start_m: EastNorth, end_m: EastNorth, up_m: float) -> Way | None:
-        """Return the shortest way at a height, or None."""
+        """Return the shortest path at a height, or None."""
         key = start_m, end_m, self._closed_pieces(up_m)
         if key not in self._found:
             self._found[key] = self._search(start_m, end_m, self._shut(up_m))
@@ -155,7 +155,7 @@ class ReturnPaths:
         hovering_m: Sequence[EastNorth],
         circle_m: float,
     ) -> Way | None:
-        """Return a way that keeps `circle_m` from hovering vehicles as well, or None."""
+        """Return a path that keeps `circle_m` from hovering vehicles as well, or None."""
         circles = [_circle(place_m, circle_m) for place_m in hovering_m]
         return self._search(start_m, end_m, shapely.union_all([self._shut(up_m), *circles]))
 
@@ -223,7 +223,7 @@ def _corners(area: shapely.Geometry | None) -> list[EastNorth]:
 
 
 def _shortest(nodes: npt.NDArray[np.float64], is_open: npt.NDArray[np.bool_]) -> Way | None:
-    """The shortest way from node 0 to node 1 along open legs (Dijkstra)."""
+    """The shortest path from node 0 to node 1 along open legs (Dijkstra)."""
     best_m = {0: 0.0}
     came_from: dict[int, int] = {}
     waiting = [(0.0, 0)]
@@ -246,7 +246,7 @@ def _shortest(nodes: npt.NDArray[np.float64], is_open: npt.NDArray[np.bool_]) ->
 
 
 def _traced(nodes: npt.NDArray[np.float64], came_from: dict[int, int]) -> Way:
-    way = [1]
-    while way[-1] != 0:
-        way.append(came_from[way[-1]])
-    return tuple((float(nodes[n][0]), float(nodes[n][1])) for n in reversed(way))
+    path = [1]
+    while path[-1] != 0:
+        path.append(came_from[path[-1]])
+    return tuple((float(nodes[n][0]), float(nodes[n][1])) for n in reversed(path))

@@ -16,20 +16,20 @@ from recon.safety import PreparedAirspace
 from recon.safety.airspace import prepared_zone
 from recon.safety.temporary_zones import prepared_temporary_zone
 from recon.safety.watchdogs import Finding
-from recon.safety.watchdogs.way_home_zones import way_home_zones
+from recon.safety.watchdogs.route_home_zones import route_home_zones
 
 HELICOPTER = TemporaryZoneKind.CREWED_AIRCRAFT
 
 
 def between(ceiling_m: float | None = None, east_m: float = 100.0) -> PreparedAirspace:
-    """A zone of 20 m round a place on the way home from the east."""
+    """A zone of 20 m round a place on the route home from the east."""
     drawn = DrawnZone(HELICOPTER, Circle(place(east_m, 0.0), 20.0), "rescue", ceiling_m=ceiling_m)
     zone = prepared_temporary_zone(TemporaryZone(1, drawn, "Ann", 0), FRAME)
     return airspace().with_temporary_zones([zone])
 
 
 def found(state: VehicleState, air: PreparedAirspace | None = None) -> list[Finding]:
-    return looks(way_home_zones, state, airspace=air or between())
+    return looks(route_home_zones, state, airspace=air or between())
 
 
 def test_a_vehicle_beyond_the_zone_is_warned_about() -> None:
@@ -37,15 +37,15 @@ def test_a_vehicle_beyond_the_zone_is_warned_about() -> None:
     assert finding.severity is Severity.WARNING
     assert finding.holds is None
     assert finding.text == (
-        "A: its way home leads through the keep-out zone 'crewed aircraft 1 (temporary)': without "
-        "its link it would fly through it; lead it to the other side, or land it"
+        "A: its route home leads through the keep-out zone 'crewed aircraft 1 (temporary)': "
+        "without its link it would fly through it; lead it to the other side, or land it"
     )
 
 
 @pytest.mark.parametrize(
     "state", [flier(60.0, 0.0), flier(200.0, 200.0), flier(100.0, 120.0), flier(-200.0, 0.0)]
 )
-def test_one_whose_way_home_is_beside_it_is_not(state: VehicleState) -> None:
+def test_one_whose_route_home_is_beside_it_is_not(state: VehicleState) -> None:
     assert found(state) == []
 
 
