@@ -97,6 +97,7 @@ def better_for_long(world: ImagerWorld) -> None:
     world.station = replace(world.station, imager_motions=motions.with_start(MoveUpwind, start))
 
 
+@flown_once
 def under_way() -> ImagerWorld:
     """A move that has begun 4 s ago."""
     world = surveying()
