@@ -9,9 +9,7 @@ import pytest
 from recon import wire
 
 PAGE = (Path(__file__).parents[2] / "docs" / "icd.md").read_text(encoding="utf-8")
-PACKETS = {
-    name: getattr(wire, name) for name in wire.__all__ if hasattr(getattr(wire, name), "PID")
-}
+PACKETS = {name: getattr(wire, name) for name in dir(wire) if hasattr(getattr(wire, name), "PID")}
 BYTES = {"u8": 1, "i8": 1, "u16": 2, "f32": 4, "f64": 8, "string": 4, "image": 4, "rest": 0}
 ZEROS = {"string": b"", "rest": b"", "u8": 0, "i8": 0, "u16": 0, "f32": 0.0, "f64": 0.0}
 

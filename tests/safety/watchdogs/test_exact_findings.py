@@ -79,8 +79,7 @@ class TestBatteryForTheWayHome:
             finding(
                 "battery_home",
                 Severity.WARNING,
-                "battery 30%, route home 16%: less than the reserve of 25% would be left; call it "
-                "home",
+                "battery 30%, route home 16%: less than the reserve of 25% would be left; recall it",
                 1.0,
             )
         ]
