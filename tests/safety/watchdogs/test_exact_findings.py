@@ -79,7 +79,8 @@ class TestBatteryForTheWayHome:
             finding(
                 "battery_home",
                 Severity.WARNING,
-                "battery 30%, route home 16%: less than the reserve of 25% would be left; recall it",
+                "battery 30%, route home 16%: less than the reserve of 25% would be left; "
+                "recall it",
                 1.0,
             )
         ]

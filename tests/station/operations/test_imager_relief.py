@@ -102,7 +102,7 @@ def left_at_home(world: RelievedWorld) -> bool:
 
 @pytest.fixture(scope="module")
 def flown() -> tuple[RelievedWorld, list[tuple[str, str | None]], dict[str, str]]:
-    """A relief by itself from its beginning until the first one has landed; audit and alarms."""
+    """An automatic relief from its beginning until the first one has landed; audit and alarms."""
     world = surveying()
     entries: list[tuple[str, str | None]] = []
 

@@ -362,7 +362,7 @@ class TestNeverWithASideStep:
         blowing(world, 2.0)
         assert newest(world).stage is MotionStage.UPWIND
 
-    @pytest.mark.parametrize("is_asked", [True, False], ids=["asked for", "by itself"])
+    @pytest.mark.parametrize("is_asked", [True, False], ids=["asked for", "automatic"])
     def test_no_side_step_begins_during_a_move(self, is_asked: bool) -> None:
         world = under_way()
         if is_asked:
