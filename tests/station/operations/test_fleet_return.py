@@ -164,6 +164,7 @@ def test_the_control_all_returning_at_one_height_come_too_near() -> None:
         world.runs(1.0)
 
 
+@pytest.mark.flight
 @pytest.mark.drawn
 @pytest.mark.parametrize("seed", range(4) if IS_THOROUGH else range(1))
 def test_drawn_fleets_land_by_the_real_gate_on_shared_pads(seed: int) -> None:
@@ -381,6 +382,7 @@ class TestCalling:
         assert "already returning home" in again[0][1]
         assert list(world.stages()) == ["SIM-1"]
 
+    @pytest.mark.flight
     def test_one_called_later_joins(self) -> None:
         world = four_in_the_air()
         world.call(*FOUR[:2])

@@ -206,6 +206,7 @@ class TestStopped:
         assert flying.figures().not_yet_m2 <= imaged
         assert flying.holder("SIM-1") is AuthorityHolder.OPERATOR
 
+    @pytest.mark.flight
     def test_one_landed_by_the_operator_stays_landed_and_the_other_flies_all(
         self, flying: SurveyedWorld
     ) -> None:
@@ -234,6 +235,7 @@ class TestFailures:
         assert [each.phase for each in world.missions()] == [Phase.TIMED_OUT]
         assert ("survey", "SIM-1") in world.fleet.alarms()
 
+    @pytest.mark.flight
     def test_one_that_was_stopped_and_still_hovers_at_the_end_is_an_alarm(self) -> None:
         world = surveyed_world(2, faults=("ack-then-nothing:SIM-1:1:900",))
         world.asks()

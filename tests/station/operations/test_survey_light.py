@@ -119,6 +119,7 @@ class TestHandedOn:
                 break
         return world
 
+    @pytest.mark.flight
     def test_it_gets_half_of_them_and_neither_is_stopped(self) -> None:
         world = self.flown(500)
         assert world.phase() is SurveyPhase.DONE

@@ -11,6 +11,7 @@ from recon.station.api_views.survey_preview import survey_preview
 APART = ((0.0, -40.0), (120.0, -40.0))
 
 
+@pytest.mark.flight
 def test_the_estimate_is_within_a_tenth_of_the_flight_from_start_to_landing() -> None:
     world = surveyed_world(2, height_m=0.0, pads=APART)
     world.asks(asked(field(200.0, 120.0)))

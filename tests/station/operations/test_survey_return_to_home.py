@@ -258,6 +258,7 @@ def test_one_whose_mission_failed_is_left_to_the_operator() -> None:
     world.fleet.world.order("SIM-1", LandNow())
 
 
+@pytest.mark.flight
 @pytest.mark.drawn
 @pytest.mark.parametrize("seed", range(4) if IS_THOROUGH else range(1))
 def test_whatever_the_field_and_the_batteries_they_keep_apart_and_land(seed: int) -> None:

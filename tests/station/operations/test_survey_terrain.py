@@ -103,6 +103,7 @@ def flown() -> Flown:
 
 
 class TestOnASlope:
+    @pytest.mark.flight
     def test_rows_are_flown_at_their_height_above_the_true_ground(self, flown: Flown) -> None:
         least_m, most_m = flown.range_m
         assert len(flown.above_ground_m) > 1_000
