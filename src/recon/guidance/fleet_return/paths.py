@@ -5,17 +5,17 @@ Straight where nothing is closed, else the shortest around (a visibility graph).
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from heapq import heappop, heappush
-from math import cos, hypot, inf, pi
+from math import cos, inf, pi
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import shapely  # type: ignore[import-untyped, unused-ignore]
 
+from recon.geo.visible_paths import VisiblePaths
 from recon.guidance.fleet_return.flight import EastNorth
 from recon.guidance.fleet_return.settings import FleetReturnSettings
 from recon.model.airspace import Airspace, HeightDatum, Region, Zone, ZoneKind
+from recon.model.arrays import BoolArray, FloatArray
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -165,11 +165,11 @@ class ReturnPaths:
 
     def _search(self, start_m: EastNorth, end_m: EastNorth, closed: Any) -> Way | None:
         shapely.prepare(closed)
-        if self._is_open(np.array([[start_m, end_m]]), closed)[0]:
-            return start_m, end_m
         around = shapely.buffer(closed, CLEARANCE_M, join_style="mitre", mitre_limit=2.0)
-        nodes = np.array([start_m, end_m, *_corners(around), *self._inside_corners])
-        return _shortest(nodes, self._open_legs(nodes, closed))
+        corners = np.array([*_corners(around), *self._inside_corners]).reshape(-1, 2)
+        paths = VisiblePaths(corners, lambda legs_m: self._is_open(legs_m, closed))
+        turns = paths.between(start_m, end_m)
+        return None if turns is None else (start_m, *turns, end_m)
 
     def _closed_pieces(self, up_m: float) -> frozenset[int]:
         closed = enumerate(self._home.closed)
@@ -185,20 +185,11 @@ class ReturnPaths:
             )
         return self._closed_by[pieces]
 
-    def _open_legs(self, nodes: npt.NDArray[np.float64], closed: Any) -> npt.NDArray[np.bool_]:
-        """Return which of all legs between nodes are open, (N, N)."""
-        count = len(nodes)
-        first, second = np.triu_indices(count, 1)
-        is_open = np.zeros((count, count), dtype=np.bool_)
-        legs = np.stack([nodes[first], nodes[second]], axis=1)
-        is_open[first, second] = self._is_open(legs, closed)
-        return is_open | is_open.T
-
-    def _is_open(self, legs_m: npt.NDArray[np.float64], closed: Any) -> npt.NDArray[np.bool_]:
+    def _is_open(self, legs_m: FloatArray, closed: Any) -> BoolArray:
         lines = shapely.linestrings(legs_m)
         is_point = (legs_m[:, 0] == legs_m[:, 1]).all(axis=1)
         lines[is_point] = shapely.points(legs_m[is_point, 0])
-        is_open: npt.NDArray[np.bool_] = ~shapely.intersects(closed, lines)
+        is_open: BoolArray = ~shapely.intersects(closed, lines)
         if self._inside is not None:
             is_open &= shapely.covers(self._inside, lines)
         return is_open
@@ -220,33 +211,3 @@ def _corners(area: shapely.Geometry | None) -> list[EastNorth]:
     if area is None:
         return []
     return [(float(east), float(north)) for east, north in shapely.get_coordinates(area)]
-
-
-def _shortest(nodes: npt.NDArray[np.float64], is_open: npt.NDArray[np.bool_]) -> Way | None:
-    """The shortest path from node 0 to node 1 along open legs (Dijkstra)."""
-    best_m = {0: 0.0}
-    came_from: dict[int, int] = {}
-    waiting = [(0.0, 0)]
-    done: set[int] = set()
-    while waiting:
-        far_m, node = heappop(waiting)
-        if node == 1:
-            return _traced(nodes, came_from)
-        if node in done:
-            continue
-        done.add(node)
-        for following in np.flatnonzero(is_open[node]):
-            key = int(following)
-            step_m = hypot(*(nodes[key] - nodes[node]))
-            if far_m + step_m < best_m.get(key, float("inf")):
-                best_m[key] = far_m + step_m
-                came_from[key] = node
-                heappush(waiting, (far_m + step_m, key))
-    return None
-
-
-def _traced(nodes: npt.NDArray[np.float64], came_from: dict[int, int]) -> Way:
-    path = [1]
-    while path[-1] != 0:
-        path.append(came_from[path[-1]])
-    return tuple((float(nodes[n][0]), float(nodes[n][1])) for n in reversed(path))
