@@ -90,6 +90,7 @@ def test_cells_flown_in_shade_and_in_sun_are_distinguished() -> None:
     assert world.figures().sun_unknown_m2 == 0.0
 
 
+@pytest.mark.flight
 def test_cells_in_shade_are_flown_again_until_imaged_in_sun() -> None:
     world = flown_under_an_imager("lawnmower_again", sunny_from_s=150.0)
     assert world.phase() is SurveyPhase.DONE
@@ -131,6 +132,7 @@ class TestHandedOn:
         assert {each.stop_reason for each in world.record().members.values()} == {None}
         assert world.figures().in_sun_m2 > 0.97 * world.figures().reached_m2
 
+    @pytest.mark.flight
     def test_a_battery_too_low_for_the_new_mission_is_no_reason_to_call_it_home(
         self, monkeypatch: pytest.MonkeyPatch
     ) -> None:

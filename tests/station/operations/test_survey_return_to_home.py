@@ -247,6 +247,7 @@ def test_a_budget_that_ends_brings_them_home_too() -> None:
     assert runs_until_home(world, ("SIM-1",), 300.0)
 
 
+@pytest.mark.flight
 def test_one_whose_mission_failed_is_left_to_the_operator() -> None:
     world = surveyed_world(2, faults=("ack-then-nothing:SIM-1:1:900",))
     world.asks()

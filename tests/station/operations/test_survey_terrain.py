@@ -102,8 +102,8 @@ def flown() -> Flown:
     return found
 
 
+@pytest.mark.flight
 class TestOnASlope:
-    @pytest.mark.flight
     def test_rows_are_flown_at_their_height_above_the_true_ground(self, flown: Flown) -> None:
         least_m, most_m = flown.range_m
         assert len(flown.above_ground_m) > 1_000
@@ -137,6 +137,7 @@ class TestOnASlope:
 
 
 class TestSunlitFirst:
+    @pytest.mark.flight
     def test_what_is_in_sun_first_is_flown_at_its_height_and_straight_from_row_to_row(
         self,
     ) -> None:

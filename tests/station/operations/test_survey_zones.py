@@ -59,6 +59,7 @@ def clear_of_all_rows(world: SurveyedWorld) -> bool:
 
 
 class TestDrawnOnItsRows:
+    @pytest.mark.flight
     def test_the_survey_goes_round_it_and_stays_the_surveys(self) -> None:
         world = surveying()
         rows = len(world.state().plan.pieces)
