@@ -89,6 +89,8 @@ async def measure(apps: int, seconds: float, *, is_worker_busy: bool) -> Jitter:
     options = ("--flight", "north", "--apps", apps, "--seconds", seconds)
     flying = asyncio.create_task(fly_apps(links.port, *options))
     await asyncio.sleep(SETTLING_S)
+    while len(driver.station.fleet.vehicles) < apps:
+        await asyncio.sleep(0.1)
     for number in range(apps):
         _order_goto(driver, number)
     arrived_s: list[list[float]] = (await flying)["sticks"]

@@ -203,7 +203,7 @@ class TestWords:
 
 
 class TestLooks:
-    @pytest.mark.parametrize("path", ["", "/ways", "/cells.png"])
+    @pytest.mark.parametrize("path", ["", "/paths", "/cells.png"])
     def test_what_is_not_there_is_one_sentence(self, client: Client, path: str) -> None:
         response = client.get(f"/api/surveys/77{path}")
         assert response.status_code == 404
@@ -222,13 +222,13 @@ class TestLooks:
 
     def test_rows_lie_in_the_field(self, client: Client) -> None:
         number = client.post("/api/surveys", json=ASKED).json()["survey"]["id"]
-        ways = client.get(f"/api/surveys/{number}/paths").json()
-        places = np.array([place for row in ways["rows"] for place in row])
+        paths = client.get(f"/api/surveys/{number}/paths").json()
+        places = np.array([place for row in paths["rows"] for place in row])
         west, south = np.array(SQUARE).min(axis=0)
         east, north = np.array(SQUARE).max(axis=0)
         assert (places >= (west - 3e-4, south - 3e-4)).all()
         assert (places <= (east + 3e-4, north + 3e-4)).all()
-        assert ways["flying"] == ways["flown"] == []
+        assert paths["flying"] == paths["flown"] == []
 
     def test_cells_are_values_or_a_picture(self, client: Client) -> None:
         survey = client.post("/api/surveys", json=ASKED).json()["survey"]

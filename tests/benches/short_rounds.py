@@ -5,6 +5,7 @@ python -m pytest benches -p tests.benches.short_rounds
 """
 
 import sys
+import warnings
 from collections.abc import Generator
 from importlib import import_module
 from types import ModuleType
@@ -37,8 +38,9 @@ def shorten(bench: ModuleType, patch: pytest.MonkeyPatch) -> None:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> Generator[None, object, object]:
-    """Run a bench's test shortly; a limit that is not kept is no failure."""
-    with pytest.MonkeyPatch.context() as patch:
+    """Run a bench's test shortly; no failure are limits not kept and means of too few values."""
+    with pytest.MonkeyPatch.context() as patch, warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)
         shorten(pyfuncitem.module, patch)
         try:
             return (yield)

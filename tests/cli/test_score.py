@@ -24,6 +24,7 @@ def _kept_here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
 
 
+@pytest.mark.flight
 def test_tables_go_to_stdout_and_a_stopped_command_goes_on_where_it_was(tmp_path: Path) -> None:
     path = str(written(tmp_path, BRIEF))
     one = CliRunner().invoke(app, ["score", path, "--seeds", "1", "--first-seed", "7"])
@@ -88,6 +89,7 @@ def test_all_forecasts_are_compared_with_one(tmp_path: Path) -> None:
     assert "15 s" in heading
 
 
+@pytest.mark.flight
 def test_two_planners_are_compared_seed_by_seed(tmp_path: Path) -> None:
     path = str(written(tmp_path, BRIEF))
     options = ["--planner", "sunlit_first", "--seeds", "1", "--first-seed", "7"]
@@ -100,6 +102,7 @@ def test_two_planners_are_compared_seed_by_seed(tmp_path: Path) -> None:
     assert "1 of 1 runs were flown before" in CliRunner().invoke(app, other).stderr
 
 
+@pytest.mark.flight
 def test_another_scenario_is_compared_seed_by_seed(tmp_path: Path) -> None:
     path = written(tmp_path, BRIEF)
     other = tmp_path / "longer.toml"
@@ -113,6 +116,7 @@ def test_another_scenario_is_compared_seed_by_seed(tmp_path: Path) -> None:
     assert "absent.toml" in done.stderr
 
 
+@pytest.mark.flight
 def test_surveys_alone_are_flown_the_same_and_score_no_maps(tmp_path: Path) -> None:
     path = str(written(tmp_path, BRIEF))
     options = ["--planner", "lawnmower_once", "--seeds", "1"]
@@ -125,6 +129,7 @@ def test_surveys_alone_are_flown_the_same_and_score_no_maps(tmp_path: Path) -> N
     assert len(alone) == 2 < len(whole)
 
 
+@pytest.mark.flight
 def test_a_detection_is_compared_with_the_ideal_one_seed_by_seed(tmp_path: Path) -> None:
     path = str(written(tmp_path, BRIEF))
     options = ["--detection", "otsu", "--forecast", "none", "--seeds", "1"]
@@ -180,10 +185,7 @@ def test_options_choose_methods(tmp_path: Path) -> None:
         (["--jobs", "0"], "--jobs: expected 1 or more, got 0"),
     ],
 )
-def test_invalid_options_are_one_line(
-    tmp_path: Path, options: list[str], words: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("recon.score.many_runs.CONNECT_WITHIN_S", 0.5)
+def test_invalid_options_are_one_line(tmp_path: Path, options: list[str], words: str) -> None:
     done = CliRunner().invoke(app, ["score", str(written(tmp_path)), *options])
     assert (done.exit_code, done.stdout) == (2, "")
     assert len(done.stderr.splitlines()) == 1

@@ -32,7 +32,7 @@ test("plans a survey of a site region, flies it with two vehicles, pauses and ab
       await expect(page.getByTestId("status-count")).toHaveText("1 of 4");
     });
 
-    const ways = page.waitForResponse(/\/api\/surveys\/\d+\/ways$/);
+    const paths = page.waitForResponse(/\/api\/surveys\/\d+\/paths$/);
     await test.step("two with takeoff allowed fly it", async () => {
       for (const name of ["Drone 1", "Drone 2"]) {
         await page.getByRole("checkbox", { name: new RegExp(name) }).press("Space");

@@ -35,7 +35,7 @@ def stop_all_at_guard(port: int) -> list[Outcome] | None:
         held = [Outcome(None, None, str(name), True, False, note=HELD) for name in answer["held"]]
         return held + [
             Outcome(None, None, str(name), False, False, rule="flying", note=MISSED)
-            for name in answer["missed"]
+            for name in answer["refused"]
         ]
     except (OSError, ValueError, KeyError, TypeError, HTTPException):
         return None

@@ -94,7 +94,7 @@ class Intervention:
     """Something the guard did automatically; `by` is the person of an all stop.
 
     `serials` are of the vehicles that were to be held, `names` of those that a hover was sent to,
-    `missed` of those to which the gate let none go: nothing recent shows them flying.
+    `refused` of those to which the gate let none go: nothing recent shows them flying.
     """
 
     why: str

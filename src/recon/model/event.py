@@ -437,13 +437,13 @@ class StationFaulted:
 class GuardActed:
     """The guard held vehicles automatically; `by` is the person of an all stop at its port.
 
-    `names` were sent a hover, `missed` may fly and were not; `serials` are of all of them.
+    `names` were sent a hover, `refused` may fly and were not; `serials` are of all of them.
     """
 
     why: str
     serials: tuple[str, ...]
     names: tuple[str, ...]
-    missed: tuple[str, ...]
+    refused: tuple[str, ...]
     by: str | None
 
 

@@ -137,7 +137,7 @@ export class FakeStation {
     if (path === "/api/orders/check")
       return this.checkOrder(JSON.parse(body ?? "{}") as OrderRequest);
     if (path.endsWith("/preflight") && this.preflight !== null) return { json: this.preflight };
-    if (path.endsWith("/ways") && this.paths !== null) return { json: this.paths };
+    if (path.endsWith("/paths") && this.paths !== null) return { json: this.paths };
     if (path === "/api/site/drawing" && body === null) return { json: this.drawing };
     if (path === "/api/site/vehicles" && body === null) return { json: this.vehicles };
     if (path.startsWith("/api/site/vehicles")) return { json: this.vehiclesResult };

@@ -285,7 +285,7 @@ describe("the live source", () => {
     it("asks the guard when the station does not answer an all stop", async () => {
       const { clock, source, requests } = withGuard((request) =>
         request.url === guardUrl
-          ? json({ held: ["Drone 1"], missed: ["Drone 2"] })
+          ? json({ held: ["Drone 1"], refused: ["Drone 2"] })
           : new Promise<Response>(() => {}),
       );
       const stopped = source.orders.allStop();
@@ -306,7 +306,7 @@ describe("the live source", () => {
     it("asks it at once when the station cannot be reached", async () => {
       const { source } = withGuard((request) => {
         if (request.url !== guardUrl) throw new TypeError("connection refused");
-        return json({ held: ["Drone 1"], missed: [] });
+        return json({ held: ["Drone 1"], refused: [] });
       });
       expect(await source.orders.allStop()).toMatchObject({ value: [{ vehicle_name: "Drone 1" }] });
     });

@@ -128,11 +128,11 @@ function allStopAtGuard(http: StationHttp, url: string, by: string | null) {
     const response = await http.fetch(new Request(url, { method: "POST", body, signal }));
     if (!response.ok)
       return failed<readonly OrderResult[]>(text.requests.guardRefused(response.status));
-    const { held, missed } = (await response.json()) as { held: string[]; missed: string[] };
+    const { held, refused } = (await response.json()) as { held: string[]; refused: string[] };
     const reason = text.requests.notSeenFlying;
     return done<readonly OrderResult[]>([
       ...held.map((name) => guardResult(name, null)),
-      ...missed.map((name) => guardResult(name, reason)),
+      ...refused.map((name) => guardResult(name, reason)),
     ]);
   });
 }

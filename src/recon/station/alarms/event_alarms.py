@@ -97,9 +97,9 @@ def note_guard(station: Station, event: GuardActed, now_ns: int) -> Station:
     """Return the station with an alarm for what its guard did."""
     names = ", ".join(event.names) or "no vehicle"
     who = "" if event.by is None else f" by {event.by}"
-    missed = f", and could not hold {', '.join(event.missed)}" if event.missed else ""
+    refused = f", and could not hold {', '.join(event.refused)}" if event.refused else ""
     text = (
-        f"The guard held {names}{missed}: {event.why}{who}. Check every vehicle before you give "
+        f"The guard held {names}{refused}: {event.why}{who}. Check every vehicle before you give "
         "orders"
     )
     condition = Condition(f"guard:{now_ns}", Severity.ERROR, "guard", STATION_NAME, text)

@@ -47,7 +47,7 @@ export const sideStep = {
     aside: (bearing: string) => `flies aside, bearing ${bearing}`,
     waiting: (bearing: string) => `waits beside its place, bearing ${bearing}`,
     back: (bearing: string) => `flies back, bearing ${bearing}`,
-    done: (bearing: string) => `looked aside and is back, bearing ${bearing}`,
+    done: (bearing: string) => `stepped aside and is back, bearing ${bearing}`,
     stopped: (bearing: string) => `stopped its side-step, bearing ${bearing}`,
   } as Stages<SideStepView>,
 };
