@@ -1,4 +1,4 @@
-import type { NewSurvey, SurveyRequest, SurveyResponse, SurveyPaths } from "../protocol";
+import type { NewSurvey, SurveyPaths, SurveyRequest, SurveyResponse } from "../protocol";
 import { answered, CHANGE, PLANNING, READ, type StationHttp } from "./stationHttp";
 
 export type SurveyRequests = ReturnType<typeof surveyRequests>;
