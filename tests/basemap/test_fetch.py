@@ -189,7 +189,7 @@ def no_http(handler: BaseHTTPRequestHandler, _: Key) -> None:
         (dripping, "no answer within 0.3 s"),
         (page, "expected tiles as PNG, JPEG or WebP"),
         (vector, "got vector tiles"),
-        (giant, "got 10000 x 10000"),
+        pytest.param(giant, "got 10000 x 10000", marks=pytest.mark.flight),
         (bomb, "got vector tiles"),
         (lying_length, "failures in a row"),
         (no_http, "failures in a row"),

@@ -74,6 +74,7 @@ def noisy_solution(seed: int) -> PoseSolution:
     return solved(DEMO, points, SIZE_PX, FRAME)
 
 
+@pytest.mark.flight
 def test_the_standard_deviations_are_those_of_the_errors() -> None:
     """Over many markings of the same points the errors agree with the covariance."""
     solutions = [noisy_solution(seed) for seed in range(150)]

@@ -151,6 +151,7 @@ def true_maps(seed: int) -> tuple[list[ShadeMap], dict[float, np.ndarray]]:
     return maps, {s: sky.on_grid(grid, at_s + s) >= SUNLIT_TRANSMITTANCE for s in LEADS_S}
 
 
+@pytest.mark.flight
 def test_it_is_better_than_every_baseline_under_drawn_skies() -> None:
     """Brier scores of paired seeds that nothing was tuned on; clear and overcast views too."""
     names = ("advection", "persistence", "climatology")

@@ -176,6 +176,7 @@ class TestFlown:
         ceiling_m=CEILINGS_M,
         zone_count=st.integers(0, 3),
     )
+    @pytest.mark.flight
     def test_every_planned_vehicle_lands_and_none_comes_too_near(
         self, seed: int, count: int, pads: int, ceiling_m: float, zone_count: int
     ) -> None:

@@ -103,6 +103,7 @@ def test_a_record_without_the_sites_place_is_refused() -> None:
         read_flight(FOLDER / "survey.mcap")
 
 
+@pytest.mark.flight
 def test_each_photo_is_called_as_the_truth_has_it(tagged) -> None:
     _result, out, _card, truth = tagged
     found = {row["name"]: row for row in rows(out)}

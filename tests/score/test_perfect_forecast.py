@@ -112,6 +112,7 @@ def test_the_station_knows_the_sun_to_come_beyond_the_view(scenario: Scenario) -
         assert ((sun.probability_sunlit(unseen, at_ns, at_ns) > 0.5) == truth).all()
 
 
+@pytest.mark.flight
 def test_a_survey_is_flown_by_it(scenario: Scenario) -> None:
     found = run(scenario, 3)
     assert found.missions > 0
@@ -120,6 +121,7 @@ def test_a_survey_is_flown_by_it(scenario: Scenario) -> None:
     assert found.forecasts == {}
 
 
+@pytest.mark.flight
 def test_its_score_is_that_of_what_it_leaves_open(scenario: Scenario) -> None:
     """Scored cells are the maps' cells: all that is wrong is the probability that is not stated."""
     short = replace(scenario, methods=Methods(forecast=PERFECT), limit_s=60.0)

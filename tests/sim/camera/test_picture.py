@@ -55,6 +55,7 @@ def test_shade_over_sun_is_the_light_models_in_each_colour(frames, pose) -> None
     assert expected[2] > 1.1 * expected[0]
 
 
+@pytest.mark.flight
 def test_frames_do_not_depend_on_what_was_rendered_before(camera, circle, pose) -> None:
     def fresh() -> FieldRenderer:
         return FieldRenderer(camera, circle, 5, BROKEN, relief=Relief(ReliefSettings(1)))

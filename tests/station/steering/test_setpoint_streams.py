@@ -496,6 +496,7 @@ def lived(s: Steered, order: int) -> None:
     st.integers(0, 1_000),
     st.sampled_from(["telemetry-dropout", "restart", "half-open", "second-link"]),
 )
+@pytest.mark.flight
 def test_whatever_happens_to_the_link_no_stick_outlives_its_stream(
     at_s: float, lasts_s: float, jitter_s: float, seed: int, fault: str
 ) -> None:
