@@ -98,7 +98,7 @@ OFF_TRACK = GoHomeDeviation(
                 "height",
                 Severity.CRITICAL,
                 f"goes home too low: {HEIGHTS} 20 m. Zones and other vehicles' layers may be in "
-                f"its path: {HOLD}",
+                f"its way: {HOLD}",
                 1.5,
             ),
         ),
