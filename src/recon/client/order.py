@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field
+from enum import Enum
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
@@ -19,16 +20,10 @@ from recon.client.messages import (
     ResultMessage,
 )
 from recon.model.command import (
-    BODY_NAMES,
-    STEERED_BODIES,
     Body,
-    FlyMission,
-    GoTo,
-    Nudge,
     Phase,
     Refusal,
-    StartCamera,
-    VirtualStick,
+    SteeredBody,
 )
 
 if TYPE_CHECKING:
@@ -227,7 +222,7 @@ class OrderApi:
             "takeoff": takeoff,
             "given_at_unix_ms": self.station_time_ms(),
         }
-        return {**request, "owner": self._owner()} if isinstance(body, STEERED_BODIES) else request
+        return {**request, "owner": self._owner()} if isinstance(body, SteeredBody) else request
 
     def station_time_ms(self) -> int | None:
         """Return the station's time now, by its newest state; None without one.
@@ -274,34 +269,21 @@ class OrderApi:
 
 def order_json(body: Body) -> dict[str, Any] | Refusal:
     """Return an order as JSON values, or a refusal if it contains NaN or infinity."""
-    order = {"kind": BODY_NAMES[type(body)], **_details(body)}
+    order = {"kind": body.name, **_flat(asdict(body))}
     fault = not_finite(order, "")
     return order if fault is None else Refusal("finite_numbers", fault)
 
 
-def _details(body: Body) -> dict[str, Any]:
-    match body:
-        case FlyMission(mission):
-            return {
-                "waypoints": [asdict(waypoint) for waypoint in mission.waypoints],
-                "land_at_end": mission.land_at_end,
-                "curved": mission.curved,
-            }
-        case VirtualStick():
-            return {**asdict(body), "frame": body.frame.value}
-        case GoTo(target, height_m, speed_mps, yaw_deg):
-            return {
-                **asdict(target),
-                "height_above_takeoff_m": height_m,
-                "speed_mps": speed_mps,
-                "yaw_deg": yaw_deg,
-            }
-        case Nudge():
-            return asdict(body)
-        case StartCamera(fps_hz):
-            return {"fps_hz": fps_hz}
-        case _:
-            return {}
+def _flat(values: dict[str, Any]) -> dict[str, Any]:
+    """Return the fields of a body, with those of a position or mission among them."""
+    flat: dict[str, Any] = {}
+    for name, value in values.items():
+        if isinstance(value, dict):
+            flat |= value
+        else:
+            flat[name] = value.value if isinstance(value, Enum) else value
+    flat.pop("purpose", None)  # a mission's is the station's to state
+    return flat
 
 
 def not_finite(value: object, name: str) -> str | None:
@@ -311,7 +293,7 @@ def not_finite(value: object, name: str) -> str | None:
     parts: list[tuple[object, object]] = []
     if isinstance(value, dict):
         parts = list(value.items())
-    elif isinstance(value, list):
+    elif isinstance(value, list | tuple):
         parts = list(enumerate(value, start=1))
     faults = (not_finite(part, f"{name} {key}".strip()) for key, part in parts)
     return next((fault for fault in faults if fault is not None), None)

@@ -7,6 +7,8 @@ from pydantic import Field, model_validator
 from recon.api.schema.message import GivenRequest, StrictMessage
 from recon.api.schema.vehicles import HolderName
 from recon.model.command import (
+    STEERED_BODIES,
+    TAKEOFF_BODIES,
     FlyMission,
     GoTo,
     HoldPosition,
@@ -21,6 +23,9 @@ from recon.model.command import (
 )
 from recon.model.geo import LatLon
 from recon.model.mission import Mission, Waypoint
+
+STEERED_KINDS = frozenset(kind.name for kind in STEERED_BODIES)
+TAKEOFF_KINDS = frozenset(kind.name for kind in TAKEOFF_BODIES)
 
 
 class HoverOrder(StrictMessage):
@@ -210,7 +215,7 @@ class OrderRequest(GivenRequest):
 
     @model_validator(mode="after")
     def _takes_off_with_what_can(self) -> Self:
-        if self.takeoff and not isinstance(self.order, HoverOrder | MissionOrder | StickOrder):
+        if self.takeoff and self.order.kind not in TAKEOFF_KINDS:
             raise ValueError(
                 f"takeoff is not possible with {self.order.kind}, only with hover, mission and "
                 "stick: send the order without it"
@@ -219,7 +224,7 @@ class OrderRequest(GivenRequest):
 
     @model_validator(mode="after")
     def _names_its_owner(self) -> Self:
-        if isinstance(self.order, GoToOrder | NudgeOrder | HoldPositionOrder) and not self.owner:
+        if self.order.kind in STEERED_KINDS and not self.owner:
             raise ValueError(
                 f"{self.order.kind} needs an owner, the name of an open stream "
                 "(/api/stream?owner=NAME) whose end stops the vehicle"

@@ -1,8 +1,10 @@
 """The one interpreter of orders: which motion an order asks for, as the wire carries it."""
 
 import struct
+from collections.abc import Iterator
 from dataclasses import dataclass
 from math import copysign, cos, hypot, inf, radians, sin
+from typing import assert_never
 
 from recon.geo.distance import moved_m
 from recon.model.command import (
@@ -10,9 +12,14 @@ from recon.model.command import (
     Command,
     FlyMission,
     GoTo,
+    HoldPosition,
     Hover,
+    LandNow,
     Nudge,
+    ReturnHome,
+    StartCamera,
     StickFrame,
+    StopCamera,
     VirtualStick,
 )
 from recon.model.geo import LatLon
@@ -96,23 +103,48 @@ def order_path(body: Body, vehicle: VehicleState) -> OrderPath:
     A nudge of a vehicle without a position, or a mission without waypoints, is a `HoldPath`.
     """
     match body:
-        case FlyMission(mission) if mission.waypoints:
-            return mission
+        case FlyMission(mission):
+            return mission if mission.waypoints else HoldPath()
         case GoTo():
             return StraightFlight(
                 body.target, body.height_above_takeoff_m, body.speed_mps, "the leg to the target"
             )
-        case Nudge() if vehicle.position.value is not None:
-            target = moved_m(vehicle.position.value, body.north_m, body.east_m)
-            height_m = vehicle.height_above_takeoff_m.value
-            end_m = None if height_m is None else height_m + body.up_m
-            return StraightFlight(target, end_m, body.speed_mps, "the nudge")
+        case Nudge():
+            return _nudge(body, vehicle)
         case VirtualStick():
             return _stick(body, vehicle)
         case Hover():
             return TakeoffClimb()
-        case _:
+        case LandNow() | ReturnHome() | StartCamera() | StopCamera() | HoldPosition():
             return HoldPath()
+        case _ as unknown:
+            assert_never(unknown)
+
+
+def speeds_mps(body: Body) -> Iterator[tuple[str, float]]:
+    """Yield the speeds that an order asks for, each with what it is the speed of."""
+    match body:
+        case FlyMission(mission):
+            for number, waypoint in enumerate(mission.waypoints, start=1):
+                yield f"Speed at waypoint {number}", as_sent(waypoint.speed_mps)
+        case GoTo() | Nudge():
+            yield "Speed", as_sent(body.speed_mps)
+        case VirtualStick():
+            north_mps, east_mps = as_sent(body.velocity_x_mps), as_sent(body.velocity_y_mps)
+            yield "Horizontal stick speed", hypot(north_mps, east_mps)
+        case Hover() | LandNow() | ReturnHome() | StartCamera() | StopCamera() | HoldPosition():
+            return
+        case _ as unknown:
+            assert_never(unknown)
+
+
+def _nudge(body: Nudge, vehicle: VehicleState) -> StraightFlight | HoldPath:
+    if vehicle.position.value is None:
+        return HoldPath()
+    target = moved_m(vehicle.position.value, body.north_m, body.east_m)
+    height_m = vehicle.height_above_takeoff_m.value
+    end_m = None if height_m is None else height_m + body.up_m
+    return StraightFlight(target, end_m, body.speed_mps, "the nudge")
 
 
 def _stick(body: VirtualStick, vehicle: VehicleState) -> StickFlight:

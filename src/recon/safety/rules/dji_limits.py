@@ -1,18 +1,24 @@
 """Limits of DJI's SDK. It rejects values beyond them without a report; the gate reports."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from itertools import pairwise
 from math import hypot
-from typing import Any
+from typing import assert_never
 
 from recon.geo.distance import horizontal_distance_m
 from recon.model.command import (
+    Body,
     Command,
     FlyMission,
     GoTo,
+    HoldPosition,
+    Hover,
+    LandNow,
     Nudge,
     Refusal,
+    ReturnHome,
     StartCamera,
+    StopCamera,
     VirtualStick,
 )
 from recon.model.geo import LatLon
@@ -27,8 +33,25 @@ CORNER_TOLERANCE_M = 1e-6
 
 def dji_limits(command: Command, situation: Situation) -> Refusal | None:
     """Refuse numbers that the aircraft's controller would reject without a report."""
-    check = _CHECKS.get(type(command.body))
-    return None if check is None else next(check(command.body, situation), None)
+    return next(_refusals(command.body, situation), None)
+
+
+def _refusals(body: Body, situation: Situation) -> Iterator[Refusal]:
+    match body:
+        case FlyMission():
+            return _mission(body, situation)
+        case VirtualStick():
+            return _stick(body, situation)
+        case GoTo():
+            return _goto(body, situation)
+        case Nudge():
+            return _nudge(body, situation)
+        case StartCamera():
+            return _camera(body, situation)
+        case Hover() | LandNow() | ReturnHome() | StopCamera() | HoldPosition():
+            return iter(())
+        case _ as unknown:
+            assert_never(unknown)
 
 
 def _range(
@@ -244,12 +267,3 @@ def _distance_m(a: Waypoint, b: Waypoint) -> float:
         LatLon(a.latitude_deg, a.longitude_deg), LatLon(b.latitude_deg, b.longitude_deg)
     )
     return hypot(across_m, b.height_above_takeoff_m - a.height_above_takeoff_m)
-
-
-_CHECKS: dict[type, Callable[[Any, Situation], Iterator[Refusal]]] = {
-    StartCamera: _camera,
-    VirtualStick: _stick,
-    GoTo: _goto,
-    Nudge: _nudge,
-    FlyMission: _mission,
-}

@@ -1,10 +1,7 @@
 """Nothing is flown faster than the site allows."""
 
-from collections.abc import Iterator
-from math import hypot
-
-from recon.model.command import Body, Command, FlyMission, GoTo, Nudge, Refusal, VirtualStick
-from recon.safety.path.order_path import as_sent
+from recon.model.command import Command, Refusal
+from recon.safety.path.order_path import speeds_mps
 from recon.safety.situation import Situation
 
 RULE = "speed"
@@ -15,7 +12,7 @@ def speed(command: Command, situation: Situation) -> Refusal | None:
     than `max_speed_mps`, as the 32-bit floats of the wire have it."""
     limit_mps = situation.airspace.airspace.limits.max_speed_mps
     most_mps = limit_mps + situation.settings.fences.speed_rounding_mps
-    for what, speed_mps in _speeds_mps(command.body):
+    for what, speed_mps in speeds_mps(command.body):
         if not speed_mps <= most_mps:
             return Refusal(
                 RULE,
@@ -23,15 +20,3 @@ def speed(command: Command, situation: Situation) -> Refusal | None:
                 parameters={"speed_mps": speed_mps, "max_mps": limit_mps},
             )
     return None
-
-
-def _speeds_mps(body: Body) -> Iterator[tuple[str, float]]:
-    match body:
-        case FlyMission(mission):
-            for number, waypoint in enumerate(mission.waypoints, start=1):
-                yield f"Speed at waypoint {number}", as_sent(waypoint.speed_mps)
-        case GoTo() | Nudge():
-            yield "Speed", as_sent(body.speed_mps)
-        case VirtualStick():
-            north_mps, east_mps = as_sent(body.velocity_x_mps), as_sent(body.velocity_y_mps)
-            yield "Horizontal stick speed", hypot(north_mps, east_mps)

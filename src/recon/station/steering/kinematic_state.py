@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from math import hypot
+from typing import assert_never
 
 from recon.geo.distance import moved_m
 from recon.guidance.steering import Goal, KinematicState, SteeringSettings, stopping_place
@@ -65,6 +66,8 @@ def goal_of(
         case HoldPosition():
             place = stopping_place(seen, steering)
             return Goal(place, seen.height_above_takeoff_m, settings.hold_speed_mps, seen.yaw_deg)
+        case _ as unknown:
+            assert_never(unknown)
 
 
 def no_faster_than(seen: KinematicState, speed_mps: float) -> KinematicState:
