@@ -283,6 +283,8 @@ def _flat(values: dict[str, Any]) -> dict[str, Any]:
         else:
             flat[name] = value.value if isinstance(value, Enum) else value
     flat.pop("purpose", None)  # a mission's is the station's to state
+    if "waypoints" in flat:
+        flat["waypoints"] = list(flat["waypoints"])  # JSON has no tuples
     return flat
 
 
@@ -293,7 +295,7 @@ def not_finite(value: object, name: str) -> str | None:
     parts: list[tuple[object, object]] = []
     if isinstance(value, dict):
         parts = list(value.items())
-    elif isinstance(value, list | tuple):
+    elif isinstance(value, list):
         parts = list(enumerate(value, start=1))
     faults = (not_finite(part, f"{name} {key}".strip()) for key, part in parts)
     return next((fault for fault in faults if fault is not None), None)

@@ -54,6 +54,7 @@ class TestSameAgain:
     def test_another_seed_gives_another_run(self) -> None:
         assert written(lived(3).driver.log) != written(lived(4).driver.log)
 
+    @pytest.mark.flight
     def test_five_minutes_of_four_vehicles_take_seconds(self) -> None:
         w = world(4, wanders=True, keeps_log=False)
         before_s = time.process_time()
