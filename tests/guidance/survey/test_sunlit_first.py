@@ -280,7 +280,7 @@ class TestSurveys:
         assert len(given) == 1
         rows = {row + 1 for row in flown_rows(state, "S-1")}
         assert state.decisions["S-1"].text == (
-            f"flies rows {min(rows)} to {max(rows)} in any light: unknown when this was decided"
+            f"flies rows {min(rows)} to {max(rows)}; light not known yet"
         )
         # On its way to the first row: most of what it has is in shade.
         state, instead = decided(lit_west(13.0), here, state=state, now_s=13.0)

@@ -206,7 +206,7 @@ describe("view upwind", () => {
   it("shows why no place is known", async () => {
     page = renderPage(SunPanel, station([vehicle(1, { is_imager: true })], { shade: shadeLine() }));
     await settled();
-    expect(text()).toContain("No place upwind for ");
+    expect(text()).toContain("No upwind position for ");
     expect(text()).toContain("Alder: no region in this test.");
     expect(buttons()).toHaveLength(0);
   });

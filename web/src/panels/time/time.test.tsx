@@ -21,14 +21,14 @@ describe("the time scale", () => {
   it("shows how much of the field is in sun now and later, and how right that was", () => {
     show();
     expect(page.root.textContent).toContain("Sun now · 62\u00a0% of the field");
-    expect(page.root.textContent).not.toContain("right lately");
+    expect(page.root.textContent).not.toContain("correct recently");
     const slider = find<HTMLInputElement>(page.root, "input[type=range]");
     slider.value = "2";
     slider.dispatchEvent(new InputEvent("input", { bubbles: true }));
     expect(page.shared.overlay.lead_s()).toBe(60);
     expect(page.shared.overlay.kind()).toBe("forecast");
     const text = page.root.textContent;
-    expect(text).toContain("Sun in 1 min · 71\u00a0% of the field · 93\u00a0% right lately");
+    expect(text).toContain("Sun in 1 min · 71\u00a0% of the field · 93\u00a0% correct recently");
     expect(slider.getAttribute("aria-valuetext")).toBe("Sun in 1 min");
   });
 

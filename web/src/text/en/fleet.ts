@@ -57,7 +57,7 @@ export const vehicles = {
   all: "All",
   none: "None",
   show: "Show the vehicles",
-  fold: "Fold the vehicles away",
+  fold: "Collapse the vehicles",
   noneMatches: "None matches.",
   search: "Search",
   searchName: "Search by number, name or serial",

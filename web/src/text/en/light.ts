@@ -54,7 +54,7 @@ export const sideStep = {
 
 export const upwind = {
   name: "View upwind",
-  noPlace: (vehicle: string, reason: string) => `No place upwind for ${vehicle}: ${reason}.`,
+  noPlace: (vehicle: string, reason: string) => `No upwind position for ${vehicle}: ${reason}.`,
   fly: "Fly upwind",
   stages: {
     upwind: (distance: string) => `flies upwind automatically, ${distance}`,
@@ -102,9 +102,9 @@ export const forecast = {
   sunIn: (time: string) => `Sun in ${time}`,
   ofField: (share: string) => `${share} of the field`,
   rightHint: "How often forecasts of this flight were right",
-  right: (share: string) => `${share} right lately`,
+  right: (share: string) => `${share} correct recently`,
   show: "Show the forecast scale",
-  fold: "Fold the forecast scale away",
+  fold: "Collapse the forecast scale",
   time: "Time of the forecast",
   now: "now",
 };
@@ -154,7 +154,7 @@ export const estimate = {
   time: "Time",
   inAir: "In the air",
   photosOnRows: "Photos on rows",
-  photos: "Photos in all",
+  photos: "Total photos",
   batteries: "Batteries",
   aboveGround: "Height above ground",
   range: (least: string, most: string) => `${least} to ${most}`,
@@ -181,7 +181,7 @@ export const newSurvey = {
   planners: {
     lawnmower_once: "All rows once",
     lawnmower_again: "Repeat until all is in sun",
-    sunlit_first: "What is in sun first",
+    sunlit_first: "Sunlit rows first",
   },
   whenDone: "When complete",
   thenDo: { return_home: "Return home", hover: "Hover" } satisfies Record<
