@@ -28,7 +28,7 @@ from recon.model.units import NS_PER_S
 from recon.product.coverage import cells_on, ground_of, region_of
 from recon.product.flight import FlightData, read_flight
 from recon.product.footprint import Aim, PhotoView
-from recon.product.photo import read_photo_facts
+from recon.product.photos.photo import read_photo_facts
 from recon.product.sun_at import SunHistory
 from recon.product.tag import SUNLIT_SHARE, tag_photo
 from recon.product.timing import StatedCamera, TimedPhoto, timed_photos

@@ -6,7 +6,7 @@ import pytest
 from tests.product.made_flight import ONE, START_NS, UTC_AHEAD_NS, flight, times_s, write_photo
 
 from recon.model.units import NS_PER_S
-from recon.product.photo import Photo, read_photo_facts
+from recon.product.photos.photo import Photo, read_photo_facts
 from recon.product.timing import StatedCamera, timed_photos
 
 FLIGHT = flight()

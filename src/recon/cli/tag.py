@@ -18,7 +18,7 @@ from recon.cli.progress import progress_over, usable_cores
 from recon.model.errors import RecordError
 from recon.model.units import HECTARE_M2
 from recon.product.flight import FlightData, read_flight
-from recon.product.photo import SUFFIXES, Photo, PhotoError, read_photo_facts, unique_names
+from recon.product.photos.photo import SUFFIXES, Photo, PhotoError, read_photo_facts, unique_names
 from recon.product.sun_at import SunHistory
 from recon.product.tag import (
     MASK_SCALE,

@@ -23,7 +23,7 @@ from recon.product.clock import (
 )
 from recon.product.flight import FlightData, RecordedTrack
 from recon.product.footprint import LOWEST_PITCH_DEG, Aim, PhotoView
-from recon.product.photo import Photo
+from recon.product.photos.photo import Photo
 
 LOWEST_M = 5.0
 """Least height above takeoff: a photo on the ground shows a pad."""

@@ -9,12 +9,17 @@ from hypothesis import strategies as st
 from tests.product.made_flight import ACROSS_DEG, FRAME, write_photo
 
 from recon.model.units import NS_PER_S
-from recon.product.photo import GimbalAttitude, PhotoError, read_photo_facts, unique_names
+from recon.product.photos.photo import GimbalAttitude, PhotoError, read_photo_facts, unique_names
 
 CLOCK_NS = 1_750_001_234 * NS_PER_S
-DJI = b"""<x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:Description
- drone-dji:RelativeAltitude="+59.80" drone-dji:GimbalYawDegree="-92.10"
- drone-dji:GimbalPitchDegree="-89.90" /></x:xmpmeta>"""
+DJI = b"""<x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:RDF
+ xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#"><rdf:Description
+ xmlns:drone-dji="http://www.dji.com/drone-dji/1.0/"
+ drone-dji:RelativeAltitude="+59.80" drone-dji:AbsoluteAltitude="+352.40"
+ drone-dji:AltitudeType="RtkAlt" drone-dji:GimbalYawDegree="-92.10"
+ drone-dji:GimbalPitchDegree="-89.90" drone-dji:GimbalRollDegree="+0.20"
+ drone-dji:FlightYawDegree="-91.00" drone-dji:RtkFlag="50" drone-dji:RtkStdLon="0.012"
+ drone-dji:RtkStdLat="0.015" drone-dji:RtkStdHgt="0.031" /></rdf:RDF></x:xmpmeta>"""
 
 
 def photo(path: Path, **changes: object) -> Path:
@@ -30,7 +35,10 @@ def test_time_place_camera_and_lens_are_read(tmp_path: Path) -> None:
     assert found.across_deg == pytest.approx(ACROSS_DEG, abs=0.01)
     assert found.latitude_deg == pytest.approx(FRAME.origin.latitude_deg, abs=1e-3)
     assert found.longitude_deg < FRAME.origin.longitude_deg + 1e-3
-    assert (found.attitude, found.height_above_takeoff_m) == (GimbalAttitude(-92.1, -89.9), 59.8)
+    assert found.attitude == GimbalAttitude(-92.1, -89.9, 0.2)
+    assert (found.height_above_takeoff_m, found.flight_yaw_deg) == (59.8, -91.0)
+    assert (found.absolute_height_m, found.height_reference) == (352.4, "ellipsoid")
+    assert (found.horizontal_sigma_m, found.vertical_sigma_m) == (0.015, 0.031)
     assert (found.cols, found.rows, found.orientation) == (640, 480, 6)
 
 

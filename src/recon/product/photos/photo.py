@@ -1,7 +1,7 @@
 """A photo's own statements: time, place, camera, attitude, from EXIF and DJI's XMP.
 
-The pixels are not decoded. A photo is hostile: sizes are bounded, XML with entities is refused, and
-what Pillow raises on damage becomes a `PhotoError`.
+The pixels are not decoded. A photo is hostile: sizes are bounded, and what Pillow raises on damage
+becomes a `PhotoError`.
 """
 
 import math
@@ -14,18 +14,18 @@ from datetime import UTC, datetime
 from io import BytesIO
 from math import isfinite
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from PIL import Image, UnidentifiedImageError
 from PIL.ExifTags import GPS, IFD, Base
 
 from recon.model.errors import ReconError
 from recon.model.units import NS_PER_S
+from recon.product.photos.xmp import DJI, Xmp, XmpError, read_xmp
 
 SUFFIXES = (".jpg", ".jpeg")
 LARGEST_BYTES = 256 * 1024 * 1024
 MOST_PIXELS = 400_000_000
-MOST_XMP_BYTES = 1024 * 1024
 START_OF_SCAN, END_OF_IMAGE = b"\xff\xda", b"\xff\xd9"
 
 DIAGONAL_OF_FULL_FRAME_MM = 43.2666
@@ -39,11 +39,15 @@ class PhotoError(ReconError):
 
 @dataclass(frozen=True, slots=True)
 class GimbalAttitude:
-    """Attitude of the camera, by its gimbal: yaw clockwise from north, pitch -90 straight down, in
-    degrees."""
+    """Attitude of the camera, by its gimbal: yaw clockwise from north, pitch -90 straight down,
+    roll to the right, in degrees."""
 
     yaw_deg: float
     pitch_deg: float
+    roll_deg: float | None = None
+
+
+HeightReference = Literal["ellipsoid", "sea level", "not stated"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +75,17 @@ class Photo:
     """Field of view along the longer side."""
     attitude: GimbalAttitude | None
     height_above_takeoff_m: float | None
+    flight_yaw_deg: float | None = None
+    """Heading of the aircraft's nose."""
+    absolute_height_m: float | None = None
+    height_reference: HeightReference = "not stated"
+    """What the absolute height is above. Without RTK it is one of sea level that may be tens of
+    metres off, and EXIF often calls one above the ellipsoid the same."""
+    horizontal_sigma_m: float | None = None
+    vertical_sigma_m: float | None = None
+    """Standard deviations of the position by RTK; None where RTK gave none."""
+    notes: tuple[str, ...] = ()
+    """Sentences on statements that could not be read."""
 
     @property
     def camera_name(self) -> str:
@@ -147,7 +162,9 @@ def _facts(path: Path, name: str, image: Any) -> Photo:
     orientation = exif.get(Base.Orientation, 1)
     names = (exif.get(Base.Make), exif.get(Base.Model), details.get(Base.BodySerialNumber))
     make, model, serial = (_text(each) for each in names)
-    dji = _dji(image.info.get("xmp", b""))
+    xmp, notes = _xmp(image.info.get("xmp"))
+    height_m, reference = _absolute_height(xmp, gps)
+    horizontal_m, vertical_m = _rtk_sigmas_m(xmp)
     return Photo(
         path,
         name,
@@ -161,8 +178,14 @@ def _facts(path: Path, name: str, image: Any) -> Photo:
         longitude_deg,
         _satellite_ns(gps),
         _field_deg(details, max(cols, rows), min(cols, rows)),
-        _attitude(dji),
-        dji.get("RelativeAltitude"),
+        _attitude(xmp),
+        xmp.number(DJI, "RelativeAltitude"),
+        _angle(xmp, "FlightYawDegree", -360.0, 360.0),
+        height_m,
+        reference,
+        horizontal_m,
+        vertical_m,
+        notes,
     )
 
 
@@ -244,29 +267,62 @@ def _field_deg(details: Mapping[int, Any], longer_px: int, shorter_px: int) -> f
     return math.degrees(2.0 * math.atan(wide_mm / 2.0 / film_mm))
 
 
-def _number(value: Any) -> float | None:
+def _number(value: Any, least: float = 1e-9) -> float | None:
     try:
         number = float(value)
     except (TypeError, ValueError, ZeroDivisionError):
         return None
-    return number if isfinite(number) and number > 0.0 else None
+    return number if isfinite(number) and number >= least else None
 
 
-_DJI = re.compile(
-    rb"drone-dji:(GimbalYawDegree|GimbalPitchDegree|RelativeAltitude)"
-    rb"(?:=\"|>)([+-]?\d{1,6}(?:\.\d{1,12})?)(?:\"|<)"
-)
+def _xmp(packet: object) -> tuple[Xmp, tuple[str, ...]]:
+    if not isinstance(packet, bytes):
+        return Xmp(), ()
+    try:
+        return read_xmp(packet), ()
+    except XmpError as problem:
+        return Xmp(), (f"its XMP is not read: {problem}",)
 
 
-def _dji(xmp: object) -> dict[str, float]:
-    """Return DJI's numbers from an XMP packet; they are matched as text, no XML is interpreted."""
-    if not isinstance(xmp, bytes) or len(xmp) > MOST_XMP_BYTES:
-        return {}
-    return {name.decode(): float(number) for name, number in _DJI.findall(xmp)}
-
-
-def _attitude(dji: Mapping[str, float]) -> GimbalAttitude | None:
-    yaw, pitch = dji.get("GimbalYawDegree"), dji.get("GimbalPitchDegree")
-    if yaw is None or pitch is None or not (-90.0 <= pitch <= 45.0 and abs(yaw) <= 360.0):
+def _attitude(xmp: Xmp) -> GimbalAttitude | None:
+    yaw_deg = _angle(xmp, "GimbalYawDegree", -360.0, 360.0)
+    pitch_deg = _angle(xmp, "GimbalPitchDegree", -90.0, 45.0)
+    if yaw_deg is None or pitch_deg is None:
         return None
-    return GimbalAttitude(yaw, pitch)
+    return GimbalAttitude(yaw_deg, pitch_deg, _angle(xmp, "GimbalRollDegree", -360.0, 360.0))
+
+
+def _angle(xmp: Xmp, name: str, least_deg: float, most_deg: float) -> float | None:
+    angle_deg = xmp.number(DJI, name)
+    return angle_deg if angle_deg is not None and least_deg <= angle_deg <= most_deg else None
+
+
+BELOW_SEA_LEVEL, ABOVE_ELLIPSOID, BELOW_ELLIPSOID = 1, 2, 3
+"""EXIF's GPSAltitudeRef; 0 is above sea level, and is what cameras write that do not know."""
+
+
+def _absolute_height(xmp: Xmp, gps: Mapping[int, Any]) -> tuple[float | None, HeightReference]:
+    """Return the height and what it is above: by DJI's XMP, or by EXIF."""
+    height_m, kind = xmp.number(DJI, "AbsoluteAltitude"), xmp.text(DJI, "AltitudeType")
+    if height_m is not None:
+        return height_m, "ellipsoid" if kind == "RtkAlt" else "not stated"
+    stated_m = _number(gps.get(GPS.GPSAltitude), least=0.0)
+    if stated_m is None:
+        return None, "not stated"
+    raw = gps.get(GPS.GPSAltitudeRef, 0)
+    side = raw[0] if isinstance(raw, bytes) and raw else raw
+    height_m = -stated_m if side in (BELOW_SEA_LEVEL, BELOW_ELLIPSOID) else stated_m
+    return height_m, "ellipsoid" if side in (ABOVE_ELLIPSOID, BELOW_ELLIPSOID) else "sea level"
+
+
+RTK_NONE = 0
+"""RtkFlag without any RTK solution; 16 is single point, 34 float, 50 fixed."""
+
+
+def _rtk_sigmas_m(xmp: Xmp) -> tuple[float | None, float | None]:
+    """Return the standard deviations across and up, as RTK gave them."""
+    if xmp.number(DJI, "RtkFlag") == RTK_NONE:
+        return None, None
+    east, north, up = (xmp.number(DJI, f"RtkStd{name}") for name in ("Lon", "Lat", "Hgt"))
+    across = [each for each in (east, north) if each is not None and each > 0.0]
+    return max(across, default=None), up if up is not None and up > 0.0 else None

@@ -1,0 +1,1 @@
+"""Photos as cameras and people leave them: what each file states, and which belong together."""
