@@ -53,10 +53,21 @@ def state_folder(tmp_path_factory: pytest.TempPathFactory) -> None:
 @pytest.fixture(scope="session")
 def fisheye_data() -> Path:
     """The folder of the real fisheye frames."""
-    folder = Path(os.environ.get("RECON_DATA", "")) / "fisheye"
-    if "RECON_DATA" in os.environ and (folder / "camera-model.txt").is_file():
+    return real_data("fisheye", "camera-model.txt")
+
+
+@pytest.fixture(scope="session")
+def photos_data() -> Path:
+    """The folder of real photos."""
+    return real_data("photos", "beach-phantom3/DJI_0024.JPG")
+
+
+def real_data(name: str, file: str) -> Path:
+    """A folder of RECON_DATA that holds a file; skips or fails the test without it."""
+    folder = Path(os.environ.get("RECON_DATA", "")) / name
+    if "RECON_DATA" in os.environ and (folder / file).is_file():
         return folder
-    reason = f"real frames needed: set RECON_DATA to the folder that holds fisheye/ (now: {folder})"
+    reason = f"set RECON_DATA to the folder that holds {name}/{file} (now: {folder.parent})"
     if os.environ.get("RECON_DATA_REQUIRED") == "1":
         pytest.fail(reason)
     pytest.skip(reason)

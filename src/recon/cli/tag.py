@@ -18,7 +18,9 @@ from recon.cli.progress import progress_over, usable_cores
 from recon.model.errors import RecordError
 from recon.model.units import HECTARE_M2
 from recon.product.flight import FlightData, read_flight
-from recon.product.photos.photo import SUFFIXES, Photo, PhotoError, read_photo_facts, unique_names
+from recon.product.photos.names import unique_names
+from recon.product.photos.photo import SUFFIXES, Photo, read_photo_facts
+from recon.product.photos.photo_error import PhotoError
 from recon.product.sun_at import SunHistory
 from recon.product.tag import (
     MASK_SCALE,
@@ -81,6 +83,7 @@ def tag_command(
     photos, refused = _read(paths)
     timed = timed_photos(flown, photos, StatedCamera(clock_offset, field))
     timed.refused.update(refused)
+    _print_grouped("", {each.name: note for each in photos for note in each.notes})
     _print_clocks(timed)
     if not timed.photos:
         _print_refused(timed.refused)
@@ -240,6 +243,10 @@ def _print_clocks(timed: Timed) -> None:
 
 
 def _print_refused(refused: dict[str, str]) -> None:
+    _print_grouped("not tagged: ", refused)
+
+
+def _print_grouped(before: str, refused: dict[str, str]) -> None:
     """Print each reason once, with some of the photos."""
     by_reason: dict[str, list[str]] = {}
     for name, reason in sorted(refused.items()):
@@ -247,7 +254,7 @@ def _print_refused(refused: dict[str, str]) -> None:
     for reason, names in by_reason.items():
         more = len(names) - MOST_NAMED
         listed = ", ".join(names[:MOST_NAMED]) + (f" and {more} more" if more > 0 else "")
-        _warn(f"not tagged: {listed}: {reason}")
+        _warn(f"{before}{listed}: {reason}")
 
 
 def _print_summary(

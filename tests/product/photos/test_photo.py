@@ -1,6 +1,7 @@
 """What photos state, and hostile ones."""
 
 import struct
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -9,7 +10,9 @@ from hypothesis import strategies as st
 from tests.product.made_flight import ACROSS_DEG, FRAME, write_photo
 
 from recon.model.units import NS_PER_S
-from recon.product.photos.photo import GimbalAttitude, PhotoError, read_photo_facts, unique_names
+from recon.product.photos.names import unique_names
+from recon.product.photos.photo import GimbalAttitude, read_photo_facts
+from recon.product.photos.photo_error import PhotoError
 
 CLOCK_NS = 1_750_001_234 * NS_PER_S
 DJI = b"""<x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:RDF
@@ -117,6 +120,29 @@ def test_a_preview_behind_the_image_may_be_cut(tmp_path: Path, whole: bytes) -> 
     path = tmp_path / "mpf.jpg"
     path.write_bytes(whole + b"\xff\xd8" + struct.pack(">H", 7) * 20)
     assert read_photo_facts(path, "mpf.jpg").cols == 640
+
+
+@pytest.mark.parametrize("fill", [1, 14])
+def test_fill_bytes_may_stand_before_any_marker(tmp_path: Path, whole: bytes, fill: int) -> None:
+    """ISO/IEC 10918-1, B.1.1.2."""
+    filled = bytearray(whole[:2])
+    at = 2
+    while True:
+        size = 2 + int.from_bytes(whole[at + 2 : at + 4])
+        if whole[at + 1] == 0xDA:
+            break
+        filled += b"\xff" * fill + whole[at : at + size]
+        at += size
+    filled += b"\xff" * fill + whole[at:-2] + b"\xff" * fill + whole[-2:]
+    path = tmp_path / "filled.jpg"
+    path.write_bytes(bytes(filled))
+    plain = tmp_path / "plain.jpg"
+    plain.write_bytes(whole)
+    assert read_photo_facts(path, "a") == replace(read_photo_facts(plain, "a"), path=path)
+    for share in (0.3, 0.6, 0.9, 0.99):
+        path.write_bytes(bytes(filled[: int(share * len(filled))]))
+        with pytest.raises(PhotoError, match="cut off"):
+            read_photo_facts(path, "a")
 
 
 def test_names_are_unique_and_without_spaces() -> None:
