@@ -18,17 +18,28 @@ from recon.product.clock import (
     Shots,
     clocks_of,
     offset_text,
+    places_at,
     stated_clock,
     times_of,
 )
 from recon.product.flight import FlightData, RecordedTrack
-from recon.product.footprint import LOWEST_PITCH_DEG, Aim, PhotoView
-from recon.product.photos.photo import Photo
+from recon.product.footprint import DOWN_DEG, LOWEST_PITCH_DEG, Aim, PhotoView
+from recon.product.headings import (
+    AIRCRAFT,
+    COURSE,
+    GIMBAL,
+    RECORDED,
+    best_guess_deg,
+    signed_deg,
+)
+from recon.product.photos.photo import GimbalAttitude, Photo
 
 LOWEST_M = 5.0
 """Least height above takeoff: a photo on the ground shows a pad."""
 ZONE_STEP_S, ZONE_WITHIN_S = 900.0, 180.0
 """Time zones differ by quarters of an hour; a clock left alone for a year is minutes off."""
+COURSE_OVER_NS, SLOWEST_COURSE_MPS = NS_PER_S, 1.5
+"""A course is that between a second earlier and later, of a vehicle that moves."""
 SATELLITES_WITHIN_S = 20.0
 """Satellite time and UTC differ by 18 leap seconds, and cameras write the one for the other."""
 
@@ -54,6 +65,8 @@ class TimedPhoto:
     sigma_s: float
     view: PhotoView
     height_above_takeoff_m: float
+    headings_deg: Mapping[str, float] = field(default_factory=dict)
+    """Headings of the picture's top, by what states them; they may contradict each other."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,15 +159,15 @@ def _add_fit(
     track = flight.tracks[fit.serial]
     at_ns = times_of(shots, track, fit, flight.utc_ahead_ns)
     heights = np.interp(at_ns, track.at_ns, track.height_m)
-    yaws = _headings(track, at_ns)
-    for index, moment, height_m, yaw_deg in zip(
-        fit.photos.tolist(), at_ns.tolist(), heights.tolist(), yaws.tolist(), strict=True
+    yaws, courses = _headings(track, at_ns), _courses(track, at_ns)
+    for index, moment, height_m, *headings in zip(
+        *(each.tolist() for each in (fit.photos, at_ns, heights, yaws, courses)), strict=True
     ):
         photo = group[index]
         place = (float(shots.east_m[index]), float(shots.north_m[index]))
         flown = flight.survey_at(track, int(moment))
         above_ground_m = None if flown is None else flown.height_above_ground_m
-        pose = height_m, above_ground_m, yaw_deg
+        pose = height_m, above_ground_m, dict(zip((RECORDED, COURSE), headings, strict=True))
         timed = _timed(photo, fit, int(moment), place, pose, stated)
         if isinstance(timed, str):
             found.refused[photo.name] = timed
@@ -181,25 +194,50 @@ def _headings(track: RecordedTrack, at_ns: IntArray) -> FloatArray:
     return np.rad2deg(np.arctan2(sine, cosine))
 
 
+def _courses(track: RecordedTrack, at_ns: IntArray) -> FloatArray:
+    """Return courses over ground (N,) in degrees; NaN where the vehicle hardly moved."""
+    (east, north), (from_east, from_north) = (
+        places_at(track, at_ns + side * COURSE_OVER_NS) for side in (1, -1)
+    )
+    east_m, north_m = east - from_east, north - from_north
+    slowest_m = SLOWEST_COURSE_MPS * 2 * COURSE_OVER_NS / NS_PER_S
+    is_moving = np.hypot(east_m, north_m) > slowest_m
+    return np.where(is_moving, np.rad2deg(np.arctan2(east_m, north_m)), np.nan)
+
+
+def _looks_deg(attitude: GimbalAttitude) -> tuple[float, float]:
+    """Return the heading of the picture's top and the pitch of a camera by its gimbal.
+
+    A gimbal rolled over by 180 degrees turns the picture about its middle: the top looks back, and
+    the pitch counts on from straight down.
+    """
+    if abs(signed_deg(attitude.roll_deg or 0.0)) <= 90.0:
+        return attitude.yaw_deg, attitude.pitch_deg
+    return signed_deg(attitude.yaw_deg + 180.0), -180.0 - attitude.pitch_deg
+
+
 def _timed(
     photo: Photo,
     fit: ClockFit,
     at_ns: int,
     place_m: tuple[float, float],
-    recorded: tuple[float, float | None, float],
+    recorded: tuple[float, float | None, Mapping[str, float]],
     stated: StatedCamera,
 ) -> TimedPhoto | str:
     """Return a photo's time and pose, or why it has none.
 
     `recorded` is its height above takeoff, that above the ground of a survey that followed it, and
-    its heading.
+    its headings.
     """
-    height_m, above_ground_m, yaw_deg = recorded
+    height_m, above_ground_m, headings_deg = recorded
     if photo.height_above_takeoff_m is not None:
         height_m = photo.height_above_takeoff_m
-    pitch_deg = -90.0
+    stated_deg, pitch_deg = dict[str, float](), DOWN_DEG
     if photo.attitude is not None:
-        yaw_deg, pitch_deg = photo.attitude.yaw_deg, photo.attitude.pitch_deg
+        stated_deg[GIMBAL], pitch_deg = _looks_deg(photo.attitude)
+    if photo.flight_yaw_deg is not None:
+        stated_deg[AIRCRAFT] = photo.flight_yaw_deg
+    stated_deg |= {name: each for name, each in headings_deg.items() if np.isfinite(each)}
     across_deg = stated.across_deg or photo.across_deg
     if across_deg is None:
         return "EXIF states no focal length: give the camera's field of view with --field"
@@ -208,14 +246,14 @@ def _timed(
     # In a survey above ground a drone may fly below its takeoff point.
     if (height_m if above_ground_m is None else abs(height_m)) < LOWEST_M:
         return f"taken {height_m:.1f} m above takeoff, below {LOWEST_M:g} m: a photo on the ground"
-    if not np.isfinite(yaw_deg):
+    if not stated_deg:
         return "neither the photo nor the record states its heading"
     if pitch_deg > LOWEST_PITCH_DEG:
         return f"the camera looked {pitch_deg:.0f} degrees up or down: not at the ground below"
     over_m = height_m if above_ground_m is None else above_ground_m
-    aim = Aim(*place_m, over_m, yaw_deg, pitch_deg)
+    aim = Aim(*place_m, over_m, best_guess_deg(stated_deg), pitch_deg)
     view = PhotoView(aim, across_deg, photo.cols, photo.rows)
-    return TimedPhoto(photo, fit.serial, at_ns, fit.sigma_s, view, height_m)
+    return TimedPhoto(photo, fit.serial, at_ns, fit.sigma_s, view, height_m, stated_deg)
 
 
 def _warn_about_clocks(found: Timed, flight: FlightData, stated: StatedCamera) -> None:
