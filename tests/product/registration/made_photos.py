@@ -64,7 +64,7 @@ def pictured(view: PhotoView) -> GreyImage:
          [0.0, -1.0 / PIXEL_M, GROUND_M / 2.0 / PIXEL_M - 0.5],
          [0.0, 0.0, 1.0]]
     )  # fmt: skip
-    # A pixel of the photo covers more than one of the ground's: smaller ones first, then their mean.
+    # A pixel of the photo covers more than one of the ground's: their mean.
     fine = replace(view, cols=2 * view.cols, rows=2 * view.rows)
     seen = cv2.warpPerspective(
         GROUND,
