@@ -129,8 +129,7 @@ class Http:
         if status == ORDER_INVALID:
             raise OrderInvalidError(reason)
         raise RequestRefusedError(
-            f"{self._address.http}{path}: expected an answer, got HTTP {status}: {reason}; nothing "
-            "was executed"
+            f"{self._address.http}{path}: refused (HTTP {status}): {reason}; nothing was executed"
         )
 
     def _unreachable(self, problem: Exception) -> StationUnreachableError:

@@ -54,10 +54,12 @@ function SurveySection(props: SurveyProps) {
     props.survey.vehicles.filter(
       ({ not_flying_reason }) => !is("done", "aborted") || not_flying_reason !== null,
     );
-  /** The number of a round means nothing to an operator beyond that rows are flown again. */
+  /** Nothing where it only repeats the status; a round's number means nothing to an operator. */
   const reason = () => {
-    const shown = props.survey.reason.replace(`${surveyStatus(props.survey)}: `, "");
-    return /^round \d+$/.test(shown) ? "" : shown;
+    const status = surveyStatus(props.survey);
+    const shown = props.survey.reason.replace(`${status}: `, "");
+    const isRepeated = is("created") || shown.toLowerCase() === status.toLowerCase();
+    return isRepeated || /^round \d+$/.test(shown) ? "" : shown;
   };
   return (
     <section class="section" data-testid={`survey-${props.survey.id}`}>

@@ -116,6 +116,18 @@ describe("a survey in the list", () => {
     expect(shown()).toContain("40\u00a0m above ground");
   });
 
+  it("says once how it ended, and why where that says more", () => {
+    show(
+      survey(7, { phase: "aborted", reason: "aborted" }),
+      survey(8, { phase: "paused", reason: "no vehicle left" }),
+      survey(9, { phase: "created", reason: "not started yet" }),
+    );
+    const shown = (id: number) => find(page.root, `[data-testid=survey-${id}]`).textContent;
+    expect(shown(7).match(/aborted/gi)).toHaveLength(1);
+    expect(shown(8)).toContain("Paused: no vehicle left");
+    expect(shown(9)).not.toContain("not started yet");
+  });
+
   it("that flies shows no estimate", () => {
     show(survey(7));
     expect(page.root.querySelector("[data-testid=estimate-7]")).toBeNull();
