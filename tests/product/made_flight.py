@@ -246,6 +246,8 @@ def write_photo(
     orientation: int = 1,
     satellites_ns: int | None = None,
     size: tuple[int, int] = (COLS, ROWS_PX),
+    sides: tuple[str, str] | None = ("N", "W"),
+    altitude_m: float | None = None,
 ) -> Path:
     """Write a small JPEG with the EXIF of a drone's camera."""
     exif = Image.Exif()
@@ -265,7 +267,10 @@ def write_photo(
         details[ExifTags.Base.FocalPlaneResolutionUnit] = 4
     gps = exif.get_ifd(ExifTags.IFD.GPSInfo)
     latitude, longitude, _height = geo_from_enu(FRAME, (*place_m, 0.0))
-    gps[ExifTags.GPS.GPSLatitudeRef], gps[ExifTags.GPS.GPSLongitudeRef] = "N", "W"
+    if sides is not None:
+        gps[ExifTags.GPS.GPSLatitudeRef], gps[ExifTags.GPS.GPSLongitudeRef] = sides
+    if altitude_m is not None:
+        gps[ExifTags.GPS.GPSAltitude] = _rational(altitude_m)
     gps[ExifTags.GPS.GPSLatitude] = _dms(float(latitude[0]))
     gps[ExifTags.GPS.GPSLongitude] = _dms(-float(longitude[0]))
     if satellites_ns is not None:

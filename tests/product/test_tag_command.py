@@ -157,7 +157,7 @@ def test_chosen_photos_show_all_ground_that_was_photographed_in_sun(tagged) -> N
 
 
 def test_the_folder_for_opendronemap_follows_its_readers_rules(tagged) -> None:
-    """Names and masks as OpenDroneMap pairs them; geo.txt as it splits lines."""
+    """Names and masks as OpenDroneMap pairs them; the photos state position and height."""
     _result, out, _card, _truth = tagged
     images = sorted(path.name for path in (out / "odm" / "images").iterdir())
     photos = [name for name in images if not Path(name).stem.endswith("_mask")]
@@ -165,17 +165,7 @@ def test_the_folder_for_opendronemap_follows_its_readers_rules(tagged) -> None:
     assert photos == sorted((out / "chosen.txt").read_text().split())
     assert all(f"{Path(name).stem}_mask" in masks for name in photos)
     assert not any(" " in name for name in images)
-    head, *lines = (out / "odm" / "geo.txt").read_text().splitlines()
-    assert head == "EPSG:4326"
-    assert [line.split()[0] for line in lines] == [n for n in by_time(out) if n in set(photos)]
-    for line in lines:
-        _name, longitude, latitude = line.split()
-        assert float(longitude) == pytest.approx(FRAME.origin.longitude_deg, abs=0.01)
-        assert float(latitude) == pytest.approx(FRAME.origin.latitude_deg, abs=0.01)
-
-
-def by_time(out: Path) -> list[str]:
-    return [row["name"] for row in rows(out)]
+    assert not (out / "odm" / "geo.txt").exists()
 
 
 def test_regions_to_fly_again_are_surveys_that_recon_plans(tmp_path: Path, record: Path) -> None:
@@ -210,6 +200,31 @@ def test_a_second_run_goes_on_where_the_first_was_ended(tagged, record: Path) ->
     assert kept.read_bytes() == b"kept"
     assert lost.is_file()
     assert (out / "tags.csv").read_text() == before
+
+
+def test_twice_inside_the_card_gives_the_same_result(
+    tmp_path: Path, record: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write_card(tmp_path, 0.0, (ONE,), every=4)
+    shutil.copy(tmp_path / "SIM-1_0000.JPG", tmp_path / "copy.JPG")
+    (tmp_path / "SIM-1_0000.MP4").touch()
+    monkeypatch.chdir(tmp_path)
+
+    def result() -> tuple[str, dict[str, bytes]]:
+        shown = CliRunner().invoke(app, ["tag", ".", "--flight", str(record)])
+        assert shown.exit_code == 0, shown.output
+        assert "left out: copy.JPG: copies of other photos, which count once" in shown.output
+        files = (path for path in sorted(Path("tagged").rglob("*")) if path.is_file())
+        return shown.output, {path.as_posix(): path.read_bytes() for path in files}
+
+    (first, files), (second, again) = result(), result()
+    assert files == again
+    assert "left out: SIM-1_0000.MP4: no photos that Recon reads (.mp4)" in first
+    assert "left out: tagged: written by recon tag" in second
+    card = CliRunner().invoke(app, ["tag", "tagged", "--flight", str(record), "--out", "other"])
+    assert "what recon tag wrote" in str(card.exception)
+    there = CliRunner().invoke(app, ["tag", ".", "--flight", str(record), "--out", "."])
+    assert "expected a folder without photos" in str(there.exception)
 
 
 def test_bad_photos_are_named_with_the_reason_and_the_rest_is_tagged(

@@ -18,8 +18,11 @@ from recon.cli.progress import progress_over, usable_cores
 from recon.model.errors import RecordError
 from recon.model.units import HECTARE_M2
 from recon.product.flight import FlightData, read_flight
+from recon.product.odm import write_odm_project
+from recon.product.photos.card import MARK, PROGRESS, Card, card_of
+from recon.product.photos.copies import without_copies
 from recon.product.photos.names import unique_names
-from recon.product.photos.photo import SUFFIXES, Photo, read_photo_facts
+from recon.product.photos.photo import Photo, read_photo_facts
 from recon.product.photos.photo_error import PhotoError
 from recon.product.sun_at import SunHistory
 from recon.product.tag import (
@@ -36,7 +39,6 @@ from recon.product.write import (
     fly_again,
     masked_name,
     table,
-    write_odm_project,
     write_photo_files,
     write_text,
 )
@@ -45,7 +47,7 @@ MOST_NAMED = 5
 """Photos named for one reason; all are in the table."""
 AHEAD = 8
 """Photos waiting for each thread."""
-PROGRESS = "progress.jsonl"
+COPY = "a copy, which counts once, of"
 MOST_OFF_S = 1e9
 """Largest offset of a camera's clock: thirty years, as after an empty battery."""
 NO_PHOTO_TAGGED = 1
@@ -78,14 +80,16 @@ def tag_command(
     ] = None,
 ) -> None:
     """Tag the photos of a flight: sunlit share, masks, the photos to keep, what to fly again."""
-    paths = _photo_files(images)
+    card = card_of(images)
+    _refuse_photos_below(out, card.photos)
     flown = opened_flight(flight)
-    photos, refused = _read(paths)
+    photos, refused = _read(card.photos)
     timed = timed_photos(flown, photos, StatedCamera(clock_offset, field))
     timed.refused.update(refused)
     _print_grouped("", {each.name: note for each in photos for note in each.notes})
     _print_clocks(timed)
     if not timed.photos:
+        _print_left(card)
         _print_refused(timed.refused)
         print("no photo was tagged", file=sys.stderr)
         raise typer.Exit(NO_PHOTO_TAGGED)
@@ -93,18 +97,22 @@ def tag_command(
     try:
         for folder in (out, out / "masks", out / "xmp"):
             folder.mkdir(parents=True, exist_ok=True)
+        (out / MARK).touch()
         tags = _tag_all(out, flown, timed.photos, history, sunlit)
         count = len(timed.photos)
         selection = select(
             flown, timed.photos, history, overlap, lambda p: progress_over(p, "coverage", count)
         )
-        write_odm_project(out, flown, timed.photos, selection)
+        chosen = frozenset(selection.chosen)
+        kept = [each for each in timed.photos if each.photo.name in chosen]
+        write_odm_project(out / "odm", out / "masks", flown, kept)
     except OSError as problem:
         raise RecordError(f"{problem.filename or out}: {problem.strerror}") from problem
     rows = table(flown, timed.photos, tags, selection.chosen, timed.refused, sunlit)
     write_text(out / "tags.csv", rows)
     write_text(out / "chosen.txt", "".join(f"{name}\n" for name in selection.chosen))
     write_text(out / "fly-again.geojson", fly_again(flown, selection))
+    _print_left(card)
     _print_refused(timed.refused)
     _print_summary(out, tags, selection, sunlit)
 
@@ -120,25 +128,12 @@ def opened_flight(path: Path) -> FlightData:
     return flight
 
 
-def _photo_files(images: Sequence[Path]) -> list[Path]:
-    """Return the photos in files and folders, without masks; raises `RecordError` without any."""
-    found: list[Path] = []
-    for path in images:
-        if path.is_dir():
-            inside = (each for each in sorted(path.rglob("*")) if each.is_file())
-            found += (
-                each
-                for each in inside
-                if each.suffix.lower() in SUFFIXES and not each.stem.endswith("_mask")
-            )
-        elif path.is_file():
-            found.append(path)
-        else:
-            raise RecordError(f"{path}: expected a photo or a folder, got no such file")
-    unique = list(dict.fromkeys(found))
-    if not unique:
-        raise RecordError(f"expected photos ({', '.join(SUFFIXES)}), got none")
-    return unique
+def _refuse_photos_below(out: Path, photos: Sequence[Path]) -> None:
+    """Raise `RecordError` where the folder to write is the cards' own: it is never read again."""
+    whole = out.resolve()
+    for path in photos:
+        if whole in path.resolve().parents:
+            raise RecordError(f"--out: expected a folder without photos, got {out} with {path}")
 
 
 def _read(paths: Sequence[Path]) -> tuple[list[Photo], dict[str, str]]:
@@ -158,6 +153,11 @@ def _read(paths: Sequence[Path]) -> tuple[list[Photo], dict[str, str]]:
                 refused[names[path]] = found
             else:
                 photos.append(found)
+    try:
+        photos, copies = without_copies(photos)
+    except OSError as problem:
+        raise RecordError(f"{problem.filename}: {problem.strerror}") from problem
+    refused.update({name: f"{COPY} {first}" for name, first in copies.items()})
     return photos, refused
 
 
@@ -242,8 +242,25 @@ def _print_clocks(timed: Timed) -> None:
         _warn(warning)
 
 
+def _print_left(card: Card) -> None:
+    """Print what was left alone, by reason."""
+    for reason, paths in card.left.items():
+        print(printable(f"left out: {_listed([path.name for path in paths])}: {reason}"))
+
+
 def _print_refused(refused: dict[str, str]) -> None:
-    _print_grouped("not tagged: ", refused)
+    """Print each reason once; copies together, for each has its own photo."""
+    copies = [name for name, reason in sorted(refused.items()) if reason.startswith(COPY)]
+    if copies:
+        print(f"left out: {_listed(copies)}: copies of other photos, which count once")
+    rest = {name: reason for name, reason in refused.items() if name not in copies}
+    _print_grouped("not tagged: ", rest)
+
+
+def _listed(names: Sequence[str]) -> str:
+    """Return how many there are, with the first names."""
+    more = len(names) - MOST_NAMED
+    return ", ".join(names[:MOST_NAMED]) + (f" and {more} more" if more > 0 else "")
 
 
 def _print_grouped(before: str, refused: dict[str, str]) -> None:
@@ -252,9 +269,7 @@ def _print_grouped(before: str, refused: dict[str, str]) -> None:
     for name, reason in sorted(refused.items()):
         by_reason.setdefault(reason.removeprefix(f"{name}: "), []).append(name)
     for reason, names in by_reason.items():
-        more = len(names) - MOST_NAMED
-        listed = ", ".join(names[:MOST_NAMED]) + (f" and {more} more" if more > 0 else "")
-        _warn(f"{before}{listed}: {reason}")
+        _warn(f"{before}{_listed(names)}: {reason}")
 
 
 def _print_summary(

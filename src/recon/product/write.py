@@ -1,11 +1,8 @@
-"""What `recon tag` leaves: a table, sidecars, masks, a project for OpenDroneMap, the ground to fly
-again."""
+"""What `recon tag` leaves: a table, sidecars, masks, the ground to fly again."""
 
 import csv
 import io
 import json
-import os
-import shutil
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
@@ -73,7 +70,7 @@ def write_photo_files(
 
 def xmp(flight: FlightData, timed: TimedPhoto, tag: PhotoTag, share: float) -> str:
     """Return a photo's sidecar."""
-    longitude_deg, latitude_deg = _lon_lat(flight, timed)
+    longitude_deg, latitude_deg = lon_lat(flight, timed)
     state = tag.state(share)
     values = {
         "xmp:CreatorTool": f"Recon {version()}",
@@ -116,7 +113,8 @@ def _share(value: float) -> str:
     return "" if np.isnan(value) else f"{value:.3f}"
 
 
-def _lon_lat(flight: FlightData, timed: TimedPhoto) -> tuple[float, float]:
+def lon_lat(flight: FlightData, timed: TimedPhoto) -> tuple[float, float]:
+    """Return a photo's longitude and latitude in degrees."""
     aim = timed.view.aim
     (place,) = flight.lon_lat(np.array([[aim.east_m, aim.north_m]]))
     return place
@@ -137,7 +135,7 @@ def table(
     kept = frozenset(chosen)
     for timed in photos:
         tag, aim, name = tags[timed.photo.name], timed.view.aim, timed.photo.name
-        longitude_deg, latitude_deg = _lon_lat(flight, timed)
+        longitude_deg, latitude_deg = lon_lat(flight, timed)
         rows.writerow(
             (
                 *(_cell(name), _cell(str(timed.photo.path)), _cell(timed.serial)),
@@ -189,37 +187,6 @@ def _rings(polygon: shapely.Polygon, flight: FlightData) -> list[list[list[float
         [[round(x, 8), round(y, 8)] for x, y in flight.lon_lat(np.asarray(ring.coords)[:, :2])]
         for ring in (turned.exterior, *turned.interiors)
     ]
-
-
-def write_odm_project(
-    out: Path, flight: FlightData, photos: Sequence[TimedPhoto], selection: Selection
-) -> None:
-    """Write the folder of a run of OpenDroneMap: chosen photos, their masks, `geo.txt`.
-
-    Photos are hard links where the disk allows it, copies elsewhere. Raises OSError.
-    """
-    folder = out / "odm" / "images"
-    if folder.exists():
-        shutil.rmtree(folder)
-    folder.mkdir(parents=True)
-    chosen = frozenset(selection.chosen)
-    lines = ["EPSG:4326"]
-    for timed in photos:
-        name = timed.photo.name
-        if name not in chosen:
-            continue
-        _link(timed.photo.path, folder / name)
-        _link(out / "masks" / masked_name(name), folder / masked_name(name))
-        longitude_deg, latitude_deg = _lon_lat(flight, timed)
-        lines.append(f"{name} {longitude_deg:.8f} {latitude_deg:.8f}")
-    replace_file(out / "odm" / "geo.txt", ("\n".join(lines) + "\n").encode(), FILE_MODE)
-
-
-def _link(source: Path, target: Path) -> None:
-    try:
-        os.link(source, target)
-    except OSError:
-        shutil.copyfile(source, target)
 
 
 def write_text(path: Path, text: str) -> None:

@@ -11,12 +11,14 @@ from pathlib import Path
 from typing import Any
 
 from PIL import Image, UnidentifiedImageError
-from PIL.ExifTags import IFD, Base
+from PIL.ExifTags import GPS, IFD, Base
 
 from recon.product.photos.exif import (
     HeightReference,
+    Tags,
     absolute_height,
     clock_of,
+    number_of,
     satellite_ns,
     text_of,
 )
@@ -26,7 +28,6 @@ from recon.product.photos.photo_error import PhotoError
 from recon.product.photos.place import place_of
 from recon.product.photos.xmp import DJI, Xmp, XmpError, read_xmp
 
-SUFFIXES = (".jpg", ".jpeg")
 LARGEST_BYTES = 256 * 1024 * 1024
 MOST_PIXELS = 400_000_000
 
@@ -75,6 +76,11 @@ class Photo:
     horizontal_sigma_m: float | None = None
     vertical_sigma_m: float | None = None
     """Standard deviations of the position by RTK; None where RTK gave none."""
+    exposure_s: float | None = None
+    """Exposure time."""
+    is_plain: bool = True
+    """Whether plain EXIF, and RTK's XMP attributes, state position, height and accuracy: what most
+    programs read."""
     notes: tuple[str, ...] = ()
     """Sentences on statements that could not be read."""
 
@@ -144,6 +150,8 @@ def _facts(path: Path, name: str, image: Any) -> Photo:
         reference,
         horizontal_m,
         vertical_m,
+        number_of(details.get(Base.ExposureTime)),
+        place.is_in_exif and _is_plain(xmp, gps, height_m, (horizontal_m, vertical_m)),
         (*notes, *filter(None, [place.note])),
     )
 
@@ -168,6 +176,16 @@ def _attitude(xmp: Xmp) -> GimbalAttitude | None:
 def _angle(xmp: Xmp, name: str, least_deg: float, most_deg: float) -> float | None:
     angle_deg = xmp.number(DJI, name)
     return angle_deg if angle_deg is not None and least_deg <= angle_deg <= most_deg else None
+
+
+def _is_plain(
+    xmp: Xmp, gps: Tags, height_m: float | None, sigmas_m: tuple[float | None, float | None]
+) -> bool:
+    has_height = (
+        height_m is None or GPS.GPSAltitude in gps or (DJI, "AbsoluteAltitude") in xmp.plain
+    )
+    has_accuracy = sigmas_m == (None, None) or (DJI, "RtkStdHgt") in xmp.plain
+    return has_height and has_accuracy
 
 
 RTK_NONE = 0

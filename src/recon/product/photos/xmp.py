@@ -18,10 +18,16 @@ MOST_VALUE_CHARACTERS = 4_096
 """DJI keeps binary data in values; what is longer is no statement that anything here reads."""
 
 DJI = "http://www.dji.com/drone-dji/1.0"
-RDF = "http://www.w3.org/1999/02/22-rdf-syntax-ns#"
-XMP_TOOLS = "adobe:ns:meta/"
+RDF = "http://www.w3.org/1999/02/22-rdf-syntax-ns"
+XMP_TOOLS = "adobe:ns:meta"
 BETWEEN = "\n"
-"""Stands between namespace and name: no character of either."""
+"""Stands between namespace, name and prefix: no character of any."""
+USUAL = f"{BETWEEN}drone-dji"
+"""End of a name with the prefix that DJI writes."""
+
+
+Name = tuple[str, str]
+"""Namespace and name."""
 
 
 class XmpError(ReconError):
@@ -30,9 +36,12 @@ class XmpError(ReconError):
 
 @dataclass(frozen=True, slots=True)
 class Xmp:
-    """Values of a packet, by namespace (without a slash at its end) and name, in their order."""
+    """Values in their order, by namespace, without slash or hash at its end, and name."""
 
-    values: dict[tuple[str, str], tuple[str, ...]] = field(default_factory=dict)
+    values: dict[Name, tuple[str, ...]] = field(default_factory=dict)
+    plain: frozenset[Name] = frozenset()
+    """Those of DJI's that stand as most programs look for them: attributes with the usual prefix,
+    of the packet's only description, in eight-bit text."""
 
     def text(self, space: str, *names: str) -> str | None:
         """Return the first value that one of some names has; None without one."""
@@ -67,7 +76,7 @@ def read_xmp(packet: bytes) -> Xmp:
         raise XmpError(f"{len(packet)} bytes, limit {MOST_XMP_BYTES}")
     reader = _Reader()
     parser = expat.ParserCreate(namespace_separator=BETWEEN)
-    parser.buffer_text = True
+    parser.buffer_text = parser.namespace_prefixes = True
     parser.StartElementHandler = reader.begin
     parser.EndElementHandler = reader.end
     parser.CharacterDataHandler = reader.text
@@ -79,7 +88,9 @@ def read_xmp(packet: bytes) -> Xmp:
         raise XmpError(f"no well-formed XML ({problem!s:.80})") from problem
     except (ValueError, LookupError) as problem:
         raise XmpError(f"text in an unknown encoding ({problem!s:.80})") from problem
-    return Xmp({name: tuple(values) for name, values in reader.values.items()})
+    is_plain = _is_eight_bit(packet) and reader.descriptions == 1
+    plain = frozenset(reader.usual if is_plain else ())
+    return Xmp({name: tuple(values) for name, values in reader.values.items()}, plain)
 
 
 def _is_eight_bit(packet: bytes) -> bool:
@@ -94,8 +105,10 @@ class _Reader:
     """Collects attributes, and texts of elements: those of list items under their list's name."""
 
     def __init__(self) -> None:
-        self.values: dict[tuple[str, str], list[str]] = {}
-        self._open: list[tuple[str, str]] = []
+        self.values: dict[Name, list[str]] = {}
+        self.usual: set[Name] = set()
+        self.descriptions = 0
+        self._open: list[Name] = []
         self._text: list[str] = []
         self._count = 0
 
@@ -104,8 +117,11 @@ class _Reader:
         if len(self._open) > MOST_DEPTH:
             raise XmpError(f"more than {MOST_DEPTH} elements inside one another")
         self._text.clear()
+        self.descriptions += self._open[-1] == (RDF, "Description")
         for each, value in attributes.items():
             self._keep(_split(each), value)
+            if each.endswith(USUAL):
+                self.usual.add(_split(each))
 
     def text(self, text: str) -> None:
         self._text.append(text)
@@ -114,12 +130,12 @@ class _Reader:
         text = "".join(self._text).strip()
         self._text.clear()
         if text:
-            outer = [each for each in self._open if each[0] not in (RDF, XMP_TOOLS.rstrip("/"))]
+            outer = [each for each in self._open if each[0] not in (RDF, XMP_TOOLS)]
             if outer:
                 self._keep(outer[-1], text)
         self._open.pop()
 
-    def _keep(self, name: tuple[str, str], value: str) -> None:
+    def _keep(self, name: Name, value: str) -> None:
         if name[0] == RDF or len(value) > MOST_VALUE_CHARACTERS:
             return
         self._count += 1
@@ -128,6 +144,8 @@ class _Reader:
         self.values.setdefault(name, []).append(value.strip())
 
 
-def _split(name: str) -> tuple[str, str]:
-    space, _between, local = name.rpartition(BETWEEN)
-    return space.rstrip("/"), local
+def _split(name: str) -> Name:
+    if BETWEEN not in name:
+        return "", name
+    space, local, *_prefix = name.split(BETWEEN)
+    return space.rstrip("/#"), local
