@@ -13,6 +13,7 @@ import argparse
 import csv
 from bisect import bisect_right
 from dataclasses import dataclass, field, replace
+from math import radians, tan
 from pathlib import Path
 from random import Random
 from tempfile import TemporaryDirectory
@@ -22,11 +23,12 @@ import numpy as np
 import numpy.typing as npt
 
 from recon.cli.score import with_methods
+from recon.cli.sim_photos import write_photos
 from recon.cli.tag import tag_command
 from recon.model.shade import SUNLIT_TRANSMITTANCE
 from recon.model.units import NS_PER_S
 from recon.product.coverage import cells_on, ground_of, region_of
-from recon.product.flight import FlightData, read_flight
+from recon.product.flight import FlightData
 from recon.product.footprint import Aim, PhotoView
 from recon.product.photos.photo import read_photo_facts
 from recon.product.sun_at import SunHistory
@@ -34,10 +36,13 @@ from recon.product.tag import SUNLIT_SHARE, tag_photo
 from recon.product.timing import StatedCamera, TimedPhoto, timed_photos
 from recon.product.write import masked_name
 from recon.score import Scenario, load_scenario
-from studies.survey_photos import Card, SurveyFlown, TruePhoto, fly, true_sunlit
+from recon.sim.photos.card import CardSettings, Shot
+from studies.survey_photos import SurveyFlown, fly
 
 SCENARIO = Path(__file__).parents[1] / "scenarios" / "cumulus-40.toml"
 PLANNER = "lawnmower_again"
+COLS = 456
+"""Columns of the photos: a twelfth of the camera's."""
 EXACT, REAL = "ideal maps", "sunlit_reference"
 CLEARLY = 0.25
 """Transmittances farther than this from the threshold are clearly sun or shade."""
@@ -112,9 +117,11 @@ def add_flight(
     """Fly a scenario, tag its photos with the command, and add the figures."""
     with TemporaryDirectory() as name:
         folder = Path(name)
-        flown = fly(scenario, seed, folder / "record", limit_s, is_exact=is_exact)
         ahead_s = round(Random(f"{seed}/clock").uniform(-43_200.0, 43_200.0), 2)
-        Card(flown, folder / "card", ahead_s).write(every)
+        settings = CardSettings(cols=COLS, clock_ahead_s=ahead_s, states_gimbal=False)
+        record = folder / "record"
+        flown = fly(SCENARIO, scenario, seed, record, settings, limit_s, is_exact=is_exact)
+        write_photos(folder / "card", flown.flight, flown.truth, settings, every)
         tag_command([folder / "card"], flown.record, folder / "tagged")
         score.flights += 1
         _add_photos(score, flown, folder / "tagged")
@@ -123,7 +130,6 @@ def add_flight(
 
 
 def _add_photos(score: TagScore, flown: SurveyFlown, tagged: Path) -> None:
-    truth = {photo.name: photo for photo in flown.photos}
     for row in _rows(tagged):
         score.photos += 1
         if row["state"] in ("unknown", ""):
@@ -131,8 +137,8 @@ def _add_photos(score: TagScore, flown: SurveyFlown, tagged: Path) -> None:
             continue
         mask = cv2.imread(str(tagged / "masks" / masked_name(row["name"])), cv2.IMREAD_GRAYSCALE)
         assert mask is not None
-        photo = truth[row["name"]]
-        sun = true_sunlit(flown, photo, mask.shape[1], mask.shape[0])
+        shot = flown.shots[row["name"]]
+        sun = flown.sunlit(shot, mask.shape[1], mask.shape[0])
         lit = sun >= SUNLIT_TRANSMITTANCE
         share, found = float(lit.mean()), float(row["sunlit"])
         score.errors.append(abs(found - share))
@@ -141,7 +147,7 @@ def _add_photos(score: TagScore, flown: SurveyFlown, tagged: Path) -> None:
             continue
         score.mixed_errors.append(abs(found - share))
         if float(row["known"]) > 0.98:
-            pixel_m = _pixel_m(flown, photo, mask.shape[1])
+            pixel_m = _pixel_m(flown, shot, mask.shape[1])
             is_wrong = (mask > 127) != lit
             score.wrong_m2 += float(is_wrong.sum()) * pixel_m**2
             score.edge_m += _edge_px(lit) * pixel_m
@@ -151,8 +157,9 @@ def _add_photos(score: TagScore, flown: SurveyFlown, tagged: Path) -> None:
             score.clear_wrong_px += int((is_clear & is_wrong).sum())
 
 
-def _pixel_m(flown: SurveyFlown, photo: TruePhoto, cols: int) -> float:
-    return flown.camera.across_m(float(photo.pose.position_enu_m[2])) / cols
+def _pixel_m(flown: SurveyFlown, shot: Shot, cols: int) -> float:
+    half = tan(radians(flown.settings.camera.across_deg / 2.0))
+    return 2.0 * half * float(shot.place_m[2]) / cols
 
 
 def _edge_px(lit: BoolArray) -> float:
@@ -172,21 +179,18 @@ def _edge_width_m(sun: FloatArray, lit: BoolArray, pixel_m: float) -> float:
 
 def _add_coverage(score: TagScore, flown: SurveyFlown, tagged: Path) -> None:
     """Count the cells that were truly photographed in sun, and those of them on the list."""
-    area, frame = (
-        region_of(read_flight(flown.record).surveys),
-        flown.scenario.frame,
-    )
+    area = region_of(flown.flight.surveys)
     assert area is not None
-    ground = ground_of(area, frame)
+    ground = ground_of(area, flown.flight.frame)
     rows = {row["name"]: row for row in _rows(tagged)}
     in_sun, listed = np.zeros((2, len(ground.centres_m)), dtype=np.bool_)
-    for photo in flown.photos:
-        row = rows.get(photo.name)
+    for shot in flown.shots.values():
+        row = rows.get(shot.name)
         if row is None:
             continue
-        on = cells_on(_true_view(flown, photo), ground)
+        on = cells_on(_true_view(flown, shot), ground)
         east_m, north_m = ground.centres_m[on].T
-        lit = flown.sky.transmittance(east_m, north_m, photo.at_s) >= SUNLIT_TRANSMITTANCE
+        lit = flown.truth.sky.transmittance(east_m, north_m, shot.at_s) >= SUNLIT_TRANSMITTANCE
         in_sun[on[lit]] = True
         if row["chosen"] == "yes":
             listed[on[lit]] = True
@@ -195,25 +199,23 @@ def _add_coverage(score: TagScore, flown: SurveyFlown, tagged: Path) -> None:
     score.covered += int((in_sun & listed).sum())
 
 
-def _true_view(flown: SurveyFlown, photo: TruePhoto) -> PhotoView:
-    east_m, north_m, height_m = photo.pose.position_enu_m.tolist()
-    top = -photo.pose.rotation_enu_camera[:, 1]
-    aim = Aim(east_m, north_m, height_m, float(np.rad2deg(np.arctan2(top[0], top[1]))))
-    return PhotoView(aim, flown.camera.across_deg, 456, 342)
+def _true_view(flown: SurveyFlown, shot: Shot) -> PhotoView:
+    camera = flown.settings.camera
+    aim = Aim(*shot.place_m.tolist(), shot.yaw_deg)
+    return PhotoView(aim, camera.across_deg, COLS, camera.rows_of(COLS))
 
 
 def _add_clocks(score: TagScore, flown: SurveyFlown, card: Path) -> None:
     """Try the card with other clocks; a photo's own truth is its time at the shutter."""
-    flight = read_flight(flown.record)
-    photos = [read_photo_facts(path, path.name) for path in sorted(card.iterdir())]
-    truth_ns = {p.name: flown.epoch_ns + round(p.at_s * NS_PER_S) for p in flown.photos}
-    random = Random(f"{flown.seed}/clocks")
+    flight = flown.flight
+    photos = [read_photo_facts(path, path.name) for path in sorted(card.glob("*.JPG"))]
+    random = Random(f"{flown.truth.sky.settings.seed}/clocks")
     offsets = [*ZONES_S, *(random.uniform(-43_200.0, 43_200.0) for _ in range(CLOCKS))]
     timed = timed_photos(flight, photos, StatedCamera())
     for ahead_s in offsets:
         shown = []
         for photo in photos:
-            clock_ns = truth_ns[photo.name] + round(ahead_s * NS_PER_S)
+            clock_ns = flown.shots[photo.name].utc_ns + round(ahead_s * NS_PER_S)
             shown.append(replace(photo, clock_ns=clock_ns // NS_PER_S * NS_PER_S))
         found = timed_photos(flight, shown, StatedCamera())
         score.clock_errors_s += [abs(each.offset_s + ahead_s) for each in found.clocks]
@@ -226,10 +228,9 @@ def _add_others(
 ) -> None:
     """Score simpler ways to know the sun between maps."""
     assert flight.grid is not None
-    truth = {photo.name: photo for photo in flown.photos}
     times_ns = [each.at_ns for each in flight.maps]
     for timed in photos[::5]:
-        lit = true_sunlit(flown, truth[timed.photo.name], 57, 43) >= SUNLIT_TRANSMITTANCE
+        lit = flown.sunlit(flown.shots[timed.photo.name], 57, 43) >= SUNLIT_TRANSMITTANCE
         if lit.all() or not lit.any():
             continue
         after = bisect_right(times_ns, timed.at_ns)

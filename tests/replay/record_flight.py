@@ -49,10 +49,12 @@ class Audits:
 
 
 @contextmanager
-def recording(driver: VirtualDriver, site: Site, folder: Path) -> Iterator[Recorded]:
-    """Record what a driver does within the block."""
+def recording(
+    driver: VirtualDriver, site: Site, folder: Path, scenario: str = ""
+) -> Iterator[Recorded]:
+    """Record what a driver does within the block; `scenario` states the simulated world."""
     audits = Audits()
-    recorder = Recorder(lambda: record_process(folder), driver.handle, audits, site)
+    recorder = Recorder(lambda: record_process(folder), driver.handle, audits, site, scenario)
 
     def take(step: StepTaken) -> None:
         # Virtual time is faster than any disk and any thread: a real flight is not.

@@ -19,6 +19,7 @@ from recon.cli.sim_options import (
     parse_home,
     parse_size,
 )
+from recon.cli.sim_photos import photos_command
 from recon.cli.sim_proxy import proxy_command
 from recon.model.errors import ReconError
 from recon.model.geo import GeoPoint, LatLon
@@ -133,6 +134,7 @@ def scenario_command(
 
 
 sim_app.command("proxy")(proxy_command)
+sim_app.command("photos")(photos_command)
 
 
 def _wind(speed_mps: float, heading_deg: float, seed: int) -> WindSettings | None:

@@ -130,6 +130,8 @@ class FlightData:
     utc_ahead_ns: int = 0
     trouble: str = ""
     """Why reading ended early; empty if it did not."""
+    scenario: str = ""
+    """What the record states of its simulated world; empty for a flight of real aircraft."""
 
     def utc(self, at_ns: int) -> str:
         """Return a station time as ISO 8601 in UTC."""
@@ -217,6 +219,7 @@ class _Reader:
     _imagers: frozenset[str] = frozenset()
     _names: dict[str, str] = field(default_factory=dict)
     _utc_ahead_ns: int = 0
+    _scenario: str = ""
     _grid: GroundGrid | None = None
     _maps: list[KeptMap] = field(default_factory=list)
     _surveys: dict[int, FlownSurvey] = field(default_factory=dict)
@@ -265,6 +268,7 @@ class _Reader:
             [each for each in self._surveys.values() if each.starts],
             self._utc_ahead_ns,
             trouble,
+            self._scenario,
         )
 
     def _about(self, data: bytes) -> None:
@@ -277,6 +281,7 @@ class _Reader:
                     raise ValueError(f"no place on earth: {origin!a:.80}")
                 self._frame = LocalFrame(point)
             self._imagers = frozenset(str(each) for each in about.get("imagers", ()))
+            self._scenario = str(about.get("scenario", ""))
             self._names = {str(k): str(v) for k, v in about.get("vehicles", {}).items()}
             for each in about.get("surveys", ()):
                 self._surveys[int(each["id"])] = _survey(each)

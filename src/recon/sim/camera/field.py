@@ -22,6 +22,7 @@ from recon.sim.camera.rig import true_pose
 from recon.sim.camera.settings import CameraSettings
 from recon.sim.errors import FrameSourceError
 from recon.sim.land.land_tiles import CELLS_M, LandImage, LandSquare, land_of
+from recon.sim.land.plants import add_plants
 from recon.sim.world import LightSettings, Sky, SkySettings
 from recon.sim.world.keyframes import FloatImage
 from recon.sim.world.light import beam_share, light_under, metered_light
@@ -49,6 +50,8 @@ class FieldRenderer:
     imager: CameraSettings = field(default_factory=CameraSettings)
     relief: Relief | None = None
     light: LightSettings = field(default_factory=LightSettings)
+    shows_plants: bool = False
+    """Whether the ground has detail finer than the land's tiles: for photos from low."""
     _highlight_gain: float | None = field(default=None, init=False)
     _lens: Lens | None = field(default=None, init=False)
 
@@ -59,9 +62,13 @@ class FieldRenderer:
         rays = ground_rays(lens, pose, self.relief)
         light = light_under(self.sky, time_s, self.light)
         east_m, north_m = (float(part) for part in pose.position_enu_m[:2])
+        picture = land_picture(lens, rays, lambda level: land.square(level, east_m, north_m, sun))
+        if self.shows_plants:
+            pixel_m = float(rays.footprint_m.min())
+            add_plants(picture, lens.full(rays.east_m), lens.full(rays.north_m), pixel_m, self.seed)
         scene = Scene(
             rays,
-            land_picture(lens, rays, lambda level: land.square(level, east_m, north_m, sun)),
+            picture,
             light,
             beam_share(self.sky, light, self.relief, rays.east_m, rays.north_m, time_s),
             self._gains(pose, time_s),
@@ -135,6 +142,10 @@ def land_picture(lens: Lens, rays: GroundRays, squares: Squares) -> LandImage:
     Levels are blended from coarse to fine, each where the footprint of a pixel asks for it.
     """
     east, north = lens.full(rays.east_m), lens.full(rays.north_m)
+    if rays.footprint_m.max() <= CELLS_M[0]:
+        finest = squares(0)
+        if _weight(rays, finest, CELLS_M[1]).min() >= 1.0:
+            return _sample(finest, east, north)
     picture = _sample(squares(len(CELLS_M) - 1), east, north)
     for level in range(len(CELLS_M) - 2, -1, -1):
         if rays.footprint_m.min() >= CELLS_M[level + 1]:

@@ -74,9 +74,11 @@ def draw(land: Farmland, part: LandPart, seed: int) -> RgbImage:
 
 
 @lru_cache(maxsize=32)
-def _noise_tile(seed: int, smallest_cells: float, slope: float, blur_px: int) -> FloatImage:
-    """Return a noise tile; details finer than a pixel are averaged out."""
-    tile = tileable_noise(NOISE_CELLS, seed, smallest_cells, slope)
+def noise_tile(
+    seed: int, smallest_cells: float, slope: float, blur_px: int, size: int = NOISE_CELLS
+) -> FloatImage:
+    """Return a noise tile (size, size); details finer than a pixel are averaged out."""
+    tile = tileable_noise(size, seed, smallest_cells, slope)
     if blur_px <= 1:
         return tile
     wrapped = np.pad(tile, blur_px, mode="wrap")
@@ -101,7 +103,7 @@ class _Canvas:
     def _noise(self, seed: int, tile_m: float, smallest_cells: float, slope: float) -> FloatImage:
         """Return noise (size, size), fixed to the ground, at this part's pixels."""
         per_m = NOISE_CELLS / tile_m
-        tile = _noise_tile(seed, smallest_cells, slope, max(1, round(self.cell_m * per_m)))
+        tile = noise_tile(seed, smallest_cells, slope, max(1, round(self.cell_m * per_m)))
         cols, rows = np.meshgrid(
             np.mod(self.east_m * per_m, NOISE_CELLS), np.mod(self.north_m * per_m, NOISE_CELLS)
         )
