@@ -14,6 +14,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
+from recon.model.arrays import BoolArray, IntArray
 from recon.product.footprint import PhotoView, projected
 
 GreyImage = npt.NDArray[np.uint8]
@@ -21,9 +22,9 @@ GreyImage = npt.NDArray[np.uint8]
 FloatImage = npt.NDArray[np.float32]
 Places = npt.NDArray[np.complex128]
 
-LARGEST_PX = 520
+LARGEST_PX = 400
 """Along the longer side: SIFT's time goes by pixels, and a survey's ground has texture enough."""
-MOST_FEATURES = 700
+MOST_FEATURES = 500
 FEWEST_FEATURES, FEWEST_ALIKE = 12, 10
 RATIO = 0.8
 """A match must be so much nearer than the next best (Lowe)."""
@@ -70,7 +71,7 @@ def features_of(grey: GreyImage, view: PhotoView) -> Features:
         return Features(np.zeros(0, np.complex128), np.zeros((0, 128), np.uint8), 1.0)
     seen = replace(view, cols=cols, rows=rows)
     return Features(
-        _level(seen, cv2.KeyPoint.convert(found).astype(np.float64)),
+        _level(seen, np.array(cv2.KeyPoint.convert(found), dtype=np.float64)),
         descriptors.astype(np.uint8),
         float(abs(np.diff(_level(seen, np.array([[0.0, 0.0], [1.0, 0.0]]))[:2])[0])),
     )
@@ -88,12 +89,10 @@ def link(first: Features, second: Features, numbers: tuple[int, int]) -> Link | 
     """Return how two photos lie to each other; None where too little of them is alike."""
     if min(len(first.places), len(second.places)) < FEWEST_FEATURES:
         return None
-    pairs = cv2.BFMatcher(cv2.NORM_L2).knnMatch(second.descriptors, first.descriptors, k=2)
-    good = [best for best, next_best in pairs if best.distance < RATIO * next_best.distance]
-    if len(good) < FEWEST_ALIKE:
+    nearest, is_alike = _alike(second.descriptors, first.descriptors)
+    if is_alike.sum() < FEWEST_ALIKE:
         return None
-    ours = first.places[[each.trainIdx for each in good]]
-    theirs = second.places[[each.queryIdx for each in good]]
+    ours, theirs = first.places[nearest[is_alike]], second.places[is_alike]
     cv2.setRNGSeed(1)  # RANSAC draws from it: the same photos give the same link.
     matrix, agree = cv2.estimateAffinePartial2D(
         _points(theirs), _points(ours), ransacReprojThreshold=WITHIN_PX * first.pixel
@@ -104,6 +103,19 @@ def link(first: Features, second: Features, numbers: tuple[int, int]) -> Link | 
     if not 1.0 / LARGEST_ZOOM < abs(turn) < LARGEST_ZOOM:
         return None
     return Link(*numbers, turn, shift, points)
+
+
+def _alike(these: GreyImage, those: GreyImage) -> tuple[IntArray, BoolArray]:
+    """Return the nearest of those descriptors to each of these (N,), and whether it is much nearer
+    than the next one."""
+    own, other = these.astype(np.float32), those.astype(np.float32)
+    # |a - b|^2 by one product of matrices: a fifth of the time of OpenCV's matcher.
+    squared = (own**2).sum(axis=1)[:, np.newaxis] + (other**2).sum(axis=1) - 2.0 * own @ other.T
+    nearest = np.argmin(squared, axis=1)
+    every = np.arange(len(own))
+    best = squared[every, nearest]
+    squared[every, nearest] = np.inf
+    return nearest, best < RATIO**2 * squared.min(axis=1)
 
 
 def _points(places: Places) -> FloatImage:

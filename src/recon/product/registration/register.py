@@ -34,7 +34,7 @@ Read = Callable[[TimedPhoto], GreyImage | None]
 """Reads a photo's grey picture; None where it cannot be read."""
 Over = Callable[[Iterable[TimedPhoto]], Iterator[TimedPhoto]]
 
-MOST_READ = 120
+MOST_READ = 100
 """Photos of a flight that are read to find its cameras' headings."""
 FEWEST_OF_LINE, MOST_OF_LINE = 2, 4
 ACROSS = 2
