@@ -3,7 +3,7 @@
 import json
 import sys
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from hashlib import sha256
 from itertools import islice
@@ -24,6 +24,7 @@ from recon.product.photos.copies import without_copies
 from recon.product.photos.names import unique_names
 from recon.product.photos.photo import Photo, read_photo_facts
 from recon.product.photos.photo_error import PhotoError
+from recon.product.registration import read_grey, with_headings
 from recon.product.sun_at import SunHistory
 from recon.product.tag import (
     MASK_SCALE,
@@ -88,6 +89,7 @@ def tag_command(
     timed.refused.update(refused)
     _print_grouped("", {each.name: note for each in photos for note in each.notes})
     _print_clocks(timed)
+    timed.photos = _with_headings(timed.photos)
     if not timed.photos:
         _print_left(card)
         _print_refused(timed.refused)
@@ -161,6 +163,21 @@ def _read(paths: Sequence[Path]) -> tuple[list[Photo], dict[str, str]]:
     return photos, refused
 
 
+def _with_headings(photos: Sequence[TimedPhoto]) -> list[TimedPhoto]:
+    """Return the photos with the headings that their pictures show; print how they are known."""
+
+    def over(read: Iterable[TimedPhoto]) -> Iterator[TimedPhoto]:
+        few = list(read)
+        return progress_over(few, "registering neighbours", len(few))
+
+    turned, headings = with_headings(photos, read_grey, over, usable_cores())
+    for each in headings:
+        print(printable(str(each)))
+        for warning in each.warnings:
+            _warn(warning)
+    return turned
+
+
 def _tag_all(
     out: Path,
     flight: FlightData,
@@ -226,9 +243,14 @@ def _earlier(out: Path, keys: dict[str, str]) -> dict[str, PhotoTag]:
         except (ValueError, TypeError):
             continue  # A killed run leaves half a line.
         files = (out / "masks" / masked_name(tag.name), out / "xmp" / f"{Path(tag.name).stem}.xmp")
-        if keys.get(tag.name) == key and all(file.is_file() for file in files):
+        if keys.get(tag.name) == key and all(map(_is_written, files)):
             done[tag.name] = tag
     return done
+
+
+def _is_written(path: Path) -> bool:
+    """Return whether a file is there; one that a computer's crash left empty is not."""
+    return path.is_file() and path.stat().st_size > 0
 
 
 def _warn(text: str) -> None:

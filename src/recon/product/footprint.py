@@ -74,9 +74,18 @@ class PhotoView:
     @property
     def corners_m(self) -> FloatArray:
         """The footprint's corners (4, 2), east and north, clockwise from the upper left one."""
+        return projected(self.homography, self._corners_px)
+
+    @property
+    def shows_sky(self) -> bool:
+        """Return whether a corner looks up: then the corners do not bound the ground shown."""
+        third = np.column_stack([self._corners_px, np.ones(4)]) @ self.homography[2]
+        return bool((third <= 0.0).any())
+
+    @property
+    def _corners_px(self) -> FloatArray:
         right, low = self.cols - 0.5, self.rows - 0.5
-        edges = np.array([[-0.5, -0.5], [right, -0.5], [right, low], [-0.5, low]])
-        return projected(self.homography, edges)
+        return np.array([[-0.5, -0.5], [right, -0.5], [right, low], [-0.5, low]])
 
 
 def projected(homography: FloatArray, points: FloatArray) -> FloatArray:

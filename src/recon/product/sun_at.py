@@ -10,7 +10,7 @@ a minute later: after the flight both sides of a moment are known.
 from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from math import hypot
+from math import ceil, floor, hypot
 
 import cv2
 import numpy as np
@@ -19,6 +19,7 @@ import numpy.typing as npt
 from recon.forecast import ForecastSettings
 from recon.forecast.pooled_motion import pooled_motion, with_agreement
 from recon.forecast.state import ForecastState
+from recon.model.arrays import FloatArray
 from recon.model.geo import GroundGrid
 from recon.model.shade import ShadeMap
 from recon.model.units import NS_PER_S
@@ -35,6 +36,11 @@ EVERY_S = 10.0
 """Time between maps whose motion is estimated."""
 LATER_S = 30.0
 STANDS = (0.0, 0.0)
+MARGIN = 2
+"""Cells around a part: values between cells are of both."""
+
+Part = tuple[slice, slice]
+"""Rows and columns of a grid."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -70,8 +76,26 @@ class SunHistory:
         east_mps, north_mps = self._motions[min(int(later), len(self._motions) - 1), 1:].tolist()
         return east_mps, north_mps
 
+    def around(self, at_ns: int, points_m: FloatArray) -> tuple[Sunshine, GroundGrid]:
+        """Return the sun on the part of the grid around points (N, 2), east and north, and the
+        part's own grid: the sun on a photo takes a fraction of that on the flight's ground."""
+        part = _part(self.grid, points_m)
+        rows, cols = part
+        cell_m = self.grid.cell_m
+        grid = replace(
+            self.grid,
+            west_m=self.grid.west_m + cols.start * cell_m,
+            north_m=self.grid.north_m - rows.start * cell_m,
+            rows=rows.stop - rows.start,
+            cols=cols.stop - cols.start,
+        )
+        return self._on(at_ns, part), grid
+
     def at(self, at_ns: int) -> Sunshine:
         """Return the sun at a station time."""
+        return self._on(at_ns, (slice(0, self.grid.rows), slice(0, self.grid.cols)))
+
+    def _on(self, at_ns: int, part: Part) -> Sunshine:
         reach_ns = round(LONGEST_S * NS_PER_S)
         first = bisect_left(self._times, at_ns - reach_ns)
         last = bisect_right(self._times, at_ns + reach_ns)
@@ -80,12 +104,12 @@ class SunHistory:
             # Without a velocity only the maps on both sides tell about the moment.
             after = bisect_right(self._times, at_ns)
             first, last = max(first, after - 1), min(last, after + 1)
-        shape = self.grid.rows, self.grid.cols
+        shape = tuple(each.stop - each.start for each in part)
         total, weights, sure = np.zeros((3, *shape), dtype=np.float32)
         for number in range(first, last):
             gap_s = (at_ns - self._times[number]) / NS_PER_S
-            known, sun, confidence = _moved(self.maps[number], self.grid, velocity, gap_s)
-            confidence = confidence * known * np.float32(2.0 ** (-abs(gap_s) / HALVES_S))
+            sun, confidence = _moved(self.maps[number], part, velocity, gap_s, self.grid.cell_m)
+            confidence *= np.float32(2.0 ** (-abs(gap_s) / HALVES_S))
             total += sun * confidence
             weights += confidence
             np.maximum(sure, confidence, out=sure)
@@ -93,27 +117,54 @@ class SunHistory:
         return Sunshine(found.astype(np.float32), sure)
 
 
+def _part(grid: GroundGrid, points_m: FloatArray) -> Part:
+    """Return the rows and columns of a grid around points, with `MARGIN` cells more; not none."""
+    cols = (points_m[:, 0] - grid.west_m) / grid.cell_m
+    rows = (grid.north_m - points_m[:, 1]) / grid.cell_m
+    return _within(rows, grid.rows), _within(cols, grid.cols)
+
+
+def _within(cells: FloatArray, count: int) -> slice:
+    first = min(max(floor(cells.min()) - MARGIN, 0), count - 1)
+    return slice(first, max(min(ceil(cells.max()) + MARGIN, count), first + 1))
+
+
+def _values(shade: KeptMap, part: Part) -> FloatMap:
+    """Return of a part of a map (R, C, 3): whether it is known (0 or 1), its transmittance and its
+    confidence there, 0 elsewhere."""
+    kept = shade.sun[part]
+    known = kept != UNKNOWN
+    values = np.empty((*kept.shape, 3), dtype=np.float32)
+    values[..., 0] = known
+    values[..., 1] = kept * (known * np.float32(1.0 / FULL))
+    values[..., 2] = shade.confidence[part] * (known * np.float32(1.0 / 255.0))
+    return values
+
+
 def _moved(
-    shade: KeptMap, grid: GroundGrid, velocity_mps: tuple[float, float], seconds: float
-) -> tuple[FloatMap, FloatMap, FloatMap]:
-    """Return where a map moved on is known (share), its transmittance and its confidence."""
-    is_known = (shade.sun != UNKNOWN).astype(np.float32)
-    sun = np.where(shade.sun != UNKNOWN, shade.sun, 0).astype(np.float32) * np.float32(1.0 / FULL)
-    sure = shade.confidence.astype(np.float32) * np.float32(1.0 / 255.0)
-    right, down = (v * seconds / grid.cell_m for v in (velocity_mps[0], -velocity_mps[1]))
+    shade: KeptMap, part: Part, velocity_mps: tuple[float, float], seconds: float, cell_m: float
+) -> tuple[FloatMap, FloatMap]:
+    """Return the transmittance of a map moved on, in a part of it, and its confidence: 0 where the
+    map shows nothing."""
+    right, down = (v * seconds / cell_m for v in (velocity_mps[0], -velocity_mps[1]))
     if hypot(right, down) < 0.01:
-        return is_known, sun, sure
-    move = np.array([[1.0, 0.0, right], [0.0, 1.0, down]])
-
-    def moved(values: FloatMap) -> FloatMap:
-        found = cv2.warpAffine(values, move, (grid.cols, grid.rows), flags=cv2.INTER_LINEAR)
-        return found.astype(np.float32, copy=False)
-
-    share = moved(is_known)
-    divisor = np.where(share > 0.0, share, np.float32(1.0))
-    known = (share >= 0.5).astype(np.float32)
-    sun, sure = ((moved(each * is_known) / divisor).astype(np.float32) for each in (sun, sure))
-    return known, sun, sure
+        _known, sun, sure = np.moveaxis(_values(shade, part), 2, 0)
+        return sun, sure
+    rows, cols = part
+    source_rows, source_cols = (
+        _within(np.array([each.start, each.stop]) - moved, count)
+        for each, moved, count in zip(part, (down, right), shade.sun.shape, strict=True)
+    )
+    move = np.array(
+        [[1.0, 0.0, right + source_cols.start - cols.start],
+         [0.0, 1.0, down + source_rows.start - rows.start]]
+    )  # fmt: skip
+    size = cols.stop - cols.start, rows.stop - rows.start
+    values = _values(shade, (source_rows, source_cols))
+    share, sun, sure = cv2.split(cv2.warpAffine(values, move, size, flags=cv2.INTER_LINEAR))
+    # Of cells between known and unknown ones the known part tells, where it is at least half.
+    factor = np.where(share >= 0.5, share, np.float32(np.inf))
+    return sun / factor, sure / factor
 
 
 def _motions(grid: GroundGrid, maps: Sequence[KeptMap]) -> npt.NDArray[np.float64]:

@@ -9,6 +9,7 @@ import shapely  # type: ignore[import-untyped, unused-ignore]
 
 from recon.model.arrays import IntArray
 from recon.model.errors import RecordError
+from recon.model.geo import GroundGrid
 from recon.model.shade import SUNLIT_TRANSMITTANCE
 from recon.product.choose import choose, views_for
 from recon.product.coverage import (
@@ -24,7 +25,7 @@ from recon.product.coverage import (
 )
 from recon.product.flight import FlightData
 from recon.product.footprint import sun_on_photo
-from recon.product.sun_at import SunHistory
+from recon.product.sun_at import SunHistory, Sunshine
 from recon.product.timing import TimedPhoto
 
 ByteMap = npt.NDArray[np.uint8]
@@ -86,7 +87,7 @@ def tag_photo(timed: TimedPhoto, history: SunHistory) -> tuple[PhotoTag, ByteMap
         cols=max(1, round(view.cols / MASK_SCALE)),
         rows=max(1, round(view.rows / MASK_SCALE)),
     )
-    sun = sun_on_photo(history.at(timed.at_ns), history.grid, small)
+    sun = sun_on_photo(*_sun_around(timed, history), small)
     is_known = sun.confidence > 0.0
     is_lit = sun.transmittance >= SUNLIT_TRANSMITTANCE
     known = float(is_known.mean())
@@ -94,6 +95,13 @@ def tag_photo(timed: TimedPhoto, history: SunHistory) -> tuple[PhotoTag, ByteMap
     mask = np.where(is_known & ~is_lit, np.uint8(BLACK), np.uint8(WHITE))
     name = timed.photo.name
     return PhotoTag(name, sunlit, float(sun.confidence.mean()), known), mask
+
+
+def _sun_around(timed: TimedPhoto, history: SunHistory) -> tuple[Sunshine, GroundGrid]:
+    """Return the sun on the ground around a photo, and that ground's grid."""
+    if timed.view.shows_sky:
+        return history.at(timed.at_ns), history.grid
+    return history.around(timed.at_ns, timed.view.corners_m)
 
 
 def sun_history(flight: FlightData) -> SunHistory:
@@ -127,7 +135,7 @@ def select(
     for each in over(photos):
         on = cells_on(each.view, ground)
         shown[on] += 1
-        is_lit, is_unknown = light_of_cells(on, ground, history.at(each.at_ns), history.grid)
+        is_lit, is_unknown = light_of_cells(on, ground, *_sun_around(each, history))
         in_sun.append(on[is_lit])
         unclear.append(on[is_unknown])
     shows = incidence(in_sun, cells)

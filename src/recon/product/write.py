@@ -63,9 +63,9 @@ def write_photo_files(
 ) -> None:
     """Write a photo's mask and sidecar; raises OSError."""
     data = mask_jpeg(mask, timed.photo.orientation)
-    replace_file(out / "masks" / masked_name(tag.name), data, FILE_MODE)
+    replace_file(out / "masks" / masked_name(tag.name), data, FILE_MODE, sync=False)
     sidecar = xmp(flight, timed, tag, share).encode()
-    replace_file(out / "xmp" / f"{Path(tag.name).stem}.xmp", sidecar, FILE_MODE)
+    replace_file(out / "xmp" / f"{Path(tag.name).stem}.xmp", sidecar, FILE_MODE, sync=False)
 
 
 def xmp(flight: FlightData, timed: TimedPhoto, tag: PhotoTag, share: float) -> str:

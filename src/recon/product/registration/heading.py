@@ -166,7 +166,7 @@ def heading_of(photos: Sequence[TimedPhoto], group: IntArray, runs: Sequence[Run
 def heading_deg(timed: TimedPhoto, line: int, found: CameraHeading) -> float:
     """Return the heading of a photo's top, on a flight line."""
     stated = timed.headings_deg.get(found.source)
-    if stated is None:
+    if stated is None or not found.pairs:
         return timed.view.aim.yaw_deg
     return signed_deg(stated + found.lines.get(line, found.offset_deg))
 
