@@ -32,7 +32,7 @@ from recon.product.flight import FlightData
 from recon.product.footprint import Aim, PhotoView
 from recon.product.photos.photo import read_photo_facts
 from recon.product.sun_at import SunHistory
-from recon.product.tag import SUNLIT_SHARE, tag_photo
+from recon.product.tag import SUNLIT_SHARE, light_around, tag_photo
 from recon.product.timing import StatedCamera, TimedPhoto, timed_photos
 from recon.product.write import masked_name
 from recon.score import Scenario, load_scenario
@@ -238,7 +238,7 @@ def _add_others(
         nearest = min(around, key=lambda each: abs(each.at_ns - timed.at_ns))
         # So few maps show no motion: they are mixed as they are.
         for name, maps in (("nearest", [nearest]), ("mixed", around)):
-            tag, _mask = tag_photo(timed, SunHistory(flight.grid, maps))
+            tag, _mask = tag_photo(timed, light_around(timed, SunHistory(flight.grid, maps)))
             if tag.known >= 0.5:
                 score.others[name].append(abs(tag.sunlit - float(lit.mean())))
 

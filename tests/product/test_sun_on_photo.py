@@ -53,6 +53,23 @@ def test_the_shadows_velocity_is_found(history: SunHistory) -> None:
     assert across == pytest.approx(DRIFT_MPS / np.hypot(1.0, 0.4), abs=0.8)
 
 
+@pytest.mark.parametrize("middle_m", [(10.0, 20.0), (-145.0, 140.0), (400.0, 0.0)])
+def test_the_sun_around_a_photo_is_a_part_of_all_of_it(
+    history: SunHistory, middle_m: tuple[float, float]
+) -> None:
+    view = PhotoView(Aim(*middle_m, 50.0, 33.0), 66.0, COLS, ROWS)
+    at_ns = START_NS + 61 * NS_PER_S
+    part = sun_on_photo(*history.around(at_ns, view.corners_m), view)
+    whole = sun_on_photo(history.at(at_ns), GRID, view)
+    assert part.transmittance == pytest.approx(whole.transmittance, abs=1e-5)
+    assert part.confidence == pytest.approx(whole.confidence, abs=1e-5)
+
+
+def test_a_camera_that_shows_sky_is_known() -> None:
+    assert PhotoView(Aim(0.0, 0.0, 50.0, 0.0, -20.0), 66.0, 400, 300).shows_sky
+    assert not PhotoView(Aim(0.0, 0.0, 50.0, 0.0, -60.0), 66.0, 400, 300).shows_sky
+
+
 def only_nearest(history: SunHistory, at_ns: int) -> SunHistory:
     nearest = min(history.maps, key=lambda each: abs(each.at_ns - at_ns))
     return SunHistory(history.grid, [nearest])

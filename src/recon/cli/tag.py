@@ -17,6 +17,7 @@ from recon.cli.output import printable
 from recon.cli.progress import progress_over, usable_cores
 from recon.model.errors import RecordError
 from recon.model.units import HECTARE_M2
+from recon.product.coverage import Ground
 from recon.product.flight import FlightData, read_flight
 from recon.product.odm import write_odm_project
 from recon.product.photos.card import MARK, PROGRESS, Card, card_of
@@ -31,7 +32,11 @@ from recon.product.tag import (
     SUNLIT_SHARE,
     PhotoTag,
     Selection,
+    Shown,
+    ground_of_flight,
+    light_around,
     select,
+    shown_by,
     sun_history,
     tag_photo,
 )
@@ -100,11 +105,9 @@ def tag_command(
         for folder in (out, out / "masks", out / "xmp"):
             folder.mkdir(parents=True, exist_ok=True)
         (out / MARK).touch()
-        tags = _tag_all(out, flown, timed.photos, history, sunlit)
-        count = len(timed.photos)
-        selection = select(
-            flown, timed.photos, history, overlap, lambda p: progress_over(p, "coverage", count)
-        )
+        ground = ground_of_flight(flown, timed.photos)
+        tags, shown = _tag_all(out, flown, timed.photos, history, ground, sunlit)
+        selection = select(timed.photos, shown, ground, overlap)
         chosen = frozenset(selection.chosen)
         kept = [each for each in timed.photos if each.photo.name in chosen]
         write_odm_project(out / "odm", out / "masks", flown, kept)
@@ -183,38 +186,45 @@ def _tag_all(
     flight: FlightData,
     photos: Sequence[TimedPhoto],
     history: SunHistory,
+    ground: Ground,
     sunlit: float,
-) -> dict[str, PhotoTag]:
-    """Return all tags, with masks and sidecars written; those of an earlier run are kept."""
+) -> tuple[dict[str, PhotoTag], list[Shown]]:
+    """Return all tags, with masks and sidecars written, and what each photo shows.
+
+    Files of an earlier run are kept.
+    """
     stat = flight.path.stat()
     record = f"{version()} {stat.st_size} {stat.st_mtime_ns} {sunlit} {MASK_SCALE}"
     keys = {each.photo.name: _key(record, each) for each in photos}
     done = _earlier(out, keys)
 
-    def tag(timed: TimedPhoto) -> PhotoTag:
-        name = timed.photo.name
-        if name in done:
-            return done[name]
-        found, mask = tag_photo(timed, history)
+    def tag(timed: TimedPhoto) -> tuple[PhotoTag, Shown]:
+        light = light_around(timed, history)
+        shown = shown_by(timed, light, ground)
+        if timed.photo.name in done:
+            return done[timed.photo.name], shown
+        found, mask = tag_photo(timed, light)
         write_photo_files(out, flight, timed, found, mask, sunlit)
-        return found
+        return found, shown
 
     tags: dict[str, PhotoTag] = {}
+    shown_by_each: list[Shown] = []
     with (out / PROGRESS).open("a", encoding="utf-8") as log:
-        for found in progress_over(_in_threads(tag, photos), "tagging", len(photos)):
+        for found, shown in progress_over(_in_threads(tag, photos), "tagging", len(photos)):
             tags[found.name] = found
+            shown_by_each.append(shown)
             if found.name not in done:
                 numbers = [found.sunlit, found.confidence, found.known]
                 log.write(json.dumps([found.name, keys[found.name], *numbers]) + "\n")
                 log.flush()
     if done:
         print(f"{len(done)} photos were tagged before")
-    return tags
+    return tags, shown_by_each
 
 
 def _in_threads(
-    tag: Callable[[TimedPhoto], PhotoTag], photos: Sequence[TimedPhoto]
-) -> Iterator[PhotoTag]:
+    tag: Callable[[TimedPhoto], tuple[PhotoTag, Shown]], photos: Sequence[TimedPhoto]
+) -> Iterator[tuple[PhotoTag, Shown]]:
     """Yield tags in order; no more photos are begun than are soon taken."""
     with ThreadPoolExecutor(usable_cores()) as pool:
         rest = iter(photos)

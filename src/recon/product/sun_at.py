@@ -161,9 +161,10 @@ def _moved(
     )  # fmt: skip
     size = cols.stop - cols.start, rows.stop - rows.start
     values = _values(shade, (source_rows, source_cols))
-    share, sun, sure = cv2.split(cv2.warpAffine(values, move, size, flags=cv2.INTER_LINEAR))
+    found = cv2.warpAffine(values, move, size, flags=cv2.INTER_LINEAR)
+    share, sun, sure = np.moveaxis(found.astype(np.float32, copy=False), 2, 0)
     # Of cells between known and unknown ones the known part tells, where it is at least half.
-    factor = np.where(share >= 0.5, share, np.float32(np.inf))
+    factor = np.where(share >= 0.5, share, np.inf).astype(np.float32)
     return sun / factor, sure / factor
 
 

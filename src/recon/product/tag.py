@@ -1,13 +1,13 @@
 """The sun on the photos of a flight: each one's share and mask, and the photos to keep. Pure."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 import shapely  # type: ignore[import-untyped, unused-ignore]
 
-from recon.model.arrays import IntArray
+from recon.model.arrays import BoolArray, IntArray
 from recon.model.errors import RecordError
 from recon.model.geo import GroundGrid
 from recon.model.shade import SUNLIT_TRANSMITTANCE
@@ -29,6 +29,8 @@ from recon.product.sun_at import SunHistory, Sunshine
 from recon.product.timing import TimedPhoto
 
 ByteMap = npt.NDArray[np.uint8]
+Light = tuple[Sunshine, GroundGrid]
+"""The sun on the ground around a photo, and that ground's grid."""
 
 SUNLIT_SHARE = 0.9
 """Share of a photo's known ground for the photo to be called sunlit."""
@@ -76,7 +78,17 @@ class Selection:
     again: tuple[shapely.Polygon, ...]
 
 
-def tag_photo(timed: TimedPhoto, history: SunHistory) -> tuple[PhotoTag, ByteMap]:
+@dataclass(frozen=True, slots=True, eq=False)
+class Shown:
+    """The cells that a photo shows (N,), and of each whether it lies in sun, and in unknown
+    light."""
+
+    cells: IntArray
+    is_lit: BoolArray
+    is_unknown: BoolArray
+
+
+def tag_photo(timed: TimedPhoto, light: Light) -> tuple[PhotoTag, ByteMap]:
     """Return a photo's tag, and its mask (rows, cols) at 1 / `MASK_SCALE`: white in sun.
 
     Ground that is not known stays white: a mask removes what is known to be in shade.
@@ -87,7 +99,7 @@ def tag_photo(timed: TimedPhoto, history: SunHistory) -> tuple[PhotoTag, ByteMap
         cols=max(1, round(view.cols / MASK_SCALE)),
         rows=max(1, round(view.rows / MASK_SCALE)),
     )
-    sun = sun_on_photo(*_sun_around(timed, history), small)
+    sun = sun_on_photo(*light, small)
     is_known = sun.confidence > 0.0
     is_lit = sun.transmittance >= SUNLIT_TRANSMITTANCE
     known = float(is_known.mean())
@@ -97,8 +109,14 @@ def tag_photo(timed: TimedPhoto, history: SunHistory) -> tuple[PhotoTag, ByteMap
     return PhotoTag(name, sunlit, float(sun.confidence.mean()), known), mask
 
 
-def _sun_around(timed: TimedPhoto, history: SunHistory) -> tuple[Sunshine, GroundGrid]:
-    """Return the sun on the ground around a photo, and that ground's grid."""
+def shown_by(timed: TimedPhoto, light: Light, ground: Ground) -> Shown:
+    """Return the cells that a photo shows, and their light."""
+    cells = cells_on(timed.view, ground)
+    return Shown(cells, *light_of_cells(cells, ground, *light))
+
+
+def light_around(timed: TimedPhoto, history: SunHistory) -> Light:
+    """Return the sun around a photo."""
     if timed.view.shows_sky:
         return history.at(timed.at_ns), history.grid
     return history.around(timed.at_ns, timed.view.corners_m)
@@ -114,34 +132,30 @@ def sun_history(flight: FlightData) -> SunHistory:
     return SunHistory(flight.grid, flight.maps)
 
 
-def select(
-    flight: FlightData,
-    photos: Sequence[TimedPhoto],
-    history: SunHistory,
-    overlap: float,
-    over: Callable[[Iterable[TimedPhoto]], Iterator[TimedPhoto]] = iter,
-) -> Selection:
-    """Return the photos to keep and the ground to fly again.
-
-    `overlap` is wanted of neighbouring photos, along and across; `over` shows progress.
-    """
+def ground_of_flight(flight: FlightData, photos: Sequence[TimedPhoto]) -> Ground:
+    """Return the cells of the surveys' regions, without any those that photos show."""
     area = region_of(flight.surveys)
     if area is None:
         area = region_of_views([each.view for each in photos])
-    ground = ground_of(area, flight.frame)
+    return ground_of(area, flight.frame)
+
+
+def select(
+    photos: Sequence[TimedPhoto], shown_by_each: Sequence[Shown], ground: Ground, overlap: float
+) -> Selection:
+    """Return the photos to keep and the ground to fly again.
+
+    `overlap` is wanted of neighbouring photos, along and across.
+    """
     cells = len(ground.centres_m)
     shown = np.zeros(cells, dtype=np.int64)
-    in_sun, unclear = list[IntArray](), list[IntArray]()
-    for each in over(photos):
-        on = cells_on(each.view, ground)
-        shown[on] += 1
-        is_lit, is_unknown = light_of_cells(on, ground, *_sun_around(each, history))
-        in_sun.append(on[is_lit])
-        unclear.append(on[is_unknown])
-    shows = incidence(in_sun, cells)
+    for each in shown_by_each:
+        shown[each.cells] += 1
+    shows = incidence([each.cells[each.is_lit] for each in shown_by_each], cells)
     sunlit = np.asarray(shows.sum(axis=0)).ravel().astype(np.int64)
     # Where too few photos are surely in sun, those in unknown light count too: some may be.
     is_poor = sunlit < ENOUGH_VIEWS
+    unclear = [each.cells[each.is_unknown] for each in shown_by_each]
     shows = shows + incidence([each[is_poor[each]] for each in unclear], cells)
     views = views_for(overlap)
     choice = choose(shows, views)
