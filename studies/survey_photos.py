@@ -25,7 +25,7 @@ from recon.score.scenario_sky import sky_of
 from recon.score.survey_photos import card_of, shots_of
 from recon.score.true_frames import FleetFrames
 from recon.score.truth import Truth, world_text
-from recon.sim.photos.card import CardSettings, Shot, true_ground_m
+from recon.sim.photos.card import CardSettings, PhotoShot, true_ground_m
 from recon.sim.world.relief import Relief
 from recon.station.imaging.shade import READ_SHADE
 
@@ -53,7 +53,7 @@ class SurveyFlown:
         return simulated_truth(self.flight, self.path)
 
     @cached_property
-    def shots(self) -> dict[str, Shot]:
+    def shots(self) -> dict[str, PhotoShot]:
         """The photos that were taken, by name."""
         return {shot.name: shot for shot in shots_of(self.flight, self.truth)}
 
@@ -62,12 +62,12 @@ class SurveyFlown:
         """The ground's heights."""
         return card_of(self.flight, self.truth, self.settings).world.relief
 
-    def ground_m(self, shot: Shot, cols: int, rows: int) -> FloatArray:
+    def ground_m(self, shot: PhotoShot, cols: int, rows: int) -> FloatArray:
         """Return where each pixel of a photo of that size truly lies, (rows, cols, 2) metres."""
         found = true_ground_m(shot, self.settings.camera, cols, rows, self.relief)
         return found.astype(np.float64)
 
-    def sunlit(self, shot: Shot, cols: int, rows: int) -> FloatArray:
+    def sunlit(self, shot: PhotoShot, cols: int, rows: int) -> FloatArray:
         """Return the true transmittance on a photo's pixels, (rows, cols)."""
         east_m, north_m = np.moveaxis(self.ground_m(shot, cols, rows), -1, 0)
         return self.truth.sky.transmittance(east_m, north_m, shot.at_s).astype(np.float64)

@@ -36,7 +36,7 @@ from recon.product.tag import SUNLIT_SHARE, light_around, tag_photo
 from recon.product.timing import StatedCamera, TimedPhoto, timed_photos
 from recon.product.write import masked_name
 from recon.score import Scenario, load_scenario
-from recon.sim.photos.card import CardSettings, Shot
+from recon.sim.photos.card import CardSettings, PhotoShot
 from studies.survey_photos import SurveyFlown, fly
 
 SCENARIO = Path(__file__).parents[1] / "scenarios" / "cumulus-40.toml"
@@ -157,7 +157,7 @@ def _add_photos(score: TagScore, flown: SurveyFlown, tagged: Path) -> None:
             score.clear_wrong_px += int((is_clear & is_wrong).sum())
 
 
-def _pixel_m(flown: SurveyFlown, shot: Shot, cols: int) -> float:
+def _pixel_m(flown: SurveyFlown, shot: PhotoShot, cols: int) -> float:
     half = tan(radians(flown.settings.camera.across_deg / 2.0))
     return 2.0 * half * float(shot.place_m[2]) / cols
 
@@ -199,7 +199,7 @@ def _add_coverage(score: TagScore, flown: SurveyFlown, tagged: Path) -> None:
     score.covered += int((in_sun & listed).sum())
 
 
-def _true_view(flown: SurveyFlown, shot: Shot) -> PhotoView:
+def _true_view(flown: SurveyFlown, shot: PhotoShot) -> PhotoView:
     camera = flown.settings.camera
     aim = Aim(*shot.place_m.tolist(), shot.yaw_deg)
     return PhotoView(aim, camera.across_deg, COLS, camera.rows_of(COLS))

@@ -18,7 +18,7 @@ from recon.score.scenario_conditions import conditions_of
 from recon.score.scenario_schema import ScenarioError
 from recon.score.true_paths import phases_s
 from recon.score.truth import Truth
-from recon.sim.photos.card import Card, CardSettings, PhotoFile, Shot
+from recon.sim.photos.card import CardSettings, PhotoCard, PhotoFile, PhotoShot
 
 AT_HEIGHT_SHARE = 0.9
 """Of the survey's height: lower photos are of takeoffs and landings."""
@@ -28,7 +28,7 @@ TRUTH_COLUMNS = (
 )
 
 
-def card_of(flight: FlightData, truth: Truth, settings: CardSettings) -> Card:
+def card_of(flight: FlightData, truth: Truth, settings: CardSettings) -> PhotoCard:
     """Return the card on which a flight's photos are, over the land and below the sky of a truth.
 
     Raises `ScenarioError` for a scenario without an imaging drone, whose world is taken.
@@ -37,10 +37,10 @@ def card_of(flight: FlightData, truth: Truth, settings: CardSettings) -> Card:
     world = next(iter(renderers_of(config).values()), None)
     if world is None:
         raise ScenarioError(f"{truth.scenario.name}: expected an imaging drone, got none")
-    return Card(flight.frame, world, settings)
+    return PhotoCard(flight.frame, world, settings)
 
 
-def shots_of(flight: FlightData, truth: Truth, every: int = 1) -> list[Shot]:
+def shots_of(flight: FlightData, truth: Truth, every: int = 1) -> list[PhotoShot]:
     """Return every Nth shot of each survey drone, drone by drone: neighbours share drawn land.
 
     Raises `ScenarioError` where no drone flew at its survey's height.
@@ -58,15 +58,15 @@ def shots_of(flight: FlightData, truth: Truth, every: int = 1) -> list[Shot]:
     return shots
 
 
-def _shots_of(flight: FlightData, truth: Truth, track: RecordedTrack) -> list[Shot]:
+def _shots_of(flight: FlightData, truth: Truth, track: RecordedTrack) -> list[PhotoShot]:
     home_up_m = _home_up_m(truth, track.serial)
     yaw_error_deg = conditions_of(truth.scenario, truth.sky.settings.seed).yaw_error_deg
-    shots: list[Shot] = []
+    shots: list[PhotoShot] = []
     for at_ns in _presses_ns(flight, truth, track):
         since_s = (track.at_ns - at_ns) / NS_PER_S
         place = [_at(since_s, part) for part in (track.east_m, track.north_m, track.height_m)]
         shots.append(
-            Shot(
+            PhotoShot(
                 f"{track.serial}_{len(shots) + 1:04d}.JPG",
                 track.serial,
                 (at_ns - truth.zero_ns) / NS_PER_S,

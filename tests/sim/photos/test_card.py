@@ -16,7 +16,7 @@ from recon.product.photos.photo import GimbalAttitude, Photo, read_photo_facts
 from recon.sim.camera.field import FieldRenderer
 from recon.sim.land.land_tiles import land_of
 from recon.sim.photos.cameras import CAMERAS, CameraName, pinhole
-from recon.sim.photos.card import GIMBAL, Card, CardSettings, PhotoFile, Shot
+from recon.sim.photos.card import GIMBAL, CardSettings, PhotoCard, PhotoFile, PhotoShot
 from recon.sim.world import LayerSettings, Sky, SkySettings
 
 FRAME = LocalFrame(GeoPoint(41.9, -93.6, 290.0))
@@ -27,16 +27,18 @@ CAMERA = CAMERAS[CameraName.MAVIC_3E]
 WORLD = FieldRenderer(pinhole(60.0, 32, 24), seed=SEED)
 
 
-def shot(east_m: float = -40.0, north_m: float = 25.0, yaw_deg: float = 30.0) -> Shot:
+def shot(east_m: float = -40.0, north_m: float = 25.0, yaw_deg: float = 30.0) -> PhotoShot:
     place_m = np.array([east_m, north_m, 62.0])
-    return Shot("SIM-1_0001.JPG", "SIM-1", 100.0, NOON_NS, place_m, 60.0, yaw_deg)
+    return PhotoShot("SIM-1_0001.JPG", "SIM-1", 100.0, NOON_NS, place_m, 60.0, yaw_deg)
 
 
-def taken(settings: CardSettings, *shots: Shot, world: FieldRenderer = WORLD) -> list[PhotoFile]:
-    return list(Card(FRAME, world, settings).photos(shots or [shot()]))
+def taken(
+    settings: CardSettings, *shots: PhotoShot, world: FieldRenderer = WORLD
+) -> list[PhotoFile]:
+    return list(PhotoCard(FRAME, world, settings).photos(shots or [shot()]))
 
 
-def read_back(folder: Path, settings: CardSettings, photo: Shot) -> Photo:
+def read_back(folder: Path, settings: CardSettings, photo: PhotoShot) -> Photo:
     path = folder / photo.name
     path.write_bytes(taken(settings, photo)[0].jpeg)
     return read_photo_facts(path, path.name)

@@ -26,7 +26,7 @@ from recon.sim.camera.rig import true_pose
 from recon.sim.camera.settings import CameraSettings, ExposureSettings, HoverSettings, LensSettings
 from recon.sim.flight.estimate import FIELD_DRIFT, GaussMarkov
 from recon.sim.photos.cameras import CAMERAS, CameraName, PhotoCamera, pinhole
-from recon.sim.photos.photo_file import Stated, StatedAttitude, jpeg_of
+from recon.sim.photos.photo_file import StatedAttitude, StatedFacts, jpeg_of
 from recon.sim.world.keyframes import FloatImage
 from recon.sim.world.relief import Relief
 
@@ -55,7 +55,7 @@ class CardSettings:
     """Standard deviation of the stated position, each axis; None: as usual for the camera."""
     states_gimbal: bool = True
     gimbal_yaw_off_deg: float = 0.0
-    """Stated minus true yaw of the gimbal."""
+    """StatedFacts minus true yaw of the gimbal."""
     is_roll_180: bool = False
     """Whether the gimbal's attitude is stated the other way round: rolled by 180 degrees, and so
     turned by as many."""
@@ -69,7 +69,7 @@ class CardSettings:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Shot:
+class PhotoShot:
     """One press of a shutter: when, and where the aircraft truly was."""
 
     name: str
@@ -95,14 +95,14 @@ class Shot:
 class PhotoFile:
     """One photo: its file, and the truth of it."""
 
-    shot: Shot
+    shot: PhotoShot
     jpeg: bytes
     sunlit: float
     """Share of its ground in sun."""
 
 
 @dataclass(slots=True)
-class Card:
+class PhotoCard:
     """The photos of a flight's shots, in order."""
 
     frame: LocalFrame
@@ -110,7 +110,7 @@ class Card:
     """Any camera in the flight's world: the land, sky, light and relief are taken."""
     settings: CardSettings
 
-    def photos(self, shots: Sequence[Shot]) -> Iterator[PhotoFile]:
+    def photos(self, shots: Sequence[PhotoShot]) -> Iterator[PhotoFile]:
         """Yield a photo of each shot; one is in memory at a time.
 
         The order of the shots is part of what the cameras' noise and errors follow from.
@@ -135,7 +135,7 @@ class Card:
         lens = pinhole(camera.across_deg, cols, camera.rows_of(cols))
         return replace(self.world, camera=lens, image_circle=None, imager=imager, shows_plants=True)
 
-    def _sunlit(self, shot: Shot) -> float:
+    def _sunlit(self, shot: PhotoShot) -> float:
         """Return the share of a photo's ground that truly lies in sun."""
         camera = self.settings.camera
         rows = camera.rows_of(SUNLIT_COLS)
@@ -143,10 +143,10 @@ class Card:
         sun = self.world.sky.transmittance(ground_m[..., 0], ground_m[..., 1], shot.at_s)
         return float((sun >= SUNLIT_TRANSMITTANCE).mean())
 
-    def _stated(self, shot: Shot, error_m: FloatArray) -> Stated:
+    def _stated(self, shot: PhotoShot, error_m: FloatArray) -> StatedFacts:
         """Return what a photo's file states, with an error (3,) of its position."""
         settings = self.settings
-        return Stated(
+        return StatedFacts(
             settings.camera,
             f"CAM-{shot.serial}",
             _clock(shot.utc_ns + round(settings.clock_ahead_s * NS_PER_S)),
@@ -157,7 +157,7 @@ class Card:
             settings.position_sigma_m,
         )
 
-    def _attitude(self, shot: Shot) -> StatedAttitude:
+    def _attitude(self, shot: PhotoShot) -> StatedAttitude:
         yaw_deg = shot.yaw_deg + self.settings.gimbal_yaw_off_deg
         if self.settings.is_roll_180:
             return StatedAttitude(_half_turns(yaw_deg + 180.0), roll_deg=180.0)
@@ -165,7 +165,7 @@ class Card:
 
 
 def true_ground_m(
-    shot: Shot, camera: PhotoCamera, cols: int, rows: int, relief: Relief | None
+    shot: PhotoShot, camera: PhotoCamera, cols: int, rows: int, relief: Relief | None
 ) -> FloatImage:
     """Return where each pixel of a photo of that size truly lies, (rows, cols, 2) east, north."""
     # The middles of the lattice's blocks are those of a smaller photo's pixels.

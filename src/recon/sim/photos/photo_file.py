@@ -23,7 +23,7 @@ class StatedAttitude:
 
 
 @dataclass(frozen=True, slots=True)
-class Stated:
+class StatedFacts:
     """What a photo's file states besides its pixels, right or wrong."""
 
     camera: PhotoCamera
@@ -40,7 +40,7 @@ class Stated:
     """Standard deviation of the position, which cameras with RTK state."""
 
 
-def jpeg_of(pixels: RgbImage, stated: Stated) -> bytes:
+def jpeg_of(pixels: RgbImage, stated: StatedFacts) -> bytes:
     """Return the file of a photo's pixels (rows, cols, 3)."""
     file = BytesIO()
     image = Image.fromarray(pixels)
@@ -48,7 +48,7 @@ def jpeg_of(pixels: RgbImage, stated: Stated) -> bytes:
     return file.getvalue()
 
 
-def _exif(stated: Stated, cols: int) -> Image.Exif:
+def _exif(stated: StatedFacts, cols: int) -> Image.Exif:
     exif, camera = Image.Exif(), stated.camera
     exif[ExifTags.Base.Make], exif[ExifTags.Base.Model] = camera.make, camera.model
     details = exif.get_ifd(ExifTags.IFD.Exif)
@@ -78,7 +78,7 @@ def _dms(degrees: float) -> tuple[IFDRational, ...]:
     return tuple(_rational(part) for part in parts)
 
 
-def _xmp(stated: Stated) -> bytes:
+def _xmp(stated: StatedFacts) -> bytes:
     values = {
         "AbsoluteAltitude": f"{stated.place.ellipsoid_height_m:+.3f}",
         "RelativeAltitude": f"{stated.height_above_takeoff_m:+.3f}",
