@@ -147,6 +147,10 @@ COMMANDS = {
         "tag:tag_command",
         "Tag the photos of a flight: sunlit share, masks, the photos to keep, what to fly again.",
     ),
+    "mosaic": CommandSource(
+        "mosaic:mosaic_command",
+        "Make a mosaic of photos in sun, with what each pixel was taken from.",
+    ),
     "shadow-record": CommandSource(
         "shadow_record:shadow_record_command",
         "Write a flight's shade maps, and when each cell was in sun, as GeoTIFFs.",

@@ -89,15 +89,15 @@ def tag_command(
     card = card_of(images)
     _refuse_photos_below(out, card.photos)
     flown = opened_flight(flight)
-    photos, refused = _read(card.photos)
+    photos, refused = read_photos(card.photos)
     timed = timed_photos(flown, photos, StatedCamera(clock_offset, field))
     timed.refused.update(refused)
     _print_grouped("", {each.name: note for each in photos for note in each.notes})
-    _print_clocks(timed)
+    print_clocks(timed)
     timed.photos = _with_headings(timed.photos)
     if not timed.photos:
         _print_left(card)
-        _print_refused(timed.refused)
+        print_refused(timed.refused)
         print("no photo was tagged", file=sys.stderr)
         raise typer.Exit(NO_PHOTO_TAGGED)
     history = sun_history(flown)
@@ -118,7 +118,7 @@ def tag_command(
     write_text(out / "chosen.txt", "".join(f"{name}\n" for name in selection.chosen))
     write_text(out / "fly-again.geojson", fly_again(flown, selection))
     _print_left(card)
-    _print_refused(timed.refused)
+    print_refused(timed.refused)
     _print_summary(out, tags, selection, sunlit)
 
 
@@ -141,7 +141,8 @@ def _refuse_photos_below(out: Path, photos: Sequence[Path]) -> None:
             raise RecordError(f"--out: expected a folder without photos, got {out} with {path}")
 
 
-def _read(paths: Sequence[Path]) -> tuple[list[Photo], dict[str, str]]:
+def read_photos(paths: Sequence[Path]) -> tuple[list[Photo], dict[str, str]]:
+    """Return what photos state, and why others cannot be used, by name."""
     names, photos, refused = unique_names(paths), list[Photo](), dict[str, str]()
 
     def read(path: Path) -> Photo | str:
@@ -267,7 +268,8 @@ def _warn(text: str) -> None:
     print(f"warning: {printable(text)}", file=sys.stderr)
 
 
-def _print_clocks(timed: Timed) -> None:
+def print_clocks(timed: Timed) -> None:
+    """Print the cameras' clocks and what they warn of."""
     for clock in timed.clocks:
         print(printable(str(clock)))
     for warning in timed.warnings:
@@ -280,7 +282,7 @@ def _print_left(card: Card) -> None:
         print(printable(f"left out: {_listed([path.name for path in paths])}: {reason}"))
 
 
-def _print_refused(refused: dict[str, str]) -> None:
+def print_refused(refused: dict[str, str]) -> None:
     """Print each reason once; copies together, for each has its own photo."""
     copies = [name for name, reason in sorted(refused.items()) if reason.startswith(COPY)]
     if copies:

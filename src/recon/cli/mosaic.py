@@ -1,0 +1,144 @@
+"""`recon mosaic`: a mosaic of a flight's photos in which all ground is in sun."""
+
+import shutil
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from recon.cli.output import print_line
+from recon.cli.progress import progress_over, usable_cores
+from recon.cli.site import opened_site
+from recon.cli.tag import (
+    NO_PHOTO_TAGGED,
+    opened_flight,
+    print_clocks,
+    print_refused,
+    read_photos,
+)
+from recon.model.errors import RecordError
+from recon.model.units import HECTARE_M2
+from recon.product.mosaic import (
+    Band,
+    ChoiceSettings,
+    Ground,
+    LevelGround,
+    Light,
+    MosaicBuild,
+    MosaicReport,
+    MosaicSettings,
+    SiteGround,
+    placed_photos,
+    plan_of,
+    preview_cameras,
+    read_jpeg,
+)
+from recon.product.mosaic.pixels import Pixels
+from recon.product.photos.card import card_of
+from recon.product.tag import sun_history
+from recon.product.timing import StatedCamera, TimedPhoto, timed_photos
+
+MOST_THREADS = 2
+"""More would decode more photos at once, 100 MB each."""
+COLOURS = ("red", "green", "blue")
+
+
+def mosaic_command(
+    flight: Annotated[Path, typer.Argument(metavar="FLIGHT", help="The flight record (MCAP).")],
+    photos: Annotated[
+        list[Path], typer.Argument(metavar="PHOTOS...", help="JPEG photos, or folders with them.")
+    ],
+    out: Annotated[Path, typer.Option("--out", help="Folder to write.")] = Path("mosaic"),
+    resolution_m: Annotated[
+        float | None,
+        typer.Option(help="Size of a pixel on the ground; default: four of the photos' pixels."),
+    ] = None,
+    site: Annotated[
+        Path | None,
+        typer.Option("--site", help="The site's folder: the ground's heights, if it has them."),
+    ] = None,
+    fill: Annotated[
+        bool, typer.Option("--fill", help="Take the least shaded photo where none is in sun.")
+    ] = False,
+    raw: Annotated[
+        bool,
+        typer.Option("--raw", help="Keep brightness as photographed, not evened to full sun."),
+    ] = False,
+    field: Annotated[
+        float | None,
+        typer.Option(min=10.0, max=120.0, help="Camera's field along the longer side, degrees."),
+    ] = None,
+    clock_offset: Annotated[
+        float | None,
+        typer.Option(help="Seconds to add to the camera's clock for UTC; default: estimated."),
+    ] = None,
+) -> None:
+    """Make a mosaic of photos in sun, with what each pixel was taken from."""
+    flown = opened_flight(flight)
+    facts, refused = read_photos(card_of(photos).photos)
+    timed = timed_photos(flown, facts, StatedCamera(clock_offset, field))
+    timed.refused.update(refused)
+    print_clocks(timed)
+    print_refused(timed.refused)
+    if not timed.photos:
+        print_line("no photo is of this flight")
+        raise typer.Exit(NO_PHOTO_TAGGED)
+    ground, source = _ground(site)
+    history, threads = sun_history(flown), min(MOST_THREADS, usable_cores())
+    views = [each.view for each in timed.photos]
+    cameras = preview_cameras(flown, timed.photos, views, ground)
+    placed = placed_photos(timed.photos, cameras, history, ground, progress_over, threads)
+    settings = MosaicSettings(ChoiceSettings(fills=fill), is_evened=not raw, threads=threads)
+    plan = plan_of(flown, placed, ground, resolution_m)
+    band = Band("mosaic", COLOURS, lambda index, shrink: _pixels(timed.photos[index], shrink))
+    build = MosaicBuild(out, flown, placed, ground, plan, [band], settings, source, progress_over)
+    _print_report(out, _built(build), settings)
+
+
+def _pixels(timed: TimedPhoto, shrink: int) -> Pixels:
+    return read_jpeg(timed.photo.path, shrink)
+
+
+def _ground(site: Path | None) -> tuple[Ground, str]:
+    """Return the ground, and what it is in words."""
+    if site is None:
+        return LevelGround(), "positions of the photos over level ground"
+    model = opened_site(site).elevation
+    if model is None:
+        raise RecordError(f"{site}: expected a site with an [elevation], got none in its site.toml")
+    return SiteGround(model), "positions of the photos over the site's elevation"
+
+
+def _built(build: MosaicBuild) -> MosaicReport:
+    """Return the finished mosaic's report; raises `RecordError` where it cannot be written."""
+    try:
+        return build.run()
+    except OSError as problem:
+        free_mb = shutil.disk_usage(build.out).free // 1_000_000 if build.out.exists() else 0
+        raise RecordError(
+            f"{problem.filename or build.out}: cannot be written: {problem.strerror or problem}, "
+            f"{free_mb} MB are free; what is finished is kept: the same command goes on from there"
+        ) from problem
+
+
+def _print_report(out: Path, report: MosaicReport, settings: MosaicSettings) -> None:
+    print_refused(dict(report.failed))
+    print_line(
+        f"{report.used} of {report.photos} photos make a mosaic of "
+        f"{report.total_m2 / HECTARE_M2:.2f} ha, {100.0 * report.resolution_m:g} cm a pixel"
+    )
+    for light, text in (
+        (Light.SUN, "in sun"),
+        (Light.SHADE, "photographed in shade only"),
+        (Light.UNKNOWN, "photographed in unknown light only"),
+        (Light.MISSING, "on no photo"),
+    ):
+        area_ha = report.areas_m2[light] / HECTARE_M2
+        print_line(f"{100.0 * report.share(light):5.1f} %  {area_ha:.2f} ha {text}")
+    if settings.choice.fills:
+        print_line(f"filled without sun: {report.filled_m2 / HECTARE_M2:.2f} ha")
+    print_line(
+        "brightness: "
+        + ("evened to full sun by the shade maps" if settings.is_evened else "as photographed")
+    )
+    print_line(f"written to {out}")
