@@ -1,6 +1,7 @@
 """`recon mosaic`: a mosaic of a flight's photos in which all ground is in sun."""
 
 import shutil
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -18,6 +19,7 @@ from recon.cli.tag import (
 )
 from recon.model.errors import RecordError
 from recon.model.units import HECTARE_M2
+from recon.product.footprint import PhotoView
 from recon.product.mosaic import (
     Band,
     ChoiceSettings,
@@ -35,6 +37,7 @@ from recon.product.mosaic import (
 )
 from recon.product.mosaic.pixels import Pixels
 from recon.product.photos.card import card_of
+from recon.product.registration import read_grey, register
 from recon.product.tag import sun_history
 from recon.product.timing import StatedCamera, TimedPhoto, timed_photos
 
@@ -85,7 +88,7 @@ def mosaic_command(
         raise typer.Exit(NO_PHOTO_TAGGED)
     ground, source = _ground(site)
     history, threads = sun_history(flown), min(MOST_THREADS, usable_cores())
-    views = [each.view for each in timed.photos]
+    views = _registered(timed.photos)
     cameras = preview_cameras(flown, timed.photos, views, ground)
     placed = placed_photos(timed.photos, cameras, history, ground, progress_over, threads)
     settings = MosaicSettings(ChoiceSettings(fills=fill), is_evened=not raw, threads=threads)
@@ -95,6 +98,23 @@ def mosaic_command(
     _print_report(out, _built(build), settings)
 
 
+def _registered(photos: Sequence[TimedPhoto]) -> Sequence[PhotoView]:
+    """Return the photos' views, registered to their neighbours; print how well."""
+
+    def over(read: Iterable[TimedPhoto]) -> Iterator[TimedPhoto]:
+        return progress_over(read, "registering photos", len(photos))
+
+    found = register(photos, read_grey, over, usable_cores())
+    for line in (*map(str, found.headings), *found.warnings):
+        print_line(line)
+    if found.links:
+        print_line(
+            f"{len(photos)} photos registered by {found.links} links, {found.residual_m:.2f} m "
+            "typically left between two"
+        )
+    return found.views
+
+
 def _pixels(timed: TimedPhoto, shrink: int) -> Pixels:
     return read_jpeg(timed.photo.path, shrink)
 
@@ -102,11 +122,11 @@ def _pixels(timed: TimedPhoto, shrink: int) -> Pixels:
 def _ground(site: Path | None) -> tuple[Ground, str]:
     """Return the ground, and what it is in words."""
     if site is None:
-        return LevelGround(), "positions of the photos over level ground"
+        return LevelGround(), "photos registered to each other over level ground"
     model = opened_site(site).elevation
     if model is None:
         raise RecordError(f"{site}: expected a site with an [elevation], got none in its site.toml")
-    return SiteGround(model), "positions of the photos over the site's elevation"
+    return SiteGround(model), "photos registered to each other over the site's elevation"
 
 
 def _built(build: MosaicBuild) -> MosaicReport:
