@@ -151,12 +151,12 @@ def test_a_folder_in_use_and_a_foreign_table_are_refused(written: Path, tmp_path
 def test_a_damaged_table_is_refused_with_its_line(
     written: Path, tmp_path: Path, field: str, value: str
 ) -> None:
-    head, first, *_rest = (written / "tagged" / "tags.csv").read_text().splitlines()
-    names, cells = head.split(","), first.split(",", len(head.split(",")) - 3)
-    row = dict(zip(names[:-2], cells, strict=False)) | {"footprint_wkt": "x", "note": ""}
-    row[field] = value
-    quoted = ",".join(f'"{row[name]}"' for name in names)
-    (tmp_path / "tags.csv").write_text(f"{head}\n{quoted}\n")
+    with (written / "tagged" / "tags.csv").open(encoding="utf-8", newline="") as file:
+        row = next(csv.DictReader(file)) | {field: value}
+    with (tmp_path / "tags.csv").open("w", encoding="utf-8", newline="") as file:
+        table = csv.DictWriter(file, row)
+        table.writeheader()
+        table.writerow(row)
     with pytest.raises(RecordError, match="line 2 is damaged"):
         tagged_photos(tmp_path, read_flight(written / "flight.mcap"))
 

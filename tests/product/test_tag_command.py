@@ -11,6 +11,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+from PIL import Image
 from tests.product.made_flight import (
     FRAME,
     HEIGHT_M,
@@ -24,6 +25,8 @@ from tests.product.made_flight import (
     write_photo,
     write_record,
 )
+from tests.product.photos.made_bands import write_band
+from tests.product.photos.packets import packet
 from tests.replay.flights import FOLDER
 from typer.testing import CliRunner
 
@@ -225,6 +228,41 @@ def test_twice_inside_the_card_gives_the_same_result(
     assert "what recon tag wrote" in str(card.exception)
     there = CliRunner().invoke(app, ["tag", ".", "--flight", str(record), "--out", "."])
     assert "expected a folder without photos" in str(there.exception)
+
+
+def test_a_shots_files_are_tagged_with_it_each_kind_in_its_own_project(
+    tmp_path: Path, record: Path
+) -> None:
+    card = tmp_path / "card"
+    write_card(card, 0.0, (ONE,), every=4)
+    for path in sorted(card.glob("*.JPG")):
+        write_band(card / f"{path.stem}_MS_G.TIF", path)
+        thermal = packet({"drone-dji:ImageSource": "InfraredCamera"})
+        with Image.open(path) as image:
+            image.resize((320, 240)).save(
+                card / f"{path.stem}_T.JPG", exif=image.getexif(), xmp=thermal
+            )
+        path.rename(card / f"{path.stem}_D.JPG")
+    out = tmp_path / "out"
+    result = run(card, record, out)
+    assert result.exit_code == 0, result.output
+    found = {row["name"]: row for row in rows(out)}
+    shots = {name[: len("SIM-1_0000")] for name in found}
+    assert len(found) == 3 * len(shots) == 3 * len(list(card.glob("*_D.JPG")))
+    assert f"{len(shots)} band files of the same shots: in odm-bands" in result.output
+    assert f"{len(shots)} thermal files of the same shots: in odm-thermal" in result.output
+    assert f"\n{len(shots)} photos: " in result.output
+    chosen = (out / "chosen.txt").read_text().split()
+    ends = {"odm": "_D.JPG", "odm-bands": "_MS_G.TIF", "odm-thermal": "_T.JPG"}
+    for folder, end in ends.items():
+        named = [name for name in chosen if name.endswith(end)]
+        images = {path.name for path in (out / folder / "images").iterdir()}
+        assert images == {*named, *map(masked_name, named)}
+    assert len(chosen) == 3 * len([name for name in chosen if name.endswith("_D.JPG")])
+    (row,) = (each for each in found.values() if each["name"] == "SIM-1_0003_MS_G.TIF")
+    assert (row["shot"], row["shows"]) == ("SIM-1_0003_D.JPG", "G")
+    mask = cv2.imread(str(out / "masks" / masked_name(row["name"])), cv2.IMREAD_GRAYSCALE)
+    assert mask.shape == (48 // 8, 64 // 8)
 
 
 def test_bad_photos_are_named_with_the_reason_and_the_rest_is_tagged(

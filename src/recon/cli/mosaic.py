@@ -10,13 +10,8 @@ import typer
 from recon.cli.output import print_line
 from recon.cli.progress import progress_over, usable_cores
 from recon.cli.site import opened_site
-from recon.cli.tag import (
-    NO_PHOTO_TAGGED,
-    opened_flight,
-    print_clocks,
-    print_refused,
-    read_photos,
-)
+from recon.cli.tag import NO_PHOTO_TAGGED, opened_flight
+from recon.cli.tag_cards import print_clocks, print_refused, read_photos
 from recon.model.errors import RecordError
 from recon.model.units import HECTARE_M2
 from recon.product.footprint import PhotoView
@@ -37,6 +32,7 @@ from recon.product.mosaic import (
 )
 from recon.product.mosaic.pixels import Pixels
 from recon.product.photos.card import card_of
+from recon.product.photos.shots import shots_of
 from recon.product.registration import read_grey, register
 from recon.product.tag import sun_history
 from recon.product.timing import StatedCamera, TimedPhoto, timed_photos
@@ -79,7 +75,8 @@ def mosaic_command(
     """Make a mosaic of photos in sun, with what each pixel was taken from."""
     flown = opened_flight(flight)
     facts, refused = read_photos(card_of(photos).photos)
-    timed = timed_photos(flown, facts, StatedCamera(clock_offset, field))
+    leads = [shot.lead for shot in shots_of(facts)]
+    timed = timed_photos(flown, leads, StatedCamera(clock_offset, field))
     timed.refused.update(refused)
     print_clocks(timed)
     print_refused(timed.refused)

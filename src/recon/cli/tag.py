@@ -15,17 +15,24 @@ import typer
 from recon import version
 from recon.cli.output import printable
 from recon.cli.progress import progress_over, usable_cores
+from recon.cli.tag_cards import (
+    print_clocks,
+    print_grouped,
+    print_left,
+    print_refused,
+    read_photos,
+    refuse_photos_below,
+    warn,
+)
 from recon.model.errors import RecordError
 from recon.model.units import HECTARE_M2
 from recon.product.coverage import Ground
 from recon.product.flight import FlightData, read_flight
 from recon.product.odm import write_odm_project
-from recon.product.photos.card import MARK, PROGRESS, Card, card_of
-from recon.product.photos.copies import without_copies
-from recon.product.photos.names import unique_names
-from recon.product.photos.photo import Photo, read_photo_facts
-from recon.product.photos.photo_error import PhotoError
+from recon.product.photos.card import MARK, PROGRESS, card_of
+from recon.product.photos.shots import shots_of
 from recon.product.registration import read_grey, with_headings
+from recon.product.shot_files import ShotFiles, files_of
 from recon.product.sun_at import SunHistory
 from recon.product.tag import (
     MASK_SCALE,
@@ -40,7 +47,7 @@ from recon.product.tag import (
     sun_history,
     tag_photo,
 )
-from recon.product.timing import StatedCamera, Timed, TimedPhoto, timed_photos
+from recon.product.timing import StatedCamera, TimedPhoto, timed_photos
 from recon.product.write import (
     fly_again,
     masked_name,
@@ -49,11 +56,8 @@ from recon.product.write import (
     write_text,
 )
 
-MOST_NAMED = 5
-"""Photos named for one reason; all are in the table."""
 AHEAD = 8
 """Photos waiting for each thread."""
-COPY = "a copy, which counts once, of"
 MOST_OFF_S = 1e9
 """Largest offset of a camera's clock: thirty years, as after an empty battery."""
 NO_PHOTO_TAGGED = 1
@@ -61,7 +65,7 @@ NO_PHOTO_TAGGED = 1
 
 def tag_command(
     images: Annotated[
-        list[Path], typer.Argument(metavar="IMAGES...", help="JPEG photos, or folders with them.")
+        list[Path], typer.Argument(metavar="IMAGES...", help="Photos, or folders with them.")
     ],
     flight: Annotated[Path, typer.Option("--flight", help="The flight record (MCAP).")],
     out: Annotated[Path, typer.Option("--out", help="Folder to write.")] = Path("tagged"),
@@ -87,17 +91,19 @@ def tag_command(
 ) -> None:
     """Tag the photos of a flight: sunlit share, masks, the photos to keep, what to fly again."""
     card = card_of(images)
-    _refuse_photos_below(out, card.photos)
+    refuse_photos_below(out, card.photos)
     flown = opened_flight(flight)
     photos, refused = read_photos(card.photos)
-    timed = timed_photos(flown, photos, StatedCamera(clock_offset, field))
-    timed.refused.update(refused)
-    _print_grouped("", {each.name: note for each in photos for note in each.notes})
+    shots = shots_of(photos)
+    timed = timed_photos(flown, [shot.lead for shot in shots], StatedCamera(clock_offset, field))
+    print_grouped("", {each.name: note for each in photos for note in each.notes})
     print_clocks(timed)
     timed.photos = _with_headings(timed.photos)
+    files = files_of(timed.photos, shots, timed.refused, field)
+    refused |= timed.refused | files.refused
     if not timed.photos:
-        _print_left(card)
-        print_refused(timed.refused)
+        print_left(card)
+        print_refused(refused)
         print("no photo was tagged", file=sys.stderr)
         raise typer.Exit(NO_PHOTO_TAGGED)
     history = sun_history(flown)
@@ -106,20 +112,32 @@ def tag_command(
             folder.mkdir(parents=True, exist_ok=True)
         (out / MARK).touch()
         ground = ground_of_flight(flown, timed.photos)
-        tags, shown = _tag_all(out, flown, timed.photos, history, ground, sunlit)
+        tags, shown = _tag_all(out, flown, files, history, ground, sunlit)
         selection = select(timed.photos, shown, ground, overlap)
-        chosen = frozenset(selection.chosen)
-        kept = [each for each in timed.photos if each.photo.name in chosen]
-        write_odm_project(out / "odm", out / "masks", flown, kept)
+        chosen = files.of(selection.chosen)
+        _write_projects(out, flown, files, chosen)
     except OSError as problem:
         raise RecordError(f"{problem.filename or out}: {problem.strerror}") from problem
-    rows = table(flown, timed.photos, tags, selection.chosen, timed.refused, sunlit)
-    write_text(out / "tags.csv", rows)
-    write_text(out / "chosen.txt", "".join(f"{name}\n" for name in selection.chosen))
+    names = [each.photo.name for each in chosen]
+    write_text(out / "tags.csv", table(flown, files, tags, names, refused, sunlit))
+    write_text(out / "chosen.txt", "".join(f"{name}\n" for name in names))
     write_text(out / "fly-again.geojson", fly_again(flown, selection))
-    _print_left(card)
-    print_refused(timed.refused)
-    _print_summary(out, tags, selection, sunlit)
+    print_left(card)
+    print_refused(refused)
+    _print_beside(files)
+    leading = [tags[each.photo.name] for each in timed.photos]
+    _print_summary(out, leading, selection, sunlit)
+
+
+def _write_projects(
+    out: Path, flight: FlightData, files: ShotFiles, chosen: Sequence[TimedPhoto]
+) -> None:
+    """Write a project of the chosen photos for each kind of file; raises OSError."""
+    folders = files.folder_of_each()
+    for folder in sorted(set(folders.values())):
+        photos = [each for each in chosen if folders[each.photo.kind] == folder]
+        if photos or (out / folder).exists():
+            write_odm_project(out / folder, out / "masks", flight, photos)
 
 
 def opened_flight(path: Path) -> FlightData:
@@ -129,42 +147,8 @@ def opened_flight(path: Path) -> FlightData:
     except OSError as problem:
         raise RecordError(f"{path}: {problem.strerror}") from problem
     if flight.trouble:
-        _warn(f"the record ends early: {flight.trouble}")
+        warn(f"the record ends early: {flight.trouble}")
     return flight
-
-
-def _refuse_photos_below(out: Path, photos: Sequence[Path]) -> None:
-    """Raise `RecordError` where the folder to write is the cards' own: it is never read again."""
-    whole = out.resolve()
-    for path in photos:
-        if whole in path.resolve().parents:
-            raise RecordError(f"--out: expected a folder without photos, got {out} with {path}")
-
-
-def read_photos(paths: Sequence[Path]) -> tuple[list[Photo], dict[str, str]]:
-    """Return what photos state, and why others cannot be used, by name."""
-    names, photos, refused = unique_names(paths), list[Photo](), dict[str, str]()
-
-    def read(path: Path) -> Photo | str:
-        try:
-            return read_photo_facts(path, names[path])
-        except PhotoError as problem:
-            return str(problem)
-
-    with ThreadPoolExecutor(usable_cores()) as pool:
-        for path, found in zip(
-            paths, progress_over(pool.map(read, paths), "reading photos", len(paths)), strict=True
-        ):
-            if isinstance(found, str):
-                refused[names[path]] = found
-            else:
-                photos.append(found)
-    try:
-        photos, copies = without_copies(photos)
-    except OSError as problem:
-        raise RecordError(f"{problem.filename}: {problem.strerror}") from problem
-    refused.update({name: f"{COPY} {first}" for name, first in copies.items()})
-    return photos, refused
 
 
 def _with_headings(photos: Sequence[TimedPhoto]) -> list[TimedPhoto]:
@@ -178,30 +162,30 @@ def _with_headings(photos: Sequence[TimedPhoto]) -> list[TimedPhoto]:
     for each in headings:
         print(printable(str(each)))
         for warning in each.warnings:
-            _warn(warning)
+            warn(warning)
     return turned
 
 
 def _tag_all(
     out: Path,
     flight: FlightData,
-    photos: Sequence[TimedPhoto],
+    files: ShotFiles,
     history: SunHistory,
     ground: Ground,
     sunlit: float,
 ) -> tuple[dict[str, PhotoTag], list[Shown]]:
-    """Return all tags, with masks and sidecars written, and what each photo shows.
+    """Return all tags, with masks and sidecars written, and what each leading photo shows.
 
     Files of an earlier run are kept.
     """
     stat = flight.path.stat()
     record = f"{version()} {stat.st_size} {stat.st_mtime_ns} {sunlit} {MASK_SCALE}"
-    keys = {each.photo.name: _key(record, each) for each in photos}
+    keys = {each.photo.name: _key(record, each) for each in files.photos}
     done = _earlier(out, keys)
 
-    def tag(timed: TimedPhoto) -> tuple[PhotoTag, Shown]:
+    def tag(timed: TimedPhoto) -> tuple[PhotoTag, Shown | None]:
         light = light_around(timed, history)
-        shown = shown_by(timed, light, ground)
+        shown = shown_by(timed, light, ground) if files.leads(timed) else None
         if timed.photo.name in done:
             return done[timed.photo.name], shown
         found, mask = tag_photo(timed, light)
@@ -211,9 +195,11 @@ def _tag_all(
     tags: dict[str, PhotoTag] = {}
     shown_by_each: list[Shown] = []
     with (out / PROGRESS).open("a", encoding="utf-8") as log:
-        for found, shown in progress_over(_in_threads(tag, photos), "tagging", len(photos)):
+        tagged = _in_threads(tag, files.photos)
+        for found, shown in progress_over(tagged, "tagging", len(files.photos)):
             tags[found.name] = found
-            shown_by_each.append(shown)
+            if shown is not None:
+                shown_by_each.append(shown)
             if found.name not in done:
                 numbers = [found.sunlit, found.confidence, found.known]
                 log.write(json.dumps([found.name, keys[found.name], *numbers]) + "\n")
@@ -224,8 +210,8 @@ def _tag_all(
 
 
 def _in_threads(
-    tag: Callable[[TimedPhoto], tuple[PhotoTag, Shown]], photos: Sequence[TimedPhoto]
-) -> Iterator[tuple[PhotoTag, Shown]]:
+    tag: Callable[[TimedPhoto], tuple[PhotoTag, Shown | None]], photos: Sequence[TimedPhoto]
+) -> Iterator[tuple[PhotoTag, Shown | None]]:
     """Yield tags in order; no more photos are begun than are soon taken."""
     with ThreadPoolExecutor(usable_cores()) as pool:
         rest = iter(photos)
@@ -264,52 +250,18 @@ def _is_written(path: Path) -> bool:
     return path.is_file() and path.stat().st_size > 0
 
 
-def _warn(text: str) -> None:
-    print(f"warning: {printable(text)}", file=sys.stderr)
-
-
-def print_clocks(timed: Timed) -> None:
-    """Print the cameras' clocks and what they warn of."""
-    for clock in timed.clocks:
-        print(printable(str(clock)))
-    for warning in timed.warnings:
-        _warn(warning)
-
-
-def _print_left(card: Card) -> None:
-    """Print what was left alone, by reason."""
-    for reason, paths in card.left.items():
-        print(printable(f"left out: {_listed([path.name for path in paths])}: {reason}"))
-
-
-def print_refused(refused: dict[str, str]) -> None:
-    """Print each reason once; copies together, for each has its own photo."""
-    copies = [name for name, reason in sorted(refused.items()) if reason.startswith(COPY)]
-    if copies:
-        print(f"left out: {_listed(copies)}: copies of other photos, which count once")
-    rest = {name: reason for name, reason in refused.items() if name not in copies}
-    _print_grouped("not tagged: ", rest)
-
-
-def _listed(names: Sequence[str]) -> str:
-    """Return how many there are, with the first names."""
-    more = len(names) - MOST_NAMED
-    return ", ".join(names[:MOST_NAMED]) + (f" and {more} more" if more > 0 else "")
-
-
-def _print_grouped(before: str, refused: dict[str, str]) -> None:
-    """Print each reason once, with some of the photos."""
-    by_reason: dict[str, list[str]] = {}
-    for name, reason in sorted(refused.items()):
-        by_reason.setdefault(reason.removeprefix(f"{name}: "), []).append(name)
-    for reason, names in by_reason.items():
-        _warn(f"{before}{_listed(names)}: {reason}")
+def _print_beside(files: ShotFiles) -> None:
+    """Print how many files stand beside the photos that lead their shots, and where they go."""
+    folders = files.folder_of_each()
+    beside = Counter(each.photo.kind for each in files.photos if not files.leads(each))
+    for kind, count in beside.items():
+        print(f"{count} {kind} files of the same shots: in {folders[kind]}")
 
 
 def _print_summary(
-    out: Path, tags: dict[str, PhotoTag], selection: Selection, sunlit: float
+    out: Path, tags: Sequence[PhotoTag], selection: Selection, sunlit: float
 ) -> None:
-    states = Counter(tag.state(sunlit) for tag in tags.values())
+    states = Counter(tag.state(sunlit) for tag in tags)
     counts = ", ".join(
         f"{states[name]} {name}"
         for name in ("sunlit", "mixed", "shaded", "unknown")

@@ -70,6 +70,8 @@ def _geo_line(flight: FlightData, timed: TimedPhoto) -> str:
     if photo.absolute_height_m is None:
         return line
     roll_deg = 0.0 if photo.attitude is None else photo.attitude.roll_deg or 0.0
+    # Rolled over by 180 degrees is a turn of the picture, which the heading of its top has.
+    roll_deg = (roll_deg + 90.0) % 180.0 - 90.0
     pitch_deg = aim.pitch_deg - DOWN_DEG
     line += f" {photo.absolute_height_m:.3f} {aim.yaw_deg:.2f} {pitch_deg:.2f} {roll_deg:.2f}"
     if photo.horizontal_sigma_m is None or photo.vertical_sigma_m is None:

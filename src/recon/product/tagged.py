@@ -16,9 +16,9 @@ from recon.geo import enu_from_geo
 from recon.model.errors import RecordError
 from recon.model.units import NS_PER_S
 from recon.product.flight import FlightData
-from recon.product.write import COLUMNS
 
 TABLE = "tags.csv"
+NEEDED = ("name", "utc", "state", "footprint_wkt")
 MOST_CORNERS = 16
 
 
@@ -34,7 +34,8 @@ class TaggedPhoto:
 
 
 def tagged_photos(folder: Path, flight: FlightData) -> list[TaggedPhoto]:
-    """Return the photos of a folder that `recon tag` has written, without those that it refused.
+    """Return the photos of a folder that `recon tag` has written, without those that it refused,
+    and one of each shot.
 
     Raises `RecordError` for another file, or for photos that are not of the flight.
     """
@@ -53,11 +54,12 @@ def tagged_photos(folder: Path, flight: FlightData) -> list[TaggedPhoto]:
 
 
 def _photos(path: Path, rows: "csv.DictReader[str]", flight: FlightData) -> Iterator[TaggedPhoto]:
-    missing = set(COLUMNS) - set(rows.fieldnames or ())
+    missing = set(NEEDED) - set(rows.fieldnames or ())
     if missing:
         raise RecordError(f"{path}: expected the table of recon tag, got one without {missing}")
     for row in rows:
-        if not row["utc"]:
+        is_beside = row.get("shot", row["name"]) != row["name"]
+        if is_beside or not row["utc"]:
             continue
         try:
             yield _photo(row, flight)

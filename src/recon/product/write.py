@@ -15,6 +15,8 @@ import shapely  # type: ignore[import-untyped, unused-ignore]
 from recon import version
 from recon.model.errors import RecordError
 from recon.product.flight import FlightData
+from recon.product.photos.photo import Photo
+from recon.product.shot_files import ShotFiles
 from recon.product.tag import PhotoTag, Selection
 from recon.product.timing import TimedPhoto
 from recon.record.files.atomic_file import replace_file
@@ -27,7 +29,7 @@ MASK_QUALITY = 100
 COLUMNS = (
     *("name", "file", "vehicle", "utc", "sigma_s", "latitude_deg", "longitude_deg"),
     *("height_above_takeoff_m", "yaw_deg", "pitch_deg", "sunlit", "confidence", "known", "state"),
-    *("chosen", "footprint_wkt", "note"),
+    *("chosen", "footprint_wkt", "shot", "shows", "note"),
 )
 
 
@@ -122,18 +124,18 @@ def lon_lat(flight: FlightData, timed: TimedPhoto) -> tuple[float, float]:
 
 def table(
     flight: FlightData,
-    photos: Sequence[TimedPhoto],
+    files: ShotFiles,
     tags: Mapping[str, PhotoTag],
     chosen: Sequence[str],
     refused: Mapping[str, str],
     share: float,
 ) -> str:
-    """Return the CSV: a row for each photo, those without a tag with the reason last."""
+    """Return the CSV: a row for each file, those without a tag with the reason last."""
     out = io.StringIO()
     rows = csv.writer(out, lineterminator="\n")
     rows.writerow(COLUMNS)
     kept = frozenset(chosen)
-    for timed in photos:
+    for timed in files.photos:
         tag, aim, name = tags[timed.photo.name], timed.view.aim, timed.photo.name
         longitude_deg, latitude_deg = lon_lat(flight, timed)
         rows.writerow(
@@ -144,12 +146,18 @@ def table(
                 f"{timed.height_above_takeoff_m:.1f}",
                 *(f"{aim.yaw_deg:.1f}", f"{aim.pitch_deg:.1f}"),
                 *(_share(tag.sunlit), _share(tag.confidence), _share(tag.known)),
-                *(tag.state(share), "yes" if name in kept else "no", _wkt(flight, timed), ""),
+                *(tag.state(share), "yes" if name in kept else "no", _wkt(flight, timed)),
+                *(_cell(files.shot[name]), _shows(timed.photo), ""),
             )
         )
     for name, reason in sorted(refused.items()):
-        rows.writerow((_cell(name), *[""] * (len(COLUMNS) - 4), "no", "", _cell(reason)))
+        rows.writerow((_cell(name), *[""] * (len(COLUMNS) - 6), "no", "", "", "", _cell(reason)))
     return out.getvalue()
+
+
+def _shows(photo: Photo) -> str:
+    """Return visible, zoom or thermal, or the name of a band."""
+    return photo.band.name if photo.kind == "band" and photo.band else photo.kind
 
 
 def _cell(text: str) -> str:

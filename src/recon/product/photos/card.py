@@ -7,7 +7,7 @@ from pathlib import Path
 
 from recon.model.errors import RecordError
 
-SUFFIXES = (".jpg", ".jpeg")
+SUFFIXES = (".jpg", ".jpeg", ".tif", ".tiff")
 MARK = ".recon-tagged"
 """File in each folder that `recon tag` writes: nothing below it is read as a photo."""
 PROGRESS = "progress.jsonl"

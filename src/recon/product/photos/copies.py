@@ -26,7 +26,7 @@ def without_copies(photos: Sequence[Photo]) -> tuple[list[Photo], dict[str, str]
 
 def _statement(photo: Photo) -> object:
     place = photo.latitude_deg, photo.longitude_deg
-    picture = photo.cols, photo.rows, photo.across_deg, photo.exposure_s
+    picture = photo.cols, photo.rows, photo.across_deg, photo.exposure_s, photo.kind, photo.band
     return photo.camera, photo.clock_ns, place, picture
 
 

@@ -9,7 +9,8 @@ from pathlib import Path
 def unique_names(paths: Sequence[Path]) -> dict[Path, str]:
     """Return a name for each file: its own, with its folder's before it where two have the same.
 
-    Spaces become underscores: OpenDroneMap ignores masks with a space in their name.
+    No two differ in their suffix alone, for masks and sidecars have another one. Spaces become
+    underscores: OpenDroneMap ignores masks with a space in their name.
     """
     plain = [re.sub(r"[^\w.-]", "_", path.name) for path in paths]
     counts = Counter(plain)
@@ -19,9 +20,9 @@ def unique_names(paths: Sequence[Path]) -> dict[Path, str]:
         if counts[name] > 1:
             name = re.sub(r"[^\w.-]", "_", f"{path.parent.name}_{name}")
         stem, number, unique = Path(name), 1, name
-        while unique.lower() in taken:
+        while Path(unique).stem.lower() in taken:
             number += 1
             unique = f"{stem.stem}-{number}{stem.suffix}"
-        taken.add(unique.lower())
+        taken.add(Path(unique).stem.lower())
         names[path] = unique
     return names

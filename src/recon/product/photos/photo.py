@@ -10,15 +10,25 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-from PIL import Image, UnidentifiedImageError
+from PIL import Image, JpegImagePlugin, TiffImagePlugin, UnidentifiedImageError
 from PIL.ExifTags import GPS, IFD, Base
 
+from recon.product.photos import tiff
+from recon.product.photos.band import (
+    Band,
+    Kind,
+    band_of,
+    capture_of,
+    exposure_s_of,
+    irradiance_of,
+    kind_of,
+    name_and_role,
+)
 from recon.product.photos.exif import (
     HeightReference,
     Tags,
     absolute_height,
     clock_of,
-    number_of,
     satellite_ns,
     text_of,
 )
@@ -76,8 +86,14 @@ class Photo:
     horizontal_sigma_m: float | None = None
     vertical_sigma_m: float | None = None
     """Standard deviations of the position by RTK; None where RTK gave none."""
+    kind: Kind = "visible"
+    band: Band | None = None
+    capture: str = ""
+    """Identity of the shot, which all files of one release of the shutter share."""
     exposure_s: float | None = None
     """Exposure time."""
+    irradiance: float | None = None
+    """By the camera's sun sensor, in its own unit."""
     is_plain: bool = True
     """Whether plain EXIF, and RTK's XMP attributes, state position, height and accuracy: what most
     programs read."""
@@ -99,21 +115,32 @@ def read_photo_facts(path: Path, name: str) -> Photo:
         data = path.read_bytes()
     except OSError as problem:
         raise PhotoError(f"{path.name}: cannot be read: {problem.strerror}") from problem
-    if not data.startswith(b"\xff\xd8"):
-        raise PhotoError(f"{path.name}: expected a JPEG, got another file")
-    if is_cut_off(data):
+    if not data.startswith((b"\xff\xd8", *tiff.SIGNATURES)):
+        raise PhotoError(f"{path.name}: expected a JPEG or TIFF, got another file")
+    if data.startswith(b"\xff\xd8") and is_cut_off(data):
         raise PhotoError(f"{path.name}: the file is cut off: copy it from the card again")
     try:
-        with warnings.catch_warnings(action="ignore"), Image.open(BytesIO(data)) as image:
+        with warnings.catch_warnings(action="ignore"), _opened(data) as image:
             return _facts(path, name, image)
     except PhotoError as problem:
         raise PhotoError(f"{path.name}: {problem}") from problem
     except UnidentifiedImageError as problem:
-        raise PhotoError(f"{path.name}: expected a readable JPEG, got a damaged one") from problem
+        raise PhotoError(
+            f"{path.name}: expected a readable JPEG or TIFF, got a damaged one"
+        ) from problem
     except Exception as problem:
         # Pillow documents no closed set of errors for damaged metadata.
         text = f"{type(problem).__name__}: {problem}"
         raise PhotoError(f"{path.name}: its EXIF data is damaged ({text:.120})") from problem
+
+
+def _opened(data: bytes) -> Any:
+    # Named, so that Pillow loads no further plugin, and no other format is taken.
+    formats = JpegImagePlugin.JpegImageFile.format, TiffImagePlugin.TiffImageFile.format
+    image = Image.open(BytesIO(data), formats=formats)
+    if image.format == TiffImagePlugin.TiffImageFile.format:
+        tiff.refuse_cut_off(image, len(data))
+    return image
 
 
 def _facts(path: Path, name: str, image: Any) -> Photo:
@@ -128,6 +155,8 @@ def _facts(path: Path, name: str, image: Any) -> Photo:
     orientation = exif.get(Base.Orientation, 1)
     names = (exif.get(Base.Make), exif.get(Base.Model), details.get(Base.BodySerialNumber))
     make, model, serial = (text_of(each) for each in names)
+    role = name_and_role(path.stem)[1]
+    band = band_of(exif, details, xmp, role)
     height_m, reference = absolute_height(xmp, gps)
     horizontal_m, vertical_m = _rtk_sigmas_m(xmp)
     return Photo(
@@ -150,7 +179,11 @@ def _facts(path: Path, name: str, image: Any) -> Photo:
         reference,
         horizontal_m,
         vertical_m,
-        number_of(details.get(Base.ExposureTime)),
+        kind_of(xmp, band, role, (cols, rows), make),
+        band,
+        capture_of(xmp),
+        exposure_s_of(details, xmp),
+        irradiance_of(xmp),
         place.is_in_exif and _is_plain(xmp, gps, height_m, (horizontal_m, vertical_m)),
         (*notes, *filter(None, [place.note])),
     )
