@@ -1,20 +1,16 @@
 """`recon tag`: the photos of a flight, and which of them are in sun."""
 
-import json
 import sys
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from hashlib import sha256
-from itertools import islice
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from recon import version
 from recon.cli.output import printable
 from recon.cli.progress import progress_over, usable_cores
+from recon.cli.tag_all import FlightLight, tag_all
 from recon.cli.tag_cards import (
     print_clocks,
     print_grouped,
@@ -26,38 +22,29 @@ from recon.cli.tag_cards import (
 )
 from recon.model.errors import RecordError
 from recon.model.units import HECTARE_M2
-from recon.product.coverage import Ground
 from recon.product.flight import FlightData, read_flight
 from recon.product.odm import write_odm_project
-from recon.product.photos.card import MARK, PROGRESS, card_of
+from recon.product.photos.card import MARK, card_of
 from recon.product.photos.shots import shots_of
 from recon.product.registration import read_grey, with_headings
 from recon.product.shot_files import ShotFiles, files_of
 from recon.product.sun_at import SunHistory
+from recon.product.sun_sensor import agreement, sun_by_sensor
 from recon.product.tag import (
-    MASK_SCALE,
     SUNLIT_SHARE,
     PhotoTag,
     Selection,
-    Shown,
     ground_of_flight,
-    light_around,
     select,
-    shown_by,
     sun_history,
-    tag_photo,
 )
 from recon.product.timing import StatedCamera, TimedPhoto, timed_photos
 from recon.product.write import (
     fly_again,
-    masked_name,
     table,
-    write_photo_files,
     write_text,
 )
 
-AHEAD = 8
-"""Photos waiting for each thread."""
 MOST_OFF_S = 1e9
 """Largest offset of a camera's clock: thirty years, as after an empty battery."""
 NO_PHOTO_TAGGED = 1
@@ -88,6 +75,13 @@ def tag_command(
             help="Seconds to add to the camera's clock for UTC; default: estimated.",
         ),
     ] = None,
+    sun_sensor: Annotated[
+        bool,
+        typer.Option(
+            "--sun-sensor",
+            help="Let the camera's sun sensor tell where shade maps know too little.",
+        ),
+    ] = False,
 ) -> None:
     """Tag the photos of a flight: sunlit share, masks, the photos to keep, what to fly again."""
     card = card_of(images)
@@ -106,13 +100,15 @@ def tag_command(
         print_refused(refused)
         print("no photo was tagged", file=sys.stderr)
         raise typer.Exit(NO_PHOTO_TAGGED)
-    history = sun_history(flown)
+    history = sun_history(flown, may_be_empty=sun_sensor)
+    sensor = _sensor(flown, files, history)
     try:
         for folder in (out, out / "masks", out / "xmp"):
             folder.mkdir(parents=True, exist_ok=True)
         (out / MARK).touch()
         ground = ground_of_flight(flown, timed.photos)
-        tags, shown = _tag_all(out, flown, files, history, ground, sunlit)
+        light = FlightLight(flown, history, ground, sunlit, sensor if sun_sensor else {})
+        tags, shown = tag_all(out, files, light)
         selection = select(timed.photos, shown, ground, overlap)
         chosen = files.of(selection.chosen)
         _write_projects(out, flown, files, chosen)
@@ -166,88 +162,20 @@ def _with_headings(photos: Sequence[TimedPhoto]) -> list[TimedPhoto]:
     return turned
 
 
-def _tag_all(
-    out: Path,
-    flight: FlightData,
-    files: ShotFiles,
-    history: SunHistory,
-    ground: Ground,
-    sunlit: float,
-) -> tuple[dict[str, PhotoTag], list[Shown]]:
-    """Return all tags, with masks and sidecars written, and what each leading photo shows.
-
-    Files of an earlier run are kept.
-    """
-    stat = flight.path.stat()
-    record = f"{version()} {stat.st_size} {stat.st_mtime_ns} {sunlit} {MASK_SCALE}"
-    keys = {each.photo.name: _key(record, each) for each in files.photos}
-    done = _earlier(out, keys)
-
-    def tag(timed: TimedPhoto) -> tuple[PhotoTag, Shown | None]:
-        light = light_around(timed, history)
-        shown = shown_by(timed, light, ground) if files.leads(timed) else None
-        if timed.photo.name in done:
-            return done[timed.photo.name], shown
-        found, mask = tag_photo(timed, light)
-        write_photo_files(out, flight, timed, found, mask, sunlit)
-        return found, shown
-
-    tags: dict[str, PhotoTag] = {}
-    shown_by_each: list[Shown] = []
-    with (out / PROGRESS).open("a", encoding="utf-8") as log:
-        tagged = _in_threads(tag, files.photos)
-        for found, shown in progress_over(tagged, "tagging", len(files.photos)):
-            tags[found.name] = found
-            if shown is not None:
-                shown_by_each.append(shown)
-            if found.name not in done:
-                numbers = [found.sunlit, found.confidence, found.known]
-                log.write(json.dumps([found.name, keys[found.name], *numbers]) + "\n")
-                log.flush()
-    if done:
-        print(f"{len(done)} photos were tagged before")
-    return tags, shown_by_each
-
-
-def _in_threads(
-    tag: Callable[[TimedPhoto], tuple[PhotoTag, Shown | None]], photos: Sequence[TimedPhoto]
-) -> Iterator[tuple[PhotoTag, Shown | None]]:
-    """Yield tags in order; no more photos are begun than are soon taken."""
-    with ThreadPoolExecutor(usable_cores()) as pool:
-        rest = iter(photos)
-        waiting = [pool.submit(tag, each) for each in islice(rest, AHEAD * usable_cores())]
-        while waiting:
-            yield waiting.pop(0).result()
-            waiting += (pool.submit(tag, each) for each in islice(rest, 1))
-
-
-def _key(record: str, timed: TimedPhoto) -> str:
-    stat = timed.photo.path.stat()
-    facts = f"{record} {stat.st_size} {stat.st_mtime_ns} {timed.at_ns} {timed.view} {timed.photo}"
-    return sha256(facts.encode()).hexdigest()[:16]
-
-
-def _earlier(out: Path, keys: dict[str, str]) -> dict[str, PhotoTag]:
-    """Return the tags of an earlier run with the same inputs, whose files are there."""
-    done: dict[str, PhotoTag] = {}
-    path = out / PROGRESS
-    if not path.is_file():
-        return done
-    for line in path.read_text(encoding="utf-8", errors="replace").splitlines():
-        try:
-            name, key, sunlit, confidence, known = json.loads(line)
-            tag = PhotoTag(str(name), float(sunlit), float(confidence), float(known))
-        except (ValueError, TypeError):
-            continue  # A killed run leaves half a line.
-        files = (out / "masks" / masked_name(tag.name), out / "xmp" / f"{Path(tag.name).stem}.xmp")
-        if keys.get(tag.name) == key and all(map(_is_written, files)):
-            done[tag.name] = tag
-    return done
-
-
-def _is_written(path: Path) -> bool:
-    """Return whether a file is there; one that a computer's crash left empty is not."""
-    return path.is_file() and path.stat().st_size > 0
+def _sensor(flight: FlightData, files: ShotFiles, history: SunHistory) -> dict[str, float]:
+    """Return the direct sun by the camera's sun sensor; print how it agrees with the shade maps."""
+    if all(each.photo.irradiance is None for each in files.photos):
+        return {}
+    sensor = sun_by_sensor(files)
+    leads = [each for each in files.photos if files.leads(each)]
+    found = agreement(flight, leads, sensor, history)
+    if not sensor:
+        print("sun sensor: it saw only sun or only shade, or too little to tell which")
+    elif found is None:
+        print("sun sensor: the shade maps tell about too few of its photos to compare them")
+    else:
+        print(found)
+    return sensor
 
 
 def _print_beside(files: ShotFiles) -> None:

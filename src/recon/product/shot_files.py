@@ -26,9 +26,13 @@ class ShotFiles:
     """By a file's name the name of its shot's leading file."""
     refused: dict[str, str] = field(default_factory=dict)
 
+    def shot_of(self, timed: TimedPhoto) -> str:
+        """Return the name of the leading file of a file's shot."""
+        return self.shot[timed.photo.name]
+
     def leads(self, timed: TimedPhoto) -> bool:
         """Return whether a file is the leading one of its shot."""
-        return self.shot[timed.photo.name] == timed.photo.name
+        return self.shot_of(timed) == timed.photo.name
 
     def of(self, leads: Iterable[str]) -> list[TimedPhoto]:
         """Return the files of some shots."""

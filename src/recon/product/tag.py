@@ -53,10 +53,12 @@ class PhotoTag:
     """0 to 1: the mean over all of its ground."""
     known: float
     """Share of its ground that the shade maps show."""
+    is_by_sensor: bool = False
+    """Whether its light is what the camera's sun sensor states, for want of shade maps."""
 
     def state(self, sunlit_share: float) -> str:
         """Return sunlit, shaded, mixed or unknown."""
-        if not self.known >= LEAST_KNOWN:
+        if not (self.is_by_sensor or self.known >= LEAST_KNOWN):
             return "unknown"
         if self.sunlit >= sunlit_share:
             return "sunlit"
@@ -122,9 +124,12 @@ def light_around(timed: TimedPhoto, history: SunHistory) -> Light:
     return history.around(timed.at_ns, timed.view.corners_m)
 
 
-def sun_history(flight: FlightData) -> SunHistory:
-    """Return the sun of a flight by time; raises `RecordError` without shade maps."""
+def sun_history(flight: FlightData, *, may_be_empty: bool = False) -> SunHistory:
+    """Return the sun of a flight by time; raises `RecordError` without shade maps, unless it may
+    know nothing."""
     if flight.grid is None or not flight.maps:
+        if may_be_empty:
+            return SunHistory(GroundGrid(flight.frame, 0.0, 0.0, 1.0, 1, 1), ())
         raise RecordError(
             f"{flight.path}: expected a flight with shade maps, got none: no imaging drone, or no "
             "frame of it could be used"

@@ -29,7 +29,7 @@ MASK_QUALITY = 100
 COLUMNS = (
     *("name", "file", "vehicle", "utc", "sigma_s", "latitude_deg", "longitude_deg"),
     *("height_above_takeoff_m", "yaw_deg", "pitch_deg", "sunlit", "confidence", "known", "state"),
-    *("chosen", "footprint_wkt", "shot", "shows", "note"),
+    *("chosen", "footprint_wkt", "shot", "shows", "light_by", "note"),
 )
 
 
@@ -147,12 +147,18 @@ def table(
                 *(f"{aim.yaw_deg:.1f}", f"{aim.pitch_deg:.1f}"),
                 *(_share(tag.sunlit), _share(tag.confidence), _share(tag.known)),
                 *(tag.state(share), "yes" if name in kept else "no", _wkt(flight, timed)),
-                *(_cell(files.shot[name]), _shows(timed.photo), ""),
+                *(_cell(files.shot[name]), _shows(timed.photo), _light_by(tag), ""),
             )
         )
     for name, reason in sorted(refused.items()):
-        rows.writerow((_cell(name), *[""] * (len(COLUMNS) - 6), "no", "", "", "", _cell(reason)))
+        rows.writerow((_cell(name), *[""] * (len(COLUMNS) - 7), "no", *[""] * 4, _cell(reason)))
     return out.getvalue()
+
+
+def _light_by(tag: PhotoTag) -> str:
+    if tag.is_by_sensor:
+        return "sun sensor"
+    return "shade maps" if tag.known > 0.0 else ""
 
 
 def _shows(photo: Photo) -> str:
