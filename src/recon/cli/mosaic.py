@@ -1,7 +1,10 @@
 """`recon mosaic`: a mosaic of a flight's photos in which all ground is in sun."""
 
 import shutil
+import sys
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -14,9 +17,11 @@ from recon.cli.tag import NO_PHOTO_TAGGED, opened_flight
 from recon.cli.tag_cards import print_clocks, print_refused, read_photos
 from recon.model.errors import RecordError
 from recon.model.units import HECTARE_M2
+from recon.product.flight import FlightData
 from recon.product.footprint import PhotoView
 from recon.product.mosaic import (
     Band,
+    Camera,
     ChoiceSettings,
     Ground,
     LevelGround,
@@ -25,12 +30,14 @@ from recon.product.mosaic import (
     MosaicReport,
     MosaicSettings,
     SiteGround,
+    opened_odm,
     placed_photos,
     plan_of,
     preview_cameras,
     read_jpeg,
 )
 from recon.product.mosaic.pixels import Pixels
+from recon.product.mosaic.place import PREVIEW_PIXELS
 from recon.product.photos.card import card_of
 from recon.product.photos.shots import shots_of
 from recon.product.registration import read_grey, register
@@ -50,11 +57,19 @@ def mosaic_command(
     out: Annotated[Path, typer.Option("--out", help="Folder to write.")] = Path("mosaic"),
     resolution_m: Annotated[
         float | None,
-        typer.Option(help="Size of a pixel on the ground; default: four of the photos' pixels."),
+        typer.Option(
+            help="Size of a pixel on the ground; default: the photos', without --odm four of them."
+        ),
     ] = None,
     site: Annotated[
         Path | None,
         typer.Option("--site", help="The site's folder: the ground's heights, if it has them."),
+    ] = None,
+    odm: Annotated[
+        Path | None,
+        typer.Option(
+            "--odm", help="Folder of a finished run of OpenDroneMap: cameras and surface model."
+        ),
     ] = None,
     fill: Annotated[
         bool, typer.Option("--fill", help="Take the least shaded photo where none is in sun.")
@@ -81,18 +96,69 @@ def mosaic_command(
     print_clocks(timed)
     print_refused(timed.refused)
     if not timed.photos:
-        print_line("no photo is of this flight")
+        print("no photo is of this flight", file=sys.stderr)
         raise typer.Exit(NO_PHOTO_TAGGED)
-    ground, source = _ground(site)
     history, threads = sun_history(flown), min(MOST_THREADS, usable_cores())
-    views = _registered(timed.photos)
-    cameras = preview_cameras(flown, timed.photos, views, ground)
-    placed = placed_photos(timed.photos, cameras, history, ground, progress_over, threads)
     settings = MosaicSettings(ChoiceSettings(fills=fill), is_evened=not raw, threads=threads)
-    plan = plan_of(flown, placed, ground, resolution_m)
-    band = Band("mosaic", COLOURS, lambda index, shrink: _pixels(timed.photos[index], shrink))
-    build = MosaicBuild(out, flown, placed, ground, plan, [band], settings, source, progress_over)
-    _print_report(out, _built(build), settings)
+    with _geometry(flown, timed.photos, site, odm) as found:
+        placed = placed_photos(
+            found.photos, found.cameras, history, found.ground, progress_over, threads
+        )
+        plan = plan_of(flown, placed, found.ground, resolution_m, found.pixels)
+        band = Band("mosaic", COLOURS, lambda index, shrink: _pixels(found.photos[index], shrink))
+        report = _built(
+            MosaicBuild(
+                *(out, flown, placed, found.ground, plan, [band], settings),
+                found.source,
+                progress_over,
+            )
+        )
+    _print_report(out, report, settings)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Geometry:
+    """Photos with cameras over a ground, and where they come from in words."""
+
+    photos: Sequence[TimedPhoto]
+    cameras: Sequence[Camera]
+    ground: Ground
+    source: str
+    pixels: float
+    """Pixels of the photos, each way, in one of the mosaic, if no size is stated."""
+
+
+@contextmanager
+def _geometry(
+    flight: FlightData, photos: Sequence[TimedPhoto], site: Path | None, odm: Path | None
+) -> Iterator[_Geometry]:
+    if odm is None:
+        ground, name = _site_ground(site)
+        cameras = preview_cameras(flight, photos, _registered(photos), ground)
+        source = f"photos registered to each other over {name}"
+        yield _Geometry(photos, cameras, ground, source, PREVIEW_PIXELS)
+        return
+    if site is not None:
+        raise RecordError(
+            "expected --odm or --site, got both: with --odm its surface is the ground"
+        )
+    with opened_odm(odm, flight.frame) as run:
+        by_index = run.cameras(photos)
+        if len(by_index) < len(photos):
+            print_line(f"{len(photos) - len(by_index)} photos are not in {odm}: left out")
+        placed = [photos[index] for index in by_index]
+        source = f"OpenDroneMap's cameras and surface model in {odm.name}"
+        yield _Geometry(placed, list(by_index.values()), run.surface, source, 1.0)
+
+
+def _site_ground(site: Path | None) -> tuple[Ground, str]:
+    """Return the ground, and what it is in words."""
+    if site is None:
+        return LevelGround(), "level ground"
+    model = opened_site(site).elevation
+    if model is None:
+        raise RecordError(f"{site}: expected a site with an [elevation], got none in its site.toml")
+    return SiteGround(model), "the site's elevation"
 
 
 def _registered(photos: Sequence[TimedPhoto]) -> Sequence[PhotoView]:
@@ -114,16 +180,6 @@ def _registered(photos: Sequence[TimedPhoto]) -> Sequence[PhotoView]:
 
 def _pixels(timed: TimedPhoto, shrink: int) -> Pixels:
     return read_jpeg(timed.photo.path, shrink)
-
-
-def _ground(site: Path | None) -> tuple[Ground, str]:
-    """Return the ground, and what it is in words."""
-    if site is None:
-        return LevelGround(), "photos registered to each other over level ground"
-    model = opened_site(site).elevation
-    if model is None:
-        raise RecordError(f"{site}: expected a site with an [elevation], got none in its site.toml")
-    return SiteGround(model), "photos registered to each other over the site's elevation"
 
 
 def _built(build: MosaicBuild) -> MosaicReport:

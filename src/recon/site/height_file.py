@@ -7,14 +7,16 @@ no other file or address; nothing is asked of the network.
 import logging
 import re
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pyproj
 import rasterio
+from pyproj.enums import TransformDirection
 from pyproj.exceptions import ProjError
 from pyproj.network import set_network_enabled  # type: ignore[attr-defined]
 from rasterio.errors import NotGeoreferencedWarning, RasterioError
@@ -22,7 +24,7 @@ from rasterio.io import DatasetReader, MemoryFile
 from rasterio.transform import Affine
 from rasterio.windows import Window
 
-from recon.geo import geo_from_enu
+from recon.geo import enu_from_geo, geo_from_enu
 from recon.model.arrays import FloatArray
 from recon.model.errors import SiteError
 from recon.model.geo import LocalFrame
@@ -69,6 +71,13 @@ class HeightFile:
         pixels = np.column_stack([row - 0.5, col - 0.5])
         return np.where(np.isfinite(pixels), pixels, np.nan)
 
+    def enu_m(self, frame: LocalFrame, points: FloatArray) -> FloatArray:
+        """Return points (N, 3) of x, y and height in the file's own coordinates, in a frame."""
+        longitude, latitude = self._map_from_globe.transform(
+            points[:, 0], points[:, 1], direction=TransformDirection.INVERSE
+        )
+        return enu_from_geo(frame, latitude, longitude, points[:, 2])
+
     def heights_m(self, first: tuple[int, int], size: tuple[int, int]) -> FloatArray:
         """Return a window of the file's heights, NaN where it has none. Raises `SiteError`."""
         if size[0] * size[1] > MOST_PIXELS:
@@ -93,20 +102,42 @@ class HeightFile:
 def opened(path: Path) -> Iterator[HeightFile]:
     """Open a file of heights; raises `SiteError` for anything else."""
     data = read_bounded(path, LARGEST_FILE_BYTES, "a GeoTIFF with heights")
-    if data[:4] not in TIFF_STARTS:
-        got = "a file of another kind" if data else "an empty file"
+    _refuse_other_files(path, data[:4])
+    with (
+        _environment(),
+        MemoryFile(data, filename="heights.tif") as memory,
+        _dataset(str(path), memory.open) as dataset,
+    ):
+        yield _height_file(str(path), dataset)
+
+
+@contextmanager
+def opened_on_disk(path: Path) -> Iterator[HeightFile]:
+    """Open a file of heights that is too large for memory; raises `SiteError` for anything else.
+
+    It must not be changed meanwhile.
+    """
+    try:
+        with path.open("rb") as file:
+            _refuse_other_files(path, file.read(4))
+    except OSError as problem:
+        raise SiteError(f"{path}: cannot be read: {problem.strerror}") from problem
+    with _environment(), _dataset(str(path), partial(rasterio.open, path)) as dataset:
+        yield _height_file(str(path), dataset)
+
+
+def _refuse_other_files(path: Path, start: bytes) -> None:
+    if start not in TIFF_STARTS:
+        got = "a file of another kind" if start else "an empty file"
         raise SiteError(f"{path}: expected a GeoTIFF, got {got}; export the heights as GeoTIFF")
+
+
+@contextmanager
+def _environment() -> Iterator[None]:
     # No datum shift is fetched: what PROJ has at hand is good to a metre or two.
     set_network_enabled(False)
-    place = str(path)
-    with (
-        _without_gdal_logs(),
-        rasterio.Env(**GDAL_OPTIONS),
-        MemoryFile(data, filename="heights.tif") as memory,
-        _dataset(place, memory) as dataset,
-    ):
-        _refuse_other_rasters(place, dataset)
-        yield _height_file(place, dataset)
+    with _without_gdal_logs(), rasterio.Env(**GDAL_OPTIONS):
+        yield
 
 
 @contextmanager
@@ -120,11 +151,11 @@ def _without_gdal_logs() -> Iterator[None]:
         log.disabled = was_disabled
 
 
-def _dataset(place: str, memory: MemoryFile) -> DatasetReader:
+def _dataset(place: str, open_as: Callable[..., DatasetReader]) -> DatasetReader:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", NotGeoreferencedWarning)
-            return memory.open(driver="GTiff")
+            return open_as(driver="GTiff")
     except (RasterioError, ValueError, MemoryError) as problem:
         raise SiteError(_damaged(place)) from problem
 
@@ -154,6 +185,7 @@ def _refuse_other_rasters(place: str, dataset: DatasetReader) -> None:
 
 
 def _height_file(place: str, dataset: DatasetReader) -> HeightFile:
+    _refuse_other_rasters(place, dataset)
     transform = dataset.transform
     is_placed = all(np.isfinite(transform)) and abs(transform.determinant) > 0.0
     if dataset.crs is None or not is_placed or transform == Affine.identity():

@@ -79,6 +79,7 @@ class MadeMosaic:
     folder: Path
     ways: tuple[Rows, ...] = (ONE, OTHER)
     every: int = 3
+    size: tuple[int, int] = (COLS, ROWS_PX)
     flight: FlightData = field(init=False)
     photos: list[TimedPhoto] = field(init=False)
     reads: list[int] = field(default_factory=list)
@@ -101,10 +102,10 @@ class MadeMosaic:
         latitude, longitude, _height = geo_from_enu(FRAME, (east, north, 0.0))
         at_ns = START_NS + round(at_s * NS_PER_S)
         photo = Photo(
-            path, path.name, COLS, ROWS_PX, 1, ("Made", "Camera", way.serial), at_ns, 1.0,
+            path, path.name, *self.size, 1, ("Made", "Camera", way.serial), at_ns, 1.0,
             float(latitude[0]), float(longitude[0]), None, ACROSS_DEG, None, HEIGHT_M,
         )  # fmt: skip
-        view = PhotoView(Aim(east, north, HEIGHT_M, yaw), ACROSS_DEG, COLS, ROWS_PX)
+        view = PhotoView(Aim(east, north, HEIGHT_M, yaw), ACROSS_DEG, *self.size)
         return TimedPhoto(photo, way.serial, at_ns, 0.1, view, HEIGHT_M)
 
     def at_s(self, index: int) -> float:

@@ -8,6 +8,7 @@ from recon.product.mosaic.build import MosaicBuild, MosaicReport, MosaicSettings
 from recon.product.mosaic.cameras import Camera, Lens, camera_of_view
 from recon.product.mosaic.choice import Choice, ChoiceSettings, Light, PlacedPhoto
 from recon.product.mosaic.ground import Ground, LevelGround, SiteGround
+from recon.product.mosaic.odm import OdmRun, opened_odm
 from recon.product.mosaic.pixels import Band, read_jpeg
 from recon.product.mosaic.place import placed_photos, plan_of, preview_cameras
 
@@ -23,9 +24,11 @@ __all__ = [
     "MosaicBuild",
     "MosaicReport",
     "MosaicSettings",
+    "OdmRun",
     "PlacedPhoto",
     "SiteGround",
     "camera_of_view",
+    "opened_odm",
     "placed_photos",
     "plan_of",
     "preview_cameras",

@@ -294,7 +294,7 @@ class MosaicBuild:
 def _raster(band: Band) -> Raster:
     """Return a band's raster: a picture has alpha, another band 0 where nothing is.
 
-    GDAL averages alpha of 16 bits a hundred times slower than it leaves out no data.
+    Programs that calculate with bands leave out what is no data, and know nothing of alpha.
     """
     colours = ("Red", "Green", "Blue") if len(band.channels) == 3 else ("Gray",)
     bands = [
