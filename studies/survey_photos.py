@@ -25,6 +25,7 @@ from recon.score.scenario_sky import sky_of
 from recon.score.survey_photos import card_of, shots_of
 from recon.score.true_frames import FleetFrames
 from recon.score.truth import Truth, world_text
+from recon.sim.camera.field import FieldRenderer
 from recon.sim.photos.card import CardSettings, PhotoShot, true_ground_m
 from recon.sim.world.relief import Relief
 from recon.station.imaging.shade import READ_SHADE
@@ -58,9 +59,14 @@ class SurveyFlown:
         return {shot.name: shot for shot in shots_of(self.flight, self.truth)}
 
     @cached_property
+    def world(self) -> FieldRenderer:
+        """The land and the sky, as one of the imaging drones' cameras sees them."""
+        return card_of(self.flight, self.truth, self.settings).world
+
+    @property
     def relief(self) -> Relief | None:
         """The ground's heights."""
-        return card_of(self.flight, self.truth, self.settings).world.relief
+        return self.world.relief
 
     def ground_m(self, shot: PhotoShot, cols: int, rows: int) -> FloatArray:
         """Return where each pixel of a photo of that size truly lies, (rows, cols, 2) metres."""

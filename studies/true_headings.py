@@ -1,0 +1,62 @@
+"""Whether `recon tag` finds which way pictures look whose gimbal states another yaw."""
+
+import csv
+import re
+from collections.abc import Iterator
+from contextlib import redirect_stderr, redirect_stdout
+from io import StringIO
+from pathlib import Path
+
+from PIL import Image
+
+from recon.cli.tag import tag_command
+from studies.survey_photos import SurveyFlown
+
+YAW = re.compile(rb'(GimbalYawDegree=")([^"]+)')
+
+
+def headings_off(
+    flown: SurveyFlown, card: Path, folder: Path, off_deg: float
+) -> list[tuple[float, bool]]:
+    """Tag a card's photos with gimbal yaws that are off by so much.
+
+    Return for each camera the largest error of its headings in degrees, and whether a warning says
+    that they could not be verified.
+    """
+    turned, tagged = folder / "card", folder / "tagged"
+    turned.mkdir(parents=True)
+    for path in sorted(card.glob("*.JPG")):
+        _turned(path, turned / path.name, off_deg)
+    said = StringIO()
+    with redirect_stdout(said), redirect_stderr(said):
+        tag_command([turned], flown.record, tagged)
+    errors = dict[str, float]()
+    for name, yaw_deg in _yaws(tagged):
+        shot = flown.shots[name]
+        error_deg = abs((yaw_deg - shot.yaw_deg + 180.0) % 360.0 - 180.0)
+        errors[shot.serial] = max(error_deg, errors.get(shot.serial, 0.0))
+    lines = said.getvalue().splitlines()
+    unsure = [each for each in lines if "unverified" in each or "degrees only" in each]
+    return [
+        (error_deg, any(f"CAM-{serial}:" in each for each in unsure))
+        for serial, error_deg in errors.items()
+    ]
+
+
+def _turned(source: Path, target: Path, off_deg: float) -> None:
+    """Copy a photo with another gimbal yaw; its pixels stay what they are."""
+
+    def off(found: re.Match[bytes]) -> bytes:
+        return found[1] + f"{(float(found[2]) + off_deg + 180.0) % 360.0 - 180.0:+.2f}".encode()
+
+    with Image.open(source) as image:
+        xmp, count = YAW.subn(off, image.info["xmp"])
+        assert count == 1
+        image.save(target, "JPEG", quality="keep", exif=image.getexif(), xmp=xmp)
+
+
+def _yaws(tagged: Path) -> Iterator[tuple[str, float]]:
+    with (tagged / "tags.csv").open(encoding="utf-8", newline="") as file:
+        for row in csv.DictReader(file):
+            if row["yaw_deg"]:
+                yield row["name"], float(row["yaw_deg"])
