@@ -108,7 +108,7 @@ def table(figures: MosaicFigures) -> str:
         ("preview, error of places: median, 95 %, m", _metres(figures.preview_m)),
         *(
             (
-                f"headings, gimbal stated {off_deg:g} degrees off: cameras, warned of, largest error",
+                f"gimbal yaw stated {off_deg:g} degrees off: cameras, warned of, largest error",
                 _headings(found),
             )
             for off_deg, found in figures.headings.items()
