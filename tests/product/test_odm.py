@@ -11,7 +11,7 @@ from tests.product.made_flight import FRAME, START_NS, UTC_AHEAD_NS, flight, wri
 from tests.product.photos.packets import packet
 
 from recon.model.units import NS_PER_S
-from recon.product import odm
+from recon.product import linked_folder
 from recon.product.footprint import Aim, PhotoView
 from recon.product.odm import write_odm_project
 from recon.product.photos.photo import read_photo_facts
@@ -141,7 +141,7 @@ def test_a_full_disk_leaves_the_older_project_whole(
         if "_mask" in target.name:
             raise full
 
-    monkeypatch.setattr(odm, "_link", only_photos)
+    monkeypatch.setattr(linked_folder, "_link", only_photos)
     with pytest.raises(OSError, match="No space left"):
         write_odm_project(project, tmp_path, FLIGHT, [new])
     files = sorted(path.relative_to(project).as_posix() for path in project.rglob("*"))

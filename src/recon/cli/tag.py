@@ -2,7 +2,8 @@
 
 import sys
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import islice
 from pathlib import Path
 from typing import Annotated
 
@@ -12,6 +13,7 @@ from recon.cli.output import printable
 from recon.cli.progress import progress_over, usable_cores
 from recon.cli.tag_all import FlightLight, tag_all
 from recon.cli.tag_cards import (
+    MOST_NAMED,
     print_clocks,
     print_grouped,
     print_left,
@@ -24,8 +26,17 @@ from recon.model.errors import RecordError
 from recon.model.units import HECTARE_M2
 from recon.product.flight import FlightData, read_flight
 from recon.product.odm import write_odm_project
+from recon.product.panels import (
+    PANELS,
+    PanelShot,
+    marked_panels,
+    panels_on_ground,
+    picture_of,
+    write_panels,
+)
 from recon.product.photos.card import MARK, card_of
-from recon.product.photos.shots import shots_of
+from recon.product.photos.shots import Shot, shots_of
+from recon.product.quality import quality_of
 from recon.product.registration import read_grey, with_headings
 from recon.product.shot_files import ShotFiles, files_of
 from recon.product.sun_at import SunHistory
@@ -89,12 +100,17 @@ def tag_command(
     flown = opened_flight(flight)
     photos, refused = read_photos(card.photos)
     shots = shots_of(photos)
+    panels = marked_panels(shots)
+    shots = _without(shots, panels)
     timed = timed_photos(flown, [shot.lead for shot in shots], StatedCamera(clock_offset, field))
     print_grouped("", {each.name: note for each in photos for note in each.notes})
     print_clocks(timed)
     timed.photos = _with_headings(timed.photos)
     files = files_of(timed.photos, shots, timed.refused, field)
-    refused |= timed.refused | files.refused
+    panels += panels_on_ground(
+        flown, [shot for shot in shots if shot.lead.name in timed.refused], picture_of
+    )
+    refused |= timed.refused | files.refused | _names_of(panels)
     if not timed.photos:
         print_left(card)
         print_refused(refused)
@@ -112,17 +128,43 @@ def tag_command(
         selection = select(timed.photos, shown, ground, overlap)
         chosen = files.of(selection.chosen)
         _write_projects(out, flown, files, chosen)
+        if panels or (out / PANELS).exists():
+            write_panels(out / PANELS, panels, min(each.photo.clock_ns for each in files.photos))
     except OSError as problem:
         raise RecordError(f"{problem.filename or out}: {problem.strerror}") from problem
     names = [each.photo.name for each in chosen]
-    write_text(out / "tags.csv", table(flown, files, tags, names, refused, sunlit))
+    quality = quality_of(flown, files)
+    write_text(out / "tags.csv", table(flown, files, tags, names, refused, quality, sunlit))
     write_text(out / "chosen.txt", "".join(f"{name}\n" for name in names))
     write_text(out / "fly-again.geojson", fly_again(flown, selection))
     print_left(card)
     print_refused(refused)
     _print_beside(files)
+    _print_quality(quality)
     leading = [tags[each.photo.name] for each in timed.photos]
     _print_summary(out, leading, selection, sunlit)
+
+
+def _without(shots: Sequence[Shot], panels: Sequence[PanelShot]) -> list[Shot]:
+    taken = {panel.shot.lead.name for panel in panels}
+    return [shot for shot in shots if shot.lead.name not in taken]
+
+
+def _names_of(panels: Sequence[PanelShot]) -> dict[str, str]:
+    """Return why the files of panels are not tagged, by name."""
+    return {
+        photo.name: f"shows a reflectance panel, by {panel.found_by}: in {PANELS}"
+        for panel in panels
+        for photo in panel.shot.files
+    }
+
+
+def _print_quality(quality: Mapping[str, str]) -> None:
+    """Print what speaks against photos, the first ones by name."""
+    for name, reasons in islice(sorted(quality.items()), MOST_NAMED):
+        print(f"poor: {name}: {reasons}")
+    if len(quality) > MOST_NAMED:
+        print(f"poor: {len(quality) - MOST_NAMED} more, in the column quality of tags.csv")
 
 
 def _write_projects(

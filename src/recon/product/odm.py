@@ -9,18 +9,16 @@ project. So photos that say it all themselves have no line, and the others a who
 the heading of the picture's top, its pitch 0 straight down.
 """
 
-import os
-import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
 from recon.product.flight import FlightData
 from recon.product.footprint import DOWN_DEG
+from recon.product.linked_folder import replace_folder
 from recon.product.timing import TimedPhoto
 from recon.product.write import FILE_MODE, lon_lat, masked_name
 from recon.record.files.atomic_file import replace_file
 
-IMAGES, COMING, GONE = "images", "images.new", "images.old"
 GEO = "geo.txt"
 
 
@@ -29,29 +27,13 @@ def write_odm_project(
 ) -> None:
     """Write the folder of a run of OpenDroneMap: photos, their masks, and `geo.txt` if needed.
 
-    The photos are written beside those of an earlier run and take their place when they are all
-    there; what OpenDroneMap has made in the project stays. They are hard links where the disk
-    allows it, copies elsewhere. Raises OSError.
+    The photos take the place of those of an earlier run when they are all there; what OpenDroneMap
+    has made in the project stays. Raises OSError.
     """
-    images, coming, gone = (project / name for name in (IMAGES, COMING, GONE))
-    if gone.exists() and not images.exists():
-        gone.rename(images)  # An earlier run was ended between its two renames.
-    _remove(coming)
-    _remove(gone)
-    coming.mkdir(parents=True)
-    try:
-        for timed in photos:
-            mask = masked_name(timed.photo.name)
-            _link(timed.photo.path, coming / timed.photo.name)
-            _link(masks / mask, coming / mask)
-    except OSError:
-        _remove(coming)
-        raise
-    if images.exists():
-        images.rename(gone)
-    coming.rename(images)
+    names = [(timed.photo.path, timed.photo.name) for timed in photos]
+    names += [(masks / mask, mask) for mask in (masked_name(name) for _path, name in names)]
+    replace_folder(project / "images", names)
     _write_geo(project / GEO, flight, photos)
-    _remove(gone)
 
 
 def _write_geo(path: Path, flight: FlightData, photos: Sequence[TimedPhoto]) -> None:
@@ -77,15 +59,3 @@ def _geo_line(flight: FlightData, timed: TimedPhoto) -> str:
     if photo.horizontal_sigma_m is None or photo.vertical_sigma_m is None:
         return line
     return f"{line} {photo.horizontal_sigma_m:.4f} {photo.vertical_sigma_m:.4f}"
-
-
-def _remove(folder: Path) -> None:
-    if folder.exists():
-        shutil.rmtree(folder)
-
-
-def _link(source: Path, target: Path) -> None:
-    try:
-        os.link(source, target)
-    except OSError:
-        shutil.copyfile(source, target)

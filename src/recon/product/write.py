@@ -29,7 +29,7 @@ MASK_QUALITY = 100
 COLUMNS = (
     *("name", "file", "vehicle", "utc", "sigma_s", "latitude_deg", "longitude_deg"),
     *("height_above_takeoff_m", "yaw_deg", "pitch_deg", "sunlit", "confidence", "known", "state"),
-    *("chosen", "footprint_wkt", "shot", "shows", "light_by", "note"),
+    *("chosen", "footprint_wkt", "shot", "shows", "light_by", "quality", "note"),
 )
 
 
@@ -128,6 +128,7 @@ def table(
     tags: Mapping[str, PhotoTag],
     chosen: Sequence[str],
     refused: Mapping[str, str],
+    quality: Mapping[str, str],
     share: float,
 ) -> str:
     """Return the CSV: a row for each file, those without a tag with the reason last."""
@@ -140,18 +141,24 @@ def table(
         longitude_deg, latitude_deg = lon_lat(flight, timed)
         rows.writerow(
             (
-                *(_cell(name), _cell(str(timed.photo.path)), _cell(timed.serial)),
+                *(cell(name), cell(str(timed.photo.path)), cell(timed.serial)),
                 *(flight.utc(timed.at_ns), f"{timed.sigma_s:.2f}"),
                 *(f"{latitude_deg:.8f}", f"{longitude_deg:.8f}"),
                 f"{timed.height_above_takeoff_m:.1f}",
                 *(f"{aim.yaw_deg:.1f}", f"{aim.pitch_deg:.1f}"),
                 *(_share(tag.sunlit), _share(tag.confidence), _share(tag.known)),
                 *(tag.state(share), "yes" if name in kept else "no", _wkt(flight, timed)),
-                *(_cell(files.shot[name]), _shows(timed.photo), _light_by(tag), ""),
+                *(
+                    cell(files.shot[name]),
+                    _shows(timed.photo),
+                    _light_by(tag),
+                    quality.get(name, ""),
+                    "",
+                ),
             )
         )
     for name, reason in sorted(refused.items()):
-        rows.writerow((_cell(name), *[""] * (len(COLUMNS) - 7), "no", *[""] * 4, _cell(reason)))
+        rows.writerow((cell(name), *[""] * (len(COLUMNS) - 8), "no", *[""] * 5, cell(reason)))
     return out.getvalue()
 
 
@@ -166,7 +173,7 @@ def _shows(photo: Photo) -> str:
     return photo.band.name if photo.kind == "band" and photo.band else photo.kind
 
 
-def _cell(text: str) -> str:
+def cell(text: str) -> str:
     """Return a text that no spreadsheet takes for a formula."""
     return f"'{text}" if text[:1] in ("=", "+", "-", "@", "\t", "\r") else text
 

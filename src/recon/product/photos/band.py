@@ -25,6 +25,8 @@ COLOURS = frozenset(("rgb", "redgreenblue"))
 BLACK_LEVEL = 0xC61A
 """TIFF tag of DNG."""
 US_PER_S = 1e6
+CALIBRATION = (1.0, 2.0)
+"""Pix4D's mark of a photo of a panel; 1 says that the panel's values could not be read."""
 ROLE = re.compile(
     r"(?P<base>.+?)_(?P<role>[DVWZST]|MS_[A-Z]{1,4}|RGB|GRE|GRN|RED|REG|NIR|(?<=\d_)\d{1,2})", re.I
 )
@@ -42,6 +44,23 @@ class Band:
     """Full width at half maximum."""
     black_level: float | None = None
     gain: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Panel:
+    """A calibrated reflectance panel on a photo."""
+
+    serial: str = ""
+    albedo: float | None = None
+    """Share of the light that it reflects in this band, as the file states it."""
+
+
+def panel_of(xmp: Xmp) -> Panel | None:
+    """Return the panel that a camera found on its photo, which it marks as one for calibration."""
+    if xmp.number(CAMERA, "CalibrationPicture") not in CALIBRATION:
+        return None
+    serial = xmp.text(CAMERA, "PanelSerial") or xmp.text(MICASENSE, "PanelSerial") or ""
+    return Panel(serial[:64], next(iter(xmp.numbers(CAMERA, "Albedo")), None))
 
 
 def name_and_role(stem: str) -> tuple[str, str]:

@@ -17,12 +17,14 @@ from recon.product.photos import tiff
 from recon.product.photos.band import (
     Band,
     Kind,
+    Panel,
     band_of,
     capture_of,
     exposure_s_of,
     irradiance_of,
     kind_of,
     name_and_role,
+    panel_of,
 )
 from recon.product.photos.exif import (
     HeightReference,
@@ -34,6 +36,7 @@ from recon.product.photos.exif import (
 )
 from recon.product.photos.jpeg import is_cut_off
 from recon.product.photos.lens import field_deg
+from recon.product.photos.look import Look, look_of
 from recon.product.photos.photo_error import PhotoError
 from recon.product.photos.place import place_of
 from recon.product.photos.xmp import DJI, Xmp, XmpError, read_xmp
@@ -94,6 +97,10 @@ class Photo:
     """Exposure time."""
     irradiance: float | None = None
     """By the camera's sun sensor, in its own unit."""
+    look: Look | None = None
+    """How it looks in small, where that is cheap to know."""
+    panel: Panel | None = None
+    """The reflectance panel that the camera itself found on it."""
     is_plain: bool = True
     """Whether plain EXIF, and RTK's XMP attributes, state position, height and accuracy: what most
     programs read."""
@@ -121,7 +128,7 @@ def read_photo_facts(path: Path, name: str) -> Photo:
         raise PhotoError(f"{path.name}: the file is cut off: copy it from the card again")
     try:
         with warnings.catch_warnings(action="ignore"), _opened(data) as image:
-            return _facts(path, name, image)
+            return _facts(path, name, image, data)
     except PhotoError as problem:
         raise PhotoError(f"{path.name}: {problem}") from problem
     except UnidentifiedImageError as problem:
@@ -143,7 +150,7 @@ def _opened(data: bytes) -> Any:
     return image
 
 
-def _facts(path: Path, name: str, image: Any) -> Photo:
+def _facts(path: Path, name: str, image: Any, data: bytes) -> Photo:
     cols, rows = image.size
     if not 0 < cols * rows <= MOST_PIXELS:
         raise PhotoError(f"{cols} x {rows} pixels, limit {MOST_PIXELS}")
@@ -184,6 +191,8 @@ def _facts(path: Path, name: str, image: Any) -> Photo:
         capture_of(xmp),
         exposure_s_of(details, xmp),
         irradiance_of(xmp),
+        look_of(image, data),
+        panel_of(xmp),
         place.is_in_exif and _is_plain(xmp, gps, height_m, (horizontal_m, vertical_m)),
         (*notes, *filter(None, [place.note])),
     )
