@@ -11,7 +11,7 @@ from tests.product.registration.made_photos import Card, card, flown, gimbal_off
 from recon.geo import enu_from_geo
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.product.footprint import Aim, PhotoView
-from recon.product.headings import AIRCRAFT, GIMBAL, best_guess_deg, signed_deg
+from recon.product.headings import AIRCRAFT, GIMBAL, RECORDED, best_guess_deg, signed_deg
 from recon.product.photos.photo import read_photo_facts
 from recon.product.registration import read_grey, register, with_headings
 from recon.product.timing import TimedPhoto
@@ -56,6 +56,28 @@ def test_a_flight_line_whose_pictures_are_turned_has_its_own_offset() -> None:
     assert "on some flight lines" in " ".join(found.warnings)
 
 
+def test_single_photos_that_state_a_turned_yaw_are_told_by_the_other_sources() -> None:
+    made = card(
+        flown(),
+        lambda number, aim: {
+            GIMBAL: aim.yaw_deg + (180.0 if number % 5 == 0 else 0.0),
+            AIRCRAFT: aim.yaw_deg + 2.0,
+            RECORDED: aim.yaw_deg - 2.0,
+        },
+    )
+    turned, (found,) = with_headings(made.photos, made.read)
+    assert max(off_deg(turned, made)) < 4.0
+    assert found.source != GIMBAL or "in 3 photos the gimbal's yaw" in " ".join(found.warnings)
+
+
+def test_a_wrong_field_of_view_is_found_out_and_named() -> None:
+    made = card(flown(3), gimbal_off(0.0), across_deg=60.0)
+    turned, (found,) = with_headings(made.photos, made.read)
+    # 1.12 times the ground: tan 33 over tan 30 degrees.
+    assert turned[0].view.aim.height_m == pytest.approx(1.125 * 60.0, rel=0.02)
+    assert "the pictures show 1.1" in " ".join(found.warnings)
+
+
 def test_pictures_that_show_nothing_alike_leave_the_heading_unverified_and_say_so() -> None:
     made = card(flown(), gimbal_off(53.0))
     turned, (found,) = with_headings(made.photos, lambda _: np.full((180, 240), 90, np.uint8))
@@ -85,7 +107,10 @@ def test_places_headings_and_field_of_all_photos_are_evened_out() -> None:
         )
         < 1.0
     )
-    assert found.views[0].across_deg == pytest.approx(66.0, abs=1.0)
+    # Height and field cannot be told apart; what they show together is the true ground.
+    shown = [view.aim.height_m * np.tan(np.deg2rad(view.across_deg / 2.0))
+             for view in (found.views[0], made.true[0])]  # fmt: skip
+    assert shown[0] == pytest.approx(shown[1], rel=0.02)
     assert found.residual_m < 0.3
 
 

@@ -12,7 +12,14 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from recon.model.arrays import FloatArray, IntArray
-from recon.product.headings import SOURCES, middle_deg, signed_deg, signed_degs
+from recon.product.headings import (
+    APART_DEG,
+    SOURCES,
+    best_guess_deg,
+    middle_deg,
+    signed_deg,
+    signed_degs,
+)
 from recon.product.registration.match import Link, Places
 from recon.product.timing import TimedPhoto
 
@@ -30,6 +37,8 @@ LARGEST_SCALE = 2.0
 SHORTEST_RUN = 0.1
 """In heights: over a shorter one GNSS tells no direction."""
 WITHIN = 0.68
+FEWEST_SCALED, SCALE_SHARE = 3, 0.05
+"""Runs that tell a camera's scale, and how far off it is worth a warning."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -59,6 +68,9 @@ class CameraHeading:
     lines: Mapping[int, float] = field(default_factory=dict)
     """Offsets of the flight lines that have their own."""
     scale: float = 1.0
+    """True ground in a picture over that by its height and field; 1 where too few tell."""
+    turned: int = 0
+    """Photos whose statement by the source contradicts the others."""
     off_deg: Mapping[str, float] = field(default_factory=dict)
     """How far off each source is: what it states minus the heading, the median."""
 
@@ -99,6 +111,16 @@ class CameraHeading:
             found.append(
                 f"{self.camera}: on some flight lines the picture's top is turned by "
                 f"{', '.join(turned)} degrees against the others"
+            )
+        if self.turned:
+            found.append(
+                f"{self.camera}: in {self.turned} photos {self.source} contradicts the other "
+                "sources, which are used there"
+            )
+        if abs(self.scale - 1.0) > SCALE_SHARE:
+            found.append(
+                f"{self.camera}: the pictures show {self.scale:.2f} times the ground that height "
+                "and field of view state; that is used"
             )
         if not self.is_verified:
             found.append(
@@ -158,17 +180,45 @@ def heading_of(photos: Sequence[TimedPhoto], group: IntArray, runs: Sequence[Run
         best.error_deg,
         sum(len(run.photos) - 1 for run in runs),
         best.lines,
-        float(np.median([run.scale for run in runs])),
-        {name: -fit.offset_deg for name, fit in fits.items()},
+        _scale(runs),
+        off_deg={name: -fit.offset_deg for name, fit in fits.items()},
     )
 
 
 def heading_deg(timed: TimedPhoto, line: int, found: CameraHeading) -> float:
-    """Return the heading of a photo's top, on a flight line."""
-    stated = timed.headings_deg.get(found.source)
-    if stated is None or not found.pairs:
+    """Return the heading of a photo's top, on a flight line.
+
+    A single photo may state a yaw that is turned: where the source contradicts the others, all
+    freed of their offsets, these count.
+    """
+    if not found.pairs:
         return timed.view.aim.yaw_deg
-    return signed_deg(stated + found.lines.get(line, found.offset_deg))
+    turn_deg = found.lines.get(line, found.offset_deg) - found.offset_deg
+    freed = {
+        name: signed_deg(timed.headings_deg[name] - off + turn_deg)
+        for name, off in found.off_deg.items()
+        if name in timed.headings_deg
+    }
+    if not freed:
+        return timed.view.aim.yaw_deg
+    guess_deg = best_guess_deg(freed)
+    likely_deg = freed.get(found.source, guess_deg)
+    return likely_deg if abs(signed_deg(likely_deg - guess_deg)) < APART_DEG else guess_deg
+
+
+def contradicts(timed: TimedPhoto, heading_deg: float, found: CameraHeading) -> bool:
+    """Return whether a photo's heading is not what the source states of it."""
+    stated = timed.headings_deg.get(found.source)
+    offsets = (found.offset_deg, *found.lines.values())
+    return (
+        bool(found.pairs)
+        and stated is not None
+        and min(abs(signed_deg(stated + each - heading_deg)) for each in offsets) >= APART_DEG
+    )
+
+
+def _scale(runs: Sequence[Run]) -> float:
+    return float(np.median([run.scale for run in runs])) if len(runs) >= FEWEST_SCALED else 1.0
 
 
 def _likeliest(photos: Sequence[TimedPhoto]) -> str:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import atan, degrees, radians, tan
+from math import degrees
 
 import numpy as np
 from scipy.spatial import KDTree
@@ -16,6 +16,7 @@ from recon.product.registration.adjustment import Adjusted, Stated, adjusted
 from recon.product.registration.heading import (
     CameraHeading,
     Run,
+    contradicts,
     heading_deg,
     heading_of,
     run_of,
@@ -54,7 +55,8 @@ class Registration:
     """The photos' poses after registration."""
 
     views: tuple[PhotoView, ...]
-    """Of each photo, in the order given."""
+    """Of each photo, in the order given. The scale of a camera's pictures is in their heights above
+    the ground: height, field of view and terrain cannot be told apart."""
     headings: tuple[CameraHeading, ...]
     """Of each camera on each vehicle."""
     residual_m: float
@@ -98,10 +100,11 @@ def with_headings(
         _heading(photos, group, [[run] for run in of_group], links)
         for group, of_group in zip(groups, runs, strict=True)
     ]
-    headings = _headings_deg(photos, groups, found)
+    headings, found = _headings_deg(photos, groups, found)
+    scales = np.array([each.scale for each in found])[_numbers(groups, len(photos))]
     turned = [
-        replace(each, view=_posed(each.view, heading_deg=heading))
-        for each, heading in zip(photos, headings.tolist(), strict=True)
+        replace(each, view=_posed(each.view, heading, scale))
+        for each, heading, scale in zip(photos, headings.tolist(), scales.tolist(), strict=True)
     ]
     return turned, found
 
@@ -123,10 +126,11 @@ def register(
         _heading(photos, group, of_group, links)
         for group, of_group in zip(groups, runs, strict=True)
     ]
-    poses, links_used = _adjusted(photos, groups, found, links)
+    headings, found = _headings_deg(photos, groups, found)
+    poses, links_used = _adjusted(photos, groups, found, headings, links)
     numbers = _numbers(groups, len(photos))
     views = tuple(
-        _posed(timed.view, place, degrees(heading_rad), poses.scales[number])
+        _posed(timed.view, degrees(heading_rad), float(poses.scales[number]), place)
         for timed, place, heading_rad, number in zip(
             photos, poses.places.tolist(), poses.headings_rad.tolist(), numbers, strict=True
         )
@@ -236,13 +240,16 @@ def _chains(run: IntArray, links: Links) -> list[list[Link]]:
 
 def _headings_deg(
     photos: Sequence[TimedPhoto], groups: Sequence[_Group], found: Sequence[CameraHeading]
-) -> FloatArray:
-    headings = np.zeros(len(photos))
+) -> tuple[FloatArray, list[CameraHeading]]:
+    """Return the photos' headings, and what was found with the number of those turned."""
+    headings, counted = np.zeros(len(photos)), list[CameraHeading]()
     for group, heading in zip(groups, found, strict=True):
         for number, line in enumerate(group.lines):
             for index in line.photos.tolist():
                 headings[index] = heading_deg(photos[index], number, heading)
-    return headings
+        turned = sum(contradicts(photos[n], headings[n], heading) for n in group.photos.tolist())
+        counted.append(replace(heading, turned=turned))
+    return headings, counted
 
 
 def _numbers(groups: Sequence[_Group], count: int) -> IntArray:
@@ -257,6 +264,7 @@ def _adjusted(
     photos: Sequence[TimedPhoto],
     groups: Sequence[_Group],
     found: Sequence[CameraHeading],
+    headings_deg: FloatArray,
     links: Links,
 ) -> tuple[Adjusted, int]:
     """Return the adjusted poses, and how many links they rest on."""
@@ -265,7 +273,7 @@ def _adjusted(
     stated = Stated(
         places_of(photos),
         np.array([_place_m(each) for each in photos]),
-        np.deg2rad(_headings_deg(photos, groups, found)),
+        np.deg2rad(headings_deg),
         np.deg2rad(errors_deg)[numbers],
         np.array([abs(each.view.aim.height_m) for each in photos]),
         numbers,
@@ -289,14 +297,13 @@ def _is_likely(link: Link, stated: Stated, scales: FloatArray) -> bool:
 
 
 def _posed(
-    view: PhotoView, place: complex | None = None, heading_deg: float = 0.0, scale: float = 1.0
+    view: PhotoView, heading_deg: float, scale: float, place: complex | None = None
 ) -> PhotoView:
-    """Return a view with another place, heading, and field by a factor of the ground shown."""
-    aim = replace(view.aim, yaw_deg=signed_deg(heading_deg))
+    """Return a view with another heading, place, and height by a factor of the ground shown."""
+    aim = replace(view.aim, yaw_deg=signed_deg(heading_deg), height_m=scale * view.aim.height_m)
     if place is not None:
         aim = replace(aim, east_m=place.real, north_m=place.imag)
-    across_deg = degrees(2.0 * atan(scale * tan(radians(view.across_deg / 2.0))))
-    return replace(view, aim=aim, across_deg=across_deg)
+    return replace(view, aim=aim)
 
 
 def _typical_m(residuals_m: FloatArray) -> float:
