@@ -20,6 +20,8 @@ MOST_PIXELS = 2_000_000
 """Largest picture that is decoded, preview or not: a few milliseconds."""
 LEAST_PIXELS = 64 * 48
 WHITE_FROM, BLACK_TO = 253, 4
+BAR_TO, BRIGHT_PERCENT = 24, 90.0
+"""A line of a bar is no brighter than this, but for a tenth of it."""
 START_OF_IMAGE = b"\xff\xd8"
 THUMBNAIL_AT, THUMBNAIL_SIZE = 0x0201, 0x0202
 """EXIF's JPEGInterchangeFormat and its length, in bytes from the start of the TIFF header."""
@@ -52,9 +54,10 @@ def look_of(image: Any, data: bytes) -> Look | None:
 
 def _without_bars(grey: GreyMap) -> GreyMap:
     """Return a picture without the black bars that fill a preview of another shape."""
-    is_shown = grey > BLACK_TO
-    rows, cols = (np.flatnonzero(is_shown.any(axis=axis)) for axis in (1, 0))
-    if len(rows) == 0:
+    # Compression leaves traces of the picture in the bars beside it.
+    bright = (np.percentile(grey, BRIGHT_PERCENT, axis=axis) for axis in (1, 0))
+    rows, cols = (np.flatnonzero(each > BAR_TO) for each in bright)
+    if len(rows) == 0 or len(cols) == 0:
         return grey
     return grey[rows[0] : rows[-1] + 1, cols[0] : cols[-1] + 1]
 
