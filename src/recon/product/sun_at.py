@@ -121,12 +121,15 @@ def _part(grid: GroundGrid, points_m: FloatArray) -> Part:
     """Return the rows and columns of a grid around points, with `MARGIN` cells more; not none."""
     cols = (points_m[:, 0] - grid.west_m) / grid.cell_m
     rows = (grid.north_m - points_m[:, 1]) / grid.cell_m
-    return _within(rows, grid.rows), _within(cols, grid.cols)
+    return (
+        _within(float(rows.min()), float(rows.max()), grid.rows),
+        _within(float(cols.min()), float(cols.max()), grid.cols),
+    )
 
 
-def _within(cells: FloatArray, count: int) -> slice:
-    first = min(max(floor(cells.min()) - MARGIN, 0), count - 1)
-    return slice(first, max(min(ceil(cells.max()) + MARGIN, count), first + 1))
+def _within(least: float, most: float, count: int) -> slice:
+    first = min(max(floor(least) - MARGIN, 0), count - 1)
+    return slice(first, max(min(ceil(most) + MARGIN, count), first + 1))
 
 
 def _values(shade: KeptMap, part: Part) -> FloatMap:
@@ -148,24 +151,25 @@ def _moved(
     map shows nothing."""
     right, down = (v * seconds / cell_m for v in (velocity_mps[0], -velocity_mps[1]))
     if hypot(right, down) < 0.01:
-        _known, sun, sure = np.moveaxis(_values(shade, part), 2, 0)
-        return sun, sure
+        still = _values(shade, part)
+        return still[..., 1], still[..., 2]
     rows, cols = part
-    source_rows, source_cols = (
-        _within(np.array([each.start, each.stop]) - moved, count)
-        for each, moved, count in zip(part, (down, right), shade.sun.shape, strict=True)
-    )
+    map_rows, map_cols = shade.sun.shape
+    source_rows = _within(rows.start - down, rows.stop - down, map_rows)
+    source_cols = _within(cols.start - right, cols.stop - right, map_cols)
     move = np.array(
         [[1.0, 0.0, right + source_cols.start - cols.start],
          [0.0, 1.0, down + source_rows.start - rows.start]]
     )  # fmt: skip
     size = cols.stop - cols.start, rows.stop - rows.start
     values = _values(shade, (source_rows, source_cols))
-    found = cv2.warpAffine(values, move, size, flags=cv2.INTER_LINEAR)
-    share, sun, sure = np.moveaxis(found.astype(np.float32, copy=False), 2, 0)
+    found = cv2.warpAffine(values, move, size, flags=cv2.INTER_LINEAR).astype(
+        np.float32, copy=False
+    )
     # Of cells between known and unknown ones the known part tells, where it is at least half.
-    factor = np.where(share >= 0.5, share, np.inf).astype(np.float32)
-    return sun / factor, sure / factor
+    share = found[..., 0].copy()
+    share[share < 0.5] = np.inf
+    return found[..., 1] / share, found[..., 2] / share
 
 
 def _motions(grid: GroundGrid, maps: Sequence[KeptMap]) -> npt.NDArray[np.float64]:

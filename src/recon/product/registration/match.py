@@ -64,6 +64,10 @@ def features_of(grey: GreyImage, view: PhotoView) -> Features:
     if shrink < 1.0:
         small = cv2.resize(grey, None, fx=shrink, fy=shrink, interpolation=cv2.INTER_AREA)
         grey = np.asarray(small, dtype=np.uint8)
+    # Dark pictures, as of a band in few of its steps, have corners too.
+    grey = np.asarray(
+        cv2.normalize(grey, np.empty_like(grey), 0, 255, cv2.NORM_MINMAX), dtype=np.uint8
+    )
     rows, cols = grey.shape
     sift = cv2.SIFT.create(MOST_FEATURES, 3, 0.02)
     found, descriptors = sift.detectAndCompute(grey, None)
