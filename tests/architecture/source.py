@@ -4,13 +4,30 @@ import ast
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
+from typing import TypeVar
 
 PACKAGE = Path(__file__).parents[2] / "src" / "recon"
+
+NodeT = TypeVar("NodeT", bound=ast.AST)
 
 
 @cache
 def tree(path: Path) -> ast.Module:
     return ast.parse(path.read_text(encoding="utf-8"), filename=str(path))
+
+
+@cache
+def _by_kind(path: Path) -> dict[type[ast.AST], list[ast.AST]]:
+    """Walking is what takes time: each file is walked once for all tests."""
+    found: dict[type[ast.AST], list[ast.AST]] = {}
+    for node in ast.walk(tree(path)):
+        found.setdefault(type(node), []).append(node)
+    return found
+
+
+def nodes(path: Path, kind: type[NodeT]) -> list[NodeT]:
+    """Every node of a kind in a file."""
+    return _by_kind(path).get(kind, [])  # type: ignore[return-value]
 
 
 def files(*rooms: str) -> list[Path]:
@@ -27,12 +44,11 @@ def name_of(path: Path) -> str:
 
 def imports(path: Path) -> Iterator[str]:
     """Every module a file imports, wherever in it; `from a import b` as a.b."""
-    for node in ast.walk(tree(path)):
-        if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
-            assert node.level == 0, f"{path}: relative import"
-            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+    for plain in nodes(path, ast.Import):
+        yield from (alias.name for alias in plain.names)
+    for node in nodes(path, ast.ImportFrom):
+        assert node.level == 0, f"{path}: relative import"
+        yield from (f"{node.module}.{alias.name}" for alias in node.names)
 
 
 def dotted(node: ast.AST) -> str:
@@ -46,6 +62,5 @@ def dotted(node: ast.AST) -> str:
 
 def calls(path: Path) -> Iterator[tuple[ast.Call, str]]:
     """Every call in a file, with what it calls."""
-    for node in ast.walk(tree(path)):
-        if isinstance(node, ast.Call):
-            yield node, dotted(node.func)
+    for node in nodes(path, ast.Call):
+        yield node, dotted(node.func)

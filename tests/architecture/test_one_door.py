@@ -6,7 +6,7 @@ import pickle
 from dataclasses import fields, replace
 
 import pytest
-from tests.architecture.source import calls, dotted, files, imports, name_of, tree
+from tests.architecture.source import calls, dotted, files, imports, name_of, nodes
 from tests.safety.cases import approved, command, situation
 
 from recon.link.session import Session
@@ -39,8 +39,7 @@ class TestOnlyTheGateMakesOne:
                 continue
             assert not any(module.startswith("recon.safety.gate._") for module in imports(path))
             assert not any(
-                isinstance(node, ast.Attribute) and dotted(node).endswith("gate._KEY")
-                for node in ast.walk(tree(path))
+                dotted(node).endswith("gate._KEY") for node in nodes(path, ast.Attribute)
             )
 
     def test_no_file_goes_round_the_constructor_or_changes_a_frozen_value(self) -> None:
@@ -57,9 +56,8 @@ class TestOnlyTheGateMakesOne:
         heirs = [
             name_of(path)
             for path in files()
-            for node in ast.walk(tree(path))
-            if isinstance(node, ast.ClassDef)
-            and any(dotted(base).endswith("ApprovedCommand") for base in node.bases)
+            for node in nodes(path, ast.ClassDef)
+            if any(dotted(base).endswith("ApprovedCommand") for base in node.bases)
         ]
         assert heirs == []
 
@@ -135,8 +133,8 @@ class TestLinksSendNothingElse:
         senders = ("send", "sendall", "sendto", "sendmsg", "writelines", "write_eof")
         writes: list[str] = []
         for path in files("link"):
-            for node in ast.walk(tree(path)):
-                if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
+            for node in nodes(path, ast.Call):
+                if isinstance(node.func, ast.Attribute):
                     assert node.func.attr not in senders, (path, node.lineno)
                     if node.func.attr == "write":
                         writes.append(f"{name_of(path)}: {ast.unparse(node)}")

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import fields
 from pathlib import Path
 
-from tests.architecture.source import calls, files, name_of, tree
+from tests.architecture.source import calls, files, name_of, nodes
 
 from recon.station.state.vehicle_control import ControlChanges, VehicleControl
 
@@ -25,12 +25,8 @@ CONTROL = "station/state/vehicle_control.py"
 
 def writes(path: Path) -> Iterator[tuple[str, str | None]]:
     """Every field that a call of `with_control` names, with its file; None for `**changes`."""
-    for node in ast.walk(tree(path)):
-        if (
-            isinstance(node, ast.Call)
-            and isinstance(node.func, ast.Attribute)
-            and node.func.attr == "with_control"
-        ):
+    for node in nodes(path, ast.Call):
+        if isinstance(node.func, ast.Attribute) and node.func.attr == "with_control":
             assert len(node.args) == 1, f"{name_of(path)}: with_control(serial, field=value)"
             yield from ((name_of(path), keyword.arg) for keyword in node.keywords)
 
@@ -49,13 +45,8 @@ def test_every_field_is_named_here_and_in_the_changes() -> None:
 
 def test_with_control_is_called_where_it_is_named() -> None:
     for path in files():
-        nodes = list(ast.walk(tree(path)))
-        called = {id(node.func) for node in nodes if isinstance(node, ast.Call)}
-        named = [
-            node
-            for node in nodes
-            if isinstance(node, ast.Attribute) and node.attr == "with_control"
-        ]
+        called = {id(node.func) for node in nodes(path, ast.Call)}
+        named = [node for node in nodes(path, ast.Attribute) if node.attr == "with_control"]
         assert all(id(node) in called for node in named), name_of(path)
 
 
@@ -71,7 +62,7 @@ def test_nothing_else_makes_or_stores_a_control_state() -> None:
     storing = {
         name_of(path)
         for path in files("station")
-        for node in ast.walk(tree(path))
-        if isinstance(node, ast.Call) and stored & {keyword.arg for keyword in node.keywords}
+        for node in nodes(path, ast.Call)
+        if stored & {keyword.arg for keyword in node.keywords}
     }
     assert storing == {STATION}

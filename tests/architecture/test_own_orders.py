@@ -2,7 +2,7 @@
 
 import ast
 
-from tests.architecture.source import files, name_of, tree
+from tests.architecture.source import files, name_of, nodes
 
 from recon.model.command import issued_by_station
 
@@ -14,8 +14,8 @@ def test_one_module_words_the_stations_own_orders() -> None:
     found = {
         name_of(path)
         for path in files()
-        for node in ast.walk(tree(path))
-        if isinstance(node, ast.Constant) and str(node.value).startswith(issued_by_station(""))
+        for node in nodes(path, ast.Constant)
+        if str(node.value).startswith(issued_by_station(""))
     }
     assert {path for path in found if not path.startswith(KERNEL)} == {"model/command.py"}
 
@@ -24,8 +24,7 @@ def test_no_other_module_reads_it_from_the_text() -> None:
     found = {
         name_of(path)
         for path in files()
-        for node in ast.walk(tree(path))
-        if isinstance(node, ast.Attribute)
+        for node in nodes(path, ast.Attribute)
         if node.attr == "startswith" and ast.unparse(node.value).endswith("issued_by")
     }
     assert found == {"model/command.py"}

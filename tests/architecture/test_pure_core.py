@@ -6,7 +6,7 @@ what needs no import, and more modules.
 
 import ast
 
-from tests.architecture.source import PACKAGE, calls, files, imports, name_of, tree
+from tests.architecture.source import PACKAGE, calls, files, imports, name_of, nodes
 
 CORE = (
     *("model", "geo", "camera", "wire", "vehicles", "fleet", "safety"),
@@ -35,7 +35,7 @@ def test_it_imports_no_clock_socket_thread_or_chance_and_never_awaits() -> None:
     assert len(CORE_FILES) > 200
     for path in CORE_FILES:
         found = {module.split(".")[0] for module in imports(path)} & FORBIDDEN
-        found |= {type(n).__name__ for n in ast.walk(tree(path)) if isinstance(n, WAITING)}
+        found |= {kind.__name__ for kind in WAITING if nodes(path, kind)}
         assert found == set(), name_of(path)
 
 
