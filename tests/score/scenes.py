@@ -37,12 +37,20 @@ speed_10m_mps = 4.0
 CALM = SMALL.replace('faults = ["pilot-takes:1:40:30"]\n', "")
 """The same without a fault."""
 
+TINY = (
+    CALM.replace("200.0", "60.0")
+    .replace("150.0]", "40.0]")
+    .replace("[fleet]", "height_m = 30.0\nside_overlap = 0.2\nfront_overlap = 0.4\n\n[fleet]")
+)
+"""Two rows of 50 m, flown low: a drone climbs and lands for most of the time."""
+
 BRIEF = (
-    CALM.replace("limit_min = 10.0", "limit_min = 1.0")
+    TINY.replace("limit_min = 10.0", "limit_min = 1.0\nrounds = 1")
+    .replace("60.0,", "30.0,")
     .replace("survey_drones = 2", "survey_drones = 1")
     .replace("radius_m = 160.0", "radius_m = 80.0")
 )
-"""One drone over the field for a minute."""
+"""One drone along one row: a minute."""
 
 
 def written(folder: Path, text: str = SMALL) -> Path:

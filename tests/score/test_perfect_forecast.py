@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.score.scenes import SMALL, small
+from tests.score.scenes import TINY, small
 
 from recon.forecast import FORECASTERS, ForecastSettings, ForecastState
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
@@ -42,9 +42,8 @@ def half_seen(at_s: float) -> SunForecast:
 @pytest.fixture(scope="module")
 def scenario(tmp_path_factory: pytest.TempPathFactory) -> Scenario:
     """A field of which the imaging drone sees a part, under low broken clouds."""
-    text = SMALL.replace('faults = ["pilot-takes:1:40:30"]', "")
     lens = "[imager]\nfield_deg = 35.0\nreach_m = 400.0\ncell_m = 8.0"
-    text = text.replace("[imager]", lens).replace("limit_min = 10.0", "limit_min = 3.0")
+    text = TINY.replace("[imager]", lens).replace("limit_min = 10.0", "limit_min = 1.0")
     loaded = small(tmp_path_factory.mktemp("scenarios"), text)
     survey = replace(loaded.survey, planner="sunlit_first")
     return replace(loaded, survey=survey, methods=Methods(forecast=PERFECT, scores_maps=False))
@@ -124,8 +123,7 @@ def test_a_survey_is_flown_by_it(scenario: Scenario) -> None:
 @pytest.mark.flight
 def test_its_score_is_that_of_what_it_leaves_open(scenario: Scenario) -> None:
     """Scored cells are the maps' cells: all that is wrong is the probability that is not stated."""
-    short = replace(scenario, methods=Methods(forecast=PERFECT), limit_s=60.0)
-    found = run(short, 3)
+    found = run(replace(scenario, methods=Methods(forecast=PERFECT)), 3)
     open_share = 1.0 - round(SUREST * SURE) / SURE
     for lead_s in SCORE.lead_s:
         score = found.forecasts[PERFECT, lead_s, SeenCells.ALL]
