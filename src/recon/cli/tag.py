@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from recon.cli.nodeodm import opened_node, process
 from recon.cli.output import printable
 from recon.cli.progress import progress_over, usable_cores
 from recon.cli.tag_all import FlightLight, tag_all
@@ -38,7 +39,7 @@ from recon.product.photos.card import MARK, card_of
 from recon.product.photos.shots import Shot, shots_of
 from recon.product.quality import quality_of
 from recon.product.registration import read_grey, with_headings
-from recon.product.shot_files import ShotFiles, files_of
+from recon.product.shot_files import MAIN, ShotFiles, files_of
 from recon.product.sun_at import SunHistory
 from recon.product.sun_sensor import agreement, sun_by_sensor
 from recon.product.tag import (
@@ -93,8 +94,15 @@ def tag_command(
             help="Let the camera's sun sensor tell where shade maps know too little.",
         ),
     ] = False,
+    nodeodm: Annotated[
+        str,
+        typer.Option(
+            metavar="URL", help="Let this NodeODM make the mosaic, as http://localhost:3000."
+        ),
+    ] = "",
 ) -> None:
     """Tag the photos of a flight: sunlit share, masks, the photos to keep, what to fly again."""
+    node = opened_node(nodeodm) if nodeodm else None
     card = card_of(images)
     refuse_photos_below(out, card.photos)
     flown = opened_flight(flight)
@@ -143,6 +151,8 @@ def tag_command(
     _print_quality(quality)
     leading = [tags[each.photo.name] for each in timed.photos]
     _print_summary(out, leading, selection, sunlit)
+    if node is not None:
+        process(node, out / MAIN)
 
 
 def _without(shots: Sequence[Shot], panels: Sequence[PanelShot]) -> list[Shot]:

@@ -12,11 +12,9 @@ def replace_folder(folder: Path, files: Sequence[tuple[Path, str]]) -> None:
     They are written beside an earlier folder, which stays until they are all there, and for good
     when that fails or is ended. They are hard links where the disk allows it, copies elsewhere.
     """
-    coming, gone = (folder.with_name(f"{folder.name}.{end}") for end in ("new", "old"))
-    if gone.exists() and not folder.exists():
-        gone.rename(folder)  # An earlier run was ended between its two renames.
+    coming = folder.with_name(f"{folder.name}.new")
+    _recover(folder)
     _remove(coming)
-    _remove(gone)
     coming.mkdir(parents=True)
     try:
         for source, name in files:
@@ -24,10 +22,27 @@ def replace_folder(folder: Path, files: Sequence[tuple[Path, str]]) -> None:
     except OSError:
         _remove(coming)
         raise
+    put_in_place(coming, folder)
+
+
+def put_in_place(coming: Path, folder: Path) -> None:
+    """Rename a complete folder to take the place of an earlier one; raises OSError."""
+    _recover(folder)
     if folder.exists():
-        folder.rename(gone)
+        folder.rename(_gone(folder))
     coming.rename(folder)
-    _remove(gone)
+    _remove(_gone(folder))
+
+
+def _gone(folder: Path) -> Path:
+    return folder.with_name(f"{folder.name}.old")
+
+
+def _recover(folder: Path) -> None:
+    """Make good for a run that was ended between its two renames, or behind them."""
+    if _gone(folder).exists() and not folder.exists():
+        _gone(folder).rename(folder)
+    _remove(_gone(folder))
 
 
 def _remove(folder: Path) -> None:
