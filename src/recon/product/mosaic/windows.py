@@ -173,6 +173,7 @@ class WindowStore:
                     bigtiff="if_safer",
                     overview_resampling=raster.overviews,
                 )
+                _read_back(target)
         except RasterioError as problem:
             raise OSError(None, str(problem.__cause__ or problem), str(target)) from problem
         return target
@@ -180,6 +181,17 @@ class WindowStore:
     def finish(self) -> None:
         """Delete the windows: their rasters are in place."""
         shutil.rmtree(self.folder)
+
+
+def _read_back(path: Path) -> None:
+    """Raise `RasterioError` for a raster that is not whole: of a full disk GDAL only prints."""
+    with rasterio.open(path) as dataset:
+        levels = range(-1, len(dataset.overviews(1)))
+    for level in levels:
+        options = {} if level < 0 else {"overview_level": level}
+        with rasterio.open(path, **options) as dataset:
+            for _place, block in dataset.block_windows(1):
+                dataset.read(window=block)
 
 
 def _vrt(

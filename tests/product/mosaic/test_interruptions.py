@@ -1,0 +1,161 @@
+"""What ends a mosaic's run, and what the next one finds: damaged photos, a kill, a full disk."""
+
+import json
+import resource
+import signal
+from collections.abc import Iterator
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+import rasterio
+from tests.product.mosaic.made_mosaic import MadeMosaic
+from tests.product.mosaic.test_mosaic import pixels
+
+from recon.product.mosaic import Light, read_jpeg
+from recon.product.mosaic.pixels import Cut, PhotoCuts
+from recon.product.photos.photo_error import PhotoError
+
+FOUR_WINDOWS_M = 0.2
+"""Pixels that make four windows."""
+
+
+@pytest.fixture
+def made(tmp_path: Path) -> MadeMosaic:
+    return MadeMosaic(tmp_path, every=12, size=(320, 240))
+
+
+class Killed(BaseException):
+    """What no code catches."""
+
+
+def test_a_killed_run_goes_on_where_it_was(made: MadeMosaic, tmp_path: Path) -> None:
+    whole = tmp_path / "whole"
+    made.build(whole, resolution_m=FOUR_WINDOWS_M).run()
+    out = tmp_path / "out"
+
+    def dying(index: int, shrink: int) -> np.ndarray:
+        if any("mosaic" in path.name for path in out.rglob("*.tif")):
+            raise Killed
+        return made.read(index, shrink)
+
+    with pytest.raises(Killed):
+        made.build(out, resolution_m=FOUR_WINDOWS_M, read=dying).run()
+    (store,) = out.glob("windows-*")
+    finished = {path.name: path.stat().st_mtime_ns for path in store.glob("*.tif")}
+    assert any("mosaic" in name for name in finished)
+    build = made.build(out, resolution_m=FOUR_WINDOWS_M)
+    build.over = lambda items, title, count: seen(items, title, store, finished)
+    report = build.run()
+    assert report.decoded < report.used
+    assert (out / "mosaic.tif").read_bytes() == (whole / "mosaic.tif").read_bytes()
+    assert not store.exists()
+
+
+def seen(items, title: str, store: Path, finished: dict[str, int]) -> Iterator:
+    """Check before rasters are written that no finished window was made again."""
+    if title == "writing rasters":
+        now = {name: (store / name).stat().st_mtime_ns for name in finished}
+        assert now == finished
+    yield from items
+
+
+def test_other_settings_begin_anew(made: MadeMosaic, tmp_path: Path) -> None:
+    def dying(_index: int, _shrink: int) -> np.ndarray:
+        raise Killed
+
+    with pytest.raises(Killed):
+        made.build(tmp_path / "out", resolution_m=0.4, read=dying).run()
+    (before,) = (tmp_path / "out").glob("windows-*")
+    with pytest.raises(Killed):
+        made.build(tmp_path / "out", resolution_m=0.4, fills=True, read=dying).run()
+    (after,) = (tmp_path / "out").glob("windows-*")
+    assert after != before
+
+
+def test_ground_of_a_damaged_photo_is_taken_from_others(made: MadeMosaic, tmp_path: Path) -> None:
+    best = made.build(tmp_path / "best", resolution_m=0.4).run()
+    index = int(np.nanmin(pixels(tmp_path / "best", "provenance")[0][0]))
+    name = made.photos[index].photo.name
+
+    def reading(number: int, shrink: int) -> np.ndarray:
+        if number == index:
+            raise PhotoError(f"{name}: its picture is damaged")
+        return made.read(number, shrink)
+
+    report = made.build(tmp_path / "out", resolution_m=0.4, read=reading).run()
+    assert report.failed == {name: f"{name}: its picture is damaged"}
+    values, _east, _north = pixels(tmp_path / "out", "provenance")
+    assert not (values[0] == index).any()
+    # What no other photo shows in sun is counted so.
+    assert 0.9 * best.areas_m2[Light.SUN] < report.areas_m2[Light.SUN] < best.areas_m2[Light.SUN]
+    assert json.loads((tmp_path / "out" / "mosaic.json").read_text())["photos_not_read"]
+
+
+@pytest.fixture
+def limited() -> Iterator[None]:
+    """Let the test limit the size of files, as a disk does that is full."""
+    handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    yield
+    resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    signal.signal(signal.SIGXFSZ, handler)
+
+
+def test_a_full_disk_leaves_the_old_mosaic_and_all_that_is_finished(
+    made: MadeMosaic, tmp_path: Path, limited: None
+) -> None:
+    out = tmp_path / "out"
+    made.build(out, resolution_m=0.4, fills=True).run()
+    before = {path.name: path.read_bytes() for path in out.iterdir()}
+    hard = resource.getrlimit(resource.RLIMIT_FSIZE)[1]
+    # The first window, a window of pixels, the raster of all windows do not fit.
+    for most_bytes in (100, 4_000, 20_000):
+        resource.setrlimit(resource.RLIMIT_FSIZE, (most_bytes, hard))
+        with pytest.raises(OSError, match=r"."):
+            made.build(out, resolution_m=0.4).run()
+        resource.setrlimit(resource.RLIMIT_FSIZE, (hard, hard))
+        after = {path.name: path.read_bytes() for path in out.iterdir() if path.is_file()}
+        assert after == before
+    report = made.build(out, resolution_m=0.4).run()
+    assert report.filled_m2 == 0.0
+    with rasterio.open(out / "mosaic.tif") as dataset:
+        assert dataset.tags()["RECON_SHADE"] == "empty"
+        assert dataset.read().any()
+
+
+def test_a_jpeg_is_read_smaller_and_not_turned(tmp_path: Path) -> None:
+    picture = np.zeros((48, 64, 3), dtype=np.uint8)
+    picture[:24, :32] = (200, 100, 50)
+    path = tmp_path / "photo.jpg"
+    cv2.imwrite(str(path), picture[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, 100])
+    for shrink in (1, 2, 4, 8):
+        found = read_jpeg(path, shrink)
+        assert found.shape == (48 // shrink, 64 // shrink, 3)
+        assert np.allclose(found[1, 1], (200, 100, 50), atol=4)
+        assert np.allclose(found[-2, -2], 0, atol=4)
+
+
+@pytest.mark.parametrize("data", [b"", b"\xff\xd8\xff", b"no photo"])
+def test_a_damaged_jpeg_is_a_sentence(tmp_path: Path, data: bytes) -> None:
+    (tmp_path / "photo.jpg").write_bytes(data)
+    with pytest.raises(PhotoError, match=r"photo\.jpg: its picture is damaged"):
+        read_jpeg(tmp_path / "photo.jpg", 1)
+    with pytest.raises(PhotoError, match="cannot be read: No such file"):
+        read_jpeg(tmp_path / "none.jpg", 1)
+
+
+def test_pieces_of_photos_stay_within_the_memory_that_is_given() -> None:
+    def read(index: int, _shrink: int) -> np.ndarray:
+        return np.full((100, 200, 3), index, dtype=np.uint8)
+
+    taken = dict.fromkeys(range(20), (10.0, 20.0, 39.0, 79.0))
+    cuts = PhotoCuts(read, 1, taken, most_bytes=100_000)
+    for index in (*range(20), 0):
+        cut: Cut = cuts.get(index)
+        assert (cut.pixels == index).all()
+        assert cut.first == (6, 16)
+        assert cut.pixels.shape == (38, 68, 3)
+    assert sum(each.pixels.nbytes for each in cuts._kept.values()) <= 100_000
+    assert cuts.decoded == 21
