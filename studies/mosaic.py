@@ -32,8 +32,8 @@ from studies.true_mosaic import Lights, lights_of, places_off_m
 
 SCENARIO = Path(__file__).parents[1] / "scenarios" / "cumulus-40.toml"
 PLANNER, DETECTION, FORECAST = "sunlit_first", "sunlit_reference", "advection"
-COLS = 900
-"""Columns of the photos: 9 cm on the ground from 60 m, a sixth of the camera's."""
+COLS = 720
+"""Columns of the photos: 11 cm on the ground from 56 m, a seventh of the camera's."""
 OFF_DEG = (53.0, 180.0)
 
 

@@ -12,20 +12,21 @@ from PIL import Image
 from recon.cli.tag import tag_command
 from studies.survey_photos import SurveyFlown
 
+DRONE = "SIM-1"
 YAW = re.compile(rb'(GimbalYawDegree=")([^"]+)')
 
 
 def headings_off(
     flown: SurveyFlown, card: Path, folder: Path, off_deg: float
 ) -> list[tuple[float, bool]]:
-    """Tag a card's photos with gimbal yaws that are off by so much.
+    """Tag one drone's photos with gimbal yaws that are off by so much.
 
     Return for each camera the largest error of its headings in degrees, and whether a warning says
     that they could not be verified.
     """
     turned, tagged = folder / "card", folder / "tagged"
     turned.mkdir(parents=True)
-    for path in sorted(card.glob("*.JPG")):
+    for path in sorted(card.glob(f"{DRONE}_*.JPG")):
         _turned(path, turned / path.name, off_deg)
     said = StringIO()
     with redirect_stdout(said), redirect_stderr(said):
