@@ -13,16 +13,15 @@ from recon.cli.tag import tag_command
 from studies.survey_photos import SurveyFlown
 
 DRONE = "SIM-1"
+UNVERIFIED = ("is unverified", "degrees only")
 YAW = re.compile(rb'(GimbalYawDegree=")([^"]+)')
 
 
-def headings_off(
-    flown: SurveyFlown, card: Path, folder: Path, off_deg: float
-) -> list[tuple[float, bool]]:
+def headings_off(flown: SurveyFlown, card: Path, folder: Path, off_deg: float) -> list[float]:
     """Tag one drone's photos with gimbal yaws that are off by so much.
 
-    Return for each camera the largest error of its headings in degrees, and whether a warning says
-    that they could not be verified.
+    Return how far off each photo's heading is in degrees; none where a warning says that they could
+    not be verified.
     """
     turned, tagged = folder / "card", folder / "tagged"
     turned.mkdir(parents=True)
@@ -31,16 +30,11 @@ def headings_off(
     said = StringIO()
     with redirect_stdout(said), redirect_stderr(said):
         tag_command([turned], flown.record, tagged)
-    errors = dict[str, float]()
-    for name, yaw_deg in _yaws(tagged):
-        shot = flown.shots[name]
-        error_deg = abs((yaw_deg - shot.yaw_deg + 180.0) % 360.0 - 180.0)
-        errors[shot.serial] = max(error_deg, errors.get(shot.serial, 0.0))
-    lines = said.getvalue().splitlines()
-    unsure = [each for each in lines if "unverified" in each or "degrees only" in each]
+    if any(each in said.getvalue() for each in UNVERIFIED):
+        return []
     return [
-        (error_deg, any(f"CAM-{serial}:" in each for each in unsure))
-        for serial, error_deg in errors.items()
+        abs((yaw_deg - flown.shots[name].yaw_deg + 180.0) % 360.0 - 180.0)
+        for name, yaw_deg in _yaws(tagged)
     ]
 
 
