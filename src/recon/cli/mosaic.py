@@ -36,6 +36,7 @@ from recon.product.mosaic import (
     preview_cameras,
     read_jpeg,
 )
+from recon.product.mosaic.band_rasters import band_rasters
 from recon.product.mosaic.pixels import Pixels
 from recon.product.mosaic.place import PREVIEW_PIXELS
 from recon.product.photos.card import card_of
@@ -90,8 +91,8 @@ def mosaic_command(
     """Make a mosaic of photos in sun, with what each pixel was taken from."""
     flown = opened_flight(flight)
     facts, refused = read_photos(card_of(photos).photos)
-    leads = [shot.lead for shot in shots_of(facts)]
-    timed = timed_photos(flown, leads, StatedCamera(clock_offset, field))
+    shots = [shot for shot in shots_of(facts) if shot.lead.panel is None]
+    timed = timed_photos(flown, [shot.lead for shot in shots], StatedCamera(clock_offset, field))
     timed.refused.update(refused)
     print_clocks(timed)
     print_refused(timed.refused)
@@ -105,10 +106,12 @@ def mosaic_command(
             found.photos, found.cameras, history, found.ground, progress_over, threads
         )
         plan = plan_of(flown, placed, found.ground, resolution_m, found.pixels)
-        band = Band("mosaic", COLOURS, lambda index, shrink: _pixels(found.photos[index], shrink))
+        bands = _colours(found)
+        if odm is None:
+            bands += band_rasters(shots, found.photos, found.cameras)
         report = _built(
             MosaicBuild(
-                *(out, flown, placed, found.ground, plan, [band], settings),
+                *(out, flown, placed, found.ground, plan, bands, settings),
                 found.source,
                 progress_over,
             )
@@ -178,8 +181,15 @@ def _registered(photos: Sequence[TimedPhoto]) -> Sequence[PhotoView]:
     return found.views
 
 
-def _pixels(timed: TimedPhoto, shrink: int) -> Pixels:
-    return read_jpeg(timed.photo.path, shrink)
+def _colours(found: _Geometry) -> list[Band]:
+    """Return the raster in colour; none where a camera's bands lead its shots."""
+    if found.photos[0].photo.kind == "band":
+        return []
+
+    def read(index: int, shrink: int) -> Pixels:
+        return read_jpeg(found.photos[index].photo.path, shrink)
+
+    return [Band("mosaic", COLOURS, read)]
 
 
 def _built(build: MosaicBuild) -> MosaicReport:

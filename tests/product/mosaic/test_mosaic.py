@@ -2,17 +2,29 @@
 
 import csv
 import json
+from dataclasses import replace
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 import rasterio
 from tests.product.made_flight import FRAME, HEIGHT_M, sun
-from tests.product.mosaic.made_mosaic import BRIGHT, SWING, WAVE_M, MadeMosaic, wave
+from tests.product.mosaic.made_mosaic import (
+    BRIGHT,
+    SWING,
+    WAVE_M,
+    MadeMosaic,
+    ground_of_pixels,
+    wave,
+)
 
 from recon.geo import geo_from_enu
 from recon.product.mosaic import Band, Light, MosaicReport
+from recon.product.mosaic.band_rasters import band_rasters
 from recon.product.mosaic.choice import STEP_PX
+from recon.product.photos.band import Band as CameraBand
+from recon.product.photos.shots import Shot
 
 
 @pytest.fixture(scope="module")
@@ -172,3 +184,31 @@ def test_bands_lie_on_one_grid(tmp_path: Path) -> None:
     assert np.array_equal(infrared[0] > 0, colours[3] == 255)
     there = colours[3] == 255
     assert np.abs(infrared[0][there] / 200.0 - colours[0][there]).max() <= 1.0
+
+
+def test_a_cameras_bands_lie_on_the_picture_in_colour(tmp_path: Path) -> None:
+    """Files of 16 bits beside each photo, of another size and field, where photos have them."""
+    made = MadeMosaic(tmp_path, every=12, size=(320, 240))
+    shots, narrow_deg, size = [], 50.0, (200, 150)
+    for index, timed in enumerate(made.photos):
+        view = replace(timed.view, across_deg=narrow_deg, cols=size[0], rows=size[1])
+        path = timed.photo.path.with_suffix(".NIR.TIF")
+        values = wave(ground_of_pixels(view)[..., 0]) * 200.0
+        cv2.imwrite(str(path), np.rint(values).astype(np.uint16))
+        beside = replace(
+            timed.photo, path=path, name=path.name, cols=size[0], rows=size[1],
+            across_deg=narrow_deg, kind="band", band=CameraBand("NIR"),
+        )  # fmt: skip
+        shots.append(Shot(timed.photo, (beside,) if index else ()))
+    build = made.build(tmp_path / "out", resolution_m=0.4)
+    cameras = [placed.camera for placed in build.photos]
+    build.bands = [*build.bands, *band_rasters(shots, made.photos, cameras)]
+    build.run()
+    colours, _east, _north = pixels(tmp_path / "out")
+    infrared, _east, _north = pixels(tmp_path / "out", "mosaic-NIR")
+    there = infrared[0] > 0
+    assert 0.3 < there.sum() / (colours[3] == 255).sum() < 1.0
+    assert (colours[3][there] == 255).all()
+    # Photo, band and mosaic each have pixels of decimetres.
+    off = np.abs(infrared[0][there] / 200.0 - colours[0][there])
+    assert np.quantile(off, 0.99) < 0.2 * SWING

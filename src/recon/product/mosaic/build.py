@@ -27,7 +27,7 @@ from recon.product.mosaic.ground import Ground
 from recon.product.mosaic.pixels import Band, PhotoCuts, shrink_for
 from recon.product.mosaic.plan import MosaicPlan, Window
 from recon.product.mosaic.preview import preview_png
-from recon.product.mosaic.render import Renderer, taken_of
+from recon.product.mosaic.render import Renderer, camera_for, taken_of
 from recon.product.mosaic.windows import PROVENANCE, Raster, RasterBand, WindowStore
 from recon.record.files.atomic_file import replace_file
 
@@ -106,10 +106,9 @@ class MosaicBuild:
         self._failed = self._read_failed()
         while True:
             self._choose(windows)
-            taken = taken_of(self.plan, self._store.choices(windows), self.photos, self.ground)
             failed = dict[int, str]()
             for band in self.bands:
-                failed |= self._render(windows, band, taken)
+                failed |= self._render(windows, band)
             if not failed:
                 break
             self._leave_out(windows, failed)
@@ -133,15 +132,14 @@ class MosaicBuild:
         for _done in self._in_threads(choose, todo, "choosing photos"):
             pass
 
-    def _render(
-        self,
-        windows: Sequence[Window],
-        band: Band,
-        taken: Mapping[int, tuple[float, float, float, float]],
-    ) -> dict[int, str]:
+    def _render(self, windows: Sequence[Window], band: Band) -> dict[int, str]:
         """Render the windows of a band that are not there yet; return why photos failed."""
         todo = [each for each in windows if not self._store.has(each, band.name)]
-        cuts = PhotoCuts(band.read, self._shrink(), taken)
+        if not todo:
+            return {}
+        choices = self._store.choices(windows)
+        taken = taken_of(self.plan, choices, self.photos, self.ground, band)
+        cuts = PhotoCuts(band.read, self._shrink(band), taken)
         share = self.settings.direct_share if self.settings.is_evened else None
         renderer = Renderer(self.plan, self.photos, self.ground, cuts, band, share)
 
@@ -169,9 +167,10 @@ class MosaicBuild:
                 pool.shutdown(cancel_futures=True)
                 raise
 
-    def _shrink(self) -> int:
+    def _shrink(self, band: Band) -> int:
         low_m = self.ground.bounds_m[0]
-        sizes_m = [photo.camera.metres_per_pixel(low_m) for photo in self.photos]
+        cameras = (camera_for(band, self.photos, index) for index in range(len(self.photos)))
+        sizes_m = [each.metres_per_pixel(low_m) for each in cameras if each is not None]
         return shrink_for(self.plan.grid.cell_m / float(np.median(sizes_m)))
 
     def _leave_out(self, windows: Sequence[Window], failed: Mapping[int, str]) -> None:

@@ -5,7 +5,7 @@ all that is taken of it is cut out, and kept as long as room allows.
 """
 
 from collections import OrderedDict
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import log2
 from pathlib import Path
@@ -16,6 +16,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
+from recon.product.mosaic.cameras import Camera
 from recon.product.photos.photo_error import PhotoError
 
 Pixels = npt.NDArray[Any]
@@ -48,6 +49,8 @@ class Band:
     dtype: str = "uint8"
     is_picture: bool = True
     """Whether values are a camera's picture, with its gamma; else they are linear in light."""
+    cameras: Sequence[Camera | None] | None = None
+    """Of each photo, where the band is of another lens; None of a photo that lacks the band."""
 
 
 def read_jpeg(path: Path, shrink: int) -> Pixels:
@@ -66,6 +69,23 @@ def read_jpeg(path: Path, shrink: int) -> Pixels:
     if found is None:
         raise PhotoError(f"{path.name}: its picture is damaged")
     return cv2.cvtColor(found, cv2.COLOR_BGR2RGB, dst=found)
+
+
+def read_unchanged(path: Path, shrink: int) -> Pixels:
+    """Return a picture's values as stored, (rows, cols, channels); raises `PhotoError`."""
+    try:
+        data = np.fromfile(path, dtype=np.uint8)
+        found = cv2.imdecode(data, cv2.IMREAD_UNCHANGED)
+    except OSError as problem:
+        raise PhotoError(f"{path.name}: cannot be read: {problem.strerror}") from problem
+    except cv2.error as problem:
+        raise PhotoError(f"{path.name}: its picture is damaged") from problem
+    if found is None or found.dtype not in (np.uint8, np.uint16):
+        raise PhotoError(f"{path.name}: expected a picture of 8 or 16 bits, got another")
+    if shrink > 1:
+        size = found.shape[1] // shrink, found.shape[0] // shrink
+        found = cv2.resize(found, size, interpolation=cv2.INTER_AREA)
+    return found.reshape(*found.shape[:2], -1)
 
 
 def shrink_for(pixels_ratio: float) -> int:

@@ -48,6 +48,9 @@ class Renderer:
         picture: Pixels | None = None
         failed: dict[int, str] = {}
         for index in choice.indices():
+            camera = camera_for(self.band, self.photos, index)
+            if camera is None:
+                continue
             try:
                 cut = self.cuts.get(index)
             except PhotoError as problem:
@@ -57,7 +60,7 @@ class Renderer:
                 shape = WINDOW_PX, WINDOW_PX, len(self.band.channels) + self.band.is_picture
                 picture = np.zeros(shape, dtype=self.band.dtype)
             rows, cols = choice.span(index)
-            found, is_known = self._part(window, index, cut, rows, cols)
+            found, is_known = self._part(window, index, camera, cut, rows, cols)
             mask = is_known & _by_pixel(choice.photo[rows, cols] == index)
             part = picture[_pixels(rows), _pixels(cols)]
             if self.band.is_picture:
@@ -68,12 +71,14 @@ class Renderer:
         return picture, failed
 
     def _part(
-        self, window: Window, index: int, cut: Cut, rows: slice, cols: slice
+        self, window: Window, index: int, camera: Camera, cut: Cut, rows: slice, cols: slice
     ) -> tuple[Pixels, BoolMap]:
         """Return a photo's values on some cells of a window, and where their place is known."""
         photo, shrunk = self.photos[index], float(self.cuts.shrink)
-        across, down = _pixel_maps(self.plan, window, photo.camera, self.ground, rows, cols)
-        is_known = np.isfinite(across)
+        across, down = _pixel_maps(self.plan, window, camera, self.ground, rows, cols)
+        with np.errstate(invalid="ignore"):
+            is_known = (across >= -1.0) & (across <= camera.cols)
+            is_known &= (down >= -1.0) & (down <= camera.rows)
         # A shrunk pixel's middle is the middle of those it was made of.
         across, down = (
             np.nan_to_num((each + 0.5) / shrunk - 0.5 - first)
@@ -89,20 +94,29 @@ class Renderer:
         return found, is_known
 
 
+def camera_for(band: Band, photos: Sequence[PlacedPhoto], index: int) -> Camera | None:
+    """Return the camera of a photo's band; None where the photo lacks it."""
+    return photos[index].camera if band.cameras is None else band.cameras[index]
+
+
 def taken_of(
     plan: MosaicPlan,
     windows: Iterable[tuple[Window, Choice]],
     photos: Sequence[PlacedPhoto],
     ground: Ground,
+    band: Band,
 ) -> dict[int, tuple[float, float, float, float]]:
-    """Return what windows take of each photo: top, left, bottom, right in its pixels."""
+    """Return what windows take of each photo's band: top, left, bottom, right in its pixels."""
     taken: dict[int, tuple[float, float, float, float]] = {}
     for window, choice in windows:
         for index in choice.indices():
+            camera = camera_for(band, photos, index)
+            if camera is None:
+                continue
             rows, cols = choice.span(index)
             wide = _wider(rows), _wider(cols)
             places = _places(plan, window, ground, STEP_PX, *wide)
-            across, down = photos[index].camera.project(places)
+            across, down = camera.project(places)
             if not np.isfinite(across).any():
                 continue
             low = np.nanmin(down), np.nanmin(across)
