@@ -139,7 +139,9 @@ def tag_command(
         if panels or (out / PANELS).exists():
             write_panels(out / PANELS, panels, min(each.photo.clock_ns for each in files.photos))
     except OSError as problem:
-        raise RecordError(f"{problem.filename or out}: {problem.strerror}") from problem
+        # Of a copy that fails the first name is that of the photo.
+        where = problem.filename2 or problem.filename or out
+        raise RecordError(f"{where}: {problem.strerror}") from problem
     names = [each.photo.name for each in chosen]
     quality = quality_of(flown, files)
     write_text(out / "tags.csv", table(flown, files, tags, names, refused, quality, sunlit))

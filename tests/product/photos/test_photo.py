@@ -8,6 +8,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from tests.product.made_flight import ACROSS_DEG, FRAME, write_photo
+from tests.product.photos.packets import packet
 
 from recon.model.units import NS_PER_S
 from recon.product.photos.names import unique_names
@@ -143,6 +144,39 @@ def test_fill_bytes_may_stand_before_any_marker(tmp_path: Path, whole: bytes, fi
         path.write_bytes(bytes(filled[: int(share * len(filled))]))
         with pytest.raises(PhotoError, match="cut off"):
             read_photo_facts(path, "a")
+
+
+@pytest.mark.parametrize(
+    "more",
+    [b"\xff\x01", b"\xff\xd0", b"\xff\x00", b"\xff\xd8", b"\xff\xfe\0\x06\xff\xd9ab", b"\0\0"],
+    ids=["temporary", "restart", "stuffed", "start", "a comment like an end", "zeros"],
+)
+def test_what_decoders_pass_over_is_no_damage(tmp_path: Path, whole: bytes, more: bytes) -> None:
+    at = whole.index(b"\xff\xdb")
+    path = tmp_path / "odd.jpg"
+    path.write_bytes(whole[:at] + more + whole[at:] + b"a film behind the photo" * 99)
+    assert read_photo_facts(path, "a").cols == 640
+    path.write_bytes(whole[:at] + more + whole[at:-2])
+    with pytest.raises(PhotoError, match="cut off"):
+        read_photo_facts(path, "a")
+
+
+def test_the_aircrafts_serial_and_the_time_of_exposure_stand_in_for_the_cameras(
+    tmp_path: Path,
+) -> None:
+    facts = {"DroneSerialNumber": "1581F", "UTCAtExposure": "2025-06-15T15:27:14.501234"}
+    xmp = packet({f"drone-dji:{name}": value for name, value in facts.items()})
+    found = read_photo_facts(photo(tmp_path / "a.JPG", xmp=xmp, camera=""), "a")
+    assert found.camera == ("Made", "Camera", "1581F")
+    assert found.satellite_ns == CLOCK_NS
+    assert read_photo_facts(photo(tmp_path / "b.JPG", xmp=xmp), "b").camera[2] == "CAM-1"
+
+
+def test_hostile_xmp_costs_what_it_states_and_is_named(tmp_path: Path) -> None:
+    entities = b'<!DOCTYPE x [<!ENTITY a "aaaa">]>' + DJI.replace(b"+59.80", b"&a;")
+    found = read_photo_facts(photo(tmp_path / "a.JPG", xmp=entities), "a")
+    assert (found.attitude, found.height_above_takeoff_m) == (None, None)
+    assert found.notes == ("its XMP is not read: a document type, which XMP never has",)
 
 
 def test_names_are_unique_and_without_spaces() -> None:

@@ -13,7 +13,16 @@ from recon.product.photos.photo_error import PhotoError
 from recon.product.photos.xmp import DJI, Xmp
 
 Tags = Mapping[int, Any]
+CAMERA_SERIAL = 0xC62F
+"""TIFF tag of DNG, which MicaSense writes too."""
 HeightReference = Literal["ellipsoid", "sea level", "not stated"]
+
+
+def serial_of(exif: Tags, details: Tags, xmp: Xmp) -> str:
+    """Return the serial number of a camera, or of its aircraft; empty where none is stated."""
+    stated = details.get(Base.BodySerialNumber) or exif.get(CAMERA_SERIAL)
+    names = "CameraSerialNumber", "DroneSerialNumber"
+    return text_of(stated) or text_of(xmp.text(DJI, *names))
 
 
 def text_of(value: object) -> str:
@@ -31,23 +40,34 @@ def clock_of(exif: Tags, details: Tags) -> tuple[int, float]:
     Raises `PhotoError` without a time.
     """
     for source, tag in ((details, Base.DateTimeOriginal), (exif, Base.DateTime)):
-        found = _DATE.match(text_of(source.get(tag)))
-        if found is None:
-            continue
-        try:
-            year, month, day, hour, minute, second = map(int, found.groups())
-            moment = datetime(year, month, day, hour, minute, second, tzinfo=UTC)
-        except ValueError:
+        second_ns = _second_ns(text_of(source.get(tag)))
+        if second_ns is None:
             continue
         digits = text_of(details.get(Base.SubsecTimeOriginal))
         share = int(digits[:9].ljust(9, "0")) if digits.isascii() and digits.isdigit() else None
         step_s = 1.0 if share is None else 10.0 ** -min(len(digits), 9)
-        return round(moment.timestamp()) * NS_PER_S + (share or 0), step_s
+        return second_ns + (share or 0), step_s
     raise PhotoError("expected EXIF with the time of the photo, got none")
 
 
-def satellite_ns(gps: Tags) -> int | None:
-    """Return UTC by the satellites; None where it is not stated."""
+def _second_ns(text: str) -> int | None:
+    """Return the whole second that a text begins with, as if it were UTC; None for another text."""
+    found = _DATE.match(text)
+    if found is None:
+        return None
+    try:
+        year, month, day, hour, minute, second = map(int, found.groups())
+        moment = datetime(year, month, day, hour, minute, second, tzinfo=UTC)
+    except ValueError:
+        return None
+    return round(moment.timestamp()) * NS_PER_S
+
+
+def satellite_ns(gps: Tags, xmp: Xmp) -> int | None:
+    """Return UTC by the satellites, by EXIF or DJI's XMP; None where it is not stated."""
+    exposed_ns = _second_ns(xmp.text(DJI, "UTCAtExposure") or "")
+    if exposed_ns is not None:
+        return exposed_ns
     day = re.fullmatch(r"(\d{4})[:-](\d\d)[:-](\d\d)", text_of(gps.get(GPS.GPSDateStamp)))
     try:
         hours, minutes, seconds = (float(part) for part in gps[GPS.GPSTimeStamp])

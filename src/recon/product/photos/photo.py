@@ -32,9 +32,10 @@ from recon.product.photos.exif import (
     absolute_height,
     clock_of,
     satellite_ns,
+    serial_of,
     text_of,
 )
-from recon.product.photos.jpeg import is_cut_off
+from recon.product.photos.jpeg import START_OF_IMAGE, whole_jpeg
 from recon.product.photos.lens import field_deg
 from recon.product.photos.look import Look, look_of
 from recon.product.photos.photo_error import PhotoError
@@ -122,10 +123,13 @@ def read_photo_facts(path: Path, name: str) -> Photo:
         data = path.read_bytes()
     except OSError as problem:
         raise PhotoError(f"{path.name}: cannot be read: {problem.strerror}") from problem
-    if not data.startswith((b"\xff\xd8", *tiff.SIGNATURES)):
+    if data.startswith(START_OF_IMAGE):
+        whole = whole_jpeg(data)
+        if whole is None:
+            raise PhotoError(f"{path.name}: the file is cut off: copy it from the card again")
+        data = whole
+    elif not data.startswith(tiff.SIGNATURES):
         raise PhotoError(f"{path.name}: expected a JPEG or TIFF, got another file")
-    if data.startswith(b"\xff\xd8") and is_cut_off(data):
-        raise PhotoError(f"{path.name}: the file is cut off: copy it from the card again")
     try:
         with warnings.catch_warnings(action="ignore"), _opened(data) as image:
             return _facts(path, name, image, data)
@@ -160,8 +164,7 @@ def _facts(path: Path, name: str, image: Any, data: bytes) -> Photo:
     clock_ns, step_s = clock_of(exif, details)
     place = place_of(gps, xmp)
     orientation = exif.get(Base.Orientation, 1)
-    names = (exif.get(Base.Make), exif.get(Base.Model), details.get(Base.BodySerialNumber))
-    make, model, serial = (text_of(each) for each in names)
+    make, model = (text_of(exif.get(tag)) for tag in (Base.Make, Base.Model))
     role = name_and_role(path.stem)[1]
     band = band_of(exif, details, xmp, role)
     height_m, reference = absolute_height(xmp, gps)
@@ -172,12 +175,12 @@ def _facts(path: Path, name: str, image: Any, data: bytes) -> Photo:
         cols,
         rows,
         orientation if orientation in range(1, 9) else 1,
-        (make, model, serial),
+        (make, model, serial_of(exif, details, xmp)),
         clock_ns,
         step_s,
         place.latitude_deg,
         place.longitude_deg,
-        satellite_ns(gps),
+        satellite_ns(gps, xmp),
         field_deg(exif, details, cols, rows),
         _attitude(xmp),
         xmp.number(DJI, "RelativeAltitude"),
