@@ -166,14 +166,14 @@ def places_off_m(mosaic: Path, flown: SurveyFlown) -> list[float]:
                 continue
             rows = slice(row - reach, row + size + reach)
             cols = slice(col - reach, col + size + reach)
-            land = _drawn(world, east_m[cols], north_m[rows], cell_m)
+            land = drawn(world, east_m[cols], north_m[rows], cell_m)
             shift = _shift_px(_detail(patch[..., :3], cell_m), _detail(land, cell_m))
             if shift is not None:
                 found.append(float(np.hypot(*(shift - reach))) * cell_m)
     return found
 
 
-def _drawn(
+def drawn(
     world: FieldRenderer, east_m: FloatArray, north_m: FloatArray, cell_m: float
 ) -> npt.NDArray[np.uint8]:
     """Return the land (R, C, 3) at easts (C,) and norths (R,), in even light."""
