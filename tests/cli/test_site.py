@@ -83,6 +83,67 @@ def test_an_import_is_added_or_replaces(folder: Path, tmp_path: Path) -> None:
     assert change.what == "import of b.geojson"
 
 
+def drawn(path: Path, crs: str | None, **shapes: object) -> Path:
+    features = [
+        {"type": "Feature", "properties": {"name": name}, "geometry": shape}
+        for name, shape in shapes.items()
+    ]
+    document: dict[str, object] = {"type": "FeatureCollection", "features": features}
+    if crs is not None:
+        document["crs"] = {"type": "name", "properties": {"name": crs}}
+    path.write_text(json.dumps(document))
+    return path
+
+
+SQUARE = [[-93.6, 41.9], [-93.598, 41.9], [-93.598, 41.902], [-93.6, 41.902], [-93.6, 41.9]]
+AREA = {"type": "Polygon", "coordinates": [SQUARE]}
+CROSSED = {"type": "Polygon", "coordinates": [[SQUARE[0], *SQUARE[2:0:-1], *SQUARE[3:]]]}
+
+
+def test_what_is_left_out_is_named_and_the_accuracy_stated(folder: Path, tmp_path: Path) -> None:
+    file = drawn(tmp_path / "a.geojson", "urn:ogc:def:crs:EPSG::4269", good=AREA, eight=CROSSED)
+    text = recon_site("import", str(folder), str(file), "--as", "survey_regions")
+    assert "warning: NAD83: the transformation to WGS84 is accurate to 4 m" in text
+    assert "warning: excluded: eight: its edges cross or overlap at longitude" in text
+    assert "1 imported into survey_regions, 1 excluded" in text
+    assert list(load_site(folder).layers.survey_regions) == ["good"]
+
+
+def test_a_plan_reads_the_same_file_alike(tmp_path: Path) -> None:
+    file = drawn(tmp_path / "a.geojson", "urn:ogc:def:crs:EPSG::4269", good=AREA, eight=CROSSED)
+    planned = CliRunner().invoke(app, ("plan", str(file), "--height", "60"))
+    assert planned.exit_code == 0, planned.stderr
+    assert "area  3.69 ha" in planned.stdout
+    assert "warning: excluded: eight:" in planned.stderr
+
+
+def test_some_of_many_are_chosen_by_name(folder: Path, tmp_path: Path) -> None:
+    file = drawn(tmp_path / "farm.geojson", None, **{f"field {n}": AREA for n in range(300)})
+    words = ("import", str(folder), str(file), "--as", "survey_regions")
+    recon_site(*words, "--feature", "FIELD 7", "--feature", "field 299")
+    assert list(load_site(folder).layers.survey_regions) == ["field 7", "field 299"]
+    with pytest.raises(SiteError, match="did you mean 'field 2"):
+        recon_site(*words, "--feature", "feild 299")
+
+
+def test_a_path_becomes_an_area_when_asked(folder: Path, tmp_path: Path) -> None:
+    file = drawn(
+        tmp_path / "a.geojson", None, way={"type": "LineString", "coordinates": SQUARE[:4]}
+    )
+    words = ("import", str(folder), str(file), "--as", "boundary")
+    with pytest.raises(SiteError, match="way: a path of 4 points, not an area: close paths"):
+        recon_site(*words)
+    recon_site(*words, "--close-paths")
+    assert load_site(folder).layers.boundary is not None
+
+
+def test_a_place_that_nobody_knows_becomes_no_fence(folder: Path, tmp_path: Path) -> None:
+    file = drawn(tmp_path / "a.geojson", "+proj=longlat +ellps=clrk66 +no_defs", old=AREA)
+    with pytest.raises(SiteError, match="expected coordinates whose place on the globe is known"):
+        recon_site("import", str(folder), str(file), "--as", "keep_out")
+    recon_site("import", str(folder), str(file), "--as", "survey_regions")
+
+
 @pytest.fixture
 def interrupted(folder: Path, tmp_path: Path) -> Path:
     """A site with the region north, and a crash while the region south was added to it."""

@@ -11,7 +11,9 @@ from recon.api import schema
 class Importing(Protocol):
     """What reads files with shapes."""
 
-    async def import_features(self, name: str, data: bytes) -> schema.ImportedView:
+    async def import_features(
+        self, name: str, data: bytes, *, close_paths: bool
+    ) -> schema.ImportedView:
         """Return the polygons and points of a file, or why it is refused."""
         ...
 
@@ -21,10 +23,13 @@ def add_import(app: FastAPI, importing: Callable[[], Importing]) -> None:
 
     @app.post("/api/site/import")
     async def import_file(
-        request: Request, name: Annotated[str, Query(max_length=200)]
+        request: Request,
+        name: Annotated[str, Query(max_length=200)],
+        close_paths: Annotated[bool, Query(description="take paths as areas")] = False,
     ) -> schema.ImportedView:
-        """Read polygons and points of a KML, KMZ, Shapefile (zip), GeoPackage or GeoJSON file.
+        """Read the polygons and points of a file with fields, of any format that is known.
 
         The body is the file. Nothing is saved.
         """
-        return await importing().import_features(name, await request.body())
+        data = await request.body()
+        return await importing().import_features(name, data, close_paths=close_paths)

@@ -22,7 +22,7 @@ PROTOCOL = "recon.v1"
 TOKEN_PROTOCOL_PREFIX = "recon.token."
 MAX_BODY_BYTES = 1024 * 1024
 """The longest mission takes 20 KiB; a body is held in memory."""
-LARGER_BODIES = {"/api/site/import": 8 * 1024 * 1024}
+LARGER_BODIES = {"/api/site/import": 16 * 1024 * 1024}
 """A file from a GIS has more attributes than shapes."""
 
 POLICY_VIOLATION = 1008

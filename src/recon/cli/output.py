@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import sys
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -69,6 +70,11 @@ def refused(refusal: Refusal) -> str:
 def print_line(text: str) -> None:
     """Print a line; control characters in it are escaped."""
     print(printable(text), flush=True)
+
+
+def print_warning(text: str) -> None:
+    """Print a warning on stderr: results on stdout may be JSON."""
+    print(printable(f"warning: {text}"), file=sys.stderr, flush=True)
 
 
 def print_json(value: Any) -> None:

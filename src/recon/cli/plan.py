@@ -156,7 +156,7 @@ def _plan_at(
         {"the region": Path(options.region), "--png": options.png, "--geojson": options.geojson}
     )
     model = camera_named(options.camera, cameras.values())
-    name, area, frame = _region(options.region, rows.feature, home)
+    name, area, frame = _region(options.region, rows, home)
     draft = _draft(name, area, home, model, options, rows)
     imaging = _imaging(draft, model, options.interval, _exposure_s(options.exposure), home)
     plan = _plan(draft, imaging, options.speed, frame, home)
@@ -198,7 +198,7 @@ def _draft(
     return replace(draft, height_above_takeoff_m=None, height_above_ground_m=height_m)
 
 
-def _region(name: str, feature: str | None, site: Site) -> tuple[str, Region, LocalFrame]:
+def _region(name: str, rows: RowOptions, site: Site) -> tuple[str, Region, LocalFrame]:
     """Return a file's region, or the site's of that name, in the site's frame or its own."""
     path = Path(name)
     if site.frame is not None and name in site.layers.survey_regions:
@@ -206,7 +206,7 @@ def _region(name: str, feature: str | None, site: Site) -> tuple[str, Region, Lo
     if not names_file(path):
         known = ", ".join(site.layers.survey_regions) or "none; name a site with --site"
         raise PlanError(f"Survey region {name!a} not found, nor a file; available: {known}")
-    return region_in(path, feature, site.frame)
+    return region_in(path, rows.feature, site.frame, close_paths=rows.close_paths)
 
 
 def _imaging(

@@ -3,12 +3,15 @@
 from pathlib import Path
 from typing import Any
 
+from recon.cli.output import print_warning
 from recon.client import ClientError
+from recon.fields.choice import chosen_features, listed
+from recon.fields.field_file import FORMATS, ImportedFeature, read_import
+from recon.fields.limits import LARGEST_FILE_BYTES
 from recon.model.airspace import Region
 from recon.model.errors import SiteError
 from recon.model.geo import GeoPoint, LocalFrame
-from recon.site.geojson import Feature, first_corner_of, is_json, read_features, regions_of
-from recon.site.imports import FORMATS, LARGEST_IMPORT_BYTES, read_import
+from recon.site.geojson import Feature, first_corner_of, regions_of
 from recon.site.reading import read_bounded
 
 Rings = list[list[list[float]]]
@@ -18,36 +21,37 @@ class RegionFileError(ClientError):
     """Not a region to survey; the text names the file, the feature and the reason."""
 
 
-def read_region(path: Path, feature: str | None, origin: GeoPoint) -> tuple[str, Rings]:
+def read_region(
+    path: Path, feature: str | None, origin: GeoPoint, *, close_paths: bool = False
+) -> tuple[str, Rings]:
     """Return the name and the rings of the one region in a file, or of the feature of that name.
 
     Raises `RegionFileError`, also for a region far from `origin`, the site's.
     """
+    chosen = _chosen(path, feature, close_paths=close_paths)
     try:
-        chosen = _chosen(path, feature)
-        regions = regions_of(chosen, LocalFrame(origin))
+        regions_of(chosen, LocalFrame(origin))
     except SiteError as problem:
         raise RegionFileError(str(problem)) from problem
-    _refuse_several(chosen, len(regions))
-    return _name(chosen) or path.stem, _rings(chosen)
+    rings: Any = chosen.geometry["coordinates"]
+    return _name(chosen) or path.stem, rings
 
 
 def region_in(
-    path: Path, feature: str | None, site_frame: LocalFrame | None
+    path: Path, feature: str | None, site_frame: LocalFrame | None, *, close_paths: bool = False
 ) -> tuple[str, Region, LocalFrame]:
     """Return the name of the one region in a file, and the region in metres of a frame.
 
     Without a site's frame its own has the region's first corner as origin. Raises
     `RegionFileError`.
     """
+    chosen = _chosen(path, feature, close_paths=close_paths)
     try:
-        chosen = _chosen(path, feature)
         frame = site_frame or LocalFrame(_first_corner(chosen))
-        regions = regions_of(chosen, frame)
+        (region,) = regions_of(chosen, frame)
     except SiteError as problem:
         raise RegionFileError(str(problem)) from problem
-    _refuse_several(chosen, len(regions))
-    return _name(chosen) or path.stem, regions[0], frame
+    return _name(chosen) or path.stem, region, frame
 
 
 def _first_corner(chosen: Feature) -> GeoPoint:
@@ -55,52 +59,31 @@ def _first_corner(chosen: Feature) -> GeoPoint:
     return GeoPoint(place.latitude_deg, place.longitude_deg, 0.0)
 
 
-def _refuse_several(chosen: Feature, polygons: int) -> None:
-    if polygons != 1:
-        raise RegionFileError(
-            f"{chosen.place}: expected one polygon, got {polygons}: make each a feature of its "
-            "own and name one with --feature"
-        )
-
-
-def _features(path: Path) -> tuple[Feature, ...]:
-    """Return what a GeoJSON file holds, or the polygons of a KML, a Shapefile or the like."""
-    data = read_bounded(path, LARGEST_IMPORT_BYTES, f"a file with a region: {FORMATS}")
-    if is_json(data) or path.suffix.lower() in (".geojson", ".json"):
-        return read_features(path)
-    found = read_import(path.name, data)
-    polygons = tuple(
-        Feature(f"{path}: feature {number}", number, {"name": each.name or None}, each.geometry)
-        for number, each in enumerate(found.features, start=1)
-        if each.geometry["type"] != "Point"
-    )
+def _chosen(path: Path, name: str | None, *, close_paths: bool) -> Feature:
+    try:
+        data = read_bounded(path, LARGEST_FILE_BYTES, f"a file with a region: {FORMATS}")
+        found = read_import(path.name, data, close_paths=close_paths)
+        features = chosen_features(path, found, None if name is None else [name])
+    except SiteError as problem:
+        raise RegionFileError(str(problem)) from problem
+    for warning in (*found.warnings, *(f"excluded: {each}" for each in found.excluded)):
+        print_warning(warning)
+    polygons = [each for each in features if each.geometry["type"] == "Polygon"]
     if not polygons:
         raise RegionFileError(f"{path}: expected a polygon, got points alone")
-    return polygons
-
-
-def _chosen(path: Path, name: str | None) -> Feature:
-    features = _features(path)
-    named = [each for each in features if name is None or _name(each) == name]
-    if len(named) == 1:
-        return named[0]
-    known = ", ".join(ascii(_name(each) or f"feature {each.number}") for each in features) or "none"
-    if name is None:
+    if len(polygons) > 1:
         raise RegionFileError(
-            f"{path}: expected one feature, got {len(features)}: name one with --feature ({known})"
+            f"{path}: expected one region, got {len(polygons)}: choose one with --feature "
+            f"({listed(found, polygons)})"
         )
-    raise RegionFileError(
-        f"{path}: expected one feature named {name!a}, got {len(named)}; features: {known}"
-    )
+    return _feature(path, polygons[0])
+
+
+def _feature(path: Path, polygon: ImportedFeature) -> Feature:
+    place = f"{path}: {polygon.name!a}" if polygon.name else str(path)
+    return Feature(place, 1, {"name": polygon.name or None}, polygon.geometry)
 
 
 def _name(feature: Feature) -> str | None:
-    name = feature.properties.get("name")
-    return name if isinstance(name, str) else None
-
-
-def _rings(feature: Feature) -> Rings:
-    """Return longitude and latitude only; a region has no heights."""
-    coordinates: Any = feature.geometry["coordinates"]
-    polygon = coordinates if feature.geometry["type"] == "Polygon" else coordinates[0]
-    return [[position[:2] for position in ring] for ring in polygon]
+    name: str | None = feature.properties["name"]
+    return name

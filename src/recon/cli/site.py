@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from recon.cli.commands import App
-from recon.cli.output import print_line, printable
+from recon.cli.output import print_line, print_warning, printable
 from recon.model.errors import SiteError
 from recon.model.geo import GeoPoint
 
@@ -66,22 +66,44 @@ def check_command(folder: FolderArgument) -> None:
 @site_app.command("import")
 def import_command(
     folder: FolderArgument,
-    file: Annotated[Path, typer.Argument(help="KML, KMZ, Shapefile (zip), GeoPackage or GeoJSON.")],
+    file: Annotated[
+        Path,
+        typer.Argument(
+            help="KML, KMZ, Shapefile (zip), GeoPackage, GeoJSON, ISOXML, GPX, or a plan of DJI "
+            "Pilot 2 or QGroundControl."
+        ),
+    ],
     layer: Annotated[Layer, typer.Option("--as", help="What its shapes become.")],
+    chosen: Annotated[
+        list[str] | None, typer.Option("--feature", help="Only the shapes of these names.")
+    ] = None,
+    close_paths: Annotated[
+        bool, typer.Option("--close-paths", help="Take paths as areas, closed by a straight line.")
+    ] = False,
     replaces: Annotated[
         bool, typer.Option("--replace", help="Instead of what the layer holds, not beside it.")
     ] = False,
 ) -> None:
     """Import shapes as a layer of a site. A running station does not see it before its restart."""
+    from recon.fields.choice import chosen_features
+    from recon.fields.field_file import read_import
+    from recon.fields.limits import LARGEST_FILE_BYTES
     from recon.model.airspace import SiteLayer
     from recon.record.files.file_set import replace_files
-    from recon.site.drawing import DrawnFeature, read_drawing, stage_drawing
-    from recon.site.imports import LARGEST_IMPORT_BYTES, read_import
+    from recon.site.drawing import FENCES, DrawnFeature, read_drawing, stage_drawing
     from recon.site.reading import read_bounded
 
     frame = opened_site(folder).frame
     assert frame is not None, "a folder's site has an origin"
-    found = read_import(file.name, read_bounded(file, LARGEST_IMPORT_BYTES, "a file to import"))
+    data = read_bounded(file, LARGEST_FILE_BYTES, "a file to import")
+    found = read_import(file.name, data, close_paths=close_paths)
+    for warning in found.warnings:
+        print_warning(warning)
+    if layer.value in FENCES and not found.is_fit_for_fences:
+        raise SiteError(
+            f"{file}: expected coordinates whose place on the globe is known for {layer.value}, "
+            "got others; export the file as WGS84 (EPSG:4326)"
+        )
     kept = [each for each in read_drawing(folder) if not (replaces and each.layer == layer.value)]
     # A file's heights may count from anywhere: pads stand on the site's ground.
     is_pads = layer is Layer.LANDING_PADS
@@ -89,9 +111,11 @@ def import_command(
     kind = "Point" if is_pads else "Polygon"
     new = [
         DrawnFeature(SiteLayer(layer.value), each.geometry, {"name": each.name or None, **own})
-        for each in found.features
+        for each in chosen_features(file, found, chosen)
         if each.geometry["type"] == kind
     ]
+    for each in found.excluded:
+        print_warning(f"excluded: {each}")
     if not new:
         raise SiteError(f"{file}: expected {kind.lower()}s for {layer.value}, got none")
     staged = stage_drawing(folder, [*kept, *new])
@@ -100,7 +124,7 @@ def import_command(
         replace_files(folder, staged.files, what=f"import of {file.name}", by="recon site", utc=utc)
     except OSError as problem:
         raise SiteError(f"{folder} cannot be written: {problem.strerror or problem}") from problem
-    excluded = found.excluded + len(found.features) - len(new)
+    excluded = len(found.excluded) + len(found.features) - len(new)
     print_line(f"{len(new)} imported into {layer.value}, {excluded} excluded")
 
 

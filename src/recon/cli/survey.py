@@ -25,7 +25,9 @@ from recon.model.units import HECTARE_M2
 
 PHASES = {"created": "planned"}
 """Words that differ from the API's."""
-REGION_SUFFIXES = (".geojson", ".json", ".kml", ".kmz", ".zip", ".gpkg")
+REGION_SUFFIXES = (
+    *(".geojson", ".json", ".kml", ".kmz", ".zip", ".gpkg", ".gpx", ".xml", ".plan"),
+)
 NO_ORIGIN = "the station's site has no origin: start the station with --site FOLDER"
 
 survey_app = App(
@@ -46,6 +48,9 @@ class RowOptions:
     feature: Annotated[
         str | None, typer.Option("--feature", help="Name of the feature in the file.")
     ] = None
+    close_paths: Annotated[
+        bool, typer.Option("--close-paths", help="Take a path in the file as an area.")
+    ] = False
     above_ground: Annotated[
         bool,
         typer.Option(
@@ -169,7 +174,7 @@ async def create_command(
 
     Nothing flies yet: `recon survey start` starts it.
     """
-    area = await _area(station, survey.region, rows.feature, survey.name)
+    area = await _area(station, survey.region, rows, survey.name)
     if survey.spare is not None:
         area["spare_serial"] = named_serials(station, [survey.spare])[0]
     answer = await station.surveys.create(**area, **survey.as_requested(rows))
@@ -273,7 +278,7 @@ def names_file(region: Path) -> bool:
 
 
 async def _area(
-    station: Station, region: str, feature: str | None, name: str | None
+    station: Station, region: str, rows: RowOptions, name: str | None
 ) -> dict[str, Any]:
     """Return the region of a file as rings, or the name of a region of the site."""
     path = Path(region)
@@ -286,7 +291,7 @@ async def _area(
     if site is None or site.latitude_deg is None or site.longitude_deg is None:
         raise ClientError(NO_ORIGIN)
     origin = GeoPoint(site.latitude_deg, site.longitude_deg, site.ground_altitude_m or 0.0)
-    own_name, rings = read_region(path, feature, origin)
+    own_name, rings = read_region(path, rows.feature, origin, close_paths=rows.close_paths)
     return {"polygon": rings, "name": name or own_name}
 
 

@@ -315,12 +315,17 @@ def region_fault(region: Region) -> str | None:
     reason, _, place = str(shapely.is_valid_reason(shape)).partition("[")
     if reason == "Valid Geometry":
         return None if shapely.area(shape) > 0.0 else "it has no area"
-    words = _FAULTS.get(reason, reason.lower())
+    words = fault_words(reason)
     east_north = place.rstrip("]").split()
     if len(east_north) < 2:
         return words
     east_m, north_m = (float(value) for value in east_north[:2])
     return f"{words}, {east_m:.1f} m east and {north_m:.1f} m north of the origin"
+
+
+def fault_words(reason: str) -> str:
+    """Return GEOS's reason for an invalid polygon in plain words."""
+    return _FAULTS.get(reason, reason.lower())
 
 
 def _circle_inside(area: shapely.Polygon) -> tuple[FloatArray, float]:

@@ -1,5 +1,5 @@
 /** What the station reads as shapes; it recognises a file by its content. */
-const SHAPES = ".kml,.kmz,.zip,.gpkg,.geojson,.json";
+const SHAPES = ".kml,.kmz,.zip,.gpkg,.geojson,.json,.gpx,.xml,.plan";
 
 /** A button that asks for a file with shapes. */
 export function FileButton(props: {

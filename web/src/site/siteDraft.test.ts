@@ -265,6 +265,7 @@ describe("loading again", () => {
 describe("an imported file", () => {
   const polygon = FIELD.geometry;
   const point = { type: "Point" as const, coordinates: [-93.6, 41.9] };
+  const READ = { features: [], excluded: [], warnings: [], is_fit_for_fences: true, reason: null };
 
   it("is a choice first, then part of the draft", async () => {
     const draft = await open();
@@ -275,11 +276,13 @@ describe("an imported file", () => {
         { name: "", geometry: polygon },
         { name: "home", geometry: point },
       ],
-      excluded: 2,
+      excluded: ["photo: a picture laid on the map", "no shape"],
+      warnings: ["NAD27: accurate to 5 m"],
+      is_fit_for_fences: true,
       reason: null,
     };
     await draft.readFile(new File(["x"], "fields.kml"));
-    expect(draft.notice()?.text).toBe("fields.kml: 4 read; 2 neither polygon nor point, skipped");
+    expect(draft.notice()?.text).toBe("fields.kml: 4 read, 2 excluded");
     expect(draft.imported().map(({ layer }) => layer)).toEqual([
       "survey_regions",
       "survey_regions",
@@ -299,7 +302,7 @@ describe("an imported file", () => {
   it("with many features takes those that are pressed", async () => {
     const draft = await open();
     const one = { name: "", geometry: polygon };
-    page.site.imported = { features: Array(21).fill(one), excluded: 0, reason: null };
+    page.site.imported = { ...READ, features: Array(21).fill(one) };
     await draft.readFile(new File(["x"], "county.gpkg"));
     expect(draft.imported().every(({ layer }) => layer === null)).toBe(true);
     draft.takeOrLeave(20);
@@ -311,7 +314,7 @@ describe("an imported file", () => {
 
   it("that is refused leaves everything as it is", async () => {
     const draft = await open(FIELD);
-    page.site.imported = { features: [], excluded: 0, reason: "a.zip: expected KML" };
+    page.site.imported = { ...READ, reason: "a.zip: expected KML" };
     await draft.readFile(new File(["x"], "a.zip"));
     expect(draft.notice()).toEqual({
       about: "import",

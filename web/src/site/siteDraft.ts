@@ -47,6 +47,15 @@ export interface ImportChoice {
   readonly layer: LayerName | null;
 }
 
+/** The file that was read last: what is left out of it, and what is said about the rest. */
+export interface FileReading {
+  readonly file: File;
+  readonly excluded: readonly string[];
+  readonly warnings: readonly string[];
+  /** False where nobody knows how far from their true place its shapes are. */
+  readonly isFitForFences: boolean;
+}
+
 export interface SiteDraft extends SavedDraft<SiteDrawingView, FeaturePlace> {
   readonly isOn: Accessor<boolean>;
   readonly features: Accessor<readonly DraftFeature[]>;
@@ -55,6 +64,7 @@ export interface SiteDraft extends SavedDraft<SiteDrawingView, FeaturePlace> {
   readonly canUndo: Accessor<boolean>;
   readonly canRedo: Accessor<boolean>;
   readonly imported: Accessor<readonly ImportChoice[]>;
+  readonly reading: Accessor<FileReading | null>;
   /** Opens the editor, with the site as it is unless there are edits; or closes it. */
   toggle(): Promise<void>;
   leave(): void;
@@ -72,7 +82,8 @@ export interface SiteDraft extends SavedDraft<SiteDrawingView, FeaturePlace> {
   setProperty(id: number, key: string, value: Attribute): void;
   undo(): void;
   redo(): void;
-  readFile(file: File): Promise<void>;
+  /** Reads a file; `closePaths` takes its paths as areas. */
+  readFile(file: File, closePaths?: boolean): Promise<void>;
   choose(index: number, layer: LayerName | null): void;
   /** A press on an imported feature: it is taken, or excluded. */
   takeOrLeave(index: number): void;
@@ -97,6 +108,7 @@ export function createSiteDraft(
   const [selectedId, setSelectedId] = createSignal<number | null>(null);
   const [tool, setTool] = createSignal<Tool | null>(null);
   const [imported, setImported] = createSignal<readonly ImportChoice[]>([]);
+  const [reading, setReading] = createSignal<FileReading | null>(null);
   let nextId = 1;
   const draft = createSavedDraft(
     {
@@ -229,16 +241,18 @@ export function createSiteDraft(
       setTool(null);
       return draft.discard();
     },
-    readFile: (file) =>
+    reading,
+    readFile: (file, closePaths = false) =>
       draft.ask(
-        () => site.readFile(file),
-        ({ features: found, excluded, reason }) => {
+        () => site.readFile(file, closePaths),
+        ({ features: found, excluded, warnings, is_fit_for_fences, reason }) => {
+          setReading({ file, excluded, warnings, isFitForFences: is_fit_for_fences });
           if (reason !== null) return draft.note(reason, true, "import");
           const { read, readSome } = text.imports;
           const note =
-            excluded === 0
+            excluded.length === 0
               ? read(file.name, found.length)
-              : readSome(file.name, found.length, excluded);
+              : readSome(file.name, found.length, excluded.length);
           draft.note(note, false, "import");
           setImported(choicesOf(found));
         },
@@ -258,9 +272,13 @@ export function createSiteDraft(
         if (layer !== null) next = [...next, created(layer, rings, name, next)];
       }
       setImported([]);
+      setReading(null);
       if (next !== features()) edit(next);
     },
-    dropImported: () => setImported([]),
+    dropImported: () => {
+      setImported([]);
+      setReading(null);
+    },
   };
 }
 

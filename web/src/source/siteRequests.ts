@@ -48,10 +48,10 @@ export function siteRequests(http: StationHttp) {
     calibrate: (body: CalibrationRequest) =>
       answered(SITE_SAVE, (signal) => client.POST("/api/site/calibration", { body, signal })),
     /** Reads the polygons and points of a file of another program; nothing is saved. */
-    readFile: (file: File) =>
+    readFile: (file: File, closePaths = false) =>
       http.read(
         SITE_READ,
-        `/api/site/import?name=${encodeURIComponent(file.name.slice(-100))}`,
+        `/api/site/import?close_paths=${closePaths}&name=${encodeURIComponent(file.name.slice(-100))}`,
         { method: "POST", body: file },
         (response): Promise<ImportedView> => response.json(),
       ),

@@ -19,6 +19,8 @@ export interface FakeSite {
   /** The answer to checks, saves and undos. */
   response: SiteDrawingResponse;
   imported: ImportedView;
+  /** Files that were read with paths as areas. */
+  closedPaths: string[];
   readonly asked: (readonly [what: "check" | "save", drawing: SiteDrawingRequest])[];
   /** The vehicles, and the answer to their checks and saves. */
   vehicles: SiteVehiclesView;
@@ -40,7 +42,8 @@ export function fakeSite(): FakeSite {
   return {
     drawing: { ...FIRST, features: [] },
     response: { ...ACCEPTED, feature: null, layers: [], also: [], drawing: null },
-    imported: { features: [], excluded: 0, reason: null },
+    closedPaths: [],
+    imported: { features: [], excluded: [], warnings: [], is_fit_for_fences: true, reason: null },
     asked: [],
     vehicles: { ...FIRST, vehicles: [] },
     vehiclesResponse: { ...ACCEPTED, row: null, changes: [], vehicles: null },
@@ -96,8 +99,9 @@ export function fakeSiteRequests(site: FakeSite): SiteRequests {
       site.askedFits.push(["accept", asked]);
       return answered(site.fit);
     },
-    readFile: async (file) => {
+    readFile: async (file, closePaths) => {
       site.files.push(file);
+      if (closePaths) site.closedPaths.push(file.name);
       return answered(site.imported);
     },
   };

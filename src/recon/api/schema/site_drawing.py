@@ -186,5 +186,9 @@ class ImportedView(Message):
     """Polygons and points of an imported file, in WGS84, or why it was refused."""
 
     features: list[ImportedFeatureView]
-    excluded: int = Field(description="features that are neither polygons nor points")
+    excluded: list[str] = Field(description="each shape that is left out, with the reason")
+    warnings: list[str] = Field(description="what was changed, and how accurate places are")
+    is_fit_for_fences: bool = Field(
+        description="false where nobody knows how far from their true place the shapes are"
+    )
     reason: str | None

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from recon.api import schema
+from recon.fields.field_file import read_import
 from recon.model.errors import ReconError
 from recon.model.person import Person
 from recon.site.drawing import (
@@ -15,7 +16,6 @@ from recon.site.drawing import (
     read_drawing,
     stage_drawing,
 )
-from recon.site.imports import read_import
 from recon.station.api_views import outcome_of
 from recon.station.api_views.edited_site import EditedSite, SiteChange, site_refusal
 
@@ -28,22 +28,34 @@ class FileImports:
 
     _reading: asyncio.Lock = field(default_factory=asyncio.Lock)
 
-    async def read(self, name: str, data: bytes) -> schema.ImportedView:
+    async def read(self, name: str, data: bytes, *, close_paths: bool) -> schema.ImportedView:
         """Return the polygons and points of a file, or why it is refused."""
         if self._reading.locked():
-            return schema.ImportedView(features=[], excluded=0, reason=IMPORT_IS_BUSY)
+            return _refused(IMPORT_IS_BUSY)
         try:
             async with self._reading:
-                found = await asyncio.to_thread(read_import, name, data)
+                found = await asyncio.to_thread(read_import, name, data, close_paths=close_paths)
         except ReconError as problem:
-            return schema.ImportedView(features=[], excluded=0, reason=str(problem))
+            return _refused(str(problem))
         features = [
             schema.ImportedFeatureView(
                 name=each.name, geometry=schema.DrawnGeometry.model_validate(each.geometry)
             )
             for each in found.features
         ]
-        return schema.ImportedView(features=features, excluded=found.excluded, reason=None)
+        return schema.ImportedView(
+            features=features,
+            excluded=[str(each) for each in found.excluded],
+            warnings=list(found.warnings),
+            is_fit_for_fences=found.is_fit_for_fences,
+            reason=None,
+        )
+
+
+def _refused(reason: str) -> schema.ImportedView:
+    return schema.ImportedView(
+        features=[], excluded=[], warnings=[], is_fit_for_fences=True, reason=reason
+    )
 
 
 @dataclass(slots=True)
@@ -83,9 +95,11 @@ class SiteService:
             drawing = await self._view() if change.refusal is None else None
         return _answer(change, drawing=drawing)
 
-    async def import_features(self, name: str, data: bytes) -> schema.ImportedView:
+    async def import_features(
+        self, name: str, data: bytes, *, close_paths: bool
+    ) -> schema.ImportedView:
         """Return the polygons and points of a file, or why it is refused."""
-        return await self._imports.read(name, data)
+        return await self._imports.read(name, data, close_paths=close_paths)
 
     async def _view(self) -> schema.SiteDrawingView:
         read = await self.edited.read(read_drawing)

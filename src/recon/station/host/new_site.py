@@ -34,9 +34,11 @@ class NewSite:
         folder = self.folder.resolve()
         return schema.NewSiteView(folder=str(folder), name=folder.name)
 
-    async def import_features(self, name: str, data: bytes) -> schema.ImportedView:
+    async def import_features(
+        self, name: str, data: bytes, *, close_paths: bool
+    ) -> schema.ImportedView:
         """Return the polygons and points of a file, or why it is refused."""
-        return await self._imports.read(name, data)
+        return await self._imports.read(name, data, close_paths=close_paths)
 
     async def make(self, asked: schema.NewSiteRequest) -> schema.ActionResponse:
         """Make the site, or return why not."""

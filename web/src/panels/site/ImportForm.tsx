@@ -9,12 +9,18 @@ import { FileButton } from "../FileButton";
 import { NoticeLine } from "./NoticeLine";
 
 const EXCLUDED = "";
+/** More features than are looked through by eye, and excluded ones that are shown unfolded. */
+const MANY = 20;
+const FEW = 5;
 
 /** A file of another program: read by the station, shown dotted on the map, and added as it is chosen here. */
 export function ImportForm() {
   const { siteDraft } = useConsole();
   const [isOver, setOver] = createSignal(false);
+  const [search, setSearch] = createSignal("");
   const { imported, isBusy, notice } = siteDraft;
+  const isFound = ({ name }: ImportChoice) =>
+    name.toLowerCase().includes(search().trim().toLowerCase());
   const added = () => imported().filter(({ layer }) => layer !== null).length;
   return (
     <section
@@ -39,11 +45,30 @@ export function ImportForm() {
         onFile={(file) => void siteDraft.readFile(file)}
       />
       <p class="muted">{text.imports.formats}</p>
+      <Show when={isBusy()}>
+        <p role="status">{text.imports.reading}</p>
+      </Show>
       <NoticeLine notice={notice()?.about === "import" ? notice() : null} />
+      <Reading />
       <Show when={imported().length > 0}>
         <p class="muted">{text.imports.choose}</p>
-        <ul aria-label={text.imports.list}>
-          <For each={imported()}>{(one, index) => <Choice choice={one} index={index()} />}</For>
+        <Show when={imported().length > MANY}>
+          <input
+            class="field"
+            type="search"
+            aria-label={text.imports.search}
+            placeholder={text.imports.search}
+            onInput={(event) => setSearch(event.currentTarget.value)}
+          />
+        </Show>
+        <ul class="import-choices" aria-label={text.imports.list}>
+          <For each={imported()}>
+            {(one, index) => (
+              <Show when={isFound(one)}>
+                <Choice choice={one} index={index()} />
+              </Show>
+            )}
+          </For>
         </ul>
         <div class="section-buttons">
           <button
@@ -63,10 +88,53 @@ export function ImportForm() {
   );
 }
 
+/** What is left out of the file that was read, and what is said about the rest. */
+function Reading() {
+  const { siteDraft } = useConsole();
+  const hasPaths = (excluded: readonly string[], problem: string) =>
+    [...excluded, problem].some((line) => line.includes("close paths"));
+  return (
+    <Show when={siteDraft.reading()}>
+      {(reading) => (
+        <>
+          <Show when={!reading().isFitForFences}>
+            <p class="wire-text">{text.imports.noFences}</p>
+          </Show>
+          <For each={reading().warnings}>{(line) => <p class="wire-text">{line}</p>}</For>
+          <Show when={reading().excluded.length > 0}>
+            <details open={reading().excluded.length <= FEW}>
+              <summary>
+                {text.imports.excluded}: {reading().excluded.length}
+              </summary>
+              <ul class="import-choices">
+                <For each={reading().excluded}>{(line) => <li class="wire-text">{line}</li>}</For>
+              </ul>
+            </details>
+          </Show>
+          <Show when={hasPaths(reading().excluded, siteDraft.notice()?.text ?? "")}>
+            <button
+              type="button"
+              class="button"
+              disabled={siteDraft.isBusy()}
+              onClick={() => void siteDraft.readFile(reading().file, true)}
+            >
+              {text.imports.closePaths}
+            </button>
+          </Show>
+        </>
+      )}
+    </Show>
+  );
+}
+
 function Choice(props: { choice: ImportChoice; index: number }) {
   const { siteDraft } = useConsole();
   const fitting = () =>
-    LAYER_NAMES.filter((layer) => LAYERS[layer].isPoint === props.choice.isPoint);
+    LAYER_NAMES.filter(
+      (layer) =>
+        LAYERS[layer].isPoint === props.choice.isPoint &&
+        (layer === "survey_regions" || siteDraft.reading()?.isFitForFences !== false),
+    );
   const name = () => props.choice.name || text.imports.unnamed(props.index + 1);
   return (
     <li>

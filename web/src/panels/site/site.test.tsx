@@ -200,7 +200,9 @@ describe("an imported file", () => {
         { name: "west", geometry: polygon },
         { name: "<b>east</b>", geometry: polygon },
       ],
-      excluded: 0,
+      excluded: [],
+      warnings: [],
+      is_fit_for_fences: true,
       reason: null,
     };
     const section = find(page.root, ".site-import");
@@ -213,6 +215,72 @@ describe("an imported file", () => {
     type("<b>east</b>", "");
     press("Add 1 feature");
     expect(page.shared.siteDraft.features().map(({ layer }) => layer)).toEqual(["boundary"]);
+  });
+});
+
+describe("a file that is not read whole", () => {
+  const shape = (lon: number) => ({
+    type: "Polygon" as const,
+    coordinates: [
+      [
+        [lon, 0],
+        [lon + 1, 0],
+        [lon + 1, 1],
+        [lon, 0],
+      ],
+    ],
+  });
+  const read = async (imported: Partial<(typeof page.site)["imported"]>) => {
+    page.site.imported = { ...page.site.imported, ...imported };
+    const section = find(page.root, ".site-import");
+    const drop = new Event("drop", { bubbles: true }) as Event & { dataTransfer: unknown };
+    drop.dataTransfer = { files: [new File(["x"], "farm.kml")] };
+    section.dispatchEvent(drop);
+    await settled();
+    return section;
+  };
+
+  it("names what is left out, and takes paths as areas when asked", async () => {
+    await open();
+    const section = await read({
+      features: [{ name: "west", geometry: shape(0) }],
+      excluded: ["lane: a path of 4 points, not an area: close paths to take it as one"],
+      warnings: ["pond: 12000 corners are simplified to 437, within 2 cm"],
+    });
+    expect(section.textContent).toContain("farm.kml: 1 read, 1 excluded");
+    expect(section.textContent).toContain("lane: a path of 4 points");
+    expect(section.textContent).toContain("within 2 cm");
+    press("Take paths as areas");
+    await settled();
+    expect(page.site.closedPaths).toEqual(["farm.kml"]);
+  });
+
+  it("becomes no fence where nobody knows how far off it is", async () => {
+    await open();
+    const section = await read({
+      features: [{ name: "old", geometry: shape(0) }],
+      is_fit_for_fences: false,
+    });
+    expect(section.textContent).toContain("Survey regions only");
+    const layers = [...section.querySelectorAll("option")].map(({ value }) => value);
+    expect(layers).toEqual(["survey_regions", ""]);
+  });
+
+  it("of a whole farm is searched by name", async () => {
+    await open();
+    const fields = Array.from({ length: 21 }, (_, k) => ({
+      name: `field ${k + 1}`,
+      geometry: shape(k),
+    }));
+    const section = await read({ features: fields });
+    const search = find<HTMLInputElement>(page.root, "input[type=search]");
+    search.value = "FIELD 21";
+    search.dispatchEvent(new InputEvent("input", { bubbles: true }));
+    expect(section.querySelectorAll(".site-choice")).toHaveLength(1);
+    type("field 21", "survey_regions");
+    press("Add 1 feature");
+    const [added] = page.shared.siteDraft.features();
+    expect(added?.properties["name"]).toBe("field 21");
   });
 });
 

@@ -96,7 +96,13 @@ export const feature = {
 export const imports = {
   name: "Import",
   file: "Import a file",
-  formats: "KML, KMZ, Shapefile (zip), GeoPackage or GeoJSON; or drop it here.",
+  formats:
+    "KML, KMZ, Shapefile (zip), GeoPackage, GeoJSON, ISOXML, GPX or a flight plan; or drop it here.",
+  reading: "Reading the file",
+  search: "Find by name",
+  excluded: "Excluded",
+  closePaths: "Take paths as areas",
+  noFences: "Survey regions only: where these shapes are is not known well enough for a fence.",
   choose: "Choose what each becomes. A press on its shape takes it or leaves it out.",
   list: "Imported features",
   add: (count: number) => `Add ${plural(count, "feature")}`,
@@ -105,7 +111,7 @@ export const imports = {
   unnamed: (number: number) => `Feature ${number}`,
   read: (file: string, count: number) => `${file}: ${count} read`,
   readSome: (file: string, count: number, left: number) =>
-    `${file}: ${count} read; ${left} neither polygon nor point, skipped`,
+    `${file}: ${count} read, ${left} excluded`,
 };
 
 /** The site's vehicles as a table. */

@@ -12,9 +12,10 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from recon.fields import field_file, limits
+from recon.fields.field_file import read_import
+from recon.fields.shape import FieldFileError
 from recon.model.errors import SiteError
-from recon.site import imports
-from recon.site.imports import read_import
 
 HOLE = [(-93.6032, 41.9012), (-93.6030, 41.9012), (-93.6030, 41.9014), (-93.6032, 41.9012)]
 OUTLINE = [(-93.604, 41.901), (-93.602, 41.901), (-93.602, 41.902), (-93.604, 41.901)]
@@ -84,20 +85,21 @@ def test_each_format_gives_the_field_with_its_hole_and_name(format_: str, tmp_pa
     # A UTM zone is off by less than a centimetre after the path there and back.
     assert shapely.hausdorff_distance(read, FIELD) < 1e-7
     assert len(rings) == 2
-    assert found.excluded == 0
+    assert found.excluded == ()
 
 
 def test_points_are_kept_and_lines_counted() -> None:
     shapes = [
         {"type": "Point", "coordinates": OUTLINE[0]},
-        {"type": "LineString", "coordinates": OUTLINE},
+        {"type": "LineString", "coordinates": OUTLINE[:3]},
         {"type": "MultiPolygon", "coordinates": [[OUTLINE], [HOLE]]},
     ]
     features = [{"type": "Feature", "properties": {}, "geometry": each} for each in shapes]
     data = json.dumps({"type": "FeatureCollection", "features": features}).encode()
     found = read_import("mixed.json", data)
     assert [each.geometry["type"] for each in found.features] == ["Point", "Polygon", "Polygon"]
-    assert found.excluded == 1
+    (path,) = found.excluded
+    assert "a path of" in str(path)
 
 
 ENTITIES = KML.replace("<kml", '<!DOCTYPE a [<!ENTITY b "bb"><!ENTITY c "&b;&b;">]><kml', 1)
@@ -113,12 +115,16 @@ def _packed(method: int) -> bytes:
     return packed.getvalue()
 
 
-def _corners(count: int) -> bytes:
+def _corners(count: int, shapes: int) -> bytes:
     ring = [[k * 1e-7, (k % 2) * 1e-7] for k in range(count)]
     shape = {"type": "Polygon", "coordinates": [[*ring, ring[0]]]}
     one = {"type": "Feature", "properties": {}, "geometry": shape}
-    return json.dumps({"type": "FeatureCollection", "features": [one] * 3}).encode()
+    return json.dumps({"type": "FeatureCollection", "features": [one] * shapes}).encode()
 
+
+DEEP = b"<kml>" + b"<Folder>" * 200 + b"</Folder>" * 200 + b"</kml>"
+MANY = b"<kml>" + b"<a/>" * 500_000 + b"</kml>"
+NESTED = b'{"type":"Polygon","coordinates":' + b"[" * 100_000 + b"]" * 100_000 + b"}"
 
 HOSTILE = {
     "an LZMA bomb": (lambda: _packed(zipfile.ZIP_LZMA), "stored or deflated"),
@@ -126,18 +132,19 @@ HOSTILE = {
     "a member without a name": (lambda: _zip_of({".": KML}), "names inside the archive"),
     "a file that names another": (lambda: VRT.encode(), "other XML"),
     "two documents": (lambda: KML.encode() + VRT.encode(), "invalid XML"),
-    "more corners than a site holds": (lambda: _corners(9_000), "at most 20000 corners"),
+    "more corners than are read": (lambda: _corners(9_000, 30), "at most 250000 corners"),
     "a bomb": (lambda: _zip(doc__kml=b"<kml>" + bytes(40 * 1024 * 1024)), "when unpacked"),
     "a way out": (lambda: _zip_of({"../../etc/doc.kml": KML}), "names inside the archive"),
     "an absolute name": (lambda: _zip_of({"/etc/doc.kml": KML}), "names inside the archive"),
-    "many files": (lambda: _zip_of({f"{n}.kml": "" for n in range(201)}), "at most 200 files"),
+    "many files": (lambda: _zip_of({f"{n}.kml": "" for n in range(2001)}), "at most 2000 files"),
     "entities": (lambda: ENTITIES.encode(), "without a document type"),
     "entities in a KMZ": (lambda: _zip(doc__kml=ENTITIES), "without a document type"),
-    "UTF-16": (lambda: b"<" + KML.encode("utf-16"), "invalid XML"),
+    "deep XML": (lambda: DEEP, "elements deep"),
+    "endless XML": (lambda: MANY, "XML elements"),
+    "deep JSON": (lambda: NESTED, "nested deeply"),
     "a zip cut off": (lambda: _zip(doc__kml=KML)[:-30], "zip archive that can be read"),
-    "two Shapefiles": (lambda: _zip(a__shp=b"", b__shp=b""), "one Shapefile"),
     "a bare .shp": (lambda: b"\x00\x00\x27\x0a" + bytes(100), "as a zip"),
-    "no Shapefile": (lambda: _zip(readme__txt="hello"), "neither"),
+    "no fields": (lambda: _zip(readme__txt="hello"), "got neither, but .txt"),
     "a Shapefile without .prj": (lambda: _zip(a__shp=b"", a__shx=b"", a__dbf=b""), ".prj"),
     "a false Shapefile": (
         lambda: _zip(a__shp=b"x", a__shx=b"", a__dbf=b"", a__prj=b""),
@@ -147,7 +154,7 @@ HOSTILE = {
     "a program": (lambda: b"\x7fELF" + bytes(100), "another kind of file"),
     "nothing": (lambda: b"", "another kind of file"),
     "a damaged GeoPackage": (lambda: b"SQLite format 3\x00" + bytes(2000), "damaged"),
-    "a huge file": (lambda: b"{" + bytes(imports.LARGEST_IMPORT_BYTES), "at most"),
+    "a huge file": (lambda: b"{" + bytes(limits.LARGEST_FILE_BYTES), "at most"),
 }
 
 
@@ -158,21 +165,12 @@ def test_hostile_files_are_refused_with_a_sentence(kind: str) -> None:
         read_import(f"../{kind}\n.zip", make())
 
 
-def test_nothing_but_the_five_formats_is_tried(tmp_path: Path) -> None:
+def test_no_driver_but_those_of_tables_is_tried(tmp_path: Path) -> None:
     """GDAL has drivers that read other files, or the network, when a file asks for it."""
     (tmp_path / "a.csv").write_text("x,y\n1,2\n")
-    path = tmp_path / "a.vrt"
-    path.write_text(VRT.replace("/home/a.csv", str(tmp_path / "a.csv")))
-    with pytest.raises(SiteError, match="expected a file that GDAL reads, got a damaged one"):
-        imports._read_in_process(path.name, path)
-
-
-def test_more_features_than_a_layer_may_hold_are_refused() -> None:
-    shape = {"type": "Point", "coordinates": [0, 0]}
-    one = {"type": "Feature", "properties": {}, "geometry": shape}
-    data = json.dumps({"type": "FeatureCollection", "features": [one] * 1001}).encode()
-    with pytest.raises(SiteError, match="at most 1000 features"):
-        read_import("many.json", data)
+    (tmp_path / "0.gpkg").write_text(VRT.replace("/home/a.csv", str(tmp_path / "a.csv")))
+    with pytest.raises(FieldFileError, match="expected a file that GDAL reads, got a damaged one"):
+        field_file._read_in_process({"0.gpkg": ""}, tmp_path, close_paths=False)
 
 
 @settings(max_examples=40, deadline=None)
@@ -181,21 +179,19 @@ def test_more_features_than_a_layer_may_hold_are_refused() -> None:
 )
 def test_any_bytes_end_in_a_sentence_before_a_process_is_started(tail: bytes, head: bytes) -> None:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(imports, "_read_in_process", _refused)
+        patch.setattr(field_file, "_read_in_process", _refused)
         with pytest.raises(SiteError):
             read_import("any", head + tail)
 
 
-def _refused(shown: str, _path: Path) -> object:
-    raise SiteError(f"{shown}: reached the process")
+def _refused(_documents: object, _folder: Path, *, close_paths: bool) -> object:
+    raise FieldFileError(f"reached the process, {close_paths}")
 
 
 def test_a_file_that_takes_too_long_is_refused_with_what_to_do(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     spins = "import resource\nresource.setrlimit(resource.RLIMIT_CPU, (1, 2))\nwhile True: pass\n"
-    endless = tmp_path / "endless.py"
-    endless.write_text(spins)
-    monkeypatch.setattr(imports, "_PROCESS", endless)
+    monkeypatch.setattr(field_file, "PROCESS", ("-c", spins))
     with pytest.raises(SiteError, match=r"a few seconds, got a slower one; simplify its shapes"):
         read_import("field.kml", KML.encode())

@@ -1,0 +1,54 @@
+"""Shapes of a file, chosen by name."""
+
+from collections.abc import Sequence
+from difflib import get_close_matches
+from pathlib import Path
+
+from recon.fields.field_file import Imported, ImportedFeature
+from recon.model.errors import SiteError
+
+MOST_LISTED = 20
+
+
+def shown_name(feature: ImportedFeature, number: int) -> str:
+    """Return a shape's name, or its number in the file where it has none."""
+    return feature.name or f"feature {number}"
+
+
+def chosen_features(
+    path: Path, found: Imported, names: Sequence[str] | None
+) -> tuple[ImportedFeature, ...]:
+    """Return the shapes of these names, in any case of letters; all without names.
+
+    Raises `SiteError` for a name that the file does not have.
+    """
+    if not names:
+        return found.features
+    by_name = {
+        shown_name(feature, number).casefold(): feature
+        for number, feature in enumerate(found.features, start=1)
+    }
+    chosen = []
+    for name in names:
+        if name.casefold() not in by_name:
+            raise SiteError(
+                f"{path}: expected a feature named {name!a}, got none{_near(name, found)}"
+            )
+        chosen.append(by_name[name.casefold()])
+    return tuple(chosen)
+
+
+def listed(found: Imported, features: Sequence[ImportedFeature]) -> str:
+    """Return the names of shapes for an error, the first of many."""
+    numbers = {id(feature): number for number, feature in enumerate(found.features, start=1)}
+    names = [ascii(shown_name(each, numbers[id(each)])) for each in features[:MOST_LISTED]]
+    rest = len(features) - len(names)
+    return ", ".join(names) + (f" and {rest} more" if rest else "")
+
+
+def _near(name: str, found: Imported) -> str:
+    known = {each.name.casefold(): each.name for each in found.features if each.name}
+    near = get_close_matches(name.casefold(), list(known), n=3)
+    if near:
+        return f"; did you mean {' or '.join(ascii(known[each]) for each in near)}?"
+    return f"; features: {listed(found, found.features)}"
