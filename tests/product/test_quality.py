@@ -102,6 +102,15 @@ def test_blur_and_exposure_are_seen_in_small_pictures(tmp_path: Path) -> None:
     assert band.detail == pytest.approx(good.detail, rel=0.1)
 
 
+def test_a_bands_black_level_counts_as_black(tmp_path: Path) -> None:
+    path = tmp_path / "a.tif"
+    Image.fromarray(3_200 + scene(320, 240).astype(np.uint16)).save(path)
+    with Image.open(path) as image:
+        found = look_of(image, path.read_bytes(), 3_200.0)
+    assert found is not None
+    assert found.black == 1.0
+
+
 def test_a_large_picture_is_judged_by_its_preview(tmp_path: Path) -> None:
     large, small = scene(2400, 1800), scene(640, 480)
     path = tmp_path / "a.jpg"

@@ -40,10 +40,12 @@ class Look:
     black: float
 
 
-def look_of(image: Any, data: bytes) -> Look | None:
-    """Return the look of an open picture and the bytes of its file; None where it has no
-    preview."""
-    grey = _grey(image, data)
+def look_of(image: Any, data: bytes, black_level: float = 0.0) -> Look | None:
+    """Return the look of an open picture and the bytes of its file; None where it has no preview.
+
+    `black_level` is what a band's pixels without light have.
+    """
+    grey = _grey(image, data, black_level)
     if grey is None or grey.size < LEAST_PIXELS:
         return None
     grey = _without_bars(grey)
@@ -62,9 +64,11 @@ def _without_bars(grey: GreyMap) -> GreyMap:
     return grey[rows[0] : rows[-1] + 1, cols[0] : cols[-1] + 1]
 
 
-def _grey(image: Any, data: bytes) -> GreyMap | None:
+def _grey(image: Any, data: bytes, black_level: float) -> GreyMap | None:
     if image.size[0] * image.size[1] <= MOST_PIXELS:
-        return _eight_bit(np.asarray(image)) if image.format == "TIFF" else _decoded(data)
+        if image.format == "TIFF":
+            return _eight_bit(np.asarray(image), black_level)
+        return _decoded(data)
     for preview in (_mpf_preview(image, data), _thumbnail(image)):
         found = _decoded(preview) if preview else None
         if found is not None:
@@ -72,13 +76,15 @@ def _grey(image: Any, data: bytes) -> GreyMap | None:
     return None
 
 
-def _eight_bit(pixels: npt.NDArray[Any]) -> GreyMap | None:
+def _eight_bit(pixels: npt.NDArray[Any], black_level: float) -> GreyMap | None:
     """Return a band's picture in 8 bits; None for pictures of several bands, or of other
     numbers."""
     if pixels.ndim != 2 or pixels.dtype not in (np.uint8, np.uint16):
         return None
-    shift = 8 * (pixels.dtype.itemsize - 1)
-    return (pixels >> shift).astype(np.uint8)
+    most = float(np.iinfo(pixels.dtype).max)
+    scale = 255.0 / max(most - black_level, 1.0)
+    found: GreyMap = np.clip((pixels - black_level) * scale, 0.0, 255.0).astype(np.uint8)
+    return found
 
 
 def _decoded(data: bytes) -> GreyMap | None:

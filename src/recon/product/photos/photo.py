@@ -194,7 +194,7 @@ def _facts(path: Path, name: str, image: Any, data: bytes) -> Photo:
         capture_of(xmp),
         exposure_s_of(details, xmp),
         irradiance_of(xmp),
-        look_of(image, data),
+        look_of(image, data, band.black_level or 0.0 if band else 0.0),
         panel_of(xmp),
         place.is_in_exif and _is_plain(xmp, gps, height_m, (horizontal_m, vertical_m)),
         (*notes, *filter(None, [place.note])),
