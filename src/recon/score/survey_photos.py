@@ -74,6 +74,7 @@ def _shots_of(flight: FlightData, truth: Truth, track: RecordedTrack) -> list[Ph
                 np.array([place[0], place[1], place[2] + home_up_m]),
                 place[2],
                 _heading_at(since_s, track.yaw_deg) - yaw_error_deg,
+                truth.sky.settings.seed,
             )
         )
     return shots

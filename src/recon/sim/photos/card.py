@@ -82,13 +82,15 @@ class PhotoShot:
     height_above_takeoff_m: float
     yaw_deg: float
     """Heading of the aircraft's front."""
+    seed: int = 0
+    """Of the gimbal's and the position's errors."""
 
     @property
     def pose(self) -> CameraPose:
         """The camera's true pose."""
         telemetry = TelemetryReference(0.0, 0.0, self.height_above_takeoff_m, self.yaw_deg)
         hung = mounted_pose(telemetry, self.place_m)
-        return true_pose(hung, GIMBAL, crc32(self.serial.encode()), self.at_s)
+        return true_pose(hung, GIMBAL, crc32(f"{self.seed}/{self.serial}".encode()), self.at_s)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -118,7 +120,7 @@ class PhotoCard:
         renderer, errors = self._renderer(), dict[str, _PositionError]()
         for number, shot in enumerate(shots):
             error = errors.setdefault(
-                shot.serial, _PositionError(self.settings.position_sigma_m, shot.serial)
+                shot.serial, _PositionError(self.settings.position_sigma_m, shot)
             )
             pixels = renderer.render(CameraView(shot.at_s, number, shot.pose))
             stated = self._stated(shot, error.at(shot.at_s))
@@ -186,8 +188,8 @@ def _half_turns(degrees: float) -> float:
 class _PositionError:
     """The error of the positions on one card, (3,): slow and fast parts, east, north and up."""
 
-    def __init__(self, sigma_m: float, serial: str) -> None:
-        self._random, self._at_s = Random(f"{serial}/gnss"), 0.0
+    def __init__(self, sigma_m: float, first: PhotoShot) -> None:
+        self._random, self._at_s = Random(f"{first.seed}/{first.serial}/gnss"), first.at_s
         self._slow = [
             GaussMarkov(sigma_m, FIELD_DRIFT.position_time_s, self._random.gauss(0.0, sigma_m))
             for _axis in range(3)
