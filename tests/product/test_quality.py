@@ -20,20 +20,23 @@ from recon.product.timing import TimedPhoto
 FLIGHT = flight()
 GOOD = Look(0.08, 0.001, 0.01)
 PHOTO = Photo(
-    Path("x"), "x", 4000, 3000, 1, ("DJI", "M", "1"), 0, 1.0, 41.9, -93.6, None, 66.0, None, 60.0,
-    look=GOOD, exposure_s=1 / 1000,
+    Path("x.JPG"), "x", 4000, 3000, 1, ("DJI", "M", "1"), 0, 1.0, 41.9, -93.6, None, 66.0, None,
+    60.0,
+    look=GOOD, exposure_s=1 / 1000, size_bytes=8_000_000,
 )  # fmt: skip
 ODD = 11
 
 
 def files(**odd: object) -> ShotFiles:
-    """A flight's photos, of which one differs in its facts, or in its `aim`."""
+    """A flight's photos, of which one differs in its facts, or in its `aim`; all lack a look if it
+    does."""
     found = ShotFiles()
     for number, at_s in enumerate(times_s(ONE)[:40].tolist()):
         east, north, yaw = (float(each) for each in ONE.place(at_s))
         aim, facts = Aim(east, north, HEIGHT_M, yaw), dict(odd) if number == ODD else {}
         aim = replace(aim, **facts.pop("aim", {}))
-        photo = replace(PHOTO, name=f"{number}", **facts)
+        looks = {"look": None} if odd.get("look", GOOD) is None else {}
+        photo = replace(PHOTO, name=f"{number}", **looks | facts)
         at_ns = START_NS + round(at_s * NS_PER_S)
         view = PhotoView(aim, 66.0, photo.cols, photo.rows)
         found.photos.append(TimedPhoto(photo, ONE.serial, at_ns, 0.1, view, aim.height_m))
@@ -54,6 +57,7 @@ PX_PER_M = 4000 / (2 * HEIGHT_M * np.tan(np.deg2rad(33.0)))
     [
         ({"exposure_s": 1 / 60}, f"moved {SPEED_MPS / 60 * PX_PER_M:.1f} pixels"),
         ({"look": Look(0.02, 0.0, 0.0)}, "blurred: 25 % of its neighbours' detail"),
+        ({"look": None, "size_bytes": 3_000_000}, "perhaps blurred: its file has 38 % of its"),
         ({"look": replace(GOOD, white=0.3)}, "30 % of it is white"),
         ({"look": replace(GOOD, black=0.7)}, "70 % of it is black"),
         ({"aim": {"pitch_deg": -55.0}}, "looks 35 degrees off straight down"),

@@ -16,6 +16,7 @@ from recon.model.units import NS_PER_S
 from recon.product.clock import places_at
 from recon.product.coverage import region_of
 from recon.product.flight import FlightData
+from recon.product.photos.photo import Photo
 from recon.product.shot_files import ShotFiles
 from recon.product.timing import TimedPhoto
 
@@ -24,6 +25,9 @@ MOST_MOVED_PX = 1.5
 LEAST_DETAIL = 0.4
 """Of the neighbours' median. A shaded photo among sunlit ones keeps half; out of focus by three
 pixels of its preview, a fifth is left."""
+LEAST_SIZE = 0.5
+"""Of the neighbours' median, for files without a preview: compression keeps detail, so a blurred
+photo's file is small."""
 NEIGHBOURS = 5
 """Photos compared on each side."""
 MOST_WHITE, MOST_BLACK = 0.05, 0.5
@@ -111,18 +115,39 @@ def _blurred(photos: Sequence[TimedPhoto]) -> Iterator[tuple[str, str]]:
     """Yield names with a reason, of photos with far less detail than those before and after."""
     series: dict[object, list[TimedPhoto]] = defaultdict(list)
     for each in photos:
-        if each.photo.look is not None:
-            band = each.photo.band.name if each.photo.band else ""
-            series[each.serial, each.photo.camera, each.photo.kind, band].append(each)
+        band = each.photo.band.name if each.photo.band else ""
+        series[each.serial, each.photo.camera, each.photo.kind, band].append(each)
     for found in series.values():
-        detail = np.array([each.photo.look.detail for each in found if each.photo.look])
-        for number, each in enumerate(found):
-            share = detail[number] / max(_neighbours(detail, number), 1e-9)
-            if share < LEAST_DETAIL:
-                yield each.photo.name, f"blurred: {100.0 * share:.0f} % of its neighbours' detail"
+        looks = [each.photo.look for each in found]
+        detail = np.array([np.nan if look is None else look.detail for look in looks])
+        yield from _poorer(
+            found, detail, LEAST_DETAIL, "blurred: {:.0f} % of its neighbours' detail"
+        )
+        small = np.array([_bytes_per_pixel(each.photo) for each in found])
+        small[np.isfinite(detail)] = np.nan
+        said = "perhaps blurred: its file has {:.0f} % of its neighbours' size"
+        yield from _poorer(found, small, LEAST_SIZE, said)
 
 
-def _neighbours(detail: FloatArray, number: int) -> float:
-    """Return the median detail of the photos on both sides; 0 without any."""
-    around = detail[max(0, number - NEIGHBOURS) : number + NEIGHBOURS + 1]
-    return float(np.median(around)) if len(around) > NEIGHBOURS else 0.0
+def _poorer(
+    photos: Sequence[TimedPhoto], values: FloatArray, least: float, said: str
+) -> Iterator[tuple[str, str]]:
+    for number, each in enumerate(photos):
+        share = values[number] / max(_neighbours(values, number), 1e-9)
+        if share < least:
+            yield each.photo.name, said.format(100.0 * share)
+
+
+def _bytes_per_pixel(photo: Photo) -> float:
+    """Return how much detail a JPEG's compression has kept; NaN for other files."""
+    is_jpeg = photo.path.suffix.lower() in (".jpg", ".jpeg")
+    if photo.size_bytes is None or not is_jpeg:
+        return float("nan")
+    return photo.size_bytes / (photo.cols * photo.rows)
+
+
+def _neighbours(values: FloatArray, number: int) -> float:
+    """Return the median of the values known on both sides; 0 where there are few."""
+    around = values[max(0, number - NEIGHBOURS) : number + NEIGHBOURS + 1]
+    known = around[np.isfinite(around)]
+    return float(np.median(known)) if len(known) > NEIGHBOURS else 0.0

@@ -100,6 +100,7 @@ class Photo:
     """By the camera's sun sensor, in its own unit."""
     look: Look | None = None
     """How it looks in small, where that is cheap to know."""
+    size_bytes: int | None = None
     panel: Panel | None = None
     """The reflectance panel that the camera itself found on it."""
     is_plain: bool = True
@@ -195,6 +196,7 @@ def _facts(path: Path, name: str, image: Any, data: bytes) -> Photo:
         exposure_s_of(details, xmp),
         irradiance_of(xmp),
         look_of(image, data, band.black_level or 0.0 if band else 0.0),
+        len(data),
         panel_of(xmp),
         place.is_in_exif and _is_plain(xmp, gps, height_m, (horizontal_m, vertical_m)),
         (*notes, *filter(None, [place.note])),
