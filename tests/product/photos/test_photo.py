@@ -8,6 +8,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from tests.product.made_flight import ACROSS_DEG, FRAME, write_photo
+from tests.product.photos.made_bands import write_band
 from tests.product.photos.packets import packet
 
 from recon.model.units import NS_PER_S
@@ -115,6 +116,26 @@ def test_damage_gives_a_photo_or_a_sentence(tmp_path: Path, whole: bytes, data) 
         return
     assert abs(found.latitude_deg) <= 90.0
     assert found.across_deg is None or 0.0 < found.across_deg < 180.0
+
+
+@CALM
+@given(st.data())
+def test_a_damaged_tiff_gives_a_photo_or_a_sentence(tmp_path: Path, data) -> None:
+    path = tmp_path / "band.tif"
+    if not path.exists():
+        like = photo(tmp_path / "like.JPG")
+        write_band(path, like, packet({"Camera:BandName": "NIR", "Camera:Irradiance": "3.1"}))
+        (tmp_path / "whole").write_bytes(path.read_bytes())
+    damaged = bytearray((tmp_path / "whole").read_bytes())
+    for at in data.draw(st.lists(st.integers(0, len(damaged) - 1), max_size=8)):
+        damaged[at] = data.draw(st.integers(0, 255))
+    kept = data.draw(st.sampled_from((1.0, 1.0, 0.95, 0.5, 0.1)))
+    path.write_bytes(bytes(damaged[: int(kept * len(damaged))]))
+    try:
+        found = read_photo_facts(path, "band.tif")
+    except PhotoError:
+        return
+    assert abs(found.latitude_deg) <= 90.0
 
 
 def test_a_preview_behind_the_image_may_be_cut(tmp_path: Path, whole: bytes) -> None:

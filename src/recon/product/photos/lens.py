@@ -15,6 +15,8 @@ FILM_LIKE_MODELS = frozenset(
     ("FC6310", "FC6310R", "FC6310S", "FC3411", "FC6540", "L1D-20C", "ZENMUSEP1")
 )
 """Their cameras with sensors of 3:2: of one inch, APS-C and full frame."""
+FILM_LIKE_PX = 5472
+"""Longer side of photos from one-inch sensors of 20 megapixels, which are 3:2, of any maker."""
 FOUR_TO_THREE, FILM = 4.0 / 3.0, 3.0 / 2.0
 SAME_SHAPE = 0.03
 """Pictures of 4000 x 3000 and 5280 x 3956 both count as 4:3."""
@@ -34,7 +36,7 @@ def field_deg(exif: Tags, details: Tags, cols: int, rows: int) -> float | None:
     film_mm = number_of(details.get(Base.FocalLengthIn35mmFilm))
     if not film_mm:
         return None
-    wide_mm = _wide_on_film_mm(longer / shorter, _sensor_shape(exif, longer / shorter))
+    wide_mm = _wide_on_film_mm(longer / shorter, _sensor_shape(exif, longer, shorter))
     return math.degrees(2.0 * math.atan(wide_mm / 2.0 / film_mm))
 
 
@@ -51,10 +53,11 @@ def _wide_on_sensor_mm(details: Tags, longer: int, shorter: int) -> float | None
     return longer / per_unit * unit_mm
 
 
-def _sensor_shape(exif: Tags, picture: float) -> float:
+def _sensor_shape(exif: Tags, longer: int, shorter: int) -> float:
     """Return the longer by the shorter side of the sensor that a picture was cut from."""
     make, model = (text_of(exif.get(tag)).lower() for tag in (Base.Make, Base.Model))
-    is_film_like = model.upper() in FILM_LIKE_MODELS
+    picture = longer / shorter
+    is_film_like = model.upper() in FILM_LIKE_MODELS or longer == FILM_LIKE_PX
     if make.startswith(DRONE_MAKES):
         return FILM if is_film_like else min(picture, FOUR_TO_THREE)
     # Other cameras' pictures are whole but for those wider than any sensor.

@@ -27,6 +27,8 @@ THUMBNAIL_AT, THUMBNAIL_SIZE = 0x0201, 0x0202
 """EXIF's JPEGInterchangeFormat and its length, in bytes from the start of the TIFF header."""
 MPF_ENTRIES, MPF_MARK = 0xB002, b"MPF\0"
 HEAD_BYTES = 1024 * 1024
+UNREADABLE = (OSError, SyntaxError, ValueError, TypeError, KeyError, cv2.error)
+"""What readers of pictures raise on damaged pixels: a photo whose statements are whole is used."""
 EXIF_HEADER = b"Exif\0\0"
 
 
@@ -45,7 +47,10 @@ def look_of(image: Any, data: bytes, black_level: float = 0.0) -> Look | None:
 
     `black_level` is what a band's pixels without light have.
     """
-    grey = _grey(image, data, black_level)
+    try:
+        grey = _grey(image, data, black_level)
+    except UNREADABLE:
+        return None
     if grey is None or grey.size < LEAST_PIXELS:
         return None
     grey = _without_bars(grey)
@@ -89,12 +94,9 @@ def _eight_bit(pixels: npt.NDArray[Any], black_level: float) -> GreyMap | None:
 
 def _decoded(data: bytes) -> GreyMap | None:
     """Return a JPEG's grey picture; None for one that is damaged or too large."""
-    try:
-        with Image.open(BytesIO(data), formats=("JPEG",)) as image:
-            if image.size[0] * image.size[1] > MOST_PIXELS:
-                return None
-    except (OSError, SyntaxError, ValueError):
-        return None
+    with Image.open(BytesIO(data), formats=("JPEG",)) as image:
+        if image.size[0] * image.size[1] > MOST_PIXELS:
+            return None
     found = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_GRAYSCALE)
     return None if found is None else found.astype(np.uint8, copy=False)
 
