@@ -94,7 +94,7 @@ def _recon(*words: object) -> list[str]:
 def _timed(command: list[str]) -> Run:
     """Run a program; return what it took. Its peak is its own, of the children since the last."""
     began_s = time.perf_counter()
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     _pid, status, usage = os.wait4(process.pid, 0)
     if status:
         raise SystemExit(f"{command[0]} ended with {os.waitstatus_to_exitcode(status)}")
@@ -104,6 +104,7 @@ def _timed(command: list[str]) -> Run:
 def _made(folder: Path, count: int) -> tuple[Path, Path, Path]:
     """Write photos, record and the run's folder; return them. Photos of an earlier run stay."""
     way = Rows()
+    folder.mkdir(parents=True, exist_ok=True)
     record = folder / "flight.mcap"
     if not record.exists():
         write_record(flight(way, maps_every_s=5.0), record)

@@ -12,6 +12,7 @@ from recon.cli.output import print_line
 from recon.cli.tag import opened_flight
 from recon.model.errors import RecordError
 from recon.product.flight_log import read_log
+from recon.product.mosaic.finished import finished_mosaic
 from recon.product.report import flight_report
 from recon.product.report_page import report_html
 from recon.product.tagged import tagged_photos
@@ -31,6 +32,9 @@ def report_command(
         Path | None,
         typer.Option(help="A folder that recon tag has written: coverage by the photos."),
     ] = None,
+    mosaic: Annotated[
+        Path | None, typer.Option(help="A folder that recon mosaic has written: adds its picture.")
+    ] = None,
     pdf: Annotated[
         Path | None, typer.Option(help="PDF to write too; needs Chromium, Chrome or Edge.")
     ] = None,
@@ -42,7 +46,8 @@ def report_command(
         log = read_log(file, flight)
     except OSError as problem:
         raise RecordError(f"{file}: {problem.strerror}") from problem
-    write_text(out, report_html(flight_report(flight, log, photos)))
+    picture = None if mosaic is None else finished_mosaic(mosaic, flight.path.name)
+    write_text(out, report_html(flight_report(flight, log, photos), picture))
     print_line(f"written: {out}")
     if pdf is not None:
         print_pdf(out, pdf)

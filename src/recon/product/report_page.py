@@ -16,6 +16,8 @@ from recon.product import charts
 from recon.product.coverage import ENOUGH_VIEWS
 from recon.product.flight import FlightData
 from recon.product.flight_log import LEADS_S
+from recon.product.mosaic.choice import Light
+from recon.product.mosaic.finished import FinishedMosaic
 from recon.product.report import AlarmSpan, FlightReport
 
 MOST_DECISIONS, MOST_ALARMS = 300, 100
@@ -23,13 +25,13 @@ LEVELS = frozenset(each.value for each in Severity)
 STATES = ("sunlit", "mixed", "shaded", "unknown")
 
 
-def report_html(report: FlightReport) -> str:
-    """Return the page."""
+def report_html(report: FlightReport, mosaic: FinishedMosaic | None = None) -> str:
+    """Return the page, with a mosaic's picture if it has one."""
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
     template = environment.from_string(
         files("recon.product").joinpath("report.html").read_text(encoding="utf-8")
     )
-    return template.render(**_context(report))
+    return template.render(**_context(report), mosaic=_mosaic(mosaic))
 
 
 def _context(report: FlightReport) -> dict[str, Any]:
@@ -66,6 +68,28 @@ def _context(report: FlightReport) -> dict[str, Any]:
         "settings": sorted(settings.items()),
         "record": flight.path.name,
         "version": version(),
+    }
+
+
+def _mosaic(mosaic: FinishedMosaic | None) -> dict[str, Any] | None:
+    if mosaic is None:
+        return None
+    return {
+        "preview": mosaic.preview,
+        "pixel": f"{100.0 * mosaic.resolution_m:g} cm",
+        "used": mosaic.photos_used,
+        "photos": mosaic.photos,
+        "brightness": mosaic.brightness,
+        "filled": f"{mosaic.filled_m2 / HECTARE_M2:.2f} ha" if mosaic.filled_m2 else "",
+        "shares": [
+            (text, f"{mosaic.percent(light):.1f}")
+            for light, text in (
+                (Light.SUN, "in sun"),
+                (Light.SHADE, "photographed in shade only"),
+                (Light.UNKNOWN, "in unknown light only"),
+                (Light.MISSING, "on no photo"),
+            )
+        ],
     }
 
 

@@ -173,7 +173,7 @@ def _evened(found: Pixels, sun: FloatMap, direct_share: float, is_picture: bool)
     """Return pixels as bright as in full sun: divided by their share of a clear sky's light."""
     share = direct_share * np.clip(sun, 0.0, 1.0) + (1.0 - direct_share)
     gain = np.minimum(1.0 / share, BRIGHTEST)
-    gain = gain ** (1.0 / GAMMA) if is_picture else gain
-    full = np.iinfo(found.dtype).max
-    evened: Pixels = np.clip(np.rint(found * gain[..., np.newaxis]), 0, full).astype(found.dtype)
-    return evened
+    gain = (gain ** (1.0 / GAMMA) if is_picture else gain).astype(np.float32)
+    brighter = found * gain[..., np.newaxis] + np.float32(0.5)
+    full = np.float32(np.iinfo(found.dtype).max)
+    return np.minimum(brighter, full, out=brighter).astype(found.dtype)
