@@ -159,6 +159,28 @@ def test_what_the_file_does_not_show_is_transparent_and_not_covered(
     assert "image/png" in seen
 
 
+def test_alpha_counts_and_not_a_colour_that_means_no_data(folder: Path, reader: MapReader) -> None:
+    """As OpenDroneMap and others write grey pictures: white is a colour, and transparent too."""
+    bands = np.full((2, SIDE_PX, SIDE_PX), 255, np.uint8)
+    bands[1, SIDE_PX // 2 :] = 0
+    path = write(folder / "a.tif", bands, nodata=255)
+    with rasterio.open(path, "r+") as file:
+        file.colorinterp = (ColorInterp.gray, ColorInterp.alpha)
+    assert 0.4 < reader.facts("a.tif", FIELD).coverage[-1].share < 0.9
+
+
+@pytest.mark.parametrize("crs", ["EPSG:4547", "+proj=utm +zone=15 +ellps=WGS84 +units=m"])
+def test_systems_that_are_wgs84_within_decimetres_are_placed(
+    folder: Path, reader: MapReader, crs: str
+) -> None:
+    path = folder / "a.tif"
+    profile = {"driver": "GTiff", "width": 50, "height": 50, "count": 3, "dtype": "uint8"}
+    with rasterio.open(path, "w", crs=crs, transform=Affine(1, 0, 5e5, 0, -1, 4e6), **profile) as f:
+        f.write(ramps()[:, :50, :50])
+    facts = reader.facts("a.tif", FIELD)
+    assert facts.info is not None, facts.problem
+
+
 def test_grey_and_palette_pictures_have_their_colours(folder: Path, reader: MapReader) -> None:
     grey = np.full((1, 400, 400), 90, np.uint8)
     write(folder / "grey.tif", grey)

@@ -47,6 +47,20 @@ def test_an_mbtiles_file_states_what_it_is_and_covers(folder: Path, reader: MapR
     assert covers.metres_per_pixel == pytest.approx(metres_per_pixel(41.9015, 18))
 
 
+def test_a_file_without_a_description_is_known_by_its_tiles(
+    folder: Path, reader: MapReader
+) -> None:
+    path = write_mbtiles(folder / "a.mbtiles", keys_over(FIELD, ZOOMS))
+    with closing(sqlite3.connect(path)) as database, database:
+        database.execute("DROP TABLE metadata")
+    facts = reader.facts("a.mbtiles", FIELD)
+    assert facts.info is not None
+    assert facts.info.title == "a"
+    west, south, east, north = facts.info.bounds_deg
+    assert west <= -93.604 < -93.600 <= east
+    assert south <= 41.900 < 41.903 <= north
+
+
 def test_each_tile_is_the_one_of_its_place(folder: Path, reader: MapReader) -> None:
     keys = keys_over(FIELD, ZOOMS)
     write_mbtiles(folder / "a.mbtiles", keys)

@@ -12,6 +12,7 @@ from pmtiles.tile import (
     deserialize_header,
     serialize_directory,
     serialize_header,
+    zxy_to_tileid,
 )
 from tests.basemap.made_maps import (
     FIELD,
@@ -101,6 +102,29 @@ def write_raw(path: Path, root: bytes, data: bytes = b"", **changes: object) -> 
         **changes,
     }
     path.write_bytes(serialize_header(header) + root + data)  # type: ignore[arg-type]
+
+
+def test_directories_may_be_plain(folder: Path, reader: MapReader) -> None:
+    key = keys_over(FIELD, [18])[0]
+    tile = picture(colour_of(*key))
+    packed = serialize_directory([Entry(zxy_to_tileid(*key), 0, len(tile), 1)])
+    west, south, east, north = (round(degrees * 1e7) for degrees in FIELD.bounds_deg)
+    write_raw(
+        folder / "a.pmtiles",
+        gzip.decompress(packed),
+        tile,
+        internal_compression=Compression.NONE,
+        min_zoom=18,
+        max_zoom=18,
+        min_lon_e7=west,
+        min_lat_e7=south,
+        max_lon_e7=east,
+        max_lat_e7=north,
+    )
+    assert reader.facts("a.pmtiles", FIELD).info is not None
+    found, _ = reader.tile("a.pmtiles", *key)
+    assert found is not None
+    assert colour_in(found.data) == colour_of(*key)
 
 
 def broken(path: Path, kind: str) -> None:

@@ -33,6 +33,7 @@ from recon.basemap.web_mercator import (
     world_from_globe,
     zoom_for,
 )
+from recon.geo.datum import map_from_globe
 from recon.model.arrays import FloatArray
 
 STARTS = frozenset({b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"})
@@ -225,13 +226,20 @@ class GeoTIFFMap:
         return np.moveaxis(palette[raw[0]], -1, 0)
 
     def _valid(self, window: Window | None, shape: tuple[int, int]) -> Bytes:
+        """Return what is shown: by alpha where the file has it, else by its mask or no-data value.
+
+        GDAL takes the no-data value first, which is a colour of the picture too.
+        """
+        how: Any = {"window": window, "out_shape": shape, "resampling": Resampling.nearest}
+        meanings = list(self._dataset.colorinterp)
         try:
-            mask: Bytes = self._dataset.dataset_mask(
-                window=window, out_shape=shape, resampling=Resampling.nearest
-            )
+            if ColorInterp.alpha not in meanings:
+                mask: Bytes = self._dataset.dataset_mask(**how)
+                return mask
+            alpha: Bytes = self._dataset.read(meanings.index(ColorInterp.alpha) + 1, **how)
         except (RasterioError, ValueError) as problem:
             raise BaseMapError(DAMAGED) from problem
-        return mask
+        return alpha
 
 
 def _opened(path: Path) -> Any:
@@ -293,8 +301,7 @@ def _from_globe(dataset: Any) -> pyproj.Transformer:
                 "expected a coordinate reference system without grid files of its own; export it "
                 "in EPSG:3857"
             )
-        crs = _horizontal(pyproj.CRS.from_user_input(text))
-        return pyproj.Transformer.from_crs("EPSG:4326", crs, always_xy=True, allow_ballpark=False)
+        return map_from_globe(_horizontal(pyproj.CRS.from_user_input(text)))
     except (ProjError, RasterioError) as problem:
         raise BaseMapError(
             "expected a coordinate reference system that PROJ relates to WGS84, got another one; "

@@ -79,7 +79,7 @@ class MBTiles:
         return (pair in present for pair in zip(cols.tolist(), tms_rows.tolist(), strict=True))
 
     def _read_info(self, path: Path) -> MapInfo:
-        facts = dict(self._rows(f"SELECT name, value FROM metadata LIMIT {MOST_FACTS}", ()))
+        facts = self._facts()
         if facts.get("format") in ("pbf", "mvt"):
             raise BaseMapError(VECTOR)
         zooms = [zoom for zoom in range(DEEPEST_ZOOM + 1) if self._first(zoom) is not None]
@@ -98,6 +98,12 @@ class MBTiles:
             tile_px=picture_of(data)[1],
             bounds_deg=stated or self._extent(zooms[-1]),
         )
+
+    def _facts(self) -> dict[str, Any]:
+        """Return the file's own description; programs that cut maps leave it out."""
+        if not self._rows("SELECT 1 FROM sqlite_master WHERE name='metadata' LIMIT 1", ()):
+            return {}
+        return dict(self._rows(f"SELECT name, value FROM metadata LIMIT {MOST_FACTS}", ()))
 
     def _first(self, zoom: int) -> bytes | None:
         """Return any tile of a zoom level; None without one."""

@@ -3,6 +3,7 @@
 Each directory is unpacked within limits first: a few bytes may claim to be gigabytes.
 """
 
+import gzip
 import json
 import zlib
 from collections.abc import Callable, Iterator
@@ -116,7 +117,7 @@ class PMTiles:
         length = self._header["metadata_length"]
         if not length:
             return {}
-        data = _unpacked(self._part(self._header["metadata_offset"], length))
+        data = _unpacked(self._packed_part(self._header["metadata_offset"], length))
         try:
             facts = json.loads(data)
         except (ValueError, RecursionError):
@@ -151,7 +152,7 @@ class PMTiles:
         return self._directory(self._header["leaf_directory_offset"] + entry.offset, entry.length)
 
     def _read_directory(self, offset: int, length: int) -> list[Any]:
-        packed = self._part(offset, length)
+        packed = self._packed_part(offset, length)
         _unpacked(packed)
         try:
             entries: list[Any] = deserialize_directory(packed)
@@ -163,6 +164,12 @@ class PMTiles:
         if entry.length > LARGEST_TILE_BYTES:
             raise BaseMapError(f"expected tiles of at most {LARGEST_TILE_BYTES} bytes, got more")
         return self._read(self._header["tile_data_offset"] + entry.offset, entry.length)
+
+    def _packed_part(self, offset: int, length: int) -> bytes:
+        """Return a part packed by gzip, as the library reads it, also where it is plain."""
+        data = self._part(offset, length)
+        is_plain = self._header["internal_compression"] is Compression.NONE
+        return gzip.compress(data, compresslevel=1) if is_plain else data
 
     def _part(self, offset: int, length: int) -> bytes:
         if length > LARGEST_DIRECTORY_BYTES:
@@ -189,8 +196,10 @@ def _header(data: bytes) -> dict[str, Any]:
         raise BaseMapError("expected a PMTiles file, got another kind of file") from problem
     except (SpecVersionUnsupported, ValueError) as problem:
         raise BaseMapError("expected PMTiles version 3, got another one; convert it") from problem
-    if header["internal_compression"] is not Compression.GZIP:
-        raise BaseMapError("expected directories packed by gzip, got others; export it again")
+    if header["internal_compression"] not in (Compression.GZIP, Compression.NONE):
+        raise BaseMapError(
+            "expected directories packed by gzip or plain, got others; export it again"
+        )
     return header
 
 

@@ -74,6 +74,17 @@ def path_to_wgs84(crs: Any, places: Sequence[tuple[float, ...]] = ()) -> PathToW
     return PathToWgs84(known.name, best.description, accuracy_m, best)
 
 
+def map_from_globe(crs: "pyproj.CRS") -> "pyproj.Transformer":
+    """Return the path from longitude and latitude to a map's coordinates.
+
+    Raises `pyproj.exceptions.ProjError` where none is known: a ballpark one would be off by up to
+    hundreds of metres, without a word.
+    """
+    import pyproj
+
+    return pyproj.Transformer.from_crs(WGS84, crs, always_xy=True, allow_ballpark=is_as_wgs84(crs))
+
+
 def is_as_wgs84(crs: "pyproj.CRS") -> bool:
     """Return whether a system has no path to WGS84, and is it within decimetres."""
     geodetic = crs.geodetic_crs

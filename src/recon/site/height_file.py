@@ -25,6 +25,7 @@ from rasterio.transform import Affine
 from rasterio.windows import Window
 
 from recon.geo import enu_from_geo, geo_from_enu
+from recon.geo.datum import map_from_globe
 from recon.model.arrays import FloatArray
 from recon.model.errors import SiteError
 from recon.model.geo import LocalFrame
@@ -202,7 +203,7 @@ def _height_file(place: str, dataset: DatasetReader) -> HeightFile:
             )
         crs = pyproj.CRS.from_user_input(text)
         flat = horizontal(crs)
-        globe = pyproj.Transformer.from_crs("EPSG:4326", flat, always_xy=True, allow_ballpark=False)
+        globe = map_from_globe(flat)
     except (ProjError, RasterioError) as problem:
         raise SiteError(
             f"{place}: expected a coordinate reference system that PROJ relates to WGS84, got: "
