@@ -12,25 +12,22 @@ from dataclasses import replace
 from io import StringIO
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 from PIL import Image
 
-import recon.cli.mosaic as command
+from recon.cli.mosaic import mosaic_command
+from recon.cli.score import with_methods
 from recon.cli.sim_photos import write_photos
-from recon.product.mosaic import PlacedPhoto
+from recon.product.mosaic import PlacedPhoto, placed_photos
 from recon.product.mosaic.light import PhotoLight
 from recon.product.sun_at import Sunshine
-from studies.mosaic import (
-    DETECTION,
-    FORECAST,
-    PLANNER,
-    SCENARIO,
-    CardSettings,
-    fly,
-    load_scenario,
-    with_methods,
-)
+from recon.score import load_scenario
+from recon.sim.photos.card import CardSettings
+from studies.mosaic import DETECTION, FORECAST, PLANNER, SCENARIO
+from studies.survey_photos import fly
 
 GAP_PX, WIDE_PX = 16, 700
 RESOLUTION_M = 0.25
@@ -52,25 +49,19 @@ def main() -> None:
         flown = fly(SCENARIO, scenario, options.seed, folder / "record", settings, limit_s)
         write_photos(folder / "card", flown.flight, flown.truth, settings)
         panels = []
-        placed_photos = command.placed_photos
-        for place in (without_light(placed_photos), placed_photos):
-            command.placed_photos = place
+        for place in (without_light, placed_photos):
             out = folder / f"mosaic-{len(panels)}"
-            command.mosaic_command(
-                flown.record, [folder / "card"], out, resolution_m=RESOLUTION_M, raw=True
-            )
+            with patch("recon.cli.mosaic.placed_photos", place):
+                mosaic_command(
+                    flown.record, [folder / "card"], out, resolution_m=RESOLUTION_M, raw=True
+                )
             panels.append(panel(out / "preview.png"))
-        command.placed_photos = placed_photos
     beside(panels).save(options.out, quality=82)
 
 
-def without_light(placed_photos):
-    """Return a way to place photos that takes all ground as in full sun."""
-
-    def placed(*inputs) -> list[PlacedPhoto]:
-        return [replace(each, light=_sunny(each.light)) for each in placed_photos(*inputs)]
-
-    return placed
+def without_light(*inputs: Any) -> list[PlacedPhoto]:
+    """Return placed photos as if all ground were in full sun."""
+    return [replace(each, light=_sunny(each.light)) for each in placed_photos(*inputs)]
 
 
 def _sunny(light: PhotoLight) -> PhotoLight:

@@ -176,4 +176,5 @@ def _evened(found: Pixels, sun: FloatMap, direct_share: float, is_picture: bool)
     gain = (gain ** (1.0 / GAMMA) if is_picture else gain).astype(np.float32)
     brighter = found * gain[..., np.newaxis] + np.float32(0.5)
     full = np.float32(np.iinfo(found.dtype).max)
-    return np.minimum(brighter, full, out=brighter).astype(found.dtype)
+    evened: Pixels = np.minimum(brighter, full, out=brighter).astype(found.dtype)
+    return evened
