@@ -11,6 +11,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+import shapely
 from PIL import Image
 from tests.product.made_flight import (
     FRAME,
@@ -263,6 +264,10 @@ def test_a_shots_files_are_tagged_with_it_each_kind_in_its_own_project(
     assert (row["shot"], row["shows"]) == ("SIM-1_0003_D.JPG", "G")
     mask = cv2.imread(str(out / "masks" / masked_name(row["name"])), cv2.IMREAD_GRAYSCALE)
     assert mask.shape == (48 // 8, 64 // 8)
+    # By its pixels' size on the sensor, a picture of half as many columns shows half as much.
+    wide, half = (shapely.from_wkt(found[f"SIM-1_0003_{end}.JPG"]["footprint_wkt"]) for end in "DT")
+    assert half.area == pytest.approx(wide.area / 4.0, rel=0.01)
+    assert wide.centroid.distance(half.centroid) < 1e-6
 
 
 def test_bad_photos_are_named_with_the_reason_and_the_rest_is_tagged(

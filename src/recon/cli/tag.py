@@ -126,6 +126,8 @@ def tag_command(
         raise typer.Exit(NO_PHOTO_TAGGED)
     history = sun_history(flown, may_be_empty=sun_sensor)
     sensor = _sensor(flown, files, history)
+    if sun_sensor and not sensor:
+        warn("--sun-sensor: no photo's sun sensor tells sun from shade")
     try:
         for folder in (out, out / "masks", out / "xmp"):
             folder.mkdir(parents=True, exist_ok=True)

@@ -17,6 +17,8 @@ AGREE_DEG = 0.002
 LATITUDE, LONGITUDE = ("GpsLatitude", "Latitude"), ("GpsLongitude", "GpsLongtitude", "Longitude")
 """DJI's names; early firmware misspelt one."""
 
+CONTRADICTION = "EXIF and XMP state different positions: the one of XMP is taken"
+
 Degrees = tuple[float, float]
 """Latitude and longitude."""
 
@@ -43,8 +45,7 @@ def place_of(gps: Tags, xmp: Xmp) -> Place:
     if stated is not None and is_whole and (signed is None or _is_near(stated, signed)):
         return Place(*stated, True)
     if signed is not None:
-        note = _contradiction(stated, signed) if stated is not None and is_whole else ""
-        return Place(*signed, False, note)
+        return Place(*signed, False, CONTRADICTION if is_whole else "")
     if stated is None:
         raise PhotoError("expected EXIF with a position, got none")
     if not _is_on_earth(stated):
@@ -113,8 +114,3 @@ def _is_on_earth(place: Degrees) -> bool:
 
 def _is_near(one: Degrees, other: Degrees) -> bool:
     return all(abs(a - b) <= AGREE_DEG for a, b in zip(one, other, strict=True))
-
-
-def _contradiction(stated: Degrees, signed: Degrees) -> str:
-    here, there = (f"{north:.5f}, {east:.5f}" for north, east in (signed, stated))
-    return f"EXIF states its position as {there}, its XMP as {here}: taken from XMP"

@@ -85,7 +85,7 @@ def read_xmp(packet: bytes) -> Xmp:
         # Software pads packets, some of it with zeros.
         parser.Parse(packet.rstrip(b"\x00 \t\r\n") if _is_eight_bit(packet) else packet, True)
     except expat.ExpatError as problem:
-        raise XmpError(f"no well-formed XML ({problem!s:.80})") from problem
+        raise XmpError(f"no well-formed XML ({expat.ErrorString(problem.code)})") from problem
     except (ValueError, LookupError) as problem:
         raise XmpError(f"text in an unknown encoding ({problem!s:.80})") from problem
     is_plain = _is_eight_bit(packet) and reader.descriptions == 1
