@@ -110,6 +110,33 @@ def test_all_files_arrive_and_the_result_is_unpacked(node: FakeNode, project: Pa
     assert sorted(path.name for path in project.iterdir()) == ["geo.txt", "images", "result"]
 
 
+def test_an_ended_run_waits_for_its_task_again_and_other_files_make_another(
+    node: FakeNode, project: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def ended(*_words: object, **_more: object) -> None:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr("pyodm.Task.wait_for_completion", ended)
+        with pytest.raises(KeyboardInterrupt):
+            process(opened_node(node.url), project)
+    assert len(node.files) == 4
+    node.files.clear()
+    node.states = [RUNNING, COMPLETED]
+    process(opened_node(node.url), project)
+    assert node.files == {}
+    assert (project / "result" / "log.json").is_file()
+    assert not (project / "nodeodm-task.json").exists()
+    with monkeypatch.context() as patch:
+        patch.setattr("pyodm.Task.wait_for_completion", ended)
+        with pytest.raises(KeyboardInterrupt):
+            process(opened_node(node.url), project)
+    (project / "images" / "a_mask.JPG").write_bytes(b"another mask of the photo")
+    node.files.clear()
+    process(opened_node(node.url), project)
+    assert len(node.files) == 4
+
+
 def test_a_task_that_fails_says_why_and_keeps_the_older_result(
     node: FakeNode, project: Path
 ) -> None:

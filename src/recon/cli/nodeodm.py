@@ -5,10 +5,12 @@ folder that takes the place of an earlier result when it is complete. pyodm is i
 other commands need no HTTP client of its kind.
 """
 
+import json
 import re
 import zipfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from hashlib import sha256
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
@@ -20,12 +22,14 @@ from rich.progress import Progress
 from recon.cli.output import printable
 from recon.model.errors import RecordError
 from recon.product.linked_folder import put_in_place
+from recon.product.odm import GEO
+from recon.product.write import write_text
 
 if TYPE_CHECKING:
     from pyodm import Node, Task
     from pyodm.types import TaskInfo
 
-RESULT = "result"
+RESULT, TASK = "result", "nodeodm-task.json"
 MOST_FILES, MOST_BYTES = 500_000, 1 << 40
 """Of an unpacked result: an orthophoto of a large field has some gigabytes."""
 ASK_EVERY_S = 3.0
@@ -60,25 +64,70 @@ def _place(url: str) -> str:
 
 
 def process(node: "Node", project: Path) -> None:
-    """Send a project's photos and masks, wait for the result and fetch it; raises `RecordError`."""
-    files = [str(path) for path in sorted((project / "images").iterdir())]
-    files += [str(path) for path in [project / "geo.txt"] if path.is_file()]
+    """Send a project's photos and masks, wait for the result and fetch it; raises `RecordError`.
+
+    A task of an earlier run with the same files is waited for instead, as long as the node has it.
+    """
+    files = sorted((project / "images").iterdir())
+    files += [path for path in [project / GEO] if path.is_file()]
+    key = _key(node, files)
     with Progress(
         console=Console(stderr=True), disable=not Console(stderr=True).is_terminal
     ) as bar:
-        with _said("the NodeODM did not take the photos"):
-            sending = bar.add_task("sending", total=100.0)
-            task = node.create_task(
-                files,
-                name="Recon",
-                progress_callback=lambda done: bar.update(sending, completed=done),
-            )
-            _check_identity(task)
-        print(f"NodeODM: {len(files)} files sent, task {task.uuid}")
+        task = _earlier(node, project, key)
+        if task is None:
+            task = _sent(node, files, bar)
+            print(f"NodeODM: {len(files)} files sent, task {task.uuid}")
+            kept = json.dumps({"key": key, "task": task.uuid})
+            write_text(project / TASK, kept)
+        else:
+            print(f"NodeODM: task {task.uuid} of an earlier run goes on")
         _wait(task, bar)
         with _said("the NodeODM's result could not be fetched"):
             _fetch(task, project / RESULT, bar)
+    (project / TASK).unlink(missing_ok=True)
     print(f"NodeODM: result in {project / RESULT}")
+
+
+def _sent(node: "Node", files: Sequence[Path], bar: Progress) -> "Task":
+    sending = bar.add_task("sending", total=100.0)
+    with _said("the NodeODM did not take the photos"):
+        task = node.create_task(
+            [str(path) for path in files],
+            name="Recon",
+            progress_callback=lambda done: bar.update(sending, completed=done),
+        )
+        _check_identity(task)
+    return task
+
+
+def _key(node: "Node", files: Sequence[Path]) -> str:
+    """Return what a task is known by: the node, and the files by name and size, small ones
+    whole."""
+    digest = sha256(f"{node.host}:{node.port}".encode())
+    for path in files:
+        is_small = path.name == GEO or path.stem.endswith("_mask")
+        facts = path.read_bytes() if is_small else str(path.stat().st_size).encode()
+        digest.update(path.name.encode() + b"\0" + sha256(facts).digest())
+    return digest.hexdigest()
+
+
+def _earlier(node: "Node", project: Path, key: str) -> "Task | None":
+    """Return the task that an earlier run has sent, if the node still has it and it did not
+    fail."""
+    from pyodm.exceptions import OdmError
+    from pyodm.types import TaskStatus
+
+    try:
+        kept = json.loads((project / TASK).read_text(encoding="utf-8"))
+        if kept["key"] != key:
+            return None
+        task = node.get_task(kept["task"])
+        _check_identity(task)
+        is_good = task.info().status not in (TaskStatus.FAILED, TaskStatus.CANCELED)
+    except (OdmError, OSError, ValueError, KeyError, TypeError):
+        return None
+    return task if is_good else None
 
 
 def _check_identity(task: "Task") -> None:
@@ -99,7 +148,7 @@ def _wait(task: "Task", bar: Progress) -> None:
         try:
             task.wait_for_completion(show, interval=ASK_EVERY_S)
         except KeyboardInterrupt:
-            print(f"NodeODM: task {task.uuid} goes on at the node")
+            print(f"NodeODM: task {task.uuid} goes on; the same command waits for it again")
             raise
 
 
