@@ -15,7 +15,7 @@ ASKED = {
     "name": "North field",
     "latitude_deg": 41.9012,
     "longitude_deg": -93.6034,
-    "ground_altitude_m": 275.0,
+    "ground_above_sea_level_m": 275.0,
     "simulated_drones": 2,
 }
 FIELD = {
@@ -63,6 +63,8 @@ def test_a_site_is_made_that_a_station_starts_with(client: Client, new_site: New
     assert site.name == "North field"
     assert site.frame is not None
     assert site.frame.origin.latitude_deg == 41.9012
+    # Sea level is about 30 m below the ellipsoid there.
+    assert site.frame.origin.ellipsoid_height_m == pytest.approx(244.9, abs=1.0)
     assert list(site.profiles) == ["SIM-1", "SIM-2"]
 
 

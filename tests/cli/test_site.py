@@ -68,6 +68,29 @@ def test_values_that_no_site_has_make_no_folder(
     assert not (tmp_path / "field").exists()
 
 
+@pytest.mark.parametrize("height", ["304,8m", "1000 ft"])
+def test_the_grounds_height_is_that_of_a_map(tmp_path: Path, height: str) -> None:
+    words = ("--at", "41.9012,-93.6034", "--ground-above-sea-level", height)
+    recon_site("new", str(tmp_path / "field"), *words)
+    frame = load_site(tmp_path / "field").frame
+    assert frame is not None
+    assert frame.origin.ellipsoid_height_m == pytest.approx(304.8 - 30.1, abs=1.0)
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        ((), "expected one of --ground-above-sea-level and --ground-altitude-m"),
+        (("--ground-above-sea-level", "300"), "expected a height like 278m or 912ft"),
+    ],
+)
+def test_a_height_without_its_unit_is_refused(
+    tmp_path: Path, words: tuple[str, ...], sentence: str
+) -> None:
+    with pytest.raises(SiteError, match=sentence):
+        recon_site("new", str(tmp_path / "field"), "--at", "41.9,-93.6", *words)
+
+
 def test_an_import_is_added_or_replaces(folder: Path, tmp_path: Path) -> None:
     first = layer_file(tmp_path / "a.geojson", "north", "south")
     second = layer_file(tmp_path / "b.geojson", "west")

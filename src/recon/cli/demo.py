@@ -147,7 +147,7 @@ def _made_in_browser(folder: Path, http_port: int) -> int:
     if console is None:
         raise SiteError(
             f"{folder} holds no site, and the console, which would make one, is not built; make "
-            f"the site with recon site new {folder} --at LAT,LON --ground-altitude-m METRES"
+            f"the site with recon site new {folder} --at LAT,LON --ground-above-sea-level 278m"
         )
     port = run_in_loop(make_in_browser(folder, http_port, console, _print_page))
     if port is None:

@@ -1,5 +1,6 @@
 """`recon site`: a site's folder made, checked, and filled from files of other programs."""
 
+import re
 import sys
 from datetime import UTC, datetime
 from enum import Enum
@@ -12,6 +13,7 @@ from recon.cli.commands import App
 from recon.cli.output import print_line, print_warning, printable
 from recon.model.errors import SiteError
 from recon.model.geo import GeoPoint
+from recon.model.units import M_PER_FT
 
 if TYPE_CHECKING:
     from recon.site import Site
@@ -36,19 +38,33 @@ def new_command(
     at: Annotated[
         str, typer.Option("--at", metavar="LAT,LON", help="The origin: a point in the field.")
     ],
-    altitude: Annotated[
-        float,
-        typer.Option("--ground-altitude-m", help="Of the ground there, above the WGS84 ellipsoid."),
-    ],
+    above_sea_level: Annotated[
+        str | None,
+        typer.Option(
+            "--ground-above-sea-level",
+            metavar="HEIGHT",
+            help="Of the ground there, as maps have it: 278m or 912ft.",
+        ),
+    ] = None,
+    altitude_m: Annotated[
+        float | None,
+        typer.Option("--ground-altitude-m", help="The same, above the WGS84 ellipsoid."),
+    ] = None,
     name: Annotated[str | None, typer.Option(help="Default: the folder's name.")] = None,
     drones: Annotated[
         int, typer.Option(min=0, max=64, help="Simulated drones to rehearse with; 0: none.")
     ] = 3,
 ) -> None:
     """Make a site's folder. Its layers are drawn in the console, or imported."""
-    from recon.site.new_site import make_site
+    from recon.site.new_site import make_site, point_above_sea_level
 
-    origin = GeoPoint(*_place(at), altitude)
+    place = _place(at)
+    if (above_sea_level is None) == (altitude_m is None):
+        raise SiteError("expected one of --ground-above-sea-level and --ground-altitude-m")
+    if altitude_m is not None:
+        origin = GeoPoint(*place, altitude_m)
+    else:
+        origin = point_above_sea_level(*place, _height_m(above_sea_level or ""))
     path = make_site(folder, name or folder.resolve().name, origin, drones)
     print_line(f"{path} is written")
     print_line(f"draw it and rehearse: recon demo --site {folder}")
@@ -147,6 +163,15 @@ def opened_site(folder: Path) -> "Site":
         text = f"{folder}: a change of the site that was interrupted is undone"
         print(printable(text), file=sys.stderr, flush=True)
     return load_site(folder)
+
+
+def _height_m(text: str) -> float:
+    found = re.fullmatch(r"\s*(-?\d+(?:[.,]\d+)?)\s*(m|ft)\s*", text.lower())
+    if found is None:
+        raise SiteError(
+            f"--ground-above-sea-level: expected a height like 278m or 912ft, got {text!a}"
+        )
+    return float(found[1].replace(",", ".")) * (M_PER_FT if found[2] == "ft" else 1.0)
 
 
 def _place(text: str) -> tuple[float, float]:

@@ -6,6 +6,7 @@ from typing import Generic, TypeVar
 
 NS_PER_S = 1_000_000_000
 HECTARE_M2 = 10_000.0
+M_PER_FT = 0.3048
 
 
 def seconds_to_ns(seconds: float) -> int:

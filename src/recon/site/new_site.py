@@ -3,6 +3,7 @@
 from math import isfinite
 from pathlib import Path
 
+from recon.geo.geoid import geoid_height_m
 from recon.model.errors import SiteError
 from recon.model.geo import GeoPoint
 from recon.site.load import MOST_VEHICLES, SITE_FILE
@@ -36,6 +37,14 @@ def make_site(folder: Path, name: str, origin: GeoPoint, drones: int) -> Path:
     except OSError as problem:
         raise SiteError(f"{path} cannot be written: {problem.strerror or problem}") from problem
     return path
+
+
+def point_above_sea_level(latitude_deg: float, longitude_deg: float, height_m: float) -> GeoPoint:
+    """Return a place whose height is known above sea level. Raises `SiteError` off the globe."""
+    _require(abs(latitude_deg) <= 90.0, "a latitude of -90 to 90", latitude_deg)
+    _require(abs(longitude_deg) <= 180.0, "a longitude of -180 to 180", longitude_deg)
+    sea_level_m = geoid_height_m(latitude_deg, longitude_deg)
+    return GeoPoint(latitude_deg, longitude_deg, round(height_m + sea_level_m, 2))
 
 
 def _require(is_met: bool, expected: str, got: float) -> None:

@@ -1,7 +1,7 @@
 import { Show } from "solid-js";
 import { FileButton } from "../panels/FileButton";
 import { text } from "../text/catalogue";
-import { formatLength, lengthUnit } from "../text/units";
+import { lengthUnit } from "../text/units";
 import type { Fields, NewSite } from "./newSite";
 import "./newSite.css";
 
@@ -42,11 +42,11 @@ export function NewSitePage(props: { newSite: NewSite }) {
         <p class="muted">{text.newSite.formats}</p>
         <Field
           newSite={props.newSite}
-          name="groundAltitude"
-          label={text.newSite.altitude(lengthUnit())}
+          name="groundHeight"
+          label={text.newSite.height(lengthUnit())}
           inputmode="text"
         />
-        <p class="muted">{text.newSite.altitudeHow(formatLength(-107), formatLength(86))}</p>
+        <p class="muted">{text.newSite.heightHow}</p>
         <Field
           newSite={props.newSite}
           name="drones"

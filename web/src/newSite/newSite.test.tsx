@@ -111,34 +111,34 @@ describe("the page that makes a site", () => {
       () => json({}),
     ];
     type("latitude", "47.1, 8.6");
-    type("Ground altitude", "450,5");
+    type("Ground there", "450,5");
     type("Simulated drones", "2");
     await make();
     expect(JSON.parse(String(browser.asked[1]?.body))).toEqual({
       name: "north",
       latitude_deg: 47.1,
       longitude_deg: 8.6,
-      ground_altitude_m: 450.5,
+      ground_above_sea_level_m: 450.5,
       simulated_drones: 2,
     });
     expect(browser.asked.filter(({ path }) => path === "api/state")).toHaveLength(3);
     expect(browser.isOpen).toBe(true);
   });
 
-  it("sends metres of an altitude typed in feet", async () => {
+  it("sends metres of a height typed in feet", async () => {
     chooseLengthUnit("ft");
     type("latitude", "47.1, 8.6");
-    type("Ground altitude", "1000");
+    type("Ground there", "1000");
     browser.answers["api/site/new"] = [() => json(ACCEPTED)];
     await make();
-    const body = JSON.parse(String(browser.asked[1]?.body)) as { ground_altitude_m: number };
-    expect(body.ground_altitude_m).toBe(304.8);
+    const body = JSON.parse(String(browser.asked[1]?.body)) as { ground_above_sea_level_m: number };
+    expect(body.ground_above_sea_level_m).toBe(304.8);
   });
 
   it("reports a station that does not start after all", async () => {
     browser.answers["api/site/new"] = [() => json(ACCEPTED)];
     type("latitude", "47.1, 8.6");
-    type("Ground altitude", "450");
+    type("Ground there", "450");
     root.querySelector("form")?.dispatchEvent(new SubmitEvent("submit", { bubbles: true }));
     for (let turn = 0; turn < 500 && !notice()?.includes("did not start"); turn += 1)
       await settled();
@@ -148,11 +148,11 @@ describe("the page that makes a site", () => {
 
   it.each([
     ["latitude", "somewhere", "Place: expected latitude and longitude"],
-    ["Ground altitude", "high", "Ground altitude: expected a number"],
+    ["Ground there", "high", "Ground above sea level: expected a number"],
     ["Simulated drones", "2.5", "Simulated drones: expected a whole number"],
   ])("refuses a wrong %s and sends nothing", async (label, text, sentence) => {
     type("latitude", "47.1, 8.6");
-    type("Ground altitude", "450");
+    type("Ground there", "450");
     type(label, text);
     await make();
     expect(notice()).toContain(sentence);
@@ -161,7 +161,7 @@ describe("the page that makes a site", () => {
 
   it("shows the station's refusal, and why it does not answer", async () => {
     type("latitude", "47.1, 8.6");
-    type("Ground altitude", "450");
+    type("Ground there", "450");
     const reason = "/fields/north/site.toml exists already; choose another folder";
     browser.answers["api/site/new"] = [() => json({ accepted: false, rule: "site", reason })];
     await make();
@@ -190,14 +190,13 @@ describe("the page that makes a site", () => {
     expect(input("latitude").value).toBe("");
   });
 
-  it("takes the device's place and altitude, or reports that it has none", async () => {
+  it("takes the device's place, or reports that it has none", async () => {
     const here = [...root.querySelectorAll("button")].find((each) =>
       each.textContent?.includes("Where this device is"),
     );
     here?.click();
     await settled();
     expect(input("latitude").value).toBe("41.9000000, -93.6000000");
-    expect(input("Ground altitude").value).toBe("274");
     browser.coords = null;
     await settled();
     here?.click();

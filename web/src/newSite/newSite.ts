@@ -1,7 +1,7 @@
 import { createSignal } from "solid-js";
 import { cornerOf, cornerText } from "../site/siteFeatures";
 import { text } from "../text/catalogue";
-import { lengthText, metresOf, numberIn } from "../text/units";
+import { metresOf, numberIn } from "../text/units";
 
 /** What the page needs of its browser; the station answers at `api/` paths. */
 export interface Browser {
@@ -17,7 +17,7 @@ export interface Fields {
   readonly name: string;
   /** Latitude and longitude in degrees. */
   readonly place: string;
-  readonly groundAltitude: string;
+  readonly groundHeight: string;
   readonly drones: string;
 }
 
@@ -43,7 +43,7 @@ export function createNewSite(browser: Browser) {
   const [fields, setFields] = createSignal<Fields>({
     name: "",
     place: "",
-    groundAltitude: "",
+    groundHeight: "",
     drones: "3",
   });
   const [notice, setNotice] = createSignal<Notice | null>(null);
@@ -101,9 +101,8 @@ export function createNewSite(browser: Browser) {
       const found = await browser.locate().catch(() => {
         throw new Error(text.newSite.unknownPlace);
       });
-      const { latitude, longitude, altitude } = found.coords;
+      const { latitude, longitude } = found.coords;
       change({ place: cornerText({ lat: latitude, lon: longitude }) });
-      if (altitude !== null) change({ groundAltitude: lengthText(Math.round(altitude)) });
     });
 
   const make = () =>
@@ -135,8 +134,8 @@ export function createNewSite(browser: Browser) {
 function asked(fields: Fields) {
   const place = cornerOf(fields.place);
   if (place === null) throw new Error(text.newSite.badPlace);
-  const altitude = numberIn(fields.groundAltitude);
-  if (typeof altitude !== "number") throw new Error(text.newSite.badAltitude);
+  const height = numberIn(fields.groundHeight);
+  if (typeof height !== "number") throw new Error(text.newSite.badHeight);
   const drones = numberIn(fields.drones);
   if (typeof drones !== "number" || !Number.isInteger(drones))
     throw new Error(text.newSite.badDrones);
@@ -144,7 +143,7 @@ function asked(fields: Fields) {
     name: fields.name,
     latitude_deg: place.lat,
     longitude_deg: place.lon,
-    ground_altitude_m: metresOf(altitude),
+    ground_above_sea_level_m: metresOf(height),
     simulated_drones: drones,
   };
 }

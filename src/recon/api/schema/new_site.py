@@ -20,5 +20,5 @@ class NewSiteRequest(StrictMessage):
     name: Annotated[str, Field(max_length=300)]
     latitude_deg: float
     longitude_deg: float
-    ground_altitude_m: float = Field(description="at that place, above the WGS84 ellipsoid")
+    ground_above_sea_level_m: float = Field(description="at that place, as maps have it")
     simulated_drones: int

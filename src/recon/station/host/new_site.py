@@ -11,8 +11,7 @@ from recon.api import schema
 from recon.api.login import Login
 from recon.api.new_site_app import create_new_site_app
 from recon.model.errors import SiteError
-from recon.model.geo import GeoPoint
-from recon.site.new_site import make_site
+from recon.site.new_site import make_site, point_above_sea_level
 from recon.station.api_views import outcome_of
 from recon.station.api_views.edited_site import site_refusal
 from recon.station.api_views.site_service import FileImports
@@ -42,8 +41,10 @@ class NewSite:
 
     async def make(self, asked: schema.NewSiteRequest) -> schema.ActionResponse:
         """Make the site, or return why not."""
-        origin = GeoPoint(asked.latitude_deg, asked.longitude_deg, asked.ground_altitude_m)
         try:
+            origin = point_above_sea_level(
+                asked.latitude_deg, asked.longitude_deg, asked.ground_above_sea_level_m
+            )
             make_site(self.folder, asked.name, origin, asked.simulated_drones)
         except SiteError as problem:
             return schema.ActionResponse(**outcome_of(site_refusal(str(problem))))

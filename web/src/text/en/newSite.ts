@@ -13,10 +13,9 @@ export const newSite = {
   place: "A place in the field: latitude, longitude",
   readFile: "Read it from a file",
   locate: "Where this device is",
-  formats: "A file is KML, KMZ, Shapefile (zip), GeoPackage or GeoJSON.",
-  altitude: (unit: string) => `Ground altitude there, above the WGS84 ellipsoid, ${unit}`,
-  altitudeHow: (least: string, most: string) =>
-    `A rough value is enough to rehearse. It is the height above sea level plus the height of the geoid there, which is between ${least} and ${most}.`,
+  formats: "A file is KML, KMZ, Shapefile (zip), GeoPackage, GeoJSON, ISOXML, GPX or a flight plan.",
+  height: (unit: string) => `Ground there above sea level, ${unit}`,
+  heightHow: "As a map has it. A rough value is enough to rehearse.",
   drones: "Simulated drones",
   make: "Make the site",
   noAnswer: "The station does not answer: start it again, and reload this page.",
@@ -26,6 +25,6 @@ export const newSite = {
   made: "The site is made; the station is starting.",
   notStarted: "The site is made, but the station did not start: see its terminal.",
   badPlace: "Place: expected latitude and longitude in degrees, such as 41.9012, -93.6034.",
-  badAltitude: "Ground altitude: expected a number.",
+  badHeight: "Ground above sea level: expected a number.",
   badDrones: "Simulated drones: expected a whole number.",
 };
