@@ -143,10 +143,12 @@ def test_the_sensor_counts_only_where_the_maps_know_too_little() -> None:
     assert not shown_by_sensor(shown, 0.1).is_unknown.any()
 
 
-def test_the_command_takes_the_sensor_where_there_are_no_maps(tmp_path: Path) -> None:
-    """Maps end after a third of the flight; the photos that they do not reach are told by
-    sensor."""
-    made = replace(FLIGHT, maps=FLIGHT.maps[: len(FLIGHT.maps) // 3])
+@pytest.mark.parametrize("share", [3, None], ids=["a third of the maps", "no maps"])
+def test_the_command_takes_the_sensor_where_there_are_no_maps(
+    tmp_path: Path, share: int | None
+) -> None:
+    """Photos that no shade map reaches are told by the sensor."""
+    made = replace(FLIGHT, maps=FLIGHT.maps[: len(FLIGHT.maps) // share] if share else ())
     record = write_record(made, tmp_path / "flight.mcap")
     truth = {}
     (tmp_path / "card").mkdir()
@@ -165,8 +167,11 @@ def test_the_command_takes_the_sensor_where_there_are_no_maps(tmp_path: Path) ->
         )
     words = ["tag", str(tmp_path / "card"), "--flight", str(record), "--out", str(tmp_path / "out")]
     plain = CliRunner().invoke(app, words)
-    assert " unknown" in plain.output
-    assert "right at half sun, lag" in plain.output
+    if share is None:
+        assert "expected a flight with shade maps" in str(plain.exception)
+    else:
+        assert " unknown" in plain.output
+        assert "right at half sun, lag" in plain.output
     helped = CliRunner().invoke(app, [*words, "--sun-sensor"])
     assert helped.exit_code == 0, helped.output
     assert " unknown" not in helped.output
