@@ -13,7 +13,8 @@ export const newSite = {
   place: "A place in the field: latitude, longitude",
   readFile: "Read it from a file",
   locate: "Where this device is",
-  formats: "A file is KML, KMZ, Shapefile (zip), GeoPackage, GeoJSON, ISOXML, GPX or a flight plan.",
+  formats:
+    "A file is KML, KMZ, Shapefile (zip), GeoPackage, GeoJSON, ISOXML, GPX or a flight plan.",
   height: (unit: string) => `Ground there above sea level, ${unit}`,
   heightHow: "As a map has it. A rough value is enough to rehearse.",
   drones: "Simulated drones",
