@@ -158,6 +158,7 @@ study: setup ## Long runs: the sky against measurements, random fences, fleets a
 	$(RUN) python -m studies.sky_statistics
 	$(RUN) python -m studies.registration
 	$(RUN) python -m studies.tagging
+	$(RUN) python -m studies.mosaic
 	$(RUN) python -m studies.fences --scenes 10000
 	$(RUN) python -m studies.fleets --scenes 10000
 	$(RUN) python -m studies.session --seconds 100000
