@@ -2,12 +2,14 @@
 
     python -m studies.registered_photos                  # evaluation seeds from 1000
     python -m studies.registered_photos --flights 1 --minutes 5
+    python -m studies.registered_photos --real           # real photos, by RECON_DATA
 
 Each flight is flown by the whole station and recorded; its photos state GNSS positions with errors
 that change slowly, and headings that are right or wrong in the ways that real gimbals' are.
 """
 
 import argparse
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -15,12 +17,13 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 import numpy.typing as npt
+from tests.product.registration.real_photos import FIELDS_DEG, timed_of
 
 from recon.cli.progress import usable_cores
 from recon.cli.score import with_methods
 from recon.cli.sim_photos import write_photos
 from recon.product.footprint import PhotoView, projected
-from recon.product.headings import signed_deg
+from recon.product.headings import AIRCRAFT, GIMBAL, signed_deg
 from recon.product.photos.photo import GimbalAttitude, Photo, read_photo_facts
 from recon.product.registration import Registration, read_grey, register, with_headings
 from recon.product.timing import StatedCamera, TimedPhoto, timed_photos
@@ -68,7 +71,11 @@ def main() -> None:
     parser.add_argument("--first-seed", type=int, default=1000)
     parser.add_argument("--flights", type=int, default=3)
     parser.add_argument("--minutes", type=float, default=8.0, help="Longest flight.")
+    parser.add_argument("--real", action="store_true", help="Real photos by RECON_DATA instead.")
     options = parser.parse_args()
+    if options.real:
+        print(real_table(Path(os.environ["RECON_DATA"]) / "photos"))
+        return
     names = ("gimbal right", "gimbal 53 off", "gimbal 180 off", "roll 180", "a tenth turned")
     variants = [Variant(name) for name in (*names, "no gimbal")]
     places, photos = Places(), 0
@@ -87,6 +94,25 @@ def main() -> None:
             add_places(places, flown, facts)
         print(f"# seed {seed}: {photos} photos so far", flush=True)
     print(tables(variants, places))
+
+
+def real_table(folder: Path) -> str:
+    """Return what each half of a folder's photos says of the statements, as a table."""
+    rows = [
+        "| photos | gimbal's yaw off | aircraft's yaw off | used | within |",
+        "|---|---|---|---|---|",
+    ]
+    for name in FIELDS_DEG:
+        photos = timed_of(folder / name)
+        halves = (photos[: len(photos) // 2 + 1], photos[len(photos) // 2 :])
+        for number, half in enumerate((photos, *halves)):
+            _turned, (found,) = with_headings(half, read_grey)
+            what = ("all", "first half", "second half")[number]
+            rows.append(
+                f"| {name}, {what} | {found.off_deg[GIMBAL]:+.1f} | {found.off_deg[AIRCRAFT]:+.1f} "
+                f"| {found.source} {found.offset_deg:+.1f} | {found.error_deg:.1f} |"
+            )
+    return "\n".join(rows)
 
 
 def stated_as(name: str, facts: Sequence[Photo]) -> list[Photo]:

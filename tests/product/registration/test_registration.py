@@ -7,12 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tests.product.registration.made_photos import Card, card, flown, gimbal_off
+from tests.product.registration.real_photos import timed_of
 
-from recon.geo import enu_from_geo
-from recon.model.geo import GeoPoint, LocalFrame
-from recon.product.footprint import Aim, PhotoView
-from recon.product.headings import AIRCRAFT, GIMBAL, RECORDED, best_guess_deg, signed_deg
-from recon.product.photos.photo import read_photo_facts
+from recon.product.headings import AIRCRAFT, GIMBAL, RECORDED, signed_deg
 from recon.product.registration import read_grey, register, with_headings
 from recon.product.timing import TimedPhoto
 
@@ -124,26 +121,8 @@ def test_photos_that_cannot_be_read_keep_the_poses_that_they_state() -> None:
     assert np.isnan(found.residual_m)
 
 
-def timed_of(folder: Path, across_deg: float) -> list[TimedPhoto]:
-    """Photos as they are timed, by their own clock and statements."""
-    facts = [read_photo_facts(path, path.name) for path in sorted(folder.glob("*.JPG"))]
-    frame = LocalFrame(GeoPoint(facts[0].latitude_deg, facts[0].longitude_deg, 0.0))
-    found = []
-    for photo in facts:
-        (enu_m,) = enu_from_geo(frame, [photo.latitude_deg], [photo.longitude_deg], 0.0)
-        assert photo.attitude is not None
-        assert photo.height_above_takeoff_m is not None
-        assert photo.flight_yaw_deg is not None
-        headings = {GIMBAL: photo.attitude.yaw_deg, AIRCRAFT: photo.flight_yaw_deg}
-        height_m = photo.height_above_takeoff_m
-        aim = Aim(float(enu_m[0]), float(enu_m[1]), height_m, best_guess_deg(headings))
-        view = PhotoView(aim, across_deg, photo.cols, photo.rows)
-        found.append(TimedPhoto(photo, "D", photo.clock_ns, 0.1, view, height_m, headings))
-    return found
-
-
 def test_a_real_gimbal_that_is_53_degrees_off_at_nadir_is_found_out(photos_data: Path) -> None:
-    photos = timed_of(photos_data / "thermal-mavic2", 50.0)
+    photos = timed_of(photos_data / "thermal-mavic2")
     turned, (found,) = with_headings(photos[:5], read_grey)
     assert found.off_deg[GIMBAL] == pytest.approx(-53.0, abs=3.0)
     assert found.off_deg[AIRCRAFT] == pytest.approx(0.0, abs=3.0)
@@ -155,7 +134,7 @@ def test_a_real_gimbal_that_is_53_degrees_off_at_nadir_is_found_out(photos_data:
 
 def test_real_photos_that_are_turned_over_in_their_files_are_found_out(photos_data: Path) -> None:
     # Sun and shadows of the trees agree: the top looks to 50 degrees, the gimbal says -132.
-    photos = timed_of(photos_data / "beach-phantom3", 82.0)
+    photos = timed_of(photos_data / "beach-phantom3")
     turned, (found,) = with_headings(photos, read_grey)
     assert [each.view.aim.yaw_deg for each in turned[1:]] == pytest.approx([50.0] * 3, abs=3.0)
     assert abs(found.off_deg[GIMBAL]) == pytest.approx(178.0, abs=3.0)
