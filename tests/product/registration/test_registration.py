@@ -11,6 +11,7 @@ from tests.product.registration.real_photos import timed_of
 
 from recon.product.headings import AIRCRAFT, GIMBAL, RECORDED, signed_deg
 from recon.product.registration import read_grey, register, with_headings
+from recon.product.registration.heading import Run, heading_of
 from recon.product.timing import TimedPhoto
 
 
@@ -73,6 +74,17 @@ def test_a_wrong_field_of_view_is_found_out_and_named() -> None:
     # 1.12 times the ground: tan 33 over tan 30 degrees.
     assert turned[0].view.aim.height_m == pytest.approx(1.125 * 60.0, rel=0.02)
     assert "the pictures show 1.1" in " ".join(found.warnings)
+
+
+def test_a_run_of_another_scale_is_similar_ground_wrongly_matched() -> None:
+    made = card(flown(4), gimbal_off(0.0))
+    headings = np.array([each.view.aim.yaw_deg for each in made.photos])
+    numbers = np.arange(24).reshape(4, 6)
+    runs = [Run(of_line, headings[of_line], 1.0, n) for n, of_line in enumerate(numbers)]
+    runs[2] = Run(numbers[2], headings[numbers[2]] + 40.0, 0.6, 2)
+    found = heading_of(made.photos, np.arange(24), runs)
+    assert found.lines == {}
+    assert found.pairs == 15
 
 
 def test_pictures_that_show_nothing_alike_leave_the_heading_unverified_and_say_so() -> None:

@@ -34,6 +34,8 @@ CONTRADICTS_DEG = 10.0
 """A source so far off the heading is named."""
 MOST_COUNTED_DEG = 20.0
 LARGEST_SCALE = 2.0
+LARGEST_SCALE_SHARE = 0.2
+"""Between runs of one camera: GNSS, and ground that is not level."""
 SHORTEST_RUN = 0.1
 """In heights: over a shorter one GNSS tells no direction."""
 WITHIN = 0.68
@@ -158,6 +160,7 @@ def run_of(
 
 def heading_of(photos: Sequence[TimedPhoto], group: IntArray, runs: Sequence[Run]) -> CameraHeading:
     """Return the heading of one camera's pictures on one vehicle, a group of the photos."""
+    runs = _alike(runs)
     one = photos[group[0]]
     camera, serial = one.photo.camera_name, one.serial
     if not runs:
@@ -215,6 +218,12 @@ def contradicts(timed: TimedPhoto, heading_deg: float, found: CameraHeading) -> 
         and stated is not None
         and min(abs(signed_deg(stated + each - heading_deg)) for each in offsets) >= APART_DEG
     )
+
+
+def _alike(runs: Sequence[Run]) -> list[Run]:
+    """Return the runs without those of another scale than most: similar ground, wrongly matched."""
+    middle = float(np.median([run.scale for run in runs])) if runs else 1.0
+    return [run for run in runs if abs(run.scale / middle - 1.0) < LARGEST_SCALE_SHARE]
 
 
 def _scale(runs: Sequence[Run]) -> float:
