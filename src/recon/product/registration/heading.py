@@ -82,7 +82,7 @@ class CameraHeading:
         return self.error_deg <= AIM_DEG
 
     def __str__(self) -> str:
-        name = f"{self.camera}: the picture's top looks to {self.source}"
+        name = f"{self.camera}: heading of the picture's top by {self.source}"
         if not self.pairs:
             return f"{name}, unverified"
         offset = f" {self.offset_deg:+.0f} degrees" if abs(self.offset_deg) >= 1.0 else ""
@@ -96,8 +96,8 @@ class CameraHeading:
         """Return what contradicts the heading, in sentences."""
         if not self.pairs:
             return [
-                f"{self.camera}: no two neighbouring photos could be registered: that the "
-                f"picture's top looks to {self.source} is unverified"
+                f"{self.camera}: no two neighbouring photos could be registered: the heading of "
+                f"the picture's top, by {self.source}, is unverified"
             ]
         found = [
             f"{self.camera}: {name} is {abs(off):.0f} degrees off the heading of the picture's top"
