@@ -16,9 +16,9 @@ from scipy.sparse.linalg import spsolve
 from recon.model.arrays import FloatArray, IntArray
 from recon.product.registration.match import Link, Places
 
-LINK_M, LINK_SHARE = 0.2, 0.01
+LINK_M, LINK_SHARE = 0.3, 0.015
 """Standard deviation of a link: of its features, and of its length by height and terrain."""
-TURN_RAD = np.deg2rad(0.4)
+TURN_RAD = np.deg2rad(0.5)
 SCALE_SHARE = 0.1
 STEPS = 12
 HUBER = 2.0

@@ -71,8 +71,8 @@ class CameraHeading:
     """Offsets of the flight lines that have their own."""
     scale: float = 1.0
     """True ground in a picture over that by its height and field; 1 where too few tell."""
-    turned: int = 0
-    """Photos whose statement by the source contradicts the others."""
+    turned: Mapping[str, int] = field(default_factory=dict)
+    """Photos whose statement by a source contradicts the other sources."""
     off_deg: Mapping[str, float] = field(default_factory=dict)
     """How far off each source is: what it states minus the heading, the median."""
 
@@ -114,11 +114,10 @@ class CameraHeading:
                 f"{self.camera}: on some flight lines the picture's top is turned by "
                 f"{', '.join(turned)} degrees against the others"
             )
-        if self.turned:
-            found.append(
-                f"{self.camera}: in {self.turned} photos {self.source} contradicts the other "
-                "sources, which are used there"
-            )
+        found += [
+            f"{self.camera}: in {count} photos {name} contradicts the other sources and is not used"
+            for name, count in self.turned.items()
+        ]
         if abs(self.scale - 1.0) > SCALE_SHARE:
             found.append(
                 f"{self.camera}: the pictures show {self.scale:.2f} times the ground that height "
@@ -194,30 +193,35 @@ def heading_deg(timed: TimedPhoto, line: int, found: CameraHeading) -> float:
     A single photo may state a yaw that is turned: where the source contradicts the others, all
     freed of their offsets, these count.
     """
-    if not found.pairs:
+    freed = _freed_deg(timed, found)
+    if not freed:
         return timed.view.aim.yaw_deg
     turn_deg = found.lines.get(line, found.offset_deg) - found.offset_deg
-    freed = {
-        name: signed_deg(timed.headings_deg[name] - off + turn_deg)
+    return signed_deg(_agreed_deg(freed, found.source) + turn_deg)
+
+
+def contradicts(timed: TimedPhoto, found: CameraHeading, name: str) -> bool:
+    """Return whether what a source states of a photo contradicts the other sources."""
+    freed = _freed_deg(timed, found)
+    return (
+        name in freed
+        and abs(signed_deg(freed[name] - _agreed_deg(freed, found.source))) >= APART_DEG
+    )
+
+
+def _freed_deg(timed: TimedPhoto, found: CameraHeading) -> dict[str, float]:
+    """Return what the sources state of a photo, without their offsets; none if not measured."""
+    return {
+        name: signed_deg(timed.headings_deg[name] - off)
         for name, off in found.off_deg.items()
         if name in timed.headings_deg
     }
-    if not freed:
-        return timed.view.aim.yaw_deg
+
+
+def _agreed_deg(freed: Mapping[str, float], source: str) -> float:
     guess_deg = best_guess_deg(freed)
-    likely_deg = freed.get(found.source, guess_deg)
+    likely_deg = freed.get(source, guess_deg)
     return likely_deg if abs(signed_deg(likely_deg - guess_deg)) < APART_DEG else guess_deg
-
-
-def contradicts(timed: TimedPhoto, heading_deg: float, found: CameraHeading) -> bool:
-    """Return whether a photo's heading is not what the source states of it."""
-    stated = timed.headings_deg.get(found.source)
-    offsets = (found.offset_deg, *found.lines.values())
-    return (
-        bool(found.pairs)
-        and stated is not None
-        and min(abs(signed_deg(stated + each - heading_deg)) for each in offsets) >= APART_DEG
-    )
 
 
 def _alike(runs: Sequence[Run]) -> list[Run]:

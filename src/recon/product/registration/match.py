@@ -59,7 +59,7 @@ class Link:
 
 
 def features_of(grey: GreyImage, view: PhotoView) -> Features:
-    """Return the features of a photo's grey picture."""
+    """Return the features of a photo's grey picture; none of one with sky, which lies nowhere."""
     shrink = LARGEST_PX / max(grey.shape)
     if shrink < 1.0:
         small = cv2.resize(grey, None, fx=shrink, fy=shrink, interpolation=cv2.INTER_AREA)
@@ -71,7 +71,7 @@ def features_of(grey: GreyImage, view: PhotoView) -> Features:
     rows, cols = grey.shape
     sift = cv2.SIFT.create(MOST_FEATURES, 3, 0.02)
     found, descriptors = sift.detectAndCompute(grey, None)
-    if len(found) < FEWEST_FEATURES:
+    if len(found) < FEWEST_FEATURES or view.shows_sky:
         return Features(np.zeros(0, np.complex128), np.zeros((0, 128), np.uint8), 1.0)
     seen = replace(view, cols=cols, rows=rows)
     return Features(

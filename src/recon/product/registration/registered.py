@@ -11,7 +11,7 @@ from scipy.spatial import KDTree
 
 from recon.model.arrays import FloatArray, IntArray
 from recon.product.footprint import PhotoView
-from recon.product.headings import signed_deg
+from recon.product.headings import AIRCRAFT, GIMBAL, signed_deg
 from recon.product.registration.adjustment import Adjusted, Stated, adjusted
 from recon.product.registration.heading import (
     CameraHeading,
@@ -46,7 +46,7 @@ PLACE_M = 1.0
 """Standard deviation of a photo's place where it states none: GNSS of neighbours errs alike."""
 LEAST_PLACE_M = 0.02
 KEPT_SHARE = 0.9
-HEADING_DEG, UNVERIFIED_DEG = 1.0, 10.0
+HEADING_DEG, UNVERIFIED_DEG = 0.3, 10.0
 """Standard deviations of a heading beside its stated error, and of one not verified."""
 
 
@@ -247,8 +247,12 @@ def _headings_deg(
         for number, line in enumerate(group.lines):
             for index in line.photos.tolist():
                 headings[index] = heading_deg(photos[index], number, heading)
-        turned = sum(contradicts(photos[n], headings[n], heading) for n in group.photos.tolist())
-        counted.append(replace(heading, turned=turned))
+        timed = [photos[index] for index in group.photos.tolist()]
+        turned = {
+            name: sum(contradicts(each, heading, name) for each in timed)
+            for name in (GIMBAL, AIRCRAFT)
+        }
+        counted.append(replace(heading, turned={n: each for n, each in turned.items() if each}))
     return headings, counted
 
 
