@@ -51,7 +51,7 @@ test("a site is drawn and imported, flown, and its fences keep while it is flown
         .getByLabel("Read it from a file")
         .setInputFiles({ name: "fields.kml", mimeType: "text/xml", buffer: Buffer.from(KML) });
       await expect(page.getByLabel("latitude, longitude")).toHaveValue("41.9012000, -93.6034000");
-      await page.getByLabel(/^Ground altitude/).fill("275");
+      await page.getByLabel(/^Ground there/).fill("275");
       await page.getByLabel("Simulated drones").fill("2");
       await page.getByRole("button", { name: "Make the site" }).click();
     });

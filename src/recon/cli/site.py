@@ -2,6 +2,7 @@
 
 import re
 import sys
+from collections.abc import Mapping
 from datetime import UTC, datetime
 from enum import Enum
 from pathlib import Path
@@ -16,6 +17,7 @@ from recon.model.geo import GeoPoint
 from recon.model.units import M_PER_FT
 
 if TYPE_CHECKING:
+    from recon.fields.field_file import ImportedFeature
     from recon.site import Site
 
 site_app = App(help="Make, check and import into a site's folder.", no_args_is_help=True)
@@ -28,6 +30,7 @@ class Layer(Enum):
 
     BOUNDARY = "boundary"
     KEEP_OUT = "keep_out"
+    HEIGHT_ZONES = "height_zones"
     SURVEY_REGIONS = "survey_regions"
     LANDING_PADS = "landing_pads"
 
@@ -126,9 +129,13 @@ def import_command(
     own = {"altitude_m": frame.origin.ellipsoid_height_m} if is_pads else {}
     kind = "Point" if is_pads else "Polygon"
     new = [
-        DrawnFeature(SiteLayer(layer.value), each.geometry, {"name": each.name or None, **own})
+        DrawnFeature(
+            SiteLayer(layer.value),
+            each.geometry,
+            {"name": each.name or None, **own, **_of(each, layer)},
+        )
         for each in chosen_features(file, found, chosen)
-        if each.geometry["type"] == kind
+        if each.geometry["type"] == kind and each.layer in (None, layer.value)
     ]
     for each in found.excluded:
         print_warning(f"excluded: {each}")
@@ -163,6 +170,11 @@ def opened_site(folder: Path) -> "Site":
         text = f"{folder}: a change of the site that was interrupted is undone"
         print(printable(text), file=sys.stderr, flush=True)
     return load_site(folder)
+
+
+def _of(feature: "ImportedFeature", layer: Layer) -> Mapping[str, str | float]:
+    """Return heights and notes for the layer that a file says its shape is of."""
+    return feature.attributes if feature.layer == layer.value else {}
 
 
 def _height_m(text: str) -> float:

@@ -11,7 +11,7 @@ import subprocess
 import sys
 from codecs import BOM_UTF8, BOM_UTF16_BE, BOM_UTF16_LE
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -25,8 +25,8 @@ LONGEST_WAIT_S = 120.0
 """Longest wait for a file's process on a computer busy with a flight; it ends far sooner."""
 PROCESS = ("-m", "recon.fields.process")
 FORMATS = (
-    "KML, KMZ, Shapefile (zip), GeoPackage, GeoJSON, ISOXML (TASKDATA), GPX, or a plan of DJI "
-    "Pilot 2 or QGroundControl"
+    "KML, KMZ, Shapefile (zip), GeoPackage, GeoJSON, ISOXML (TASKDATA), GPX, zones of ED-269 or "
+    "ED-318, or a plan of DJI Pilot 2 or QGroundControl"
 )
 _SQLITE_MAGIC, _ZIP_MAGIC = b"SQLite format 3\x00", b"PK\x03\x04"
 
@@ -37,6 +37,10 @@ class ImportedFeature:
 
     name: str
     geometry: Mapping[str, Any]
+    layer: str | None = None
+    """The site's layer that it is by its file, where that says so: a zone of an authority."""
+    attributes: Mapping[str, str | float] = field(default_factory=dict)
+    """Of that layer: heights with their datum, notes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +90,9 @@ def _imported(shown: str, answer: Mapping[str, Any]) -> Imported:
     for number, each in enumerate(answer["features"], start=1):
         fault = fault_of(each["geometry"])
         if fault is None:
-            features.append(ImportedFeature(each["name"], each["geometry"]))
+            features.append(
+                ImportedFeature(each["name"], each["geometry"], each["layer"], each["attributes"])
+            )
         else:
             excluded.append(Excluded(each["name"] or f"shape {number}", fault))
     if not features:

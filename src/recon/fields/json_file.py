@@ -1,10 +1,11 @@
 """GeoJSON, and the plans of QGroundControl, which are JSON too."""
 
 import json
-from collections.abc import Iterator, Mapping
-from math import cos, pi, radians, sin
+from collections.abc import Mapping
 from typing import Any
 
+from recon.fields.airspace_zones import read_zone
+from recon.fields.json_shapes import GEOMETRIES, add_geometry, circle
 from recon.fields.names import name_among
 from recon.fields.shape import FieldFileError, Found, Position
 
@@ -15,14 +16,6 @@ WGS84 = frozenset(
     }
 )
 """Names of WGS84 that programs write; the longitude comes first under each."""
-GEOMETRIES = frozenset(
-    {
-        *("Polygon", "MultiPolygon", "LineString", "MultiLineString", "Point", "MultiPoint"),
-        "GeometryCollection",
-    }
-)
-CIRCLE_CORNERS = 72
-METRES_A_DEGREE = 111_195.0
 
 
 def read_json(data: bytes) -> tuple[Found, str | None]:
@@ -47,9 +40,12 @@ def read_json(data: bytes) -> tuple[Found, str | None]:
 
 
 def _geojson(document: dict[str, Any]) -> tuple[Found, str | None]:
-    kind = document.get("type")
-    features = document.get("features") if kind == "FeatureCollection" else [document]
-    if not (kind in {"FeatureCollection", "Feature", *GEOMETRIES} and isinstance(features, list)):
+    kind, features = document.get("type"), document.get("features")
+    # ED-269 has features without a type of its own.
+    is_list = kind in ("FeatureCollection", None)
+    if not is_list:
+        features = [document]
+    if not (isinstance(features, list) and (is_list or kind in {"Feature", *GEOMETRIES})):
         raise FieldFileError(
             f"expected GeoJSON (a FeatureCollection, Feature or geometry) or a plan of "
             f"QGroundControl, got {str(kind)[:40]!a}"
@@ -81,33 +77,10 @@ def _read_feature(number: int, feature: object, found: Found) -> None:
     geometry = feature if is_bare else feature.get("geometry")
     found.begin_feature()
     try:
-        _read_geometry(geometry, name, found)
-    except (TypeError, ValueError, KeyError, IndexError, OverflowError):
+        if is_bare or not read_zone(feature, number, found):
+            add_geometry(geometry, name, found)
+    except (TypeError, ValueError, KeyError, IndexError, AttributeError, OverflowError):
         found.exclude(name or f"feature {number}", "coordinates that cannot be read")
-
-
-def _read_geometry(geometry: object, name: str, found: Found) -> None:
-    if not isinstance(geometry, dict) or geometry.get("type") not in GEOMETRIES:
-        found.exclude(name, "no shape")
-        return
-    kind: str = geometry["type"]
-    if kind == "GeometryCollection":
-        for part in geometry["geometries"]:
-            _read_geometry(part, name, found)
-        return
-    parts = geometry["coordinates"]
-    for part in parts if kind.startswith("Multi") else [parts]:
-        match kind.removeprefix("Multi"):
-            case "Polygon":
-                found.add(name, "polygon", [_positions(ring) for ring in part])
-            case "LineString":
-                found.add(name, "path", [_positions(part)])
-            case "Point":
-                found.add(name, "point", [_positions([part])])
-
-
-def _positions(points: Any) -> list[Position]:
-    return [(float(point[0]), float(point[1])) for point in points]
 
 
 def _plan(document: dict[str, Any]) -> Found:
@@ -129,27 +102,16 @@ def _read_fence(fence: Mapping[str, Any], found: Found) -> None:
         found.add(_fence_name(each, number), "polygon", [_turned(each["polygon"])])
     for number, each in enumerate(fence.get("circles", []), start=1):
         found.begin_feature()
-        circle = each["circle"]
-        latitude_deg, longitude_deg = circle["center"]
+        round_one = each["circle"]
+        latitude_deg, longitude_deg = round_one["center"]
         ring = list(
-            _circle(latitude_deg, longitude_deg, circle["radius"], is_inside=each["inclusion"])
+            circle(latitude_deg, longitude_deg, round_one["radius"], is_inside=each["inclusion"])
         )
         found.add(f"{_fence_name(each, number)}, circle", "polygon", [ring])
 
 
 def _fence_name(fence: Mapping[str, Any], number: int) -> str:
     return f"fence {number}" if fence["inclusion"] else f"keep out {number}"
-
-
-def _circle(
-    latitude_deg: float, longitude_deg: float, radius_m: float, *, is_inside: bool
-) -> Iterator[Position]:
-    """Yield corners on the safe side: inside a circle to stay in, outside one to keep out of."""
-    reach_deg = radius_m / METRES_A_DEGREE / (1.0 if is_inside else cos(pi / CIRCLE_CORNERS))
-    for corner in range(CIRCLE_CORNERS):
-        turn = 2.0 * pi * corner / CIRCLE_CORNERS
-        east_deg = reach_deg * sin(turn) / cos(radians(latitude_deg))
-        yield longitude_deg + east_deg, latitude_deg + reach_deg * cos(turn)
 
 
 def _read_mission(mission: Mapping[str, Any], found: Found) -> None:

@@ -7,6 +7,8 @@ from typing import Literal
 Position = tuple[float, float]
 """Longitude and latitude in degrees of WGS84."""
 Kind = Literal["polygon", "path", "point"]
+Attributes = dict[str, str | float]
+"""Of a site's layer: heights with their datum, notes."""
 
 
 class FieldFileError(Exception):
@@ -22,6 +24,9 @@ class Shape:
     rings: list[list[Position]]
     feature: int
     """Shapes of one number are parts of one."""
+    layer: str | None = None
+    """The site's layer that it is by its file, where that says so."""
+    attributes: Attributes = field(default_factory=dict)
 
 
 @dataclass(slots=True)
@@ -38,9 +43,17 @@ class Found:
         """Begin the next of the file's features: what is added until then are its parts."""
         self.feature += 1
 
-    def add(self, name: str, kind: Kind, rings: Iterable[list[Position]]) -> None:
+    def add(
+        self,
+        name: str,
+        kind: Kind,
+        rings: Iterable[list[Position]],
+        layer: str | None = None,
+        attributes: Attributes | None = None,
+    ) -> None:
         """Take a shape."""
-        self.shapes.append(Shape(name, kind, list(rings), self.feature))
+        shape = Shape(name, kind, list(rings), self.feature, layer, attributes or {})
+        self.shapes.append(shape)
 
     def exclude(self, name: str, reason: str) -> None:
         """Name what is left out, and why."""

@@ -42,8 +42,8 @@ def tidied(found: Found, *, close_paths: bool) -> dict[str, Any]:
     names = each_once(list(_names([shape for shape, _ in kept])))
     return {
         "features": [
-            {"name": name, "geometry": geometry}
-            for name, (_, geometry) in zip(names, kept, strict=True)
+            {"name": name, "geometry": geometry, "layer": each.layer, "attributes": each.attributes}
+            for name, (each, geometry) in zip(names, kept, strict=True)
         ],
         "excluded": _excluded(found.excluded),
         "warnings": found.warnings,

@@ -265,17 +265,13 @@ describe("loading again", () => {
 describe("an imported file", () => {
   const polygon = FIELD.geometry;
   const point = { type: "Point" as const, coordinates: [-93.6, 41.9] };
+  const ONE = { name: "", geometry: polygon, layer: null, properties: {} };
   const READ = { features: [], excluded: [], warnings: [], is_fit_for_fences: true, reason: null };
 
   it("is a choice first, then part of the draft", async () => {
     const draft = await open();
     page.site.imported = {
-      features: [
-        { name: "west", geometry: polygon },
-        { name: "", geometry: polygon },
-        { name: "", geometry: polygon },
-        { name: "home", geometry: point },
-      ],
+      features: [{ ...ONE, name: "west" }, ONE, ONE, { ...ONE, name: "home", geometry: point }],
       excluded: ["photo: a picture laid on the map", "no shape"],
       warnings: ["NAD27: accurate to 5 m"],
       is_fit_for_fences: true,
@@ -301,8 +297,7 @@ describe("an imported file", () => {
 
   it("with many features takes those that are pressed", async () => {
     const draft = await open();
-    const one = { name: "", geometry: polygon };
-    page.site.imported = { ...READ, features: Array(21).fill(one) };
+    page.site.imported = { ...READ, features: Array(21).fill(ONE) };
     await draft.readFile(new File(["x"], "county.gpkg"));
     expect(draft.imported().every(({ layer }) => layer === null)).toBe(true);
     draft.takeOrLeave(20);
@@ -310,6 +305,18 @@ describe("an imported file", () => {
     draft.takeOrLeave(3);
     draft.addImported();
     expect(draft.features().map(({ layer }) => layer)).toEqual(["survey_regions"]);
+  });
+
+  it("with zones of an authority keeps their heights", async () => {
+    const draft = await open();
+    const properties = { ceiling_m: 120, datum: "ground", notes: "PROHIBITED; CAA" };
+    const zone = { ...ONE, name: "R1", layer: "keep_out" as const, properties };
+    page.site.imported = { ...READ, features: [zone] };
+    await draft.readFile(new File(["x"], "zones.json"));
+    draft.addImported();
+    const [added] = draft.features();
+    expect(added?.layer).toBe("keep_out");
+    expect(added?.properties).toEqual({ name: "R1", ...properties });
   });
 
   it("that is refused leaves everything as it is", async () => {

@@ -45,6 +45,8 @@ export interface ImportChoice {
   readonly rings: readonly Ring[];
   readonly isPoint: boolean;
   readonly layer: LayerName | null;
+  /** The layer that it is by its file, and its attributes there: a zone of an authority. */
+  readonly ofFile: Pick<ImportedFeatureView, "layer" | "properties">;
 }
 
 /** The file that was read last: what is left out of it, and what is said about the rest. */
@@ -268,8 +270,11 @@ export function createSiteDraft(
       ),
     addImported: () => {
       let next = features();
-      for (const { name, rings, layer } of imported()) {
-        if (layer !== null) next = [...next, created(layer, rings, name, next)];
+      for (const { name, rings, layer, ofFile } of imported()) {
+        if (layer === null) continue;
+        const one = created(layer, rings, name, next);
+        const more = ofFile.layer === layer ? ofFile.properties : {};
+        next = [...next, { ...one, properties: { ...one.properties, ...more } }];
       }
       setImported([]);
       setReading(null);
@@ -330,12 +335,14 @@ function withProperty(
 
 /** What the features of a file become; of a file with many, none is taken until it is chosen. */
 function choicesOf(found: readonly ImportedFeatureView[]): ImportChoice[] {
-  return found.map(({ name, geometry }) => {
-    const one = { name, rings: ringsOf(geometry), isPoint: geometry.type === "Point" };
+  return found.map(({ name, geometry, layer, properties }) => {
+    const isPoint = geometry.type === "Point";
+    const one = { name, rings: ringsOf(geometry), isPoint, ofFile: { layer, properties } };
     return { ...one, layer: found.length > MOST_TAKEN ? null : usualLayer(one) };
   });
 }
 
-function usualLayer({ isPoint }: Pick<ImportChoice, "isPoint">): LayerName {
+function usualLayer({ isPoint, ofFile }: Pick<ImportChoice, "isPoint" | "ofFile">): LayerName {
+  if (ofFile.layer !== null) return ofFile.layer;
   return isPoint ? "landing_pads" : "survey_regions";
 }

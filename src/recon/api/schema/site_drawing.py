@@ -180,6 +180,8 @@ class ImportedFeatureView(Message):
 
     name: str
     geometry: DrawnGeometry
+    layer: SiteLayer | None = Field(description="what it is by its file, if that says so")
+    properties: dict[str, str | float] = Field(description="of that layer: heights, datum, notes")
 
 
 class ImportedView(Message):

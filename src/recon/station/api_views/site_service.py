@@ -7,6 +7,7 @@ from typing import Any
 
 from recon.api import schema
 from recon.fields.field_file import read_import
+from recon.model.airspace import SiteLayer
 from recon.model.errors import ReconError
 from recon.model.person import Person
 from recon.site.drawing import (
@@ -39,7 +40,10 @@ class FileImports:
             return _refused(str(problem))
         features = [
             schema.ImportedFeatureView(
-                name=each.name, geometry=schema.DrawnGeometry.model_validate(each.geometry)
+                name=each.name,
+                geometry=schema.DrawnGeometry.model_validate(each.geometry),
+                layer=None if each.layer is None else SiteLayer(each.layer),
+                properties=dict(each.attributes),
             )
             for each in found.features
         ]

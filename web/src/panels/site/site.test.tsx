@@ -34,6 +34,9 @@ function field(label: string): HTMLInputElement {
   return named?.querySelector("input, select") ?? find(page.root, `[aria-label='${label}']`);
 }
 
+/** What the file says of a shape but its name and place. */
+const OTHER = { layer: null, properties: {} };
+
 function type(label: string, text: string) {
   field(label).value = text;
   field(label).dispatchEvent(new Event("change", { bubbles: true }));
@@ -197,8 +200,8 @@ describe("an imported file", () => {
     };
     page.site.imported = {
       features: [
-        { name: "west", geometry: polygon },
-        { name: "<b>east</b>", geometry: polygon },
+        { ...OTHER, name: "west", geometry: polygon },
+        { ...OTHER, name: "<b>east</b>", geometry: polygon },
       ],
       excluded: [],
       warnings: [],
@@ -243,7 +246,7 @@ describe("a file that is not read whole", () => {
   it("names what is left out, and takes paths as areas when asked", async () => {
     await open();
     const section = await read({
-      features: [{ name: "west", geometry: shape(0) }],
+      features: [{ ...OTHER, name: "west", geometry: shape(0) }],
       excluded: ["lane: a path of 4 points, not an area: close paths to take it as one"],
       warnings: ["pond: 12000 corners are simplified to 437, within 2 cm"],
     });
@@ -258,7 +261,7 @@ describe("a file that is not read whole", () => {
   it("becomes no fence where nobody knows how far off it is", async () => {
     await open();
     const section = await read({
-      features: [{ name: "old", geometry: shape(0) }],
+      features: [{ ...OTHER, name: "old", geometry: shape(0) }],
       is_fit_for_fences: false,
     });
     expect(section.textContent).toContain("Survey regions only");
@@ -269,6 +272,7 @@ describe("a file that is not read whole", () => {
   it("of a whole farm is searched by name", async () => {
     await open();
     const fields = Array.from({ length: 21 }, (_, k) => ({
+      ...OTHER,
       name: `field ${k + 1}`,
       geometry: shape(k),
     }));
