@@ -14,7 +14,8 @@ describe("the site being edited, on the map", () => {
       unedited: null,
     } as const;
     const pad = { ...field, layer: "landing_pads", rings: [[HERE]] } as const;
-    const read = { name: "", rings: FIELD, isPoint: false };
+    const ofFile = { layer: null, properties: {} };
+    const read = { name: "", rings: FIELD, isPoint: false, ofFile };
     const shown = draftFeatures({
       features: [
         { ...field, id: 1 },
