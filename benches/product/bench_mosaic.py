@@ -21,7 +21,6 @@ from tempfile import TemporaryDirectory
 
 import cv2
 import numpy as np
-import pyproj
 import rasterio
 from rasterio.transform import Affine
 from rasterio.warp import reproject
@@ -35,15 +34,16 @@ from tests.product.made_flight import (
     write_record,
 )
 
-from recon.geo import geo_from_enu
 from recon.model.units import NS_PER_S
 from recon.product.footprint import Aim, PhotoView
+from recon.record.raster.geotiff import projected_crs
 
 COLS, ROWS_PX = 5472, 3648
 HEIGHT_M, ACROSS_DEG = 60.0, 66.0
 TEXTURE_PX, TEXEL_M = 4096, 0.02
 CAMERA_ID = "made camera 5472 3648 perspective 0.77"
-UTM, DSM_CELL_M, MARGIN_M = "EPSG:32615", 0.5, 100.0
+DSM_CELL_M, MARGIN_M = 0.5, 100.0
+SURFACE = "odm_dem/dsm.tif"
 FASTER, LEANER = 2.0, 0.5
 AGREE_LEVELS = 8.0
 
@@ -68,14 +68,28 @@ def main() -> None:
         card, record, run = _made(folder, options.photos)
         preview = _timed(_recon("mosaic", record, card, "--out", folder / "preview"))
         print(f"preview: {preview.seconds:.0f} s, {preview.peak_mb:.0f} MB", flush=True)
-        ours = _timed(_recon("mosaic", record, card, "--odm", run, "--out", folder / "ours"))
+        ours = _timed(
+            _recon("mosaic", record, card, "--odm", run, "--raw", "--out", folder / "ours")
+        )
         print(f"recon mosaic --odm: {ours.seconds:.0f} s, {ours.peak_mb:.0f} MB", flush=True)
         if options.alone:
             return
         with rasterio.open(folder / "ours" / "mosaic.tif") as dataset:
             pixel_m = dataset.transform.a
         orthority = _orthority(folder)
-        theirs = _timed([orthority, "odm", "-dd", str(run), "-r", f"{pixel_m:g}", "-o"])
+        theirs = _timed(
+            [
+                orthority,
+                "odm",
+                "-dd",
+                str(run),
+                "-c",
+                str(run / SURFACE),
+                "-r",
+                f"{pixel_m:g}",
+                "-o",
+            ]
+        )
         print(f"oty odm: {theirs.seconds:.0f} s, {theirs.peak_mb:.0f} MB", flush=True)
         off = _difference(folder / "ours" / "mosaic.tif", run / "orthority")
         print(f"levels that the pictures differ by, median: {off:.1f}")
@@ -182,20 +196,19 @@ def _write_run(run: Path, aims: dict[str, Aim]) -> None:
     part = {"cameras": {CAMERA_ID: camera}, "shots": shots, "reference_lla": reference}
     (run / "cameras.json").write_text(json.dumps({CAMERA_ID: camera}))
     (run / "opensfm" / "reconstruction.json").write_text(json.dumps([part]))
-    _write_surface(run / "odm_dem" / "dsm.tif", aims)
+    _write_surface(run / SURFACE, aims)
 
 
 def _write_surface(path: Path, aims: dict[str, Aim]) -> None:
-    places = np.array([(aim.east_m, aim.north_m, 0.0) for aim in aims.values()])
-    latitude, longitude, _height = geo_from_enu(FRAME, places)
-    to_map = pyproj.Transformer.from_crs("EPSG:4326", UTM, always_xy=True)
-    x, y = to_map.transform(longitude, latitude)
+    # In a projection about the site: the baseline takes poses in it as they are, also in UTM, where
+    # grid north is not true north.
+    x, y = np.array([(aim.east_m, aim.north_m) for aim in aims.values()]).T
     west, north = np.floor(x.min() - MARGIN_M), np.ceil(y.max() + MARGIN_M)
     cols = int(np.ceil((x.max() + MARGIN_M - west) / DSM_CELL_M))
     rows = int(np.ceil((north - y.min() + MARGIN_M) / DSM_CELL_M))
     with rasterio.open(
         path, "w", driver="GTiff", width=cols, height=rows, count=1, dtype="float32",
-        nodata=-9999.0, crs=UTM, tiled=True, compress="deflate",
+        nodata=-9999.0, crs=projected_crs(FRAME), tiled=True, compress="deflate",
         transform=Affine(DSM_CELL_M, 0.0, west, 0.0, -DSM_CELL_M, north),
     ) as dataset:  # fmt: skip
         dataset.write(np.full((rows, cols), FRAME.origin.ellipsoid_height_m, np.float32), 1)

@@ -37,11 +37,10 @@ from recon.product.mosaic import (
     read_jpeg,
 )
 from recon.product.mosaic.band_rasters import band_rasters
-from recon.product.mosaic.pixels import Pixels
+from recon.product.mosaic.pixels import Box, Pixels
 from recon.product.mosaic.place import PREVIEW_PIXELS
 from recon.product.photos.card import card_of
 from recon.product.photos.shots import shots_of
-from recon.product.registration import read_grey, register
 from recon.product.tag import sun_history
 from recon.product.timing import StatedCamera, TimedPhoto, timed_photos
 
@@ -167,6 +166,9 @@ def _site_ground(site: Path | None) -> tuple[Ground, str]:
 def _registered(photos: Sequence[TimedPhoto]) -> Sequence[PhotoView]:
     """Return the photos' views, registered to their neighbours; print how well."""
 
+    # Imported here: a mosaic of OpenDroneMap's cameras has no need of it, nor room for it.
+    from recon.product.registration import read_grey, register
+
     def over(read: Iterable[TimedPhoto]) -> Iterator[TimedPhoto]:
         return progress_over(read, "registering photos", len(photos))
 
@@ -186,8 +188,8 @@ def _colours(found: _Geometry) -> list[Band]:
     if found.photos[0].photo.kind == "band":
         return []
 
-    def read(index: int, shrink: int) -> Pixels:
-        return read_jpeg(found.photos[index].photo.path, shrink)
+    def read(index: int, shrink: int, box: Box) -> Pixels:
+        return read_jpeg(found.photos[index].photo.path, shrink, box)
 
     return [Band("mosaic", COLOURS, read)]
 

@@ -41,7 +41,7 @@ from recon.product.mosaic import (
     preview_cameras,
 )
 from recon.product.mosaic.build import plainly
-from recon.product.mosaic.pixels import ReadPixels
+from recon.product.mosaic.pixels import Box, ReadPixels
 from recon.product.photos.photo import Photo
 from recon.product.sun_at import SunHistory
 from recon.product.timing import TimedPhoto
@@ -112,10 +112,12 @@ class MadeMosaic:
         """Return a photo's time since the flight's start."""
         return (self.photos[index].at_ns - START_NS) / NS_PER_S
 
-    def read(self, index: int, shrink: int) -> npt.NDArray[np.uint8]:
+    def read(self, index: int, shrink: int, box: Box) -> npt.NDArray[np.uint8]:
         """Paint a photo."""
         self.reads.append(index)
         places = ground_of_pixels(self.photos[index].view, shrink)
+        top, left, bottom, right = box
+        places = places[top:bottom, left:right]
         return painted(places, sun(places[..., 0], places[..., 1], self.at_s(index)))
 
     def build(

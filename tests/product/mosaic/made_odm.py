@@ -21,6 +21,7 @@ from tests.product.mosaic.made_mosaic import MadeMosaic, painted
 
 from recon.geo import enu_from_geo, geo_from_enu
 from recon.model.geo import GeoPoint, LocalFrame
+from recon.product.mosaic.pixels import Box
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -77,7 +78,7 @@ class MadeOdm:
         place = np.array([aim.east_m, aim.north_m, HEIGHT_M]) + random.uniform(-2.0, 2.0, 3)
         return place, tilt @ aim.rotation.T
 
-    def read(self, index: int, shrink: int) -> npt.NDArray[np.uint8]:
+    def read(self, index: int, shrink: int, box: Box) -> npt.NDArray[np.uint8]:
         """Paint a photo."""
         assert shrink == 1
         place, to_camera = self.pose(index)
@@ -87,7 +88,8 @@ class MadeOdm:
             fall = place[2] - up_m(ground[:, 0], ground[:, 1])
             ground = place[:2] + ways[:, :2] * (fall / -ways[:, 2])[:, np.newaxis]
         shade = sun(ground[:, 0], ground[:, 1], self.made.at_s(index))
-        return painted(ground, shade).reshape(ROWS_PX, COLS, 3)
+        top, left, bottom, right = box
+        return painted(ground, shade).reshape(ROWS_PX, COLS, 3)[top:bottom, left:right]
 
     def write(self, *, has_report: bool = True) -> None:
         """Write the folder."""

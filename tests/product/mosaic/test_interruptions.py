@@ -14,9 +14,10 @@ from tests.product.mosaic.made_mosaic import MadeMosaic
 from tests.product.mosaic.test_mosaic import pixels
 
 from recon.product.mosaic import Light, read_jpeg
-from recon.product.mosaic.pixels import Cut, PhotoCuts
+from recon.product.mosaic.pixels import Box, Cut, PhotoCuts
 from recon.product.photos.photo_error import PhotoError
 
+ALL: Box = (0, 0, 10_000, 10_000)
 FOUR_WINDOWS_M = 0.2
 """Pixels that make four windows."""
 
@@ -35,10 +36,10 @@ def test_a_killed_run_goes_on_where_it_was(made: MadeMosaic, tmp_path: Path) -> 
     made.build(whole, resolution_m=FOUR_WINDOWS_M).run()
     out = tmp_path / "out"
 
-    def dying(index: int, shrink: int) -> np.ndarray:
+    def dying(index: int, shrink: int, box: Box) -> np.ndarray:
         if any("mosaic" in path.name for path in out.rglob("*.tif")):
             raise Killed
-        return made.read(index, shrink)
+        return made.read(index, shrink, box)
 
     with pytest.raises(Killed):
         made.build(out, resolution_m=FOUR_WINDOWS_M, read=dying).run()
@@ -62,7 +63,7 @@ def seen(items, title: str, store: Path, finished: dict[str, int]) -> Iterator:
 
 
 def test_other_settings_begin_anew(made: MadeMosaic, tmp_path: Path) -> None:
-    def dying(_index: int, _shrink: int) -> np.ndarray:
+    def dying(_index: int, _shrink: int, box: Box) -> np.ndarray:
         raise Killed
 
     with pytest.raises(Killed):
@@ -79,10 +80,10 @@ def test_ground_of_a_damaged_photo_is_taken_from_others(made: MadeMosaic, tmp_pa
     index = int(np.nanmin(pixels(tmp_path / "best", "provenance")[0][0]))
     name = made.photos[index].photo.name
 
-    def reading(number: int, shrink: int) -> np.ndarray:
+    def reading(number: int, shrink: int, box: Box) -> np.ndarray:
         if number == index:
             raise PhotoError(f"{name}: its picture is damaged")
-        return made.read(number, shrink)
+        return made.read(number, shrink, box)
 
     report = made.build(tmp_path / "out", resolution_m=0.4, read=reading).run()
     assert report.failed == {name: f"{name}: its picture is damaged"}
@@ -131,7 +132,7 @@ def test_a_jpeg_is_read_smaller_and_not_turned(tmp_path: Path) -> None:
     path = tmp_path / "photo.jpg"
     cv2.imwrite(str(path), picture[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, 100])
     for shrink in (1, 2, 4, 8):
-        found = read_jpeg(path, shrink)
+        found = read_jpeg(path, shrink, ALL)
         assert found.shape == (48 // shrink, 64 // shrink, 3)
         assert np.allclose(found[1, 1], (200, 100, 50), atol=4)
         assert np.allclose(found[-2, -2], 0, atol=4)
@@ -141,14 +142,15 @@ def test_a_jpeg_is_read_smaller_and_not_turned(tmp_path: Path) -> None:
 def test_a_damaged_jpeg_is_a_sentence(tmp_path: Path, data: bytes) -> None:
     (tmp_path / "photo.jpg").write_bytes(data)
     with pytest.raises(PhotoError, match=r"photo\.jpg: its picture is damaged"):
-        read_jpeg(tmp_path / "photo.jpg", 1)
+        read_jpeg(tmp_path / "photo.jpg", 1, ALL)
     with pytest.raises(PhotoError, match="cannot be read: No such file"):
-        read_jpeg(tmp_path / "none.jpg", 1)
+        read_jpeg(tmp_path / "none.jpg", 1, ALL)
 
 
 def test_pieces_of_photos_stay_within_the_memory_that_is_given() -> None:
-    def read(index: int, _shrink: int) -> np.ndarray:
-        return np.full((100, 200, 3), index, dtype=np.uint8)
+    def read(index: int, _shrink: int, box: Box) -> np.ndarray:
+        top, left, bottom, right = box
+        return np.full((bottom - top, right - left, 3), index, dtype=np.uint8)
 
     taken = dict.fromkeys(range(20), (10.0, 20.0, 39.0, 79.0))
     cuts = PhotoCuts(read, 1, taken, most_bytes=100_000)

@@ -23,6 +23,7 @@ from recon.geo import geo_from_enu
 from recon.product.mosaic import Band, Light, MosaicReport
 from recon.product.mosaic.band_rasters import band_rasters
 from recon.product.mosaic.choice import STEP_PX
+from recon.product.mosaic.pixels import Box
 from recon.product.photos.band import Band as CameraBand
 from recon.product.photos.shots import Shot
 
@@ -151,7 +152,7 @@ def test_shade_is_filled_when_asked(tmp_path: Path) -> None:
 
 def test_brightness_is_evened_to_full_sun(tmp_path: Path) -> None:
     made = MadeMosaic(tmp_path, every=12)
-    grey = Band("mosaic", ("grey",), lambda i, s: half_bright(made, i, s), is_picture=False)
+    grey = Band("mosaic", ("grey",), lambda i, s, b: half_bright(made, i, s, b), is_picture=False)
     made.build(tmp_path / "out", fills=True, is_evened=True, bands=[grey], resolution_m=0.4).run()
     values, _east, _north = pixels(tmp_path / "out")
     found = values[0][values[0] > 0]
@@ -160,16 +161,16 @@ def test_brightness_is_evened_to_full_sun(tmp_path: Path) -> None:
     assert np.abs(found.astype(float) - 100.0).mean() < 6.0
 
 
-def half_bright(made: MadeMosaic, index: int, shrink: int) -> np.ndarray:
-    blue = made.read(index, shrink)[..., 2] / BRIGHT
+def half_bright(made: MadeMosaic, index: int, shrink: int, box: Box) -> np.ndarray:
+    blue = made.read(index, shrink, box)[..., 2] / BRIGHT
     return np.rint(100.0 * (0.25 + 0.75 * blue)).astype(np.uint8)[..., np.newaxis]
 
 
 def test_bands_lie_on_one_grid(tmp_path: Path) -> None:
     made = MadeMosaic(tmp_path, every=12)
 
-    def near_infrared(index: int, shrink: int) -> np.ndarray:
-        return made.read(index, shrink)[..., :1].astype(np.uint16) * 200
+    def near_infrared(index: int, shrink: int, box: Box) -> np.ndarray:
+        return made.read(index, shrink, box)[..., :1].astype(np.uint16) * 200
 
     bands = [
         Band("mosaic", ("red", "green", "blue"), made.read),

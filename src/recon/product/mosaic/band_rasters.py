@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from recon.product.mosaic.cameras import Camera, Lens
-from recon.product.mosaic.pixels import Band, Pixels, read_unchanged
+from recon.product.mosaic.pixels import Band, Box, Pixels, read_unchanged
 from recon.product.photos.photo import Photo
 from recon.product.photos.photo_error import PhotoError
 from recon.product.photos.shots import Shot
@@ -39,9 +39,9 @@ def _band(name: str, files: dict[int, Photo], cameras: Sequence[Camera]) -> Band
         found[index] = _beside(cameras[index], photo)
     dtype = _dtype(next(iter(files.values())).path)
 
-    def read(index: int, shrink: int) -> Pixels:
+    def read(index: int, shrink: int, box: Box) -> Pixels:
         photo = files[index]
-        pixels = read_unchanged(photo.path, shrink)[..., :1]
+        pixels = read_unchanged(photo.path, shrink, box)[..., :1]
         if pixels.dtype != dtype:
             raise PhotoError(
                 f"{photo.name}: expected {dtype} as the first file, got {pixels.dtype}"
@@ -62,7 +62,7 @@ def _beside(lead: Camera, photo: Photo) -> Camera:
 
 def _dtype(path: Path) -> str:
     try:
-        return read_unchanged(path, 1).dtype.name
+        return read_unchanged(path, 1, (0, 0, 1, 1)).dtype.name
     except PhotoError:
         # It is refused with a sentence when it is read.
         return np.dtype(np.uint16).name

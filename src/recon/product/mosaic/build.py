@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
+import rasterio
 import shapely  # type: ignore[import-untyped, unused-ignore]
 
 from recon import version
@@ -28,7 +29,7 @@ from recon.product.mosaic.pixels import Band, PhotoCuts, shrink_for
 from recon.product.mosaic.plan import MosaicPlan, Window
 from recon.product.mosaic.preview import preview_png
 from recon.product.mosaic.render import Renderer, camera_for, taken_of
-from recon.product.mosaic.windows import PROVENANCE, Raster, RasterBand, WindowStore
+from recon.product.mosaic.windows import CACHE_BYTES, PROVENANCE, Raster, RasterBand, WindowStore
 from recon.record.files.atomic_file import replace_file
 
 Item = TypeVar("Item")
@@ -160,7 +161,10 @@ class MosaicBuild:
     def _in_threads(
         self, work: Callable[[Window], Any], windows: Sequence[Window], title: str
     ) -> Iterator[Any]:
-        with ThreadPoolExecutor(self.settings.threads) as pool:
+        with (
+            rasterio.Env(GDAL_CACHEMAX=CACHE_BYTES),
+            ThreadPoolExecutor(self.settings.threads) as pool,
+        ):
             try:
                 yield from self.over(pool.map(work, windows), title, len(windows))
             except BaseException:

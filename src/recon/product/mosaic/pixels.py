@@ -1,7 +1,7 @@
 """The pixels of photos: decoded when first needed, only what the mosaic takes is kept.
 
-A photo of 20 megapixels has 60 MB of pixels, of which a mosaic takes a tenth: so when it is decoded
-all that is taken of it is cut out, and kept as long as room allows.
+A photo of 20 megapixels has 60 MB of pixels, of which a mosaic takes a tenth: so when it is
+decoded, all that is taken of it is cut out, and kept as long as room allows.
 """
 
 from collections import OrderedDict
@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import log2
 from pathlib import Path
-from threading import Condition
+from threading import Condition, Lock
 from typing import Any
 
 import cv2
@@ -31,12 +31,15 @@ REDUCED = {
 }
 AROUND_PX = 4
 """Pixels kept around what is taken: interpolation reads neighbours."""
-CACHE_BYTES = 256 * 1024 * 1024
+CACHE_BYTES = 64 * 1024 * 1024
 LONGEST_SIDE_PX = 32_000
 """Longest side that OpenCV's warps take."""
 
-ReadPixels = Callable[[int, int], Pixels]
-"""A photo's index and how often smaller each way (1, 2, 4, 8) -> its pixels, as stored."""
+Box = tuple[int, int, int, int]
+"""Rows and columns: top, left, and those after the last, bottom, right."""
+ReadPixels = Callable[[int, int, Box], Pixels]
+"""A photo's index, how often smaller each way (1, 2, 4, 8), a box in its smaller pixels that may
+reach beyond them -> its pixels there, as stored."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,39 +56,44 @@ class Band:
     """Of each photo, where the band is of another lens; None of a photo that lacks the band."""
 
 
-def read_jpeg(path: Path, shrink: int) -> Pixels:
-    """Return a JPEG's pixels as stored, not turned upright: (rows, cols, 3) uint8, red first.
+def read_jpeg(path: Path, shrink: int, box: Box) -> Pixels:
+    """Return a part of a JPEG as stored, not turned upright: (rows, cols, 3) uint8, red first.
 
     Raises `PhotoError`.
     """
-    try:
-        data = np.fromfile(path, dtype=np.uint8)
-    except OSError as problem:
-        raise PhotoError(f"{path.name}: cannot be read: {problem.strerror}") from problem
-    try:
-        found = cv2.imdecode(data, REDUCED[shrink] | cv2.IMREAD_IGNORE_ORIENTATION)
-    except cv2.error as problem:
-        raise PhotoError(f"{path.name}: its picture is damaged") from problem
-    if found is None:
-        raise PhotoError(f"{path.name}: its picture is damaged")
-    return cv2.cvtColor(found, cv2.COLOR_BGR2RGB, dst=found)
+    part = _cut_out(_decoded(path, REDUCED[shrink]), box)
+    return cv2.cvtColor(part, cv2.COLOR_BGR2RGB)
 
 
-def read_unchanged(path: Path, shrink: int) -> Pixels:
-    """Return a picture's values as stored, (rows, cols, channels); raises `PhotoError`."""
-    try:
-        data = np.fromfile(path, dtype=np.uint8)
-        found = cv2.imdecode(data, cv2.IMREAD_UNCHANGED)
-    except OSError as problem:
-        raise PhotoError(f"{path.name}: cannot be read: {problem.strerror}") from problem
-    except cv2.error as problem:
-        raise PhotoError(f"{path.name}: its picture is damaged") from problem
-    if found is None or found.dtype not in (np.uint8, np.uint16):
+def read_unchanged(path: Path, shrink: int, box: Box) -> Pixels:
+    """Return a part of a picture as stored, (rows, cols, channels); raises `PhotoError`."""
+    found = _decoded(path, cv2.IMREAD_UNCHANGED)
+    if found.dtype not in (np.uint8, np.uint16):
         raise PhotoError(f"{path.name}: expected a picture of 8 or 16 bits, got another")
     if shrink > 1:
         size = found.shape[1] // shrink, found.shape[0] // shrink
         found = cv2.resize(found, size, interpolation=cv2.INTER_AREA)
-    return found.reshape(*found.shape[:2], -1)
+    part = _cut_out(found, box)
+    return part.reshape(*part.shape[:2], -1).copy()
+
+
+def _decoded(path: Path, how: int) -> Pixels:
+    try:
+        data = np.fromfile(path, dtype=np.uint8)
+    except OSError as problem:
+        raise PhotoError(f"{path.name}: cannot be read: {problem.strerror}") from problem
+    try:
+        found = cv2.imdecode(data, how | cv2.IMREAD_IGNORE_ORIENTATION)
+    except cv2.error as problem:
+        raise PhotoError(f"{path.name}: its picture is damaged") from problem
+    if found is None:
+        raise PhotoError(f"{path.name}: its picture is damaged")
+    return found
+
+
+def _cut_out(whole: Pixels, box: Box) -> Pixels:
+    top, left, bottom, right = box
+    return whole[top:bottom, left:right]
 
 
 def shrink_for(pixels_ratio: float) -> int:
@@ -118,6 +126,8 @@ class PhotoCuts:
     _bytes: int = 0
     _busy: set[int] = field(default_factory=set)
     _changed: Condition = field(default_factory=Condition)
+    _decoding: Lock = field(default_factory=Lock)
+    """One whole photo in memory at a time."""
 
     def get(self, index: int) -> Cut:
         """Return what is taken of a photo; raises `PhotoError`."""
@@ -148,10 +158,11 @@ class PhotoCuts:
             self._bytes -= oldest.pixels.nbytes
 
     def _cut(self, index: int) -> Cut:
-        whole = self.read(index, self.shrink)
-        if max(whole.shape[:2]) > LONGEST_SIDE_PX:
-            raise PhotoError(f"expected photos of at most {LONGEST_SIDE_PX} pixels a side")
         top, left, bottom, right = (edge / self.shrink for edge in self.taken[index])
         first = max(0, int(top) - AROUND_PX), max(0, int(left) - AROUND_PX)
-        piece = whole[first[0] : int(bottom) + AROUND_PX + 1, first[1] : int(right) + AROUND_PX + 1]
-        return Cut(piece.copy(), first)
+        box = (*first, int(bottom) + AROUND_PX + 1, int(right) + AROUND_PX + 1)
+        with self._decoding:
+            pixels = self.read(index, self.shrink, box)
+        if max(pixels.shape[:2]) > LONGEST_SIDE_PX:
+            raise PhotoError(f"expected photos of at most {LONGEST_SIDE_PX} pixels a side")
+        return Cut(pixels, first)

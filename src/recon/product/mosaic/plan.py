@@ -13,7 +13,7 @@ from recon.model.errors import RecordError
 from recon.model.geo import GroundGrid, LocalFrame
 from recon.product.mosaic.choice import STEP_PX
 
-WINDOW_PX = 1024
+WINDOW_PX = 512
 WINDOW_CELLS = WINDOW_PX // STEP_PX
 MOST_PIXELS = 40_000_000_000
 """Of a mosaic: 36 km2 at 3 cm."""

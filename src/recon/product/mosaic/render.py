@@ -49,7 +49,7 @@ class Renderer:
         failed: dict[int, str] = {}
         for index in choice.indices():
             camera = camera_for(self.band, self.photos, index)
-            if camera is None:
+            if camera is None or index not in self.cuts.taken:
                 continue
             try:
                 cut = self.cuts.get(index)
@@ -119,8 +119,12 @@ def taken_of(
             across, down = camera.project(places)
             if not np.isfinite(across).any():
                 continue
-            low = np.nanmin(down), np.nanmin(across)
-            high = np.nanmax(down), np.nanmax(across)
+            low = np.maximum([np.nanmin(down), np.nanmin(across)], 0.0)
+            high = np.minimum(
+                [np.nanmax(down), np.nanmax(across)], [camera.rows - 1.0, camera.cols - 1.0]
+            )
+            if (low > high).any():
+                continue  # A band of a narrower field may show nothing of it.
             before = taken.get(index, (*low, *high))
             taken[index] = (
                 *np.minimum(before[:2], low).tolist(),

@@ -27,8 +27,14 @@ from recon.record.raster.geotiff import projected_crs
 
 FOLDER = "windows-"
 FILE_MODE = 0o644
-CACHE_BYTES = 64 * 1024 * 1024
+CACHE_BYTES = 24 * 1024 * 1024
 """GDAL's, which rasterio sets in bytes: windows are read once, in order."""
+GDAL_OPTIONS = {
+    "GDAL_CACHEMAX": CACHE_BYTES,
+    "GDAL_NUM_THREADS": "2",
+    # Files of windows that are open at once: each holds its last block.
+    "GDAL_MAX_DATASET_POOL_SIZE": "16",
+}
 BLOCK_PX = 512
 DEFLATE_LEVEL = 6
 TYPES = {"uint8": "Byte", "uint16": "UInt16", "float32": "Float32"}
@@ -161,7 +167,7 @@ class WindowStore:
         source, target = (self.folder / f"{raster.name}{suffix}" for suffix in (".vrt", ".tif"))
         replace_file(source, _vrt(self.plan.grid, raster, there, tags).encode(), FILE_MODE)
         try:
-            with rasterio.Env(GDAL_CACHEMAX=CACHE_BYTES, GDAL_NUM_THREADS="2"):
+            with rasterio.Env(**GDAL_OPTIONS):
                 rasterio.shutil.copy(
                     source,
                     target,
