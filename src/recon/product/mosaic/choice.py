@@ -1,4 +1,4 @@
-"""Which photo each piece of ground is taken from: one that shows it in sun, most from above.
+"""Which photo each piece of ground is taken from: one surely in sun, most from above.
 
 A choice cell is `STEP_PX` x `STEP_PX` pixels of the mosaic. Light and angles change over metres,
 so the cells that one photo wins are whole areas, and the chosen photo of each pixel is exactly what
@@ -23,13 +23,12 @@ from recon.product.mosaic.visibility import SurfaceAround
 from recon.product.timing import TimedPhoto
 
 STEP_PX = 8
-SURE_TRANSMITTANCE = 0.8
-"""From here on ground is in sun whatever the maps' error at a shadow's edge may be."""
-EDGE_DEG = 30.0
-"""How much farther from nadir a photo may be that shows ground surely in sun, rather than at half
-of the beam: a row's neighbour shows the same ground some 15 degrees farther out."""
-UNSURE_DEG = 10.0
-"""The same for full confidence rather than none."""
+SURE_EVIDENCE = 0.45
+"""Evidence of sun is how far the transmittance is above the threshold, 0 to 1, by its confidence.
+From here on ground is in sun whatever the maps' error may be, and the angle alone decides."""
+EVIDENCE_DEG = 600.0
+"""Angle from nadir that evidence is worth: little of it lets shade in, a view from the side does
+not."""
 SHADED_DEG, UNKNOWN_DEG = 1_000.0, 3_000.0
 """Costs that put all shaded ground behind ground in sun, and unknown light behind both."""
 
@@ -53,7 +52,7 @@ class Light(IntEnum):
 class ChoiceSettings:
     """How photos are chosen."""
 
-    margin: float = 0.1
+    margin: float = 0.08
     """Transmittance above `SUNLIT_TRANSMITTANCE` from which a place counts as in sun: the larger,
     the less shade is in the mosaic, and the more ground at the edges of shadows stays empty."""
     fills: bool = False
@@ -147,8 +146,9 @@ def _offer(
     light = np.where(is_lit, Light.SUN, np.where(is_known, Light.SHADE, Light.UNKNOWN))
     np.maximum(best.light, np.where(shown, light, Light.MISSING), out=best.light, casting="unsafe")
     off_deg = photo.camera.off_nadir_deg(places).astype(np.float32)
-    from_edge = (SURE_TRANSMITTANCE - sun) / (SURE_TRANSMITTANCE - SUNLIT_TRANSMITTANCE)
-    cost = off_deg + EDGE_DEG * np.clip(from_edge, 0.0, 1.0) + UNSURE_DEG * (1.0 - sure)
+    above = (sun - SUNLIT_TRANSMITTANCE) / (1.0 - SUNLIT_TRANSMITTANCE)
+    evidence = np.clip(above, 0.0, 1.0) * sure
+    cost = off_deg + EVIDENCE_DEG * np.maximum(SURE_EVIDENCE - evidence, 0.0)
     if settings.fills:
         shaded = np.where(is_known, SHADED_DEG * (2.0 - sun), UNKNOWN_DEG)
         cost = np.where(is_lit, cost, shaded + off_deg)
