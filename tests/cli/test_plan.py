@@ -105,6 +105,24 @@ def test_above_ground_follows_the_sites_elevation_model(tmp_path: Path, sloping:
     assert (found["height_above_takeoff_m"], found["height_above_ground_m"]) == (None, 40.0)
 
 
+def test_heights_above_ground_are_exported_above_takeoff_or_refused(
+    tmp_path: Path, sloping: Path
+) -> None:
+    field = written(tmp_path, *NEAR_THE_SLOPE)
+    words = (field, "--site", sloping, "--height", 40, "--above-ground", "--export")
+    code, out = recon(*words, tmp_path / "slope.waypoints")
+    assert code == 0, out
+    lines = (tmp_path / "slope.waypoints").read_text().splitlines()[2:]
+    items = [line.split("\t") for line in lines]
+    heights_m = {float(item[10]) for item in items if item[3] == "16"}
+    assert len(heights_m) > 1
+    # The takeoff point is at the south-west corner, and rows keep 40 m above this slope.
+    assert all(abs(height_m - 40.0) < 8.0 for height_m in heights_m)
+    code, out = recon(*words, tmp_path / "slope.kml")
+    assert code == 2
+    assert ".kml cannot hold heights that follow the ground" in out
+
+
 def test_above_takeoff_it_states_the_range_above_ground(tmp_path: Path, sloping: Path) -> None:
     """Without pads the takeoff is at the south-west corner."""
     field = written(tmp_path, *NEAR_THE_SLOPE)

@@ -30,7 +30,9 @@ def test_the_script_writes_the_vectors_that_are_committed(tmp_path: Path) -> Non
     subprocess.run([sys.executable, "-B", str(script), str(tmp_path)], check=True)
     written = {p.relative_to(tmp_path): p.read_bytes() for p in tmp_path.glob("*/*")}
     committed = {p.relative_to(VECTORS): p.read_bytes() for p in VECTORS.glob("*/*")}
-    assert {p: d for p, d in committed.items() if p.suffix in (".bin", ".json")} == written
+    own = {p: d for p, d in committed.items() if p.suffix in (".bin", ".json")}
+    # Mission files have a script of their own.
+    assert {p: d for p, d in own.items() if p.parent.name != "wpml"} == written
 
 
 @pytest.mark.parametrize("vector", GOLDEN, ids=name)

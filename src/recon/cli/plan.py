@@ -3,16 +3,17 @@
 import re
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from math import isfinite, nan
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from recon.cli.connection import REFUSED, WRONG_USE, JsonOption
 from recon.cli.options import with_options
 from recon.cli.output import print_json, print_table, printable
+from recon.cli.plan_export import ExportedFiles, PlanExportOptions, export_plans, rows_of_exports
 from recon.cli.plan_output import ImagingFigures, figures_of, geojson_of, plan_rows_of
 from recon.cli.plan_picture import Theme, picture_png
 from recon.cli.region_file import region_in
@@ -126,10 +127,10 @@ class PlanOptions:
 
 
 @with_options
-def plan_command(options: PlanOptions, rows: RowOptions) -> None:
+def plan_command(options: PlanOptions, rows: RowOptions, export: PlanExportOptions) -> None:
     """Plan a survey without a station: rows, speed, time, photos, batteries.
 
-    Nothing flies and nothing is sent.
+    Nothing flies and nothing is sent. `--export` writes the flights for other programs.
     """
     try:
         home = default_site() if options.site is None else opened_site(options.site)
@@ -138,7 +139,7 @@ def plan_command(options: PlanOptions, rows: RowOptions) -> None:
         if options.camera == "list":
             _print_cameras({**CAMERAS, **cameras})
             return
-        warnings = _plan_at(home, cameras, options, rows)
+        warnings = _plan_at(home, cameras, options, rows, export)
     except ReconError as problem:
         print(f"recon plan: {printable(str(problem))}", file=sys.stderr)
         raise typer.Exit(REFUSED if isinstance(problem, RefusedPlanError) else WRONG_USE) from None
@@ -147,13 +148,22 @@ def plan_command(options: PlanOptions, rows: RowOptions) -> None:
 
 
 def _plan_at(
-    home: Site, cameras: Mapping[str, CameraModel], options: PlanOptions, rows: RowOptions
+    home: Site,
+    cameras: Mapping[str, CameraModel],
+    options: PlanOptions,
+    rows: RowOptions,
+    export: PlanExportOptions,
 ) -> Sequence[str]:
     """Print and write the plan of a survey at a site; return its warnings."""
     if options.region is None:
         raise PlanError("name a region: a file, or a survey region of --site")
     _refuse_same_file(
-        {"the region": Path(options.region), "--png": options.png, "--geojson": options.geojson}
+        {
+            "the region": Path(options.region),
+            "--png": options.png,
+            "--geojson": options.geojson,
+            **{f"--export {n}": path for n, path in enumerate(export.paths, start=1)},
+        }
     )
     model = camera_named(options.camera, cameras.values())
     name, area, frame = _region(options.region, rows, home)
@@ -164,10 +174,12 @@ def _plan_at(
     needs, uses = _needs(plan, home, fleet, options.endurance)
     figures = figures_of(plan, fleet, needs, imaging, uses.endurance_s, options.hourly)
     figures["warnings"] += _too_few(needs.batteries, options.batteries)
+    exports = export_plans(plan, needs, fleet, export)
+    figures["exports"] = [asdict(each) for each in exports]
     if options.as_json:
         print_json(figures)
     else:
-        print_table(f"plan of {name}", ("what", "value"), plan_rows_of(figures))
+        print_table(f"plan of {name}", ("what", "value"), _table(figures, exports))
     if options.png is not None:
         around = None if home.frame is None else surroundings_of(home.airspace)
         picture = picture_png(plan, needs, fleet, around, figures["title"], options.theme)
@@ -176,6 +188,10 @@ def _plan_at(
         _write(options.geojson, geojson_of(plan, needs))
     warnings: Sequence[str] = figures["warnings"]
     return warnings
+
+
+def _table(figures: dict[str, Any], exports: Sequence[ExportedFiles]) -> list[tuple[str, str]]:
+    return [*plan_rows_of(figures), *rows_of_exports(exports)]
 
 
 def _draft(

@@ -13,11 +13,20 @@ data class WpmlOptions(val createdMs: Long, val model: DroneModel? = null)
 
 /**
  * The two files of a waypoint mission in DJI's WPML: the template that a person may edit, and the wayline
- * that the aircraft flies. Heights are relative to the takeoff point (`relativeToStartPoint`).
+ * that the aircraft flies. Heights are relative to the takeoff point (`relativeToStartPoint`). The station
+ * writes the same documents for plans that other apps fly; `vectors/wpml/` holds what both must produce.
  *
  * The plan must be one that `planProblem` accepts.
  */
 class WpmlWriter(private val plan: MissionPlan, private val options: WpmlOptions) {
+
+    private val isLevel = plan.points.maxOf { it.heightAboveTakeoffM } - plan.points.minOf { it.heightAboveTakeoffM } <
+        LEVEL_WITHIN_M
+
+    /** The waypoints with actions, in order: their groups are counted without gaps. */
+    private val withActions = plan.points.indices.filter { index ->
+        plan.points[index].let { it.loiterS != null || it.gimbalPitchDeg != null }
+    }
 
     fun template(): ByteArray = kmlFile {
         add("wpml:author", "Recon")
@@ -71,9 +80,9 @@ class WpmlWriter(private val plan: MissionPlan, private val options: WpmlOptions
 
     private fun Element.templatePlacemark(index: Int, point: PlanPoint) = add("Placemark") {
         position(index, point)
-        add("wpml:ellipsoidHeight", number(point.heightAboveTakeoffM))
-        add("wpml:height", number(point.heightAboveTakeoffM))
-        add("wpml:useGlobalHeight", "0")
+        // Not its ellipsoidHeight: that of the takeoff point is not known here.
+        if (!isLevel) add("wpml:height", number(point.heightAboveTakeoffM))
+        add("wpml:useGlobalHeight", if (isLevel) "1" else "0")
         add("wpml:useGlobalSpeed", "0")
         add("wpml:waypointSpeed", number(point.speedMps))
         add("wpml:useGlobalHeadingParam", "1")
@@ -115,9 +124,10 @@ class WpmlWriter(private val plan: MissionPlan, private val options: WpmlOptions
     private fun cutsCorner(index: Int) = plan.isCurved && index in 1 until plan.points.lastIndex
 
     private fun Element.actions(index: Int, point: PlanPoint) {
-        if (point.loiterS == null && point.gimbalPitchDeg == null) return
+        val group = withActions.indexOf(index)
+        if (group < 0) return
         add("wpml:actionGroup") {
-            add("wpml:actionGroupId", "$index")
+            add("wpml:actionGroupId", "$group")
             add("wpml:actionGroupStartIndex", "$index")
             add("wpml:actionGroupEndIndex", "$index")
             add("wpml:actionGroupMode", "sequence")
@@ -157,6 +167,7 @@ class WpmlWriter(private val plan: MissionPlan, private val options: WpmlOptions
         const val STOPPING = "toPointAndStopWithDiscontinuityCurvature"
         private const val LOWEST_TAKEOFF_M = 1.2
         private const val HIGHEST_TAKEOFF_M = 1_500.0
+        private const val LEVEL_WITHIN_M = 0.01
 
         /** Millimetres, or thousandths of a second or degree. */
         fun number(value: Double): String = "%.3f".format(Locale.ROOT, value)

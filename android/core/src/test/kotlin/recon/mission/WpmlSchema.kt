@@ -6,7 +6,8 @@ import org.w3c.dom.Element
 class Rule(val isRequired: Boolean, val isRepeated: Boolean = false, val accepts: (String) -> Boolean)
 
 private fun oneOf(vararg values: String) = Rule(true) { it in values }
-private fun number(low: Double, high: Double) = Rule(true) { (it.toDoubleOrNull() ?: Double.NaN) in low..high }
+private fun number(low: Double, high: Double, isRequired: Boolean = true) =
+    Rule(isRequired) { (it.toDoubleOrNull() ?: Double.NaN) in low..high }
 private fun flag() = oneOf("0", "1")
 private fun index() = Rule(true) { it.toIntOrNull() in 0..65_535 }
 private fun parent(isRequired: Boolean = true, isRepeated: Boolean = false) = Rule(isRequired, isRepeated) { true }
@@ -75,8 +76,7 @@ fun wpmlRules(isTemplate: Boolean): Map<String, Map<String, Rule>> = mapOf(
         "heightMode" to oneOf("EGM96", "relativeToStartPoint", "aboveGroundLevel", "realTimeFollowSurface"),
     ),
     "Placemark" to PLACEMARK + if (isTemplate) mapOf(
-        "ellipsoidHeight" to number(-200.0, 1_500.0),
-        "height" to number(-200.0, 1_500.0),
+        "height" to number(-200.0, 1_500.0, isRequired = false),
         "useGlobalHeight" to flag(),
         "useGlobalSpeed" to flag(),
         "useGlobalHeadingParam" to flag(),
