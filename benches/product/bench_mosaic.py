@@ -9,6 +9,7 @@ in rows over level ground; that both agree is checked in the pictures.
 """
 
 import argparse
+import csv
 import json
 import os
 import resource
@@ -226,9 +227,10 @@ def _orthority(folder: Path) -> str:
 
 
 def _difference(mosaic: Path, orthophotos: Path) -> float:
-    """Return the median difference of the mosaic to the orthophoto of a photo it is made of."""
-    number = 1
-    (path,) = orthophotos.glob(f"DJI_{number:04d}*.tif")
+    """Return the median difference to the orthophoto of the photo that most is taken of."""
+    with (mosaic.parent / "photos.csv").open(encoding="utf-8", newline="") as file:
+        most = max(csv.DictReader(file), key=lambda row: float(row["taken_m2"]))
+    (path,) = orthophotos.glob(f"{Path(most['name']).stem}*.tif")
     with rasterio.open(mosaic) as ours, rasterio.open(path) as theirs:
         found = np.zeros((theirs.height, theirs.width), dtype=np.uint8)
         alpha = np.zeros_like(found)

@@ -120,6 +120,19 @@ def test_provenance_states_each_pixels_photo(made: MadeMosaic, report: MosaicRep
     assert total_m2 == pytest.approx(taken.sum() * (0.2 * STEP_PX) ** 2, rel=0.01)
 
 
+def test_cells_at_the_edges_of_photos_are_whole(tmp_path: Path) -> None:
+    """With few photos many cells lie across an edge: part of them would be missing, or mirrored."""
+    made = MadeMosaic(tmp_path, every=12, size=(320, 240))
+    made.build(tmp_path / "out", resolution_m=0.5, fills=True).run()
+    colours, _east, north = pixels(tmp_path / "out")
+    index, _east, _north = pixels(tmp_path / "out", "provenance")
+    taken = np.repeat(np.repeat(np.isfinite(index[0]), STEP_PX, axis=0), STEP_PX, axis=1)
+    assert np.array_equal(taken, colours[3] == 255)
+    rows, cols = np.nonzero(taken)
+    wrong = np.abs(colours[1][rows, cols] - wave(north[rows]))
+    assert (wrong < 0.5 * SWING).all()
+
+
 def test_report_counts_what_the_raster_shows(made: MadeMosaic, report: MosaicReport) -> None:
     stated = json.loads((made.folder / "out" / "mosaic.json").read_text())
     values, _east, _north = pixels(made.folder / "out", "provenance")

@@ -92,12 +92,14 @@ class Camera:
             depth = np.where(forward > 0.0, forward, np.nan)
             return self.lens.pixels(right / depth, down / depth)
 
-    def shows(self, ground_m: FloatArray) -> BoolArray:
-        """Return which places (...) of (..., 3) lie on the picture."""
+    def shows(self, ground_m: FloatArray, around_m: float = 0.0) -> BoolArray:
+        """Return which places (...) of (..., 3) lie on the picture, with all around them."""
         cols, rows = self.project(ground_m)
-        with np.errstate(invalid="ignore"):
-            is_on = (cols >= 0.0) & (cols <= self.cols - 1.0)
-            return np.asarray(is_on & (rows >= 0.0) & (rows <= self.rows - 1.0))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            depth_m = (ground_m - self.place_m) @ self.rotation[:, 2]
+            beside = around_m * max(self.lens.focal_px) / depth_m
+            is_on = (cols >= beside) & (cols <= self.cols - 1.0 - beside)
+            return np.asarray(is_on & (rows >= beside) & (rows <= self.rows - 1.0 - beside))
 
     def off_nadir_deg(self, ground_m: FloatArray) -> FloatArray:
         """Return the angles (...) between the vertical and the rays to places (..., 3)."""

@@ -23,6 +23,8 @@ from recon.product.mosaic.visibility import SurfaceAround
 from recon.product.timing import TimedPhoto
 
 STEP_PX = 8
+HALF_DIAGONAL = 0.71
+"""Of a square, in its sides: a photo counts where it shows a whole cell."""
 SURE_EVIDENCE = 0.45
 """Evidence of sun is how far the transmittance is above the threshold, 0 to 1, by its confidence.
 From here on ground is in sun whatever the maps' error may be, and the angle alone decides."""
@@ -116,12 +118,13 @@ def choose_photos(
     easts, norths = np.meshgrid(east_m, north_m)
     places = np.stack([easts, norths, up_m], axis=-1)
     around = SurfaceAround.of(ground, east_m, north_m) if ground.is_rough else None
+    cell_m = abs(float(east_m[1] - east_m[0]))
     best = Choice.empty(up_m.shape)
     best.light[inside] = Light.MISSING
     least = np.full(up_m.shape, np.inf, dtype=np.float32)
     for index in candidates:
         photo = photos[index]
-        shown = inside & photo.camera.shows(places)
+        shown = inside & photo.camera.shows(places, HALF_DIAGONAL * cell_m)
         if not shown.any():
             continue
         if around is not None:
