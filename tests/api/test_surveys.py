@@ -49,6 +49,18 @@ def client(station: FakeStation) -> Client:
     return Client(application(station))
 
 
+STARTS = {
+    "kmz": b"PK",
+    "plan": b"{",
+    "survey.plan": b"{",
+    "waypoints": b"QGC WPL 110",
+    "csv": b"latitude,",
+    "kml": b"<?xml",
+    "gpx": b"<?xml",
+}
+"""How a file of each kind begins."""
+
+
 class TestAsked:
     def test_it_is_answered_with_its_rows_worked_out(self, client: Client) -> None:
         answer = client.post("/api/surveys", json=ASKED).json()
@@ -98,6 +110,36 @@ class TestAsked:
         assert view["refusal"] == "Vehicle 'Z' not found"
         assert view["time_s"] is None
         assert client.get("/api/surveys/999/estimate").status_code == 404
+
+    def test_its_flights_are_downloaded_for_other_programs(self, client: Client) -> None:
+        survey = client.post("/api/surveys", json=ASKED).json()["survey"]
+        root = f"/api/surveys/{survey['id']}"
+        view = client.get(f"{root}/exports?aircraft=Matrice%20350&payload=H20T").json()
+        formats = {each["kind"]: each for each in view["formats"]}
+        assert {each["refusal"] for each in formats.values()} == {None}
+        assert formats["kmz"]["by_hand"] == []
+        assert any("lost signal" in sentence for sentence in formats["csv"]["by_hand"])
+        assert {"name": "Mavic 3E", "payloads": []} in view["aircraft"]
+        for kind, start in STARTS.items():
+            answer = client.get(f"{root}/plan.{kind}?aircraft=Mavic%203E")
+            assert answer.status_code == 200
+            assert answer.content.startswith(start)
+            name = f'attachment; filename="survey-{survey["id"]}.{kind}"'
+            assert answer.headers["content-disposition"] == name
+
+    def test_what_cannot_be_downloaded_is_a_sentence(self, client: Client) -> None:
+        survey = client.post("/api/surveys", json=ASKED).json()["survey"]
+        root = f"/api/surveys/{survey['id']}"
+        answer = client.get(f"{root}/plan.kmz")
+        assert answer.status_code == 422
+        assert answer.json()["error"].startswith("a .kmz names its aircraft: choose one of Mavic")
+        kmz, *others = client.get(f"{root}/exports").json()["formats"]
+        assert (kmz["kind"], kmz["files"], kmz["refusal"]) == ("kmz", 0, answer.json()["error"])
+        assert {each["files"] for each in others} == {1}
+        assert client.get(f"{root}/plan.gpx?serial=Z").json()["error"] == "Vehicle 'Z' not found"
+        assert client.get(f"{root}/plan.exe").status_code == 422
+        for path in ("exports", "plan.kml"):
+            assert client.get(f"/api/surveys/999/{path}").status_code == 404
 
     def test_a_blurred_survey_is_warned_of(self, client: Client) -> None:
         asked = {**ASKED, "speed_mps": 8.0, "front_overlap": 0.2}

@@ -49,6 +49,8 @@ LEAST_ROLE: dict[tuple[str, str], Role] = {
     ("GET", "/api/maps"): Role.OBSERVER,
     ("GET", "/api/maps/{name}/{zoom}/{col}/{row}"): Role.OBSERVER,
     ("GET", "/api/surveys/{survey_id}/estimate"): Role.OBSERVER,
+    ("GET", "/api/surveys/{survey_id}/exports"): Role.OBSERVER,
+    ("GET", "/api/surveys/{survey_id}/plan.{kind}"): Role.OBSERVER,
     ("GET", "/api/cameras"): Role.OBSERVER,
     ("GET", "/api/zones"): Role.OBSERVER,
     ("GET", "/api/site/drawing"): Role.OBSERVER,

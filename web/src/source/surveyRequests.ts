@@ -1,6 +1,12 @@
 import type { NewSurvey, SurveyPaths, SurveyRequest, SurveyResponse } from "../protocol";
 import { answered, CHANGE, PLANNING, READ, type StationHttp } from "./stationHttp";
 
+/** An aircraft that a .kmz names, and its camera where it has none of its own. */
+export interface NamedAircraft {
+  readonly aircraft: string;
+  readonly payload: string | null;
+}
+
 export type SurveyRequests = ReturnType<typeof surveyRequests>;
 
 /** `stationNowMs`: an order to move that arrives long after it was given is refused. */
@@ -37,6 +43,26 @@ export function surveyRequests(http: StationHttp, stationNowMs: () => number | n
       return answered(READ, (signal) =>
         client.GET("/api/surveys/{survey_id}/estimate", { params, signal }),
       );
+    },
+    /** In which formats the flights of these vehicles can be downloaded, for other programs. */
+    exports: (survey_id: number, serials: readonly string[], model: NamedAircraft | null) => {
+      const params = { path: { survey_id }, query: { serial: [...serials], ...model } };
+      return answered(READ, (signal) =>
+        client.GET("/api/surveys/{survey_id}/exports", { params, signal }),
+      );
+    },
+    /** The flights in one format; several files come as an archive. */
+    planFile: (
+      survey_id: number,
+      kind: string,
+      serials: readonly string[],
+      model: NamedAircraft | null,
+    ) => {
+      const query = new URLSearchParams(serials.map((serial) => ["serial", serial]));
+      for (const [key, value] of Object.entries(model ?? {})) {
+        if (value !== null) query.set(key, value);
+      }
+      return http.picture(`/api/surveys/${survey_id}/plan.${kind}?${query}`);
     },
     /** The survey cameras that a plan may name. */
     cameras: () => answered(READ, (signal) => client.GET("/api/cameras", { signal })),

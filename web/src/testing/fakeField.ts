@@ -1,6 +1,7 @@
 import type {
   BaseMapView,
   GroundImageView,
+  PlanExportsView,
   ShadeLineView,
   SurveyEstimateView,
   SurveyLightView,
@@ -30,6 +31,24 @@ export function surveyEstimate(changes: Partial<SurveyEstimateView> = {}): Surve
     drones: [],
     warnings: [],
     ...changes,
+  };
+}
+
+/** Two formats of a survey: one that names an aircraft, and one with something to set by hand. */
+export function planExports(aircraft: string | null): PlanExportsView {
+  const refusal = aircraft === null ? "a .kmz names its aircraft" : null;
+  const kmz = { kind: "kmz", title: "DJI Pilot 2", by_hand: [] };
+  const csv = { kind: "csv", title: "Litchi", files: 2, refusal: null };
+  return {
+    survey_id: 7,
+    formats: [
+      { ...kmz, files: refusal === null ? 1 : 0, refusal },
+      { ...csv, by_hand: ["the end: set it to return home"] },
+    ],
+    aircraft: [
+      { name: "Mavic 3E", payloads: [] },
+      { name: "Matrice 350", payloads: ["H20", "H20T"] },
+    ],
   };
 }
 

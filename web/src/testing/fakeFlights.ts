@@ -7,7 +7,7 @@ import type {
 } from "../protocol";
 import type { FlightRequests } from "../source/flightRequests";
 import type { SurveyRequests } from "../source/surveyRequests";
-import { surveyEstimate } from "./fakeField";
+import { planExports, surveyEstimate } from "./fakeField";
 import { answered, failed, noPicture, type PageRequests } from "./pageRequests";
 
 const MINI_3_PRO: SurveyCameraView = {
@@ -66,6 +66,11 @@ export function fakeSurveyRequests(flights: FakeFlights, requests: PageRequests)
       const one = { time_s: 300, flights: 1 };
       const drones = serials.map((serial) => ({ serial, vehicle_name: serial, ...one }));
       return answered({ ...flights.estimate, drones });
+    },
+    exports: async (_id, _serials, model) => answered(planExports(model?.aircraft ?? null)),
+    planFile: async (savedPlan, kind, serials, model) => {
+      requests.sent.push({ savedPlan, kind, serials, model });
+      return answered({ blob: new Blob(["x"]), frameId: null });
     },
     cameras: async () => answered([MINI_3_PRO]),
     paths: noPicture,

@@ -7,6 +7,7 @@ import type {
   Outcome,
   ReplayTransport,
 } from "../protocol";
+import type { NamedAircraft } from "../source/surveyRequests";
 
 /** A request other than a vehicle order. */
 export type PageRequest =
@@ -31,6 +32,12 @@ export type PageRequest =
       readonly startedSurvey: number;
       readonly serials: readonly string[];
       readonly takeoff: boolean;
+    }
+  | {
+      readonly savedPlan: number;
+      readonly kind: string;
+      readonly serials: readonly string[];
+      readonly model: NamedAircraft | null;
     }
   | { readonly stoppedSurvey: number; readonly word: "pause" | "abort" }
   | { readonly transport: ReplayTransport }

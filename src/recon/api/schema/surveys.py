@@ -263,6 +263,32 @@ class SurveyEstimateView(Message):
     warnings: list[str]
 
 
+class PlanFormatView(Message):
+    """One format in which a survey's flights can be downloaded, for another program to fly."""
+
+    kind: str = Field(description="of GET /api/surveys/{survey_id}/plan.{kind}")
+    title: str
+    files: int = Field(description="one each flight, or one for all; several come as a .zip")
+    by_hand: list[str] = Field(description="what the pilot sets in the program, as sentences")
+    refusal: str | None = Field(description="why there is no file, and what to do")
+
+
+class PlanAircraftView(Message):
+    """An aircraft that a .kmz may name, and the cameras of which it must name one; none: it has
+    its own."""
+
+    name: str
+    payloads: list[str]
+
+
+class PlanExportsView(Message):
+    """In which formats a survey's flights can be downloaded, for the vehicles asked for."""
+
+    survey_id: int
+    formats: list[PlanFormatView]
+    aircraft: list[PlanAircraftView]
+
+
 class SurveyPath(Message):
     """The path of one mission: (longitude, latitude) of its corners."""
 

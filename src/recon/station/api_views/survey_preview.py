@@ -1,7 +1,7 @@
 """What a planned survey will take with named vehicles, as they are now; nothing changes."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import asdict, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
@@ -26,10 +26,39 @@ from recon.station.state.survey_record import SurveyRecord
 Preview = Callable[[], schema.SurveyEstimateView]
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class PreviewedFleet:
+    """A planned survey with the vehicles it is previewed for, as they are now.
+
+    `names` are theirs by serial, and of the one drone that stands in for none.
+    """
+
+    plan: SurveyPlan
+    fleet: tuple[Surveyor, ...]
+    names: Mapping[str, str]
+    batteries: Batteries
+    problem: str | None
+    fastest_mps: float
+
+    def needs(self) -> SurveyEstimate | Refusal:
+        """Return what the survey takes; safe on any thread, tens of milliseconds."""
+        if self.problem is not None:
+            return Refusal("survey", self.problem)
+        return estimate(self.plan, self.fleet, self.batteries)
+
+
 def survey_preview(
     station: Station, record: SurveyRecord, serials: Sequence[str]
 ) -> Preview | None:
-    """Return what computes the preview, safe on any thread; None without rows.
+    """Return what computes the preview, safe on any thread; None without rows."""
+    known = previewed_fleet(station, record, serials)
+    return None if known is None else lambda: _view(known, known.needs())
+
+
+def previewed_fleet(
+    station: Station, record: SurveyRecord, serials: Sequence[str]
+) -> PreviewedFleet | None:
+    """Return the survey's plan with these vehicles; None without rows.
 
     Without serials it is for one drone that takes off at the region's south-west corner.
     """
@@ -50,14 +79,9 @@ def survey_preview(
     landing_s = energy.landing_s(plan.survey.height_m)
     batteries = Batteries(_full_s(station, plan, vehicles), landing_s=landing_s)
     fastest_mps = air.airspace.limits.max_speed_mps
-    names = {vehicle.serial or "": vehicle.display_name for vehicle in vehicles}
-
-    def preview() -> schema.SurveyEstimateView:
-        if problem is not None:
-            return _view(plan, fleet, Refusal("survey", problem), names, fastest_mps)
-        return _view(plan, fleet, estimate(plan, fleet, batteries), names, fastest_mps)
-
-    return preview
+    named = {vehicle.serial or "": vehicle.display_name for vehicle in vehicles}
+    names = {"": "one drone", **named}
+    return PreviewedFleet(plan, tuple(fleet), names, batteries, problem, fastest_mps)
 
 
 def _problem(
@@ -105,20 +129,15 @@ def _full_s(station: Station, plan: SurveyPlan, vehicles: Sequence[VehicleState]
     return min(lasting_s, default=None)
 
 
-def _view(
-    plan: SurveyPlan,
-    fleet: Sequence[Surveyor],
-    made: SurveyEstimate | Refusal,
-    names: dict[str, str],
-    fastest_mps: float,
-) -> schema.SurveyEstimateView:
+def _view(known: PreviewedFleet, made: SurveyEstimate | Refusal) -> schema.SurveyEstimateView:
+    plan, fleet = known.plan, known.fleet
     survey, needs = plan.survey, made if isinstance(made, SurveyEstimate) else None
     limit, *_others = speed_limits(
         survey.camera,
         survey.height_m,
         survey.front_overlap,
         EXPOSURE_S,
-        fastest_mps,
+        known.fastest_mps,
         stops_in_rows=survey.is_above_ground,
     )
     return schema.SurveyEstimateView(
@@ -127,7 +146,7 @@ def _view(
         drones=[
             schema.DroneEstimateView(
                 serial=drone.serial or None,
-                vehicle_name=names.get(drone.serial, "one drone"),
+                vehicle_name=known.names.get(drone.serial, "one drone"),
                 time_s=drone.time_s,
                 flights=len(drone.flights),
             )

@@ -3,14 +3,26 @@
 import asyncio
 from typing import Annotated, Literal
 
-from fastapi import FastAPI, Query, Request, Response
+from fastapi import FastAPI, HTTPException, Query, Request, Response
 
 from recon.api import pictures, schema
 from recon.api.responses import PNG, PROBLEMS, found, png
 from recon.api.security import person_of
 from recon.model.survey import unknown_survey
+from recon.plans.flight_plan import PlanExportError
 from recon.station.api_views.picture_routes import Form
 from recon.station.api_views.service import Service
+
+Serials = Annotated[
+    list[Annotated[str, Query(max_length=2048)]],
+    Query(max_length=64, description="vehicles; none: one drone"),
+]
+Named = Annotated[str | None, Query(max_length=64)]
+PlanKind = Literal["kmz", "plan", "survey.plan", "waypoints", "csv", "kml", "gpx"]
+FILE: dict[int | str, dict[str, object]] = {
+    200: {"content": {"application/octet-stream": {}, "application/zip": {}}}
+}
+NOT_HELD: dict[int | str, dict[str, object]] = {422: {"model": schema.Problem}}
 
 PLANNED_WITHIN_S = 10.0
 """Planning takes tens of milliseconds, after one or two frames in the worker's queue."""
@@ -21,6 +33,7 @@ def add_survey_routes(app: FastAPI, service: Service) -> None:
     """Add all routes of this module."""
     _add_commands(app, service)
     _add_views(app, service)
+    _add_exports(app, service)
 
 
 def _add_commands(app: FastAPI, service: Service) -> None:
@@ -71,10 +84,7 @@ def _add_views(app: FastAPI, service: Service) -> None:
     @app.get("/api/surveys/{survey_id}/estimate", responses=PROBLEMS)
     async def estimate(
         survey_id: int,
-        serial: Annotated[
-            list[Annotated[str, Query(max_length=2048)]],
-            Query(max_length=64, description="vehicles; none: one drone"),
-        ] = [],  # noqa: B006
+        serial: Serials = [],  # noqa: B006
     ) -> schema.SurveyEstimateView:
         """What a survey will take with these vehicles: time, photos, batteries. Nothing flies."""
         work = service.surveys.preview(survey_id, serial)
@@ -98,6 +108,45 @@ def _add_views(app: FastAPI, service: Service) -> None:
         draw = pictures.cells_png if is_picture else pictures.cells_values_png
         data = await asyncio.to_thread(draw, known.state, known.inside, known.light_known)
         return png(data, known.number)
+
+
+def _add_exports(app: FastAPI, service: Service) -> None:
+    @app.get("/api/surveys/{survey_id}/exports", responses=PROBLEMS)
+    async def exports(
+        survey_id: int,
+        serial: Serials = [],  # noqa: B006
+        aircraft: Named = None,
+        payload: Named = None,
+    ) -> schema.PlanExportsView:
+        """In which formats a survey's flights can be downloaded, for other programs to fly."""
+        known = service.surveys.exports(survey_id, serial)
+        made = found(known, "" if known is not None else _no_rows(service, survey_id))
+        return await asyncio.to_thread(made.view, aircraft, payload)
+
+    @app.get(
+        "/api/surveys/{survey_id}/plan.{kind}",
+        response_class=Response,
+        responses=PROBLEMS | FILE | NOT_HELD,
+    )
+    async def plan_file(
+        survey_id: int,
+        kind: PlanKind,
+        serial: Serials = [],  # noqa: B006
+        aircraft: Named = None,
+        payload: Named = None,
+    ) -> Response:
+        """A survey's flights in a format; several files come as an archive. Nothing flies.
+
+        The station neither watches nor stops an aircraft that another program flies.
+        """
+        known = service.surveys.exports(survey_id, serial)
+        made = found(known, "" if known is not None else _no_rows(service, survey_id))
+        try:
+            file = await asyncio.to_thread(made.file, kind, aircraft, payload)
+        except PlanExportError as problem:
+            raise HTTPException(422, str(problem)) from problem
+        headers = {"Content-Disposition": f'attachment; filename="{file.name}"'}
+        return Response(file.data, media_type=file.media_type, headers=headers)
 
 
 async def _until_planned(service: Service, asked: schema.SurveyView) -> schema.SurveyView:

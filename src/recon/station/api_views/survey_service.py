@@ -19,7 +19,8 @@ from recon.site import Site
 from recon.site.geojson import Feature, regions_of
 from recon.station.api_views import RunningStation, outcome_of
 from recon.station.api_views.operation_views import cells_number, survey_paths, survey_view
-from recon.station.api_views.survey_preview import Preview, survey_preview
+from recon.station.api_views.survey_exports import SurveyExports
+from recon.station.api_views.survey_preview import Preview, previewed_fleet, survey_preview
 from recon.station.operations.survey.commands import start_refusal, stop_refusal
 from recon.station.operations.survey.planning import NO_SITE
 
@@ -99,6 +100,13 @@ class SurveyService:
         station = self.driver.station
         record = station.surveys.records.get(survey_id)
         return None if record is None else survey_preview(station, record, serials)
+
+    def exports(self, survey_id: int, serials: Sequence[str]) -> SurveyExports | None:
+        """Return what writes a survey's flights for other programs; None without rows."""
+        station = self.driver.station
+        record = station.surveys.records.get(survey_id)
+        known = None if record is None else previewed_fleet(station, record, serials)
+        return None if known is None else SurveyExports(known)
 
     def cameras(self) -> list[schema.SurveyCameraView]:
         """Return the survey cameras that requests may name; the site's own come first."""

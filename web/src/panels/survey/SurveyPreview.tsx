@@ -5,6 +5,7 @@ import type { SurveyEstimateView, SurveyView } from "../../protocol";
 import { text } from "../../text/catalogue";
 import { UNKNOWN } from "../../text/quantities";
 import { estimateFacts } from "../../text/survey";
+import { PlanExports } from "./PlanExports";
 
 /** What a planned survey will take with the selected drones, before its start. */
 export function SurveyPreview(props: { survey: SurveyView }) {
@@ -51,6 +52,7 @@ export function SurveyPreview(props: { survey: SurveyView }) {
           </>
         )}
       </Show>
+      <PlanExports survey={props.survey} />
     </div>
   );
 }

@@ -1,4 +1,4 @@
-import { afterEach, describe, expect, it } from "vitest";
+import { afterEach, describe, expect, it, vi } from "vitest";
 import type { ImagerReliefView, SurveyLightView, SurveyView, VehicleView } from "../../protocol";
 import { survey, surveyLight } from "../../testing/fakeField";
 import { area, station, vehicle } from "../../testing/fakeState";
@@ -8,10 +8,20 @@ import { sharePercent, shownSurvey, timeLeft } from "../../text/survey";
 import { SurveyPanel } from "./SurveyPanel";
 
 let page: RenderedPage;
-afterEach(() => page?.dispose());
+afterEach(() => {
+  page?.dispose();
+  vi.restoreAllMocks();
+});
 
 function show(...surveys: SurveyView[]) {
   page = renderPage(SurveyPanel, station([vehicle(1), vehicle(2)], { surveys }));
+}
+
+function button(name: string): HTMLButtonElement {
+  const buttons = [...page.root.querySelectorAll("button")];
+  const found = buttons.find((each) => each.textContent === name);
+  if (found === undefined) throw new Error(`no button ${name}`);
+  return found;
 }
 
 function hold(name: string, ms: number) {
@@ -126,6 +136,38 @@ describe("a survey in the list", () => {
     expect(shown(7).match(/aborted/gi)).toHaveLength(1);
     expect(shown(8)).toContain("Paused: no vehicle left");
     expect(shown(9)).not.toContain("not started yet");
+  });
+
+  it("offers its flights as files for other programs before its start", async () => {
+    const saved: string[] = [];
+    vi.spyOn(HTMLAnchorElement.prototype, "click").mockImplementation(function (
+      this: HTMLAnchorElement,
+    ) {
+      saved.push(this.download);
+    });
+    show(survey(7, { phase: "created", vehicles: [] }));
+    await settled();
+    expect(page.root.querySelector("[data-testid=exports-7]")).toBeNull();
+    button("Export plan").click();
+    await settled();
+    const shown = find(page.root, "[data-testid=exports-7]");
+    expect(shown.textContent).toContain("neither watches nor stops");
+    expect(shown.textContent).toContain("a .kmz names its aircraft");
+    expect(shown.textContent).toContain("the end: set it to return home");
+    expect(button("DJI Pilot 2: .kmz").disabled).toBe(true);
+    button("Litchi: .csv").click();
+    const choice = find<HTMLSelectElement>(shown, "select");
+    choice.value = "Matrice 350, H20T";
+    choice.dispatchEvent(new Event("change", { bubbles: true }));
+    await settled();
+    button("DJI Pilot 2: .kmz").click();
+    await settled();
+    const model = { aircraft: "Matrice 350", payload: "H20T" };
+    expect(page.requests).toEqual([
+      { savedPlan: 7, kind: "csv", serials: [], model: null },
+      { savedPlan: 7, kind: "kmz", serials: [], model },
+    ]);
+    expect(saved).toEqual(["survey-7.csv.zip", "survey-7.kmz"]);
   });
 
   it("that flies shows no estimate", () => {

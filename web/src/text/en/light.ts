@@ -147,6 +147,15 @@ export const surveys = {
 };
 
 /** What a planned survey will take. */
+export const exports = {
+  name: "Export plan",
+  unwatched: "For another program to fly. The station neither watches nor stops such a flight.",
+  aircraft: "Aircraft, for .kmz",
+  choose: "Choose",
+  save: (title: string, kind: string) => `${title}: .${kind}`,
+  byHand: (count: number) => `To set by hand: ${count}`,
+};
+
 export const estimate = {
   unknown: (dash: string) => `Estimate: ${dash}`,
   withOne: "With one drone, each row once:",
