@@ -113,7 +113,7 @@ def test_safety_has_changed_when_one_of_fifty_commits_changed_it_or_nothing_is_k
     assert not has_changed()
 
 
-LAST_OF_FREE_LENGTH = "8f9030d35f66fc623fa06b7a83910adfc5fee0ec"
+LAST_OF_FREE_LENGTH = "75d6b0daaf4daead93bf8e80577d0d34c8223a46"
 SUBJECT_CHARACTERS = 72
 
 

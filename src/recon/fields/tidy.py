@@ -81,8 +81,9 @@ def _geometry(shape: Shape, found: Found, *, close_paths: bool) -> dict[str, Any
     places = [place for ring in shape.rings for place in ring]
     off = next((place for place in places if not _is_on_earth(place)), None)
     if off is not None or not places:
-        got = "none" if off is None else f"{off[0]:.6g}, {off[1]:.6g}"
-        found.exclude(shape.name, f"expected longitudes and latitudes on the globe, got {got}")
+        found.exclude(
+            shape.name, f"expected longitudes and latitudes on the globe, got {_shown(off)}"
+        )
         return None
     if shape.kind == "point":
         return {"type": "Point", "coordinates": _written(shape.rings[0][:1])[0]}
@@ -121,6 +122,14 @@ def _is_area(path: Shape, found: Found, *, close_paths: bool) -> bool:
 def _is_on_earth(place: Position) -> bool:
     longitude, latitude = place[:2]
     return isfinite(longitude) and abs(longitude) <= 180.0 and abs(latitude) <= 90.0
+
+
+def _shown(off: Position | None) -> str:
+    if off is None:
+        return "none"
+    is_swapped = abs(off[0]) <= 90.0 and abs(off[1]) <= 180.0
+    hint = "; latitude and longitude look swapped: the longitude is first" if is_swapped else ""
+    return f"{off[0]:.6g}, {off[1]:.6g}{hint}"
 
 
 def _without_repeats(ring: list[Position]) -> list[Position]:
