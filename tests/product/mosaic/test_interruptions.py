@@ -148,16 +148,38 @@ def test_a_damaged_jpeg_is_a_sentence(tmp_path: Path, data: bytes) -> None:
 
 
 def test_pieces_of_photos_stay_within_the_memory_that_is_given() -> None:
+    """Of 20 photos each of 10 windows takes a piece; a third of the pieces have room."""
+    photos, windows = range(20), range(10)
+
     def read(index: int, _shrink: int, box: Box) -> np.ndarray:
         top, left, bottom, right = box
-        return np.full((bottom - top, right - left, 3), index, dtype=np.uint8)
+        found = np.zeros((bottom - top, right - left, 2), dtype=np.uint8)
+        found[..., 0] = np.arange(top, bottom)[:, np.newaxis]
+        found[..., 1] = index
+        return found
 
-    taken = dict.fromkeys(range(20), (10.0, 20.0, 39.0, 79.0))
-    cuts = PhotoCuts(read, 1, taken, most_bytes=100_000)
-    for index in (*range(20), 0):
-        cut: Cut = cuts.get(index)
-        assert (cut.pixels == index).all()
-        assert cut.first == (6, 16)
-        assert cut.pixels.shape == (38, 68, 3)
-    assert sum(each.pixels.nbytes for each in cuts._kept.values()) <= 100_000
-    assert cuts.decoded == 21
+    def edges(number: int) -> tuple[float, float, float, float]:
+        return 20.0 * number + 10.0, 20.0, 20.0 * number + 29.0, 79.0
+
+    taken = {index: {number: edges(number) for number in windows} for index in photos}
+    cuts = PhotoCuts(read, 1, taken, most_bytes=160_000)
+    for number in windows:
+        for index in photos:
+            cut: Cut = cuts.get(number, index)
+            assert cut.first == (20 * number + 6, 16)
+            assert cut.pixels.shape == (28, 68, 2)
+            assert cut.pixels[0, 0].tolist() == [20 * number + 6, index]
+            assert sum(each.pixels.nbytes for each in cuts._kept.values()) <= 160_000
+    assert not cuts._kept
+    assert len(photos) < cuts.decoded < 0.5 * len(photos) * len(windows)
+
+
+def test_a_piece_larger_than_the_memory_is_read_all_the_same() -> None:
+    cuts = PhotoCuts(
+        lambda _index, _shrink, box: np.zeros((box[2] - box[0], box[3] - box[1], 3), np.uint8),
+        1,
+        {0: dict.fromkeys(range(3), (0.0, 0.0, 99.0, 99.0))},
+        most_bytes=1_000,
+    )
+    assert [cuts.get(number, 0).pixels.shape for number in range(3)] == [(104, 104, 3)] * 3
+    assert cuts.decoded == 3

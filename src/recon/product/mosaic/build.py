@@ -138,35 +138,35 @@ class MosaicBuild:
         todo = [each for each in windows if not self._store.has(each, band.name)]
         if not todo:
             return {}
-        choices = self._store.choices(windows)
+        choices = self._store.choices(todo)
         taken = taken_of(self.plan, choices, self.photos, self.ground, band)
         cuts = PhotoCuts(band.read, self._shrink(band), taken)
         share = self.settings.direct_share if self.settings.is_evened else None
         renderer = Renderer(self.plan, self.photos, self.ground, cuts, band, share)
 
-        def render(window: Window) -> Mapping[int, str]:
-            choice = self._store.choice(window)
-            picture, failed = renderer.window(window, choice)
+        def render(numbered: tuple[int, Window]) -> Mapping[int, str]:
+            number, window = numbered
+            picture, failed = renderer.window(number, window, self._store.choice(window))
             if not failed:
                 turned = None if picture is None else np.moveaxis(picture, -1, 0)
                 self._store.save(window, band.name, turned)
             return failed
 
         failed: dict[int, str] = {}
-        for found in self._in_threads(render, todo, f"mosaic, {band.name}"):
+        for found in self._in_threads(render, list(enumerate(todo)), f"mosaic, {band.name}"):
             failed |= found
         self._decoded += cuts.decoded
         return failed
 
     def _in_threads(
-        self, work: Callable[[Window], Any], windows: Sequence[Window], title: str
+        self, work: Callable[[Item], Any], items: Sequence[Item], title: str
     ) -> Iterator[Any]:
         with (
             rasterio.Env(GDAL_CACHEMAX=CACHE_BYTES),
             ThreadPoolExecutor(self.settings.threads) as pool,
         ):
             try:
-                yield from self.over(pool.map(work, windows), title, len(windows))
+                yield from self.over(pool.map(work, items), title, len(items))
             except BaseException:
                 pool.shutdown(cancel_futures=True)
                 raise

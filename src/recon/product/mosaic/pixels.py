@@ -4,12 +4,11 @@ A photo of 20 megapixels has 60 MB of pixels, of which a mosaic takes a tenth: s
 decoded, all that is taken of it is cut out, and kept as long as room allows.
 """
 
-from collections import OrderedDict
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import log2
 from pathlib import Path
-from threading import Condition, Lock
+from threading import Lock
 from typing import Any
 
 import cv2
@@ -32,8 +31,6 @@ REDUCED = {
 AROUND_PX = 4
 """Pixels kept around what is taken: interpolation reads neighbours."""
 CACHE_BYTES = 64 * 1024 * 1024
-LONGEST_SIDE_PX = 32_000
-"""Longest side that OpenCV's warps take."""
 
 Box = tuple[int, int, int, int]
 """Rows and columns: top, left, and those after the last, bottom, right."""
@@ -61,8 +58,7 @@ def read_jpeg(path: Path, shrink: int, box: Box) -> Pixels:
 
     Raises `PhotoError`.
     """
-    part = _cut_out(_decoded(path, REDUCED[shrink]), box)
-    return cv2.cvtColor(part, cv2.COLOR_BGR2RGB)
+    return _cut_out(_decoded(path, REDUCED[shrink]), box)[..., ::-1]
 
 
 def read_unchanged(path: Path, shrink: int, box: Box) -> Pixels:
@@ -74,7 +70,7 @@ def read_unchanged(path: Path, shrink: int, box: Box) -> Pixels:
         size = found.shape[1] // shrink, found.shape[0] // shrink
         found = cv2.resize(found, size, interpolation=cv2.INTER_AREA)
     part = _cut_out(found, box)
-    return part.reshape(*part.shape[:2], -1).copy()
+    return part.reshape(*part.shape[:2], -1)
 
 
 def _decoded(path: Path, how: int) -> Pixels:
@@ -109,60 +105,94 @@ class Cut:
     first: tuple[int, int]
 
 
+Edges = tuple[float, float, float, float]
+"""Top, left, bottom, right in pixels of a whole photo."""
+
+
 @dataclass(slots=True)
 class PhotoCuts:
-    """What a mosaic takes of its photos; threads share it.
+    """What a mosaic's windows take of its photos; threads share it.
 
-    `taken` are rows and columns (top, left, bottom, right) in pixels of the whole photo.
+    Windows have numbers in the order in which they are rendered; each takes its piece of a photo
+    once. If there is no room for all pieces, those wait that are needed soonest: for the others the
+    photo is decoded again.
     """
 
     read: ReadPixels
     shrink: int
-    taken: Mapping[int, tuple[float, float, float, float]]
+    taken: Mapping[int, Mapping[int, Edges]]
+    """By a photo's index and a window's number."""
     most_bytes: int = CACHE_BYTES
     decoded: int = 0
     """Photos decoded so far."""
-    _kept: OrderedDict[int, Cut] = field(default_factory=OrderedDict)
+    _kept: dict[tuple[int, int], Cut] = field(default_factory=dict)
+    """By a window's number and a photo's index."""
     _bytes: int = 0
-    _busy: set[int] = field(default_factory=set)
-    _changed: Condition = field(default_factory=Condition)
+    _left: dict[int, set[int]] = field(init=False)
+    """By photo, windows that have not had their piece."""
+    _changing: Lock = field(default_factory=Lock)
     _decoding: Lock = field(default_factory=Lock)
     """One whole photo in memory at a time."""
 
-    def get(self, index: int) -> Cut:
-        """Return what is taken of a photo; raises `PhotoError`."""
-        with self._changed:
-            # Two threads never decode the same photo.
-            self._changed.wait_for(lambda: index not in self._busy)
-            if index in self._kept:
-                self._kept.move_to_end(index)
-                return self._kept[index]
-            self._busy.add(index)
-        cut = None
-        try:
-            cut = self._cut(index)
-            return cut
-        finally:
-            with self._changed:
-                self._busy.discard(index)
-                if cut is not None:
-                    self._keep(index, cut)
-                self._changed.notify_all()
+    def __post_init__(self) -> None:
+        self._left = {index: set(numbers) for index, numbers in self.taken.items()}
 
-    def _keep(self, index: int, cut: Cut) -> None:
-        self.decoded += 1
-        self._kept[index] = cut
-        self._bytes += cut.pixels.nbytes
-        while self._bytes > self.most_bytes and len(self._kept) > 1:
-            _index, oldest = self._kept.popitem(last=False)
-            self._bytes -= oldest.pixels.nbytes
+    def has(self, number: int, index: int) -> bool:
+        """Return whether a window takes anything of a photo."""
+        return number in self.taken.get(index, ())
 
-    def _cut(self, index: int) -> Cut:
-        top, left, bottom, right = (edge / self.shrink for edge in self.taken[index])
-        first = max(0, int(top) - AROUND_PX), max(0, int(left) - AROUND_PX)
-        box = (*first, int(bottom) + AROUND_PX + 1, int(right) + AROUND_PX + 1)
+    def get(self, number: int, index: int) -> Cut:
+        """Return what a window takes of a photo, once; raises `PhotoError`."""
+        found = self._pop(number, index)
+        if found is not None:
+            return found
         with self._decoding:
-            pixels = self.read(index, self.shrink, box)
-        if max(pixels.shape[:2]) > LONGEST_SIDE_PX:
-            raise PhotoError(f"expected photos of at most {LONGEST_SIDE_PX} pixels a side")
-        return Cut(pixels, first)
+            # Another thread may just have decoded it.
+            found = self._pop(number, index)
+            if found is None:
+                self._decode(number, index)
+                found = self._pop(number, index)
+        assert found is not None  # of all pieces at most later ones had no room
+        return found
+
+    def _pop(self, number: int, index: int) -> Cut | None:
+        with self._changing:
+            found = self._kept.pop((number, index), None)
+            if found is not None:
+                self._bytes -= found.pixels.nbytes
+                self._left[index].discard(number)
+            return found
+
+    def _decode(self, needed: int, index: int) -> None:
+        # The one needed first; another thread may still be at an earlier window.
+        numbers = sorted(self._left[index], key=lambda number: (number != needed, number))
+        boxes = [self._box(self.taken[index][number]) for number in numbers]
+        top, left = min(box[0] for box in boxes), min(box[1] for box in boxes)
+        bottom, right = max(box[2] for box in boxes), max(box[3] for box in boxes)
+        pixels = self.read(index, self.shrink, (top, left, bottom, right))
+        self.decoded += 1
+        for number, box in zip(numbers, boxes, strict=True):
+            rows, cols = slice(box[0] - top, box[2] - top), slice(box[1] - left, box[3] - left)
+            # A copy: a view would keep the whole photo in memory.
+            cut = Cut(np.ascontiguousarray(pixels[rows, cols]).copy(), box[:2])
+            if not self._keep(number, index, cut, needed):
+                break
+
+    def _keep(self, number: int, index: int, cut: Cut, needed: int) -> bool:
+        """Keep a piece, and return whether there was room; that of the window `needed` has it."""
+        with self._changing:
+            while self._bytes + cut.pixels.nbytes > self.most_bytes and self._kept:
+                last = max(self._kept)
+                if last[0] <= number:
+                    break
+                self._bytes -= self._kept.pop(last).pixels.nbytes
+            fits = self._bytes + cut.pixels.nbytes <= self.most_bytes
+            if fits or number == needed:
+                self._kept[number, index] = cut
+                self._bytes += cut.pixels.nbytes
+            return fits
+
+    def _box(self, edges: Edges) -> Box:
+        top, left, bottom, right = (edge / self.shrink for edge in edges)
+        first = max(0, int(top) - AROUND_PX), max(0, int(left) - AROUND_PX)
+        return (*first, int(bottom) + AROUND_PX + 1, int(right) + AROUND_PX + 1)

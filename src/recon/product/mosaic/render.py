@@ -1,5 +1,6 @@
 """A window's pixels, each from the photo that was chosen for it."""
 
+from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
@@ -11,7 +12,7 @@ from recon.model.arrays import FloatArray
 from recon.product.mosaic.cameras import Camera
 from recon.product.mosaic.choice import STEP_PX, Choice, PlacedPhoto
 from recon.product.mosaic.ground import Ground
-from recon.product.mosaic.pixels import Band, Cut, PhotoCuts, Pixels
+from recon.product.mosaic.pixels import Band, Cut, Edges, PhotoCuts, Pixels
 from recon.product.mosaic.plan import WINDOW_PX, MosaicPlan, Window
 from recon.product.photos.photo_error import PhotoError
 
@@ -39,7 +40,9 @@ class Renderer:
     direct_share: float | None
     """The direct beam's share of a clear sky's light, to even brightness; None: as photographed."""
 
-    def window(self, window: Window, choice: Choice) -> tuple[Pixels | None, dict[int, str]]:
+    def window(
+        self, number: int, window: Window, choice: Choice
+    ) -> tuple[Pixels | None, dict[int, str]]:
         """Return a window's pixels (rows, cols, channels), and why photos failed.
 
         Of a picture the last channel is alpha; of another band, 0 is no data. None where nothing
@@ -49,10 +52,10 @@ class Renderer:
         failed: dict[int, str] = {}
         for index in choice.indices():
             camera = camera_for(self.band, self.photos, index)
-            if camera is None or index not in self.cuts.taken:
+            if camera is None or not self.cuts.has(number, index):
                 continue
             try:
-                cut = self.cuts.get(index)
+                cut = self.cuts.get(number, index)
             except PhotoError as problem:
                 failed[index] = str(problem)
                 continue
@@ -105,32 +108,32 @@ def taken_of(
     photos: Sequence[PlacedPhoto],
     ground: Ground,
     band: Band,
-) -> dict[int, tuple[float, float, float, float]]:
-    """Return what windows take of each photo's band: top, left, bottom, right in its pixels."""
-    taken: dict[int, tuple[float, float, float, float]] = {}
-    for window, choice in windows:
+) -> dict[int, dict[int, Edges]]:
+    """Return by photo and by a window's number what it takes of the photo's band."""
+    taken: dict[int, dict[int, Edges]] = defaultdict(dict)
+    for number, (window, choice) in enumerate(windows):
         for index in choice.indices():
             camera = camera_for(band, photos, index)
             if camera is None:
                 continue
             rows, cols = choice.span(index)
-            wide = _wider(rows), _wider(cols)
-            places = _places(plan, window, ground, STEP_PX, *wide)
-            across, down = camera.project(places)
-            if not np.isfinite(across).any():
-                continue
-            low = np.maximum([np.nanmin(down), np.nanmin(across)], 0.0)
-            high = np.minimum(
-                [np.nanmax(down), np.nanmax(across)], [camera.rows - 1.0, camera.cols - 1.0]
-            )
-            if (low > high).any():
-                continue  # A band of a narrower field may show nothing of it.
-            before = taken.get(index, (*low, *high))
-            taken[index] = (
-                *np.minimum(before[:2], low).tolist(),
-                *np.maximum(before[2:], high).tolist(),
-            )
+            places = _places(plan, window, ground, STEP_PX, _wider(rows), _wider(cols))
+            edges = _edges(camera, places)
+            if edges is not None:
+                taken[index][number] = edges
     return taken
+
+
+def _edges(camera: Camera, places: FloatArray) -> Edges | None:
+    """Return the part of a picture that shows places; None where it shows nothing of them."""
+    across, down = camera.project(places)
+    if not np.isfinite(across).any():
+        return None
+    low = np.maximum([np.nanmin(down), np.nanmin(across)], 0.0)
+    most = [camera.rows - 1.0, camera.cols - 1.0]
+    high = np.minimum([np.nanmax(down), np.nanmax(across)], most)
+    # A band of a narrower field may show nothing.
+    return None if (low > high).any() else (*low.tolist(), *high.tolist())
 
 
 def _wider(span: slice) -> slice:
