@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
@@ -13,6 +14,7 @@ from typing import Any, TypeVar
 import numpy as np
 import rasterio
 import shapely  # type: ignore[import-untyped, unused-ignore]
+from rasterio.errors import NotGeoreferencedWarning
 
 from recon import version
 from recon.model.units import NS_PER_S
@@ -162,6 +164,8 @@ class MosaicBuild:
         self, work: Callable[[Item], Any], items: Sequence[Item], title: str
     ) -> Iterator[Any]:
         with (
+            # Photos have no place of their own.
+            warnings.catch_warnings(action="ignore", category=NotGeoreferencedWarning),
             rasterio.Env(GDAL_CACHEMAX=CACHE_BYTES),
             ThreadPoolExecutor(self.settings.threads) as pool,
         ):

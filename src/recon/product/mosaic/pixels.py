@@ -14,6 +14,9 @@ from typing import Any
 import cv2
 import numpy as np
 import numpy.typing as npt
+import rasterio
+from rasterio.errors import RasterioError
+from rasterio.windows import Window
 
 from recon.product.mosaic.cameras import Camera
 from recon.product.photos.photo_error import PhotoError
@@ -22,15 +25,9 @@ Pixels = npt.NDArray[Any]
 """(rows, cols, channels), uint8 or uint16."""
 MOST_SHRUNK = 8
 """What a JPEG decoder leaves out on its own, each way."""
-REDUCED = {
-    1: cv2.IMREAD_COLOR,
-    2: cv2.IMREAD_REDUCED_COLOR_2,
-    4: cv2.IMREAD_REDUCED_COLOR_4,
-    8: cv2.IMREAD_REDUCED_COLOR_8,
-}
 AROUND_PX = 4
 """Pixels kept around what is taken: interpolation reads neighbours."""
-CACHE_BYTES = 64 * 1024 * 1024
+CACHE_BYTES = 48 * 1024 * 1024
 
 Box = tuple[int, int, int, int]
 """Rows and columns: top, left, and those after the last, bottom, right."""
@@ -56,40 +53,41 @@ class Band:
 def read_jpeg(path: Path, shrink: int, box: Box) -> Pixels:
     """Return a part of a JPEG as stored, not turned upright: (rows, cols, 3) uint8, red first.
 
-    Raises `PhotoError`.
+    Lines are decoded one after the other: only the part is in memory, where OpenCV needs twice the
+    whole photo. Raises `PhotoError`; rasterio warns that photos have no place.
     """
-    return _cut_out(_decoded(path, REDUCED[shrink]), box)[..., ::-1]
+    try:
+        with rasterio.open(path, driver="JPEG") as whole:
+            levels = whole.overviews(1)
+        if shrink > 1 and shrink not in levels:
+            # A picture of a few hundred pixels has no smaller versions.
+            return read_unchanged(path, shrink, box)[..., ::-1]
+        level = {} if shrink == 1 else {"overview_level": levels.index(shrink)}
+        with rasterio.open(path, driver="JPEG", **level) as dataset:
+            top, left, bottom, right = box
+            bottom, right = min(bottom, dataset.height), min(right, dataset.width)
+            bands = [1, 2, 3] if dataset.count == 3 else [1, 1, 1]
+            found = dataset.read(bands, window=Window(left, top, right - left, bottom - top))
+    except RasterioError as problem:
+        raise PhotoError(f"{path.name}: its picture cannot be read") from problem
+    return np.moveaxis(found, 0, -1)
 
 
 def read_unchanged(path: Path, shrink: int, box: Box) -> Pixels:
     """Return a part of a picture as stored, (rows, cols, channels); raises `PhotoError`."""
-    found = _decoded(path, cv2.IMREAD_UNCHANGED)
-    if found.dtype not in (np.uint8, np.uint16):
+    try:
+        data = np.fromfile(path, dtype=np.uint8)
+        found = cv2.imdecode(data, cv2.IMREAD_UNCHANGED | cv2.IMREAD_IGNORE_ORIENTATION)
+    except (OSError, cv2.error) as problem:
+        raise PhotoError(f"{path.name}: its picture cannot be read") from problem
+    if found is None or found.dtype not in (np.uint8, np.uint16):
         raise PhotoError(f"{path.name}: expected a picture of 8 or 16 bits, got another")
     if shrink > 1:
         size = found.shape[1] // shrink, found.shape[0] // shrink
         found = cv2.resize(found, size, interpolation=cv2.INTER_AREA)
-    part = _cut_out(found, box)
-    return part.reshape(*part.shape[:2], -1)
-
-
-def _decoded(path: Path, how: int) -> Pixels:
-    try:
-        data = np.fromfile(path, dtype=np.uint8)
-    except OSError as problem:
-        raise PhotoError(f"{path.name}: cannot be read: {problem.strerror}") from problem
-    try:
-        found = cv2.imdecode(data, how | cv2.IMREAD_IGNORE_ORIENTATION)
-    except cv2.error as problem:
-        raise PhotoError(f"{path.name}: its picture is damaged") from problem
-    if found is None:
-        raise PhotoError(f"{path.name}: its picture is damaged")
-    return found
-
-
-def _cut_out(whole: Pixels, box: Box) -> Pixels:
     top, left, bottom, right = box
-    return whole[top:bottom, left:right]
+    part = found[top:bottom, left:right]
+    return part.reshape(*part.shape[:2], -1)
 
 
 def shrink_for(pixels_ratio: float) -> int:
@@ -174,7 +172,7 @@ class PhotoCuts:
         for number, box in zip(numbers, boxes, strict=True):
             rows, cols = slice(box[0] - top, box[2] - top), slice(box[1] - left, box[3] - left)
             # A copy: a view would keep the whole photo in memory.
-            cut = Cut(np.ascontiguousarray(pixels[rows, cols]).copy(), box[:2])
+            cut = Cut(pixels[rows, cols].copy(order="C"), box[:2])
             if not self._keep(number, index, cut, needed):
                 break
 
