@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
+from recon.cli.opened_flight import opened_flight
 from recon.cli.output import print_line, printable
-from recon.cli.tag import opened_flight
 from recon.model.errors import RecordError
 from recon.product.exports import FLIGHT_FORMATS
 from recon.record.files.atomic_file import replace_file

@@ -8,8 +8,8 @@ from typing import Annotated
 
 import typer
 
+from recon.cli.opened_flight import opened_flight
 from recon.cli.output import print_line
-from recon.cli.tag import opened_flight
 from recon.model.errors import RecordError
 from recon.product.flight_log import read_log
 from recon.product.mosaic.finished import finished_mosaic

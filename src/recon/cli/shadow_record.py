@@ -5,10 +5,10 @@ from typing import Annotated
 
 import typer
 
+from recon.cli.opened_flight import opened_flight
 from recon.cli.output import print_line
 from recon.cli.progress import progress_over
 from recon.cli.recorded_maps import refuse_used
-from recon.cli.tag import opened_flight
 from recon.model.errors import RecordError
 from recon.product.shadow_record import photos_by_cell, sun_by_cell, sun_cog
 from recon.product.sun_at import shade_map

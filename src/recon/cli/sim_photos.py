@@ -6,8 +6,8 @@ from typing import Annotated
 import typer
 
 from recon.cli.demo import demo_scenario_file
+from recon.cli.opened_flight import opened_flight
 from recon.cli.progress import progress_over
-from recon.cli.tag import opened_flight
 from recon.model.errors import RecordError
 from recon.product.flight import FlightData
 from recon.score.survey_photos import TRUTH_COLUMNS, card_of, shots_of, truth_rows

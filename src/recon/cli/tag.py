@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from recon.cli.nodeodm import opened_node, process
+from recon.cli.opened_flight import opened_flight
 from recon.cli.output import printable
 from recon.cli.progress import progress_over, usable_cores
 from recon.cli.tag_all import FlightLight, tag_all
@@ -25,7 +26,7 @@ from recon.cli.tag_cards import (
 )
 from recon.model.errors import RecordError
 from recon.model.units import HECTARE_M2
-from recon.product.flight import FlightData, read_flight
+from recon.product.flight import FlightData
 from recon.product.odm import write_odm_project
 from recon.product.panels import (
     PANELS,
@@ -190,17 +191,6 @@ def _write_projects(
         photos = [each for each in chosen if folders[each.photo.kind] == folder]
         if photos or (out / folder).exists():
             write_odm_project(out / folder, out / "masks", flight, photos)
-
-
-def opened_flight(path: Path) -> FlightData:
-    """Return a record's flight, with a warning if it ends early; raises `RecordError`."""
-    try:
-        flight = read_flight(path)
-    except OSError as problem:
-        raise RecordError(f"{path}: {problem.strerror}") from problem
-    if flight.trouble:
-        warn(f"the record ends early: {flight.trouble}")
-    return flight
 
 
 def _with_headings(photos: Sequence[TimedPhoto]) -> list[TimedPhoto]:

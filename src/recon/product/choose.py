@@ -12,7 +12,6 @@ from math import ceil
 from typing import Any
 
 import numpy as np
-from scipy.optimize import linprog
 
 from recon.model.arrays import BoolArray, IntArray
 
@@ -121,6 +120,9 @@ def _shortened(
 
 def _bound(shows: Any, needed: IntArray) -> int:
     """Return the least number of photos, by the linear relaxation over some of the cells."""
+    # Imported here: it takes a tenth of the memory of a mosaic, which needs none of it.
+    from scipy.optimize import linprog
+
     cells = np.flatnonzero(needed)
     if len(cells) == 0:
         return 0

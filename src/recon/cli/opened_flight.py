@@ -1,0 +1,18 @@
+"""A flight record, opened for a command."""
+
+from pathlib import Path
+
+from recon.cli.tag_cards import warn
+from recon.model.errors import RecordError
+from recon.product.flight import FlightData, read_flight
+
+
+def opened_flight(path: Path) -> FlightData:
+    """Return a record's flight, with a warning if it ends early; raises `RecordError`."""
+    try:
+        flight = read_flight(path)
+    except OSError as problem:
+        raise RecordError(f"{path}: {problem.strerror}") from problem
+    if flight.trouble:
+        warn(f"the record ends early: {flight.trouble}")
+    return flight
