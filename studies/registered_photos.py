@@ -25,7 +25,7 @@ from recon.cli.sim_photos import write_photos
 from recon.product.footprint import PhotoView, projected
 from recon.product.headings import AIRCRAFT, GIMBAL, signed_deg
 from recon.product.photos.photo import GimbalAttitude, Photo, read_photo_facts
-from recon.product.registration import Registration, read_grey, register, with_headings
+from recon.product.registration import PhotoRegistration, read_grey, register, with_headings
 from recon.product.timing import StatedCamera, TimedPhoto, timed_photos
 from recon.score import load_scenario
 from recon.sim.photos.card import CardSettings
@@ -185,7 +185,7 @@ def off_ground_m(flown: SurveyFlown, timed: TimedPhoto, view: PhotoView) -> Floa
     return found - true.reshape(-1, 2)
 
 
-def add_figures(places: Places, found: Registration) -> None:
+def add_figures(places: Places, found: PhotoRegistration) -> None:
     """Add a registration's own figures."""
     places.residuals_m.append(found.residual_m)
     places.scales += [each.scale for each in found.headings]

@@ -10,7 +10,7 @@ import numpy.typing as npt
 import rasterio
 
 from recon.model.shade import SUNLIT_TRANSMITTANCE
-from recon.product.mosaic.cameras import Camera, Lens
+from recon.product.mosaic.cameras import Camera, PhotoLens
 from recon.sim.camera.field import FieldRenderer
 from recon.sim.land.land_tiles import land_of
 from recon.sim.land.plants import add_plants
@@ -120,7 +120,7 @@ def camera_of(flown: SurveyFlown, shot: PhotoShot) -> Camera:
     centre_px = lens.centre_col_px, lens.centre_row_px
     pose = shot.pose
     return Camera(
-        pose.position_enu_m, pose.rotation_enu_camera, Lens((focal_px, focal_px), centre_px),
+        pose.position_enu_m, pose.rotation_enu_camera, PhotoLens((focal_px, focal_px), centre_px),
         cols, rows,
     )  # fmt: skip
 

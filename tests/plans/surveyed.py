@@ -10,7 +10,7 @@ from recon.model.airspace import Region
 from recon.model.command import Refusal
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.survey import Survey
-from recon.plans.flight_plan import FlightPlan
+from recon.plans.flight_plan import ExportedPlan
 from recon.plans.from_survey import flight_plans
 
 FIELDS = {
@@ -36,7 +36,7 @@ def survey_plan(field: str) -> SurveyPlan:
 
 
 @cache
-def flights(field: str, drones: int = 1, level_s: float | None = None) -> tuple[FlightPlan, ...]:
+def flights(field: str, drones: int = 1, level_s: float | None = None) -> tuple[ExportedPlan, ...]:
     """Return the flights of drones that take off at a field's corner, with batteries that last."""
     plan = survey_plan(field)
     home_m = corner_of(plan)

@@ -12,7 +12,7 @@ from tests.plans.surveyed import flights, survey_plan
 
 from recon.plans.aircraft import aircraft_named
 from recon.plans.features import CANNOT, FlightFeature, FormatName, NotHeld, by_hand, features_of
-from recon.plans.flight_plan import AtEnd, FlightPlan, PhotoTrigger, PlanExportError
+from recon.plans.flight_plan import AtEnd, ExportedPlan, PhotoTrigger, PlanExportError
 from recon.plans.formats import FileFacts, exported, format_of
 from recon.plans.parts import parts_of
 
@@ -20,7 +20,7 @@ STATED = FileFacts(1_700_000_000_000, aircraft_named("Mavic 3E", None))
 FLY = FileFacts(1_700_000_000_000, aircraft_named("DJI Fly", None))
 
 
-def long_flight(rows: int, points_a_row: int = 2) -> FlightPlan:
+def long_flight(rows: int, points_a_row: int = 2) -> ExportedPlan:
     """Return the triangle's flight with many rows."""
     (plan,) = flights("triangle")
     first = plan.waypoints[0]

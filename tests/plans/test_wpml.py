@@ -13,7 +13,7 @@ from tests.plans.surveyed import FIELDS, flights
 from tests.plans.wpml_rules import TEMPLATE, WAYLINES, violations
 
 from recon.plans.aircraft import AIRCRAFT, PAYLOADS, aircraft_named
-from recon.plans.flight_plan import AtEnd, FlightPlan, PhotoTrigger, PlanExportError
+from recon.plans.flight_plan import AtEnd, ExportedPlan, PhotoTrigger, PlanExportError
 from recon.plans.kmz import kmz_of
 from recon.plans.wpml import WpmlOptions, template_kml, waylines_wpml
 
@@ -22,7 +22,7 @@ OPTIONS = WpmlOptions(1_700_000_000_000, aircraft_named("Mavic 3M", None))
 SPACES = {"w": "http://www.dji.com/wpmz/1.0.2"}
 
 
-def slope(plan: FlightPlan) -> FlightPlan:
+def slope(plan: ExportedPlan) -> ExportedPlan:
     heights = (
         replace(each, height_above_takeoff_m=30.0 + k) for k, each in enumerate(plan.waypoints)
     )

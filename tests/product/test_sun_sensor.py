@@ -23,7 +23,7 @@ from typer.testing import CliRunner
 from recon.cli.commands import app
 from recon.model.units import NS_PER_S
 from recon.product.footprint import Aim, PhotoView
-from recon.product.photos.band import Band
+from recon.product.photos.band import PhotoBand
 from recon.product.photos.photo import Photo
 from recon.product.shot_files import ShotFiles
 from recon.product.sun_at import SunHistory
@@ -64,7 +64,7 @@ def files(late_s: float = 0.0, noise: float = 0.0, of_sun: float = 1.0) -> tuple
         for band, scale in SCALE.items():
             value = scale * (DIFFUSE + (1.0 - DIFFUSE) * direct) * (1.0 + noise * random.normal())
             photo = replace(
-                PHOTO, name=f"{number:03d}_{band}.TIF", band=Band(band), irradiance=value
+                PHOTO, name=f"{number:03d}_{band}.TIF", band=PhotoBand(band), irradiance=value
             )
             found.photos.append(replace(each, photo=photo))
             found.shot[photo.name] = lead

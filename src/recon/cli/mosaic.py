@@ -21,13 +21,13 @@ from recon.model.units import HECTARE_M2
 from recon.product.flight import FlightData
 from recon.product.footprint import PhotoView
 from recon.product.mosaic import (
-    Band,
     Camera,
     ChoiceSettings,
-    Ground,
     LevelGround,
     Light,
+    MosaicBand,
     MosaicBuild,
+    MosaicGround,
     MosaicReport,
     MosaicSettings,
     SiteGround,
@@ -140,7 +140,7 @@ class _Geometry:
 
     photos: Sequence[TimedPhoto]
     cameras: Sequence[Camera]
-    ground: Ground
+    ground: MosaicGround
     source: str
     pixels: float
     """Pixels of the photos, each way, in one of the mosaic, if no size is stated."""
@@ -169,7 +169,7 @@ def _geometry(
         yield _Geometry(placed, list(by_index.values()), run.surface, source, 1.0)
 
 
-def _site_ground(site: Path | None) -> tuple[Ground, str]:
+def _site_ground(site: Path | None) -> tuple[MosaicGround, str]:
     """Return the ground, and what it is in words."""
     if site is None:
         return LevelGround(), "level ground"
@@ -199,7 +199,7 @@ def _registered(photos: Sequence[TimedPhoto]) -> Sequence[PhotoView]:
     return found.views
 
 
-def _colours(found: _Geometry) -> list[Band]:
+def _colours(found: _Geometry) -> list[MosaicBand]:
     """Return the raster in colour; none where a camera's bands lead its shots."""
     if found.photos[0].photo.kind == "band":
         return []
@@ -207,7 +207,7 @@ def _colours(found: _Geometry) -> list[Band]:
     def read(index: int, shrink: int, box: Box) -> Pixels:
         return read_jpeg(found.photos[index].photo.path, shrink, box)
 
-    return [Band("mosaic", COLOURS, read)]
+    return [MosaicBand("mosaic", COLOURS, read)]
 
 
 def _built(build: MosaicBuild) -> MosaicReport:

@@ -13,7 +13,7 @@ from recon.guidance.survey import Surveyor, SurveyPlan
 from recon.guidance.survey.estimate import SurveyEstimate
 from recon.plans.aircraft import AIRCRAFT, PAYLOADS, aircraft_named
 from recon.plans.features import FormatName
-from recon.plans.flight_plan import FlightPlan, PlanExportError
+from recon.plans.flight_plan import ExportedPlan, PlanExportError
 from recon.plans.formats import FORMATS, FileFacts, exported, format_of
 from recon.plans.from_survey import flight_plans
 
@@ -89,7 +89,7 @@ def rows_of_exports(exports: Sequence[ExportedFiles]) -> list[tuple[str, str]]:
 
 
 def _made(
-    path: Path, flights: Sequence[FlightPlan], options: PlanExportOptions
+    path: Path, flights: Sequence[ExportedPlan], options: PlanExportOptions
 ) -> tuple[ExportedFiles, dict[str, bytes]]:
     name = format_of(path.name)
     aircraft = None

@@ -37,7 +37,7 @@ from recon.product.panels import (
     write_panels,
 )
 from recon.product.photos.card import MARK, card_of
-from recon.product.photos.shots import Shot, shots_of
+from recon.product.photos.shots import CameraShot, shots_of
 from recon.product.quality import quality_of
 from recon.product.registration import read_grey, with_headings
 from recon.product.shot_files import MAIN, ShotFiles, files_of
@@ -160,7 +160,7 @@ def tag_command(
         process(node, out / MAIN)
 
 
-def _without(shots: Sequence[Shot], panels: Sequence[PanelShot]) -> list[Shot]:
+def _without(shots: Sequence[CameraShot], panels: Sequence[PanelShot]) -> list[CameraShot]:
     taken = {panel.shot.lead.name for panel in panels}
     return [shot for shot in shots if shot.lead.name not in taken]
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from enum import Enum, StrEnum
 from types import MappingProxyType
 
-from recon.plans.flight_plan import AtEnd, FlightPlan, PlanExportError
+from recon.plans.flight_plan import AtEnd, ExportedPlan, PlanExportError
 
 
 class FormatName(Enum):
@@ -131,7 +131,7 @@ CANNOT: Mapping[FormatName, Mapping[FlightFeature, ByHand | NotHeld]] = MappingP
 )
 
 
-def features_of(plan: FlightPlan) -> frozenset[FlightFeature]:
+def features_of(plan: ExportedPlan) -> frozenset[FlightFeature]:
     """Return what a flight has."""
     every_s = None if plan.photos is None else plan.photos.every_s
     has = {
@@ -154,7 +154,7 @@ def features_of(plan: FlightPlan) -> frozenset[FlightFeature]:
     return frozenset(feature for feature, is_so in has.items() if is_so)
 
 
-def by_hand(name: FormatName, plans: Iterable[FlightPlan]) -> tuple[str, ...]:
+def by_hand(name: FormatName, plans: Iterable[ExportedPlan]) -> tuple[str, ...]:
     """Return what the pilot sets in the other program, each sentence once.
 
     Raises `PlanExportError` for what the format would have flown wrong.
@@ -171,7 +171,7 @@ def by_hand(name: FormatName, plans: Iterable[FlightPlan]) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _figures(plan: FlightPlan) -> dict[str, object]:
+def _figures(plan: ExportedPlan) -> dict[str, object]:
     speed_mps = plan.waypoints[0].speed_mps
     pitches_deg = (each.gimbal_pitch_deg for each in plan.waypoints)
     photos = plan.photos

@@ -55,7 +55,7 @@ class RowGround:
 
 
 @dataclass(frozen=True)
-class FlightPlan:
+class ExportedPlan:
     """One flight of one aircraft. Heights are above its takeoff point; speeds hold from a waypoint
     to the next. On a lost signal the aircraft returns home, wherever the format can say so.
 
@@ -94,7 +94,7 @@ def shown(name: str) -> str:
     return "".join(each for each in name if each.isprintable())
 
 
-def plan_fault(plan: FlightPlan) -> str | None:
+def plan_fault(plan: ExportedPlan) -> str | None:
     """Return why no program could fly a plan, as a sentence; None when one can."""
     if len(plan.waypoints) < 2:
         return f"{plan.name}: expected at least 2 waypoints, got {len(plan.waypoints)}"

@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 from recon.plans.aircraft import AircraftModel
 from recon.plans.features import FormatName, by_hand
-from recon.plans.flight_plan import FlightPlan, PlanExportError, plan_fault
+from recon.plans.flight_plan import ExportedPlan, PlanExportError, plan_fault
 from recon.plans.gpx import gpx_of
 from recon.plans.kml import kml_of
 from recon.plans.kmz import kmz_of
@@ -29,8 +29,8 @@ class Format:
 
     title: str
     most_waypoints: int
-    write: Callable[[FlightPlan], bytes] | None = None
-    write_all: Callable[[Sequence[FlightPlan]], bytes] | None = None
+    write: Callable[[ExportedPlan], bytes] | None = None
+    write_all: Callable[[Sequence[ExportedPlan]], bytes] | None = None
 
 
 FORMATS: Mapping[FormatName, Format] = MappingProxyType(
@@ -76,7 +76,7 @@ def format_of(file_name: str) -> FormatName:
 
 
 def exported(
-    name: FormatName, plans: Sequence[FlightPlan], stem: str, options: FileFacts
+    name: FormatName, plans: Sequence[ExportedPlan], stem: str, options: FileFacts
 ) -> ExportedPlans:
     """Return the files of flights: one for all where the format holds several, else one each.
 
@@ -99,8 +99,8 @@ def exported(
 
 
 def _for_aircraft(
-    form: Format, plans: Sequence[FlightPlan], options: FileFacts, sentences: tuple[str, ...]
-) -> tuple[Format, Sequence[FlightPlan], tuple[str, ...]]:
+    form: Format, plans: Sequence[ExportedPlan], options: FileFacts, sentences: tuple[str, ...]
+) -> tuple[Format, Sequence[ExportedPlan], tuple[str, ...]]:
     """Return the writer, the flights and the sentences for the aircraft that is named."""
     aircraft = options.aircraft
     if aircraft is None:
@@ -124,7 +124,7 @@ def _for_aircraft(
 def _one_each(
     name: FormatName,
     form: Format,
-    plans: Sequence[FlightPlan],
+    plans: Sequence[ExportedPlan],
     stem: str,
     sentences: tuple[str, ...],
 ) -> ExportedPlans:

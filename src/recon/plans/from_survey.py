@@ -14,7 +14,7 @@ from recon.guidance.survey.missions import LEAST_LEG_M, Track, mission_of
 from recon.guidance.survey.route import Route
 from recon.model.geo import LatLon
 from recon.model.survey import WhenDone
-from recon.plans.flight_plan import AtEnd, FlightPlan, PhotoTrigger, RowGround
+from recon.plans.flight_plan import AtEnd, ExportedPlan, PhotoTrigger, RowGround
 
 TOUCHING_M = 0.05
 """Bands of rows are grown by this before they are joined: neighbours share an edge."""
@@ -27,14 +27,14 @@ def flight_plans(
     names: Mapping[str, str],
     *,
     by_distance: bool = False,
-) -> list[FlightPlan]:
+) -> list[ExportedPlan]:
     """Return every drone's flights; `names` are those of the drones by serial.
 
     Photos are by the survey's timer, or by distance at the same spacing. Where no path over free
     ground leads from a row to the next, the flight ends, and another begins.
     """
     surveyors = {each.serial: each for each in fleet}
-    found: list[FlightPlan] = []
+    found: list[ExportedPlan] = []
     for drone in needs.drones:
         flights = [part for flight in drone.flights for part in _connected(plan, flight.route)]
         for number, (route, track) in enumerate(flights, start=1):
@@ -71,13 +71,13 @@ def _photos(plan: SurveyPlan, *, by_distance: bool) -> PhotoTrigger:
 
 def _flown(
     plan: SurveyPlan, route: Route, track: Track, surveyor: Surveyor, name: str
-) -> FlightPlan:
+) -> ExportedPlan:
     survey, frame = plan.survey, plan.frame
     mission = mission_of(track, survey, frame, name, surveyor.takeoff_up_m)
     home_m, up_m = surveyor.home_m or surveyor.place_m, surveyor.takeoff_up_m
     home = point_from_enu(frame, (*home_m, up_m or 0.0))
     hovers = survey.when_done is WhenDone.HOVER
-    return FlightPlan(
+    return ExportedPlan(
         survey.name,
         name,
         mission.waypoints,

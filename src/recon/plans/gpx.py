@@ -3,12 +3,12 @@
 from collections.abc import Sequence
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
-from recon.plans.flight_plan import FlightPlan, shown
+from recon.plans.flight_plan import ExportedPlan, shown
 
 GPX = "http://www.topografix.com/GPX/1/1"
 
 
-def gpx_of(plans: Sequence[FlightPlan]) -> bytes:
+def gpx_of(plans: Sequence[ExportedPlan]) -> bytes:
     """Return one document with all flights."""
     root = Element("gpx", {"xmlns": GPX, "version": "1.1", "creator": "Recon"})
     for number, plan in enumerate(plans, start=1):

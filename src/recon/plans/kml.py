@@ -8,14 +8,14 @@ from collections.abc import Sequence
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from recon.model.mission import Waypoint
-from recon.plans.flight_plan import FlightPlan, shown
+from recon.plans.flight_plan import ExportedPlan, shown
 
 KML = "http://www.opengis.net/kml/2.2"
 COLOURS = ("ff2f6fde", "ffb8860b", "ff2e8b57", "ff8b3a8b", "ff3030c0", "ff808000")
 """Of the flights' paths in turn, as aabbggrr."""
 
 
-def kml_of(plans: Sequence[FlightPlan]) -> bytes:
+def kml_of(plans: Sequence[ExportedPlan]) -> bytes:
     """Return one document with all flights."""
     root = Element("kml", {"xmlns": KML})
     document = SubElement(root, "Document")

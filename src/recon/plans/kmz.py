@@ -3,14 +3,14 @@
 import io
 import zipfile
 
-from recon.plans.flight_plan import FlightPlan
+from recon.plans.flight_plan import ExportedPlan
 from recon.plans.wpml import WpmlOptions, template_kml, waylines_wpml
 
 EARLIEST = (1980, 1, 1, 0, 0, 0)
 """The entries' time: the same flight gives the same bytes."""
 
 
-def kmz_of(plan: FlightPlan, options: WpmlOptions) -> bytes:
+def kmz_of(plan: ExportedPlan, options: WpmlOptions) -> bytes:
     """Return the mission file of a flight: template and wayline."""
     documents = {
         "wpmz/template.kml": template_kml(plan, options),

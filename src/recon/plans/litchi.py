@@ -8,7 +8,7 @@ import io
 from math import atan2, degrees
 
 from recon.geo.distance import offset_north_east_m
-from recon.plans.flight_plan import FlightPlan
+from recon.plans.flight_plan import ExportedPlan
 
 MOST_ACTIONS = 15
 MOST_WAYPOINTS = 99
@@ -24,7 +24,7 @@ COLUMNS = (
 )
 
 
-def litchi_csv(plan: FlightPlan) -> bytes:
+def litchi_csv(plan: ExportedPlan) -> bytes:
     """Return the file of a flight."""
     out = io.StringIO()
     table = csv.DictWriter(out, COLUMNS, lineterminator="\n")
@@ -65,7 +65,7 @@ def _stay(loiter_s: float | None) -> dict[str, object]:
     return {"actiontype1": STAY, "actionparam1": round(1_000.0 * loiter_s)}
 
 
-def _photos(plan: FlightPlan) -> dict[str, object]:
+def _photos(plan: ExportedPlan) -> dict[str, object]:
     photos = plan.photos
     every_s, every_m = (None, None) if photos is None else (photos.every_s, photos.every_m)
     return {
@@ -74,7 +74,7 @@ def _photos(plan: FlightPlan) -> dict[str, object]:
     }
 
 
-def _course_deg(plan: FlightPlan, index: int) -> float:
+def _course_deg(plan: ExportedPlan, index: int) -> float:
     """Return the course to the next waypoint, 0 to 360; at the last one that of the last leg."""
     first = min(index, len(plan.waypoints) - 2)
     start, end = plan.waypoints[first], plan.waypoints[first + 1]

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from recon.model.mission import Waypoint
-from recon.plans.flight_plan import AtEnd, FlightPlan, PhotoTrigger
+from recon.plans.flight_plan import AtEnd, ExportedPlan, PhotoTrigger
 
 WAYPOINT, RETURN_TO_LAUNCH, LAND, TAKEOFF = 16, 20, 21, 22
 CHANGE_SPEED, MOUNT_CONTROL, TRIGGER_DISTANCE = 178, 205, 206
@@ -26,7 +26,7 @@ class MissionItem:
     has_place: bool = False
 
 
-def before_rows(plan: FlightPlan) -> tuple[MissionItem, ...]:
+def before_rows(plan: ExportedPlan) -> tuple[MissionItem, ...]:
     """Return takeoff, speed and gimbal: what comes before the first waypoint."""
     first = plan.waypoints[0]
     climb_m = max(first.height_above_takeoff_m, 0.0)
@@ -35,7 +35,7 @@ def before_rows(plan: FlightPlan) -> tuple[MissionItem, ...]:
     return takeoff, _speed(first.speed_mps), *gimbal
 
 
-def rows(plan: FlightPlan, photos: PhotoTrigger | None) -> Iterator[MissionItem]:
+def rows(plan: ExportedPlan, photos: PhotoTrigger | None) -> Iterator[MissionItem]:
     """Yield the waypoints, with photos from the first to the last, and changes between them."""
     speed_mps = plan.waypoints[0].speed_mps
     for index, each in enumerate(plan.waypoints):
@@ -51,7 +51,7 @@ def rows(plan: FlightPlan, photos: PhotoTrigger | None) -> Iterator[MissionItem]
     yield from _photos_off(photos)
 
 
-def after_rows(plan: FlightPlan) -> tuple[MissionItem, ...]:
+def after_rows(plan: ExportedPlan) -> tuple[MissionItem, ...]:
     """Return what ends the flight; without any item an autopilot holds its place."""
     if plan.at_end is AtEnd.RETURN_HOME:
         return (MissionItem(RETURN_TO_LAUNCH),)

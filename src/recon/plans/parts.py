@@ -3,10 +3,10 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
-from recon.plans.flight_plan import FlightPlan, PlanExportError
+from recon.plans.flight_plan import ExportedPlan, PlanExportError
 
 
-def parts_of(plan: FlightPlan, most_waypoints: int, who: str) -> tuple[FlightPlan, ...]:
+def parts_of(plan: ExportedPlan, most_waypoints: int, who: str) -> tuple[ExportedPlan, ...]:
     """Return a flight in parts that are cut between rows, each flown from takeoff to its end.
 
     Raises `PlanExportError` where a row alone has more waypoints than `who` holds.
@@ -19,7 +19,7 @@ def parts_of(plan: FlightPlan, most_waypoints: int, who: str) -> tuple[FlightPla
     )
 
 
-def _spans(plan: FlightPlan, most: int, who: str) -> Iterator[tuple[int, int]]:
+def _spans(plan: ExportedPlan, most: int, who: str) -> Iterator[tuple[int, int]]:
     """Yield the first and the last waypoint of each part: whole rows, as many as fit."""
     begun: tuple[int, int] | None = None
     for first, last in plan.rows or ((0, len(plan.waypoints) - 1),):
@@ -36,7 +36,7 @@ def _spans(plan: FlightPlan, most: int, who: str) -> Iterator[tuple[int, int]]:
     yield begun
 
 
-def _part(plan: FlightPlan, number: int, first: int, last: int) -> FlightPlan:
+def _part(plan: ExportedPlan, number: int, first: int, last: int) -> ExportedPlan:
     waypoints = list(plan.waypoints[first : last + 1])
     if waypoints[0].gimbal_pitch_deg is None:
         pitches = [each.gimbal_pitch_deg for each in plan.waypoints[:first]]

@@ -12,7 +12,7 @@ from typing import Any
 
 from recon.geo.distance import horizontal_distance_m
 from recon.geo.local_frame import OnGlobe
-from recon.plans.flight_plan import FlightPlan, PhotoTrigger, PlanExportError
+from recon.plans.flight_plan import ExportedPlan, PhotoTrigger, PlanExportError
 from recon.plans.mavlink_items import TAKEOFF, MissionItem, after_rows, before_rows, rows
 
 ABOVE_HOME, NO_PLACE = 3, 2
@@ -23,13 +23,13 @@ PX4, MULTIROTOR = 12, 2
 MANUAL_CAMERA = "Manual (no camera specs)"
 
 
-def qgc_mission(plan: FlightPlan) -> bytes:
+def qgc_mission(plan: ExportedPlan) -> bytes:
     """Return the plan of a flight as plain mission items."""
     items = (*before_rows(plan), *rows(plan, plan.photos), *after_rows(plan))
     return _plan(plan, list(_simple(items, 1)))
 
 
-def qgc_survey(plan: FlightPlan) -> bytes:
+def qgc_survey(plan: ExportedPlan) -> bytes:
     """Return the plan of a flight with its rows as a survey item, which may be edited there.
 
     The item keeps the rows as they are until it is edited. Its photos are by distance. Raises
@@ -76,7 +76,7 @@ def qgc_survey(plan: FlightPlan) -> bytes:
     return _plan(plan, [*before, item, *after])
 
 
-def _plan(plan: FlightPlan, items: Sequence[dict[str, Any]]) -> bytes:
+def _plan(plan: ExportedPlan, items: Sequence[dict[str, Any]]) -> bytes:
     home = plan.takeoff or plan.waypoints[0]
     speed_mps = plan.waypoints[0].speed_mps
     document = {
@@ -130,5 +130,5 @@ def _lat_lon(place: OnGlobe) -> list[float]:
     return [round(place.latitude_deg, 8), round(place.longitude_deg, 8)]
 
 
-def _length_m(plan: FlightPlan) -> float:
+def _length_m(plan: ExportedPlan) -> float:
     return sum(horizontal_distance_m(a, b) for a, b in pairwise(plan.waypoints))

@@ -1,6 +1,6 @@
 """Mission Planner's .waypoints: `QGC WPL 110`, a line of twelve columns for each MAVLink item."""
 
-from recon.plans.flight_plan import FlightPlan
+from recon.plans.flight_plan import ExportedPlan
 from recon.plans.mavlink_items import WAYPOINT, MissionItem, after_rows, before_rows, rows
 
 HEADER = "QGC WPL 110"
@@ -8,7 +8,7 @@ ABSOLUTE, ABOVE_HOME = 0, 3
 """MAV_FRAME: above sea level, and above home."""
 
 
-def waypoints_of(plan: FlightPlan) -> bytes:
+def waypoints_of(plan: ExportedPlan) -> bytes:
     """Return the file of a flight.
 
     Line 0 is home; the autopilot puts the place where it arms there. Its height is written as 0.

@@ -14,7 +14,7 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from recon.model.mission import Waypoint
 from recon.plans.aircraft import AircraftModel
-from recon.plans.flight_plan import AtEnd, FlightPlan
+from recon.plans.flight_plan import AtEnd, ExportedPlan
 
 KML = "http://www.opengis.net/kml/2.2"
 WPML = "http://www.dji.com/wpmz/1.0.2"
@@ -31,7 +31,7 @@ class WpmlOptions:
     aircraft: AircraftModel | None = None
 
 
-def template_kml(plan: FlightPlan, options: WpmlOptions) -> bytes:
+def template_kml(plan: ExportedPlan, options: WpmlOptions) -> bytes:
     """Return the document that a person may edit in Pilot 2."""
     root, document = _document()
     _add(document, "author", "Recon")
@@ -58,7 +58,7 @@ def template_kml(plan: FlightPlan, options: WpmlOptions) -> bytes:
     return _bytes(root)
 
 
-def waylines_wpml(plan: FlightPlan, options: WpmlOptions) -> bytes:
+def waylines_wpml(plan: ExportedPlan, options: WpmlOptions) -> bytes:
     """Return the document that the aircraft flies."""
     root, document = _document()
     _mission_config(document, plan, options)
@@ -83,7 +83,7 @@ def number(value: float) -> str:
     return f"{value:.3f}"
 
 
-def _mission_config(document: Element, plan: FlightPlan, options: WpmlOptions) -> None:
+def _mission_config(document: Element, plan: ExportedPlan, options: WpmlOptions) -> None:
     config = _add(document, "missionConfig")
     first = plan.waypoints[0]
     takeoff_m = min(max(first.height_above_takeoff_m, LOWEST_TAKEOFF_M), HIGHEST_TAKEOFF_M)
@@ -106,7 +106,9 @@ def _mission_config(document: Element, plan: FlightPlan, options: WpmlOptions) -
         _add(payload, "payloadPositionIndex", "0")
 
 
-def _template_placemark(folder: Element, plan: FlightPlan, index: int, waypoint: Waypoint) -> None:
+def _template_placemark(
+    folder: Element, plan: ExportedPlan, index: int, waypoint: Waypoint
+) -> None:
     placemark = _placemark(folder, index, waypoint)
     height_m, ground_m = waypoint.height_above_takeoff_m, plan.takeoff_ellipsoid_height_m
     if not plan.is_level:
@@ -135,7 +137,7 @@ def _heading(element: Element) -> None:
     _add(element, "waypointHeadingPathMode", "followBadArc")
 
 
-def _turn(placemark: Element, plan: FlightPlan, index: int) -> None:
+def _turn(placemark: Element, plan: ExportedPlan, index: int) -> None:
     turn = _add(placemark, "waypointTurnParam")
     radius_m = plan.waypoints[index].corner_radius_m if _cuts_corner(plan, index) else 0.0
     _add(turn, "waypointTurnMode", _turn_mode(plan, index))
@@ -143,13 +145,13 @@ def _turn(placemark: Element, plan: FlightPlan, index: int) -> None:
     _add(placemark, "useStraightLine", "1")
 
 
-def _turn_mode(plan: FlightPlan, index: int) -> str:
+def _turn_mode(plan: ExportedPlan, index: int) -> str:
     if _cuts_corner(plan, index):
         return "coordinateTurn"
     return "toPointAndStopWithDiscontinuityCurvature"
 
 
-def _cuts_corner(plan: FlightPlan, index: int) -> bool:
+def _cuts_corner(plan: ExportedPlan, index: int) -> bool:
     """The first and the last waypoint have no corner to cut."""
     return plan.curved and 0 < index < len(plan.waypoints) - 1
 
@@ -157,7 +159,7 @@ def _cuts_corner(plan: FlightPlan, index: int) -> bool:
 class _ActionGroups:
     """The actions of a document; their groups are counted from 0 without gaps."""
 
-    def __init__(self, plan: FlightPlan, aircraft: AircraftModel | None) -> None:
+    def __init__(self, plan: ExportedPlan, aircraft: AircraftModel | None) -> None:
         self._plan, self._count = plan, 0
         payload = None if aircraft is None else aircraft.payload
         self._lens = None if payload is None else payload.lens

@@ -21,7 +21,7 @@ from recon.geo import enu_from_geo
 from recon.product.flight import FlightData
 from recon.product.linked_folder import replace_folder
 from recon.product.photos.photo import Photo
-from recon.product.photos.shots import Shot
+from recon.product.photos.shots import CameraShot
 from recon.product.write import FILE_MODE, cell
 from recon.record.files.atomic_file import replace_file
 
@@ -47,12 +47,12 @@ CORNER_SHARE = 0.04
 class PanelShot:
     """A shot of a panel: its files, its panel's serial number where known, and how it was found."""
 
-    shot: Shot
+    shot: CameraShot
     serial: str
     found_by: str
 
 
-def marked_panels(shots: Sequence[Shot]) -> list[PanelShot]:
+def marked_panels(shots: Sequence[CameraShot]) -> list[PanelShot]:
     """Return the shots whose camera found a panel on one of their files."""
     found = []
     for shot in shots:
@@ -65,7 +65,7 @@ def marked_panels(shots: Sequence[Shot]) -> list[PanelShot]:
 
 def panels_on_ground(
     flight: FlightData,
-    shots: Iterable[Shot],
+    shots: Iterable[CameraShot],
     picture: Callable[[Path], GreyMap | None],
 ) -> list[PanelShot]:
     """Return those of some shots that show a panel: of multispectral cameras, near a takeoff."""
@@ -83,7 +83,7 @@ def panels_on_ground(
     return found
 
 
-def _has_bands(shot: Shot) -> bool:
+def _has_bands(shot: CameraShot) -> bool:
     return any(photo.kind == "band" for photo in shot.files)
 
 

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from recon.product.photos.photo import Photo
-from recon.product.photos.shots import Shot
+from recon.product.photos.shots import CameraShot
 from recon.product.timing import TimedPhoto
 
 MAIN = "odm"
@@ -49,7 +49,7 @@ class ShotFiles:
 
 def files_of(
     leads: Sequence[TimedPhoto],
-    shots: Sequence[Shot],
+    shots: Sequence[CameraShot],
     refused: Mapping[str, str],
     across_deg: float | None,
 ) -> ShotFiles:

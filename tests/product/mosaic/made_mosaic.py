@@ -29,12 +29,12 @@ from recon.model.units import NS_PER_S
 from recon.product.flight import FlightData
 from recon.product.footprint import Aim, PhotoView, projected
 from recon.product.mosaic import (
-    Band,
     Camera,
     ChoiceSettings,
-    Ground,
     LevelGround,
+    MosaicBand,
     MosaicBuild,
+    MosaicGround,
     MosaicSettings,
     placed_photos,
     plan_of,
@@ -129,9 +129,9 @@ class MadeMosaic:
         fills: bool = False,
         is_evened: bool = False,
         cameras: list[Camera] | None = None,
-        ground: Ground | None = None,
+        ground: MosaicGround | None = None,
         read: ReadPixels | None = None,
-        bands: list[Band] | None = None,
+        bands: list[MosaicBand] | None = None,
     ) -> MosaicBuild:
         ground = ground or LevelGround()
         views = [each.view for each in self.photos]
@@ -139,7 +139,7 @@ class MadeMosaic:
         assert self.flight.grid is not None
         history = SunHistory(self.flight.grid, self.flight.maps)
         placed = placed_photos(self.photos, cameras, history, ground, plainly)
-        bands = bands or [Band("mosaic", ("red", "green", "blue"), read or self.read)]
+        bands = bands or [MosaicBand("mosaic", ("red", "green", "blue"), read or self.read)]
         settings = MosaicSettings(ChoiceSettings(margin, fills), is_evened)
         plan = plan_of(self.flight, placed, ground, resolution_m)
         return MosaicBuild(out, self.flight, placed, ground, plan, bands, settings, "made")

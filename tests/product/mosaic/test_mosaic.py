@@ -20,12 +20,12 @@ from tests.product.mosaic.made_mosaic import (
 )
 
 from recon.geo import geo_from_enu
-from recon.product.mosaic import Band, Light, MosaicReport
+from recon.product.mosaic import Light, MosaicBand, MosaicReport
 from recon.product.mosaic.band_rasters import band_rasters
 from recon.product.mosaic.choice import STEP_PX
 from recon.product.mosaic.pixels import Box
-from recon.product.photos.band import Band as CameraBand
-from recon.product.photos.shots import Shot
+from recon.product.photos.band import PhotoBand as CameraBand
+from recon.product.photos.shots import CameraShot
 
 
 @pytest.fixture(scope="module")
@@ -165,7 +165,9 @@ def test_shade_is_filled_when_asked(tmp_path: Path) -> None:
 
 def test_brightness_is_evened_to_full_sun(tmp_path: Path) -> None:
     made = MadeMosaic(tmp_path, every=12)
-    grey = Band("mosaic", ("grey",), lambda i, s, b: half_bright(made, i, s, b), is_picture=False)
+    grey = MosaicBand(
+        "mosaic", ("grey",), lambda i, s, b: half_bright(made, i, s, b), is_picture=False
+    )
     made.build(tmp_path / "out", fills=True, is_evened=True, bands=[grey], resolution_m=0.4).run()
     values, _east, _north = pixels(tmp_path / "out")
     found = values[0][values[0] > 0]
@@ -186,8 +188,8 @@ def test_bands_lie_on_one_grid(tmp_path: Path) -> None:
         return made.read(index, shrink, box)[..., :1].astype(np.uint16) * 200
 
     bands = [
-        Band("mosaic", ("red", "green", "blue"), made.read),
-        Band("nir", ("near infrared",), near_infrared, "uint16", is_picture=False),
+        MosaicBand("mosaic", ("red", "green", "blue"), made.read),
+        MosaicBand("nir", ("near infrared",), near_infrared, "uint16", is_picture=False),
     ]
     made.build(tmp_path / "out", bands=bands, resolution_m=0.4).run()
     colours, east, north = pixels(tmp_path / "out")
@@ -213,7 +215,7 @@ def test_a_cameras_bands_lie_on_the_picture_in_colour(tmp_path: Path) -> None:
             timed.photo, path=path, name=path.name, cols=size[0], rows=size[1],
             across_deg=narrow_deg, kind="band", band=CameraBand("NIR"),
         )  # fmt: skip
-        shots.append(Shot(timed.photo, (beside,) if index else ()))
+        shots.append(CameraShot(timed.photo, (beside,) if index else ()))
     build = made.build(tmp_path / "out", resolution_m=0.4)
     cameras = [placed.camera for placed in build.photos]
     build.bands = [*build.bands, *band_rasters(shots, made.photos, cameras)]

@@ -8,7 +8,7 @@ from tests.product.photos.made_bands import write_band
 from tests.product.photos.packets import packet
 
 from recon.model.units import NS_PER_S
-from recon.product.photos.band import Band
+from recon.product.photos.band import PhotoBand
 from recon.product.photos.photo import Photo, read_photo_facts
 from recon.product.photos.photo_error import PhotoError
 from recon.product.photos.shots import shots_of
@@ -66,7 +66,7 @@ def test_bands_without_xmp_are_known_by_their_names(card: Folder) -> None:
     lead = card.photo("A_D.JPG", 0)
     write_band(card.path / "A_MS_RE.TIF", lead)
     assert card.shots() == [["A_D.JPG", "A_MS_RE.TIF"]]
-    assert card.read()[1].band == Band("RE")
+    assert card.read()[1].band == PhotoBand("RE")
 
 
 def test_a_phantom_4_multispectral_has_a_number_for_each_file(card: Folder) -> None:
@@ -146,7 +146,7 @@ def test_what_a_band_states_is_read(card: Folder) -> None:
     }
     write_band(card.path / "x.TIF", card.photo("like.JPG", 0), packet(facts))
     found = card.read()[-1]
-    assert found.band == Band("RedEdge", 730.0, 16.0, 3200.0, 2.0)
+    assert found.band == PhotoBand("RedEdge", 730.0, 16.0, 3200.0, 2.0)
     assert (found.kind, found.capture) == ("band", "abc")
     assert (found.exposure_s, found.irradiance) == (0.00125, 1234.5)
 

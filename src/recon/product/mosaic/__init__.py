@@ -5,26 +5,26 @@ cameras (pose, lens) + ground (heights) + light (shade maps at a photo's time)
 """
 
 from recon.product.mosaic.build import MosaicBuild, MosaicReport, MosaicSettings
-from recon.product.mosaic.cameras import Camera, Lens, camera_of_view
-from recon.product.mosaic.choice import Choice, ChoiceSettings, Light, PlacedPhoto
-from recon.product.mosaic.ground import Ground, LevelGround, SiteGround
+from recon.product.mosaic.cameras import Camera, PhotoLens, camera_of_view
+from recon.product.mosaic.choice import ChoiceSettings, Light, PixelChoice, PlacedPhoto
+from recon.product.mosaic.ground import LevelGround, MosaicGround, SiteGround
 from recon.product.mosaic.odm import OdmRun, opened_odm
-from recon.product.mosaic.pixels import Band, read_jpeg
+from recon.product.mosaic.pixels import MosaicBand, read_jpeg
 from recon.product.mosaic.place import placed_photos, plan_of, preview_cameras
 
 __all__ = [
-    "Band",
     "Camera",
-    "Choice",
     "ChoiceSettings",
-    "Ground",
-    "Lens",
     "LevelGround",
     "Light",
+    "MosaicBand",
     "MosaicBuild",
+    "MosaicGround",
     "MosaicReport",
     "MosaicSettings",
     "OdmRun",
+    "PhotoLens",
+    "PixelChoice",
     "PlacedPhoto",
     "SiteGround",
     "camera_of_view",

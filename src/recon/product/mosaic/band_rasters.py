@@ -12,17 +12,17 @@ from pathlib import Path
 
 import numpy as np
 
-from recon.product.mosaic.cameras import Camera, Lens
-from recon.product.mosaic.pixels import Band, Box, Pixels, read_unchanged
+from recon.product.mosaic.cameras import Camera, PhotoLens
+from recon.product.mosaic.pixels import Box, MosaicBand, Pixels, read_unchanged
 from recon.product.photos.photo import Photo
 from recon.product.photos.photo_error import PhotoError
-from recon.product.photos.shots import Shot
+from recon.product.photos.shots import CameraShot
 from recon.product.timing import TimedPhoto
 
 
 def band_rasters(
-    shots: Sequence[Shot], photos: Sequence[TimedPhoto], cameras: Sequence[Camera]
-) -> list[Band]:
+    shots: Sequence[CameraShot], photos: Sequence[TimedPhoto], cameras: Sequence[Camera]
+) -> list[MosaicBand]:
     """Return the bands of shots, in the order of their names; `photos` are the leading files."""
     of_shot = {shot.lead.name: shot.files for shot in shots}
     files: dict[str, dict[int, Photo]] = defaultdict(dict)
@@ -33,7 +33,7 @@ def band_rasters(
     return [_band(name, of_band, cameras) for name, of_band in sorted(files.items())]
 
 
-def _band(name: str, files: dict[int, Photo], cameras: Sequence[Camera]) -> Band:
+def _band(name: str, files: dict[int, Photo], cameras: Sequence[Camera]) -> MosaicBand:
     found: list[Camera | None] = [None] * len(cameras)
     for index, photo in files.items():
         found[index] = _beside(cameras[index], photo)
@@ -48,7 +48,7 @@ def _band(name: str, files: dict[int, Photo], cameras: Sequence[Camera]) -> Band
             )
         return pixels
 
-    return Band(f"mosaic-{name}", (name,), read, dtype, is_picture=False, cameras=found)
+    return MosaicBand(f"mosaic-{name}", (name,), read, dtype, is_picture=False, cameras=found)
 
 
 def _beside(lead: Camera, photo: Photo) -> Camera:
@@ -56,7 +56,7 @@ def _beside(lead: Camera, photo: Photo) -> Camera:
     assert photo.across_deg is not None  # or it has no place
     focal_px = max(photo.cols, photo.rows) / 2.0 / tan(radians(photo.across_deg) / 2.0)
     centre_px = (photo.cols - 1) / 2.0, (photo.rows - 1) / 2.0
-    lens = Lens((focal_px, focal_px), centre_px)
+    lens = PhotoLens((focal_px, focal_px), centre_px)
     return replace(lead, lens=lens, cols=photo.cols, rows=photo.rows)
 
 

@@ -26,9 +26,9 @@ from recon.product.mosaic.choice import (
     PlacedPhoto,
     choose_photos,
 )
-from recon.product.mosaic.ground import Ground
-from recon.product.mosaic.pixels import Band, PhotoCuts, shrink_for
-from recon.product.mosaic.plan import MosaicPlan, Window
+from recon.product.mosaic.ground import MosaicGround
+from recon.product.mosaic.pixels import MosaicBand, PhotoCuts, shrink_for
+from recon.product.mosaic.plan import MosaicPlan, MosaicWindow
 from recon.product.mosaic.preview import preview_png
 from recon.product.mosaic.render import Renderer, camera_for, taken_of
 from recon.product.mosaic.windows import CACHE_BYTES, PROVENANCE, Raster, RasterBand, WindowStore
@@ -91,9 +91,9 @@ class MosaicBuild:
     out: Path
     flight: FlightData
     photos: Sequence[PlacedPhoto]
-    ground: Ground
+    ground: MosaicGround
     plan: MosaicPlan
-    bands: Sequence[Band]
+    bands: Sequence[MosaicBand]
     settings: MosaicSettings
     geometry: str
     """Where cameras and ground come from, for the report."""
@@ -117,12 +117,12 @@ class MosaicBuild:
             self._leave_out(windows, failed)
         return self._finish(windows)
 
-    def _choose(self, windows: Sequence[Window]) -> None:
+    def _choose(self, windows: Sequence[MosaicWindow]) -> None:
         todo = [each for each in windows if not self._store.has(each, "provenance")]
         tree = shapely.STRtree([photo.footprint for photo in self.photos])
         seconds = [self._seconds(photo) for photo in self.photos]
 
-        def choose(window: Window) -> None:
+        def choose(window: MosaicWindow) -> None:
             near = tree.query(self.plan.box(window), predicate="intersects").tolist()
             candidates = [index for index in sorted(near) if index not in self._failed]
             east_m, north_m = self.plan.cells_m(window)
@@ -135,7 +135,7 @@ class MosaicBuild:
         for _done in self._in_threads(choose, todo, "choosing photos"):
             pass
 
-    def _render(self, windows: Sequence[Window], band: Band) -> dict[int, str]:
+    def _render(self, windows: Sequence[MosaicWindow], band: MosaicBand) -> dict[int, str]:
         """Render the windows of a band that are not there yet; return why photos failed."""
         todo = [each for each in windows if not self._store.has(each, band.name)]
         if not todo:
@@ -146,7 +146,7 @@ class MosaicBuild:
         share = self.settings.direct_share if self.settings.is_evened else None
         renderer = Renderer(self.plan, self.photos, self.ground, cuts, band, share)
 
-        def render(numbered: tuple[int, Window]) -> Mapping[int, str]:
+        def render(numbered: tuple[int, MosaicWindow]) -> Mapping[int, str]:
             number, window = numbered
             picture, failed = renderer.window(number, window, self._store.choice(window))
             if not failed:
@@ -175,13 +175,13 @@ class MosaicBuild:
                 pool.shutdown(cancel_futures=True)
                 raise
 
-    def _shrink(self, band: Band) -> int:
+    def _shrink(self, band: MosaicBand) -> int:
         low_m = self.ground.bounds_m[0]
         cameras = (camera_for(band, self.photos, index) for index in range(len(self.photos)))
         sizes_m = [each.metres_per_pixel(low_m) for each in cameras if each is not None]
         return shrink_for(self.plan.grid.cell_m / float(np.median(sizes_m)))
 
-    def _leave_out(self, windows: Sequence[Window], failed: Mapping[int, str]) -> None:
+    def _leave_out(self, windows: Sequence[MosaicWindow], failed: Mapping[int, str]) -> None:
         """Forget the windows that took failed photos: they are chosen and rendered again."""
         self._failed |= failed
         names = {self.photos[index].timed.photo.name: why for index, why in self._failed.items()}
@@ -196,7 +196,7 @@ class MosaicBuild:
         names = {each.timed.photo.name: index for index, each in enumerate(self.photos)}
         return {names[name]: why for name, why in known.items()}
 
-    def _finish(self, windows: Sequence[Window]) -> MosaicReport:
+    def _finish(self, windows: Sequence[MosaicWindow]) -> MosaicReport:
         report, used_m2 = self._report(windows)
         tags = self._tags()
         rasters = [self._store.write_cog(PROVENANCE, windows, tags)]
@@ -211,7 +211,7 @@ class MosaicBuild:
         self._store.finish()
         return report
 
-    def _report(self, windows: Sequence[Window]) -> tuple[MosaicReport, Mapping[int, float]]:
+    def _report(self, windows: Sequence[MosaicWindow]) -> tuple[MosaicReport, Mapping[int, float]]:
         """Return the report, and the area taken of each photo."""
         cells = dict.fromkeys(Light, 0)
         filled, used = 0, dict[int, int]()
@@ -298,7 +298,7 @@ class MosaicBuild:
         return digest.hexdigest()[:16]
 
 
-def _raster(band: Band) -> Raster:
+def _raster(band: MosaicBand) -> Raster:
     """Return a band's raster: a picture has alpha, another band 0 where nothing is.
 
     Programs that calculate with bands leave out what is no data, and know nothing of alpha.

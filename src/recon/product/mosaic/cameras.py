@@ -22,7 +22,7 @@ LARGEST_SLOPE = 2.0
 
 
 @dataclass(frozen=True, slots=True)
-class Lens:
+class PhotoLens:
     """A lens in pixels; without distortion if not stated."""
 
     focal_px: tuple[float, float]
@@ -81,7 +81,7 @@ class Camera:
     """(3,)"""
     rotation: FloatArray
     """(3, 3): from the camera's right, down, forward to east, north, up."""
-    lens: Lens
+    lens: PhotoLens
     cols: int
     rows: int
 
@@ -133,5 +133,5 @@ def camera_of_view(view: PhotoView, up_m: float) -> Camera:
     focal_px = max(view.cols, view.rows) / 2.0 / tan(radians(view.across_deg) / 2.0)
     centre_px = (view.cols - 1) / 2.0, (view.rows - 1) / 2.0
     place_m = np.array([view.aim.east_m, view.aim.north_m, up_m])
-    lens = Lens((focal_px, focal_px), centre_px)
+    lens = PhotoLens((focal_px, focal_px), centre_px)
     return Camera(place_m, view.aim.rotation, lens, view.cols, view.rows)

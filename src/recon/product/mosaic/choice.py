@@ -17,7 +17,7 @@ from recon.model.arrays import FloatArray
 from recon.model.shade import SUNLIT_TRANSMITTANCE, FloatMap
 from recon.product.coverage import LEAST_CONFIDENCE
 from recon.product.mosaic.cameras import Camera
-from recon.product.mosaic.ground import Ground
+from recon.product.mosaic.ground import MosaicGround
 from recon.product.mosaic.light import PhotoLight
 from recon.product.mosaic.visibility import SurfaceAround
 from recon.product.timing import TimedPhoto
@@ -72,7 +72,7 @@ class PlacedPhoto:
 
 
 @dataclass(slots=True, eq=False)
-class Choice:
+class PixelChoice:
     """What was chosen for cells (R, C); NaN, or -1, where nothing was."""
 
     photo: npt.NDArray[np.int32]
@@ -83,7 +83,7 @@ class Choice:
     """`Light` by cell, of all photos that show it; `OUTSIDE` the mosaic's area."""
 
     @classmethod
-    def empty(cls, shape: tuple[int, int]) -> "Choice":
+    def empty(cls, shape: tuple[int, int]) -> "PixelChoice":
         """Return a choice of nothing."""
         sun, sure, off_deg = (np.full(shape, np.nan, dtype=np.float32) for _ in range(3))
         outside = np.full(shape, OUTSIDE, dtype=np.uint8)
@@ -106,10 +106,10 @@ def choose_photos(
     candidates: Sequence[int],
     east_m: FloatArray,
     north_m: FloatArray,
-    ground: Ground,
+    ground: MosaicGround,
     inside: npt.NDArray[np.bool_],
     settings: ChoiceSettings,
-) -> Choice:
+) -> PixelChoice:
     """Return the photos of cells with their middles at easts (C,) and norths (R,).
 
     `candidates` are indices of photos that may show them; only cells `inside` (R, C) count.
@@ -119,7 +119,7 @@ def choose_photos(
     places = np.stack([easts, norths, up_m], axis=-1)
     around = SurfaceAround.of(ground, east_m, north_m) if ground.is_rough else None
     cell_m = abs(float(east_m[1] - east_m[0]))
-    best = Choice.empty(up_m.shape)
+    best = PixelChoice.empty(up_m.shape)
     best.light[inside] = Light.MISSING
     least = np.full(up_m.shape, np.inf, dtype=np.float32)
     for index in candidates:
@@ -134,7 +134,7 @@ def choose_photos(
 
 
 def _offer(
-    best: Choice,
+    best: PixelChoice,
     least: FloatMap,
     index: int,
     photo: PlacedPhoto,

@@ -26,7 +26,7 @@ class _Areas(Struct, frozen=True):
     missing: Area
 
 
-class _Report(Struct, frozen=True):
+class _MosaicFile(Struct, frozen=True):
     format: Literal["recon-mosaic"]
     version: Literal[1]
     resolution_m: Annotated[float, Meta(gt=0.0, le=100.0)]
@@ -60,7 +60,7 @@ def finished_mosaic(folder: Path, record: str) -> FinishedMosaic:
     """Return the mosaic in a folder, made of a flight's record; raises `RecordError`."""
     path = folder / REPORT
     try:
-        found = msgspec.json.decode(_bounded(path, LARGEST_REPORT_BYTES), type=_Report)
+        found = msgspec.json.decode(_bounded(path, LARGEST_REPORT_BYTES), type=_MosaicFile)
     except (msgspec.MsgspecError, UnicodeError, RecursionError) as problem:
         raise RecordError(
             f"{path}: expected the report of recon mosaic, got: {problem}"

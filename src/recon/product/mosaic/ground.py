@@ -15,7 +15,7 @@ from recon.model.arrays import FloatArray
 EARTH_RADIUS_M = 6_371_000.0
 
 
-class Ground(Protocol):
+class MosaicGround(Protocol):
     """Heights of the ground; several threads may ask at once."""
 
     @property

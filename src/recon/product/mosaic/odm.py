@@ -24,7 +24,7 @@ from recon.geo import enu_from_geo, geo_from_enu, tangent_plane
 from recon.model.arrays import FloatArray
 from recon.model.errors import RecordError
 from recon.model.geo import GeoPoint, LocalFrame
-from recon.product.mosaic.cameras import Camera, Lens
+from recon.product.mosaic.cameras import Camera, PhotoLens
 from recon.product.mosaic.surface_model import SurfaceModel, opened_surface_model
 from recon.product.timing import TimedPhoto
 
@@ -205,7 +205,7 @@ def _refuse_other_lens(path: Path, name: str, camera: _Camera) -> None:
         raise RecordError(f"{path}: expected {' and '.join(needed)} of {name!a:.100}, got none")
 
 
-def _lens(camera: _Camera, cols: int, rows: int) -> Lens:
+def _lens(camera: _Camera, cols: int, rows: int) -> PhotoLens:
     """Return a lens in pixels of a photo; OpenSfM's lengths are in the longer side."""
     size = max(cols, rows)
     focal_x, focal_y = camera.focal_x or camera.focal, camera.focal_y or camera.focal
@@ -213,7 +213,7 @@ def _lens(camera: _Camera, cols: int, rows: int) -> Lens:
     assert focal_y is not None
     centre = (cols - 1) / 2.0 + camera.c_x * size, (rows - 1) / 2.0 + camera.c_y * size
     radial = camera.k1, camera.k2, camera.k3
-    return Lens((focal_x * size, focal_y * size), centre, radial, (camera.p1, camera.p2))
+    return PhotoLens((focal_x * size, focal_y * size), centre, radial, (camera.p1, camera.p2))
 
 
 def _poses_of_report(path: Path, model: SurfaceModel) -> dict[str, _Pose]:

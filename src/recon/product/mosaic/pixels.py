@@ -37,7 +37,7 @@ reach beyond them -> its pixels there, as stored."""
 
 
 @dataclass(frozen=True, slots=True)
-class Band:
+class MosaicBand:
     """One raster of the mosaic: its name, its channels, and where its pixels come from."""
 
     name: str

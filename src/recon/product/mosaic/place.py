@@ -13,7 +13,7 @@ from recon.product.footprint import PhotoView
 from recon.product.mosaic.build import Over
 from recon.product.mosaic.cameras import Camera, camera_of_view
 from recon.product.mosaic.choice import PlacedPhoto
-from recon.product.mosaic.ground import Ground, LevelGround
+from recon.product.mosaic.ground import LevelGround, MosaicGround
 from recon.product.mosaic.light import light_on
 from recon.product.mosaic.plan import MosaicPlan, plan_over, round_m
 from recon.product.sun_at import SunHistory
@@ -28,7 +28,7 @@ def preview_cameras(
     flight: FlightData,
     photos: Sequence[TimedPhoto],
     views: Sequence[PhotoView],
-    ground: Ground,
+    ground: MosaicGround,
 ) -> list[Camera]:
     """Return the cameras of photos over a ground, by their `views` as stated or registered.
 
@@ -47,7 +47,7 @@ def preview_cameras(
     return cameras
 
 
-def _takeoff_up_m(flight: FlightData, serial: str, ground: Ground) -> float:
+def _takeoff_up_m(flight: FlightData, serial: str, ground: MosaicGround) -> float:
     track = flight.tracks[serial]
     lowest = int(np.nanargmin(np.where(np.isfinite(track.height_m), track.height_m, np.inf)))
     east_m, north_m = track.east_m[[lowest]], track.north_m[[lowest]]
@@ -66,7 +66,7 @@ def placed_photos(
     photos: Sequence[TimedPhoto],
     cameras: Iterable[Camera],
     history: SunHistory,
-    ground: Ground,
+    ground: MosaicGround,
     over: Over,
     threads: int = 2,
 ) -> list[PlacedPhoto]:
@@ -86,7 +86,7 @@ def placed_photos(
 def plan_of(
     flight: FlightData,
     photos: Sequence[PlacedPhoto],
-    ground: Ground,
+    ground: MosaicGround,
     resolution_m: float | None,
     pixels: float = PREVIEW_PIXELS,
 ) -> MosaicPlan:

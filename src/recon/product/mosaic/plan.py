@@ -21,7 +21,7 @@ FINEST_M, COARSEST_M = 0.001, 2.0
 
 
 @dataclass(frozen=True, slots=True)
-class Window:
+class MosaicWindow:
     """One window of the raster: its row and column among windows."""
 
     row: int
@@ -46,7 +46,7 @@ class MosaicPlan:
             grid.frame, grid.west_m, grid.north_m, cell_m, grid.rows // step, grid.cols // step
         )
 
-    def windows(self) -> list[Window]:
+    def windows(self) -> list[MosaicWindow]:
         """Return the windows that meet the area, in an order in which neighbours share photos."""
         found = []
         down, across = self.grid.rows // WINDOW_PX, self.grid.cols // WINDOW_PX
@@ -54,11 +54,13 @@ class MosaicPlan:
         for row in range(down):
             cols = range(across) if row % 2 == 0 else range(across - 1, -1, -1)
             found += [
-                Window(row, col) for col in cols if self.area.intersects(self.box(Window(row, col)))
+                MosaicWindow(row, col)
+                for col in cols
+                if self.area.intersects(self.box(MosaicWindow(row, col)))
             ]
         return found
 
-    def box(self, window: Window) -> shapely.Polygon:
+    def box(self, window: MosaicWindow) -> shapely.Polygon:
         """Return a window's ground."""
         side_m = WINDOW_PX * self.grid.cell_m
         west_m = self.grid.west_m + window.col * side_m
@@ -66,7 +68,7 @@ class MosaicPlan:
         return shapely.box(west_m, north_m - side_m, west_m + side_m, north_m)
 
     def middles_m(
-        self, window: Window, step_px: int, rows: slice, cols: slice
+        self, window: MosaicWindow, step_px: int, rows: slice, cols: slice
     ) -> tuple[FloatArray, FloatArray]:
         """Return easts and norths of the middles of squares of `step_px` pixels of a window.
 
@@ -78,12 +80,12 @@ class MosaicPlan:
         middle_rows = first_row + (np.arange(rows.start, rows.stop) + 0.5) * step_px
         return self.grid.west_m + middle_cols * cell_m, self.grid.north_m - middle_rows * cell_m
 
-    def cells_m(self, window: Window) -> tuple[FloatArray, FloatArray]:
+    def cells_m(self, window: MosaicWindow) -> tuple[FloatArray, FloatArray]:
         """Return easts and norths of the middles of a window's choice cells."""
         whole = slice(0, WINDOW_CELLS)
         return self.middles_m(window, STEP_PX, whole, whole)
 
-    def inside(self, window: Window) -> npt.NDArray[np.bool_]:
+    def inside(self, window: MosaicWindow) -> npt.NDArray[np.bool_]:
         """Return which choice cells of a window lie in the area, (R, C)."""
         places = np.meshgrid(*self.cells_m(window))
         return np.asarray(shapely.contains_xy(self.area, *places), dtype=np.bool_)

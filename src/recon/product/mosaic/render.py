@@ -10,10 +10,10 @@ import numpy.typing as npt
 
 from recon.model.arrays import FloatArray
 from recon.product.mosaic.cameras import Camera
-from recon.product.mosaic.choice import STEP_PX, Choice, PlacedPhoto
-from recon.product.mosaic.ground import Ground
-from recon.product.mosaic.pixels import Band, Cut, Edges, PhotoCuts, Pixels
-from recon.product.mosaic.plan import WINDOW_PX, MosaicPlan, Window
+from recon.product.mosaic.choice import STEP_PX, PixelChoice, PlacedPhoto
+from recon.product.mosaic.ground import MosaicGround
+from recon.product.mosaic.pixels import Cut, Edges, MosaicBand, PhotoCuts, Pixels
+from recon.product.mosaic.plan import WINDOW_PX, MosaicPlan, MosaicWindow
 from recon.product.photos.photo_error import PhotoError
 
 ROUGH_STEP_PX = 2
@@ -34,14 +34,14 @@ class Renderer:
 
     plan: MosaicPlan
     photos: Sequence[PlacedPhoto]
-    ground: Ground
+    ground: MosaicGround
     cuts: PhotoCuts
-    band: Band
+    band: MosaicBand
     direct_share: float | None
     """The direct beam's share of a clear sky's light, to even brightness; None: as photographed."""
 
     def window(
-        self, number: int, window: Window, choice: Choice
+        self, number: int, window: MosaicWindow, choice: PixelChoice
     ) -> tuple[Pixels | None, dict[int, str]]:
         """Return a window's pixels (rows, cols, channels), and why photos failed.
 
@@ -74,7 +74,7 @@ class Renderer:
         return picture, failed
 
     def _part(
-        self, window: Window, index: int, camera: Camera, cut: Cut, rows: slice, cols: slice
+        self, window: MosaicWindow, index: int, camera: Camera, cut: Cut, rows: slice, cols: slice
     ) -> tuple[Pixels, BoolMap]:
         """Return a photo's values on some cells of a window, and where their place is known."""
         photo, shrunk = self.photos[index], float(self.cuts.shrink)
@@ -97,17 +97,17 @@ class Renderer:
         return found, is_known
 
 
-def camera_for(band: Band, photos: Sequence[PlacedPhoto], index: int) -> Camera | None:
+def camera_for(band: MosaicBand, photos: Sequence[PlacedPhoto], index: int) -> Camera | None:
     """Return the camera of a photo's band; None where the photo lacks it."""
     return photos[index].camera if band.cameras is None else band.cameras[index]
 
 
 def taken_of(
     plan: MosaicPlan,
-    windows: Iterable[tuple[Window, Choice]],
+    windows: Iterable[tuple[MosaicWindow, PixelChoice]],
     photos: Sequence[PlacedPhoto],
-    ground: Ground,
-    band: Band,
+    ground: MosaicGround,
+    band: MosaicBand,
 ) -> dict[int, dict[int, Edges]]:
     """Return by photo and by a window's number what it takes of the photo's band."""
     taken: dict[int, dict[int, Edges]] = defaultdict(dict)
@@ -149,7 +149,12 @@ def _pixels(span: slice) -> slice:
 
 
 def _places(
-    plan: MosaicPlan, window: Window, ground: Ground, step_px: int, rows: slice, cols: slice
+    plan: MosaicPlan,
+    window: MosaicWindow,
+    ground: MosaicGround,
+    step_px: int,
+    rows: slice,
+    cols: slice,
 ) -> FloatArray:
     """Return the middles (R, C, 3) of squares of `step_px` pixels of a window."""
     east_m, north_m = plan.middles_m(window, step_px, rows, cols)
@@ -158,7 +163,12 @@ def _places(
 
 
 def _pixel_maps(
-    plan: MosaicPlan, window: Window, camera: Camera, ground: Ground, rows: slice, cols: slice
+    plan: MosaicPlan,
+    window: MosaicWindow,
+    camera: Camera,
+    ground: MosaicGround,
+    rows: slice,
+    cols: slice,
 ) -> tuple[FloatMap, FloatMap]:
     """Return a photo's column and row for each pixel of some cells of a window; NaN: unknown."""
     step = ROUGH_STEP_PX if ground.is_rough else STEP_PX

@@ -8,7 +8,7 @@ from scipy import ndimage
 
 from recon.model.arrays import FloatArray
 from recon.product.mosaic.cameras import Camera
-from recon.product.mosaic.ground import Ground
+from recon.product.mosaic.ground import MosaicGround
 
 HIDDEN_BY_M = 0.3
 """Height by which a surface must rise above a ray to hide what is behind: models err by pixels."""
@@ -27,7 +27,7 @@ class SurfaceAround:
     cell_m: float
 
     @classmethod
-    def of(cls, ground: Ground, east_m: FloatArray, north_m: FloatArray) -> "SurfaceAround":
+    def of(cls, ground: MosaicGround, east_m: FloatArray, north_m: FloatArray) -> "SurfaceAround":
         """Return the surface around cells at easts (C,) and norths (R,), both evenly spaced."""
         cell_m = float(east_m[1] - east_m[0])
         beyond_m = np.arange(1, REACH_CELLS + 1) * cell_m

@@ -20,8 +20,8 @@ from rasterio.io import MemoryFile
 from rasterio.transform import Affine
 
 from recon.model.geo import GroundGrid
-from recon.product.mosaic.choice import OUTSIDE, Choice, Light
-from recon.product.mosaic.plan import WINDOW_CELLS, WINDOW_PX, MosaicPlan, Window
+from recon.product.mosaic.choice import OUTSIDE, Light, PixelChoice
+from recon.product.mosaic.plan import WINDOW_CELLS, WINDOW_PX, MosaicPlan, MosaicWindow
 from recon.record.files.atomic_file import replace_file
 from recon.record.raster.geotiff import projected_crs
 
@@ -95,21 +95,21 @@ class WindowStore:
         folder.mkdir(exist_ok=True)
         return cls(folder, plan)
 
-    def path(self, window: Window, raster: str) -> Path:
+    def path(self, window: MosaicWindow, raster: str) -> Path:
         """Return the file of a window."""
         return self.folder / f"{window.row:05d}-{window.col:05d}-{raster}.tif"
 
-    def has(self, window: Window, raster: str) -> bool:
+    def has(self, window: MosaicWindow, raster: str) -> bool:
         """Return whether a window is finished, with something in it or without."""
         path = self.path(window, raster)
         return path.exists() or path.with_suffix(".empty").exists()
 
-    def drop(self, window: Window) -> None:
+    def drop(self, window: MosaicWindow) -> None:
         """Forget all that was made of a window."""
         for path in self.folder.glob(f"{window.row:05d}-{window.col:05d}-*"):
             path.unlink()
 
-    def save(self, window: Window, raster: str, values: npt.NDArray[Any] | None) -> None:
+    def save(self, window: MosaicWindow, raster: str, values: npt.NDArray[Any] | None) -> None:
         """Keep a window's values (bands, rows, cols), whole or not at all; None: it is empty."""
         path = self.path(window, raster)
         if values is None:
@@ -131,7 +131,9 @@ class WindowStore:
             data = bytes(memory.read())
         replace_file(path, data, FILE_MODE)
 
-    def save_choice(self, window: Window, choice: Choice, seconds: Sequence[float]) -> None:
+    def save_choice(
+        self, window: MosaicWindow, choice: PixelChoice, seconds: Sequence[float]
+    ) -> None:
         """Keep a window's choice; `seconds` are the photos' times."""
         none = choice.photo < 0
         at_s = np.where(none, np.nan, np.append(seconds, np.nan)[choice.photo])
@@ -141,14 +143,14 @@ class WindowStore:
         values = np.stack([*bands, light]).astype(np.float32)
         self.save(window, "provenance", None if np.isnan(light).all() else values)
 
-    def choice(self, window: Window) -> Choice:
+    def choice(self, window: MosaicWindow) -> PixelChoice:
         """Return a window's choice."""
         path = self.path(window, "provenance")
         if not path.exists():
-            return Choice.empty((WINDOW_CELLS, WINDOW_CELLS))
+            return PixelChoice.empty((WINDOW_CELLS, WINDOW_CELLS))
         with rasterio.open(path) as dataset:
             index, _at_s, sun, sure, off_deg, light = dataset.read()
-        return Choice(
+        return PixelChoice(
             np.where(np.isnan(index), -1, index).astype(np.int32),
             sun,
             sure,
@@ -156,12 +158,16 @@ class WindowStore:
             np.where(np.isnan(light), OUTSIDE, light).astype(np.uint8),
         )
 
-    def choices(self, windows: Iterable[Window]) -> Iterator[tuple[Window, Choice]]:
+    def choices(
+        self, windows: Iterable[MosaicWindow]
+    ) -> Iterator[tuple[MosaicWindow, PixelChoice]]:
         """Yield windows with their choices."""
         for window in windows:
             yield window, self.choice(window)
 
-    def write_cog(self, raster: Raster, windows: Iterable[Window], tags: Mapping[str, str]) -> Path:
+    def write_cog(
+        self, raster: Raster, windows: Iterable[MosaicWindow], tags: Mapping[str, str]
+    ) -> Path:
         """Write the raster of all windows into their folder and return it."""
         files = [(each, self.path(each, raster.name)) for each in windows]
         there = [(each, path.name) for each, path in files if path.exists()]
@@ -204,7 +210,7 @@ def _read_back(path: Path) -> None:
 def _vrt(
     grid: GroundGrid,
     raster: Raster,
-    files: Sequence[tuple[Window, str]],
+    files: Sequence[tuple[MosaicWindow, str]],
     tags: Mapping[str, str],
 ) -> str:
     """Return GDAL's virtual raster of windows on a grid of pixels."""

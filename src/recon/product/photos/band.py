@@ -34,7 +34,7 @@ ROLE = re.compile(
 
 
 @dataclass(frozen=True, slots=True)
-class Band:
+class PhotoBand:
     """One band of a multispectral camera; None where the file does not state it."""
 
     name: str
@@ -69,7 +69,7 @@ def name_and_role(stem: str) -> tuple[str, str]:
     return (stem, "") if found is None else (found["base"], found["role"].upper())
 
 
-def band_of(exif: Tags, details: Tags, xmp: Xmp, role: str) -> Band | None:
+def band_of(exif: Tags, details: Tags, xmp: Xmp, role: str) -> PhotoBand | None:
     """Return a file's band, by its XMP or else by its name; None for pictures in colour."""
     name = "".join(xmp.values.get((CAMERA, "BandName"), ())) or xmp.text(FLIR, "BandName") or ""
     if not name:
@@ -81,7 +81,7 @@ def band_of(exif: Tags, details: Tags, xmp: Xmp, role: str) -> Band | None:
     each = levels if isinstance(levels, tuple) else (levels,)
     black = [level for level in map(number_of, each) if level is not None]
     iso = number_of(details.get(Base.ISOSpeedRatings))
-    return Band(
+    return PhotoBand(
         name[:32],
         next(iter(xmp.numbers(CAMERA, "CentralWavelength")), None),
         next(iter(xmp.numbers(CAMERA, "WavelengthFWHM")), None),
@@ -90,7 +90,7 @@ def band_of(exif: Tags, details: Tags, xmp: Xmp, role: str) -> Band | None:
     )
 
 
-def kind_of(xmp: Xmp, band: Band | None, role: str, size: tuple[int, int], make: str) -> Kind:
+def kind_of(xmp: Xmp, band: PhotoBand | None, role: str, size: tuple[int, int], make: str) -> Kind:
     """Return what a file shows: by its XMP, its band, its name, or a thermal sensor's size."""
     source = (xmp.text(DJI, "ImageSource") or "").lower()
     is_small = max(size) <= SMALL_PX

@@ -15,9 +15,9 @@ from PIL.ExifTags import GPS, IFD, Base
 
 from recon.product.photos import tiff
 from recon.product.photos.band import (
-    Band,
     Kind,
     Panel,
+    PhotoBand,
     band_of,
     capture_of,
     exposure_s_of,
@@ -91,7 +91,7 @@ class Photo:
     vertical_sigma_m: float | None = None
     """Standard deviations of the position by RTK; None where RTK gave none."""
     kind: Kind = "visible"
-    band: Band | None = None
+    band: PhotoBand | None = None
     capture: str = ""
     """Identity of the shot, which all files of one release of the shutter share."""
     exposure_s: float | None = None

@@ -24,7 +24,7 @@ Degrees = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class StatedPlace:
     """A photo's position, and whether plain EXIF alone gives it to any program."""
 
     latitude_deg: float
@@ -34,7 +34,7 @@ class Place:
     """What EXIF and XMP disagree about."""
 
 
-def place_of(gps: Tags, xmp: Xmp) -> Place:
+def place_of(gps: Tags, xmp: Xmp) -> StatedPlace:
     """Return a photo's position: by EXIF where it is complete and its XMP does not contradict it.
 
     Raises `PhotoError` with what is missing.
@@ -43,9 +43,9 @@ def place_of(gps: Tags, xmp: Xmp) -> Place:
     stated, missing = _by_exif(gps)
     is_whole = stated is not None and not missing and _is_on_earth(stated)
     if stated is not None and is_whole and (signed is None or _is_near(stated, signed)):
-        return Place(*stated, True)
+        return StatedPlace(*stated, True)
     if signed is not None:
-        return Place(*signed, False, CONTRADICTION if is_whole else "")
+        return StatedPlace(*signed, False, CONTRADICTION if is_whole else "")
     if stated is None:
         raise PhotoError("expected EXIF with a position, got none")
     if not _is_on_earth(stated):

@@ -27,7 +27,7 @@ DJI_NAME = re.compile(r"DJI_\d{14}_(\d{4,5})")
 
 
 @dataclass(frozen=True, slots=True)
-class Shot:
+class CameraShot:
     """One release of the shutter: its leading file, and those beside it."""
 
     lead: Photo
@@ -39,7 +39,7 @@ class Shot:
         return (self.lead, *self.others)
 
 
-def shots_of(photos: Sequence[Photo]) -> list[Shot]:
+def shots_of(photos: Sequence[Photo]) -> list[CameraShot]:
     """Return the shots of photos, by the time of their leading files; each photo is in one."""
     groups = [part for group in _by_statement(photos) for part in _in_time(group)]
     groups = [part for group in groups for part in _one_of_each(group)]
@@ -134,10 +134,10 @@ def _apart_m(one: Photo, other: Photo) -> float:
     return M_PER_DEG * hypot(north_deg, east_deg)
 
 
-def _shot(group: Sequence[Photo]) -> Shot:
+def _shot(group: Sequence[Photo]) -> CameraShot:
     def order(photo: Photo) -> tuple[int, float, str]:
         wavelength_nm = photo.band.wavelength_nm if photo.band else None
         return ORDER[photo.kind], wavelength_nm or 0.0, photo.name
 
     lead, *others = sorted(group, key=order)
-    return Shot(lead, tuple(others))
+    return CameraShot(lead, tuple(others))

@@ -74,7 +74,7 @@ def read_xmp(packet: bytes) -> Xmp:
     """Return a packet's values; raises `XmpError`."""
     if len(packet) > MOST_XMP_BYTES:
         raise XmpError(f"{len(packet)} bytes, limit {MOST_XMP_BYTES}")
-    reader = _Reader()
+    reader = _XmpReader()
     parser = expat.ParserCreate(namespace_separator=BETWEEN)
     parser.buffer_text = parser.namespace_prefixes = True
     parser.StartElementHandler = reader.begin
@@ -101,7 +101,7 @@ def _refuse_document_type(*_about: object) -> None:
     raise XmpError("a document type, which XMP never has")
 
 
-class _Reader:
+class _XmpReader:
     """Collects attributes, and texts of elements: those of list items under their list's name."""
 
     def __init__(self) -> None:

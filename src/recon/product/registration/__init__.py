@@ -9,12 +9,12 @@ found.views, found.residual_m, found.warnings
 from recon.product.registration.grey import read_grey
 from recon.product.registration.heading import CameraHeading
 from recon.product.registration.match import GreyImage
-from recon.product.registration.registered import Registration, register, with_headings
+from recon.product.registration.registered import PhotoRegistration, register, with_headings
 
 __all__ = [
     "CameraHeading",
     "GreyImage",
-    "Registration",
+    "PhotoRegistration",
     "read_grey",
     "register",
     "with_headings",

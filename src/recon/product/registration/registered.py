@@ -51,7 +51,7 @@ HEADING_DEG, UNVERIFIED_DEG = 0.3, 10.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Registration:
+class PhotoRegistration:
     """The photos' poses after registration."""
 
     views: tuple[PhotoView, ...]
@@ -111,7 +111,7 @@ def with_headings(
 
 def register(
     photos: Sequence[TimedPhoto], read: Read, over: Over = iter, workers: int = 1
-) -> Registration:
+) -> PhotoRegistration:
     """Return the poses of all photos, registered to their neighbours along and across lines.
 
     Each photo is read once: `read` is called in so many threads; `over` shows progress. Errors of
@@ -138,7 +138,7 @@ def register(
     scaled = tuple(
         replace(each, scale=float(scale)) for each, scale in zip(found, poses.scales, strict=True)
     )
-    return Registration(views, scaled, _typical_m(poses.residuals_m), links_used)
+    return PhotoRegistration(views, scaled, _typical_m(poses.residuals_m), links_used)
 
 
 def _groups(photos: Sequence[TimedPhoto]) -> list[_Group]:

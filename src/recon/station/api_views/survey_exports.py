@@ -8,7 +8,7 @@ from recon.api import schema
 from recon.model.command import Refusal
 from recon.plans.aircraft import AIRCRAFT, PAYLOADS, aircraft_named
 from recon.plans.features import FormatName
-from recon.plans.flight_plan import FlightPlan, PlanExportError
+from recon.plans.flight_plan import ExportedPlan, PlanExportError
 from recon.plans.formats import FORMATS, ExportedPlans, FileFacts, exported
 from recon.plans.from_survey import flight_plans
 from recon.plans.kmz import zip_of
@@ -33,7 +33,7 @@ class SurveyExports:
     known: PreviewedFleet
 
     @cached_property
-    def flights(self) -> list[FlightPlan]:
+    def flights(self) -> list[ExportedPlan]:
         """The flights of all vehicles. Raises `PlanExportError` where no battery lasts."""
         known = self.known
         needs = known.needs()
