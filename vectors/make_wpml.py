@@ -15,7 +15,7 @@ from pathlib import Path
 
 from recon.model.mission import Waypoint
 from recon.plans.aircraft import AircraftModel
-from recon.plans.flight_plan import AtEnd, FlightPlan
+from recon.plans.flight_plan import AtEnd, ExportedPlan
 from recon.plans.wpml import WpmlOptions, template_kml, waylines_wpml
 
 CREATED_MS = 1_700_000_000_000
@@ -34,7 +34,7 @@ def spiral(count: int, **known: float) -> list[Waypoint]:
 MOVING = {"height_above_takeoff_m": 60.0, "speed_mps": 7.5}
 
 
-def missions() -> dict[str, tuple[FlightPlan, AircraftModel | None]]:
+def missions() -> dict[str, tuple[ExportedPlan, AircraftModel | None]]:
     """Return the cases by their names: the ends, turns, heights and actions that both know."""
     rows = spiral(6)
     rows[0] = Waypoint(41.9, -93.6, 60.0, 7.5, gimbal_pitch_deg=-90.0)
@@ -47,11 +47,11 @@ def missions() -> dict[str, tuple[FlightPlan, AircraftModel | None]]:
     acts[4] = Waypoint(41.8995, -93.6014, 60.0, 7.5, loiter_s=1.0, gimbal_pitch_deg=-45.0)
     curved = spiral(6, corner_radius_m=8.0)
     return {
-        "rows": (FlightPlan("", "", tuple(rows), at_end=AtEnd.HOVER), MAVIC_3M),
-        "slope": (FlightPlan("", "", tuple(slope), at_end=AtEnd.LAND), None),
-        "actions": (FlightPlan("", "", tuple(acts), at_end=AtEnd.HOVER), MAVIC_3M),
-        "curved": (FlightPlan("", "", tuple(curved), at_end=AtEnd.LAND, curved=True), MAVIC_3M),
-        "below_takeoff": (FlightPlan("", "", tuple(spiral(2, **LOW)), at_end=AtEnd.HOVER), None),
+        "rows": (ExportedPlan("", "", tuple(rows), at_end=AtEnd.HOVER), MAVIC_3M),
+        "slope": (ExportedPlan("", "", tuple(slope), at_end=AtEnd.LAND), None),
+        "actions": (ExportedPlan("", "", tuple(acts), at_end=AtEnd.HOVER), MAVIC_3M),
+        "curved": (ExportedPlan("", "", tuple(curved), at_end=AtEnd.LAND, curved=True), MAVIC_3M),
+        "below_takeoff": (ExportedPlan("", "", tuple(spiral(2, **LOW)), at_end=AtEnd.HOVER), None),
     }
 
 
