@@ -33,7 +33,9 @@ def asked(region: Region | None = None, **changes: object) -> Survey:
         "name": "field",
         "region": region or field(),
         "height_above_takeoff_m": HEIGHT_M,
-        "speed_mps": 5.0,
+        "front_overlap": 0.5,
+        "side_overlap": 0.4,
+        "speed_mps": 8.0,
         **changes,
     }
     return Survey(**what)  # type: ignore[arg-type]

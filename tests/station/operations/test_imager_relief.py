@@ -68,7 +68,7 @@ def surveying(
     survey = asked(
         region,
         height_above_takeoff_m=SURVEY_M,
-        front_overlap=0.5,
+        speed_mps=5.0,
         planner=planner,
         relief_allowed=allowed,
         spare_serial=spare,

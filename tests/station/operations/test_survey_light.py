@@ -105,7 +105,8 @@ class TestHandedOn:
     @staticmethod
     def flown(most_s: int) -> SurveyedWorld:
         world = under_an_imager(2)
-        world.asks(asked(planner="sunlit_first", budget=SurveyBudget(rounds=3), speed_mps=3.0))
+        dense = {"front_overlap": 0.7, "side_overlap": 0.6, "speed_mps": 3.0}
+        world.asks(asked(planner="sunlit_first", budget=SurveyBudget(rounds=3), **dense))
         for number in range(41, 56 + most_s):
             world.driver.handle(seen(world, number, is_shaded=False))
             world.runs(1.0)

@@ -48,7 +48,7 @@ def test_area_and_rows_are_those_that_a_plan_without_a_station_has() -> None:
     ring = [(west, south), (east, south), (east, north), (west, north)]
     hole = [(80.0, 40.0), (120.0, 40.0), (120.0, 80.0), (80.0, 80.0)]
     world = surveyed_world(1)
-    world.asks(asked(Region(np.array(ring), (np.array(hole),))))
+    world.asks(asked(Region(np.array(ring), (np.array(hole),)), side_overlap=0.6))
     preview = survey_preview(world.driver.station, world.record(), ())
     assert preview is not None
     plan = world.record().state.plan

@@ -17,7 +17,7 @@ from recon.station.operations.survey.availability import may_stay
 from recon.station.state.fleet_return_record import Stage
 from recon.station.state.station import Station
 
-LONG_FIELD = field(360.0)
+LONG_FIELD = field(300.0, 90.0)
 
 
 def battery_of(world: SurveyedWorld, serial: str, fraction: float) -> None:
@@ -155,7 +155,7 @@ class TestWithoutBattery:
     @pytest.mark.flight
     def test_low_battery_home_full_battery_joined_done_home(self) -> None:
         """The whole line of a long survey with one battery too few."""
-        world = surveyed_world(endurance_s=1_500.0)
+        world = surveyed_world(endurance_s=800.0)
         world.asks(asked(LONG_FIELD))
         battery_of(world, "SIM-1", 0.55)
         world.starts("SIM-1")
@@ -182,8 +182,8 @@ class TestWithoutBattery:
 
     @pytest.mark.flight
     def test_one_comes_home_while_the_other_flies_on(self) -> None:
-        world = surveyed_world(2, endurance_s=1_500.0)
-        world.asks(asked(field(360.0, 120.0)))
+        world = surveyed_world(2, endurance_s=600.0)
+        world.asks(asked(field(360.0, 90.0)))
         battery_of(world, "SIM-1", 0.55)
         world.starts("SIM-1", "SIM-2")
         assert runs_until_home(world, ("SIM-1",), 600.0), world.record().members
@@ -222,7 +222,7 @@ class TestWithoutBattery:
 
     @pytest.mark.flight
     def test_a_survey_paused_by_hand_holds_the_one_on_its_way_too(self) -> None:
-        world = surveyed_world(endurance_s=1_500.0)
+        world = surveyed_world(endurance_s=800.0)
         world.asks(asked(LONG_FIELD))
         battery_of(world, "SIM-1", 0.55)
         world.starts("SIM-1")

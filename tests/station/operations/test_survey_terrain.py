@@ -44,7 +44,8 @@ ARRIVED_WITHIN_M = 0.7
 
 def above_ground(**changes: object) -> Survey:
     what = {"height_above_takeoff_m": None, "height_above_ground_m": HEIGHT_M, **changes}
-    return asked(field_of(240.0, 60.0), **what)
+    dense = {"front_overlap": 0.7, "side_overlap": 0.6, "speed_mps": 5.0}
+    return asked(field_of(240.0, 60.0), **dense, **what)
 
 
 def on_the_slope(count: int = 2, *, height_m: float = 0.0) -> SurveyedWorld:
