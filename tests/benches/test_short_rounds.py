@@ -21,8 +21,9 @@ COMMANDS = {
     "station.bench_load": (*FEW, "--streams", "1", "--seconds", "1"),
     "station.bench_stick_jitter": (*FEW, "--seconds", "2", "--shared"),
 }
-MEASURED_BY_HAND = {"console.bench_console", "score.bench_flights"}
-"""Minutes of Chromium, or of two checkouts; that their imports exist is tested with all others."""
+MEASURED_BY_HAND = {"console.bench_console", "product.bench_mosaic", "score.bench_flights"}
+"""Minutes of Chromium, of a peer that is fetched, or of two checkouts; that their imports exist is
+tested with all others."""
 
 
 def test_every_bench_is_listed() -> None:

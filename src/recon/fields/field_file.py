@@ -63,6 +63,12 @@ class Imported:
     warnings: tuple[str, ...]
     is_fit_for_fences: bool
     """False where nobody knows how far from their true place the shapes are."""
+    has_open_paths: bool
+    """Whether `close_paths` would take more of it."""
+
+
+class OnlyPathsError(SiteError):
+    """A file with paths alone, which `close_paths` takes as areas."""
 
 
 def read_import(name: str, data: bytes, *, close_paths: bool = False) -> Imported:
@@ -97,9 +103,14 @@ def _imported(shown: str, answer: Mapping[str, Any]) -> Imported:
             excluded.append(Excluded(each["name"] or f"shape {number}", fault))
     if not features:
         why = "; ".join(map(str, excluded[:5])) or "an empty file"
-        raise SiteError(f"{shown}: expected polygons or points, got none: {why}")
+        kind = OnlyPathsError if answer["has_open_paths"] else SiteError
+        raise kind(f"{shown}: expected polygons or points, got none: {why}")
     return Imported(
-        tuple(features), tuple(excluded), tuple(answer["warnings"]), answer["is_fit_for_fences"]
+        tuple(features),
+        tuple(excluded),
+        tuple(answer["warnings"]),
+        answer["is_fit_for_fences"],
+        answer["has_open_paths"],
     )
 
 

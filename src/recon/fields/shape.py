@@ -37,6 +37,8 @@ class Found:
     excluded: list[tuple[str, str]] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     is_fit_for_fences: bool = True
+    has_open_paths: bool = False
+    """Whether paths are excluded that would be areas if they were closed."""
     feature: int = 0
 
     def begin_feature(self) -> None:

@@ -48,6 +48,7 @@ def tidied(found: Found, *, close_paths: bool) -> dict[str, Any]:
         "excluded": _excluded(found.excluded),
         "warnings": found.warnings,
         "is_fit_for_fences": found.is_fit_for_fences,
+        "has_open_paths": found.has_open_paths,
     }
 
 
@@ -113,6 +114,7 @@ def _is_area(path: Shape, found: Found, *, close_paths: bool) -> bool:
     (places,) = path.rings
     if close_paths or (len(places) > 3 and places[0][:2] == places[-1][:2]):
         return True
+    found.has_open_paths = True
     found.exclude(
         path.name, f"a path of {len(places)} points, not an area: close paths to take it as one"
     )

@@ -266,7 +266,14 @@ describe("an imported file", () => {
   const polygon = FIELD.geometry;
   const point = { type: "Point" as const, coordinates: [-93.6, 41.9] };
   const ONE = { name: "", geometry: polygon, layer: null, properties: {} };
-  const READ = { features: [], excluded: [], warnings: [], is_fit_for_fences: true, reason: null };
+  const READ = {
+    features: [],
+    excluded: [],
+    warnings: [],
+    is_fit_for_fences: true,
+    has_open_paths: false,
+    reason: null,
+  };
 
   it("is a choice first, then part of the draft", async () => {
     const draft = await open();
@@ -275,6 +282,7 @@ describe("an imported file", () => {
       excluded: ["photo: a picture laid on the map", "no shape"],
       warnings: ["NAD27: accurate to 5 m"],
       is_fit_for_fences: true,
+      has_open_paths: false,
       reason: null,
     };
     await draft.readFile(new File(["x"], "fields.kml"));

@@ -56,6 +56,8 @@ export interface FileReading {
   readonly warnings: readonly string[];
   /** False where nobody knows how far from their true place its shapes are. */
   readonly isFitForFences: boolean;
+  /** Whether more of it is taken with its paths as areas. */
+  readonly hasOpenPaths: boolean;
 }
 
 export interface SiteDraft extends SavedDraft<SiteDrawingView, FeaturePlace> {
@@ -247,8 +249,10 @@ export function createSiteDraft(
     readFile: (file, closePaths = false) =>
       draft.ask(
         () => site.readFile(file, closePaths),
-        ({ features: found, excluded, warnings, is_fit_for_fences, reason }) => {
-          setReading({ file, excluded, warnings, isFitForFences: is_fit_for_fences });
+        ({ features: found, reason, ...said }) => {
+          const { excluded, warnings, is_fit_for_fences, has_open_paths } = said;
+          const isFit = { isFitForFences: is_fit_for_fences, hasOpenPaths: has_open_paths };
+          setReading({ file, excluded, warnings, ...isFit });
           if (reason !== null) return draft.note(reason, true, "import");
           const { read, readSome } = text.imports;
           const note =

@@ -193,4 +193,5 @@ class ImportedView(Message):
     is_fit_for_fences: bool = Field(
         description="false where nobody knows how far from their true place the shapes are"
     )
+    has_open_paths: bool = Field(description="whether `close_paths` would take more of it")
     reason: str | None

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from recon.api import schema
-from recon.fields.field_file import read_import
+from recon.fields.field_file import OnlyPathsError, read_import
 from recon.model.airspace import SiteLayer
 from recon.model.errors import ReconError
 from recon.model.person import Person
@@ -37,7 +37,7 @@ class FileImports:
             async with self._reading:
                 found = await asyncio.to_thread(read_import, name, data, close_paths=close_paths)
         except ReconError as problem:
-            return _refused(str(problem))
+            return _refused(str(problem), has_open_paths=isinstance(problem, OnlyPathsError))
         features = [
             schema.ImportedFeatureView(
                 name=each.name,
@@ -52,13 +52,19 @@ class FileImports:
             excluded=[str(each) for each in found.excluded],
             warnings=list(found.warnings),
             is_fit_for_fences=found.is_fit_for_fences,
+            has_open_paths=found.has_open_paths,
             reason=None,
         )
 
 
-def _refused(reason: str) -> schema.ImportedView:
+def _refused(reason: str, *, has_open_paths: bool = False) -> schema.ImportedView:
     return schema.ImportedView(
-        features=[], excluded=[], warnings=[], is_fit_for_fences=True, reason=reason
+        features=[],
+        excluded=[],
+        warnings=[],
+        is_fit_for_fences=True,
+        has_open_paths=has_open_paths,
+        reason=reason,
     )
 
 

@@ -91,8 +91,6 @@ export function ImportForm() {
 /** What is left out of the file that was read, and what is said about the rest. */
 function Reading() {
   const { siteDraft } = useConsole();
-  const hasPaths = (excluded: readonly string[], problem: string) =>
-    [...excluded, problem].some((line) => line.includes("close paths"));
   return (
     <Show when={siteDraft.reading()}>
       {(reading) => (
@@ -111,7 +109,7 @@ function Reading() {
               </ul>
             </details>
           </Show>
-          <Show when={hasPaths(reading().excluded, siteDraft.notice()?.text ?? "")}>
+          <Show when={reading().hasOpenPaths}>
             <button
               type="button"
               class="button"

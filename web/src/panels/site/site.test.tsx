@@ -206,6 +206,7 @@ describe("an imported file", () => {
       excluded: [],
       warnings: [],
       is_fit_for_fences: true,
+      has_open_paths: false,
       reason: null,
     };
     const section = find(page.root, ".site-import");
@@ -248,6 +249,7 @@ describe("a file that is not read whole", () => {
     const section = await read({
       features: [{ ...OTHER, name: "west", geometry: shape(0) }],
       excluded: ["lane: a path of 4 points, not an area: close paths to take it as one"],
+      has_open_paths: true,
       warnings: ["pond: 12000 corners are simplified to 437, within 2 cm"],
     });
     expect(section.textContent).toContain("farm.kml: 1 read, 1 excluded");
