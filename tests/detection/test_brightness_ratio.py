@@ -139,8 +139,9 @@ def test_memory_is_bounded(method: str) -> None:
     settings = DetectionSettings(window_s=20.0, samples=5)
     state = DetectionState()
     imager = Imager(grid=GroundGrid(GRID.frame, -256.0, 256.0, 16.0, 32, 32))
+    land, shade = Land(5), DriftingShade(5)
     for i in range(120):
-        image = imager.see(Land(5), DriftingShade(5), 1.0 * i)
+        image = imager.see(land, shade, 1.0 * i)
         state, found = DETECTORS[method](state, image, settings)
         assert isinstance(found, ShadeMap), found
         assert state.history is None or len(state.history.samples) <= 5

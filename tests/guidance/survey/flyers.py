@@ -6,6 +6,7 @@ late and a little off. What photos truly show is kept beside, for the tests alon
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from math import atan2, hypot, tan
 
 import numpy as np
@@ -263,12 +264,15 @@ class Flights:
         return np.asarray(shown.reshape(grid.rows, grid.cols))
 
 
+@lru_cache(maxsize=8)
 def middles_m(grid: GroundGrid) -> FloatArray:
-    """The middles of a grid's cells, (R * C, 2) east-north."""
+    """The middles of a grid's cells, (R * C, 2) east-north; not to be changed."""
     east_m = grid.west_m + grid.cell_m * (np.arange(grid.cols) + 0.5)
     north_m = grid.north_m - grid.cell_m * (np.arange(grid.rows) + 0.5)
     east, north = np.meshgrid(east_m, north_m)
-    return np.column_stack([east.ravel(), north.ravel()])
+    middles = np.column_stack([east.ravel(), north.ravel()])
+    middles.flags.writeable = False
+    return middles
 
 
 def east_north(mission: Mission, plan: SurveyPlan) -> list[Place]:

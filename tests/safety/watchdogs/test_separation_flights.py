@@ -7,12 +7,12 @@ from math import cos, pi, sin
 from random import Random
 
 import pytest
-from tests.examples import family
+from tests.examples import IS_THOROUGH, family
 from tests.safety.watchdogs.flights import Air, Aircraft, Vector, closeness, straight_mission
 
 from recon.model.vehicle import FlightMode
 
-PAIRS = 32
+PAIRS = 32 if IS_THOROUGH else 16
 APART_M = 2_500.0
 MEETS_AFTER_S = 14.0
 
@@ -89,6 +89,7 @@ def least(kind: object, seed: int, *, acts: bool) -> list[float]:
 KINDS = (crossing, head_on, overtaking, climbing_into)
 
 
+@pytest.mark.drawn
 @pytest.mark.parametrize("kind", family(*KINDS))
 @pytest.mark.parametrize("seed", family(1, 2))
 def test_the_minimum_is_never_violated(kind: object, seed: int) -> None:
