@@ -3,7 +3,7 @@
     python -m benches.product.bench_mosaic --photos 200
 
 Baseline: `oty odm` of orthority 0.7, which makes an orthophoto of each photo and no mosaic of them.
-It runs as a program in an environment of its own (`uv venv`), on the same photos with the same
+It runs as a program in an environment of its own, on the same photos with the same
 cameras, surface model and pixel size. The photos are one noise texture, seen from above by cameras
 in rows over level ground; that both agree is checked in the pictures.
 """
@@ -219,9 +219,9 @@ def _orthority(folder: Path) -> str:
     """Return the baseline's program, installed beside the photos."""
     place = folder / "orthority"
     if not (place / "bin" / "oty").exists():
-        subprocess.run(["uv", "venv", "--quiet", "--clear", str(place)], check=True)
+        subprocess.run([sys.executable, "-m", "venv", "--clear", str(place)], check=True)
         python = str(place / "bin" / "python")
-        install = ["uv", "pip", "install", "--quiet", "--python", python, "orthority==0.7.*"]
+        install = [python, "-m", "pip", "install", "--quiet", "orthority==0.7.*"]
         subprocess.run(install, check=True)
     return str(place / "bin" / "oty")
 
