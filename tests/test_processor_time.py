@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from tests import processor_time
 
 pytest_plugins = ["pytester"]
 
@@ -11,6 +12,7 @@ import time
 from tests import processor_time
 
 processor_time.BUDGET_S = 0.1
+processor_time.slowness = lambda: SLOWNESS
 
 def pytest_configure(config):
     config.addinivalue_line("markers", "flight: long")
@@ -50,7 +52,7 @@ def test_a_test_over_it_fails_without_the_marker(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch, workers: str
 ) -> None:
     monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parents[1]))
-    pytester.makeconftest(RUN)
+    pytester.makeconftest(RUN.replace("SLOWNESS", "1.0"))
     pytester.makepyfile(TESTS)
     result = pytester.runpytest_subprocess("-n", workers, "--dist", "loadfile")
     result.assert_outcomes(passed=4, errors=1)
@@ -62,3 +64,13 @@ def test_a_test_over_it_fails_without_the_marker(
             r" +0\.[12] .*::test_shared",
         ]
     )
+
+
+def test_on_a_slower_processor_more_is_allowed(
+    pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parents[1]))
+    pytester.makeconftest(RUN.replace("SLOWNESS", "50.0"))
+    pytester.makepyfile(TESTS)
+    pytester.runpytest_subprocess().assert_outcomes(passed=4)
+    assert processor_time.slowness() >= 1.0

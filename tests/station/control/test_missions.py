@@ -235,6 +235,7 @@ def parts_flown(record: OrderRecord) -> int:
     return sum("the mission flying" in change.note for change in record.history)
 
 
+@pytest.mark.flight
 def test_230_waypoints_are_flown_in_three_parts() -> None:
     w, order = flying(230, 99)
     assert w.run_until(lambda: w.record(order).phase.is_final, 400.0)

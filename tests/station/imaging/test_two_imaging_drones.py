@@ -67,6 +67,7 @@ def test_the_site_knows_both(site: Site) -> None:
     assert site.imager is site.imagers["SIM-IMAGER"]
 
 
+@pytest.mark.flight
 def test_each_ones_frames_are_projected_where_it_is(driver: VirtualDriver) -> None:
     images = {image.serial: image for image in newest_images(driver.station.imaging)}
     first, second = images["SIM-IMAGER"], images["SIM-SECOND"]
@@ -79,6 +80,7 @@ def test_each_ones_frames_are_projected_where_it_is(driver: VirtualDriver) -> No
     assert one.valid.sum() > 1.1 * max(first.valid.sum(), second.valid.sum())
 
 
+@pytest.mark.flight
 def test_shade_is_one_map_of_both(driver: VirtualDriver) -> None:
     shade = driver.station.shade
     assert shade.shade is not None
@@ -88,6 +90,7 @@ def test_shade_is_one_map_of_both(driver: VirtualDriver) -> None:
     assert shade.frames_rejected == 0
 
 
+@pytest.mark.flight
 def test_the_console_is_told_of_both(driver: VirtualDriver) -> None:
     station = driver.station
     view = ground_image_view(station, driver.now_ns)
