@@ -141,7 +141,7 @@ def test_every_aircraft_has_numbers_of_its_own() -> None:
     ("name", "payload", "expected"),
     [
         (None, None, "a .kmz names its aircraft: choose one of Mavic 3E"),
-        ("Mavic 3", None, "did you mean Mavic 3"),
+        ("Mavic 3", None, "did you mean 'Mavic 3"),
         ("Mavic 3E", "H20", "Mavic 3E has its own camera"),
         ("Matrice 350", None, "Matrice 350 carries a camera: name one of H20"),
         ("Matrice 350", "P1", "no payload 'P1': known are H20"),

@@ -1,11 +1,11 @@
 """Shapes of a file, chosen by name."""
 
 from collections.abc import Sequence
-from difflib import get_close_matches
 from pathlib import Path
 
 from recon.fields.field_file import Imported, ImportedFeature
 from recon.model.errors import SiteError
+from recon.model.near_names import did_you_mean
 
 MOST_LISTED = 20
 
@@ -47,8 +47,5 @@ def listed(found: Imported, features: Sequence[ImportedFeature]) -> str:
 
 
 def _near(name: str, found: Imported) -> str:
-    known = {each.name.casefold(): each.name for each in found.features if each.name}
-    near = get_close_matches(name.casefold(), list(known), n=3)
-    if near:
-        return f"; did you mean {' or '.join(ascii(known[each]) for each in near)}?"
-    return f"; features: {listed(found, found.features)}"
+    hint = did_you_mean(name, (each.name for each in found.features if each.name), most=3)
+    return hint or f"; features: {listed(found, found.features)}"

@@ -7,12 +7,12 @@ length, these are used; a rounded diagonal angle ("84 degrees") is up to 2 % wid
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
 from math import atan, degrees, hypot, radians, tan
 from types import MappingProxyType
 from typing import Literal
 
 from recon.model.errors import ReconError
+from recon.model.near_names import did_you_mean
 from recon.model.survey import SurveyCamera
 
 Shutter = Literal["global", "mechanical", "rolling"]
@@ -190,6 +190,5 @@ def camera_named(name: str, own: Iterable[CameraModel] = ()) -> CameraModel:
     known = {**CAMERAS, **{model.key: model for model in own}}
     if name in known:
         return known[name]
-    near = get_close_matches(name, known, n=1)
-    hint = f"; did you mean {near[0]}?" if near else ""
+    hint = did_you_mean(name, known)
     raise SurveyCameraError(f"Camera {name!a} not found; available: {', '.join(known)}{hint}")

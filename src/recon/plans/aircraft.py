@@ -6,10 +6,10 @@ app DJI Fly writes for every model it flies, and it names no camera.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
 from types import MappingProxyType
 from typing import TypeVar
 
+from recon.model.near_names import did_you_mean
 from recon.plans.flight_plan import PlanExportError
 
 _T = TypeVar("_T")
@@ -86,6 +86,5 @@ def _named(what: str, name: str, known: Mapping[str, _T]) -> _T:
     found = by_lower.get(name.strip().lower())
     if found is not None:
         return found
-    near = get_close_matches(name, known, 1)
-    meant = f"; did you mean {near[0]}?" if near else ""
-    raise PlanExportError(f"no {what} {name[:40]!a}: known are {', '.join(known)}{meant}")
+    hint = did_you_mean(name, known)
+    raise PlanExportError(f"no {what} {name[:40]!a}: known are {', '.join(known)}{hint}")

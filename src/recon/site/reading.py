@@ -9,7 +9,6 @@ import re
 import sys
 import tomllib
 from collections.abc import Mapping, Sequence
-from difflib import get_close_matches
 from hashlib import sha256
 from pathlib import Path
 from typing import Any, TypeVar
@@ -18,6 +17,7 @@ import msgspec
 from msgspec import inspect
 
 from recon.model.errors import SiteError
+from recon.model.near_names import did_you_mean
 
 T = TypeVar("T")
 
@@ -213,10 +213,9 @@ def shown_value(value: object) -> str:
 def _unknown_key(place: str, owner: object, kind: inspect.Type) -> str:
     known = [field.encode_name for field in _struct(kind).fields]
     unknown = next(str(name) for name in _keys(owner) if name not in known)
-    near = get_close_matches(unknown, known, n=1)
-    hint = f"; did you mean {near[0]!r}?" if near else ""
     lead = f"{place}: " if place else ""
-    return f"{lead}expected only the keys {', '.join(known)}, got {shown_value(unknown)}{hint}"
+    got = f"{shown_value(unknown)}{did_you_mean(unknown, known)}"
+    return f"{lead}expected only the keys {', '.join(known)}, got {got}"
 
 
 def _missing(owner: object, kind: inspect.Type) -> str:

@@ -145,7 +145,7 @@ def test_a_camera_without_pixels_has_no_blur_limit_and_no_pixel_size() -> None:
 
 
 def test_an_unknown_camera_is_answered_with_the_known_ones() -> None:
-    with pytest.raises(SurveyCameraError, match=r"available: mavic3m, .*did you mean mini3pro"):
+    with pytest.raises(SurveyCameraError, match=r"available: mavic3m, .*did you mean 'mini3pro'"):
         camera_named("mini3prro")
 
 
