@@ -18,6 +18,7 @@ from recon.station.state.fleet_return_record import Stage
 from recon.station.state.station import Station
 
 LONG_FIELD = field(300.0, 90.0)
+SECOND_ID = 501
 
 
 def battery_of(world: SurveyedWorld, serial: str, fraction: float) -> None:
@@ -96,6 +97,17 @@ def going_home(when_done: WhenDone = WhenDone.RETURN_HOME) -> SurveyedWorld:
     world.starts("SIM-1", "SIM-2")
     assert world.runs_until(SurveyPhase.DONE, 400.0)
     return world
+
+
+class TestSecondSurveyOfOneName:
+    def test_the_vehicles_that_fly_it_do_not_hover_for_the_first(self) -> None:
+        world = going_home(WhenDone.HOVER)
+        assert ("survey_over", "SIM-1") in world.fleet.alarms()
+        world.asks(asked(id=SECOND_ID))
+        world.starts("SIM-1", "SIM-2", number=SECOND_ID)
+        world.runs(5.0)
+        assert len(world.missions("SIM-1")) > 1
+        assert "survey_over" not in {rule for rule, _ in world.fleet.alarms()}
 
 
 class TestOnTheWayHome:

@@ -51,7 +51,8 @@ EastNorth = tuple[float, float]
 class SurveyMember:
     """One vehicle of a survey, since it was started for it.
 
-    `number` and `command_id` are its newest mission's, as the survey and the station count.
+    `number` and `command_id` are its newest mission's, as the survey and the station count;
+    `ordered_id` stays when `command_id` is forgotten, after a mission that does not count any more.
     `may_take_off` is the operator's permission, for one takeoff. `stop_reason`: why it gets no
     mission until it is started again. `return_reason`: why it was recalled. `unsent_since_ns`:
     since when no mission could be sent to it, for reasons that time may end.
@@ -64,6 +65,7 @@ class SurveyMember:
     stop_reason: str | None = None
     return_reason: str | None = None
     unsent_since_ns: int | None = None
+    ordered_id: int | None = None
 
 
 @dataclass(frozen=True, eq=False)

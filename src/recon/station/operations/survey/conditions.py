@@ -64,7 +64,7 @@ def _of_vehicle(
         yield _about(
             station, member, RULE, f"has flown home: {member.return_reason}. {of_battery} {text}"
         )
-    elif record.is_over and _hovers_since(station, record, member):
+    elif record.is_over and _hovers_since(station, member):
         why = "" if member.stop_reason is None else f"; it had stopped: {member.stop_reason}"
         text = f"hovers: survey {name} is over{why}. Recall it, or give it an order"
         yield _about(station, member, RULE_LEFT, text)
@@ -87,16 +87,19 @@ def _waits_long(station: Station, member: SurveyMember) -> Iterator[Condition]:
         yield replace(condition, after_s=SURVEY_TIMES.home_waits_s)
 
 
-def _hovers_since(station: Station, record: SurveyRecord, member: SurveyMember) -> bool:
-    """Whether a vehicle is in the air, and got its newest order from the survey.
+def _hovers_since(station: Station, member: SurveyMember) -> bool:
+    """Whether a vehicle is in the air, and its newest order is a mission of the survey.
 
-    The station's own holds do not count: after one it hovers as well.
+    The station's own holds do not count: after one it hovers as well. Orders are compared by their
+    ids: surveys of one region have one name.
     """
     vehicle = station.fleet.vehicles.get(member.serial)
     if vehicle is None or vehicle.is_flying.value is not True:
         return False
+    if station.surveys.running_with(member.serial) is not None:
+        return False
     newest = newest_motion(station, member.serial, own=False)
-    return newest is not None and newest.command.issued_by == record.issuer
+    return newest is not None and newest.command.id == member.ordered_id
 
 
 def _about(station: Station, member: SurveyMember, rule: str, text: str) -> Condition:

@@ -259,7 +259,13 @@ def _order_mission(
     station, sent = order_gateway.submit(station, replace(ready.order, command_id=number), now_ns)
     refusal = station.orders.records[number].refusal
     if refusal is None:
-        used = replace(member, number=given.number, command_id=number, may_take_off=False)
+        used = replace(
+            member,
+            number=given.number,
+            command_id=number,
+            ordered_id=number,
+            may_take_off=False,
+        )
         return replace(station, surveys=station.surveys.put(record.put(used))), sent
     why = f"{refusal.reason}{ready.tried}"
     if may_end(refusal):
