@@ -132,6 +132,14 @@ def test_what_is_left_out_is_named_and_the_accuracy_stated(folder: Path, tmp_pat
     assert list(load_site(folder).layers.survey_regions) == ["good"]
 
 
+def test_a_shape_of_another_kind_is_named(folder: Path, tmp_path: Path) -> None:
+    well = {"type": "Point", "coordinates": SQUARE[0]}
+    file = drawn(tmp_path / "a.geojson", None, good=AREA, well=well)
+    text = recon_site("import", str(folder), str(file), "--as", "keep_out")
+    assert "warning: excluded: well: a point, where keep_out takes polygons" in text
+    assert "1 imported into keep_out, 1 excluded" in text
+
+
 def test_a_plan_reads_the_same_file_alike(tmp_path: Path) -> None:
     file = drawn(tmp_path / "a.geojson", "urn:ogc:def:crs:EPSG::4269", good=AREA, eight=CROSSED)
     planned = CliRunner().invoke(app, ("plan", str(file), "--height", "60"))
@@ -143,8 +151,9 @@ def test_a_plan_reads_the_same_file_alike(tmp_path: Path) -> None:
 def test_some_of_many_are_chosen_by_name(folder: Path, tmp_path: Path) -> None:
     file = drawn(tmp_path / "farm.geojson", None, **{f"field {n}": AREA for n in range(300)})
     words = ("import", str(folder), str(file), "--as", "survey_regions")
-    recon_site(*words, "--feature", "FIELD 7", "--feature", "field 299")
+    text = recon_site(*words, "--feature", "FIELD 7", "--feature", "field 299")
     assert list(load_site(folder).layers.survey_regions) == ["field 7", "field 299"]
+    assert "2 imported into survey_regions, 0 excluded, 298 not chosen" in text
     with pytest.raises(SiteError, match="did you mean 'field 2"):
         recon_site(*words, "--feature", "feild 299")
 
@@ -207,7 +216,8 @@ def test_pads_stand_on_the_sites_ground(folder: Path, tmp_path: Path) -> None:
     recon_site("import", str(folder), str(pads), "--as", "landing_pads")
     (pad,) = load_site(folder).layers.landing_pads
     assert (pad.name, pad.place.ellipsoid_height_m) == ("home", 275.0)
-    with pytest.raises(SiteError, match="expected polygons for boundary, got none"):
+    expected = "expected polygons for boundary, got none: home: a point, where boundary takes"
+    with pytest.raises(SiteError, match=expected):
         recon_site("import", str(folder), str(pads), "--as", "boundary")
 
 

@@ -5,7 +5,6 @@ bounded: a large file needs overviews, without which it is shown from near only.
 """
 
 import os
-import re
 import warnings
 from io import BytesIO
 from math import ceil
@@ -33,7 +32,7 @@ from recon.basemap.web_mercator import (
     world_from_globe,
     zoom_for,
 )
-from recon.geo.datum import map_from_globe
+from recon.geo.datum import horizontal, map_from_globe, names_files
 from recon.model.arrays import FloatArray
 
 STARTS = frozenset({b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"})
@@ -52,8 +51,6 @@ SAMPLES = 20_000
 FINER = 1.4
 """Factor on the file's pixel size up to which a zoom level is its own."""
 JPEG_QUALITY = 85
-_OTHER_FILES = re.compile(r"nadgrids=(?!@null\b)|geoidgrids|PARAMETERFILE", re.IGNORECASE)
-"""What makes PROJ look for a file that the reference system names."""
 DAMAGED = "expected a whole GeoTIFF, got one cut short or damaged; export it again"
 AS_COG = "export it as COG (QGIS: Save As, or gdal_translate -of COG)"
 GDAL_OPTIONS = {
@@ -296,24 +293,17 @@ def _placed(dataset: Any) -> Affine:
 def _from_globe(dataset: Any) -> pyproj.Transformer:
     try:
         text = dataset.crs.to_wkt()
-        if _OTHER_FILES.search(text):
+        if names_files(text):
             raise BaseMapError(
                 "expected a coordinate reference system without grid files of its own; export it "
                 "in EPSG:3857"
             )
-        return map_from_globe(_horizontal(pyproj.CRS.from_user_input(text)))
+        return map_from_globe(horizontal(pyproj.CRS.from_user_input(text)))
     except (ProjError, RasterioError) as problem:
         raise BaseMapError(
             "expected a coordinate reference system that PROJ relates to WGS84, got another one; "
             "export it in EPSG:3857"
         ) from problem
-
-
-def _horizontal(crs: pyproj.CRS) -> pyproj.CRS:
-    """Return the horizontal part of a reference system, with its shift to WGS84 if it has one."""
-    if crs.is_bound:
-        return crs
-    return _horizontal(crs.sub_crs_list[0]) if crs.is_compound else crs.to_2d()
 
 
 def _between(grid: FloatArray) -> FloatArray:

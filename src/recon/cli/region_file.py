@@ -11,7 +11,7 @@ from recon.fields.limits import LARGEST_FILE_BYTES
 from recon.model.airspace import Region
 from recon.model.errors import SiteError
 from recon.model.geo import GeoPoint, LocalFrame
-from recon.site.geojson import Feature, first_corner_of, regions_of
+from recon.site.geojson import Feature, regions_of
 from recon.site.reading import read_bounded
 
 Rings = list[list[list[float]]]
@@ -55,8 +55,8 @@ def region_in(
 
 
 def _first_corner(chosen: Feature) -> GeoPoint:
-    place = first_corner_of(chosen)
-    return GeoPoint(place.latitude_deg, place.longitude_deg, 0.0)
+    longitude_deg, latitude_deg = chosen.geometry["coordinates"][0][0][:2]
+    return GeoPoint(latitude_deg, longitude_deg, 0.0)
 
 
 def _chosen(path: Path, name: str | None, *, close_paths: bool) -> Feature:

@@ -2,7 +2,8 @@
 
 import re
 import sys
-from collections.abc import Mapping
+from collections.abc import Sequence
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from enum import Enum
 from pathlib import Path
@@ -11,14 +12,16 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from recon.cli.commands import App
+from recon.cli.options import with_options
 from recon.cli.output import print_line, print_warning, printable
 from recon.model.errors import SiteError
 from recon.model.geo import GeoPoint
 from recon.model.units import M_PER_FT
 
 if TYPE_CHECKING:
-    from recon.fields.field_file import ImportedFeature
+    from recon.model.airspace import SiteLayer
     from recon.site import Site
+    from recon.site.drawing import DrawnFeature
 
 site_app = App(help="Make, check and import into a site's folder.", no_args_is_help=True)
 
@@ -82,7 +85,24 @@ def check_command(folder: FolderArgument) -> None:
         print_line(line)
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ImportOptions:
+    """What becomes of a file's shapes."""
+
+    layer: Annotated[Layer, typer.Option("--as", help="What its shapes become.")]
+    chosen: Annotated[
+        list[str] | None, typer.Option("--feature", help="Only the shapes of these names.")
+    ] = None
+    close_paths: Annotated[
+        bool, typer.Option("--close-paths", help="Take paths as areas, closed by a straight line.")
+    ] = False
+    replaces: Annotated[
+        bool, typer.Option("--replace", help="Instead of what the layer holds, not beside it.")
+    ] = False
+
+
 @site_app.command("import")
+@with_options
 def import_command(
     folder: FolderArgument,
     file: Annotated[
@@ -92,63 +112,53 @@ def import_command(
             "Pilot 2 or QGroundControl."
         ),
     ],
-    layer: Annotated[Layer, typer.Option("--as", help="What its shapes become.")],
-    chosen: Annotated[
-        list[str] | None, typer.Option("--feature", help="Only the shapes of these names.")
-    ] = None,
-    close_paths: Annotated[
-        bool, typer.Option("--close-paths", help="Take paths as areas, closed by a straight line.")
-    ] = False,
-    replaces: Annotated[
-        bool, typer.Option("--replace", help="Instead of what the layer holds, not beside it.")
-    ] = False,
+    options: ImportOptions,
 ) -> None:
     """Import shapes as a layer of a site. A running station does not see it before its restart."""
     from recon.fields.choice import chosen_features
     from recon.fields.field_file import read_import
     from recon.fields.limits import LARGEST_FILE_BYTES
     from recon.model.airspace import SiteLayer
-    from recon.record.files.file_set import replace_files
-    from recon.site.drawing import FENCES, DrawnFeature, read_drawing, stage_drawing
+    from recon.site.layer_import import layer_import
     from recon.site.reading import read_bounded
 
     frame = opened_site(folder).frame
     assert frame is not None, "a folder's site has an origin"
     data = read_bounded(file, LARGEST_FILE_BYTES, "a file to import")
-    found = read_import(file.name, data, close_paths=close_paths)
-    for warning in found.warnings:
+    found = read_import(file.name, data, close_paths=options.close_paths)
+    chosen = chosen_features(file, found, options.chosen)
+    layer = SiteLayer(options.layer.value)
+    new = layer_import(str(file), found, chosen, layer, frame.origin.ellipsoid_height_m)
+    excluded = [*map(str, found.excluded), *new.excluded]
+    for warning in (*found.warnings, *(f"excluded: {each}" for each in excluded)):
         print_warning(warning)
-    if layer.value in FENCES and not found.is_fit_for_fences:
-        raise SiteError(
-            f"{file}: expected coordinates whose place on the globe is known for {layer.value}, "
-            "got others; export the file as WGS84 (EPSG:4326)"
-        )
-    kept = [each for each in read_drawing(folder) if not (replaces and each.layer == layer.value)]
-    # A file's heights may count from anywhere: pads stand on the site's ground.
-    is_pads = layer is Layer.LANDING_PADS
-    own = {"altitude_m": frame.origin.ellipsoid_height_m} if is_pads else {}
-    kind = "Point" if is_pads else "Polygon"
-    new = [
-        DrawnFeature(
-            SiteLayer(layer.value),
-            each.geometry,
-            {"name": each.name or None, **own, **_of(each, layer)},
-        )
-        for each in chosen_features(file, found, chosen)
-        if each.geometry["type"] == kind and each.layer in (None, layer.value)
-    ]
-    for each in found.excluded:
-        print_warning(f"excluded: {each}")
-    if not new:
-        raise SiteError(f"{file}: expected {kind.lower()}s for {layer.value}, got none")
+    _add(folder, new.features, layer, replaces=options.replaces, what=f"import of {file.name}")
+    others = len(found.features) - len(chosen)
+    print_line(
+        f"{len(new.features)} imported into {layer}, {len(excluded)} excluded"
+        + (f", {others} not chosen" if others else "")
+    )
+
+
+def _add(
+    folder: Path,
+    new: "Sequence[DrawnFeature]",
+    layer: "SiteLayer",
+    *,
+    replaces: bool,
+    what: str,
+) -> None:
+    """Save a site's drawing with new features. Raises `SiteError`."""
+    from recon.record.files.file_set import replace_files
+    from recon.site.drawing import read_drawing, stage_drawing
+
+    kept = [each for each in read_drawing(folder) if not (replaces and each.layer == layer)]
     staged = stage_drawing(folder, [*kept, *new])
     utc = datetime.now(UTC).isoformat(timespec="seconds")
     try:
-        replace_files(folder, staged.files, what=f"import of {file.name}", by="recon site", utc=utc)
+        replace_files(folder, staged.files, what=what, by="recon site", utc=utc)
     except OSError as problem:
         raise SiteError(f"{folder} cannot be written: {problem.strerror or problem}") from problem
-    excluded = len(found.excluded) + len(found.features) - len(new)
-    print_line(f"{len(new)} imported into {layer.value}, {excluded} excluded")
 
 
 def opened_site(folder: Path) -> "Site":
@@ -170,11 +180,6 @@ def opened_site(folder: Path) -> "Site":
         text = f"{folder}: a change of the site that was interrupted is undone"
         print(printable(text), file=sys.stderr, flush=True)
     return load_site(folder)
-
-
-def _of(feature: "ImportedFeature", layer: Layer) -> Mapping[str, str | float]:
-    """Return heights and notes for the layer that a file says its shape is of."""
-    return feature.attributes if feature.layer == layer.value else {}
 
 
 def _height_m(text: str) -> float:

@@ -11,8 +11,8 @@ from typing import Any
 
 from recon.fields.json_shapes import CIRCLE_CORNERS, add_geometry, circle
 from recon.fields.shape import Attributes, Found
+from recon.model.units import M_PER_FT
 
-M_PER_FT = 0.3048
 FREE = ("NO_RESTRICTION", "NO RESTRICTION")
 GROUND, SEA_LEVEL, ELLIPSOID = ("AGL", "SFC"), ("AMSL", "MSL"), ("WGS84", "HAE")
 MOST_NOTES = 300

@@ -5,6 +5,7 @@ from math import cos, pi, radians, sin
 from typing import Any
 
 from recon.fields.shape import Attributes, Found, Position
+from recon.model.units import M_PER_DEG
 
 GEOMETRIES = frozenset(
     {
@@ -13,7 +14,6 @@ GEOMETRIES = frozenset(
     }
 )
 CIRCLE_CORNERS = 72
-METRES_A_DEGREE = 111_195.0
 
 
 def add_geometry(
@@ -54,7 +54,7 @@ def circle(
     latitude_deg: float, longitude_deg: float, radius_m: float, *, is_inside: bool
 ) -> Iterator[Position]:
     """Yield corners on the safe side: inside a circle to stay in, outside one to keep out of."""
-    reach_deg = radius_m / METRES_A_DEGREE / (1.0 if is_inside else cos(pi / CIRCLE_CORNERS))
+    reach_deg = radius_m / M_PER_DEG / (1.0 if is_inside else cos(pi / CIRCLE_CORNERS))
     for corner in range(CIRCLE_CORNERS):
         turn = 2.0 * pi * corner / CIRCLE_CORNERS
         east_deg = reach_deg * sin(turn) / cos(radians(latitude_deg))

@@ -13,10 +13,10 @@ from recon.fields.limits import (
 )
 from recon.fields.names import LONGEST, cleaned, each_once
 from recon.fields.shape import FieldFileError, Found, Position, Shape
+from recon.model.units import M_PER_DEG
 
 DECIMALS = 8
 """Decimals of a degree: a millimetre."""
-METRES_A_DEGREE = 111_195.0
 
 
 def tidied(found: Found, *, close_paths: bool) -> dict[str, Any]:
@@ -146,11 +146,11 @@ def _without_repeats(ring: list[Position]) -> list[Position]:
 def _simplified(name: str, rings: list[list[Position]], found: Found) -> list[list[Position]]:
     import shapely
 
-    east_m = METRES_A_DEGREE * cos(radians(rings[0][0][1]))
-    scaled = [[(x * east_m, y * METRES_A_DEGREE) for x, y in ring] for ring in rings]
+    east_m = M_PER_DEG * cos(radians(rings[0][0][1]))
+    scaled = [[(x * east_m, y * M_PER_DEG) for x, y in ring] for ring in rings]
     thin = shapely.simplify(shapely.Polygon(scaled[0], scaled[1:]), SIMPLIFIED_WITHIN_M)
     fewer = [
-        [(x / east_m, y / METRES_A_DEGREE) for x, y in ring.coords[:-1]]
+        [(x / east_m, y / M_PER_DEG) for x, y in ring.coords[:-1]]
         for ring in (thin.exterior, *thin.interiors)
     ]
     before, after = (sum(map(len, each)) for each in (rings, fewer))

@@ -5,6 +5,7 @@ PROJ falls back silently: to a path without its grid, metres off, and where it k
 chosen for the place, and its accuracy is stated.
 """
 
+import re
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,6 +22,8 @@ AS_WGS84 = frozenset({"China 2000", "D_China_2000", "China_2000"})
 AS_WGS84_M = 0.5
 UNKNOWN_BY_WGS84 = ("unknown", "not_specified", "not specified")
 """How the name of a datum begins that is known by its ellipsoid alone."""
+
+_FILES = re.compile(r"nadgrids=(?!@null\b)|geoidgrids|PARAMETERFILE", re.IGNORECASE)
 
 
 class UnknownDatumError(Exception):
@@ -83,6 +86,18 @@ def map_from_globe(crs: "pyproj.CRS") -> "pyproj.Transformer":
     import pyproj
 
     return pyproj.Transformer.from_crs(WGS84, crs, always_xy=True, allow_ballpark=is_as_wgs84(crs))
+
+
+def names_files(wkt: str) -> bool:
+    """Return whether a reference system makes PROJ look for files that it names."""
+    return _FILES.search(wkt) is not None
+
+
+def horizontal(crs: "pyproj.CRS") -> "pyproj.CRS":
+    """Return the horizontal part of a reference system, with its shift to WGS84 if it has one."""
+    if crs.is_bound:
+        return crs
+    return horizontal(crs.sub_crs_list[0]) if crs.is_compound else crs.to_2d()
 
 
 def is_as_wgs84(crs: "pyproj.CRS") -> bool:

@@ -7,6 +7,8 @@ from typing import Generic, TypeVar
 NS_PER_S = 1_000_000_000
 HECTARE_M2 = 10_000.0
 M_PER_FT = 0.3048
+M_PER_DEG = 111_195.0
+"""Along a meridian, on a sphere of the earth's mean radius."""
 
 
 def seconds_to_ns(seconds: float) -> int:

@@ -60,14 +60,15 @@ _TIMER = "the camera's timer: set it to {every_s:g} s"
 _DISTANCE = "photos: set the program to one every {every_m:.1f} m"
 _AT_END = "the end: set it to {at_end} in the program"
 _AUTOPILOT_LOST = "a lost signal: set the autopilot's failsafe to return home"
+_NO_CURVES = NotHeld(
+    "the format has no corner radius: plan without curved turns, or write .kmz or .csv"
+)
 _MAVLINK: Mapping[FlightFeature, ByHand | NotHeld] = {
     FlightFeature.STOPS: ByHand(
         "corners: the autopilot rounds them within its acceptance radius (WPNAV_RADIUS, "
         "NAV_ACC_RAD); keep that small"
     ),
-    FlightFeature.CURVED: NotHeld(
-        "the format has no corner radius: plan without curved turns, or write .kmz or .csv"
-    ),
+    FlightFeature.CURVED: _NO_CURVES,
     FlightFeature.LOST_SIGNAL: ByHand(_AUTOPILOT_LOST),
 }
 _DRAWING: Mapping[FlightFeature, ByHand | NotHeld] = {
@@ -77,9 +78,7 @@ _DRAWING: Mapping[FlightFeature, ByHand | NotHeld] = {
     ),
     FlightFeature.SPEED: ByHand("speed: set it to {speed_mps:g} m/s"),
     FlightFeature.STOPS: ByHand("corners: set the program to stop at them"),
-    FlightFeature.CURVED: NotHeld(
-        "the format has no corner radius: plan without curved turns, or write .kmz or .csv"
-    ),
+    FlightFeature.CURVED: _NO_CURVES,
     FlightFeature.LOITER: NotHeld(
         "the format has no stays at waypoints: write .kmz, .plan, .waypoints or .csv"
     ),

@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 from msgspec import Meta
 
+from recon.fields.json_file import WGS84
 from recon.geo import enu_from_geo, region_fault
 from recon.model.airspace import Region
 from recon.model.arrays import FloatArray
@@ -30,16 +31,6 @@ MOST_CORNERS = 10_000
 GEOMETRIES = ("Polygon", "MultiPolygon", "Point")
 FARTHEST_M = 50_000.0
 """Farthest corner from the origin: more is another place, or swapped latitude and longitude."""
-ACCEPTED_CRS = frozenset(
-    {
-        "urn:ogc:def:crs:OGC:1.3:CRS84",
-        "urn:ogc:def:crs:OGC::CRS84",
-        "OGC:CRS84",
-        "urn:ogc:def:crs:EPSG::4326",
-        "EPSG:4326",
-    }
-)
-"""Names of WGS84 that programs write; the coordinates are longitude, latitude under each."""
 SWAPPED = "latitude and longitude look swapped: GeoJSON writes the longitude first"
 
 Position = Annotated[
@@ -113,27 +104,6 @@ def point_of(feature: Feature, frame: LocalFrame) -> LatLon:
     return LatLon(latitude_deg=position[1], longitude_deg=position[0])
 
 
-def first_corner_of(feature: Feature) -> LatLon:
-    """Return the first position of a feature: an origin where no site gives one. `SiteError`."""
-    corner = feature.geometry.get("coordinates")
-    while isinstance(corner, list) and corner and isinstance(corner[0], list):
-        corner = corner[0]
-    longitude_deg, latitude_deg = convert(feature.place, corner, Position, "coordinates")[:2]
-    if abs(latitude_deg) > 90.0 or abs(longitude_deg) > 180.0:
-        is_swapped = abs(longitude_deg) <= 90.0 and abs(latitude_deg) <= 180.0
-        raise SiteError(
-            f"{feature.place}: expected longitude and latitude in degrees, got "
-            f"{longitude_deg:.6g}, {latitude_deg:.6g}; "
-            + (SWAPPED if is_swapped else "export the layer as EPSG:4326")
-        )
-    return LatLon(latitude_deg, longitude_deg)
-
-
-def is_json(data: bytes) -> bool:
-    """Return whether a file begins as a JSON object does, after a mark of UTF-8 or without."""
-    return data.removeprefix(BOM_UTF8).lstrip().startswith(b"{")
-
-
 def _read_json(path: Path) -> object:
     data = read_bounded(path, LARGEST_LAYER_BYTES, "a GeoJSON file").removeprefix(BOM_UTF8)
     try:
@@ -176,7 +146,7 @@ def _object(place: str, data: object, kind: str | None) -> dict[str, Any]:
         crs = data["crs"]
         properties = crs.get("properties") if isinstance(crs, dict) else None
         name = properties.get("name") if isinstance(properties, dict) else crs
-        if not isinstance(name, str) or name not in ACCEPTED_CRS:
+        if not isinstance(name, str) or name not in WGS84:
             raise SiteError(
                 f"{place}: expected coordinates in WGS84 (CRS84 or EPSG:4326), got the CRS "
                 f"{shown_value(name)}; export the layer as EPSG:4326"

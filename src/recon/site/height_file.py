@@ -25,7 +25,7 @@ from rasterio.transform import Affine
 from rasterio.windows import Window
 
 from recon.geo import enu_from_geo, geo_from_enu
-from recon.geo.datum import map_from_globe
+from recon.geo.datum import horizontal, map_from_globe, names_files
 from recon.model.arrays import FloatArray
 from recon.model.errors import SiteError
 from recon.model.geo import LocalFrame
@@ -42,8 +42,6 @@ TIFF_STARTS = frozenset({b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"})
 METRES = frozenset({None, "", "m", "metre", "meter", "metres", "meters"})
 LOWEST_M, HIGHEST_M = -1_000.0, 10_000.0
 """What an altitude in site.toml may be."""
-_OTHER_FILES = re.compile(r"nadgrids=(?!@null\b)|geoidgrids|PARAMETERFILE", re.IGNORECASE)
-"""What makes PROJ look for a file that the reference system names."""
 _MEMORY = re.compile(r"/vsimem/[^/ ]*/")
 GDAL_OPTIONS = {"GDAL_DISABLE_READDIR_ON_OPEN": "EMPTY_DIR", "CPL_DEBUG": "OFF"}
 
@@ -196,7 +194,7 @@ def _height_file(place: str, dataset: DatasetReader) -> HeightFile:
         )
     try:
         text = dataset.crs.to_wkt()
-        if _OTHER_FILES.search(text):
+        if names_files(text):
             raise SiteError(
                 f"{place}: expected a coordinate reference system without grid files of its own; "
                 "export it in EPSG:4326"
@@ -213,13 +211,6 @@ def _height_file(place: str, dataset: DatasetReader) -> HeightFile:
     if not (base.is_geographic or base.is_projected):
         raise SiteError(f"{place}: expected geographic or projected coordinates, got {base.name!a}")
     return HeightFile(place, dataset, crs, ~transform, globe)
-
-
-def horizontal(crs: pyproj.CRS) -> pyproj.CRS:
-    """Return the horizontal part of a reference system, with its shift to WGS84 if it has one."""
-    if crs.is_bound:
-        return crs
-    return horizontal(crs.sub_crs_list[0]) if crs.is_compound else crs.to_2d()
 
 
 def _refuse_no_heights(place: str, heights_m: FloatArray) -> None:

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import cos, hypot, radians
 
-from recon.model.units import NS_PER_S
+from recon.model.units import M_PER_DEG, NS_PER_S
 from recon.product.photos.band import Kind, name_and_role
 from recon.product.photos.photo import Photo
 
@@ -21,7 +21,6 @@ NAMED_WITHIN_NS = 2 * NS_PER_S
 """Files of one shot are written one after the other, each with its own second."""
 UNNAMED_WITHIN_NS = NS_PER_S
 UNNAMED_WITHIN_M = 3.0
-M_PER_DEG = 111_000.0
 DJI_NAME = re.compile(r"DJI_\d{14}_(\d{4,5})")
 """With a time, which may differ by a second between the files of a shot."""
 
