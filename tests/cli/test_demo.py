@@ -7,6 +7,7 @@ import urllib.request
 from pathlib import Path
 
 from tests.cli.processes import PATIENCE_S, started
+from tests.small_field import small_field
 from typer.testing import CliRunner
 
 from recon.cli.commands import app
@@ -17,29 +18,8 @@ def children_of(pid: int) -> list[int]:
     return [int(word) for word in text.split()]
 
 
-FEW = """about = "a small field in sun"
-start_utc = 2025-06-20T16:00:00Z
-
-[site]
-latitude_deg = 41.9
-longitude_deg = -93.6
-ground_altitude_m = 280.0
-
-[task]
-region_m = [[0.0, 0.0], [120.0, 0.0], [120.0, 80.0], [0.0, 80.0]]
-limit_min = 10.0
-
-[fleet]
-survey_drones = 2
-
-[imager]
-radius_m = 100.0
-"""
-
-
 def test_vehicles_fly_and_all_that_it_started_ends_with_the_demo(tmp_path: Path) -> None:
-    scenario = tmp_path / "few.toml"
-    scenario.write_text(FEW, encoding="utf-8")
+    scenario = small_field(tmp_path, drones=2)
     ports = ("--http-port", "0", "--link-port", "0")
     options = ("--scenario", str(scenario), "--record", str(tmp_path / "records"))
     with started("demo", *ports, *options) as demo:
@@ -66,8 +46,7 @@ def test_vehicles_fly_and_all_that_it_started_ends_with_the_demo(tmp_path: Path)
 
 
 def test_it_ends_as_cleanly_before_anything_flies(tmp_path: Path) -> None:
-    scenario = tmp_path / "few.toml"
-    scenario.write_text(FEW, encoding="utf-8")
+    scenario = small_field(tmp_path, drones=2)
     ports = ("--http-port", "0", "--link-port", "0")
     with started("demo", *ports, "--scenario", str(scenario)) as demo:
         demo.line_with("Ctrl+C ends the demo")
@@ -78,8 +57,7 @@ def test_it_ends_as_cleanly_before_anything_flies(tmp_path: Path) -> None:
 
 
 def test_a_bad_scenario_is_an_error_and_nothing_is_started(tmp_path: Path) -> None:
-    scenario = tmp_path / "few.toml"
-    scenario.write_text(FEW.replace("survey_drones = 2", "survey_drones = 0"), encoding="utf-8")
+    scenario = small_field(tmp_path, drones=0)
     with started("demo", "--scenario", str(scenario)) as demo:
         assert demo.wait() == 2
         assert f"{scenario}:14: fleet.survey_drones: expected a whole number" in demo.text
