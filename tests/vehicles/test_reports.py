@@ -18,7 +18,8 @@ from recon.model.report import (
     MessageSeverity,
 )
 from recon.model.vehicle import BatteryWarning, CameraState, FlightMode
-from recon.vehicles.reports import printable, to_report, to_serial
+from recon.vehicles.printable import printable
+from recon.vehicles.reports import to_report, to_serial
 
 CORE = {
     "is_flying": 1,

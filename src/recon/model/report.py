@@ -6,6 +6,7 @@ A field is None when the app reports it as unknown or out of range.
 from dataclasses import dataclass
 from enum import IntEnum
 
+from recon.model.app_report import AppFacts, OutcomeReport, PhotosReport
 from recon.model.geo import LatLon
 from recon.model.imagery import RgbImage
 from recon.model.vehicle import Attitude, BatteryWarning, CameraState, FlightMode, VelocityNed
@@ -91,4 +92,14 @@ class IgnoredReport:
     reason: str
 
 
-Report = CoreReport | ExtendedReport | ImageReport | AckReport | MessageReport | IgnoredReport
+Report = (
+    CoreReport
+    | ExtendedReport
+    | ImageReport
+    | AckReport
+    | MessageReport
+    | AppFacts
+    | PhotosReport
+    | OutcomeReport
+    | IgnoredReport
+)

@@ -1,4 +1,4 @@
-"""Packets into reports (ICD 3.1, decisions on noisy values); text from the wire is untrusted."""
+"""Packets into reports (ICD 3.1, decisions on noisy values)."""
 
 from collections.abc import Callable
 from enum import IntEnum
@@ -19,33 +19,8 @@ from recon.model.report import (
     Report,
 )
 from recon.model.vehicle import Attitude, BatteryWarning, CameraState, FlightMode, VelocityNed
-
-
-def _escape(character: str) -> str:
-    if character == "\\":
-        return "\\\\"
-    if character.isprintable():
-        return character
-    code = ord(character)
-    if code < 0x80:
-        return f"\\x{code:02x}"
-    return f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
-
-
-def printable(raw: bytes, limit_chars: int = 1000) -> str:
-    """Return `raw` as text without control, formatting or private characters.
-
-    Bytes that are not UTF-8 and characters that are not printable (terminal escapes, line breaks,
-    direction overrides) appear as backslash escapes; a backslash is doubled, so that two different
-    inputs within the limit never look the same. Longer text ends with an ellipsis.
-    """
-    text = raw[: 4 * limit_chars].decode("utf-8", errors="surrogateescape")
-    if not text.isprintable() or "\\" in text:
-        text = "".join(
-            f"\\x{ord(c) - 0xDC00:02x}" if 0xDC80 <= ord(c) <= 0xDCFF else _escape(c) for c in text
-        )
-    return text if len(text) <= limit_chars else text[:limit_chars] + "…"
-
+from recon.vehicles.app_texts import read_app_text
+from recon.vehicles.printable import printable
 
 PLACEHOLDER_SERIAL = b"00000"
 """What apps send before they know the aircraft's serial."""
@@ -107,7 +82,10 @@ def _acknowledgment(packet: wire.Acknowledgment) -> AckReport | IgnoredReport:
     return AckReport(answered=answered, positive=packet.positive == 1)
 
 
-def _message(packet: wire.MessageString) -> MessageReport | IgnoredReport:
+def _message(packet: wire.MessageString) -> Report:
+    told = read_app_text(packet.text)
+    if told is not None:
+        return told
     severity = _member(MessageSeverity, packet.type)
     if severity is None:
         return IgnoredReport(f"message type must be 0 to 3; got {packet.type}")
