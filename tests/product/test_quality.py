@@ -13,7 +13,7 @@ from recon.model.units import NS_PER_S
 from recon.product.footprint import Aim, PhotoView
 from recon.product.photos.look import Look, look_of
 from recon.product.photos.photo import GimbalAttitude, Photo
-from recon.product.quality import quality_of
+from recon.product.quality import BLANK_DETAIL, quality_of
 from recon.product.shot_files import ShotFiles
 from recon.product.timing import TimedPhoto
 
@@ -72,6 +72,18 @@ def test_each_reason_is_named_for_the_photo_that_has_it(odd: dict, reason: str) 
     assert found[str(ODD)].startswith(reason)
 
 
+def test_a_blank_photo_is_called_blank_and_no_measure_for_its_neighbours() -> None:
+    blank = replace(GOOD, detail=0.0)
+    said = "blank: its picture shows no detail"
+    assert quality_of(FLIGHT, files(look=blank)) == {str(ODD): said}
+    among_blank = files()
+    for number, each in enumerate(among_blank.photos):
+        look = blank if number != ODD else GOOD
+        among_blank.photos[number] = replace(each, photo=replace(each.photo, look=look))
+    names = {each.photo.name for each in among_blank.photos}
+    assert quality_of(FLIGHT, among_blank) == dict.fromkeys(names - {str(ODD)}, said)
+
+
 def test_half_the_detail_and_a_gimbal_turned_over_are_no_faults() -> None:
     assert quality_of(FLIGHT, files(look=replace(GOOD, detail=0.045))) == {}
     assert quality_of(FLIGHT, files(attitude=GimbalAttitude(0.0, -90.0, 180.0))) == {}
@@ -96,7 +108,8 @@ def test_blur_and_exposure_are_seen_in_small_pictures(tmp_path: Path) -> None:
     sharp = scene(640, 480)
     good = look(tmp_path / "a.jpg", sharp)
     blurred = look(tmp_path / "b.jpg", cv2.GaussianBlur(sharp, (0, 0), 6.0))
-    assert blurred.detail < 0.3 * good.detail
+    assert BLANK_DETAIL < blurred.detail < 0.3 * good.detail
+    assert look(tmp_path / "f.jpg", np.full_like(sharp, 128)).detail < BLANK_DETAIL
     darker = look(tmp_path / "c.jpg", sharp // 2)
     assert darker.detail == pytest.approx(good.detail, rel=0.1)
     bright = sharp.copy()

@@ -22,6 +22,9 @@ from recon.product.timing import TimedPhoto
 
 MOST_MOVED_PX = 1.5
 """During its exposure: more is seen as blur. Survey guides ask for half a pixel to one."""
+BLANK_DETAIL = 0.002
+"""A picture of one colour has 0, noise of a third of a grey level more than this, ground far more:
+0.07 in real photos, a tenth of it in one that is very blurred."""
 LEAST_DETAIL = 0.4
 """Of the neighbours' median. A shaded photo among sunlit ones keeps half; out of focus by three
 pixels of its preview, a fifth is left."""
@@ -112,7 +115,8 @@ def _on_the_way(flight: FlightData, photos: Sequence[TimedPhoto]) -> Judge:
 
 
 def _blurred(photos: Sequence[TimedPhoto]) -> Iterator[tuple[str, str]]:
-    """Yield names with a reason, of photos with far less detail than those before and after."""
+    """Yield names with a reason, of blank photos, and of those with far less detail than the ones
+    before and after."""
     series: dict[object, list[TimedPhoto]] = defaultdict(list)
     for each in photos:
         band = each.photo.band.name if each.photo.band else ""
@@ -120,11 +124,14 @@ def _blurred(photos: Sequence[TimedPhoto]) -> Iterator[tuple[str, str]]:
     for found in series.values():
         looks = [each.photo.look for each in found]
         detail = np.array([np.nan if look is None else look.detail for look in looks])
-        yield from _poorer(
-            found, detail, LEAST_DETAIL, "blurred: {:.0f} % of its neighbours' detail"
-        )
         small = np.array([_bytes_per_pixel(each.photo) for each in found])
         small[np.isfinite(detail)] = np.nan
+        for number in np.flatnonzero(detail < BLANK_DETAIL):
+            yield found[number].photo.name, "blank: its picture shows no detail"
+        # Blank photos, as of water or snow, are no measure for others.
+        detail[detail < BLANK_DETAIL] = np.nan
+        said = "blurred: {:.0f} % of its neighbours' detail"
+        yield from _poorer(found, detail, LEAST_DETAIL, said)
         said = "perhaps blurred: its file has {:.0f} % of its neighbours' size"
         yield from _poorer(found, small, LEAST_SIZE, said)
 
@@ -133,9 +140,9 @@ def _poorer(
     photos: Sequence[TimedPhoto], values: FloatArray, least: float, said: str
 ) -> Iterator[tuple[str, str]]:
     for number, each in enumerate(photos):
-        share = values[number] / max(_neighbours(values, number), 1e-9)
-        if share < least:
-            yield each.photo.name, said.format(100.0 * share)
+        usual = _neighbours(values, number)
+        if values[number] < least * usual:
+            yield each.photo.name, said.format(100.0 * values[number] / usual)
 
 
 def _bytes_per_pixel(photo: Photo) -> float:
