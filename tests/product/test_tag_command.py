@@ -224,9 +224,9 @@ def test_twice_inside_the_card_gives_the_same_result(
     (first, files), (second, again) = result(), result()
     assert files == again
     assert "left out: SIM-1_0000.MP4: no photos that Recon reads (.mp4)" in first
-    assert "left out: tagged: written by recon tag" in second
+    assert "left out: tagged: written by Recon" in second
     card = CliRunner().invoke(app, ["tag", "tagged", "--flight", str(record), "--out", "other"])
-    assert "what recon tag wrote" in str(card.exception)
+    assert "what Recon wrote" in str(card.exception)
     there = CliRunner().invoke(app, ["tag", ".", "--flight", str(record), "--out", "."])
     assert "expected a folder without photos" in str(there.exception)
 

@@ -10,6 +10,7 @@ from recon.cli.output import print_line
 from recon.cli.progress import progress_over
 from recon.cli.recorded_maps import refuse_used
 from recon.model.errors import RecordError
+from recon.product.photos.card import begin_own
 from recon.product.shadow_record import photos_by_cell, sun_by_cell, sun_cog
 from recon.product.sun_at import shade_map
 from recon.product.tag import sun_history
@@ -38,7 +39,8 @@ def shadow_record_command(
         shown = [(each.at_ns, each.footprint) for each in tagged_photos(tagged, flight)]
         photos = photos_by_cell(history, progress_over(shown, "photos", len(shown)))
     try:
-        (out / MAPS).mkdir(parents=True, exist_ok=True)
+        begin_own(out)
+        (out / MAPS).mkdir(exist_ok=True)
         for kept in progress_over(flight.maps, "shade maps", len(flight.maps)):
             utc = flight.utc(kept.at_ns)
             name = utc.replace("-", "").replace(":", "") + ".tif"

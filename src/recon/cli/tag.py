@@ -36,7 +36,7 @@ from recon.product.panels import (
     picture_of,
     write_panels,
 )
-from recon.product.photos.card import MARK, card_of
+from recon.product.photos.card import begin_own, card_of
 from recon.product.photos.shots import CameraShot, shots_of
 from recon.product.quality import quality_of
 from recon.product.registration import read_grey, with_headings
@@ -130,9 +130,9 @@ def tag_command(
     if sun_sensor and not sensor:
         warn("--sun-sensor: no photo's sun sensor tells sun from shade")
     try:
-        for folder in (out, out / "masks", out / "xmp"):
-            folder.mkdir(parents=True, exist_ok=True)
-        (out / MARK).touch()
+        begin_own(out)
+        for folder in (out / "masks", out / "xmp"):
+            folder.mkdir(exist_ok=True)
         ground = ground_of_flight(flown, timed.photos)
         light = FlightLight(flown, history, ground, sunlit, sensor if sun_sensor else {})
         tags, shown = tag_all(out, files, light)

@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 from recon.cli.commands import app
 from recon.model.errors import RecordError
 from recon.product.mosaic.finished import finished_mosaic
+from recon.product.photos.card import card_of
 
 
 @pytest.fixture(scope="module")
@@ -46,6 +47,10 @@ def test_the_command_prints_what_the_mosaic_shows(card: Path, printed: str) -> N
     with rasterio.open(card / "out" / "mosaic.tif") as dataset:
         assert dataset.transform.a == 0.5
         assert dataset.tags()["RECON_BRIGHTNESS"].startswith("evened to full sun")
+
+
+def test_a_mosaic_is_never_read_as_photos(card: Path, printed: str) -> None:
+    assert card_of([card]).left["written by Recon"] == [card / "out"]
 
 
 def test_the_report_shows_it(card: Path, printed: str, tmp_path: Path) -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from recon.model.errors import RecordError
-from recon.product.photos.card import MARK, card_of, is_own
+from recon.product.photos.card import begin_own, card_of, is_own
 
 
 def touched(top: Path, *names: str) -> None:
@@ -52,18 +52,20 @@ def test_what_systems_and_cameras_put_on_cards_is_left_out_and_named(tmp_path: P
     assert "no photos that Recon reads (.mp4)" in left
 
 
-@pytest.mark.parametrize("signs", [(MARK,), ("progress.jsonl", "masks/a_mask.JPG")])
+@pytest.mark.parametrize("signs", [(), (".recon-tagged",), ("progress.jsonl", "masks/a_mask.JPG")])
 def test_what_recon_wrote_is_never_read_whatever_it_is_called(
     tmp_path: Path, signs: tuple[str, ...]
 ) -> None:
     touched(tmp_path, "a.jpg", "deep/results of May/odm/images/a.jpg")
-    touched(tmp_path / "deep/results of May", *signs)
     own = tmp_path / "deep/results of May"
+    touched(own, *signs)
+    if not signs:
+        begin_own(own)
     assert is_own(own)
     assert not is_own(tmp_path)
-    assert found(tmp_path) == (["a.jpg"], {"written by recon tag": ["deep/results of May"]})
+    assert found(tmp_path) == (["a.jpg"], {"written by Recon": ["deep/results of May"]})
     for named in (own, own / "odm", own / "odm/images/a.jpg"):
-        with pytest.raises(RecordError, match="what recon tag wrote"):
+        with pytest.raises(RecordError, match="what Recon wrote"):
             card_of([named])
 
 

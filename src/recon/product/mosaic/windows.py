@@ -22,6 +22,7 @@ from rasterio.transform import Affine
 from recon.model.geo import GroundGrid
 from recon.product.mosaic.choice import OUTSIDE, Light, PixelChoice
 from recon.product.mosaic.plan import WINDOW_CELLS, WINDOW_PX, MosaicPlan, MosaicWindow
+from recon.product.photos.card import begin_own
 from recon.record.files.atomic_file import replace_file
 from recon.record.raster.geotiff import projected_crs
 
@@ -87,7 +88,7 @@ class WindowStore:
     @classmethod
     def begin(cls, out: Path, plan: MosaicPlan, key: str) -> "WindowStore":
         """Return the windows of a run, with those that it finished before."""
-        out.mkdir(parents=True, exist_ok=True)
+        begin_own(out)
         folder = out / f"{FOLDER}{key}"
         for other in out.glob(f"{FOLDER}*"):
             if other != folder:

@@ -8,10 +8,11 @@ from pathlib import Path
 from recon.model.errors import RecordError
 
 SUFFIXES = (".jpg", ".jpeg", ".tif", ".tiff")
-MARK = ".recon-tagged"
-"""File in each folder that `recon tag` writes: nothing below it is read as a photo."""
+MARK = ".recon-written"
+"""File in each folder that Recon writes: nothing below it is read as a photo."""
+EARLIER_MARK = ".recon-tagged"
 PROGRESS = "progress.jsonl"
-"""Tells such a folder of earlier versions, beside its masks."""
+"""Tells such a folder of still earlier versions, beside its masks."""
 SYSTEM_FOLDERS = frozenset(
     ("__macosx", "$recycle.bin", "system volume information", "lost.dir", "@eadir")
 )
@@ -23,7 +24,7 @@ SYSTEM_FILES = frozenset(("thumbs.db", "desktop.ini"))
 SYSTEM, PREVIEWS, OWN, MASKS = (
     "files of the computer's or card's system",
     "previews of the camera",
-    "written by recon tag",
+    "written by Recon",
     "masks",
 )
 UNREADABLE = "cannot be opened"
@@ -51,7 +52,7 @@ def card_of(images: Sequence[Path]) -> Card:
         owner = next((each for each in (path, *path.resolve().parents) if is_own(each)), None)
         if owner is not None:
             raise RecordError(
-                f"{path}: expected photos, got what recon tag wrote to {owner}: name the folder "
+                f"{path}: expected photos, got what Recon wrote to {owner}: name the folder "
                 "with the cards"
             )
         if path.is_dir():
@@ -66,9 +67,15 @@ def card_of(images: Sequence[Path]) -> Card:
     return card
 
 
+def begin_own(folder: Path) -> None:
+    """Make a folder that Recon writes, with its mark; raises OSError."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / MARK).touch()
+
+
 def is_own(folder: Path) -> bool:
-    """Return whether `recon tag` has written a folder."""
-    if (folder / MARK).is_file():
+    """Return whether Recon has written a folder."""
+    if any((folder / mark).is_file() for mark in (MARK, EARLIER_MARK)):
         return True
     return (folder / PROGRESS).is_file() and (folder / "masks").is_dir()
 
