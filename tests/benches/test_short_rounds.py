@@ -11,6 +11,7 @@ FEW = ("--apps", "2")
 COMMANDS = {
     "cli.bench_first_page": ("--rounds", "1"),
     "cli.bench_startup": ("--repeats", "1"),
+    "fields.bench_import": ("--fields", "20", "--only", "register"),
     "fleet.bench_trust": (),
     "product.bench_tag": ("--photos", "8"),
     "record.bench_record": ("--seconds", "1"),

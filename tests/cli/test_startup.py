@@ -112,3 +112,10 @@ finally:
         check=True,
     )
     assert "threads: 1" in ended.stdout.decode().splitlines()
+
+
+def test_a_plan_of_drones_at_one_place_loads_no_solver() -> None:
+    field = str(Path(__file__).parents[2] / "examples" / "river-field.geojson")
+    loaded = loaded_by("plan", field, "--gsd", "2cm", "--drones", "2")
+    assert "numpy" in loaded
+    assert "scipy" not in loaded

@@ -1,8 +1,6 @@
 """Files from a GIS are read alike in each format; hostile ones are refused with a sentence."""
 
-import io
 import json
-import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -11,34 +9,14 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.fields.hostile import HOLE, HOSTILE, KML, OUTLINE, VRT, zip_named, zip_of
 
-from recon.fields import field_file, limits
+from recon.fields import field_file
 from recon.fields.field_file import read_import
 from recon.fields.shape import FieldFileError
 from recon.model.errors import SiteError
 
-HOLE = [(-93.6032, 41.9012), (-93.6030, 41.9012), (-93.6030, 41.9014), (-93.6032, 41.9012)]
-OUTLINE = [(-93.604, 41.901), (-93.602, 41.901), (-93.602, 41.902), (-93.604, 41.901)]
 FIELD = shapely.Polygon(OUTLINE, [HOLE])
-
-KML = f"""<?xml version="1.0" encoding="UTF-8"?>
-<kml xmlns="http://www.opengis.net/kml/2.2"><Document><Placemark><name>north field</name><Polygon>
-<outerBoundaryIs><LinearRing><coordinates>{" ".join(f"{x},{y},0" for x, y in OUTLINE)}
-</coordinates></LinearRing></outerBoundaryIs>
-<innerBoundaryIs><LinearRing><coordinates>{" ".join(f"{x},{y},0" for x, y in HOLE)}
-</coordinates></LinearRing></innerBoundaryIs></Polygon></Placemark></Document></kml>"""
-
-
-def _zip(**files: bytes | str) -> bytes:
-    return _zip_of({name.replace("__", "."): data for name, data in files.items()})
-
-
-def _zip_of(files: dict[str, bytes | str]) -> bytes:
-    packed = io.BytesIO()
-    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, data in files.items():
-            archive.writestr(name, data)
-    return packed.getvalue()
 
 
 def _written(folder: Path, name: str, driver: str, crs: str = "EPSG:4326") -> Path:
@@ -63,17 +41,17 @@ def _written(folder: Path, name: str, driver: str, crs: str = "EPSG:4326") -> Pa
     return path
 
 
-def _shapefile_zip(folder: Path, crs: str) -> bytes:
+def _shapefilezip_named(folder: Path, crs: str) -> bytes:
     _written(folder, "field.shp", "ESRI Shapefile", crs)
-    return _zip_of({f"gis/{path.name}": path.read_bytes() for path in folder.glob("field.*")})
+    return zip_of({f"gis/{path.name}": path.read_bytes() for path in folder.glob("field.*")})
 
 
 @pytest.mark.parametrize("format_", ["kml", "kmz", "shp", "gpkg", "geojson"])
 def test_each_format_gives_the_field_with_its_hole_and_name(format_: str, tmp_path: Path) -> None:
     data = {
         "kml": lambda: KML.encode(),
-        "kmz": lambda: _zip(doc__kml=KML),
-        "shp": lambda: _shapefile_zip(tmp_path, "EPSG:26915"),
+        "kmz": lambda: zip_named(doc__kml=KML),
+        "shp": lambda: _shapefilezip_named(tmp_path, "EPSG:26915"),
         "gpkg": lambda: _written(tmp_path, "f.gpkg", "GPKG", "EPSG:26915").read_bytes(),
         "geojson": lambda: _written(tmp_path, "f.geojson", "GeoJSON").read_bytes(),
     }[format_]()
@@ -100,62 +78,6 @@ def test_points_are_kept_and_lines_counted() -> None:
     assert [each.geometry["type"] for each in found.features] == ["Point", "Polygon", "Polygon"]
     (path,) = found.excluded
     assert "a path of" in str(path)
-
-
-ENTITIES = KML.replace("<kml", '<!DOCTYPE a [<!ENTITY b "bb"><!ENTITY c "&b;&b;">]><kml', 1)
-
-VRT = """<!-- <kml> --><OGRVRTDataSource><OGRVRTLayer name="a"><SrcDataSource>/home/a.csv
-</SrcDataSource></OGRVRTLayer></OGRVRTDataSource>"""
-
-
-def _packed(method: int) -> bytes:
-    packed = io.BytesIO()
-    with zipfile.ZipFile(packed, "w", method) as archive:
-        archive.writestr("doc.kml", bytes(1024))
-    return packed.getvalue()
-
-
-def _corners(count: int, shapes: int) -> bytes:
-    ring = [[k * 1e-7, (k % 2) * 1e-7] for k in range(count)]
-    shape = {"type": "Polygon", "coordinates": [[*ring, ring[0]]]}
-    one = {"type": "Feature", "properties": {}, "geometry": shape}
-    return json.dumps({"type": "FeatureCollection", "features": [one] * shapes}).encode()
-
-
-DEEP = b"<kml>" + b"<Folder>" * 200 + b"</Folder>" * 200 + b"</kml>"
-MANY = b"<kml>" + b"<a/>" * 500_000 + b"</kml>"
-NESTED = b'{"type":"Polygon","coordinates":' + b"[" * 100_000 + b"]" * 100_000 + b"}"
-
-HOSTILE = {
-    "an LZMA bomb": (lambda: _packed(zipfile.ZIP_LZMA), "stored or deflated"),
-    "a bzip2 bomb": (lambda: _packed(zipfile.ZIP_BZIP2), "stored or deflated"),
-    "a member without a name": (lambda: _zip_of({".": KML}), "names inside the archive"),
-    "a file that names another": (lambda: VRT.encode(), "other XML"),
-    "two documents": (lambda: KML.encode() + VRT.encode(), "invalid XML"),
-    "more corners than are read": (lambda: _corners(9_000, 30), "at most 250000 corners"),
-    "a bomb": (lambda: _zip(doc__kml=b"<kml>" + bytes(40 * 1024 * 1024)), "when unpacked"),
-    "a way out": (lambda: _zip_of({"../../etc/doc.kml": KML}), "names inside the archive"),
-    "an absolute name": (lambda: _zip_of({"/etc/doc.kml": KML}), "names inside the archive"),
-    "many files": (lambda: _zip_of({f"{n}.kml": "" for n in range(2001)}), "at most 2000 files"),
-    "entities": (lambda: ENTITIES.encode(), "without a document type"),
-    "entities in a KMZ": (lambda: _zip(doc__kml=ENTITIES), "without a document type"),
-    "deep XML": (lambda: DEEP, "elements deep"),
-    "endless XML": (lambda: MANY, "XML elements"),
-    "deep JSON": (lambda: NESTED, "nested deeply"),
-    "a zip cut off": (lambda: _zip(doc__kml=KML)[:-30], "zip archive that can be read"),
-    "a bare .shp": (lambda: b"\x00\x00\x27\x0a" + bytes(100), "as a zip"),
-    "no fields": (lambda: _zip(readme__txt="hello"), "got neither, but .txt"),
-    "a Shapefile without .prj": (lambda: _zip(a__shp=b"", a__shx=b"", a__dbf=b""), ".prj"),
-    "a false Shapefile": (
-        lambda: _zip(a__shp=b"x", a__shx=b"", a__dbf=b"", a__prj=b""),
-        "another kind of file",
-    ),
-    "other XML": (lambda: b"<svg/>", "other XML"),
-    "a program": (lambda: b"\x7fELF" + bytes(100), "another kind of file"),
-    "nothing": (lambda: b"", "another kind of file"),
-    "a damaged GeoPackage": (lambda: b"SQLite format 3\x00" + bytes(2000), "damaged"),
-    "a huge file": (lambda: b"{" + bytes(limits.LARGEST_FILE_BYTES), "at most"),
-}
 
 
 @pytest.mark.parametrize("kind", HOSTILE)

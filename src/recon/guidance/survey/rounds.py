@@ -42,6 +42,7 @@ from recon.guidance.survey.state import (
     has_settled,
     spent_budget,
 )
+from recon.model.arrays import FloatArray
 from recon.model.survey import PLANNER_GOALS, CellState, MissionAssignment, SurveyPhase
 
 Step = tuple[SurveyState, tuple[MissionAssignment, ...]]
@@ -154,8 +155,6 @@ def shares(
     plan: SurveyPlan, pieces: Sequence[Piece], surveyors: Sequence[Surveyor]
 ) -> dict[str, Route]:
     """Return each vehicle's share of the pieces: runs of one route, by the nearest starts."""
-    from scipy.optimize import linear_sum_assignment
-
     survey, settings = plan.survey, plan.settings
     cost = Cost(survey.speed_mps**2 / settings.turning_mps2, settings.least_cut_m)
     lying = plan.lattice.along_across_m([each.place_m for each in surveyors])
@@ -164,8 +163,18 @@ def shares(
     runs = shared(route, len(surveyors), plan.lattice, cost)
     places: list[AlongAcross] = [(along_m, across_m) for along_m, across_m in lying.tolist()]
     far_m = np.array([[between_m(run[:1], plan.lattice, at) for run in runs] for at in places])
-    vehicle, run = linear_sum_assignment(far_m)
-    return {surveyors[int(i)].serial: runs[int(j)] for i, j in zip(vehicle, run, strict=True)}
+    return {surveyors[vehicle].serial: runs[run] for vehicle, run in _nearest(far_m)}
+
+
+def _nearest(far_m: FloatArray) -> list[tuple[int, int]]:
+    """Return pairs (vehicle, run) with the least sum of the (vehicles, runs) distances."""
+    if (far_m == far_m[0]).all():
+        # From one place, as in plans, any pairs do: scipy takes half a second to import.
+        return [(index, index) for index in range(min(far_m.shape))]
+    from scipy.optimize import linear_sum_assignment
+
+    vehicles, runs = linear_sum_assignment(far_m)
+    return list(zip(vehicles.tolist(), runs.tolist(), strict=True))
 
 
 def _give_missions(state: SurveyState, able: Mapping[str, Surveyor], now_ns: int) -> Step:
