@@ -40,6 +40,7 @@ COMMON: dict[str, dict[str, Rule]] = {
         "executeRCLostAction": _one("goBack", "landing", "hover"),
         "takeOffSecurityHeight": _number(1.2, 1_500.0),
         "globalTransitionalSpeed": SPEED,
+        "globalRTHHeight": _number(2.0, 1_500.0, required=False),
         "droneInfo": _parent(required=False),
         "payloadInfo": _parent(required=False),
     },

@@ -38,7 +38,9 @@ class PlanExportOptions:
     ] = None
     payload: Annotated[
         str | None,
-        typer.Option("--payload", help=f"Camera of a Matrice 300 or 350: {', '.join(PAYLOADS)}."),
+        typer.Option(
+            "--payload", help=f"Camera of a Matrice 300, 350 or 400: {', '.join(PAYLOADS)}."
+        ),
     ] = None
     by_distance: Annotated[
         bool,

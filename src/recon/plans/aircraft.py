@@ -1,7 +1,8 @@
 """DJI's numbers of aircraft and cameras, which a mission file states so that an app opens it.
 
 From DJI's Cloud API, "Product support" and WPML's common elements; `DJI Fly` is the number that the
-app DJI Fly writes for every model it flies, and it names no camera.
+app DJI Fly writes for every model it flies, and it names no camera. The companion app has the same
+table; `vectors/wpml/aircraft.json` holds what both must agree on.
 """
 
 from collections.abc import Mapping
@@ -41,14 +42,18 @@ AIRCRAFT: Mapping[str, AircraftModel] = MappingProxyType(
         "Mavic 3E": AircraftModel(77, 0, CameraNumber(66, "wide")),
         "Mavic 3T": AircraftModel(77, 1, CameraNumber(67, "wide")),
         "Mavic 3M": AircraftModel(77, 2, CameraNumber(68, "visable")),
+        "Mavic 3TA": AircraftModel(77, 3, CameraNumber(129, "wide")),
         "Matrice 30": AircraftModel(67, 0, CameraNumber(52, "wide")),
         "Matrice 30T": AircraftModel(67, 1, CameraNumber(53, "wide")),
         "Matrice 3D": AircraftModel(91, 0, CameraNumber(80, "wide")),
         "Matrice 3TD": AircraftModel(91, 1, CameraNumber(81, "wide")),
         "Matrice 4E": AircraftModel(99, 0, CameraNumber(88, "wide")),
         "Matrice 4T": AircraftModel(99, 1, CameraNumber(89, "wide")),
+        "Matrice 4D": AircraftModel(100, 0, CameraNumber(98, "wide")),
+        "Matrice 4TD": AircraftModel(100, 1, CameraNumber(99, "wide")),
         "Matrice 300": AircraftModel(60, 0, None, takes_payloads=True),
         "Matrice 350": AircraftModel(89, 0, None, takes_payloads=True),
+        "Matrice 400": AircraftModel(103, 0, None, takes_payloads=True),
         "DJI Fly": AircraftModel(68, 0, None, most_waypoints=200, photos=False),
     }
 )

@@ -6,7 +6,8 @@ purpose:
 
 - `ellipsoidHeight` where the takeoff point's own height is not known: none follows from heights
   above takeoff;
-- `globalRTHHeight`: the aircraft's setting for its return stays as the pilot made it.
+- `globalRTHHeight` where the aircraft's own setting for its return is not known: the setting stays
+  as the pilot made it.
 """
 
 from dataclasses import dataclass
@@ -25,10 +26,14 @@ LOWEST_TAKEOFF_M, HIGHEST_TAKEOFF_M = 1.2, 1_500.0
 
 @dataclass(frozen=True, slots=True)
 class WpmlOptions:
-    """What a mission file states beside the flight; `created_ms` since 1970."""
+    """What a mission file states beside the flight; `created_ms` since 1970.
+
+    `go_home_height_m` is the aircraft's own setting, above takeoff; None: unknown.
+    """
 
     created_ms: int
     aircraft: AircraftModel | None = None
+    go_home_height_m: float | None = None
 
 
 def template_kml(plan: ExportedPlan, options: WpmlOptions) -> bytes:
@@ -94,6 +99,8 @@ def _mission_config(document: Element, plan: ExportedPlan, options: WpmlOptions)
     _add(config, "executeRCLostAction", "goBack")
     _add(config, "takeOffSecurityHeight", number(takeoff_m))
     _add(config, "globalTransitionalSpeed", number(first.speed_mps))
+    if options.go_home_height_m is not None:
+        _add(config, "globalRTHHeight", number(options.go_home_height_m))
     aircraft = options.aircraft
     if aircraft is None:
         return

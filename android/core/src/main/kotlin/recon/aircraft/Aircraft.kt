@@ -1,6 +1,7 @@
 package recon.aircraft
 
 import recon.geo.LatLon
+
 /**
  * The aircraft as the session commands it: DJI's SDK behind an adapter, or a simulated one.
  *
@@ -45,6 +46,9 @@ sealed interface AircraftCommand {
 sealed interface Answer {
     data object Accepted : Answer
 
+    /** Accepted, with a sentence for the operator. */
+    data class Noted(val note: String) : Answer
+
     /** [reason] is a sentence for the operator. */
     data class Refused(val reason: String) : Answer
 }
@@ -63,7 +67,13 @@ data class StickSetpoint(
 }
 
 /** A mission in the aircraft's own terms: heights above takeoff, actions or none. */
-data class MissionPlan(val points: List<PlanPoint>, val isCurved: Boolean, val landsAtEnd: Boolean)
+data class MissionPlan(
+    val points: List<PlanPoint>,
+    val isCurved: Boolean,
+    val landsAtEnd: Boolean,
+    /** Seconds between photos that the mission takes from its first waypoint to its last; null: it takes none. */
+    val photoEveryS: Double? = null,
+)
 
 data class PlanPoint(
     val position: LatLon,

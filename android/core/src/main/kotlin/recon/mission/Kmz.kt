@@ -48,8 +48,13 @@ fun planOfKmz(kmz: ByteArray): MissionPlan {
         placemarks.map(::pointOf),
         isCurved = WpmlWriter.COORDINATED in modes,
         landsAtEnd = config.text("finishAction") == "autoLand",
+        photoEveryS = placemarks.firstNotNullOfOrNull(::photoEveryS),
     )
 }
+
+private fun photoEveryS(placemark: Element): Double? = placemark.children("actionGroup")
+    .map { it.only("actionTrigger") }.firstOrNull { it.text("actionTriggerType") == "multipleTiming" }
+    ?.let { numberOf(it.text("actionTriggerParam")) }
 
 private fun pointOf(placemark: Element): PlanPoint {
     val (longitude, latitude) = placemark.only("Point").text("coordinates").split(",").map(::numberOf).takeIf {

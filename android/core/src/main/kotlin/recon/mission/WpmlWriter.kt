@@ -1,15 +1,18 @@
 package recon.mission
 
 import org.w3c.dom.Element
+import recon.aircraft.DroneNumber
 import recon.aircraft.MissionPlan
 import recon.aircraft.PlanPoint
 import java.util.Locale
 
-/** DJI's numbers of an aircraft model in WPML; null where DJI publishes none. */
-data class DroneModel(val enumValue: Int, val subEnumValue: Int)
-
 /** What a mission file states beside the plan. */
-data class WpmlOptions(val createdMs: Long, val model: DroneModel? = null)
+data class WpmlOptions(
+    val createdMs: Long,
+    val drone: DroneNumber? = null,
+    /** The aircraft's own setting, above takeoff: the file leaves it as it is. Null: unknown. */
+    val goHomeHeightM: Double? = null,
+)
 
 /**
  * The two files of a waypoint mission in DJI's WPML: the template that a person may edit, and the wayline
@@ -70,10 +73,19 @@ class WpmlWriter(private val plan: MissionPlan, private val options: WpmlOptions
         val firstM = plan.points.first().heightAboveTakeoffM
         add("wpml:takeOffSecurityHeight", number(firstM.coerceIn(LOWEST_TAKEOFF_M, HIGHEST_TAKEOFF_M)))
         add("wpml:globalTransitionalSpeed", number(plan.points.first().speedMps))
-        options.model?.let { model ->
-            add("wpml:droneInfo") {
-                add("wpml:droneEnumValue", "${model.enumValue}")
-                add("wpml:droneSubEnumValue", "${model.subEnumValue}")
+        options.goHomeHeightM?.let { add("wpml:globalRTHHeight", number(it)) }
+        options.drone?.let { drone(it) }
+    }
+
+    private fun Element.drone(drone: DroneNumber) {
+        add("wpml:droneInfo") {
+            add("wpml:droneEnumValue", "${drone.enumValue}")
+            add("wpml:droneSubEnumValue", "${drone.subEnumValue}")
+        }
+        drone.camera?.let { camera ->
+            add("wpml:payloadInfo") {
+                add("wpml:payloadEnumValue", "${camera.enumValue}")
+                add("wpml:payloadPositionIndex", "0")
             }
         }
     }
@@ -123,17 +135,41 @@ class WpmlWriter(private val plan: MissionPlan, private val options: WpmlOptions
     /** First and last waypoint have no corner to cut. */
     private fun cutsCorner(index: Int) = plan.isCurved && index in 1 until plan.points.lastIndex
 
+    /** The actions of a waypoint; the photos begin at the first, once the gimbal is turned. */
     private fun Element.actions(index: Int, point: PlanPoint) {
-        val group = withActions.indexOf(index)
-        if (group < 0) return
-        add("wpml:actionGroup") {
-            add("wpml:actionGroupId", "$group")
-            add("wpml:actionGroupStartIndex", "$index")
-            add("wpml:actionGroupEndIndex", "$index")
-            add("wpml:actionGroupMode", "sequence")
-            add("wpml:actionTrigger") { add("wpml:actionTriggerType", "reachPoint") }
+        val before = withActions.count { it < index }
+        val everyS = plan.photoEveryS
+        if (index in withActions) actionGroup(if (everyS == null || index == 0) before else before + 1, index, index) {
+            trigger("reachPoint")
             point.gimbalPitchDeg?.let { gimbal(it) }
             point.loiterS?.let { loiter(it, id = if (point.gimbalPitchDeg == null) 0 else 1) }
+        }
+        if (index == 0 && everyS != null) actionGroup(withActions.count { it == 0 }, 0, plan.points.lastIndex) {
+            trigger("multipleTiming", everyS)
+            photo()
+        }
+    }
+
+    private fun Element.actionGroup(id: Int, first: Int, last: Int, content: Element.() -> Unit) =
+        add("wpml:actionGroup") {
+            add("wpml:actionGroupId", "$id")
+            add("wpml:actionGroupStartIndex", "$first")
+            add("wpml:actionGroupEndIndex", "$last")
+            add("wpml:actionGroupMode", "sequence")
+            content()
+        }
+
+    private fun Element.trigger(type: String, everyS: Double? = null) = add("wpml:actionTrigger") {
+        add("wpml:actionTriggerType", type)
+        everyS?.let { add("wpml:actionTriggerParam", number(it)) }
+    }
+
+    private fun Element.photo() = action(0, "takePhoto") {
+        add("wpml:payloadPositionIndex", "0")
+        add("wpml:fileSuffix", "recon")
+        options.drone?.camera?.let {
+            add("wpml:payloadLensIndex", it.lens)
+            add("wpml:useGlobalPayloadLensIndex", "0")
         }
     }
 

@@ -109,7 +109,8 @@ class CompanionSession(val settings: SessionSettings) {
     fun answered(callId: Long, answer: Answer, nowNs: Long) {
         val call = calls.end(callId) ?: return
         when (answer) {
-            is Answer.Accepted -> if (call.isSuperseded) undo(call, nowNs) else accepted(call, nowNs)
+            is Answer.Accepted -> accepted(call, null, nowNs)
+            is Answer.Noted -> accepted(call, shownText(answer.note), nowNs)
             is Answer.Refused -> refused(call, shownText(answer.reason), nowNs)
         }
         tick(nowNs)
@@ -240,7 +241,9 @@ class CompanionSession(val settings: SessionSettings) {
         }
     }
 
-    private fun accepted(call: Call, nowNs: Long) {
+    private fun accepted(call: Call, note: String?, nowNs: Long) {
+        if (call.isSuperseded) return undo(call, nowNs)
+        note?.let { report(Severity.INFO, "${call.what}: $it", nowNs) }
         val command = call.command
         if (command is AircraftCommand.FlyMission) missionAccepted(nowNs)
         if (isMotion(command)) landing.ordered(landsAtEnd(command))

@@ -2,6 +2,8 @@ package recon.mission
 
 import net.jqwik.api.ForAll
 import net.jqwik.api.Property
+import recon.aircraft.CameraNumber
+import recon.aircraft.DroneNumber
 import recon.aircraft.MissionPlan
 import recon.aircraft.PlanPoint
 import recon.geo.LatLon
@@ -20,7 +22,7 @@ import kotlin.test.assertFailsWith
 import kotlin.test.assertNull
 import kotlin.test.assertTrue
 
-private val OPTIONS = WpmlOptions(createdMs = 1_700_000_000_000, DroneModel(77, 0))
+private val OPTIONS = WpmlOptions(createdMs = 1_700_000_000_000, DroneNumber(77, 0, CameraNumber(66, "wide")), 45.0)
 
 class KmzTest {
 
@@ -32,6 +34,7 @@ class KmzTest {
         assertEquals(plan.landsAtEnd, back.landsAtEnd)
         assertEquals(plan.isCurved && plan.points.size > 2, back.isCurved)
         assertEquals(plan.points.size, back.points.size)
+        assertClose(plan.photoEveryS ?: -1.0, back.photoEveryS ?: -1.0, 1e-3)
         plan.points.zip(back.points).forEachIndexed { index, (a, b) ->
             assertClose(a.position.latitudeDeg, b.position.latitudeDeg, 1e-8)
             assertClose(a.position.longitudeDeg, b.position.longitudeDeg, 1e-8)
@@ -48,10 +51,14 @@ class KmzTest {
     @Property(tries = 100)
     fun `both files keep the rules of DJI's reference`(@ForAll seed: Int) {
         val random = Random(seed)
-        val options = if (random.nextBoolean()) OPTIONS else OPTIONS.copy(model = null)
+        val options = if (random.nextBoolean()) OPTIONS else WpmlOptions(0)
         val writer = WpmlWriter(drawnPlan(random), options)
-        assertEquals(emptyList(), wpmlViolations(parsedKml(writer.template()), isTemplate = true))
-        assertEquals(emptyList(), wpmlViolations(parsedKml(writer.waylines()), isTemplate = false))
+        for ((file, isTemplate) in listOf(writer.template() to true, writer.waylines() to false)) {
+            val root = parsedKml(file)
+            assertEquals(emptyList(), wpmlViolations(root, isTemplate))
+            val groups = root.getElementsByTagNameNS(WPML, "actionGroupId")
+            assertEquals(List(groups.length) { "$it" }, List(groups.length) { groups.item(it).textContent })
+        }
     }
 
     @Test
@@ -153,5 +160,6 @@ fun drawnPlan(random: Random): MissionPlan {
             gimbalPitchDeg = random.nextDouble(-90.0, 0.0).takeIf { !isCurved && random.nextBoolean() },
         )
     }
-    return MissionPlan(points, isCurved, landsAtEnd = random.nextBoolean())
+    val photoEveryS = random.nextDouble(0.7, 10.0).takeIf { random.nextBoolean() }
+    return MissionPlan(points, isCurved, landsAtEnd = random.nextBoolean(), photoEveryS)
 }

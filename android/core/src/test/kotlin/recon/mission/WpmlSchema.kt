@@ -50,8 +50,11 @@ fun wpmlRules(isTemplate: Boolean): Map<String, Map<String, Rule>> = mapOf(
         "executeRCLostAction" to oneOf("goBack", "landing", "hover"),
         "takeOffSecurityHeight" to number(1.2, 1_500.0),
         "globalTransitionalSpeed" to number(1.0, 15.0),
+        "globalRTHHeight" to number(2.0, 1_500.0, isRequired = false),
         "droneInfo" to parent(isRequired = false),
+        "payloadInfo" to parent(isRequired = false),
     ),
+    "payloadInfo" to mapOf("payloadEnumValue" to index(), "payloadPositionIndex" to number(0.0, 2.0)),
     "droneInfo" to mapOf("droneEnumValue" to index(), "droneSubEnumValue" to index()),
     "Folder" to if (isTemplate) mapOf(
         "templateType" to oneOf("waypoint"),
@@ -96,13 +99,20 @@ fun wpmlRules(isTemplate: Boolean): Map<String, Map<String, Rule>> = mapOf(
     ),
     "actionTrigger" to mapOf(
         "actionTriggerType" to oneOf("reachPoint", "betweenAdjacentPoints", "multipleTiming", "multipleDistance"),
+        "actionTriggerParam" to number(0.001, 10_000.0, isRequired = false),
     ),
     "action" to mapOf(
         "actionId" to index(),
-        "actionActuatorFunc" to oneOf("hover", "gimbalRotate"),
+        "actionActuatorFunc" to oneOf("hover", "gimbalRotate", "takePhoto"),
         "actionActuatorFuncParam" to parent(),
     ),
     "hover" to mapOf("hoverTime" to Rule(true) { (it.toDoubleOrNull() ?: -1.0) > 0.0 }),
+    "takePhoto" to mapOf(
+        "payloadPositionIndex" to index(),
+        "fileSuffix" to Rule(true) { it.isNotEmpty() },
+        "payloadLensIndex" to Rule(false) { it in setOf("wide", "zoom", "ir", "narrow_band", "visable") },
+        "useGlobalPayloadLensIndex" to Rule(false) { it in setOf("0", "1") },
+    ),
     "gimbalRotate" to mapOf(
         "gimbalHeadingYawBase" to oneOf("north"),
         "gimbalRotateMode" to oneOf("absoluteAngle"),
@@ -140,5 +150,9 @@ fun wpmlViolations(root: Element, isTemplate: Boolean): List<String> {
 
 /** The parameters of an action are those of its function. */
 private fun ruleName(element: Element, children: List<Element>): String =
-    if (element.localName != "actionActuatorFuncParam") element.localName
-    else if (children.any { it.localName == "hoverTime" }) "hover" else "gimbalRotate"
+    when {
+        element.localName != "actionActuatorFuncParam" -> element.localName
+        children.any { it.localName == "hoverTime" } -> "hover"
+        children.any { it.localName == "fileSuffix" } -> "takePhoto"
+        else -> "gimbalRotate"
+    }

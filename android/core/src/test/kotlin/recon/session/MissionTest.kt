@@ -36,6 +36,14 @@ class MissionTest {
     }
 
     @Test
+    fun `what the aircraft notes of a mission is told`() {
+        harness.answers = Answer.Noted("DJI's check found no fault")
+        harness.receive(mission())
+        assertEquals("Mission: DJI's check found no fault", harness.messages.last())
+        assertEquals(listOf(Acknowledgment(1, 253)), harness.acknowledgments)
+    }
+
+    @Test
     fun `a mission accepted after a newer order is undone by repeating that order`() {
         harness.answers = null
         harness.receive(mission(), RETURN)

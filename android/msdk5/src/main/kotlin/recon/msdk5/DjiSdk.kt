@@ -1,7 +1,12 @@
 package recon.msdk5
 
-/** Called once with null for success, else with DJI's description of the error. */
-typealias Done = (String?) -> Unit
+/** DJI's error: its code by name, and its description. */
+data class DjiError(val code: String, val description: String) {
+    override fun toString() = "$description ($code)"
+}
+
+/** Called once with null for success, else with DJI's error. */
+typealias Done = (DjiError?) -> Unit
 
 /** Actions of the flight controller, named as DJI's keys. */
 enum class FlightAction {
@@ -60,6 +65,9 @@ data class DjiSnapshot(
     val missionState: String? = null,
     /** Whether the SDK lists a camera; null before it has listed any. */
     val hasCamera: Boolean? = null,
+    /** DJI's `ProductType` and `CameraType` by their names: `UNRECOGNIZED` for some seconds after the start. */
+    val product: String? = null,
+    val camera: String? = null,
 )
 
 /**
@@ -77,6 +85,9 @@ interface DjiSdk {
     fun disableVirtualStick(done: Done)
 
     fun sendStick(stick: DjiStick)
+
+    /** What DJI's own checker says of a mission file; does not reach the aircraft. */
+    fun checkMission(name: String, kmz: ByteArray): FileCheck
 
     /** Uploads a mission file under a name. */
     fun pushMission(name: String, kmz: ByteArray, done: Done)

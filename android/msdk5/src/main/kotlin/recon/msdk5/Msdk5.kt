@@ -1,10 +1,12 @@
 package recon.msdk5
 
 import dji.sdk.keyvalue.key.BatteryKey
+import dji.sdk.keyvalue.key.CameraKey
 import dji.sdk.keyvalue.key.DJIActionKeyInfo
 import dji.sdk.keyvalue.key.DJIKeyInfo
 import dji.sdk.keyvalue.key.FlightControllerKey
 import dji.sdk.keyvalue.key.KeyTools
+import dji.sdk.keyvalue.key.ProductKey
 import dji.sdk.keyvalue.value.common.ComponentIndexType
 import dji.sdk.keyvalue.value.common.EmptyMsg
 import dji.sdk.keyvalue.value.flightcontroller.FlightCoordinateSystem
@@ -25,9 +27,10 @@ import java.io.File
  * DJI's Mobile SDK 5.18.0 behind [DjiSdk]: one call for each call, and no decision. Compiled and linked
  * against DJI's signatures; never run, because the SDK runs only on a phone with an aircraft.
  *
- * Made after the SDK has registered. [folder] holds the mission files.
+ * Made after the SDK has registered. [folder] holds the mission files, which [check] judges.
  */
-class Msdk5(private val folder: File, private val clockNs: () -> Long) : DjiSdk, AutoCloseable {
+class Msdk5(private val folder: File, private val check: (File) -> FileCheck, private val clockNs: () -> Long) :
+    DjiSdk, AutoCloseable {
     private val keys = KeyManager.getInstance()
     private val missions = WaypointMissionManager.getInstance()
     private val sticks = VirtualStickManager.getInstance()
@@ -91,6 +94,8 @@ class Msdk5(private val folder: File, private val clockNs: () -> Long) : DjiSdk,
             isVirtualStickEnabled = value(FlightControllerKey.KeyVirtualStickEnabled),
             missionState = missionState,
             hasCamera = hasCamera,
+            product = value(ProductKey.KeyProductType)?.name,
+            camera = value(CameraKey.KeyCameraType)?.name,
         )
     }
 
@@ -132,10 +137,11 @@ class Msdk5(private val folder: File, private val clockNs: () -> Long) : DjiSdk,
         )
     }
 
+    override fun checkMission(name: String, kmz: ByteArray): FileCheck = check(fileOf(name, kmz))
+
     override fun pushMission(name: String, kmz: ByteArray, done: Done) {
-        val file = File(folder, "$name.kmz").apply { writeBytes(kmz) }
         missions.pushKMZFileToAircraft(
-            file.path,
+            fileOf(name, kmz).path,
             object : CommonCallbacks.CompletionCallbackWithProgress<Double> {
                 override fun onProgressUpdate(progress: Double?) = Unit
 
@@ -163,6 +169,8 @@ class Msdk5(private val folder: File, private val clockNs: () -> Long) : DjiSdk,
             listener(data.copyOfRange(offset, offset + length), width, height)
         }
 
+    private fun fileOf(name: String, kmz: ByteArray) = File(folder, "$name.kmz").apply { writeBytes(kmz) }
+
     private fun isSupported(key: DJIKeyInfo<*>): Boolean = keys.isKeySupported(KeyTools.createKey(key))
 
     private fun <T> value(key: DJIKeyInfo<T>): T? = keys.getValue(KeyTools.createKey(key))
@@ -184,6 +192,6 @@ class Msdk5(private val folder: File, private val clockNs: () -> Long) : DjiSdk,
         override fun onFailure(error: IDJIError) = done(described(error))
     }
 
-    private fun described(error: IDJIError): String =
-        "${error.description() ?: "no description"} (${error.errorCode() ?: "no code"})"
+    private fun described(error: IDJIError) =
+        DjiError(error.errorCode() ?: "no code", error.description() ?: "no description")
 }

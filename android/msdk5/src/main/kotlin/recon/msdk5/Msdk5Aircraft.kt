@@ -8,11 +8,6 @@ import recon.aircraft.FlightMode
 import recon.aircraft.MissionPlan
 import recon.aircraft.StickSetpoint
 import recon.aircraft.VideoFrame
-import recon.mission.KmzError
-import recon.mission.WpmlOptions
-import recon.mission.kmzOf
-import recon.mission.planOfKmz
-import recon.mission.planProblem
 
 /**
  * A DJI aircraft by Mobile SDK 5.
@@ -66,26 +61,24 @@ class Msdk5Aircraft(private val sdk: DjiSdk, private val clockMs: () -> Long) : 
     }
 
     private fun flyMission(plan: MissionPlan, answered: (Answer) -> Unit) {
-        val kmz = kmzOf(plan, WpmlOptions(clockMs()))
-        val problem = planProblem(plan) ?: readBackProblem(kmz)
-        if (problem != null) return answered(Answer.Refused(problem))
+        val file = MissionFile(plan, sdk.snapshot(), clockMs())
+        file.problem()?.let { return answered(Answer.Refused(it)) }
         val name = "recon-${++missions}"
-        val steps = endMotion() + listOf<(Done) -> Unit>(
-            { done -> sdk.pushMission(name, kmz, done) },
-            { done ->
+        val check = sdk.checkMission(name, file.kmz)
+        if (check is FileCheck.Faulty) return answered(Answer.Refused(refusedFile(check)))
+        val steps = endMotion() + listOf(
+            Step({ missionFailure(MissionStep.UPLOAD, it) }) { done -> sdk.pushMission(name, file.kmz, done) },
+            Step({ missionFailure(MissionStep.START, it) }) { done ->
                 missionName = name
                 sdk.startMission(name, done)
             },
         )
-        run(steps, answered)
+        run(steps) { answered(if (it is Answer.Accepted) Answer.Noted(file.note(check)) else it) }
     }
 
-    /** A file that cannot be read back must not reach an aircraft. */
-    private fun readBackProblem(kmz: ByteArray): String? = try {
-        planProblem(planOfKmz(kmz))
-    } catch (error: KmzError) {
-        error.message
-    }
+    private fun refusedFile(check: FileCheck.Faulty) =
+        "Not uploaded: DJI's check of the file found ${faultWords(check.numbers)}. To try: another shape of this " +
+            "mission, or its plan as a file in DJI's own app"
 
     private fun setStick(setpoint: StickSetpoint, answered: (Answer) -> Unit) {
         this.setpoint = setpoint
@@ -97,7 +90,7 @@ class Msdk5Aircraft(private val sdk: DjiSdk, private val clockMs: () -> Long) : 
         // Repeats while virtual stick is being enabled: the newest setpoint is sent when it is.
         if (isEnabling) return answered(Answer.Accepted)
         isEnabling = true
-        val steps = endMotion(keepsSticks = true) + { done: Done -> sdk.enableVirtualStick(done) }
+        val steps = endMotion(keepsSticks = true) + Step { done -> sdk.enableVirtualStick(done) }
         run(steps) { answer ->
             isEnabling = false
             if (answer is Answer.Accepted) sendStick()
@@ -132,12 +125,12 @@ class Msdk5Aircraft(private val sdk: DjiSdk, private val clockMs: () -> Long) : 
     }
 
     /** The steps that end what the aircraft flies now. */
-    private fun endMotion(keepsSticks: Boolean = false): List<(Done) -> Unit> {
+    private fun endMotion(keepsSticks: Boolean = false): List<Step> {
         val snapshot = sdk.snapshot()
-        val steps = mutableListOf<(Done) -> Unit>()
-        if (!keepsSticks && (snapshot?.isVirtualStickEnabled == true || isEnabling)) steps += ::endSticks
+        val steps = mutableListOf<Step>()
+        if (!keepsSticks && (snapshot?.isVirtualStickEnabled == true || isEnabling)) steps += Step { endSticks(it) }
         val mission = missionName
-        if (mission != null && snapshot?.isMissionActive == true) steps += { done -> sdk.stopMission(mission, done) }
+        if (mission != null && snapshot?.isMissionActive == true) steps += Step { sdk.stopMission(mission, it) }
         STOP_ACTIONS[snapshot?.mode]?.let { steps += action(it) }
         return steps
     }
@@ -149,18 +142,20 @@ class Msdk5Aircraft(private val sdk: DjiSdk, private val clockMs: () -> Long) : 
         sdk.disableVirtualStick(done)
     }
 
-    private fun action(action: FlightAction): (Done) -> Unit = { done -> sdk.perform(action, done) }
+    private fun action(action: FlightAction) = Step { done -> sdk.perform(action, done) }
 
-    private fun run(steps: List<(Done) -> Unit>, answered: (Answer) -> Unit) {
+    private fun run(steps: List<Step>, answered: (Answer) -> Unit) {
         next(steps, ++newest, answered)
     }
 
-    private fun next(steps: List<(Done) -> Unit>, command: Int, answered: (Answer) -> Unit) {
+    private fun next(steps: List<Step>, command: Int, answered: (Answer) -> Unit) {
         if (steps.isEmpty()) return answered(Answer.Accepted)
         if (command != newest) return answered(Answer.Refused("a newer order came before it was carried out"))
-        steps.first()(onceDone { error ->
+        val step = steps.first()
+        step.start(onceDone { error ->
             synchronized(this) {
-                if (error != null) answered(Answer.Refused(error)) else next(steps.drop(1), command, answered)
+                if (error == null) next(steps.drop(1), command, answered)
+                else answered(Answer.Refused(step.words(error)))
             }
         })
     }
@@ -176,7 +171,11 @@ class Msdk5Aircraft(private val sdk: DjiSdk, private val clockMs: () -> Long) : 
         }
     }
 
-    private fun answerOf(error: String?): Answer = if (error == null) Answer.Accepted else Answer.Refused(error)
+    private fun answerOf(error: DjiError?): Answer =
+        if (error == null) Answer.Accepted else Answer.Refused(error.toString())
+
+    /** One call to DJI, and how its failure is told. */
+    private class Step(val words: (DjiError) -> String = DjiError::toString, val start: (Done) -> Unit)
 
     internal companion object {
         private val LANDING_MODES = setOf(FlightMode.AUTO_LANDING, FlightMode.CONFIRM_LANDING)

@@ -8,6 +8,8 @@ import recon.aircraft.StickSetpoint
 import recon.aircraft.VideoFrame
 import recon.geo.LatLon
 import recon.mission.planOfKmz
+import java.io.ByteArrayInputStream
+import java.util.zip.ZipInputStream
 import kotlin.test.Test
 import kotlin.test.assertEquals
 import kotlin.test.assertIs
@@ -79,7 +81,7 @@ class Msdk5AircraftTest {
 
     @Test
     fun `sticks that DJI refuses are refused with its reason`() {
-        sdk.errors["enable sticks"] = "not in normal mode (41)"
+        sdk.errors["enable sticks"] = DjiError("41", "not in normal mode")
         execute(AircraftCommand.SetStick(setpoint))
         assertEquals(listOf<Answer>(Answer.Refused("not in normal mode (41)")), answers)
         assertEquals(emptyList(), sdk.sticks)
@@ -118,13 +120,77 @@ class Msdk5AircraftTest {
     }
 
     @Test
-    fun `a failed upload is the answer, and nothing is started`() {
-        sdk.errors["push"] = "upload failed (7)"
+    fun `each failure of a mission is its own sentence, with DJI's code and what to try`() {
+        val load = DjiError("WPMZ_FILE_LOAD_ERROR", "Failed to start task. Check whether the wayline file is correct")
+        for ((call, error, expected) in listOf(
+            Triple("push", DjiError("REQUEST_HANDLER_NOT_FOUND", "none"), "Upload failed: none (REQUEST_HANDLER_NOT"),
+            Triple("start", load, "Uploaded, but the aircraft cannot load the file: Failed to start task. Check"),
+            Triple("start", DjiError("TRAJ_INIT_FAIL", "x"), "Uploaded, but the aircraft cannot load the file: x (T"),
+            Triple("start", DjiError("GPS_INVALID", "y"), "Uploaded, but not started: y (GPS_INVALID). To try: wait"),
+        )) {
+            answers.clear()
+            sdk.errors.clear()
+            sdk.errors[call] = error
+            execute(AircraftCommand.FlyMission(plan))
+            val reason = assertIs<Answer.Refused>(answers.single()).reason
+            assertTrue(reason.startsWith(expected) && ". To try: " in reason, reason)
+        }
+        sdk.errors["start"] = DjiError("99", "unheard of")
+        execute(AircraftCommand.FlyMission(plan))
+        assertEquals(Answer.Refused("Uploaded, but not started: unheard of (99)"), answers.last())
+    }
+
+    @Test
+    fun `a failed upload starts nothing, and a plan that cannot be flown reaches nothing`() {
+        sdk.errors["push"] = DjiError("FILE_TRANSFER_FAIL", "upload failed")
         execute(AircraftCommand.FlyMission(plan))
         assertEquals(listOf("push recon-1"), sdk.calls)
-        assertEquals(listOf<Answer>(Answer.Refused("upload failed (7)")), answers)
         execute(AircraftCommand.FlyMission(plan.copy(points = plan.points.take(1))))
         assertEquals(Answer.Refused("A mission has 2 to 99 waypoints; got 1"), answers.last())
+        assertEquals(1, sdk.calls.size)
+    }
+
+    @Test
+    fun `a file in which DJI's check finds a fault is not uploaded, and the check's answer is told`() {
+        execute(AircraftCommand.FlyMission(plan))
+        val note = assertIs<Answer.Noted>(answers.last()).note
+        assertEquals("its file is for a Mavic 3E; DJI's check found no fault", note)
+        sdk.check = FileCheck.Absent("this build lacks it")
+        execute(AircraftCommand.FlyMission(plan))
+        assertTrue("was not made, because this build lacks it" in assertIs<Answer.Noted>(answers.last()).note)
+        sdk.calls.clear()
+        sdk.check = FileCheck.Faulty(listOf(-10, 7))
+        execute(AircraftCommand.FlyMission(plan))
+        val reason = assertIs<Answer.Refused>(answers.last()).reason
+        assertTrue("heading mode (-10), unknown fault (7)" in reason, reason)
+        assertEquals(emptyList(), sdk.calls)
+    }
+
+    @Test
+    fun `a mission's file has the numbers of the aircraft and its camera, and photos where the model takes them`() {
+        val timed = plan.copy(photoEveryS = 2.0)
+        for ((product, camera, expected) in listOf(
+            Triple("DJI_MATRICE_4D_SERIES", "M4TD", Triple("a Matrice 4TD", 2.0, listOf("100", "1", "99"))),
+            Triple("M350_RTK", "ZENMUSE_H20T", Triple("a Matrice 350", 2.0, listOf("89", "0", "43"))),
+            Triple("M350_RTK", "ZENMUSE_P1", Triple("a Matrice 350", null, listOf("89", "0"))),
+            Triple("DJI_MINI_4_PRO", "DJI_MINI_4_PRO", Triple("a Mini 4 Pro", null, listOf("68", "0"))),
+            Triple("UNRECOGNIZED", "NOT_SUPPORTED", Triple("no aircraft", null, emptyList())),
+        )) {
+            val (words, everyS, numbers) = expected
+            sdk.snapshot = FLYING.copy(product = product, camera = camera)
+            execute(AircraftCommand.FlyMission(timed))
+            assertEquals(everyS, planOfKmz(sdk.files.last()).photoEveryS, camera)
+            assertEquals(numbers, numbersIn(sdk.files.last()), camera)
+            val note = assertIs<Answer.Noted>(answers.last()).note
+            assertTrue(words in note && (everyS != null || "it takes no photos with this aircraft" in note), note)
+        }
+    }
+
+    private fun numbersIn(kmz: ByteArray): List<String> {
+        val zip = ZipInputStream(ByteArrayInputStream(kmz))
+        generateSequence { zip.nextEntry }.first { it.name == "wpmz/waylines.wpml" }
+        val wayline = zip.readBytes().decodeToString()
+        return Regex("EnumValue>(\\d+)<").findAll(wayline).map { it.groupValues[1] }.toList()
     }
 
     @Test

@@ -9,7 +9,10 @@ class RecordingSdk : DjiSdk {
     var snapshot: DjiSnapshot? = FLYING
 
     /** DJI's error for calls that begin with a text; the others succeed. */
-    val errors = mutableMapOf<String, String>()
+    val errors = mutableMapOf<String, DjiError>()
+
+    /** What DJI's checker says of mission files. */
+    var check: FileCheck = FileCheck.Passed
 
     /** Collected instead of answered. */
     var waiting: MutableList<Done>? = null
@@ -26,6 +29,8 @@ class RecordingSdk : DjiSdk {
         calls += "stick"
         sticks += stick
     }
+
+    override fun checkMission(name: String, kmz: ByteArray): FileCheck = check
 
     override fun pushMission(name: String, kmz: ByteArray, done: Done) {
         files += kmz
@@ -73,4 +78,6 @@ val FLYING = DjiSnapshot(
     isVirtualStickEnabled = false,
     missionState = "READY",
     hasCamera = true,
+    product = "DJI_MAVIC_3_ENTERPRISE_SERIES",
+    camera = "M3E",
 )

@@ -24,7 +24,8 @@ class StubbedMsdk5Test {
     fun `its first call is one to DJI's SDK`() {
         val constructor = Class.forName("recon.msdk5.Msdk5", true, loader).constructors.single()
         val clock: () -> Long = { 0 }
-        val raised = assertFailsWith<InvocationTargetException> { constructor.newInstance(File("."), clock) }
+        val check: (File) -> FileCheck = { FileCheck.Passed }
+        val raised = assertFailsWith<InvocationTargetException> { constructor.newInstance(File("."), check, clock) }
         assertEquals(STUB, raised.targetException.message)
         assertEquals("dji.v5.manager.KeyManager", raised.targetException.stackTrace.first().className)
     }

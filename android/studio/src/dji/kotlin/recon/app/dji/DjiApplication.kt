@@ -6,6 +6,7 @@ import recon.app.AircraftSource
 import recon.app.ReconApplication
 import recon.msdk5.Msdk5
 import recon.msdk5.Msdk5Aircraft
+import recon.msdk5.WpmzCheck
 import java.io.File
 
 /** The app with DJI's runtime. Compiled and linked against DJI's signatures; never run. */
@@ -19,8 +20,10 @@ class DjiApplication : ReconApplication() {
 
     override fun aircraftSource(): AircraftSource = DjiSource(
         register = { SdkRegistration.begin(this, it) },
-        connect = { Msdk5Aircraft(Msdk5(missionFolder(), System::nanoTime), System::currentTimeMillis) },
+        connect = { Msdk5Aircraft(sdk(), System::currentTimeMillis) },
     )
+
+    private fun sdk() = Msdk5(missionFolder(), WpmzCheck(this)::of, System::nanoTime)
 
     private fun missionFolder() = File(filesDir, "missions").apply { mkdirs() }
 }
