@@ -98,7 +98,7 @@ def add_flight(figures: MosaicFigures, seed: int, folder: Path, limit_s: float) 
 def made(flown: SurveyFlown, card: Path, out: Path, odm: Path | None = None) -> Path:
     """Make the mosaic of a card's photos by the command; return its folder."""
     with redirect_stdout(StringIO()):
-        mosaic_command(flown.record, [card], out, odm=odm)
+        mosaic_command(flight=flown.record, photos=[card], out=out, odm=odm)
     return out
 
 

@@ -53,7 +53,11 @@ def main() -> None:
             out = folder / f"mosaic-{len(panels)}"
             with patch("recon.cli.mosaic.placed_photos", place):
                 mosaic_command(
-                    flown.record, [folder / "card"], out, resolution_m=RESOLUTION_M, raw=True
+                    flight=flown.record,
+                    photos=[folder / "card"],
+                    out=out,
+                    resolution_m=RESOLUTION_M,
+                    raw=True,
                 )
             panels.append(panel(out / "preview.png"))
     beside(panels).save(options.out, quality=82)

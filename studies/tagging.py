@@ -122,7 +122,7 @@ def add_flight(
         record = folder / "record"
         flown = fly(SCENARIO, scenario, seed, record, settings, limit_s, is_exact=is_exact)
         write_photos(folder / "card", flown.flight, flown.truth, settings, every)
-        tag_command([folder / "card"], flown.record, folder / "tagged")
+        tag_command(images=[folder / "card"], flight=flown.record, out=folder / "tagged")
         score.flights += 1
         _add_photos(score, flown, folder / "tagged")
         _add_clocks(score, flown, folder / "card")

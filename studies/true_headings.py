@@ -29,7 +29,7 @@ def headings_off(flown: SurveyFlown, card: Path, folder: Path, off_deg: float) -
         _turned(path, turned / path.name, off_deg)
     said = StringIO()
     with redirect_stdout(said), redirect_stderr(said):
-        tag_command([turned], flown.record, tagged)
+        tag_command(images=[turned], flight=flown.record, out=tagged)
     if any(each in said.getvalue() for each in UNVERIFIED):
         return []
     return [

@@ -12,10 +12,11 @@ from typing import Annotated
 import typer
 
 from recon.cli.opened_flight import opened_flight
+from recon.cli.options import with_options
 from recon.cli.output import print_line
+from recon.cli.photo_cards import CameraOptions, print_refused, read_card, reasons_of
 from recon.cli.progress import progress_over, usable_cores
 from recon.cli.site import opened_site
-from recon.cli.tag_cards import print_clocks, print_refused, read_photos
 from recon.model.errors import RecordError
 from recon.model.units import HECTARE_M2
 from recon.product.flight import FlightData
@@ -40,10 +41,10 @@ from recon.product.mosaic import (
 from recon.product.mosaic.band_rasters import band_rasters
 from recon.product.mosaic.pixels import Box, Pixels
 from recon.product.mosaic.place import PREVIEW_PIXELS
-from recon.product.photos.card import card_of
-from recon.product.photos.shots import shots_of
+from recon.product.photos.shots import CameraShot
+from recon.product.sun_at import SunHistory
 from recon.product.tag import sun_history
-from recon.product.timing import StatedCamera, TimedPhoto, timed_photos
+from recon.product.timing import TimedPhoto
 
 MOST_THREADS = 2
 """More would decode more photos at once, 100 MB each."""
@@ -53,74 +54,62 @@ M_MMAP_THRESHOLD, M_ARENA_MAX = -3, -8
 COLOURS = ("red", "green", "blue")
 
 
-def mosaic_command(
-    flight: Annotated[Path, typer.Argument(metavar="FLIGHT", help="The flight record (MCAP).")],
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MosaicOptions:
+    """A flight's record and photos, where cameras and ground come from, and the picture."""
+
+    flight: Annotated[Path, typer.Argument(metavar="FLIGHT", help="The flight record (MCAP).")]
     photos: Annotated[
         list[Path], typer.Argument(metavar="PHOTOS...", help="JPEG photos, or folders with them.")
-    ],
-    out: Annotated[Path, typer.Option("--out", help="Folder to write.")] = Path("mosaic"),
+    ]
+    out: Annotated[Path, typer.Option("--out", help="Folder to write.")] = Path("mosaic")
     resolution_m: Annotated[
         float | None,
         typer.Option(
             help="Size of a pixel on the ground; default: the photos', without --odm four of them."
         ),
-    ] = None,
+    ] = None
     site: Annotated[
         Path | None,
         typer.Option("--site", help="The site's folder: the ground's heights, if it has them."),
-    ] = None,
+    ] = None
     odm: Annotated[
         Path | None,
         typer.Option(
             "--odm", help="Folder of a finished run of OpenDroneMap: cameras and surface model."
         ),
-    ] = None,
+    ] = None
     fill: Annotated[
         bool, typer.Option("--fill", help="Take the least shaded photo where none is in sun.")
-    ] = False,
+    ] = False
     raw: Annotated[
         bool,
         typer.Option("--raw", help="Keep brightness as photographed, not evened to full sun."),
-    ] = False,
-    field: Annotated[
-        float | None,
-        typer.Option(min=10.0, max=120.0, help="Camera's field along the longer side, degrees."),
-    ] = None,
-    clock_offset: Annotated[
-        float | None,
-        typer.Option(help="Seconds to add to the camera's clock for UTC; default: estimated."),
-    ] = None,
-) -> None:
+    ] = False
+
+    @property
+    def settings(self) -> MosaicSettings:
+        """The mosaic's settings, on this computer."""
+        threads = min(MOST_THREADS, usable_cores())
+        choice = ChoiceSettings(fills=self.fill)
+        return MosaicSettings(choice, is_evened=not self.raw, threads=threads)
+
+
+@with_options
+def mosaic_command(options: MosaicOptions, camera: CameraOptions) -> None:
     """Make a mosaic of photos in sun, with what each pixel was taken from."""
     _return_memory()
-    flown = opened_flight(flight)
-    facts, refused = read_photos(card_of(photos).photos)
-    shots = [shot for shot in shots_of(facts) if shot.lead.panel is None]
-    timed = timed_photos(flown, [shot.lead for shot in shots], StatedCamera(clock_offset, field))
-    timed.refused.update(refused)
-    print_clocks(timed)
-    print_refused(timed.refused)
+    flight = opened_flight(options.flight)
+    read = read_card(options.photos, options.out)
+    timed = read.timed(flight, camera)
+    read.print_left_out({**read.refused, **timed.refused, **reasons_of(read.panels)})
     if not timed.photos:
         print("no photo is of this flight", file=sys.stderr)
         raise typer.Exit(NO_PHOTO_USED)
-    history, threads = sun_history(flown), min(MOST_THREADS, usable_cores())
-    settings = MosaicSettings(ChoiceSettings(fills=fill), is_evened=not raw, threads=threads)
-    with _geometry(flown, timed.photos, site, odm) as found:
-        placed = placed_photos(
-            found.photos, found.cameras, history, found.ground, progress_over, threads
-        )
-        plan = plan_of(flown, placed, found.ground, resolution_m, found.pixels)
-        bands = _colours(found)
-        if odm is None:
-            bands += band_rasters(shots, found.photos, found.cameras)
-        report = _built(
-            MosaicBuild(
-                *(out, flown, placed, found.ground, plan, bands, settings),
-                found.source,
-                progress_over,
-            )
-        )
-    _print_report(out, report, settings)
+    history = sun_history(flight)
+    with _geometry(options, flight, timed.photos, read.shots) as found:
+        report = _built(_build(options, flight, history, found))
+    _print_report(options.out, report, options.settings)
 
 
 def _return_memory() -> None:
@@ -141,6 +130,7 @@ class _Geometry:
     photos: Sequence[TimedPhoto]
     cameras: Sequence[Camera]
     ground: MosaicGround
+    bands: Sequence[MosaicBand]
     source: str
     pixels: float
     """Pixels of the photos, each way, in one of the mosaic, if no size is stated."""
@@ -148,25 +138,30 @@ class _Geometry:
 
 @contextmanager
 def _geometry(
-    flight: FlightData, photos: Sequence[TimedPhoto], site: Path | None, odm: Path | None
+    options: MosaicOptions,
+    flight: FlightData,
+    photos: Sequence[TimedPhoto],
+    shots: Sequence[CameraShot],
 ) -> Iterator[_Geometry]:
-    if odm is None:
-        ground, name = _site_ground(site)
+    if options.odm is None:
+        ground, name = _site_ground(options.site)
         cameras = preview_cameras(flight, photos, _registered(photos), ground)
+        bands = [*_colours(photos), *band_rasters(shots, photos, cameras)]
         source = f"photos registered to each other over {name}"
-        yield _Geometry(photos, cameras, ground, source, PREVIEW_PIXELS)
+        yield _Geometry(photos, cameras, ground, bands, source, PREVIEW_PIXELS)
         return
-    if site is not None:
+    if options.site is not None:
         raise RecordError(
             "expected --odm or --site, got both: with --odm its surface is the ground"
         )
-    with opened_odm(odm, flight.frame) as run:
+    with opened_odm(options.odm, flight.frame) as run:
         by_index = run.cameras(photos)
         if len(by_index) < len(photos):
-            print_line(f"{len(photos) - len(by_index)} photos are not in {odm}: left out")
+            print_line(f"{len(photos) - len(by_index)} photos are not in {options.odm}: left out")
         placed = [photos[index] for index in by_index]
-        source = f"OpenDroneMap's cameras and surface model in {odm.name}"
-        yield _Geometry(placed, list(by_index.values()), run.surface, source, 1.0)
+        source = f"OpenDroneMap's cameras and surface model in {options.odm.name}"
+        cameras = list(by_index.values())
+        yield _Geometry(placed, cameras, run.surface, _colours(placed), source, 1.0)
 
 
 def _site_ground(site: Path | None) -> tuple[MosaicGround, str]:
@@ -199,15 +194,30 @@ def _registered(photos: Sequence[TimedPhoto]) -> Sequence[PhotoView]:
     return found.views
 
 
-def _colours(found: _Geometry) -> list[MosaicBand]:
+def _colours(photos: Sequence[TimedPhoto]) -> list[MosaicBand]:
     """Return the raster in colour; none where a camera's bands lead its shots."""
-    if found.photos[0].photo.kind == "band":
+    if photos[0].photo.kind == "band":
         return []
 
     def read(index: int, shrink: int, box: Box) -> Pixels:
-        return read_jpeg(found.photos[index].photo.path, shrink, box)
+        return read_jpeg(photos[index].photo.path, shrink, box)
 
     return [MosaicBand("mosaic", COLOURS, read)]
+
+
+def _build(
+    options: MosaicOptions, flight: FlightData, history: SunHistory, found: _Geometry
+) -> MosaicBuild:
+    settings = options.settings
+    placed = placed_photos(
+        found.photos, found.cameras, history, found.ground, progress_over, settings.threads
+    )
+    plan = plan_of(flight, placed, found.ground, options.resolution_m, found.pixels)
+    return MosaicBuild(
+        *(options.out, flight, placed, found.ground, plan, found.bands, settings),
+        found.source,
+        progress_over,
+    )
 
 
 def _built(build: MosaicBuild) -> MosaicReport:

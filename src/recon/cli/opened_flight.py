@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from recon.cli.tag_cards import warn
+from recon.cli.output import print_warning
 from recon.model.errors import RecordError
 from recon.product.flight import FlightData, read_flight
 
@@ -14,5 +14,5 @@ def opened_flight(path: Path) -> FlightData:
     except OSError as problem:
         raise RecordError(f"{path}: {problem.strerror}") from problem
     if flight.trouble:
-        warn(f"the record ends early: {flight.trouble}")
+        print_warning(f"the record ends early: {flight.trouble}")
     return flight

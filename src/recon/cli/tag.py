@@ -3,6 +3,7 @@
 import sys
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 from typing import Annotated
@@ -11,33 +12,17 @@ import typer
 
 from recon.cli.nodeodm import opened_node, process
 from recon.cli.opened_flight import opened_flight
-from recon.cli.output import printable
+from recon.cli.options import with_options
+from recon.cli.output import print_line, print_warning
+from recon.cli.photo_cards import MOST_NAMED, CameraOptions, ReadCard, read_card, reasons_of
 from recon.cli.progress import progress_over, usable_cores
 from recon.cli.tag_all import FlightLight, tag_all
-from recon.cli.tag_cards import (
-    MOST_NAMED,
-    print_clocks,
-    print_grouped,
-    print_left,
-    print_refused,
-    read_photos,
-    refuse_photos_below,
-    warn,
-)
 from recon.model.errors import RecordError
 from recon.model.units import HECTARE_M2
 from recon.product.flight import FlightData
 from recon.product.odm import write_odm_project
-from recon.product.panels import (
-    PANELS,
-    PanelShot,
-    marked_panels,
-    panels_on_ground,
-    picture_of,
-    write_panels,
-)
-from recon.product.photos.card import begin_own, card_of
-from recon.product.photos.shots import CameraShot, shots_of
+from recon.product.panels import PANELS, PanelShot, panels_on_ground, picture_of, write_panels
+from recon.product.photos.card import begin_own
 from recon.product.quality import quality_of
 from recon.product.registration import read_grey, with_headings
 from recon.product.shot_files import MAIN, ShotFiles, files_of
@@ -51,127 +36,114 @@ from recon.product.tag import (
     select,
     sun_history,
 )
-from recon.product.timing import StatedCamera, TimedPhoto, timed_photos
-from recon.product.write import (
-    fly_again,
-    table,
-    write_text,
-)
+from recon.product.timing import TimedPhoto
+from recon.product.write import fly_again, table, write_text
 
-MOST_OFF_S = 1e9
-"""Largest offset of a camera's clock: thirty years, as after an empty battery."""
 NO_PHOTO_TAGGED = 1
 
 
-def tag_command(
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TagOptions:
+    """A flight's record and photos, and which of these are kept."""
+
     images: Annotated[
         list[Path], typer.Argument(metavar="IMAGES...", help="Photos, or folders with them.")
-    ],
-    flight: Annotated[Path, typer.Option("--flight", help="The flight record (MCAP).")],
-    out: Annotated[Path, typer.Option("--out", help="Folder to write.")] = Path("tagged"),
+    ]
+    flight: Annotated[Path, typer.Option("--flight", help="The flight record (MCAP).")]
+    out: Annotated[Path, typer.Option("--out", help="Folder to write.")] = Path("tagged")
     overlap: Annotated[
         float,
         typer.Option(min=0.0, max=0.95, help="Overlap wanted of the chosen photos, 0 to 0.95."),
-    ] = 0.6,
+    ] = 0.6
     sunlit: Annotated[
         float, typer.Option(min=0.5, max=1.0, help="Share in sun to call a photo sunlit.")
-    ] = SUNLIT_SHARE,
-    field: Annotated[
-        float | None,
-        typer.Option(min=10.0, max=120.0, help="Camera's field along the longer side, degrees."),
-    ] = None,
-    clock_offset: Annotated[
-        float | None,
-        typer.Option(
-            min=-MOST_OFF_S,
-            max=MOST_OFF_S,
-            help="Seconds to add to the camera's clock for UTC; default: estimated.",
-        ),
-    ] = None,
+    ] = SUNLIT_SHARE
     sun_sensor: Annotated[
         bool,
         typer.Option(
             "--sun-sensor",
             help="Let the camera's sun sensor tell where shade maps know too little.",
         ),
-    ] = False,
+    ] = False
     nodeodm: Annotated[
         str,
         typer.Option(
             metavar="URL", help="Let this NodeODM make the mosaic, as http://localhost:3000."
         ),
-    ] = "",
-) -> None:
+    ] = ""
+
+
+@with_options
+def tag_command(options: TagOptions, camera: CameraOptions) -> None:
     """Tag the photos of a flight: sunlit share, masks, the photos to keep, what to fly again."""
-    node = opened_node(nodeodm) if nodeodm else None
-    card = card_of(images)
-    refuse_photos_below(out, card.photos)
-    flown = opened_flight(flight)
-    photos, refused = read_photos(card.photos)
-    shots = shots_of(photos)
-    panels = marked_panels(shots)
-    shots = _without(shots, panels)
-    timed = timed_photos(flown, [shot.lead for shot in shots], StatedCamera(clock_offset, field))
-    print_grouped("", {each.name: note for each in photos for note in each.notes})
-    print_clocks(timed)
-    timed.photos = _with_headings(timed.photos)
-    files = files_of(timed.photos, shots, timed.refused, field)
-    panels += panels_on_ground(
-        flown, [shot for shot in shots if shot.lead.name in timed.refused], picture_of
-    )
-    refused |= timed.refused | files.refused | _names_of(panels)
-    if not timed.photos:
-        print_left(card)
-        print_refused(refused)
+    node = opened_node(options.nodeodm) if options.nodeodm else None
+    flight = opened_flight(options.flight)
+    read = read_card(options.images, options.out)
+    files, panels, refused = _files(read, flight, camera)
+    if not files.photos:
+        read.print_left_out(refused)
         print("no photo was tagged", file=sys.stderr)
         raise typer.Exit(NO_PHOTO_TAGGED)
-    history = sun_history(flown, may_be_empty=sun_sensor)
-    sensor = _sensor(flown, files, history)
-    if sun_sensor and not sensor:
-        warn("--sun-sensor: no photo's sun sensor tells sun from shade")
+    light = _light(options, flight, files)
+    tags, selection = _written(options, light, files, panels)
+    quality = quality_of(flight, files)
+    names = [each.photo.name for each in files.of(selection.chosen)]
+    rows = table(flight, files, tags, names, refused, quality, options.sunlit)
+    write_text(options.out / "tags.csv", rows)
+    write_text(options.out / "chosen.txt", "".join(f"{name}\n" for name in names))
+    write_text(options.out / "fly-again.geojson", fly_again(flight, selection))
+    read.print_left_out(refused)
+    _print_beside(files)
+    _print_quality(quality)
+    leading = [tags[each.photo.name] for each in files.leading]
+    _print_summary(options.out, leading, selection, options.sunlit)
+    if node is not None:
+        process(node, options.out / MAIN)
+
+
+def _files(
+    read: ReadCard, flight: FlightData, camera: CameraOptions
+) -> tuple[ShotFiles, list[PanelShot], dict[str, str]]:
+    """Return the files with a pose, the panels, and why other files are neither."""
+    timed = read.timed(flight, camera)
+    timed.photos = _with_headings(timed.photos)
+    files = files_of(timed.photos, read.shots, timed.refused, camera.field)
+    off = [shot for shot in read.shots if shot.lead.name in timed.refused]
+    panels = [*read.panels, *panels_on_ground(flight, off, picture_of)]
+    kept_apart = {name: f"{why}: in {PANELS}" for name, why in reasons_of(panels).items()}
+    return files, panels, {**read.refused, **timed.refused, **files.refused, **kept_apart}
+
+
+def _light(options: TagOptions, flight: FlightData, files: ShotFiles) -> FlightLight:
+    """Return what is known of the sun; print how shade maps and sun sensor agree."""
+    history = sun_history(flight, may_be_empty=options.sun_sensor)
+    sensor = _sensor(flight, files, history)
+    if options.sun_sensor and not sensor:
+        print_warning("--sun-sensor: no photo's sun sensor tells sun from shade")
+    ground = ground_of_flight(flight, files.leading)
+    counted = sensor if options.sun_sensor else {}
+    return FlightLight(flight, history, ground, options.sunlit, counted)
+
+
+def _written(
+    options: TagOptions, light: FlightLight, files: ShotFiles, panels: Sequence[PanelShot]
+) -> tuple[dict[str, PhotoTag], Selection]:
+    """Return tags and choice, with all written but the tables; raises `RecordError`."""
+    out = options.out
     try:
         begin_own(out)
         for folder in (out / "masks", out / "xmp"):
             folder.mkdir(exist_ok=True)
-        ground = ground_of_flight(flown, timed.photos)
-        light = FlightLight(flown, history, ground, sunlit, sensor if sun_sensor else {})
         tags, shown = tag_all(out, files, light)
-        selection = select(timed.photos, shown, ground, overlap)
-        chosen = files.of(selection.chosen)
-        _write_projects(out, flown, files, chosen)
+        selection = select(files.leading, shown, light.ground, options.overlap)
+        _write_projects(out, light.flight, files, files.of(selection.chosen))
         if panels or (out / PANELS).exists():
             write_panels(out / PANELS, panels, min(each.photo.clock_ns for each in files.photos))
     except OSError as problem:
         # Of a copy that fails the first name is that of the photo.
         where = problem.filename2 or problem.filename or out
         raise RecordError(f"{where}: {problem.strerror}") from problem
-    names = [each.photo.name for each in chosen]
-    quality = quality_of(flown, files)
-    write_text(out / "tags.csv", table(flown, files, tags, names, refused, quality, sunlit))
-    write_text(out / "chosen.txt", "".join(f"{name}\n" for name in names))
-    write_text(out / "fly-again.geojson", fly_again(flown, selection))
-    print_left(card)
-    print_refused(refused)
-    _print_beside(files)
-    _print_quality(quality)
-    leading = [tags[each.photo.name] for each in timed.photos]
-    _print_summary(out, leading, selection, sunlit)
-    if node is not None:
-        process(node, out / MAIN)
-
-
-def _without(shots: Sequence[CameraShot], panels: Sequence[PanelShot]) -> list[CameraShot]:
-    taken = {panel.shot.lead.name for panel in panels}
-    return [shot for shot in shots if shot.lead.name not in taken]
-
-
-def _names_of(panels: Sequence[PanelShot]) -> dict[str, str]:
-    """Return why the files of panels are not tagged, by name."""
-    return {
-        photo.name: f"shows a reflectance panel, by {panel.found_by}: in {PANELS}"
-        for panel in panels
-        for photo in panel.shot.files
-    }
+    return tags, selection
 
 
 def _print_quality(quality: Mapping[str, str]) -> None:
@@ -202,9 +174,9 @@ def _with_headings(photos: Sequence[TimedPhoto]) -> list[TimedPhoto]:
 
     turned, headings = with_headings(photos, read_grey, over, usable_cores())
     for each in headings:
-        print(printable(str(each)))
+        print_line(str(each))
         for warning in each.warnings:
-            warn(warning)
+            print_warning(warning)
     return turned
 
 
@@ -213,8 +185,7 @@ def _sensor(flight: FlightData, files: ShotFiles, history: SunHistory) -> dict[s
     if all(each.photo.irradiance is None for each in files.photos):
         return {}
     sensor = sun_by_sensor(files)
-    leads = [each for each in files.photos if files.leads(each)]
-    found = agreement(flight, leads, sensor, history)
+    found = agreement(flight, files.leading, sensor, history)
     if not sensor:
         print("sun sensor: it saw only sun or only shade, or too little to tell which")
     elif found is None:

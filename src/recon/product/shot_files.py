@@ -34,6 +34,11 @@ class ShotFiles:
         """Return whether a file is the leading one of its shot."""
         return self.shot_of(timed) == timed.photo.name
 
+    @property
+    def leading(self) -> list[TimedPhoto]:
+        """The leading files, one of each shot."""
+        return [each for each in self.photos if self.leads(each)]
+
     def of(self, leads: Iterable[str]) -> list[TimedPhoto]:
         """Return the files of some shots."""
         wanted = frozenset(leads)

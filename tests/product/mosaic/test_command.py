@@ -5,7 +5,14 @@ from pathlib import Path
 
 import pytest
 import rasterio
-from tests.product.made_flight import ONE, flight, write_card, write_record
+from tests.product.made_flight import (
+    ONE,
+    UTC_AHEAD_NS,
+    flight,
+    write_card,
+    write_photo,
+    write_record,
+)
 from typer.testing import CliRunner
 
 from recon.cli.commands import app
@@ -20,6 +27,9 @@ def card(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("made")
     write_record(flight(ONE), folder / "flight.mcap")
     write_card(folder / "card", every=10)
+    (folder / "card" / "SIM-1_0000.MP4").touch()
+    odd = {"place_m": (0.0, 9_000.0), "clock_ns": UTC_AHEAD_NS, "camera": "CAM-9"}
+    write_photo(folder / "card" / "odd.JPG", **odd, xmp=b"<!DOCTYPE x []>")
     return folder
 
 
@@ -49,8 +59,13 @@ def test_the_command_prints_what_the_mosaic_shows(card: Path, printed: str) -> N
         assert dataset.tags()["RECON_BRIGHTNESS"].startswith("evened to full sun")
 
 
-def test_a_mosaic_is_never_read_as_photos(card: Path, printed: str) -> None:
+def test_the_card_is_read_as_for_tags_and_never_the_mosaic(card: Path, printed: str) -> None:
+    assert "left out: SIM-1_0000.MP4: no photos that Recon reads (.mp4)" in printed
+    assert "warning: odd.JPG: its XMP is not read: a document type" in printed
+    assert "warning: not used: odd.JPG: " in printed
     assert card_of([card]).left["written by Recon"] == [card / "out"]
+    there = run("mosaic", card / "flight.mcap", card / "card", "--out", card)
+    assert "--out: expected a folder without photos" in str(there.exception)
 
 
 def test_the_report_shows_it(card: Path, printed: str, tmp_path: Path) -> None:
