@@ -28,7 +28,7 @@ import { SurveyRowsLayer } from "./surveyRowsLayer";
 import { TargetLayer } from "./targetLayer";
 import { TargetMarkers } from "./targetMarkers";
 import { TemporaryZoneLayer } from "./temporaryZoneLayer";
-import { middleOf, paddingOf } from "./uncovered";
+import { hasLessRoom, middleOf, paddingOf, type Size } from "./uncovered";
 import { VehicleLayer } from "./vehicleLayer";
 
 // Under Vite MapLibre does not find its worker and stays blank.
@@ -162,12 +162,33 @@ export function MapView() {
     const state = source.state();
     return state === null ? null : wholeView(state, draftShapes());
   });
+  const isAiming = () =>
+    flyHere.isOn() || zoneDraft.isOn() || calibration.isOn() || siteDraft.isOn();
   const fit = (isFirst: boolean) => {
     const [box, shown] = [whole(), map()];
     if (box === null || shown === null) return;
     const options = { ...view(isFirst), padding: paddingOf(holder, free) };
     shown.fitBounds([box.west, box.south, box.east, box.north], options);
+    fittedTo = sizeOf(free);
   };
+  // Until a person moves the map, what first takes room covers nothing of the view.
+  let fittedTo: Size | null = null;
+  const byHand = (move: () => void) => () => {
+    fittedTo = null;
+    move();
+  };
+  onMount(() => {
+    const room = new ResizeObserver(() => {
+      if (fittedTo !== null && !isAiming() && hasLessRoom(fittedTo, sizeOf(free))) fit(false);
+    });
+    room.observe(free);
+    onCleanup(() => room.disconnect());
+  });
+  createEffect(() => {
+    map()?.on("movestart", ({ originalEvent }) => {
+      if (originalEvent !== undefined) fittedTo = null;
+    });
+  });
   createEffect(on(fitRequests, () => fit(false), { defer: true }));
   // What was imported may be anywhere.
   createEffect(on(siteDraft.imported, (read) => read.length > 0 && fit(false), { defer: true }));
@@ -206,7 +227,7 @@ export function MapView() {
           <button
             type="button"
             class="button"
-            onClick={() => map()?.zoomIn()}
+            onClick={byHand(() => map()?.zoomIn())}
             aria-label={text.map.zoomIn}
           >
             +
@@ -214,7 +235,7 @@ export function MapView() {
           <button
             type="button"
             class="button"
-            onClick={() => map()?.zoomOut()}
+            onClick={byHand(() => map()?.zoomOut())}
             aria-label={text.map.zoomOut}
           >
             −
@@ -288,6 +309,10 @@ function createMap(
   map.touchZoomRotate.disableRotation();
   map.keyboard.disableRotation();
   return map;
+}
+
+function sizeOf({ clientWidth: width, clientHeight: height }: HTMLElement): Size {
+  return { width, height };
 }
 
 function view(isFirst: boolean) {

@@ -1,7 +1,8 @@
 import { describe, expect, it } from "vitest";
-import { at, FIELD, station, vehicle } from "../testing/fakeState";
+import { area, at, FIELD, station, vehicle } from "../testing/fakeState";
 import { boxAround, circle, gridLines, metresPerDegree, roundStepM } from "./localGrid";
 import { gridOrigin, wholeView } from "./scene";
+import { hasLessRoom } from "./uncovered";
 
 const UNPLACED = { position: { latitude_deg: null, longitude_deg: null, age_s: null } };
 
@@ -75,6 +76,28 @@ describe("the first view", () => {
       expect(box?.south).toBeLessThanOrEqual(position.latitude_deg ?? Number.NaN);
       expect(box?.north).toBeGreaterThanOrEqual(position.latitude_deg ?? Number.NaN);
     }
+  });
+
+  it("contains boundary and survey regions beside vehicles, not zones far away", () => {
+    const areas = [
+      area("boundary", [0, 0], 190),
+      area("survey", [300, 0], 75),
+      area("keep_out", [5000, 0], 20),
+    ];
+    const state = station([vehicle(1)]);
+    const box = wholeView({ ...state, site: state.site && { ...state.site, areas } });
+    const per = metresPerDegree(FIELD.lat);
+    const east_m = ((box?.east ?? 0) - FIELD.lon) * per.lon;
+    const west_m = ((box?.west ?? 0) - FIELD.lon) * per.lon;
+    expect(west_m).toBeCloseTo(-190, 0);
+    expect(east_m).toBeCloseTo(375, 0);
+  });
+
+  it("is fitted again only into less room than it was fitted to", () => {
+    const fittedTo = { width: 780, height: 700 };
+    expect(hasLessRoom(fittedTo, { width: 780, height: 560 })).toBe(true);
+    expect(hasLessRoom(fittedTo, { width: 780, height: 700 })).toBe(false);
+    expect(hasLessRoom(fittedTo, { width: 1100, height: 700 })).toBe(false);
   });
 
   it("leaves a single vehicle its surroundings", () => {

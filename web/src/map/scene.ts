@@ -56,29 +56,27 @@ export function positionOf(vehicle: Pick<VehicleView, "position">): LonLat | nul
 /** Smallest extent of a view, so that a single vehicle is shown with its surroundings. */
 const LEAST_VIEW_M = 120;
 
-/** Extent of the first view: vehicles, ground image, temporary zones and a site being edited, else the site's areas, else its origin; null without any position. */
+/** Kinds of areas where the site's work is; zones to keep out of may be far away. */
+const PLACES_OF_WORK = ["boundary", "survey"];
+
+/** Extent of the first view: the site's boundary and survey regions, vehicles, ground image, temporary zones and a site being edited; around its origin if there is nothing else, null without any position. */
 export function wholeView(state: StationState, draft: DraftShapes | null = null): Box | null {
   const vehicles = state.vehicles.flatMap((vehicle) => positionOf(vehicle) ?? []);
-  const corners = (state.ground_image?.corners ?? []).map(([lon, lat]) => ({ lon, lat }));
-  const zones = state.temporary_zones.flatMap(({ ring }) =>
-    ring.map(([lon, lat]) => ({ lon, lat })),
-  );
-  const drawn = [...(draft?.features ?? []), ...(draft?.imported ?? [])];
-  const drafted = drawn.flatMap(({ rings }) => rings.flat());
-  return (
-    boxAround([...vehicles, ...corners, ...zones, ...drafted], LEAST_VIEW_M) ?? siteView(state)
-  );
+  const areas = state.site?.areas ?? [];
+  const drawn = [
+    ...areas.filter(({ kind }) => PLACES_OF_WORK.includes(kind)).flatMap(({ rings }) => rings),
+    state.ground_image?.corners ?? [],
+    ...state.temporary_zones.map(({ ring }) => ring),
+  ];
+  const corners = drawn.flatMap((ring) => ring.map(([lon, lat]) => ({ lon, lat })));
+  const drafted = [...(draft?.features ?? []), ...(draft?.imported ?? [])];
+  const inDraft = drafted.flatMap(({ rings }) => rings.flat());
+  return boxAround([...vehicles, ...corners, ...inDraft], LEAST_VIEW_M) ?? aroundOrigin(state);
 }
 
-function siteView(state: StationState): Box | null {
-  const drawn = (state.site?.areas ?? []).flatMap((area) => area.rings.flat());
-  const around = boxAround(
-    drawn.map(([lon, lat]) => ({ lon, lat })),
-    LEAST_VIEW_M,
-  );
-  if (around !== null) return around;
+function aroundOrigin(state: StationState): Box | null {
   const { longitude_deg: lon, latitude_deg: lat } = state.site ?? {};
-  if (lon === null || lon === undefined || lat === null || lat === undefined) return null;
+  if (typeof lon !== "number" || typeof lat !== "number") return null;
   return boxAround([{ lon, lat }], LEAST_VIEW_M * 2);
 }
 
