@@ -81,9 +81,22 @@ test("the times under the forecast leave each other free at every width", async 
   const share = lead_s.map(() => 0.5);
   const tenMinutes = { ...forecast, lead_s, sun_share: share, predicted_share: share };
   const shown = { ...light, forecast: tenMinutes } as ShadeLineView;
-  await FakeStation.behind(page, station([vehicle(1), vehicle(2)], { shade: shown }));
+  const drones = [vehicle(1), vehicle(2)];
+  const fake = await FakeStation.behind(page, station(drones));
   await page.goto("/");
+  const places = async () =>
+    JSON.stringify(
+      await page
+        .locator("button.craft")
+        .evaluateAll((all) => all.map((one) => one.style.transform)),
+    );
+  await expect(page.locator("button.craft")).toHaveCount(2);
   await openPanel(page, "Orders");
+  await test.step("the view is fitted again when they first take room", async () => {
+    const before = await places();
+    fake.send(station(drones, { shade: shown }));
+    await expect.poll(places).not.toBe(before);
+  });
   for (const width of WIDTHS) {
     await page.setViewportSize({ width, height: 900 });
     const ticks = page.locator(".time-ticks span:visible");
