@@ -12,7 +12,8 @@ from pathlib import Path
 
 import pytest
 from tests.basemap.made_maps import FIELD, Key, colour_in, colour_of, keys_over, picture
-from tests.basemap.tile_server import Answer, send, tile, tile_server
+from tests.basemap.tile_server import Answer, tile, tile_server
+from tests.fetching.file_server import send
 
 from recon.basemap import fetch as fetching
 from recon.basemap.coverage import FULL

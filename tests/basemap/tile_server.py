@@ -8,16 +8,9 @@ from dataclasses import dataclass, field
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 
 from tests.basemap.made_maps import Key, colour_of, picture
+from tests.fetching.file_server import send
 
 Answer = Callable[[BaseHTTPRequestHandler, Key], None]
-
-
-def send(handler: BaseHTTPRequestHandler, data: bytes, status: int = 200, **headers: str) -> None:
-    handler.send_response(status)
-    for name, value in {"content_length": str(len(data)), **headers}.items():
-        handler.send_header(name.replace("_", "-"), value)
-    handler.end_headers()
-    handler.wfile.write(data)
 
 
 def tile(handler: BaseHTTPRequestHandler, key: Key) -> None:

@@ -6,7 +6,8 @@ from shutil import copytree
 
 import pytest
 from tests.basemap.made_maps import keys_over, write_mbtiles
-from tests.basemap.tile_server import send, tile_server
+from tests.basemap.tile_server import tile_server
+from tests.fetching.file_server import send
 from typer.testing import CliRunner, Result
 
 from recon.basemap.web_mercator import area_around

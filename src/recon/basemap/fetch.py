@@ -7,43 +7,42 @@ it stopped.
 
 import asyncio
 import re
-from collections.abc import AsyncIterator, Callable, Iterator
-from contextlib import asynccontextmanager
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from functools import partial
 from hashlib import sha256
 from pathlib import Path
 from urllib.parse import urlsplit
 
 import httpx
 
-from recon import version
 from recon.basemap.map_file import (
     LARGEST_TILE_BYTES,
     VECTOR,
     BaseMapError,
     checked_zooms,
-    one_line,
     picture_of,
 )
 from recon.basemap.mbtiles_writer import MBTilesWriter
 from recon.basemap.web_mercator import MapArea
+from recon.fetching.polite_client import (
+    AT_ONCE,
+    PAUSE_S,
+    AskedServer,
+    AskFailedError,
+    answered,
+    body_of,
+    polite_client,
+    with_tries,
+)
+from recon.model.foreign_text import one_line
 
 MOST_FETCHED = 20_000
 """Most tiles of one run unless allowed: 0.5 GB, acceptable for a public server."""
-AT_ONCE = 2
-"""Requests at once, as the usage policies of public servers require."""
 TILE_WITHIN_S = 20.0
-TRIES = 3
-PAUSE_S = 1.0
-"""Pause before a second try, doubled before the third."""
-LONGEST_PAUSE_S = 60.0
-"""Longest pause, whatever a busy server asks for."""
 MOST_FAILURES = 10
 """Most failures in a row: the server is gone, or refuses."""
-USER_AGENT = f"Recon/{version()} (ground control station; offline map of one field)"
 PLACES = ("{z}", "{x}", "{y}")
-OK, NO_CONTENT, NOT_FOUND, GONE = 200, 204, 404, 410
-REFUSED = frozenset({401, 402, 403})
 
 Key = tuple[int, int, int]
 Progress = Callable[["FetchCount"], None]
@@ -140,29 +139,10 @@ async def fetch(
         count = FetchCount(len(keys), len(keys) - len(wanted))
         progress(count)
         file.describe(path.stem, server.attribution, area.bounds_deg)
-        async with _client() as client:
+        async with polite_client("image/*") as client:
             run = _Run(server, client, file, count, progress, pause_s)
             await run.all(iter(wanted))
     return count
-
-
-@asynccontextmanager
-async def _client() -> AsyncIterator[httpx.AsyncClient]:
-    headers = {"User-Agent": USER_AGENT, "Accept-Encoding": "identity", "Accept": "image/*"}
-    limits = httpx.Limits(max_connections=AT_ONCE)
-    async with httpx.AsyncClient(
-        headers=headers, timeout=TILE_WITHIN_S, follow_redirects=False, limits=limits
-    ) as client:
-        yield client
-
-
-class _TileFailedError(Exception):
-    """One tile could not be fetched; perhaps another try succeeds, `after_s` from now."""
-
-    def __init__(self, problem: str, after_s: float = 0.0, tries_again: bool = True) -> None:
-        super().__init__(problem)
-        self.after_s = after_s
-        self.tries_again = tries_again
 
 
 @dataclass(slots=True)
@@ -189,8 +169,8 @@ class _Run:
     async def _some(self, wanted: Iterator[Key]) -> None:
         for key in wanted:
             try:
-                data = await self._tries(key)
-            except _TileFailedError as problem:
+                data = await with_tries(partial(self._ask, key), self.pause_s)
+            except AskFailedError as problem:
                 self._failed(str(problem))
             else:
                 self._failures = 0
@@ -213,73 +193,16 @@ class _Run:
                 f"last: {problem}; try again later, it resumes where it stopped"
             )
 
-    async def _tries(self, key: Key) -> bytes | None:
-        pause_s = self.pause_s
-        for left in reversed(range(TRIES)):
-            try:
-                return await self._ask(key)
-            except _TileFailedError as problem:
-                if left == 0 or not problem.tries_again:
-                    raise
-                await asyncio.sleep(min(LONGEST_PAUSE_S, max(pause_s, problem.after_s)))
-                pause_s *= 2.0
-        return None
-
     async def _ask(self, key: Key) -> bytes | None:
-        """Return a tile; None if the server has none. Raises `_TileFailedError`."""
-        try:
-            async with (
-                asyncio.timeout(TILE_WITHIN_S),
-                self.client.stream("GET", self.server.url(*key)) as answer,
-            ):
-                if answer.status_code != OK:
-                    self._refused(answer)
-                    return None
-                data = await _body(answer)
-        except TimeoutError as problem:
-            raise _TileFailedError(f"no answer within {TILE_WITHIN_S:g} s") from problem
-        except (httpx.HTTPError, httpx.InvalidURL) as problem:
-            raise _TileFailedError(one_line(problem) or type(problem).__name__) from problem
+        """Return a tile; None if the server has none. Raises `AskFailedError`."""
+        url, asked = self.server.url(*key), AskedServer(self.server.host, "tiles", BaseMapError)
+        async with answered(self.client, url, asked, TILE_WITHIN_S) as answer:
+            if answer is None:
+                return None
+            data = await body_of(answer, LARGEST_TILE_BYTES, "a tile")
         try:
             picture_of(data)
         except BaseMapError as problem:
             sentence = VECTOR if data[:2] == b"\x1f\x8b" else str(problem)
-            raise _TileFailedError(sentence, tries_again=False) from problem
+            raise AskFailedError(sentence, tries_again=False) from problem
         return data
-
-    def _refused(self, answer: httpx.Response) -> None:
-        """Return for a tile that does not exist; raise for everything else."""
-        status = answer.status_code
-        if status in (NO_CONTENT, NOT_FOUND, GONE):
-            return
-        if status in REFUSED:
-            raise BaseMapError(
-                f"{self.server.host}: expected tiles, got status {status}: it refuses; is its key "
-                "in the address, and does its licence allow offline use?"
-            )
-        if answer.is_redirect:
-            raise BaseMapError(
-                f"{self.server.host}: expected a tile, got a redirect to "
-                f"{one_line(answer.headers.get('location', 'nowhere'))!a}; if that is right, give "
-                "its address"
-            )
-        raise _TileFailedError(f"status {status}", _asked_pause_s(answer))
-
-
-async def _body(answer: httpx.Response) -> bytes:
-    """Return the body, as long as a tile may be."""
-    parts, length = [], 0
-    async for part in answer.aiter_raw():
-        parts.append(part)
-        length += len(part)
-        if length > LARGEST_TILE_BYTES:
-            raise _TileFailedError(
-                f"expected a tile of at most {LARGEST_TILE_BYTES} bytes, got more",
-                tries_again=False,
-            )
-    return b"".join(parts)
-
-
-def _asked_pause_s(answer: httpx.Response) -> float:
-    text = answer.headers.get("retry-after", "")
-    return float(text) if re.fullmatch(r"\d{1,4}", text) else 0.0

@@ -23,7 +23,7 @@ from rasterio.errors import NotGeoreferencedWarning, RasterioError
 from rasterio.transform import Affine
 from rasterio.windows import Window
 
-from recon.basemap.map_file import BaseMapError, MapInfo, Tile, checked_bounds, one_line, plain_text
+from recon.basemap.map_file import BaseMapError, MapInfo, Tile, checked_bounds, plain_text
 from recon.basemap.web_mercator import (
     TILE_PX,
     MapArea,
@@ -34,6 +34,7 @@ from recon.basemap.web_mercator import (
 )
 from recon.geo.datum import horizontal, map_from_globe, names_files
 from recon.model.arrays import FloatArray
+from recon.model.foreign_text import one_line
 
 STARTS = frozenset({b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"})
 """First bytes of either byte order, plain and large."""

@@ -14,12 +14,12 @@ import numpy as np
 from recon.basemap.web_mercator import DEEPEST_ZOOM, MapArea
 from recon.model.arrays import IntArray
 from recon.model.errors import ReconError
+from recon.model.foreign_text import one_line
 
 LARGEST_TILE_BYTES = 2 * 1024 * 1024
 SMALLEST_TILE_PX, LARGEST_TILE_PX = 64, 1024
 MEDIA = {"PNG": "image/png", "JPEG": "image/jpeg", "WEBP": "image/webp"}
 SUFFIXES = frozenset({".mbtiles", ".pmtiles", ".tif", ".tiff"})
-LONGEST_TEXT = 200
 LONGEST_READING_S = 20.0
 
 
@@ -113,12 +113,6 @@ def picture_of(data: bytes) -> tuple[str, int]:
             f"{width} x {height}"
         )
     return MEDIA[str(kind)], width
-
-
-def one_line(text: object, longest: int = LONGEST_TEXT) -> str:
-    """Return text of a file on one line without control characters, shortened."""
-    plain = "".join(c if c.isprintable() else " " for c in str(text)[: 4 * longest])
-    return " ".join(plain.split())[:longest]
 
 
 def plain_text(markup: object) -> str:

@@ -19,7 +19,6 @@ from recon.basemap.map_file import (
     MapInfo,
     Tile,
     checked_bounds,
-    one_line,
     picture_of,
     plain_text,
     share_of_tiles,
@@ -27,6 +26,7 @@ from recon.basemap.map_file import (
 )
 from recon.basemap.web_mercator import DEEPEST_ZOOM, MapArea, tile_bounds_deg
 from recon.model.arrays import IntArray
+from recon.model.foreign_text import one_line
 
 INSTRUCTIONS_BETWEEN_LOOKS = 10_000
 MOST_FACTS = 100

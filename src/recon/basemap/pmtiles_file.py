@@ -31,13 +31,13 @@ from recon.basemap.map_file import (
     Tile,
     checked_bounds,
     checked_zooms,
-    one_line,
     picture_of,
     plain_text,
     share_of_tiles,
 )
 from recon.basemap.web_mercator import MapArea
 from recon.model.arrays import IntArray
+from recon.model.foreign_text import one_line
 
 HEADER_BYTES = 127
 LARGEST_DIRECTORY_BYTES = 2 * 1024 * 1024

@@ -86,7 +86,7 @@ COMMANDS = {
         "survey:survey_app",
         "Survey a region: create, estimate, start, pause, abort, status.",
     ),
-    "site": CommandSource("site:site_app", "Make, check and import into a site's folder."),
+    "site": CommandSource("site:site_app", "Make, check and fill a site's folder: import, fetch."),
     "maps": CommandSource(
         "maps:maps_app", "Bring base maps for the console: fetch tiles, check coverage."
     ),

@@ -12,10 +12,10 @@ import typer
 
 import recon
 from recon.cli.foreground import print_now, run_in_loop
+from recon.cli.opened_site import opened_site
 from recon.cli.options import with_options
 from recon.cli.run import HAS_GUARD, console_folder, guard_port, print_started
 from recon.cli.scripted_operator import fly_surveys
-from recon.cli.site import opened_site
 from recon.model.errors import ReconError
 from recon.record.files.users_file import state_folder
 from recon.score import Scenario, ScenarioError, load_scenario

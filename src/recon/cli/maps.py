@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from recon.cli.commands import App
+from recon.cli.opened_site import FolderArgument, opened_site
 from recon.cli.output import print_line
-from recon.cli.site import FolderArgument, opened_site
 
 if TYPE_CHECKING:
     from recon.basemap.fetch import FetchCount, TileServer

@@ -12,11 +12,11 @@ from typing import Annotated
 import typer
 
 from recon.cli.opened_flight import opened_flight
+from recon.cli.opened_site import opened_site
 from recon.cli.options import with_options
 from recon.cli.output import print_line
 from recon.cli.photo_cards import CameraOptions, print_refused, read_card, reasons_of
 from recon.cli.progress import progress_over, usable_cores
-from recon.cli.site import opened_site
 from recon.model.errors import RecordError
 from recon.model.units import HECTARE_M2
 from recon.product.flight import FlightData

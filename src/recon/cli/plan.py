@@ -11,13 +11,13 @@ from typing import Annotated, Any
 import typer
 
 from recon.cli.connection import REFUSED, WRONG_USE, JsonOption
+from recon.cli.opened_site import opened_site
 from recon.cli.options import with_options
 from recon.cli.output import print_json, print_table, printable
 from recon.cli.plan_export import ExportedFiles, PlanExportOptions, export_plans, rows_of_exports
 from recon.cli.plan_output import ImagingFigures, figures_of, geojson_of, plan_rows_of
 from recon.cli.plan_picture import Theme, picture_png
 from recon.cli.region_file import region_in
-from recon.cli.site import opened_site
 from recon.cli.survey import RowOptions, names_file
 from recon.geo import enu_from_points
 from recon.guidance.survey import Surveyor, SurveyPlan, plan_survey, surroundings_of

@@ -4,21 +4,23 @@ import json
 import socket
 from dataclasses import dataclass
 from pathlib import Path
+from time import time
 from typing import Annotated, Any
 
 import typer
 
 import recon
 from recon.cli.foreground import print_now, run_in_loop
+from recon.cli.opened_site import opened_site
 from recon.cli.options import with_options
 from recon.cli.qr import qr_lines
-from recon.cli.site import opened_site
 from recon.cli.users import UsersOption
 from recon.link.settings import LinkSettings
 from recon.record.audit.audit import shown
 from recon.record.files.users_file import state_folder
 from recon.site import Site, default_site, own_folder, site_report
 from recon.site.app_list import APPS_FILE, read_app_list
+from recon.site.fetched_report import fetched_report
 from recon.station.api_views.app import create_app
 from recon.station.api_views.service import Service
 from recon.station.audit.start import AuditPlace
@@ -162,7 +164,7 @@ def records_of(site: Path | None) -> Path:
 
 def describe(site: Site) -> None:
     """Print how well the control points fit, and the site's warnings."""
-    for line in site_report(site):
+    for line in (*site_report(site), *fetched_report(site, time())):
         print_now(line)
 
 

@@ -1,10 +1,9 @@
 """`recon site`: a site's folder made, checked, and filled from files of other programs."""
 
 import re
-import sys
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -12,20 +11,20 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from recon.cli.commands import App
+from recon.cli.opened_site import FolderArgument, opened_site, save_staged
 from recon.cli.options import with_options
-from recon.cli.output import print_line, print_warning, printable
+from recon.cli.output import print_line, print_warning
+from recon.cli.site_fetch import fetch_command
 from recon.model.errors import SiteError
 from recon.model.geo import GeoPoint
 from recon.model.units import M_PER_FT
 
 if TYPE_CHECKING:
     from recon.model.airspace import SiteLayer
-    from recon.site import Site
     from recon.site.drawing import DrawnFeature
 
-site_app = App(help="Make, check and import into a site's folder.", no_args_is_help=True)
-
-FolderArgument = Annotated[Path, typer.Argument(help="The site's folder.")]
+site_app = App(help="Make, check and fill a site's folder: import, fetch.", no_args_is_help=True)
+site_app.command("fetch")(fetch_command)
 
 
 class Layer(Enum):
@@ -80,8 +79,10 @@ def new_command(
 def check_command(folder: FolderArgument) -> None:
     """Read a site as a start does: print its report and warnings, or what is wrong."""
     from recon.site import site_report
+    from recon.site.fetched_report import fetched_report
 
-    for line in site_report(opened_site(folder)):
+    site = opened_site(folder)
+    for line in (*site_report(site), *fetched_report(site, time.time())):
         print_line(line)
 
 
@@ -149,37 +150,10 @@ def _add(
     what: str,
 ) -> None:
     """Save a site's drawing with new features. Raises `SiteError`."""
-    from recon.record.files.file_set import replace_files
     from recon.site.drawing import read_drawing, stage_drawing
 
     kept = [each for each in read_drawing(folder) if not (replaces and each.layer == layer)]
-    staged = stage_drawing(folder, [*kept, *new])
-    utc = datetime.now(UTC).isoformat(timespec="seconds")
-    try:
-        replace_files(folder, staged.files, what=what, by="recon site", utc=utc)
-    except OSError as problem:
-        raise SiteError(f"{folder} cannot be written: {problem.strerror or problem}") from problem
-
-
-def opened_site(folder: Path) -> "Site":
-    """Load a site as each start does: a change that a crash has interrupted is undone first.
-
-    Raises `SiteError`, or `RecordError` for a change that was edited by hand.
-    """
-    from recon.record.files.file_set import finish_interrupted
-    from recon.site import load_site
-
-    try:
-        is_repaired = finish_interrupted(folder)
-    except OSError as problem:
-        raise SiteError(
-            f"{folder}: an interrupted change cannot be undone: {problem.strerror or problem}"
-        ) from problem
-    if is_repaired:
-        # Not among results, which may be JSON.
-        text = f"{folder}: a change of the site that was interrupted is undone"
-        print(printable(text), file=sys.stderr, flush=True)
-    return load_site(folder)
+    save_staged(folder, stage_drawing(folder, [*kept, *new]), what)
 
 
 def _height_m(text: str) -> float:

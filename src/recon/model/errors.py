@@ -5,6 +5,7 @@
     |- CameraError          recon.camera: calibration, control points, pose, frames
     |- SiteError            recon.site: a site's folder
     |- BaseMapError         recon.basemap: files of base maps, and fetching them
+    |- FetchError           recon.fetching: servers and files asked for what a site needs
     |- RecordError          recon.record: files of a flight
     |- SimulationError      recon.sim: options and inputs of the simulator
     |- ClientError          recon.client: connecting to a station

@@ -17,10 +17,12 @@ from recon.model.errors import SiteError
 from recon.model.geo import GroundGrid, LocalFrame
 from recon.site.reading import file_inside
 from recon.site.schema import FileName
+from recon.site.terrain_source import TerrainSource, source_of
 
 if TYPE_CHECKING:
     from recon.site.height_file import HeightFile
 
+Datum = Literal["wgs84", "geoid"]
 MOST_CELLS = 1_000_000
 FINEST_CELL_M = 1.0
 """Finer models show plants, not ground."""
@@ -37,26 +39,32 @@ class ElevationTable(Struct, frozen=True, forbid_unknown_fields=True):
     """[elevation]: `datum` is the zero of the file's heights; it is never guessed."""
 
     file: FileName
-    datum: Literal["wgs84", "geoid"]
+    datum: Datum
     geoid_height_m: Annotated[float, Meta(ge=-120.0, le=100.0)] | None = None
     """The geoid's height above the ellipsoid here, to be added; for `geoid` only."""
 
 
-def read_elevation(site_file: Path, table: ElevationTable, airspace: Airspace) -> ElevationModel:
-    """Return the elevation model around an airspace that has a frame. Raises `SiteError`."""
+def read_elevation(
+    site_file: Path, table: ElevationTable, airspace: Airspace
+) -> tuple[ElevationModel, TerrainSource | None]:
+    """Return the elevation model around an airspace that has a frame, and its source if fetched.
+
+    Raises `SiteError`.
+    """
     from recon.site.height_file import opened
 
     frame = airspace.frame
     assert frame is not None
     raised_m = _raised_m(f"{site_file}: elevation", table)
     with opened(file_inside(site_file, table.file, "elevation.file")) as file:
-        _refuse_other_datum(file, table)
+        refuse_other_datum(file, table.datum)
         pixel_m = _pixel_m(file, frame)
-        grid = _grid(frame, _area_m(airspace), pixel_m)
+        grid = _grid(frame, flown_area_m(airspace), pixel_m)
         heights_m = _resampled(file, grid, pixel_m) + raised_m
         model = ElevationModel(grid, heights_m)
         _refuse_other_ground(file.place, model)
-    return model
+        source = source_of(file.dataset.tags())
+    return model, source
 
 
 def ground_heights_m(model: ElevationModel, east_north_m: FloatArray) -> FloatArray:
@@ -75,16 +83,16 @@ def _raised_m(place: str, table: ElevationTable) -> float:
     return table.geoid_height_m or 0.0
 
 
-def _refuse_other_datum(file: "HeightFile", table: ElevationTable) -> None:
-    """Raise `SiteError` when the file declares another vertical datum than site.toml."""
+def refuse_other_datum(file: "HeightFile", datum: Datum) -> None:
+    """Raise `SiteError` when the file declares another vertical datum than was stated."""
     vertical = next((crs for crs in file.crs.sub_crs_list if crs.is_vertical), None)
     if vertical is None and len(file.crs.axis_info) < 3:
         return
     name = file.crs.name if vertical is None else vertical.name
     is_ellipsoidal = vertical is None or "ellipsoid" in name.lower()
-    if is_ellipsoidal != (table.datum == "wgs84"):
+    if is_ellipsoidal != (datum == "wgs84"):
         raise SiteError(
-            f"{file.place}: expected heights with elevation.datum = '{table.datum}' as in "
+            f"{file.place}: expected heights with elevation.datum = '{datum}' as in "
             f"site.toml, got a file with {name!a}"
         )
     if vertical is not None and vertical.axis_info[0].unit_conversion_factor != 1.0:
@@ -109,8 +117,8 @@ def _pixel_m(file: "HeightFile", frame: LocalFrame) -> float:
     return pixel_m
 
 
-def _area_m(airspace: Airspace) -> tuple[FloatArray, FloatArray]:
-    """Return the south-west and north-east corners of what the grid must cover."""
+def flown_area_m(airspace: Airspace) -> tuple[FloatArray, FloatArray]:
+    """Return the south-west and north-east corners of the ground that flights may reach."""
     assert airspace.frame is not None
     pads = enu_from_points(airspace.frame, [pad.place for pad in airspace.landing_pads])[:, :2]
     outline = () if airspace.boundary is None else (airspace.boundary.outline_m,)

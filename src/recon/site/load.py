@@ -25,6 +25,7 @@ from recon.site.imager import imager_from_table
 from recon.site.layers import read_layers
 from recon.site.reading import convert, read_toml, refuse_non_finite
 from recon.site.schema import (
+    FetchTable,
     GroundImageTable,
     ImagerTable,
     LayersTable,
@@ -139,6 +140,7 @@ def load_site(folder: Path) -> Site:
     )
     failsafe = failsafe_from_tables(path, table.failsafe)
     _tile_server(path, table)
+    convert(path, table.fetch, FetchTable, "fetch")
     cameras = read_survey_cameras(folder)
     _refuse_unknown_cameras(path, profiles, cameras)
     site = Site(
@@ -148,8 +150,8 @@ def load_site(folder: Path) -> Site:
     refuse_misplaced_pads(path, site)
     if table.elevation is not None:
         elevation = convert(path, table.elevation, ElevationTable, "elevation")
-        model = read_elevation(path, elevation, site.airspace)
-        site = replace(site, elevation=model, elevation_file=elevation.file)
+        model, source = read_elevation(path, elevation, site.airspace)
+        site = replace(site, elevation=model, elevation_file=elevation.file, terrain_source=source)
         refuse_sunken_pads(path, site)
     refuse_sunken_zones(path, site)
     return site
@@ -159,6 +161,13 @@ def read_tile_server(folder: Path) -> TileServerTable | None:
     """Return the tile server of a site's folder; None without one. Raises `SiteError`."""
     path = folder / SITE_FILE
     return _tile_server(path, convert(path, _read_site_file(path), SiteTable, ""))
+
+
+def read_fetch_table(folder: Path) -> FetchTable:
+    """Return where a site's folder fetches heights and weather from. Raises `SiteError`."""
+    path = folder / SITE_FILE
+    table = convert(path, _read_site_file(path), SiteTable, "")
+    return convert(path, table.fetch, FetchTable, "fetch")
 
 
 def _tile_server(path: Path, table: SiteTable) -> TileServerTable | None:

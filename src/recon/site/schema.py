@@ -207,6 +207,14 @@ class TileServerTable(_Table, frozen=True):
     attribution: Annotated[str, Meta(max_length=200)] = ""
 
 
+class FetchTable(_Table, frozen=True):
+    """[fetch]: where `recon site fetch` gets heights and weather from; a station asks nobody."""
+
+    elevation: Annotated[str, Meta(min_length=1, max_length=1_000)] | None = None
+    elevation_datum: Literal["wgs84", "geoid"] | None = None
+    weather: Annotated[str, Meta(min_length=1, max_length=2_000)] | None = None
+
+
 class SiteTable(_Table, frozen=True):
     """The whole file. The tables are converted one by one, so that an error names its table."""
 
@@ -219,4 +227,5 @@ class SiteTable(_Table, frozen=True):
     elevation: dict[str, Any] | None = None
     failsafe: dict[str, Any] = {}
     tile_server: dict[str, Any] | None = None
+    fetch: dict[str, Any] = {}
     vehicles: list[dict[str, Any]] = []

@@ -20,6 +20,7 @@ from recon.model.survey_camera import CameraModel
 from recon.model.units import wrap_degrees
 from recon.model.vehicle import VehicleProfile
 from recon.safety.failsafe import DEFAULT_MATRIX
+from recon.site.terrain_source import TerrainSource
 
 RIM_SHARE = 0.98
 """Share of the image circle's radius: its rim is dark, and out of view when the camera wobbles."""
@@ -107,6 +108,8 @@ class Site:
     failsafe: FailsafeMatrix = DEFAULT_MATRIX
     elevation: ElevationModel | None = None
     elevation_file: str | None = None
+    terrain_source: TerrainSource | None = None
+    """Where the elevation file was fetched from; None for the user's own."""
     cameras: Mapping[str, CameraModel] = field(default_factory=dict)
     """The site's own survey cameras, beside those of the table."""
 
