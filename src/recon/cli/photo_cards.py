@@ -12,6 +12,7 @@ import typer
 from recon.cli.output import print_line, print_warning
 from recon.cli.progress import progress_over, usable_cores
 from recon.model.errors import RecordError
+from recon.model.names import first_names
 from recon.product.flight import FlightData
 from recon.product.panels import PanelShot, marked_panels
 from recon.product.photos.card import Card, card_of
@@ -69,7 +70,8 @@ class ReadCard:
     def print_left_out(self, refused: Mapping[str, str]) -> None:
         """Print what was left alone and what is refused since, by reason."""
         for reason, paths in self.card.left.items():
-            print_line(f"left out: {_listed([path.name for path in paths])}: {reason}")
+            names = first_names([path.name for path in paths], MOST_NAMED)
+            print_line(f"left out: {names}: {reason}")
         print_refused(refused)
 
 
@@ -131,15 +133,11 @@ def print_refused(refused: Mapping[str, str]) -> None:
     """Print each reason once; copies together, for each has its own photo."""
     copies = [name for name, reason in sorted(refused.items()) if reason.startswith(COPY)]
     if copies:
-        print_line(f"left out: {_listed(copies)}: copies of other photos, which count once")
+        print_line(
+            f"left out: {first_names(copies, MOST_NAMED)}: copies of other photos, which count once"
+        )
     rest = {name: reason for name, reason in refused.items() if name not in copies}
     _print_grouped("not used: ", rest)
-
-
-def _listed(names: Sequence[str]) -> str:
-    """Return how many there are, with the first names."""
-    more = len(names) - MOST_NAMED
-    return ", ".join(names[:MOST_NAMED]) + (f" and {more} more" if more > 0 else "")
 
 
 def _print_grouped(before: str, refused: Mapping[str, str]) -> None:
@@ -148,4 +146,4 @@ def _print_grouped(before: str, refused: Mapping[str, str]) -> None:
     for name, reason in sorted(refused.items()):
         by_reason.setdefault(reason.removeprefix(f"{name}: "), []).append(name)
     for reason, names in by_reason.items():
-        print_warning(f"{before}{_listed(names)}: {reason}")
+        print_warning(f"{before}{first_names(names, MOST_NAMED)}: {reason}")

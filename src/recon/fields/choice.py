@@ -5,7 +5,7 @@ from pathlib import Path
 
 from recon.fields.field_file import Imported, ImportedFeature
 from recon.model.errors import SiteError
-from recon.model.near_names import did_you_mean
+from recon.model.names import did_you_mean, first_names
 
 MOST_LISTED = 20
 
@@ -41,9 +41,9 @@ def chosen_features(
 def listed(found: Imported, features: Sequence[ImportedFeature]) -> str:
     """Return the names of shapes for an error, the first of many."""
     numbers = {id(feature): number for number, feature in enumerate(found.features, start=1)}
-    names = [ascii(shown_name(each, numbers[id(each)])) for each in features[:MOST_LISTED]]
-    rest = len(features) - len(names)
-    return ", ".join(names) + (f" and {rest} more" if rest else "")
+    return first_names(
+        [ascii(shown_name(each, numbers[id(each)])) for each in features], MOST_LISTED
+    )
 
 
 def _near(name: str, found: Imported) -> str:

@@ -12,7 +12,7 @@ from types import MappingProxyType
 from typing import Literal
 
 from recon.model.errors import ReconError
-from recon.model.near_names import did_you_mean
+from recon.model.names import did_you_mean
 from recon.model.survey import SurveyCamera
 
 Shutter = Literal["global", "mechanical", "rolling"]

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TypeVar
 
-from recon.model.near_names import did_you_mean
+from recon.model.names import did_you_mean
 from recon.plans.flight_plan import PlanExportError
 
 _T = TypeVar("_T")

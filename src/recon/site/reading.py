@@ -17,7 +17,7 @@ import msgspec
 from msgspec import inspect
 
 from recon.model.errors import SiteError
-from recon.model.near_names import did_you_mean
+from recon.model.names import did_you_mean
 
 T = TypeVar("T")
 

@@ -21,6 +21,7 @@ from recon.fleet.settings import FleetSettings
 from recon.fleet.state import LinkRecord, staleness
 from recon.model.command import Phase
 from recon.model.control import AuthorityHolder, Commanded
+from recon.model.names import first_names
 from recon.model.replacing import replace
 from recon.model.units import ns_to_seconds
 from recon.model.vehicle import FlightMode, Staleness, VehicleState
@@ -144,11 +145,9 @@ def _awaited(awaited: tuple[VehicleState, ...], settings: StationSettings) -> It
     """One alarm for all; each vehicle that does not return gets its own later."""
     if not awaited:
         return
-    names = ", ".join(vehicle.display_name for vehicle in awaited[:MAX_NAMES])
-    others = len(awaited) - MAX_NAMES
-    more = f" and {others} more" if others > 0 else ""
+    names = first_names([vehicle.display_name for vehicle in awaited], MAX_NAMES)
     text = (
-        f"the station was restarted and waits for telemetry of {names}{more}, in flight before; "
+        f"the station was restarted and waits for telemetry of {names}, in flight before; "
         f"for {settings.restart.settle_s:g} s their hazard areas hold no other vehicle"
     )
     yield Condition("restart_waits", Severity.WARNING, "restart_waits", "", text)
@@ -210,8 +209,7 @@ def _stop_latch(station: Station) -> Iterator[Condition]:
     if latch is None:
         return
     names = [v.display_name for v in station.fleet.vehicles.values() if latch.holds(v.serial)]
-    more = f" and {len(names) - MAX_NAMES} more" if len(names) > MAX_NAMES else ""
-    which = f"{', '.join(names[:MAX_NAMES])}{more}" if names else "vehicles that connect later"
+    which = first_names(names, MAX_NAMES) or "vehicles that connect later"
     text = (
         f"all stop by {latch.by} in force for {which}: only hold, land and return are sent until a "
         "person releases it"

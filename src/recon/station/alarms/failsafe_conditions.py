@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from recon.model.failsafe_matrix import FailsafeCell, FailsafeCondition, Reaction
+from recon.model.names import first_names
 from recon.model.units import NS_PER_S
 from recon.safety.failsafe import ROWS
 from recon.safety.failsafe import imaging_drone_lost as imaging_row
@@ -101,12 +102,7 @@ def _reactions(station: Station, affected: Mapping[str, Occurrence], now_ns: int
         if words:
             vehicle = station.fleet.vehicles.get(serial)
             names[words].append(serial if vehicle is None else vehicle.display_name)
-    return "".join(f"; {_few(found)}: {words}" for words, found in names.items())
-
-
-def _few(names: list[str]) -> str:
-    more = f" and {len(names) - MAX_NAMES} more" if len(names) > MAX_NAMES else ""
-    return ", ".join(names[:MAX_NAMES]) + more
+    return "".join(f"; {first_names(found, MAX_NAMES)}: {words}" for words, found in names.items())
 
 
 def _cell(station: Station, serial: str, occurrence: Occurrence) -> FailsafeCell:
