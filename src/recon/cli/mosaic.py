@@ -2,7 +2,7 @@
 
 import shutil
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from ctypes import CDLL
 from dataclasses import dataclass
@@ -180,10 +180,7 @@ def _registered(photos: Sequence[TimedPhoto]) -> Sequence[PhotoView]:
     # Imported here: a mosaic of OpenDroneMap's cameras has no need of it, nor room for it.
     from recon.product.registration import read_grey, register
 
-    def over(read: Iterable[TimedPhoto]) -> Iterator[TimedPhoto]:
-        return progress_over(read, "registering photos", len(photos))
-
-    found = register(photos, read_grey, over, usable_cores())
+    found = register(photos, read_grey, progress_over, usable_cores())
     for line in (*map(str, found.headings), *found.warnings):
         print_line(line)
     if found.links:

@@ -2,7 +2,7 @@
 
 import sys
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -167,12 +167,7 @@ def _write_projects(
 
 def _with_headings(photos: Sequence[TimedPhoto]) -> list[TimedPhoto]:
     """Return the photos with the headings that their pictures show; print how they are known."""
-
-    def over(read: Iterable[TimedPhoto]) -> Iterator[TimedPhoto]:
-        few = list(read)
-        return progress_over(few, "registering neighbours", len(few))
-
-    turned, headings = with_headings(photos, read_grey, over, usable_cores())
+    turned, headings = with_headings(photos, read_grey, progress_over, usable_cores())
     for each in headings:
         print_line(str(each))
         for warning in each.warnings:

@@ -40,9 +40,9 @@ from recon.product.mosaic import (
     plan_of,
     preview_cameras,
 )
-from recon.product.mosaic.build import plainly
 from recon.product.mosaic.pixels import Box, ReadPixels
 from recon.product.photos.photo import Photo
+from recon.product.progress import plainly
 from recon.product.sun_at import SunHistory
 from recon.product.timing import TimedPhoto
 

@@ -4,12 +4,12 @@ import csv
 import io
 import json
 import warnings
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 import rasterio
@@ -32,19 +32,12 @@ from recon.product.mosaic.plan import MosaicPlan, MosaicWindow
 from recon.product.mosaic.preview import preview_png
 from recon.product.mosaic.render import Renderer, camera_for, taken_of
 from recon.product.mosaic.windows import CACHE_BYTES, PROVENANCE, Raster, RasterBand, WindowStore
+from recon.product.progress import Item, Over, plainly
 from recon.record.files.atomic_file import replace_file
 
-Item = TypeVar("Item")
-Over = Callable[[Iterable[Any], str, int], Iterator[Any]]
-"""Shows progress over items: items, title, how many."""
 FILE_MODE = 0o644
 PHOTOS, REPORT, PREVIEW = "photos.csv", "mosaic.json", "preview.png"
 FAILED = "failed.json"
-
-
-def plainly(items: Iterable[Item], _title: str, _count: int) -> Iterator[Item]:
-    """Yield the items without showing progress."""
-    yield from items
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,12 +10,12 @@ from recon.model.errors import RecordError
 from recon.product.coverage import region_of
 from recon.product.flight import FlightData
 from recon.product.footprint import PhotoView
-from recon.product.mosaic.build import Over
 from recon.product.mosaic.cameras import Camera, camera_of_view
 from recon.product.mosaic.choice import PlacedPhoto
 from recon.product.mosaic.ground import LevelGround, MosaicGround
 from recon.product.mosaic.light import light_on
 from recon.product.mosaic.plan import MosaicPlan, plan_over, round_m
+from recon.product.progress import Over
 from recon.product.sun_at import SunHistory
 from recon.product.timing import TimedPhoto
 

@@ -36,16 +36,6 @@ class MosaicPlan:
     """The pixels; as many as whole windows have."""
     area: shapely.Geometry
 
-    @property
-    def choice_grid(self) -> GroundGrid:
-        """Grid of the choice cells."""
-        grid = self.grid
-        step = STEP_PX
-        cell_m = grid.cell_m * step
-        return GroundGrid(
-            grid.frame, grid.west_m, grid.north_m, cell_m, grid.rows // step, grid.cols // step
-        )
-
     def windows(self) -> list[MosaicWindow]:
         """Return the windows that meet the area, in an order in which neighbours share photos."""
         found = []

@@ -1,6 +1,6 @@
 """Photos registered to each other: which way each looks, its place, and its field of view."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -12,6 +12,7 @@ from scipy.spatial import KDTree
 from recon.model.arrays import FloatArray, IntArray
 from recon.product.footprint import PhotoView
 from recon.product.headings import AIRCRAFT, GIMBAL, signed_deg
+from recon.product.progress import Over, plainly
 from recon.product.registration.adjustment import Adjusted, Stated, adjusted
 from recon.product.registration.heading import (
     CameraHeading,
@@ -33,7 +34,6 @@ from recon.product.timing import TimedPhoto
 
 Read = Callable[[TimedPhoto], GreyImage | None]
 """Reads a photo's grey picture; None where it cannot be read."""
-Over = Callable[[Iterable[TimedPhoto]], Iterator[TimedPhoto]]
 
 MOST_READ = 100
 """Photos of a flight that are read to find its cameras' headings."""
@@ -82,7 +82,7 @@ Links = dict[tuple[int, int], Link]
 
 
 def with_headings(
-    photos: Sequence[TimedPhoto], read: Read, over: Over = iter, workers: int = 1
+    photos: Sequence[TimedPhoto], read: Read, over: Over = plainly, workers: int = 1
 ) -> tuple[list[TimedPhoto], list[CameraHeading]]:
     """Return the photos with the headings that their pictures show, and how those were found.
 
@@ -110,7 +110,7 @@ def with_headings(
 
 
 def register(
-    photos: Sequence[TimedPhoto], read: Read, over: Over = iter, workers: int = 1
+    photos: Sequence[TimedPhoto], read: Read, over: Over = plainly, workers: int = 1
 ) -> PhotoRegistration:
     """Return the poses of all photos, registered to their neighbours along and across lines.
 
@@ -206,7 +206,8 @@ def _links(
     with ThreadPoolExecutor(workers) as pool:
         wanted = [photos[index] for index in needed]
         results = pool.map(features, wanted)
-        found = dict(zip(needed, (next(results) for _ in over(wanted)), strict=True))
+        read_ones = over(results, "registering photos", len(wanted))
+        found = dict(zip(needed, read_ones, strict=True))
         links = [each for each in pool.map(linked, ordered) if each is not None]
     return {(each.first, each.second): each for each in links}
 
