@@ -23,7 +23,7 @@ test("64 drones stay readable: list, alarms by cause, clusters", async ({ page }
   });
 
   await test.step("31 alarms of one cause have one acknowledgement", async () => {
-    await page.getByRole("button", { name: "1 alarm", exact: true }).click();
+    await page.getByRole("button", { name: "31 alarms", exact: true }).click();
     await page.getByRole("button", { name: "OK: acknowledge Separation: 31 pairs" }).click();
     await expect.poll(() => fake.acknowledged.length).toBe(31);
   });

@@ -61,7 +61,7 @@ test("31 pairs are one tone and one sentence, from the first press on", async ({
   await page.getByRole("button", { name: "Mute Separation" }).click();
   await expect(notice).toContainText("Separation: 31 pairs");
   await page.reload();
-  await expect(page.getByRole("button", { name: "1 alarm, muted: Separation" })).toBeVisible();
+  await expect(page.getByRole("button", { name: "31 alarms, muted: Separation" })).toBeVisible();
   await notice.getByRole("button", { name: "Unmute" }).click();
   await expect.poll(async () => (await sounds()).spoken[0]).toBe("Separation: 31 pairs");
 });

@@ -1,5 +1,6 @@
 """`recon status`, `recon alarms`, `recon commands`: the state of the station, in the terminal."""
 
+from collections.abc import Sequence
 from typing import Annotated
 
 import msgspec
@@ -30,7 +31,7 @@ async def status_command(
     latch = await station.stop_in_force()
     if latch is not None:
         print_line(_in_force(latch))
-    active = sum(alarm.is_active for alarm in alarms)
+    active, _ = _counted(alarms)
     print_line(f"{len(vehicles)} vehicles, {active} active alarms")
     return DONE
 
@@ -58,13 +59,14 @@ async def alarms_command(
     """
     for number in acknowledged or []:
         await station.acknowledge(number)
-    alarms = await station.alarms()
+    alarms = sorted(await station.alarms(), key=lambda alarm: not alarm.is_active)
     if as_json:
         print_json(msgspec.to_builtins(alarms))
         return DONE
     columns = ("id", "severity", "since", "alarm", "acknowledged")
     print_table("alarms", columns, [_alarm_row(alarm) for alarm in alarms])
-    print_line(f"{sum(alarm.is_active for alarm in alarms)} active alarms")
+    active, ended = _counted(alarms)
+    print_line(f"{active} active alarms; {ended} ended, not acknowledged")
     return DONE
 
 
@@ -115,6 +117,12 @@ def _alarm_row(alarm: AlarmStatus) -> tuple[str, ...]:
     acknowledged = "yes" if alarm.is_acknowledged else "no"
     since = f"{alarm.raised_age_s:.0f} s"
     return (str(alarm.id), alarm.severity, since, alarm.text + ended, acknowledged)
+
+
+def _counted(alarms: Sequence[AlarmStatus]) -> tuple[int, int]:
+    """How many are active, without notes, as the console counts them; and how many have ended."""
+    active = sum(alarm.is_active and alarm.severity != "info" for alarm in alarms)
+    return active, sum(not alarm.is_active for alarm in alarms)
 
 
 def _life_row(life: OrderStatus) -> tuple[str, ...]:

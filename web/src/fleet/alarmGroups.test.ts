@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { alarm } from "../testing/fakeState";
-import { groupAlarms } from "./alarmGroups";
+import { groupAlarms, isAlarmNow } from "./alarmGroups";
 
 const pair = (id: number) =>
   alarm(id, {
@@ -22,20 +22,27 @@ describe("alarms", () => {
     expect(group?.title).toBe("Dogwood: Aircraft battery warning: low, 28 % left.");
   });
 
-  it("come by severity, those that ask for nothing last", () => {
-    const over = { is_active: false, is_acknowledged: true };
+  it("come active first, then worst first, however long ago they were raised", () => {
+    const over = { is_active: false };
     const groups = groupAlarms([
       alarm(1, { rule: "app_message", severity: "info" }),
-      alarm(2, { rule: "link_lost", severity: "critical", ...over }),
+      alarm(2, { rule: "link_lost", severity: "critical", raised_age_s: 1, ...over }),
       alarm(3),
       pair(4),
+      alarm(5, { rule: "gnss", severity: "error", raised_age_s: 2, ...over }),
     ]);
-    expect(groups.map(({ severity, needsLook }) => [severity, needsLook])).toEqual([
+    expect(groups.map(({ severity, isActive }) => [severity, isActive])).toEqual([
       ["critical", true],
       ["warning", true],
+      ["info", true],
       ["critical", false],
-      ["info", false],
+      ["error", false],
     ]);
+  });
+
+  it("are counted while their cause lasts, notes are not", () => {
+    const alarms = [alarm(1), alarm(2, { is_active: false }), alarm(3, { severity: "info" })];
+    expect(alarms.filter(isAlarmNow)).toHaveLength(1);
   });
 
   it("that go on after an acknowledgement are apart from new ones", () => {

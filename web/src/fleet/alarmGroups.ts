@@ -13,14 +13,17 @@ export interface AlarmGroup {
   readonly alarms: readonly AlarmView[];
   readonly isActive: boolean;
   readonly isAcknowledged: boolean;
-  /** Whether it asks for something: more than a note that lasts, or one not acknowledged yet. */
-  readonly needsLook: boolean;
+}
+
+/** Whether its cause lasts, and it is more than a note. */
+export function isAlarmNow({ is_active, severity }: AlarmView): boolean {
+  return is_active && severity !== "info";
 }
 
 /** Causes whose every alarm is about two vehicles. */
 const PAIRED = ["separation"];
 
-/** Groups alarms by cause and severity, worst first; a group with one alarm keeps that alarm's text. */
+/** Groups alarms by cause and severity, active ones first, then the worst; a group with one alarm keeps that alarm's text. */
 export function groupAlarms(alarms: readonly AlarmView[]): AlarmGroup[] {
   const groups = new Map<string, AlarmView[]>();
   for (const alarm of alarms) {
@@ -43,7 +46,6 @@ function groupOf(key: string, members: readonly AlarmView[]): AlarmGroup {
     alarms,
     isActive,
     isAcknowledged,
-    needsLook: severity !== "info" && (isActive || !isAcknowledged),
   };
 }
 
@@ -67,10 +69,10 @@ export function causeName(rule: string): string {
   return text.alarms.causes[rule] ?? capitalised(plainWords(rule));
 }
 
-/** Those that ask for something first, then by severity, then the newest. */
+/** Active ones first, then by severity, those not acknowledged, the newest. */
 function byUrgency(a: AlarmGroup, b: AlarmGroup): number {
   return (
-    Number(b.needsLook) - Number(a.needsLook) ||
+    Number(b.isActive) - Number(a.isActive) ||
     severityRank(a.severity) - severityRank(b.severity) ||
     Number(a.isAcknowledged) - Number(b.isAcknowledged) ||
     (a.alarms[0]?.raised_age_s ?? 0) - (b.alarms[0]?.raised_age_s ?? 0)

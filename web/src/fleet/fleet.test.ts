@@ -1,8 +1,8 @@
 import { createRoot } from "solid-js";
 import { describe, expect, it } from "vitest";
-import { alarm, vehicle } from "../testing/fakeState";
+import { vehicle } from "../testing/fakeState";
 import { createSelection, selectedVehicles } from "./selection";
-import { sortAlarms, worstSeverity } from "./severity";
+import { worstSeverity } from "./severity";
 import {
   reachM,
   simulation,
@@ -77,19 +77,7 @@ describe("a vehicle's status", () => {
   });
 });
 
-describe("alarms", () => {
-  it("are sorted worst first, then unacknowledged, then newest", () => {
-    const sorted = sortAlarms([
-      alarm(1, { severity: "info" }),
-      alarm(2, { severity: "critical", is_acknowledged: true }),
-      alarm(3, { severity: "warning", raised_age_s: 9 }),
-      alarm(4, { severity: "critical" }),
-      alarm(5, { severity: "warning", raised_age_s: 2 }),
-      alarm(6, { severity: "error" }),
-    ]);
-    expect(sorted.map(({ id }) => id)).toEqual([4, 2, 6, 5, 3, 1]);
-  });
-
+describe("severities", () => {
   it("have a worst one", () => {
     expect(worstSeverity([])).toBeNull();
     expect(worstSeverity(["info", "error", "warning"])).toBe("error");

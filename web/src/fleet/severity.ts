@@ -1,4 +1,4 @@
-import type { AlarmView, Severity } from "../protocol";
+import type { Severity } from "../protocol";
 import { valuesOf } from "../protocol/values";
 
 /** 0 for the worst. */
@@ -15,15 +15,4 @@ export function severityRank(severity: Severity): number {
 /** The worst severity; null for an empty list. */
 export function worstSeverity(severities: readonly Severity[]): Severity | null {
   return SEVERITIES.find((severity) => severities.includes(severity)) ?? null;
-}
-
-/** Alarms sorted for display: worst first, then unacknowledged, then newest. */
-export function sortAlarms(alarms: readonly AlarmView[]): AlarmView[] {
-  return [...alarms].sort(
-    (a, b) =>
-      severityRank(a.severity) - severityRank(b.severity) ||
-      Number(a.is_acknowledged) - Number(b.is_acknowledged) ||
-      a.raised_age_s - b.raised_age_s ||
-      b.id - a.id,
-  );
 }

@@ -3,6 +3,7 @@ import type { StationState } from "../protocol";
 import { alarm, command, link, station, vehicle } from "../testing/fakeState";
 import { find, type RenderedPage, renderPage } from "../testing/renderPage";
 import { AlarmList } from "./alarms/AlarmList";
+import { AlarmsButton } from "./bar/AlarmsButton";
 import { ConnectionBanner } from "./bar/ConnectionBanner";
 import { StatusButton } from "./bar/StatusButton";
 import { TopBar } from "./bar/TopBar";
@@ -141,6 +142,21 @@ describe("alarms", () => {
     expect(rows[0]).toContain("Cedar: Lost.");
     find(root, "button[aria-label='OK: acknowledge Cedar: Lost.']").click();
     expect(page.acknowledged).toEqual([7]);
+  });
+
+  it("that ended are collapsed, and bar and panel count those that are active", () => {
+    const alarms = [
+      alarm(1, { is_active: false, severity: "critical" }),
+      alarm(2),
+      alarm(3, { severity: "error", vehicle_name: "Cedar" }),
+    ];
+    const root = show(() => [AlarmsButton(), AlarmList()], station([vehicle(1)], { alarms }));
+    expect(find(root, ".panel-count").textContent).toBe("2");
+    expect(find(root, ".bar-alarms").getAttribute("aria-label")).toBe("2 alarms");
+    const folded = find<HTMLDetailsElement>(root, "details.alarm-ended");
+    expect(folded.open).toBe(false);
+    expect(folded.textContent).toContain("Ended, not acknowledged: 1");
+    expect(folded.querySelectorAll("li")).toHaveLength(1);
   });
 });
 

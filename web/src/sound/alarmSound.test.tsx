@@ -134,11 +134,11 @@ describe("muting", () => {
   });
 });
 
-describe("an alarm that has ended and is acknowledged", () => {
+describe("an alarm that has ended", () => {
   it("leaves no colour", () => {
-    show(alarm(1, { is_active: false }));
+    show(alarm(1));
     expect(bar().className).toContain("tone-ground-warning");
-    page.receive(withAlarms(alarm(1, { is_active: false, is_acknowledged: true })));
+    page.receive(withAlarms(alarm(1, { is_active: false })));
     expect(bar().className).not.toContain("tone-ground");
     expect(bar().textContent).toContain("0 alarms");
     expect(find(page.root, "li.alarm").className).toContain("is-over");

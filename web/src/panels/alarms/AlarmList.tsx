@@ -1,6 +1,6 @@
 import { createMemo, createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
-import { type AlarmGroup, groupAlarms } from "../../fleet/alarmGroups";
+import { type AlarmGroup, groupAlarms, isAlarmNow } from "../../fleet/alarmGroups";
 import type { AlarmView } from "../../protocol";
 import { kindOf } from "../../sound/alarmSound";
 import { text } from "../../text/catalogue";
@@ -11,27 +11,46 @@ import { SeverityMark } from "../SeverityMark";
 import { MuteButton, SoundControls } from "./SoundControls";
 import "./alarms.css";
 
-/** The alarms of station and vehicles by cause, worst first; one acknowledgement for each cause. */
+/** The alarms of station and vehicles by cause: active ones worst first, ended ones collapsed. */
 export function AlarmList() {
   const { fleet } = useConsole();
   const groups = createMemo(() => groupAlarms(fleet.alarms));
-  // Rows by key: a button stays the same element while alarms come and go.
-  const keys = createMemo(() => groups().map(({ key }) => key), [], { equals: sameKeys });
+  const ended = () => groups().filter(({ isActive }) => !isActive);
   return (
-    <Panel title={text.panels.titles.alarms} name="alarms" count={groups().length}>
+    <Panel
+      title={text.panels.titles.alarms}
+      name="alarms"
+      count={fleet.alarms.filter(isAlarmNow).length}
+    >
       <SoundControls />
-      <Show when={keys().length > 0} fallback={<Empty>{text.alarms.none}</Empty>}>
-        <ul aria-live="assertive" aria-relevant="additions">
-          <For each={keys()}>
-            {(key) => (
-              <Show when={groups().find((group) => group.key === key)}>
-                {(group) => <GroupRow group={group()} />}
-              </Show>
-            )}
-          </For>
-        </ul>
+      <Show when={groups().length > ended().length} fallback={<Empty>{text.alarms.none}</Empty>}>
+        <Groups groups={groups().filter(({ isActive }) => isActive)} isAnnounced={true} />
+      </Show>
+      <Show when={ended().length > 0}>
+        <details class="alarm-ended">
+          <summary>
+            {text.alarms.ended(fleet.alarms.filter((one) => !one.is_active).length)}
+          </summary>
+          <Groups groups={ended()} isAnnounced={false} />
+        </details>
       </Show>
     </Panel>
+  );
+}
+
+function Groups(props: { groups: readonly AlarmGroup[]; isAnnounced: boolean }) {
+  // Rows by key: a button stays the same element while alarms come and go.
+  const keys = createMemo(() => props.groups.map(({ key }) => key), [], { equals: sameKeys });
+  return (
+    <ul aria-live={props.isAnnounced ? "assertive" : "off"} aria-relevant="additions">
+      <For each={keys()}>
+        {(key) => (
+          <Show when={props.groups.find((group) => group.key === key)}>
+            {(group) => <GroupRow group={group()} />}
+          </Show>
+        )}
+      </For>
+    </ul>
   );
 }
 
@@ -63,27 +82,30 @@ function GroupRow(props: { group: AlarmGroup }) {
         <p>
           <strong>{props.group.title}</strong>
         </p>
-        <Since group={props.group} />
+        <div class="row-line">
+          <Since group={props.group} />
+          <div class="bar-space" />
+          <Show when={props.group.alarms.some(isAlarmNow)}>
+            <MuteButton kind={kindOf(props.group)} />
+          </Show>
+          <Show when={!props.group.isAcknowledged}>
+            <button
+              type="button"
+              class="button alarm-ack"
+              aria-label={text.alarms.acknowledge(props.group.title)}
+              disabled={lacks("operator") !== null}
+              title={lacks("operator") ?? text.alarms.acknowledgeHint}
+              onClick={() => void acknowledge()}
+            >
+              {text.alarms.ok}
+            </button>
+          </Show>
+        </div>
         <Show when={props.group.alarms.length > 1}>
           <Members alarms={props.group.alarms} />
         </Show>
         <Show when={problem()}>{(why) => <p class="tone-error">{why()}</p>}</Show>
       </div>
-      <Show when={props.group.needsLook}>
-        <MuteButton kind={kindOf(props.group)} />
-      </Show>
-      <Show when={!props.group.isAcknowledged}>
-        <button
-          type="button"
-          class="button alarm-ack"
-          aria-label={text.alarms.acknowledge(props.group.title)}
-          disabled={lacks("operator") !== null}
-          title={lacks("operator") ?? text.alarms.acknowledgeHint}
-          onClick={() => void acknowledge()}
-        >
-          {text.alarms.ok}
-        </button>
-      </Show>
     </li>
   );
 }

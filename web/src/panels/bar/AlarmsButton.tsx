@@ -1,18 +1,18 @@
 import { createMemo, Show } from "solid-js";
 import { useConsole } from "../../console";
-import { causeName, groupAlarms } from "../../fleet/alarmGroups";
+import { causeName, isAlarmNow } from "../../fleet/alarmGroups";
 import { worstSeverity } from "../../fleet/severity";
 import { text } from "../../text/catalogue";
 import { capitalised } from "../../text/names";
 import { SpeakerIcon } from "../alarms/SoundControls";
 
-/** The number of alarms that ask for something, coloured by the worst not acknowledged yet; a press opens the list. */
+/** The number of active alarms, coloured by the worst not acknowledged yet; a press opens the list. */
 export function AlarmsButton() {
   const { fleet, panels, alarmSound } = useConsole();
   const { mutes } = alarmSound;
   const isMuted = () => mutes.isAllMuted() || mutes.kinds().length > 0;
-  const open = createMemo(() => groupAlarms(fleet.alarms).filter((group) => group.needsLook));
-  const fresh = () => open().filter(({ isAcknowledged }) => !isAcknowledged);
+  const open = createMemo(() => fleet.alarms.filter(isAlarmNow));
+  const fresh = () => open().filter(({ is_acknowledged }) => !is_acknowledged);
   const worst = () => worstSeverity(fresh().map(({ severity }) => severity));
   const count = () => text.bar.alarms(open().length);
   const muted = () =>

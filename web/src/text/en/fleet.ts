@@ -95,7 +95,8 @@ export const vehicles = {
 };
 
 export const alarms = {
-  none: "No alarms.",
+  none: "No active alarms.",
+  ended: (count: number) => `Ended, not acknowledged: ${count}`,
   acknowledge: (alarm: string) => `OK: acknowledge ${alarm}`,
   acknowledgeHint: "Seen: the colour goes, the alarm stays while its cause lasts",
   ok: "OK",
