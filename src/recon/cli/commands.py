@@ -87,6 +87,10 @@ COMMANDS = {
         "Survey a region: create, estimate, start, pause, abort, status.",
     ),
     "site": CommandSource("site:site_app", "Make, check and fill a site's folder: import, fetch."),
+    "when": CommandSource(
+        "when:when_command",
+        "Show in which hours of the next days sun, hot spot and clouds fit a survey.",
+    ),
     "maps": CommandSource(
         "maps:maps_app", "Bring base maps for the console: fetch tiles, check coverage."
     ),

@@ -28,28 +28,38 @@ def fetch_command(
             help="Zero of the heights; known for Copernicus GLO-30, GLO-90 and USGS 3DEP.",
         ),
     ] = None,
+    weather: Annotated[
+        str | None,
+        typer.Option(
+            metavar="TEMPLATE_OR_FILE",
+            help="Open-Meteo's forecast, with {latitude} and {longitude}, or a file of one; "
+            "default: [fetch] of site.toml.",
+        ),
+    ] = None,
     replaces: Annotated[
         bool, typer.Option("--replace", help="Instead of an elevation file of your own.")
     ] = False,
 ) -> None:
-    """Fetch what the site needs at the field: the ground's heights.
+    """Fetch what the site needs at the field: the ground's heights, and the weather.
 
-    Ask the sources' licences first. An interrupted fetch resumes where it stopped. Exit code 1:
-    not all of the boundary has heights.
+    With an option only what it names. Ask the sources' licences first. An interrupted fetch
+    resumes where it stopped. Exit code 1: not all of the boundary has heights.
     """
     from recon.cli.elevation_fetch import fetch_elevation
+    from recon.cli.weather_fetch import fetch_weather
     from recon.site.load import read_fetch_table
 
     site, table = opened_site(folder), read_fetch_table(folder)
-    addresses = elevation or ([table.elevation] if table.elevation else [])
-    if not addresses:
+    stated = datum
+    if not elevation and weather is None:
+        elevation = [table.elevation] if table.elevation else []
+        weather, stated = table.weather, datum or table.elevation_datum
+    if not elevation and weather is None:
         raise SiteError(
-            f"{folder}: expected where to fetch from, got nothing: give --elevation, or add "
-            '[fetch] with elevation = "..." to site.toml'
+            f"{folder}: expected where to fetch from, got nothing: give --elevation or --weather, "
+            'or add [fetch] with elevation = "..." or weather = "..." to site.toml'
         )
-    is_complete = True
-    if addresses:
-        stated = datum or (None if elevation else table.elevation_datum)
-        is_complete = asyncio.run(fetch_elevation(folder, site, addresses, stated, replaces))
-    if not is_complete:
+    if weather is not None:
+        asyncio.run(fetch_weather(folder, site, weather))
+    if elevation and not asyncio.run(fetch_elevation(folder, site, elevation, stated, replaces)):
         raise typer.Exit(INCOMPLETE)

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from recon.site.local_time import clock_text
 from recon.site.site import Site
 
 DAY_S, HOUR_S = 86_400.0, 3_600.0
@@ -9,7 +10,7 @@ DAY_S, HOUR_S = 86_400.0, 3_600.0
 
 def fetched_report(site: Site, now_utc_s: float) -> tuple[str, ...]:
     """Return a line on each thing that was fetched: what, when, and what to know about it."""
-    return tuple(_terrain(site, now_utc_s))
+    return (*_terrain(site, now_utc_s), *_weather(site, now_utc_s))
 
 
 def age_text(fetched_utc_s: float, now_utc_s: float) -> str:
@@ -40,3 +41,16 @@ def _terrain(site: Site, now_utc_s: float) -> Iterator[str]:
     )
     if source.notice:
         yield f"terrain: {source.notice}"
+
+
+def _weather(site: Site, now_utc_s: float) -> Iterator[str]:
+    weather = site.weather
+    if weather is None:
+        return
+    last_s = weather.hours[-1].utc_s
+    until = clock_text(last_s, weather.utc_offset_s)
+    age = age_text(weather.fetched_utc_s, now_utc_s)
+    stale = "" if now_utc_s <= last_s else ": it is over, and is not used"
+    yield f"weather of {weather.source}, {age}, until {until} there{stale}"
+    if weather.notice:
+        yield weather.notice

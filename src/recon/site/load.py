@@ -10,7 +10,7 @@ import msgspec
 
 from recon.model.airspace import FlightLimits
 from recon.model.errors import SiteError
-from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
+from recon.model.geo import GeoPoint, GroundGrid, LatLon, LocalFrame
 from recon.model.survey_camera import CameraModel, SurveyCameraError, camera_named
 from recon.model.vehicle import AltitudeReference, Failsafe, Mount, VehicleProfile
 from recon.site.consistency import (
@@ -37,6 +37,7 @@ from recon.site.schema import (
 )
 from recon.site.site import Imager, Layers, Site
 from recon.site.survey_cameras import read_survey_cameras
+from recon.site.weather_file import read_weather
 
 PLACEHOLDER_SERIAL = "00000"
 """Sent by apps before they know their aircraft's serial."""
@@ -146,6 +147,8 @@ def load_site(folder: Path) -> Site:
     site = Site(
         table.name, frame, grid, imagers, profiles, layers, limits, failsafe, cameras=cameras
     )
+    place = LatLon(origin.latitude_deg, origin.longitude_deg)
+    site = replace(site, weather=read_weather(folder, place))
     refuse_high_go_home_heights(str(path), profiles, limits)
     refuse_misplaced_pads(path, site)
     if table.elevation is not None:

@@ -19,6 +19,7 @@ from recon.model.imagery import CameraPose, Outlook
 from recon.model.survey_camera import CameraModel
 from recon.model.units import wrap_degrees
 from recon.model.vehicle import VehicleProfile
+from recon.model.weather import Weather
 from recon.safety.failsafe import DEFAULT_MATRIX
 from recon.site.terrain_source import TerrainSource
 
@@ -110,6 +111,8 @@ class Site:
     elevation_file: str | None = None
     terrain_source: TerrainSource | None = None
     """Where the elevation file was fetched from; None for the user's own."""
+    weather: Weather | None = None
+    """The forecast that was fetched before leaving base."""
     cameras: Mapping[str, CameraModel] = field(default_factory=dict)
     """The site's own survey cameras, beside those of the table."""
 
