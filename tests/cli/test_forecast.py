@@ -33,7 +33,7 @@ def test_recons_own_maps_are_continued_in_their_place(tmp_path: Path) -> None:
     assert f"after shade-{COUNT - 1:05d}.tif, by advection from {COUNT} maps" in text
     # 5 m/s east and 2 m/s north on cells of 4 m, 5 s apart.
     right = float(text.split(" cells right")[0].split()[-1])
-    down = float(text.split(" down a map")[0].split()[-1])
+    down = float(text.split(" down in 5 s")[0].split()[-1])
     assert (right, down) == (pytest.approx(6.2, abs=0.4), pytest.approx(-2.5, abs=0.4))
     with (
         rasterio.open(out / "sun-000015s.tif") as made,

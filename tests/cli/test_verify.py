@@ -79,6 +79,38 @@ def test_a_slow_sequence_counts_in_its_own_steps(tmp_path: Path) -> None:
     assert float(brier["advection"][0]) < 0.7 * float(brier["persistence"][0])
 
 
+def test_maps_at_uneven_times_have_the_scores_of_even_ones(tmp_path: Path) -> None:
+    brier = []
+    for name, gaps_s in (("even", [5.0] * 44), ("uneven", [5.0, 1.5, 8.5, 5.0] * 11)):
+        maps = tmp_path / name
+        maps.mkdir()
+        code, text, problems = verify(written(maps, gaps_s))
+        assert (code, problems) == (0, "")
+        brier.append(rows(text, "Brier"))
+    assert "44 maps, 5.0 s apart (median; 1.5 to 8.5 s); truth is the map nearest to" in text
+    assert "at most 2.5 s from it" in text
+    even, uneven = brier
+    assert even.keys() == uneven.keys()
+    for method, scores in even.items():
+        # 15, 30 and 60 s ahead: three to four forecasts each.
+        for one, other in zip(scores[:3], uneven[method][:3], strict=True):
+            assert float(other) == pytest.approx(float(one), abs=0.04)
+    assert float(uneven["advection"][1]) < 0.5 * float(uneven["persistence"][1])
+
+
+def test_maps_are_read_in_the_order_of_their_times(tmp_path: Path) -> None:
+    gaps_s = [5.0] * COUNT
+    texts = []
+    for name in ("named", "misnamed"):
+        maps = tmp_path / name
+        maps.mkdir()
+        written(maps, gaps_s)
+        if name == "misnamed":
+            (maps / "shade-00004.tif").rename(maps / "zz.tif")
+        texts.append(verify(maps))
+    assert texts[0] == texts[1]
+
+
 def no_folder(folder: Path) -> list[object]:
     return [folder / "none"]
 
@@ -87,12 +119,12 @@ def few(folder: Path) -> list[object]:
     return [written(folder, [5.0] * 2)]
 
 
-def uneven(folder: Path) -> list[object]:
-    return [written(folder, [5.0, 5.0, 60.0, 5.0, 5.0])]
+def at_one_time(folder: Path) -> list[object]:
+    return [written(folder, [5.0, 5.0, 0.0, 5.0])]
 
 
-def backwards(folder: Path) -> list[object]:
-    return [written(folder, [5.0, 40.0, -30.0, 5.0])]
+def stepped(folder: Path) -> list[object]:
+    return [written(folder), "--step-s", 5]
 
 
 def short(folder: Path) -> list[object]:
@@ -106,12 +138,12 @@ def without_times(folder: Path) -> list[object]:
 def torn(folder: Path) -> list[object]:
     data = (written(folder) / "shade-00003.tif").read_bytes()
     (folder / "shade-00003.tif").write_bytes(data[: len(data) // 2])
-    return [folder, "--step-s", 5]
+    return [folder]
 
 
 def no_raster(folder: Path) -> list[object]:
     (written(folder) / "shade-00003.tif").write_text("not a raster")
-    return [folder, "--step-s", 5]
+    return [folder]
 
 
 def of_another_size(folder: Path) -> list[object]:
@@ -148,12 +180,9 @@ def no_step(folder: Path) -> list[object]:
     [
         (no_folder, "none: expected a folder of maps, got: No such file"),
         (few, "expected 3 maps or more (.tif, "),
-        (
-            uneven,
-            "expected maps at even times in the order of their names, got gaps of 5.0 to 60.0",
-        ),
-        (backwards, "got gaps of -30.0 to 40.0 s"),
-        (short, "expected maps over more than 15 s, got 4 s"),
+        (at_one_time, "shade-00003.tif: expected another time than that of shade-00002.tif"),
+        (stepped, "expected no --step-s, for all maps have a time"),
+        (short, "expected maps over more than 15 s, got 4.0 s"),
         (without_times, "expected --step-s, for not all maps have a time"),
         (torn, "shade-00003.tif: expected a raster that GDAL reads, got: "),
         (no_raster, "shade-00003.tif: expected a raster that GDAL reads, got: "),

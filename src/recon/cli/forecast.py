@@ -104,7 +104,8 @@ def _print(
     if found.velocity_mps is not None:
         cells = np.array(found.velocity_mps) / found.grid.cell_m * recorded.step_s
         east, north = (each / recorded.time_scale for each in cells.tolist())
-        print_line(f"shade moves {plain(east)} cells right and {plain(-north)} down a map")
+        moves = f"{plain(east)} cells right and {plain(-north)} down"
+        print_line(f"shade moves {moves} in {recorded.step_s:g} s, the usual time between maps")
     head = ("lead, s", "clouds in view, %", "sun likelier, %", "file")
     for line in table(head, rows).splitlines():
         print_line(line)

@@ -11,6 +11,7 @@ from recon.cli.connection import WRONG_USE
 from recon.cli.output import print_line, printable
 from recon.cli.recorded_maps import (
     FolderArgument,
+    RecordedMaps,
     ShadeOption,
     StepOption,
     SunOption,
@@ -23,7 +24,7 @@ from recon.score.forecast_figures import Calibration, LeadScore, SeenCells
 from recon.score.forecast_scoring import ForecastKey
 from recon.score.forecast_tables import leads_table
 from recon.score.settings import SCORE
-from recon.score.verification import verified
+from recon.score.verification import NEAR_S, verified
 
 
 def verify_command(
@@ -36,25 +37,28 @@ def verify_command(
     """Run all forecast methods over recorded maps and compare them with what came."""
     try:
         recorded = recorded_maps(folder, step_s, sun, shade)
-        scale = recorded.time_scale
-        sums = verified(recorded.maps(), tuple(FORECASTERS), recorded.step_s / scale)
-        for line in _tables(sums, len(recorded.files), recorded.step_s, scale).splitlines():
+        sums = verified(recorded.maps(), tuple(FORECASTERS))
+        for line in _tables(sums, recorded).splitlines():
             print_line(line)
         if plot is not None:
-            _draw(plot, sums, scale)
+            _draw(plot, sums, recorded.time_scale)
     except ReconError as problem:
         print(f"recon verify: {printable(str(problem))}", file=sys.stderr)
         raise typer.Exit(WRONG_USE) from None
 
 
-def _tables(sums: Mapping[ForecastKey, LeadScore], count: int, step_s: float, scale: float) -> str:
+def _tables(sums: Mapping[ForecastKey, LeadScore], recorded: RecordedMaps) -> str:
+    scale = recorded.time_scale
     found = leads_table(sums, tuple(FORECASTERS), scale)
     if found is None:
-        longest_s = (count - 1) * step_s
         raise RecordError(
-            f"expected maps over more than {SCORE.lead_s[0] * scale:g} s, got {longest_s:g} s"
+            f"expected maps over more than {SCORE.lead_s[0] * scale:g} s, got "
+            f"{recorded.times_s[-1]:.1f} s"
         )
-    return f"{count} maps, {step_s:g} s apart; truth is the map of the lead's time\n\n{found}"
+    return (
+        f"{len(recorded.files)} maps, {recorded.spacing}; truth is the map nearest to the lead's "
+        f"time, at most {NEAR_S * scale:g} s from it\n\n{found}"
+    )
 
 
 def _draw(path: Path, sums: Mapping[ForecastKey, LeadScore], scale: float) -> None:

@@ -1,8 +1,10 @@
 """Forecast methods on a recorded sequence of maps: each is compared with the map of its time.
 
-Truth is what came: cells count that the later map knows. `SEEN` are those within the method's own
-horizon. Methods are made for maps a few seconds apart; a slower sequence (radar, satellites) is
-read as if its maps were `USUAL_STEP_S` apart, so that leads and speeds count in its own steps.
+Truth is what came: the map nearest to the lead's time, at most `NEAR_S` from it; a lead whose time
+is in a longer gap is not compared. Cells count that the later map knows. `SEEN` are those within
+the method's own horizon. Methods are made for maps a few seconds apart; a slower sequence (radar,
+satellites) is read as if its maps were `USUAL_STEP_S` apart, so that leads and speeds count in its
+own steps.
 """
 
 from collections.abc import Iterable, Sequence
@@ -11,12 +13,15 @@ from dataclasses import dataclass, field
 from recon.forecast import FORECASTERS, ForecastSettings, ForecastState
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.shade import ShadeMap, SunForecast
-from recon.model.units import ns_to_seconds, seconds_to_ns
+from recon.model.units import seconds_to_ns
 from recon.score.forecast_figures import LeadScore, score_cells, sun_probability
 from recon.score.forecast_scoring import ForecastKey
 from recon.score.settings import SCORE
 
 USUAL_STEP_S = 5.0
+NEAR_S = USUAL_STEP_S / 2.0
+"""Half the step between two maps: each lead of a sequence without gaps has a map. Maps of a flight
+are half a second apart with gaps of seconds, which are short for the shortest lead, too."""
 NOWHERE = LocalFrame(GeoPoint(0.0, 0.0, 0.0))
 CELL_M = 4.0
 
@@ -36,16 +41,16 @@ class Verification:
     """The sums of all methods over the maps so far."""
 
     methods: Sequence[str]
-    step_s: float
-    """Step between maps, in the methods' time."""
     settings: ForecastSettings = field(default_factory=ForecastSettings)
     sums: dict[ForecastKey, LeadScore] = field(default_factory=dict)
     _states: dict[str, ForecastState] = field(default_factory=dict)
     _issued: list[dict[str, SunForecast]] = field(default_factory=list)
+    _before: ShadeMap | None = None
 
     def observe(self, shade: ShadeMap) -> None:
         """Compare earlier forecasts with a map, and forecast from it when one is due."""
-        self._compare(shade)
+        self._compare(shade.captured_at_ns, shade)
+        self._before = shade
         for name in self.methods:
             state = self._states.get(name, ForecastState())
             self._states[name] = FORECASTERS[name].observed(state, shade, self.settings)
@@ -56,22 +61,43 @@ class Verification:
                 {n: FORECASTERS[n].forecast(s, self.settings) for n, s in self._states.items()}
             )
 
-    def _newest_ns(self) -> int | None:
-        return next(iter(self._issued[-1].values())).issued_at_ns if self._issued else None
+    def finish(self) -> None:
+        """Compare with the last map what was forecast for a time shortly after it."""
+        if self._before is not None:
+            self._compare(self._before.captured_at_ns + seconds_to_ns(NEAR_S), None)
+            self._before = None
 
-    def _compare(self, shade: ShadeMap) -> None:
-        longest_s = max(SCORE.lead_s) + self.step_s
-        kept = []
+    def _newest_ns(self) -> int | None:
+        return _issued_ns(self._issued[-1]) if self._issued else None
+
+    def _compare(self, at_ns: int, after: ShadeMap | None) -> None:
+        """Compare leads whose time is after the map before, up to a time: that of the map after."""
+        before = self._before
+        if before is None:
+            return
         for forecasts in self._issued:
-            issued_ns = next(iter(forecasts.values())).issued_at_ns
-            after_s = ns_to_seconds(shade.captured_at_ns - issued_ns)
+            issued_ns = _issued_ns(forecasts)
             for lead_s in SCORE.lead_s:
-                # The nearest map: one in the middle between two counts with the earlier.
-                if -self.step_s / 2.0 <= lead_s - after_s < self.step_s / 2.0:
-                    self._add(forecasts, lead_s, shade)
-            if after_s <= longest_s:
-                kept.append(forecasts)
-        self._issued = kept
+                due_ns = issued_ns + seconds_to_ns(lead_s)
+                if before.captured_at_ns < due_ns <= at_ns:
+                    self._compare_lead(forecasts, lead_s, before, after)
+        longest_ns = seconds_to_ns(max(SCORE.lead_s))
+        self._issued = [each for each in self._issued if at_ns <= _issued_ns(each) + longest_ns]
+
+    def _compare_lead(
+        self,
+        forecasts: dict[str, SunForecast],
+        lead_s: float,
+        before: ShadeMap,
+        after: ShadeMap | None,
+    ) -> None:
+        """Compare with the nearer of the maps around a lead's time; the later one in the middle."""
+        due_ns = _issued_ns(forecasts) + seconds_to_ns(lead_s)
+        early_ns = due_ns - before.captured_at_ns
+        is_later = after is not None and after.captured_at_ns - due_ns <= early_ns
+        nearest = after if after is not None and is_later else before
+        if abs(due_ns - nearest.captured_at_ns) <= seconds_to_ns(NEAR_S):
+            self._add(forecasts, lead_s, nearest)
 
     def _add(self, forecasts: dict[str, SunForecast], lead_s: float, shade: ShadeMap) -> None:
         for name, forecast in forecasts.items():
@@ -83,14 +109,17 @@ class Verification:
                 self.sums[name, lead_s, cells] = before + score
 
 
-def verified(
-    maps: Iterable[ShadeMap], methods: Sequence[str], step_s: float
-) -> dict[ForecastKey, LeadScore]:
-    """Return the scores of all methods on maps in order of time, `step_s` apart.
+def verified(maps: Iterable[ShadeMap], methods: Sequence[str]) -> dict[ForecastKey, LeadScore]:
+    """Return the scores of all methods on maps in order of time, in the methods' time.
 
     Raises `ValueError` for a map that is not newer than the one before.
     """
-    found = Verification(methods, step_s)
+    found = Verification(methods)
     for each in maps:
         found.observe(each)
+    found.finish()
     return found.sums
+
+
+def _issued_ns(forecasts: dict[str, SunForecast]) -> int:
+    return next(iter(forecasts.values())).issued_at_ns

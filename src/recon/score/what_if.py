@@ -10,15 +10,13 @@ forecast is compared with the method's own later map, and the maps of both metho
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
-from statistics import median
 
 from recon.detection import DETECTORS, DetectionState, RejectedFrame
 from recon.forecast import FORECASTERS, ForecastSettings, ForecastState
 from recon.model.errors import ReconError
 from recon.model.event import Event
 from recon.model.shade import ShadeMap
-from recon.model.units import NS_PER_S, ns_to_seconds
+from recon.model.units import ns_to_seconds
 from recon.score.forecast_figures import LeadScore
 from recon.score.forecast_scoring import ForecastKey, ForecastScoring
 from recon.score.forecast_tables import forecast_tables, leads_table
@@ -36,8 +34,6 @@ from recon.station.state.imaging import SeenShade, ShadePipeline
 from recon.station.state.steps import JobDone
 
 RECORDED, ASKED = "as recorded", "what if"
-MAPS_FOR_STEP = 8
-"""Their median distance in time is taken for all."""
 
 
 @dataclass(slots=True)
@@ -53,7 +49,6 @@ class MethodPair:
     _truth: Truth | None = None
     _ground: ScoredGround | None = None
     _forecasts: ForecastScoring | None = None
-    _first: list[ShadeMap] = field(default_factory=list)
     _verified: Verification | None = None
     _map_due_s: float = 0.0
 
@@ -100,26 +95,16 @@ class MethodPair:
         self.score.changes = self._forecasts.changes
 
     def _verify(self, shade: ShadeMap) -> None:
-        if self._verified is not None:
-            self._verified.observe(shade)
-            return
-        self._first.append(shade)
-        if len(self._first) >= MAPS_FOR_STEP:
-            self._begin_verifying()
-
-    def _begin_verifying(self) -> None:
-        times = [each.captured_at_ns / NS_PER_S for each in self._first]
-        step_s = median(after - at for at, after in pairwise(times))
-        self._verified = Verification((self.forecast,), step_s)
-        for each in self._first:
-            self._verified.observe(each)
-        self._first.clear()
+        if self._verified is None:
+            self._verified = Verification((self.forecast,))
+        self._verified.observe(shade)
 
     def verified(self) -> dict[ForecastKey, LeadScore]:
         """Return the sums of the forecasts against the method's own later maps."""
-        if self._verified is None and len(self._first) > 1:
-            self._begin_verifying()
-        return {} if self._verified is None else self._verified.sums
+        if self._verified is None:
+            return {}
+        self._verified.finish()
+        return self._verified.sums
 
 
 class WhatIf:
