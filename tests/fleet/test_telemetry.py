@@ -47,7 +47,7 @@ class TestUnknown:
         assert story.vehicle().altitude_offset_m.value is None
 
     def test_every_value_with_an_age_is_listed(self) -> None:
-        assert len(STAMPED_FIELDS) == 18
+        assert len(STAMPED_FIELDS) == 19
         assert all(getattr(VehicleState(serial="A"), name).value is None for name in STAMPED_FIELDS)
 
 

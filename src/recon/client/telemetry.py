@@ -4,6 +4,7 @@ from typing import Any, Generic, TypeVar
 
 import msgspec
 
+from recon.model.app_report import AppFacts
 from recon.model.vehicle import Staleness, staleness_at
 
 T = TypeVar("T")
@@ -68,6 +69,15 @@ class LeaseStatus(msgspec.Struct, frozen=True):
         return LeaseStatus(self.person, self.age_s + seconds, _older(self.absent_s, seconds))
 
 
+class PhotosReported(msgspec.Struct, frozen=True):
+    """The photos that a vehicle's app has reported: the newest one's index, and those without a
+    report."""
+
+    count: int
+    missing: int
+    newest_age_s: float | None
+
+
 class Telemetry(msgspec.Struct, frozen=True, kw_only=True):
     """One vehicle's newest telemetry. Heights are above its takeoff point (barometric), metres.
 
@@ -95,6 +105,10 @@ class Telemetry(msgspec.Struct, frozen=True, kw_only=True):
     camera_state: Aged[str]
     conflict_link_ids: tuple[int, ...]
     lease: LeaseStatus | None = None
+    app_facts: AppFacts | None = None
+    """What the app reports of the aircraft's settings; None: it reports none."""
+    app_facts_age_s: float | None = None
+    photos: PhotosReported | None = None
 
     @property
     def is_live(self) -> bool:
@@ -116,6 +130,10 @@ class Telemetry(msgspec.Struct, frozen=True, kw_only=True):
                 Aged | Position | Velocity | EulerAngles | AuthorityStatus,
             )
         }
+        changes["app_facts_age_s"] = _older(self.app_facts_age_s, seconds)
+        if self.photos is not None:
+            newest_age_s = _older(self.photos.newest_age_s, seconds)
+            changes["photos"] = msgspec.structs.replace(self.photos, newest_age_s=newest_age_s)
         if self.lease is not None:
             changes["lease"] = self.lease.older_by(seconds)
         age_s = _older(self.telemetry_age_s, seconds)

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from recon.fleet.admission import ANY_APP, Admission
+from recon.fleet.link_quality import Arrivals
 from recon.fleet.settings import FleetSettings
 from recon.model.units import NS_PER_S
 from recon.model.vehicle import Staleness, VehicleProfile, VehicleState, staleness_at
@@ -33,6 +34,8 @@ class LinkRecord:
     packets: int = 0
     images: int = 0
     ignored_reports: int = 0
+    arrivals: Arrivals | None = None
+    """Arrivals of its core telemetry; None before the first."""
 
     @property
     def is_open(self) -> bool:

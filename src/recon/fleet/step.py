@@ -3,9 +3,12 @@
 from dataclasses import dataclass
 
 from recon.fleet import identity, pairing
+from recon.fleet.app_facts import fold_facts, fold_photos
+from recon.fleet.link_quality import after_arrival
 from recon.fleet.state import Fleet, LinkRecord
 from recon.fleet.telemetry import fold_core, fold_extended
 from recon.fleet.trust import after_gap
+from recon.model.app_report import AppFacts, PhotosReport
 from recon.model.event import (
     AppAdmitted,
     AppRefused,
@@ -129,6 +132,9 @@ def _count(fleet: Fleet, link_id: int, report: Report, received_at_ns: int) -> F
         packets=link.packets + 1,
         images=link.images + isinstance(report, ImageReport),
         ignored_reports=link.ignored_reports + isinstance(report, IgnoredReport),
+        arrivals=after_arrival(link.arrivals, received_at_ns)
+        if isinstance(report, CoreReport)
+        else link.arrivals,
     )
     return replace(fleet, links={**fleet.links, link_id: counted})
 
@@ -148,6 +154,10 @@ def _fold(fleet: Fleet, link_id: int, report: Report, received_at_ns: int) -> Fl
                 state, image_received_at_ns=received_at_ns, image_count=state.image_count + 1
             )
             return _put(fleet, link_id, counted)
+        case AppFacts():
+            return _put(fleet, link_id, fold_facts(state, report, received_at_ns))
+        case PhotosReport():
+            return _put(fleet, link_id, fold_photos(state, report, received_at_ns))
         case MessageReport(_, text) if text == SIMULATOR_GREETING:
             fleet = _put(fleet, link_id, replace(state, is_simulated=True))
             return _remember_simulated(fleet, link_id)
@@ -163,6 +173,8 @@ def _has_newer(state: VehicleState, report: Report, received_at_ns: int) -> bool
             known_ns = state.extended_received_at_ns
         case ImageReport():
             known_ns = state.image_received_at_ns
+        case AppFacts():
+            known_ns = state.app_facts.received_at_ns
         case _:
             return False
     return known_ns is not None and received_at_ns < known_ns

@@ -139,3 +139,20 @@ class OutcomeReport:
     code: str | None = None
     text: str | None = None
     mission_id: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class PhotoTally:
+    """The photos that a vehicle's app has reported, of its newest series."""
+
+    series: int
+    newest_index: int = 0
+    reported: int = 0
+    """Photos whose report came; fewer than the newest index where reports are missing."""
+    newest_at_ns: int | None = None
+    """When the newest one was taken, in the station's time."""
+
+    @property
+    def missing(self) -> int:
+        """Photos of the series whose place is unknown, as no report of them came."""
+        return self.newest_index - self.reported

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 from enum import Enum, IntEnum
 
+from recon.model.app_report import AppFacts, PhotoTally
 from recon.model.geo import GeoPoint, LatLon
 from recon.model.mission import DJI
 from recon.model.trust import NO_TRUST, Trust
@@ -140,7 +141,7 @@ class VehicleProfile:
     """Hover time of a full battery; None when not configured."""
     go_home_height_m: float | None = None
     """Height above takeoff to which the aircraft climbs before it flies home. Set in the aircraft
-    and repeated here: the ICD can neither read nor set it."""
+    and repeated here; an app that reports it is compared with this."""
     failsafe: Failsafe | None = None
     camera_interval_s: float | None = None
     """Interval of the camera's timer, started by the pilot: the ICD has no shutter command."""
@@ -264,6 +265,10 @@ class VehicleState:
     track: tuple[TrackPoint, ...] = field(default=())
     trust: Trust = NO_TRUST
     go_home: GoHomeFlight | None = None
+    app_facts: Stamped[AppFacts] = Stamped()
+    """What its app has read of the aircraft's settings; None: it reports none."""
+    photo_tally: PhotoTally | None = None
+    """Its photos, if its app reports them."""
 
     @property
     def display_name(self) -> str:

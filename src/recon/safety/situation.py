@@ -26,13 +26,22 @@ class ClockReading:
 
 
 @dataclass(frozen=True, slots=True)
+class PlannedFlights:
+    """What a vehicle's survey takes yet: its greatest height above takeoff, and photos, about."""
+
+    highest_m: float | None = None
+    photos: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class StationFacts:
     """`others` are all other vehicles that are connected or may be in the air; `app_warnings` the
-    app's unacknowledged warnings."""
+    app's unacknowledged warnings; `planned` what its survey takes, unknown without one."""
 
     clock: ClockReading | None = None
     others: tuple[VehicleState, ...] = ()
     app_warnings: tuple[str, ...] = ()
+    planned: PlannedFlights = PlannedFlights()
 
 
 NO_FACTS = StationFacts()

@@ -1,6 +1,7 @@
 import { circle } from "../map/localGrid";
 import type {
   AlarmView,
+  AppFactsView,
   AreaView,
   CommandView,
   HazardView,
@@ -73,7 +74,44 @@ export function vehicle(number: number, changes: Partial<VehicleView> = {}): Veh
     ),
     frame: null,
     hazard: null,
+    app_facts: null,
+    app_facts_age_s: null,
+    photos: null,
     ...changes,
+  };
+}
+
+/** Facts of an app that knows only `known`. */
+export function appFacts(known: Partial<AppFactsView>): AppFactsView {
+  return {
+    go_home_height_m: null,
+    failsafe: null,
+    home_latitude_deg: null,
+    home_longitude_deg: null,
+    max_height_m: null,
+    max_distance_m: null,
+    model: null,
+    firmware: null,
+    app: null,
+    battery_cells_v: null,
+    battery_temperature_c: null,
+    rtk: null,
+    storage_left_mb: null,
+    storage_left_photos: null,
+    gimbal_yaw_deg: null,
+    gimbal_pitch_deg: null,
+    gimbal_roll_deg: null,
+    camera_mode: null,
+    photo_interval_s: null,
+    exposure_locked: null,
+    white_balance_locked: null,
+    can_fly_missions: null,
+    max_waypoints: null,
+    dji_check_passed: null,
+    dji_check: null,
+    reports_photos: null,
+    orders: null,
+    ...known,
   };
 }
 
@@ -97,6 +135,7 @@ export function link(id: number, changes: Partial<LinkView> = {}): LinkView {
     bytes_skipped: 0,
     commands_queued: 0,
     ignored_answers: 0,
+    figures: { rate_hz: 10, jitter_s: 0.02, longest_gap_s: 0.3, bars: 4 },
     ...changes,
   };
 }

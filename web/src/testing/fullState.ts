@@ -1,6 +1,17 @@
 import type { StationState, SurveyView, UpwindPlaceView, VehicleView } from "../protocol";
 import { groundImage, shadeLine, survey, surveyLight } from "./fakeField";
-import { alarm, area, at, command, hazard, link, station, vehicle, zone } from "./fakeState";
+import {
+  alarm,
+  appFacts,
+  area,
+  at,
+  command,
+  hazard,
+  link,
+  station,
+  vehicle,
+  zone,
+} from "./fakeState";
 
 /* A station with everything at once that the page can show. */
 
@@ -10,6 +21,30 @@ const REPORTED = {
   battery_warning: aged("low"),
   camera_state: aged("on"),
 };
+const REPORTS = appFacts({
+  go_home_height_m: 60,
+  failsafe: "go_home",
+  home_latitude_deg: 44.7,
+  home_longitude_deg: -93.07,
+  max_height_m: 120,
+  max_distance_m: 2000,
+  model: "Mavic 3M",
+  firmware: "01.01.0300",
+  app: "Recon 1.0",
+  battery_cells_v: [3.91, 3.9, 3.92, 3.91],
+  battery_temperature_c: 31.5,
+  rtk: "fixed",
+  storage_left_mb: 58_211,
+  storage_left_photos: 7104,
+  gimbal_pitch_deg: -90,
+  camera_mode: "interval",
+  photo_interval_s: 2,
+  exposure_locked: true,
+  white_balance_locked: false,
+  can_fly_missions: true,
+  dji_check_passed: true,
+  reports_photos: true,
+});
 const HERE = at(20, 30);
 const [LON, LAT] = HERE;
 const BY = "Anna (10.0.0.2): Survey west";
@@ -31,6 +66,9 @@ function vehicles(): VehicleView[] {
       is_imager: true,
       lease,
       authority: { holder: "guidance", holder_name: BY, age_s: 64, reason: "Survey running" },
+      app_facts: REPORTS,
+      app_facts_age_s: 3.2,
+      photos: { count: 41, missing: 2, newest_age_s: 1.4 },
       frame: { id: 12, received_age_s: 0.3, captured_age_s: 0.8, captured_sigma_s: 0.2 },
     }),
     vehicle(2, { ...REPORTED, flight_mode: aged("auto_landing"), is_simulated: true, steering }),

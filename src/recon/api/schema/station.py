@@ -30,6 +30,15 @@ class WaitingAppView(Message):
     is_flying: bool | None
 
 
+class LinkFiguresView(Message):
+    """How regularly core telemetry arrives."""
+
+    rate_hz: float
+    jitter_s: float
+    longest_gap_s: float = Field(description="of about the last minute, present silence included")
+    bars: int = Field(description="0 to 4: lost, gaps under 3 s, 2 s, 1 s, 0.5 s")
+
+
 class LinkView(Message):
     """One TCP connection of a companion app, with its error counters."""
 
@@ -53,6 +62,7 @@ class LinkView(Message):
     ignored_answers: int = Field(
         description="acknowledgments ignored because they may answer another command"
     )
+    figures: LinkFiguresView | None = Field(description="null: not two packets of telemetry yet")
 
 
 class StationView(Message):

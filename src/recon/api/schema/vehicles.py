@@ -54,6 +54,46 @@ class AttitudeView(Message):
     age_s: float | None
 
 
+class AppFactsView(Message):
+    """What a companion app reports of its aircraft (docs/icd.md); null: it does not know."""
+
+    go_home_height_m: float | None = Field(description="above takeoff")
+    failsafe: str | None
+    home_latitude_deg: float | None
+    home_longitude_deg: float | None
+    max_height_m: float | None = Field(description="above takeoff")
+    max_distance_m: float | None = Field(description="from home")
+    model: str | None
+    firmware: str | None
+    app: str | None
+    battery_cells_v: list[float] | None
+    battery_temperature_c: float | None
+    rtk: str | None
+    storage_left_mb: int | None
+    storage_left_photos: int | None
+    gimbal_yaw_deg: float | None
+    gimbal_pitch_deg: float | None
+    gimbal_roll_deg: float | None
+    camera_mode: str | None
+    photo_interval_s: float | None
+    exposure_locked: bool | None
+    white_balance_locked: bool | None
+    can_fly_missions: bool | None
+    max_waypoints: int | None
+    dji_check_passed: bool | None
+    dji_check: str | None
+    reports_photos: bool | None
+    orders: list[str] | None = Field(description="of the extension, that it takes")
+
+
+class PhotoTallyView(Message):
+    """The photos that a vehicle's app has reported, of its newest series."""
+
+    count: int = Field(description="index of the newest photo")
+    missing: int = Field(description="photos of which no report came")
+    newest_age_s: float | None
+
+
 class DoubtView(Message):
     """Why telemetry of a vehicle is not believed; `text` is a sentence without its name."""
 
@@ -181,6 +221,9 @@ class VehicleView(Message):
     camera_state: AgedText
     waypoint_altitude: Literal["unset", "wgs84", "takeoff"]
     conflict_link_ids: list[int]
+    app_facts: AppFactsView | None = Field(description="null: its app reports none")
+    app_facts_age_s: float | None
+    photos: PhotoTallyView | None = Field(description="null: its app reports none")
     track: list[tuple[float, float]] = Field(description="longitude, latitude; oldest first")
     frame: FrameView | None
     hazard: HazardView | None

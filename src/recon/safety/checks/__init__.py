@@ -2,15 +2,16 @@
 
 Every point is computed; none is ticked by hand. A point that fails or is unknown holds missions
 back (rule preflight) until an operator overrides the list with a reason, which is logged and ends
-with the landing. Attention holds nothing back. What the ICD does not carry (propellers, memory
-cards, the controller's mode switch) is on the pilot's own list.
+with the landing. Attention holds nothing back. Points about what only some apps report are on the
+list of those. What no app reports (propellers, the controller's mode switch) is on the pilot's own
+list.
 """
 
 from collections.abc import Callable
 
 from recon.model.vehicle import VehicleState
 from recon.safety.check import Check
-from recon.safety.checks import aircraft, place, site_facts
+from recon.safety.checks import aircraft, place, reported, site_facts
 from recon.safety.situation import Situation
 
 _CHECKS: tuple[Callable[[VehicleState, Situation], Check], ...] = (
@@ -30,8 +31,18 @@ _CHECKS: tuple[Callable[[VehicleState, Situation], Check], ...] = (
     site_facts.camera_interval,
     aircraft.app,
 )
+_REPORTED_CHECKS: tuple[Callable[[VehicleState, Situation], Check | None], ...] = (
+    reported.home_point,
+    reported.aircraft_limits,
+    reported.storage,
+    reported.dji_check,
+)
 
 
 def checklist(vehicle: VehicleState, situation: Situation) -> tuple[Check, ...]:
     """Return every point of a vehicle's checklist, in display order. Pure."""
-    return tuple(check(vehicle, situation) for check in _CHECKS)
+    points = tuple(check(vehicle, situation) for check in _CHECKS)
+    if not vehicle.app_facts.is_known():
+        return points
+    found = (check(vehicle, situation) for check in _REPORTED_CHECKS)
+    return (*points, *(point for point in found if point is not None))

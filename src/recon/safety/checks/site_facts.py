@@ -1,4 +1,4 @@
-"""Checks of the vehicle's profile in site.toml: settings that the ICD does not carry."""
+"""Checks of the vehicle's profile in site.toml, and of the aircraft's report of the same."""
 
 from collections.abc import Iterator
 
@@ -9,6 +9,7 @@ from recon.model.vehicle import AltitudeReference, Failsafe, VehicleProfile, Veh
 from recon.safety.airspace import PreparedAirspace, PreparedZone
 from recon.safety.check import Check, Point
 from recon.safety.datum import takeoff_up_m
+from recon.safety.reported_facts import reported_facts
 from recon.safety.separation_minima import gate_minima
 from recon.safety.situation import Situation
 
@@ -44,17 +45,33 @@ def endurance(vehicle: VehicleState, _situation: Situation) -> Check:
     return ENDURANCE.ok(f"{seconds / 60.0:.0f} min")
 
 
-def failsafe(vehicle: VehicleState, _situation: Situation) -> Check:
-    """The failsafe for a lost controller is set."""
+def failsafe(vehicle: VehicleState, situation: Situation) -> Check:
+    """The failsafe for a lost controller is set, and is the aircraft's where that is reported."""
     does = _profile(vehicle).failsafe
+    stated = reported_facts(vehicle, situation.now_ns).failsafe
     if does is None:
+        value = f'"{stated}"' if stated else '"go_home", "hover" or "land"'
         return FAILSAFE.unknown(
             "failsafe for a lost controller not set",
-            _write(
-                vehicle, 'failsafe = "go_home", "hover" or "land", as it is set in the aircraft'
-            ),
+            _write(vehicle, f"failsafe = {value}, as it is set in the aircraft"),
         )
-    return FAILSAFE.ok(f"{_DOES[does]} when it loses its controller")
+    if stated is not None and stated != does.value:
+        return FAILSAFE.fails(
+            f"the aircraft reports {stated}; site.toml states {does.value}", SAME_IN_BOTH
+        )
+    if stated is not None and does is not Failsafe.GO_HOME:
+        return FAILSAFE.attention(
+            f"the aircraft reports {stated}, and not go_home",
+            "set it to go home when it loses its controller, unless that is meant",
+        )
+    return FAILSAFE.ok(f"{_DOES[does]} when it loses its controller{_confirmed(stated)}")
+
+
+SAME_IN_BOTH = "set the same in the aircraft and in site.toml, then load the site again"
+
+
+def _confirmed(stated: object) -> str:
+    return "" if stated is None else ", as the aircraft reports"
 
 
 def camera_interval(vehicle: VehicleState, _situation: Situation) -> Check:
@@ -77,16 +94,24 @@ def _write(vehicle: VehicleState, line: str) -> str:
 
 
 HEIGHT = Point("go_home_height", "Go-home height")
+SAME_HEIGHT_M = 0.5
+"""Aircraft take whole metres."""
 
 
 def go_home_height(vehicle: VehicleState, situation: Situation) -> Check:
     """Check that it is set, valid, below the ceiling, clear of others' heights and of zones."""
     height_m = None if vehicle.profile is None else vehicle.profile.go_home_height_m
+    stated_m = reported_facts(vehicle, situation.now_ns).go_home_height_m
     if height_m is None:
+        value = "METRES" if stated_m is None else f"{stated_m:g}"
         return HEIGHT.unknown(
             "go-home height not set",
-            "read it from the aircraft's settings and write go_home_height_m = METRES under "
+            f"read it from the aircraft's settings and write go_home_height_m = {value} under "
             f'[[vehicles]] serial = "{vehicle.serial}" in site.toml',
+        )
+    if stated_m is not None and abs(stated_m - height_m) > SAME_HEIGHT_M:
+        return HEIGHT.fails(
+            f"the aircraft reports {stated_m:g} m; site.toml states {height_m:g} m", SAME_IN_BOTH
         )
     fault = next(_faults(height_m, vehicle, situation), None)
     if fault is not None:
@@ -97,7 +122,7 @@ def go_home_height(vehicle: VehicleState, situation: Situation) -> Check:
             f"{height_m:g} m does not clear {', '.join(low)}",
             "orders whose route home crosses it are refused; set a greater height to clear it",
         )
-    return HEIGHT.ok(f"{height_m:g} m above takeoff")
+    return HEIGHT.ok(f"{height_m:g} m above takeoff{_confirmed(stated_m)}")
 
 
 def _faults(height_m: float, vehicle: VehicleState, situation: Situation) -> Iterator[str]:

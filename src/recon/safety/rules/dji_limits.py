@@ -24,6 +24,7 @@ from recon.model.command import (
 from recon.model.geo import LatLon
 from recon.model.mission import DJI, Mission, Waypoint
 from recon.safety.path.order_path import as_sent
+from recon.safety.reported_facts import reported_facts
 from recon.safety.settings import SafetySettings
 from recon.safety.situation import Situation
 
@@ -152,6 +153,7 @@ def _steering_speed(speed_mps: float, limits: SafetySettings) -> Iterator[Refusa
 def _mission(body: FlyMission, situation: Situation) -> Iterator[Refusal]:
     mission, limits = body.mission, situation.settings
     yield from _count(mission, situation)
+    yield from _too_high(mission, situation)
     for number, waypoint in enumerate(mission.waypoints, start=1):
         for refusal in _waypoint(waypoint, mission.curved, limits):
             yield _refused(
@@ -162,9 +164,24 @@ def _mission(body: FlyMission, situation: Situation) -> Iterator[Refusal]:
         yield from _corners(mission, limits)
 
 
+def _too_high(mission: Mission, situation: Situation) -> Iterator[Refusal]:
+    """Refuse heights above the aircraft's own maximum, where its app reports that."""
+    most_m = reported_facts(situation.vehicle, situation.now_ns).max_height_m
+    highest_m = max((each.height_above_takeoff_m for each in mission.waypoints), default=0.0)
+    if most_m is not None and highest_m > most_m:
+        yield _refused(
+            f"Mission height must be at most {most_m:g} m above takeoff, the maximum height set in "
+            f"the aircraft; got {highest_m:g} m",
+            height_above_takeoff_m=highest_m,
+            max_m=most_m,
+        )
+
+
 def _count(mission: Mission, situation: Situation) -> Iterator[Refusal]:
     profile = situation.vehicle.profile if situation.vehicle is not None else None
     most = DJI.max_waypoints if profile is None else min(DJI.max_waypoints, profile.max_waypoints)
+    stated = reported_facts(situation.vehicle, situation.now_ns).max_waypoints
+    most = most if stated is None else min(most, stated)
     count, least = len(mission.waypoints), situation.settings.min_waypoints
     if not least <= count <= most:
         yield _refused(

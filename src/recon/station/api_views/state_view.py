@@ -7,12 +7,14 @@ from typing import Any
 
 from recon.api import schema
 from recon.fleet import pairing
+from recon.fleet.link_quality import link_figures
 from recon.fleet.state import Fleet, LinkRecord, staleness
 from recon.link.session import Session
 from recon.model.control import StopLatch
 from recon.model.imagery import Frame
 from recon.model.units import Stamped, ns_to_seconds
 from recon.model.vehicle import AltitudeReference, VehicleState
+from recon.station.api_views.app_facts_view import app_facts_view, photo_tally_view
 from recon.station.api_views.imaging_views import ground_image_view, shade_view
 from recon.station.api_views.operation_views import operation_fields
 from recon.station.api_views.vehicle_views import (
@@ -144,6 +146,9 @@ def _vehicle(
         camera_state=aged.word(vehicle.camera_state),
         waypoint_altitude=reference.value,
         conflict_link_ids=list(vehicle.rival_link_ids),
+        app_facts=_facts(vehicle),
+        app_facts_age_s=aged.age_s(vehicle.app_facts),
+        photos=photo_tally_view(vehicle, now_ns),
         track=[
             (round(p.longitude_deg, TRACK_DIGITS), round(p.latitude_deg, TRACK_DIGITS))
             for p in vehicle.track[-TRACK_POINTS_SHOWN:]
@@ -151,6 +156,11 @@ def _vehicle(
         frame=_frame(station.frames.get(vehicle.serial or ""), now_ns),
         hazard=hazard_view(station, vehicle, now_ns),
     )
+
+
+def _facts(vehicle: VehicleState) -> schema.AppFactsView | None:
+    facts = vehicle.app_facts.value
+    return None if facts is None else app_facts_view(facts)
 
 
 @dataclass(frozen=True, slots=True)
@@ -222,6 +232,19 @@ def _link(fleet: Fleet, record: LinkRecord, around: DriverState, now_ns: int) ->
         bytes_skipped=0 if counters is None else counters.bytes_skipped,
         commands_queued=0 if session is None else session.commands_queued,
         ignored_answers=0 if session is None else session.acks.ignored_late,
+        figures=_link_figures(record, now_ns),
+    )
+
+
+def _link_figures(record: LinkRecord, now_ns: int) -> schema.LinkFiguresView | None:
+    found = link_figures(record.arrivals, now_ns) if record.is_open else None
+    if found is None:
+        return None
+    return schema.LinkFiguresView(
+        rate_hz=round(found.rate_hz, 1),
+        jitter_s=round(found.jitter_s, 2),
+        longest_gap_s=round(found.longest_gap_s, 1),
+        bars=found.bars,
     )
 
 

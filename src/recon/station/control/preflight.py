@@ -4,12 +4,14 @@ The only writer of `VehicleControl.preflight_override`.
 """
 
 from dataclasses import replace
+from math import ceil
 
 from recon.model.command import Refusal
 from recon.model.event import ClockRead, PreflightOverridden
+from recon.model.survey import CellState
 from recon.model.vehicle import VehicleState
 from recon.safety import Override
-from recon.safety.situation import ClockReading, StationFacts
+from recon.safety.situation import ClockReading, PlannedFlights, StationFacts
 from recon.station.state.station import Clock, Station
 
 RULE = "preflight_override"
@@ -35,7 +37,20 @@ def facts(station: Station, vehicle: VehicleState | None) -> StationFacts:
             if other.link_id is not None or other.is_flying.value is not False
         ),
         app_warnings=() if vehicle is None else _app_warnings(station, vehicle),
+        planned=PlannedFlights() if vehicle is None else _planned(station, vehicle),
     )
+
+
+def _planned(station: Station, vehicle: VehicleState) -> PlannedFlights:
+    """Return what a vehicle's running survey takes yet, for apps that report what they have."""
+    record = station.surveys.running_with(vehicle.serial or "")
+    if record is None or record.state is None or not vehicle.app_facts.is_known():
+        return PlannedFlights()
+    state, plan = record.state, record.state.plan
+    is_open = plan.cells.is_reached & (state.progress.state == CellState.NOT_YET)
+    each_m2 = plan.lattice.spacing_m * plan.swath.photo_m
+    photos = ceil(plan.cells.area_m2(is_open) / each_m2 / max(1, len(record.members)))
+    return PlannedFlights(None if plan.terrain is not None else plan.survey.height_m, photos)
 
 
 def refusal(station: Station, event: PreflightOverridden) -> Refusal | None:

@@ -9,9 +9,11 @@ import { agedBy, formatAge } from "../../text/quantities";
 import { colourOf, lookClasses } from "../../theme/theme";
 import { AuthoritySection } from "../authority/AuthoritySection";
 import { HazardSection } from "../hazard/HazardSection";
+import { LinkBars } from "../links/LinkBars";
 import { Panel } from "../Panel";
 import { PreflightSection } from "../preflight/PreflightSection";
 import { StopSection } from "../stop/StopLatch";
+import { appFactsOf } from "./appFacts";
 import { CameraControl } from "./CameraControl";
 import { CameraFrame } from "./CameraFrame";
 import { type Fact, factsOf } from "./facts";
@@ -41,12 +43,15 @@ export function VehicleDetail() {
           title={vehicle().name}
           name="vehicle"
           actions={
-            <span
-              class={`badge own-colour ${lookClasses(vehicleKey(vehicle()))}`}
-              style={{ "--own": colourOf(vehicleKey(vehicle())) }}
-            >
-              {badgeText(vehicle())}
-            </span>
+            <>
+              <LinkBars linkId={vehicle().link_id} />
+              <span
+                class={`badge own-colour ${lookClasses(vehicleKey(vehicle()))}`}
+                style={{ "--own": colourOf(vehicleKey(vehicle())) }}
+              >
+                {badgeText(vehicle())}
+              </span>
+            </>
           }
         >
           <Identity vehicle={vehicle()} />
@@ -63,6 +68,12 @@ export function VehicleDetail() {
           <dl class="facts">
             <For each={factsOf(vehicle())}>{(fact) => <FactRow fact={fact} />}</For>
           </dl>
+          <Show when={appFactsOf(vehicle()).length > 0}>
+            <h3 class="facts-head">{text.detail.reported}</h3>
+            <dl class="facts facts-reported">
+              <For each={appFactsOf(vehicle())}>{(fact) => <FactRow fact={fact} />}</For>
+            </dl>
+          </Show>
         </Panel>
       )}
     </Show>

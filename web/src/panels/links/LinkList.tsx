@@ -65,6 +65,9 @@ function LinkRow(props: { link: LinkView }) {
             lastAge(),
           )}
         </p>
+        <Show when={props.link.figures}>
+          {(figures) => <p class="muted">{text.links.figures(figures())}</p>}
+        </Show>
         <Show when={faults(props.link)}>{(counts) => <p class="tone-warning">{counts()}</p>}</Show>
         <Show when={props.link.ignored_answers > 0}>
           <p class="tone-warning">{text.links.ignoredAnswers(props.link.ignored_answers)}</p>

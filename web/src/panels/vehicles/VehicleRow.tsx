@@ -15,6 +15,7 @@ import { text } from "../../text/catalogue";
 import { vehicleLabel } from "../../text/names";
 import { agedBy, formatAge, formatFraction } from "../../text/quantities";
 import { colourOf, lookClasses } from "../../theme/theme";
+import { LinkBars } from "../links/LinkBars";
 
 /** One vehicle in two lines: its badge adds it to the selection, the rest selects only it. */
 export function VehicleRow(props: { vehicle: VehicleView }) {
@@ -82,6 +83,7 @@ function Battery(props: { vehicle: VehicleView }) {
       classList={{ "is-low": hasBatteryWarning(props.vehicle) }}
       title={text.vehicles.battery}
     >
+      <LinkBars linkId={props.vehicle.link_id} />
       {formatFraction(fraction())}
       <span class="vehicle-meter" aria-hidden="true">
         <span style={{ width: `${Math.round(100 * (fraction() ?? 0))}%` }} />

@@ -12,6 +12,48 @@ export const detail = {
     `Serial conflict: link ${links} reports the same serial number. Hover, land and return are sent to all of these links.`,
   /** Read before a value's age. */
   age: "age",
+  reported: "Reported by its app",
+};
+
+/** What an app reports of its aircraft. */
+export const appFacts = {
+  goHomeHeight: "Go-home height",
+  failsafe: "When its controller is lost",
+  failsafes: { go_home: "goes home", hover: "hovers", land: "lands" } as Record<string, string>,
+  homePoint: "Home point",
+  maxHeight: "Maximum height",
+  maxDistance: "Maximum distance",
+  missions: "Flies missions",
+  djiCheck: "Check with DJI",
+  passed: "passed",
+  failed: "failed",
+  cameraMode: "Camera mode",
+  photoInterval: "Photo interval",
+  exposure: "Exposure",
+  whiteBalance: "White balance",
+  locked: "locked",
+  automatic: "automatic",
+  storagePhotos: "Photos that fit",
+  storage: "Storage left",
+  gimbalPitch: "Gimbal pitch",
+  cells: "Battery cells",
+  cellRange: (count: number, least: string, most: string) =>
+    `${plural(count, "cell")}, ${least} to ${most} V`,
+  batteryTemperature: "Battery temperature",
+  rtk: "RTK",
+  rtkStates: {
+    off: "off",
+    none: "no corrections",
+    single: "single",
+    float: "float",
+    fixed: "fixed",
+  } as Record<string, string>,
+  model: "Model",
+  firmware: "Firmware",
+  app: "App",
+  photosReported: "Photos reported",
+  photosWithout: (count: number, missing: number) =>
+    `${count}, of which ${missing} without a report`,
 };
 
 export const facts = {

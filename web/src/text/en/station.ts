@@ -1,5 +1,5 @@
 import type { JSX } from "solid-js";
-import type { FlightFile, LinkView, TimelineSubject } from "../../protocol";
+import type { FlightFile, LinkFiguresView, LinkView, TimelineSubject } from "../../protocol";
 
 /** What the page itself finds about the connection; the station's reasons are its own. */
 export const connection = {
@@ -81,6 +81,8 @@ export const links = {
   } satisfies Record<LinkView["status"], string>,
   traffic: (address: string, packets: number, bytes: string, age: string) =>
     `${address}, ${packets} packets, ${bytes}, last ${age} ago`,
+  figures: (found: LinkFiguresView) =>
+    `Telemetry ${found.rate_hz.toFixed(1)} times per second, jitter ${found.jitter_s.toFixed(2)} s, longest gap of the last minute ${found.longest_gap_s.toFixed(1)} s`,
   ignoredAnswers: (count: number) => `${count} answers ignored: they may belong to another command`,
   closed: (reason: string) => `Closed: ${reason}`,
   badChecksum: (count: number) => `${count} bad checksum`,
