@@ -157,7 +157,7 @@ def _source(
         known.zero if known is not None and datum == "geoid" else zero,
         None if known is None else known.is_surface,
         "" if known is None else known.notice,
-        [one_line(name, 40) for name in found.missing[:100]],
+        tuple(one_line(name, 40) for name in found.missing[:100]),
     )
 
 

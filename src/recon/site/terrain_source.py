@@ -4,11 +4,11 @@ So it goes with the file, and is gone with it when another file takes its place.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 import msgspec
-from msgspec import Meta, Struct
+from msgspec import Meta
 
 from recon.model.foreign_text import one_line
 
@@ -57,7 +57,8 @@ KNOWN = (
 )
 
 
-class TerrainSource(Struct, frozen=True):
+@dataclass(frozen=True, slots=True)
+class TerrainSource:
     """What was fetched, when and where from."""
 
     title: Annotated[str, Meta(max_length=200)]
@@ -66,7 +67,7 @@ class TerrainSource(Struct, frozen=True):
     is_surface: bool | None = None
     """None: not known."""
     notice: Annotated[str, Meta(max_length=400)] = ""
-    missing: Annotated[list[Annotated[str, Meta(max_length=40)]], Meta(max_length=100)] = []
+    missing: Annotated[tuple[Annotated[str, Meta(max_length=40)], ...], Meta(max_length=100)] = ()
     """Tiles that the source does not have."""
 
 
@@ -89,7 +90,10 @@ def source_of(tags: Mapping[str, str]) -> TerrainSource | None:
         found = msgspec.json.decode(text, type=TerrainSource)
     except (msgspec.DecodeError, RecursionError):
         return None
-    shown = {name: one_line(getattr(found, name), 400) for name in ("title", "zero", "notice")}
-    return msgspec.structs.replace(
-        found, **shown, missing=[one_line(each, 40) for each in found.missing]
+    return replace(
+        found,
+        title=one_line(found.title, 400),
+        zero=one_line(found.zero, 400),
+        notice=one_line(found.notice, 400),
+        missing=tuple(one_line(each, 40) for each in found.missing),
     )
