@@ -34,6 +34,7 @@ from recon.record.mcap.codec import Codec, CodecError, Custom
 from recon.safety import ApprovedCommand, PreparedAirspace
 from recon.safety.airspace import prepared_zone
 from recon.site import Site
+from recon.site.terrain_source import TerrainSource
 from recon.station.audit.entries import Auditing
 from recon.station.state.station import Station
 from recon.station.state.steps import (
@@ -142,6 +143,9 @@ def values_codec() -> Codec:
         ),
         VehicleSnapshot: Custom(
             msgspec.to_builtins, lambda value: msgspec.convert(value, VehicleSnapshot)
+        ),
+        TerrainSource: Custom(
+            msgspec.to_builtins, lambda value: msgspec.convert(value, TerrainSource)
         ),
         RegionPaths: Custom(lambda ways: shapely.to_wkb(ways.area), _region_paths),
         CellSamples: Custom(
