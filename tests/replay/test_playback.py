@@ -241,6 +241,20 @@ def test_it_plays_by_the_computers_clock() -> None:
     assert not replay.view().is_playing
 
 
+def test_it_begins_before_the_first_flight_unless_a_person_moved_it() -> None:
+    replay, _ = opened(flight("survey"))
+    replay.log.read()
+    first_ns, begins_ns = replay.log.first_flight_ns, replay.playback.begins_ns
+    assert first_ns is not None
+    assert 0 <= first_ns - begins_ns < 1e8
+    replay.log.first_flight_ns = begins_ns + 10**10
+    asyncio.run(replay.go_to_takeoff())
+    assert replay.view().position_s == 8.0
+    seek(replay, 0.0)
+    asyncio.run(replay.go_to_takeoff())
+    assert replay.view().position_s == 0.0
+
+
 def test_the_timeline_goes_up_to_the_moment_and_marks_over_all() -> None:
     replay, _ = opened(flight("survey"))
     replay.log.read()

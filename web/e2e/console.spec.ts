@@ -223,6 +223,7 @@ test("stops all with one key, even with the help open", async ({ page }) => {
   await expect(page.locator("button.craft")).toHaveCount(1);
   await page.keyboard.press("?");
   await expect(page.getByRole("dialog", { name: "Help" })).toBeVisible();
+  await expect(page.getByText("ALL STOP: all flying vehicles hold position")).toBeInViewport();
   await page.keyboard.press("Shift+S");
   await expect.poll(() => fake.allStops).toBe(1);
   await page.keyboard.press("Escape");

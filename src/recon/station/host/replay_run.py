@@ -40,6 +40,9 @@ INTERVAL_S = 0.1
 FASTEST_EXACT = 10.0
 """A computer steps a small fleet twenty times as fast as it flew; faster, keyframes are shown."""
 
+BEFORE_TAKEOFF_NS = seconds_to_ns(2.0)
+"""Time before the first takeoff at which a replay begins."""
+
 HOST = "127.0.0.1"
 NO_SITE = (
     "A record has no base maps: start recon replay with --site FOLDER to see those of its site"
@@ -63,6 +66,7 @@ class ReplayStation:
         self._transport = Transport(playback.begins_ns, playback.ends_ns, playback.begins_ns)
         self._trouble = playback.trouble
         self._moving = asyncio.Lock()
+        self._is_as_opened = True
 
     @property
     def station(self) -> Station:
@@ -93,6 +97,7 @@ class ReplayStation:
 
     async def change(self, asked: schema.ReplayTransport) -> schema.ReplayView:
         """Play, pause, change the speed or seek; return when the state is that of the moment."""
+        self._is_as_opened = False
         now_s, transport = self._now_s(), self._transport
         if asked.speed is not None:
             transport = transport.at_speed(asked.speed, now_s)
@@ -113,8 +118,18 @@ class ReplayStation:
         """Follow the transport until cancelled."""
         while True:
             await asyncio.sleep(INTERVAL_S)
+            await self.go_to_takeoff()
             if self._transport.is_playing:
                 await self.follow(is_exact=self._transport.speed <= FASTEST_EXACT)
+
+    async def go_to_takeoff(self) -> None:
+        """Go to just before the first takeoff, once it was read, unless a person moved first."""
+        takeoff_ns = self.log.first_flight_ns
+        if self._is_as_opened and takeoff_ns is not None:
+            self._is_as_opened = False
+            at_ns = takeoff_ns - BEFORE_TAKEOFF_NS
+            self._transport = self._transport.sought(at_ns, self._now_s())
+            await self.follow(is_exact=True)
 
     async def follow(self, *, is_exact: bool) -> None:
         """Show the transport's moment."""

@@ -20,7 +20,7 @@ from recon.model.units import ns_to_seconds
 from recon.record.audit.audit import AuditEntry, NumberedEntry
 from recon.record.mcap.mcap_file import STEPS_TOPIC
 from recon.record.mcap.record_file import RecordFile
-from recon.station.audit.flight_entries import POSITION_KIND
+from recon.station.audit.flight_entries import FLYING_KIND, POSITION_KIND, TOOK_OFF_KIND
 
 MOST_ENTRIES = 500_000
 MOST_MARKS = 2_000
@@ -57,6 +57,8 @@ class RecordedLog:
 
     path: Path | None = None
     problem: str | None = None
+    first_flight_ns: int | None = None
+    """When the first vehicle took off or connected in flight; None while none was read."""
 
     def __init__(self, path: Path, now_ns: Callable[[], int], ends_ns: int) -> None:
         """Take the record and its end; nothing is read before `start`.
@@ -159,3 +161,5 @@ class RecordedLog:
             at_ns = min(max(at_ns, before_ns), self._ends_ns)
             self._entries.append(NumberedEntry(len(self._entries) + 1, at_ns, at_ns, entry))
             self._times_ns.append(at_ns)
+            if self.first_flight_ns is None and each.kind in (TOOK_OFF_KIND, FLYING_KIND):
+                self.first_flight_ns = at_ns

@@ -5,13 +5,20 @@ import "./help.css";
 /** Keyboard shortcuts and how orders are confirmed. Not modal: all stop stays in reach. */
 export function HelpDialog(props: { isOpen: boolean; onClose: () => void }) {
   let dialog!: HTMLDialogElement;
+  let heading!: HTMLHeadingElement;
   createEffect(() => {
-    if (props.isOpen && !dialog.open) dialog.show();
+    if (props.isOpen && !dialog.open) {
+      dialog.show();
+      // Else its first control has the focus, and that is at its end.
+      heading.focus();
+    }
     if (!props.isOpen && dialog.open) dialog.close();
   });
   return (
     <dialog class="help" ref={dialog} aria-label={text.help.name} onClose={() => props.onClose()}>
-      <h2>{text.help.keys}</h2>
+      <h2 ref={heading} tabindex="-1">
+        {text.help.keys}
+      </h2>
       <dl class="help-keys">
         <For each={text.help.shortcuts}>
           {({ keys, action }) => (

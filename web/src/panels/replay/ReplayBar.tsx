@@ -3,7 +3,6 @@ import { useConsole } from "../../console";
 import type { ReplayMark as Mark, ReplayTransport, ReplayView } from "../../protocol";
 import { text } from "../../text/catalogue";
 import { formatDay, formatPosition, formatTimeOfDay } from "../../text/replay";
-import { isTyping } from "../orders/shortcuts";
 import { Problem } from "../Panel";
 import "./replay.css";
 
@@ -84,11 +83,14 @@ function Transport(props: { view: ReplayView }) {
       if (sought() === settled && !isSeeking) setSought(null);
     });
   };
+  let slider!: HTMLInputElement;
+  // Space does nothing on a slider: it keeps the focus after a press, and Space still plays.
+  const hasOwnUse = (target: EventTarget | null) =>
+    target !== document.body && target !== slider && !(target instanceof HTMLCanvasElement);
   const togglePlay = () => void change({ is_playing: !props.view.is_playing });
   onMount(() => {
     const onKey = (event: KeyboardEvent) => {
-      const isFree = event.target === document.body || event.target instanceof HTMLCanvasElement;
-      if (event.key !== " " || !isFree || isTyping(event) || event.repeat) return;
+      if (event.key !== " " || event.repeat || hasOwnUse(event.target)) return;
       event.preventDefault();
       togglePlay();
     };
@@ -144,6 +146,7 @@ function Transport(props: { view: ReplayView }) {
       <div class="replay-scale">
         <MarkLines marks={marks()} duration_s={duration()} />
         <input
+          ref={slider}
           type="range"
           min={0}
           max={duration()}

@@ -57,14 +57,15 @@ describe("the replay bar", () => {
     expect(transports()).toEqual([{ is_playing: true }, { is_playing: false }, { speed: 50 }]);
   });
 
-  it("plays and pauses by the space bar, unless something has the focus", async () => {
+  it("plays and pauses by the space bar, also on the slider, not on other controls", async () => {
     page = renderPage(ReplayBar, replayState());
     const press = (target: Element) =>
       target.dispatchEvent(new KeyboardEvent("keydown", { key: " ", bubbles: true }));
     press(document.body);
     press(find(page.root, "select"));
+    press(find(page.root, "input[type=range]"));
     await settled();
-    expect(transports()).toEqual([{ is_playing: true }]);
+    expect(transports()).toEqual([{ is_playing: true }, { is_playing: true }]);
   });
 
   it("seeks one request at a time, and shows where to until the state is there", async () => {

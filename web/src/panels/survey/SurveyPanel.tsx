@@ -15,7 +15,7 @@ import "./survey.css";
 
 /** Surveys: plan, start with the selected vehicles, pause, abort; and their coverage. */
 export function SurveyPanel() {
-  const { fleet } = useConsole();
+  const { fleet, isReplay } = useConsole();
   const [problem, setProblem] = createSignal<string | null>(null);
   /** What flies, or may go on, comes before what is planned or over. */
   const surveys = () => {
@@ -29,7 +29,9 @@ export function SurveyPanel() {
         {(survey) => <SurveySection survey={survey} onResult={showProblem} />}
       </For>
       <Problem text={problem()} />
-      <NewSurvey isFirst={fleet.surveys.length === 0} onResult={showProblem} />
+      <Show when={!isReplay()}>
+        <NewSurvey isFirst={fleet.surveys.length === 0} onResult={showProblem} />
+      </Show>
     </Panel>
   );
 }
