@@ -104,6 +104,19 @@ class TestAsked:
         assert view["warnings"] == []
         assert station.state().model_copy(update={"time_ns": 0}).surveys == before.surveys
 
+    def test_what_one_would_take_is_estimated_and_nothing_is_kept(
+        self, client: Client, station: FakeStation
+    ) -> None:
+        asked = {**ASKED, "camera": {"model": "mini3pro", "interval_s": 2.0}}
+        drafted = client.post("/api/surveys/estimate", json=asked).json()
+        assert station.state().surveys == []
+        survey = client.post("/api/surveys", json=asked).json()["survey"]
+        view = client.get(f"/api/surveys/{survey['id']}/estimate").json()
+        assert drafted == {**view, "survey_id": 0}
+        refused = client.post("/api/surveys/estimate", json={**asked, "front_overlap": 1.5})
+        assert refused.status_code == 422
+        assert "overlap" in refused.json()["error"]
+
     def test_an_estimate_of_an_unknown_vehicle_or_survey_is_refused(self, client: Client) -> None:
         survey = client.post("/api/surveys", json=ASKED).json()["survey"]
         view = client.get(f"/api/surveys/{survey['id']}/estimate?serial=Z").json()

@@ -80,6 +80,7 @@ LEAST_ROLE: dict[tuple[str, str], Role] = {
     ("POST", "/api/side-step"): Role.OPERATOR,
     ("POST", "/api/imager-relief"): Role.OPERATOR,
     ("POST", "/api/surveys"): Role.OPERATOR,
+    ("POST", "/api/surveys/estimate"): Role.OPERATOR,
     ("POST", "/api/surveys/{survey_id}/start"): Role.OPERATOR,
     # Regions to survey only; boundary, zones and pads need an administrator: see `EditedSite`.
     ("POST", "/api/site/drawing"): Role.OPERATOR,

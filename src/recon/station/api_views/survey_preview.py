@@ -21,7 +21,6 @@ from recon.model.vehicle import VehicleState
 from recon.safety.datum import home_enu_m, takeoff_up_m, vehicle_enu_m
 from recon.station.operations.survey.availability import time_left_s
 from recon.station.state.station import Station
-from recon.station.state.survey_record import SurveyRecord
 
 Preview = Callable[[], schema.SurveyEstimateView]
 
@@ -47,25 +46,18 @@ class PreviewedFleet:
         return estimate(self.plan, self.fleet, self.batteries)
 
 
-def survey_preview(
-    station: Station, record: SurveyRecord, serials: Sequence[str]
-) -> Preview | None:
-    """Return what computes the preview, safe on any thread; None without rows."""
-    known = previewed_fleet(station, record, serials)
-    return None if known is None else lambda: _view(known, known.needs())
+def survey_preview(station: Station, plan: SurveyPlan, serials: Sequence[str]) -> Preview:
+    """Return what computes the preview, safe on any thread."""
+    known = previewed_fleet(station, plan, serials)
+    return lambda: _view(known, known.needs())
 
 
-def previewed_fleet(
-    station: Station, record: SurveyRecord, serials: Sequence[str]
-) -> PreviewedFleet | None:
-    """Return the survey's plan with these vehicles; None without rows.
+def previewed_fleet(station: Station, plan: SurveyPlan, serials: Sequence[str]) -> PreviewedFleet:
+    """Return a survey's plan with these vehicles.
 
     Without serials it is for one drone that takes off at the region's south-west corner.
     """
-    state = record.state
-    if state is None:
-        return None
-    plan, air = state.plan, station.airspace
+    air = station.airspace
     serials = tuple(dict.fromkeys(serials))
     found = [station.fleet.vehicles.get(serial) for serial in serials]
     vehicles = [vehicle for vehicle in found if vehicle is not None]

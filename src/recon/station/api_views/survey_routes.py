@@ -8,6 +8,7 @@ from fastapi import FastAPI, HTTPException, Query, Request, Response
 from recon.api import pictures, schema
 from recon.api.responses import PNG, PROBLEMS, found, png
 from recon.api.security import person_of
+from recon.model.command import Refusal
 from recon.model.survey import unknown_survey
 from recon.plans.flight_plan import PlanExportError
 from recon.station.api_views.picture_routes import Form
@@ -44,6 +45,24 @@ def _add_commands(app: FastAPI, service: Service) -> None:
         if answer.survey is None:
             return answer
         return _planned(await _until_planned(service, answer.survey))
+
+    estimating = asyncio.Lock()
+
+    @app.post("/api/surveys/estimate", responses=NOT_HELD)
+    async def draft_estimate(
+        asked: schema.SurveyRequest,
+        serial: Serials = [],  # noqa: B006
+    ) -> schema.SurveyEstimateView:
+        """What a survey would take, without requesting it: its `survey_id` is 0."""
+        work = service.surveys.draft_preview(asked, serial)
+        if isinstance(work, Refusal):
+            raise HTTPException(422, work.reason)
+        # A form asks while it is typed into: planning must not take every thread.
+        async with estimating:
+            made = await asyncio.to_thread(work)
+        if isinstance(made, Refusal):
+            raise HTTPException(422, made.reason)
+        return made
 
     @app.post("/api/surveys/{survey_id}/start")
     async def start(

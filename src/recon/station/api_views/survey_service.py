@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from recon.api import schema
+from recon.guidance.survey import plan_survey, surroundings_of
 from recon.guidance.survey.plan import HEIGHT_FAULT, RULE
 from recon.model.airspace import Region
 from recon.model.command import Refusal
@@ -23,6 +24,9 @@ from recon.station.api_views.survey_exports import SurveyExports
 from recon.station.api_views.survey_preview import Preview, previewed_fleet, survey_preview
 from recon.station.operations.survey.commands import start_refusal, stop_refusal
 from recon.station.operations.survey.planning import NO_SITE
+
+DraftPreview = Callable[[], schema.SurveyEstimateView | Refusal]
+"""Plans rows and estimates them; safe on any thread, some tens of milliseconds."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -46,26 +50,47 @@ class SurveyService:
 
     def ask(self, asked: schema.SurveyRequest, by: Person) -> schema.SurveyResponse:
         """Request a survey; an invalid region is refused at once."""
+        survey = self._drafted(asked, self.ids)
+        if isinstance(survey, Refusal):
+            return _refused(survey)
+        self.driver.handle(SurveyRequested(survey, by.label))
+        return self._taken(survey.id)
+
+    def draft_preview(
+        self, asked: schema.SurveyRequest, serials: Sequence[str]
+    ) -> DraftPreview | Refusal:
+        """Return what plans and estimates a survey that is not requested; nothing is kept of it."""
+        survey = self._drafted(asked, lambda: 0)
+        station, frame = self.driver.station, self.site.frame
+        if isinstance(survey, Refusal) or frame is None:
+            return survey if isinstance(survey, Refusal) else Refusal(RULE, NO_SITE)
+        surroundings = surroundings_of(station.airspace.airspace)
+
+        def estimate() -> schema.SurveyEstimateView | Refusal:
+            plan = plan_survey(survey, frame, surroundings)
+            return plan if isinstance(plan, Refusal) else survey_preview(station, plan, serials)()
+
+        return estimate
+
+    def _drafted(self, asked: schema.SurveyRequest, ids: Callable[[], int]) -> Survey | Refusal:
+        """Return the survey that is asked for, or why there is none; only one takes a number."""
         if (asked.height_above_takeoff_m is None) == (asked.height_above_ground_m is None):
-            return _refused(Refusal(RULE, HEIGHT_FAULT))
+            return Refusal(RULE, HEIGHT_FAULT)
         region = self._region(asked)
         if isinstance(region, Refusal):
-            return _refused(region)
+            return region
         imagers, spare = self.driver.station.imaging.imagers, asked.spare_serial
         if spare is not None and spare not in imagers:
             known = ", ".join(imagers) or "none"
             text = f"{spare!a} is no imaging drone of the site; available: {known}"
-            return _refused(Refusal(RULE, text))
+            return Refusal(RULE, text)
         try:
             camera = _camera(asked.camera, self.site)
         except SurveyCameraError as problem:
-            return _refused(Refusal(RULE, str(problem)))
-        number = self.ids()
+            return Refusal(RULE, str(problem))
         # Without an imaging drone no shade is known, and all that can be done is flying rows once.
         planner = asked.planner or ("sunlit_first" if imagers else "lawnmower_once")
-        survey = _survey(number, asked, region, camera, planner)
-        self.driver.handle(SurveyRequested(survey, by.label))
-        return self._taken(number)
+        return _survey(ids(), asked, region, camera, planner)
 
     def start(
         self, survey_id: int, asked: schema.SurveyStartRequest, by: Person
@@ -99,14 +124,17 @@ class SurveyService:
         """Return what estimates a survey with these vehicles; None without rows."""
         station = self.driver.station
         record = station.surveys.records.get(survey_id)
-        return None if record is None else survey_preview(station, record, serials)
+        if record is None or record.state is None:
+            return None
+        return survey_preview(station, record.state.plan, serials)
 
     def exports(self, survey_id: int, serials: Sequence[str]) -> SurveyExports | None:
         """Return what writes a survey's flights for other programs; None without rows."""
         station = self.driver.station
         record = station.surveys.records.get(survey_id)
-        known = None if record is None else previewed_fleet(station, record, serials)
-        return None if known is None else SurveyExports(known)
+        if record is None or record.state is None:
+            return None
+        return SurveyExports(previewed_fleet(station, record.state.plan, serials))
 
     def cameras(self) -> list[schema.SurveyCameraView]:
         """Return the survey cameras that requests may name; the site's own come first."""
