@@ -6,6 +6,8 @@ import queue
 import signal
 from collections import defaultdict
 from contextlib import suppress
+from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 from unittest.mock import MagicMock
@@ -16,6 +18,8 @@ import numpy as np
 import pytest
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
+from tests.detection.shaded_field import FIELD
+from tests.forecast.moving_shade import shade_map
 from tests.record.mcap.test_record_writer import until
 from tests.replay.flights import FOLDER, pictures_in_two, survey_in_two
 from tests.replay.record_flight import Audits, recording
@@ -43,6 +47,7 @@ from recon.site import Site
 from recon.station.host import run
 from recon.station.kernel.step import step
 from recon.station.recording import recording as recording_of_kernel
+from recon.station.recording.keyframe import EVERYTHING, RecordDetail
 from recon.station.recording.recording import (
     RESTART_AFTER_S,
     RESTART_WITHIN_S,
@@ -50,6 +55,7 @@ from recon.station.recording.recording import (
     is_flying,
 )
 from recon.station.recording.replay import check
+from recon.station.state.imaging import ShadePipeline
 from recon.station.state.station import Station
 from recon.station.state.steps import StepTaken
 
@@ -180,20 +186,29 @@ def taken(event: Any, now_ns: int = 5) -> StepTaken:
 class Restarts:
     """A recorder whose processes are given; each tick's file has begun, or cannot."""
 
-    def __init__(self, *processes: FullProcess) -> None:
+    def __init__(self, *processes: FullProcess, detail: RecordDetail = EVERYTHING) -> None:
         self.alarms: list[str | None] = []
         left = list(processes)
 
         def handle(event: Any) -> None:
             self.alarms.append(event.problem)
 
-        self.recorder = Recorder(lambda: left.pop(0), handle, Audits(), Site("test"))
+        self.recorder = Recorder(lambda: left.pop(0), handle, Audits(), Site("test"), detail=detail)
         self.recorder.start(Station(), 0)
 
     def tick(self, now_s: float) -> None:
         if self.recorder._encoding is not None:
             self.recorder._encoding.join()
         self.recorder.take(taken(Tick(), seconds_to_ns(now_s)))
+
+    def see_map(self, number: int, at_s: float) -> None:
+        """A tick at which the station has a new shade map."""
+        if self.recorder._encoding is not None:
+            self.recorder._encoding.join()
+        step = taken(Tick(), seconds_to_ns(at_s))
+        shade = shade_map(np.ones((FIELD.rows, FIELD.cols)), at_s)
+        line = ShadePipeline(number=number, shade=shade)
+        self.recorder.take(replace(step, after=replace(step.after, shade=line)))
 
 
 def steps_of(process: FullProcess) -> list[int]:
@@ -302,6 +317,39 @@ def test_a_keyframe_takes_some_ticks_and_keeps_its_place(tmp_path: Path) -> None
     scene.tick(1.2)
     assert [item.kind for item in process.items[2:]] == [ItemKind.KEYFRAME, *2 * [ItemKind.STEP]]
     assert steps_of(process) == [1, 2, 3]
+
+
+def test_a_demo_records_the_maps_of_keyframes_alone(tmp_path: Path) -> None:
+    detail = RecordDetail(keyframe_s=4.0, has_all_maps=False, is_demo=True)
+    found = {}
+    for name, each in (("demo", detail), ("flight", EVERYTHING)):
+        process = FullProcess(tmp_path, 10**8)
+        scene = Restarts(process, detail=each)
+        for number in range(1, 20):
+            scene.see_map(number, 0.5 * number)
+        scene.recorder.close()
+        found[name] = [item.kind for item in process.items]
+        about = msgspec.msgpack.decode(process.items[0].content, type=Beginning).about
+        assert json.loads(about)["is_demo"] is each.is_demo
+        for before, after in pairwise(found[name]):
+            assert after is not ItemKind.KEYFRAME or before in (ItemKind.SHADE, ItemKind.STEP)
+    counts = {
+        name: (k.count(ItemKind.SHADE), k.count(ItemKind.KEYFRAME)) for name, k in found.items()
+    }
+    assert counts == {"demo": (3, 3), "flight": (19, 5)}
+
+
+def test_a_long_flight_goes_on_in_a_new_file_when_no_survey_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(recording_of_kernel, "is_flying", lambda _station: True)
+    process = FullProcess(tmp_path, 10**8)
+    scene = Restarts(process, detail=RecordDetail(flight_file_s=60.0))
+    for number in range(1, 15):
+        scene.tick(10.0 * number)
+    scene.recorder.close()
+    kinds = [item.kind for item in process.items]
+    assert kinds.count(ItemKind.BEGIN) == kinds.count(ItemKind.FLOWN) == 3
 
 
 def test_the_end_waits_for_no_further_tick_of_a_keyframe(tmp_path: Path) -> None:

@@ -11,13 +11,14 @@ from typing import Annotated, Any
 import typer
 
 import recon
+from recon.cli.demo_ports import free_port
+from recon.cli.demo_records import ABOUT_RECORDS, DEMO_DETAIL, demos_folder, keep_records_small
 from recon.cli.foreground import print_now, run_in_loop
 from recon.cli.opened_site import opened_site
 from recon.cli.options import with_options
 from recon.cli.run import HAS_GUARD, console_folder, guard_port, print_started
 from recon.cli.scripted_operator import fly_surveys
 from recon.model.errors import ReconError
-from recon.record.files.users_file import state_folder
 from recon.score import Scenario, ScenarioError, load_scenario
 from recon.score.scenario_sky import sky_of
 from recon.score.truth import world_text
@@ -29,7 +30,10 @@ from recon.station.host.run import run
 from recon.station.host.run_config import RunConfig, Started
 
 SIMULATOR_ENDS_WITHIN_S = 3.0
-FPS_HZ = 2
+HTTP_PORT, LINK_PORT = 8080, 3001
+FEED = ("--fps", "2", "--image-format", "jpeg", "--jpeg-quality", "75")
+"""What the imaging drone sends. A record keeps frames as they came: raw ones take 5 GB an hour.
+The quality is inside the range that simulated flights draw theirs from (`sim/conditions.py`)."""
 SIMULATED = "SIM-"
 """The serials of simulated drones begin with it."""
 DEMO_SCENARIO = "cumulus-40.toml"
@@ -58,28 +62,56 @@ class DemoOptions:
         bool, typer.Option("--survey/--no-survey", help="Fly surveys with a scripted operator.")
     ] = True
     http_port: Annotated[
-        int, typer.Option(min=0, max=65535, help="Port of the console; 0 picks one.")
-    ] = 8080
+        int | None,
+        typer.Option(
+            min=0,
+            max=65535,
+            help="Port of the console; 0 picks one; default: 8080, or the next free one.",
+        ),
+    ] = None
     link_port: Annotated[
-        int, typer.Option(min=0, max=65535, help="Port for companion apps; 0 picks one.")
-    ] = 3001
+        int | None,
+        typer.Option(
+            min=0,
+            max=65535,
+            help="Port for companion apps; 0 picks one; default: 3001, or the next free one.",
+        ),
+    ] = None
     seed: Annotated[int, typer.Option(min=0, help="Seed of sky, wind and faults.")] = DEMO_SEED
     record: Annotated[
-        Path | None, typer.Option("--record", help="Folder of the flight records.")
+        Path | None,
+        typer.Option(
+            "--record",
+            help="Folder of the flight records, which stay; default: one whose oldest records of "
+            "demos are deleted.",
+        ),
     ] = None
     no_record: Annotated[bool, typer.Option("--no-record", help="Record no flights.")] = False
+
+    @property
+    def console_port(self) -> int:
+        """The port asked for, or the usual one, or the next free one."""
+        if self.http_port is not None:
+            return self.http_port
+        return free_port(HTTP_PORT, "the console is", together=2 if HAS_GUARD else 1)
+
+    @property
+    def app_port(self) -> int:
+        """The same of the port for companion apps."""
+        return free_port(LINK_PORT, "apps connect") if self.link_port is None else self.link_port
 
     def config(self, site: Site, http_port: int) -> RunConfig:
         """Return how the station of a site is started."""
         return RunConfig(
             site=site,
-            link_port=self.link_port,
+            link_port=self.app_port,
             http_port=http_port,
             stop_port=guard_port(None, http_port) if HAS_GUARD else None,
             # No state of an earlier run is recovered: its drones no longer exist.
             audit=default_place(link_port=0),
-            record_folder=None if self.no_record else self.record or state_folder() / "records",
+            record_folder=None if self.no_record else self.record or demos_folder(),
             is_record_required=self.record is not None,
+            record_detail=DEMO_DETAIL,
             console=console_folder(),
         )
 
@@ -107,11 +139,11 @@ def _played(options: DemoOptions) -> "_Demo":
     # The record states when the sky's time began, so that its truth is known.
     began_ns, start_ns = time_ns(), monotonic_ns()
     config = replace(
-        options.config(played.site, options.http_port),
+        options.config(played.site, options.console_port),
         scenario=world_text(path, seed, began_ns),
         sun_time_ahead_s=sky_of(played, seed).settings.sun.start_utc_s - time(),
     )
-    words = ("scenario", str(path), "--fps", str(FPS_HZ), "--seed", str(seed))
+    words = ("scenario", str(path), *FEED, "--seed", str(seed))
     flies = played if options.survey else None
     return _Demo(config, (*words, "--start-ns", str(start_ns)), flies)
 
@@ -120,7 +152,7 @@ def _rehearsed(folder: Path, options: DemoOptions) -> "_Demo":
     """Return a station with simulated drones on a site of one's own; raises `ReconError`."""
     if options.scenario is not None:
         raise ScenarioError("expected --site or --scenario, got both: a scenario has a site")
-    http_port = options.http_port
+    http_port = options.console_port
     if awaits_site(folder):
         http_port = _made_in_browser(folder, http_port)
     if not (folder / SITE_FILE).is_file():
@@ -136,7 +168,7 @@ def _rehearsed(folder: Path, options: DemoOptions) -> "_Demo":
             "none; recon site new makes a site with three"
         )
     config = replace(options.config(own, http_port), site_folder=folder, is_record_required=False)
-    imager = ("--imager", "--fps", str(FPS_HZ)) if own.imagers else ("--no-imager",)
+    imager = ("--imager", *FEED) if own.imagers else ("--no-imager",)
     words = ("--site", str(folder), "--vehicles", str(len(simulated)))
     return _Demo(config, (*words, "--seed", str(options.seed), *imager), None)
 
@@ -195,6 +227,9 @@ class _Demo:
 
     async def _start(self, started: Started) -> None:
         print_started(started)
+        if self._config.record_folder == demos_folder():
+            print_now(ABOUT_RECORDS)
+            self._add_task(keep_records_small())
         self._simulator = await self._start_simulator(started.link_port)
         self._add_task(self._report_end(self._simulator))
         if self._flown is not None:

@@ -26,7 +26,6 @@ from recon.model.geo import GeoPoint, LatLon
 from recon.model.vehicle import AltitudeReference
 from recon.score import load_scenario
 from recon.score.simulation import go_home_heights_of, pads_of, rig_of, simulation_of
-from recon.sim.app.camera_feed import FeedSettings
 from recon.sim.app.fault_file import FaultScript, load_faults
 from recon.sim.app.faults import parse_fault
 from recon.sim.camera import CameraSettings
@@ -76,7 +75,7 @@ def _config(fleet: FleetOptions, running: RunningOptions) -> SimulationConfig:
     check_numbers(running.fps, fleet.endurance_min, fleet.latency_s)
     script = FaultScript() if fleet.faults is None else load_faults(fleet.faults)
     place = _load_site(fleet.site)
-    feed = FeedSettings(running.fps, running.image_format, fleet.latency_s, fleet.feed)
+    feed = replace(running.feed, latency_s=fleet.latency_s, starts_on=fleet.feed)
     worlds = _imager_worlds(place, fleet, running.seed)
     is_on_pads = fleet.home is None and fleet.replay_site is None
     return SimulationConfig(
@@ -124,8 +123,7 @@ def scenario_command(
             raise SimulationError(
                 f"--fps: expected up to {MAX_FPS_HZ:g} per second, got {running.fps:g}"
             )
-        feed = FeedSettings(running.fps, running.image_format)
-        config = simulation_of(load_scenario(scenario), abs(running.seed), feed)
+        config = simulation_of(load_scenario(scenario), abs(running.seed), running.feed)
         config = replace(config, station_host=host, station_port=port)
         asyncio.run(until_stopped(run_fleet(config, print_now, start_ns), "simulation ended"))
     except ReconError as problem:

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from recon.sim.app.camera_feed import ImageFormat
+from recon.sim.app.camera_feed import FeedSettings, ImageFormat
 from recon.sim.app.commands import HoverOnGround
 from recon.sim.app.faults import FaultKind
 from recon.sim.errors import SimulationError
@@ -116,12 +116,18 @@ class RunningOptions:
     image_format: Annotated[
         ImageFormat, typer.Option(help="Format of frames: raw (packet 2) or JPEG (packet 5).")
     ] = ImageFormat.RAW
+    jpeg_quality: Annotated[int, typer.Option(min=1, max=100, help="Quality of JPEG frames.")] = 85
     seed: Annotated[int, typer.Option(help="The same seed gives the same run.")] = 0
 
     @property
     def address(self) -> tuple[str, int]:
         """Host and port of the station; raises `SimulationError`."""
         return parse_address("--station", self.station)
+
+    @property
+    def feed(self) -> FeedSettings:
+        """The feed of each imaging drone."""
+        return FeedSettings(self.fps, self.image_format, jpeg_quality=self.jpeg_quality)
 
 
 def parse_address(option: str, text: str, lowest_port: int = 1) -> tuple[str, int]:

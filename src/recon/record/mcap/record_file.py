@@ -8,6 +8,7 @@ import os
 import struct
 from bisect import bisect_right
 from collections.abc import Collection, Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 
 from recon.model.errors import RecordError
+from recon.record.files.file_lock import lock_file
 from recon.record.mcap.mcap_file import CHUNK_HEAD, RECORD_HEAD
 from recon.record.mcap.mcap_read import (
     MAGIC,
@@ -56,6 +58,9 @@ class RecordFile:
         self._declared = Declared()
         self._chunks: list[_Chunk] = []
         self._file = path.open("rb")
+        # Nobody removes or repairs what is read here; a file being written has its writer's lock.
+        with suppress(OSError):
+            lock_file(self._file.fileno(), shared=True)
         try:
             self._scan()
         except BaseException:

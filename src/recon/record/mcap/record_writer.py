@@ -240,18 +240,18 @@ def repair_all(folder: Path) -> list[Path]:
             repaired.append(path)
 
     for path in sorted(folder.glob("*.mcap")):
-        _if_unlocked(path, finish)
+        if_unlocked(path, finish)
     return repaired
 
 
 def _remove_old_ground_files(folder: Path, kept: set[Path]) -> None:
     others = sorted(path for path in folder.glob(f"{GROUND}-*.mcap") if path not in kept)
     for path in others[: max(0, len(others) - GROUND_FILES_KEPT)]:
-        _if_unlocked(path, Path.unlink)
+        if_unlocked(path, Path.unlink)
 
 
-def _if_unlocked(path: Path, act: Callable[[Path], None]) -> None:
-    """Do something to a file that no other process writes; what fails leaves it as it is."""
+def if_unlocked(path: Path, act: Callable[[Path], None]) -> None:
+    """Do something to a file that no other process uses; what fails leaves it as it is."""
     with contextlib.suppress(OSError, RecordError):
         descriptor = os.open(path, os.O_RDWR)
         try:

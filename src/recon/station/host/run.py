@@ -293,7 +293,12 @@ def _start_record(
     if config.is_record_required:
         _require_writable(folder)
     recorder = Recorder(
-        lambda: record_process(folder), driver.handle, auditor, config.site, config.scenario
+        lambda: record_process(folder),
+        driver.handle,
+        auditor,
+        config.site,
+        config.scenario,
+        config.record_detail,
     )
     driver.record = recorder.take
     service.lost_bytes = lambda: recorder.dropped_bytes

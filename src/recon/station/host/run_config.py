@@ -11,6 +11,7 @@ from recon.record.files.users_file import default_users_file
 from recon.site import Site
 from recon.station.audit.start import AuditPlace
 from recon.station.host.http_servers import NetworkConfig
+from recon.station.recording.keyframe import EVERYTHING, RecordDetail
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +33,7 @@ class RunConfig:
     """Folder of the flight records; None: nothing is recorded."""
     is_record_required: bool = False
     """Whether a folder that cannot be written is an error at the start, not only an alarm."""
+    record_detail: RecordDetail = EVERYTHING
     audit: AuditPlace | None = None
     """None: the place in the user's state folder that belongs to the link port."""
     users_file: Path | None = None

@@ -9,6 +9,7 @@ So a keyframe takes some tens of kB, and a state that a replay shows is the reco
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields, replace
 from functools import cache
+from math import inf
 from typing import Any, get_type_hints
 
 import msgspec
@@ -79,31 +80,67 @@ class DueKeyframe:
     """Names among settings and airspace that differ from the file's beginning."""
 
 
-class Keyframes:
-    """Decides when keyframes of a file are due and what they omit."""
+@dataclass(frozen=True, slots=True)
+class RecordDetail:
+    """How closely a run is recorded."""
 
-    def __init__(self) -> None:
+    keyframe_s: float = KEYFRAME_S
+    has_all_maps: bool = True
+    """Whether each shade map and forecast is recorded, or those of keyframes alone."""
+    flight_file_s: float = inf
+    """Time in flight after which a new file begins, as soon as no survey runs; after twice the
+    time in any case."""
+    is_demo: bool = False
+    """Whether the record states that it is a demonstration's."""
+
+
+EVERYTHING = RecordDetail()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DueMaps:
+    """A shade map and its forecast, to be recorded after a step."""
+
+    now_ns: int
+    shade: ShadeMap
+    sun: SunForecast | None
+
+
+class Keyframes:
+    """Decides when keyframes and maps of a file are due and what keyframes omit."""
+
+    def __init__(self, detail: RecordDetail = EVERYTHING) -> None:
+        self._detail = detail
         self._first = Station()
         self._maps_at_ns: int | None = None
+        self._maps_number = 0
         self._due_ns = 0
 
     def begin(self, station: Station, now_ns: int) -> None:
         """Begin with a file's first state; the first keyframe is due."""
         self._first = Station(settings=station.settings, airspace=station.airspace)
         self._maps_at_ns, self._due_ns = None, now_ns
+        self._maps_number = station.shade.number
 
-    def due(self, step: StepTaken, number: int) -> tuple[DueKeyframe, ...]:
-        """Return the keyframe that is due after a step, if any: at a tick."""
+    def due(self, step: StepTaken, number: int) -> tuple[DueMaps | DueKeyframe, ...]:
+        """Return the maps that are due after a step, if any, and the keyframe: at a tick."""
         after, now_ns = step.after, step.now_ns
-        if after.shade.number != step.before.shade.number:
-            self._maps_at_ns = now_ns
-        if not isinstance(step.event, Tick) or now_ns < self._due_ns:
-            return ()
-        self._due_ns = now_ns + seconds_to_ns(KEYFRAME_S)
+        has_keyframe = isinstance(step.event, Tick) and now_ns >= self._due_ns
+        maps = self._maps(after.shade, now_ns) if self._detail.has_all_maps or has_keyframe else ()
+        if not has_keyframe:
+            return maps
+        self._due_ns = now_ns + seconds_to_ns(self._detail.keyframe_s)
         changed = frozenset(
             name for name in _SELDOM if getattr(after, name) is not getattr(self._first, name)
         )
-        return (DueKeyframe(number, now_ns, after, self._maps_at_ns, changed),)
+        return (*maps, DueKeyframe(number, now_ns, after, self._maps_at_ns, changed))
+
+    def _maps(self, line: ShadePipeline, now_ns: int) -> tuple[DueMaps, ...]:
+        """Return the newest maps if they are not in the file."""
+        if line.number == self._maps_number:
+            return ()
+        self._maps_number, self._maps_at_ns = line.number, now_ns
+        return () if line.shade is None else (DueMaps(now_ns, line.shade, line.sun),)
 
 
 def keyframe_pieces(codec: Codec, due: DueKeyframe) -> Iterator[bytes]:

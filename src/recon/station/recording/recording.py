@@ -8,6 +8,7 @@ Theory of operation. One file is one flight, with the time on the ground before 
 
     on the ground --the first vehicle takes off--> in flight
     in flight --nothing has flown for AFTER_LANDING_S--> on the ground, in a new file
+    in flight --RecordDetail.flight_file_s--> in flight, in a new file
     on the ground --GROUND_FILE_S--> on the ground, in a new file
 
 A file begins with the state of the station, for replays, which a thread encodes while steps wait.
@@ -32,7 +33,7 @@ from recon.link.tap import Direction
 from recon.model.errors import describe_fault
 from recon.model.event import Event, LinkClosed, PacketReceived, RecordFailed, Tick
 from recon.model.shade import ShadeMap, SunForecast
-from recon.model.units import seconds_to_ns
+from recon.model.units import ns_to_seconds, seconds_to_ns
 from recon.record.audit.audit import AuditEntry
 from recon.record.mcap.items import (
     BULK_BYTES,
@@ -48,7 +49,14 @@ from recon.record.mcap.items import (
 from recon.record.mcap.record_process import BULK_SHARE, CLOSE_WITHIN_S, RING_BYTES, RecordProcess
 from recon.site import Site
 from recon.station.audit.entries import Auditing
-from recon.station.recording.keyframe import DueKeyframe, Keyframes, keyframe_pieces
+from recon.station.recording.keyframe import (
+    EVERYTHING,
+    DueKeyframe,
+    DueMaps,
+    Keyframes,
+    RecordDetail,
+    keyframe_pieces,
+)
 from recon.station.recording.recorded_values import (
     FlightStart,
     audit_builtins,
@@ -95,9 +103,6 @@ class _TakenStep:
     entries: tuple[AuditEntry, ...]
     vehicle: str
     """The vehicle that sent a packet, for its topic; empty without one."""
-    shade: ShadeMap | None
-    """A new one."""
-    sun: SunForecast | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,6 +117,9 @@ class _TakenBytes:
     """Bytes that came from the app before these."""
 
 
+_Taken = _TakenStep | _TakenBytes | DueMaps | DueKeyframe
+
+
 class Recorder:
     """Takes a driver's steps and its links' bytes; never waits."""
 
@@ -122,15 +130,16 @@ class Recorder:
         audited: Audited,
         site: Site,
         scenario: str = "",
+        detail: RecordDetail = EVERYTHING,
     ) -> None:
         """`handle` is the driver's queue, for `RecordFailed`."""
         self.process = new_process()
         self._new_process = new_process
         self._handle = handle
         self._audited = audited
-        self._site, self._scenario = site, scenario
+        self._site, self._scenario, self._detail = site, scenario, detail
         self._codec = values_codec()
-        self._kept: list[_TakenStep | DueKeyframe | _TakenBytes] = []
+        self._kept: list[_Taken] = []
         self._encoding: threading.Thread | None = None
         self._beginning: bytes | None = None
         self._waiting: list[tuple[bytes, ...]] = []
@@ -141,9 +150,9 @@ class Recorder:
         self._jobs: set[tuple[str, int]] = set()
         self._number = self._dropped_bytes = 0
         self._has_flown = self._reports_flown = False
-        self._quiet_since_ns = 0
-        """Start of the file or, if it has a flight, when the last vehicle was last seen flying."""
-        self._keyframes = Keyframes()
+        self._began_ns = self._quiet_since_ns = 0
+        """Start of the file; and, if it has a flight, when a vehicle was last seen flying."""
+        self._keyframes = Keyframes(detail)
         self._pieces: Iterator[bytes] | None = None
         """Pieces of the keyframe being encoded, which is the first of the queued items."""
         self._died_at_ns: int | None = None
@@ -231,14 +240,14 @@ class Recorder:
                 if self._pieces is not None:
                     self._kept = kept[number:]
                     return
+            elif isinstance(item, DueMaps):
+                most_bytes, parts = limit_bytes, self._map_parts(item)
             else:
                 most_bytes, parts = limit_bytes, self._step_parts(item)
             if parts:
                 self._let_wait(item, parts, most_bytes)
 
-    def _let_wait(
-        self, item: _TakenStep | DueKeyframe | _TakenBytes, parts: tuple[bytes, ...], most: int
-    ) -> None:
+    def _let_wait(self, item: _Taken, parts: tuple[bytes, ...], most: int) -> None:
         total_bytes = self._waiting_bytes + sum(map(len, parts))
         if total_bytes > most:
             self._drop(item)
@@ -246,8 +255,8 @@ class Recorder:
         self._waiting.append(parts)
         self._waiting_bytes = total_bytes
 
-    def _drop(self, item: _TakenStep | DueKeyframe | _TakenBytes) -> None:
-        if isinstance(item, _TakenStep):
+    def _drop(self, item: _Taken) -> None:
+        if isinstance(item, _TakenStep | DueMaps):
             self.process.dropped_steps += 1
         elif isinstance(item, _TakenBytes):  # the next keyframe stands for one that is dropped
             self.process.dropped_bytes += len(item.data)
@@ -260,9 +269,10 @@ class Recorder:
         }
         vehicle = item.vehicle.encode()
         head = STEP_HEAD.pack(item.number, item.now_ns, len(vehicle))
-        parts = packed(ItemKind.STEP, head, vehicle, msgspec.msgpack.encode(message))
-        if item.shade is not None:
-            parts += self._value_parts(ItemKind.SHADE, item.now_ns, item.shade, ShadeMap)
+        return packed(ItemKind.STEP, head, vehicle, msgspec.msgpack.encode(message))
+
+    def _map_parts(self, item: DueMaps) -> tuple[bytes, ...]:
+        parts = self._value_parts(ItemKind.SHADE, item.now_ns, item.shade, ShadeMap)
         if item.sun is not None:
             parts += self._value_parts(ItemKind.SUN, item.now_ns, item.sun, SunForecast)
         return parts
@@ -301,12 +311,19 @@ class Recorder:
             self._quiet_since_ns = now_ns
             if not self._has_flown:
                 self._has_flown = self._reports_flown = True
-            return
-        lasts_s = AFTER_LANDING_S if self._has_flown else GROUND_FILE_S
-        is_due = now_ns - self._quiet_since_ns >= seconds_to_ns(lasts_s)
+            is_due = self._is_long_enough(station, now_ns)
+        else:
+            lasts_s = AFTER_LANDING_S if self._has_flown else GROUND_FILE_S
+            is_due = now_ns - self._quiet_since_ns >= seconds_to_ns(lasts_s)
         if is_due and not self._jobs and not self._is_beginning:
             self._hand_over(has_time=True)
             self._begin_file(station, now_ns)
+
+    def _is_long_enough(self, station: Station, now_ns: int) -> bool:
+        """Return whether the file of a flight should end in the air."""
+        lasted_s, longest_s = ns_to_seconds(now_ns - self._began_ns), self._detail.flight_file_s
+        surveys = station.surveys.records.values()
+        return lasted_s >= (longest_s if all(e.is_over for e in surveys) else 2.0 * longest_s)
 
     @property
     def _is_beginning(self) -> bool:
@@ -341,7 +358,8 @@ class Recorder:
         self._drop_waiting()
         self._forget_drops()
         self._fault = None
-        self._number, self._quiet_since_ns = 0, now_ns
+        self._number = 0
+        self._began_ns = self._quiet_since_ns = now_ns
         self._keyframes.begin(station, now_ns)
         self._has_flown = self._reports_flown = False
         memory, jobs = self._audited.memory, len(self._jobs)
@@ -367,7 +385,8 @@ class Recorder:
     def _encode(self, start: FlightStart) -> None:
         state, text = b"", b"{}"
         try:
-            text = msgspec.json.encode(_about(start), enc_hook=str)
+            about = _about(start) | {"is_demo": self._detail.is_demo}
+            text = msgspec.json.encode(about, enc_hook=str)
             # A codec of its own: it compiles types as it meets them.
             state = zstandard.compress(values_codec().encode(start, FlightStart), COMPRESSION)
         except Exception as fault:
@@ -417,22 +436,12 @@ def _bytes_parts(item: _TakenBytes) -> tuple[bytes, ...]:
 
 
 def _recorded(step: StepTaken, number: int, entries: tuple[AuditEntry, ...]) -> _TakenStep:
-    event, shade, vehicle = step.event, step.after.shade, ""
+    event, vehicle = step.event, ""
     if isinstance(event, PacketReceived):
         known = step.after.fleet.vehicle_of_link(event.link_id)
         serial = None if known is None else known.serial
         vehicle = serial or f"link-{event.link_id}"
-    is_new = shade.number != step.before.shade.number
-    return _TakenStep(
-        number,
-        event,
-        step.now_ns,
-        step.outputs,
-        entries,
-        vehicle,
-        shade.shade if is_new else None,
-        shade.sun if is_new else None,
-    )
+    return _TakenStep(number, event, step.now_ns, step.outputs, entries, vehicle)
 
 
 def record_process(folder: Path) -> RecordProcess:
