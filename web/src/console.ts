@@ -67,6 +67,8 @@ export interface Console {
   readonly panels: OpenPanels;
   readonly largeCamera: LargeCamera;
   readonly alarmSound: AlarmSound;
+  /** What this browser keeps. */
+  readonly kept: Kept;
   readonly login: Login;
   /** Where a replay stands; null on a live station. */
   readonly replay: Accessor<ReplayView | null>;
@@ -173,6 +175,7 @@ export function createConsole(
     calibration,
     overlay: createOverlay(() => activeSurveys(fleet.surveys).length > 0),
     baseMaps: createBaseMaps(source, kept),
+    kept,
     theme,
     panels,
     largeCamera: createLargeCamera(),

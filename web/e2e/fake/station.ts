@@ -15,6 +15,7 @@ import type {
   SurveyCameraView,
   SurveyPaths,
 } from "../../src/protocol";
+import { surveyEstimate } from "../../src/testing/fakeField";
 
 const MINI_3_PRO: SurveyCameraView = {
   name: "mini3pro",
@@ -153,6 +154,7 @@ export class FakeStation {
     if (path === "/api/maps") return { json: this.maps };
     if (path.startsWith("/api/maps/") && this.picture !== null)
       return { body: this.picture, contentType: "image/png" };
+    if (path === "/api/surveys/estimate") return { json: surveyEstimate({ survey_id: 0 }) };
     if (path === "/api/cameras") return { json: [MINI_3_PRO] };
     if (path.startsWith("/api/site/drawing")) return { json: this.drawingResult };
     const isControlRequest = /\/(authority|override|release|zones|end)$/.test(path);

@@ -28,11 +28,14 @@ import { SurveyRowsLayer } from "./surveyRowsLayer";
 import { TargetLayer } from "./targetLayer";
 import { TargetMarkers } from "./targetMarkers";
 import { TemporaryZoneLayer } from "./temporaryZoneLayer";
-import { hasLessRoom, middleOf, paddingOf, type Size } from "./uncovered";
+import { middleOf, paddingOf } from "./uncovered";
 import { VehicleLayer } from "./vehicleLayer";
 
 // Under Vite MapLibre does not find its worker and stays blank.
 setWorkerUrl(workerUrl);
+
+/** Nothing is fitted into a smaller part of the map: only a wide land would be in it. */
+const LEAST_ROOM_PX = 120;
 
 /** Step of displayed ages on the map while no new state arrives. */
 const AGE_STEP_S = 0.2;
@@ -169,24 +172,26 @@ export function MapView() {
     if (box === null || shown === null) return;
     const options = { ...view(isFirst), padding: paddingOf(holder, free) };
     shown.fitBounds([box.west, box.south, box.east, box.north], options);
-    fittedTo = sizeOf(free);
+    isFitted = true;
   };
-  // Until a person moves the map, what first takes room covers nothing of the view.
-  let fittedTo: Size | null = null;
+  // Until a person moves the map, nothing that takes room covers the view.
+  let isFitted = false;
   const byHand = (move: () => void) => () => {
-    fittedTo = null;
+    isFitted = false;
     move();
   };
   onMount(() => {
     const room = new ResizeObserver(() => {
-      if (fittedTo !== null && !isAiming() && hasLessRoom(fittedTo, sizeOf(free))) fit(false);
+      const { clientWidth, clientHeight } = free;
+      const isEnough = Math.min(clientWidth, clientHeight) >= LEAST_ROOM_PX;
+      if (isFitted && isEnough && !isAiming()) fit(false);
     });
     room.observe(free);
     onCleanup(() => room.disconnect());
   });
   createEffect(() => {
     map()?.on("movestart", ({ originalEvent }) => {
-      if (originalEvent !== undefined) fittedTo = null;
+      if (originalEvent !== undefined) isFitted = false;
     });
   });
   createEffect(on(fitRequests, () => fit(false), { defer: true }));
@@ -309,10 +314,6 @@ function createMap(
   map.touchZoomRotate.disableRotation();
   map.keyboard.disableRotation();
   return map;
-}
-
-function sizeOf({ clientWidth: width, clientHeight: height }: HTMLElement): Size {
-  return { width, height };
 }
 
 function view(isFirst: boolean) {

@@ -2,7 +2,6 @@ import { describe, expect, it } from "vitest";
 import { area, at, FIELD, station, vehicle } from "../testing/fakeState";
 import { boxAround, circle, gridLines, metresPerDegree, roundStepM } from "./localGrid";
 import { gridOrigin, wholeView } from "./scene";
-import { hasLessRoom } from "./uncovered";
 
 const UNPLACED = { position: { latitude_deg: null, longitude_deg: null, age_s: null } };
 
@@ -91,13 +90,6 @@ describe("the first view", () => {
     const west_m = ((box?.west ?? 0) - FIELD.lon) * per.lon;
     expect(west_m).toBeCloseTo(-190, 0);
     expect(east_m).toBeCloseTo(375, 0);
-  });
-
-  it("is fitted again only into less room than it was fitted to", () => {
-    const fittedTo = { width: 780, height: 700 };
-    expect(hasLessRoom(fittedTo, { width: 780, height: 560 })).toBe(true);
-    expect(hasLessRoom(fittedTo, { width: 780, height: 700 })).toBe(false);
-    expect(hasLessRoom(fittedTo, { width: 1100, height: 700 })).toBe(false);
   });
 
   it("leaves a single vehicle its surroundings", () => {

@@ -46,11 +46,3 @@ export function middleOf(map: HTMLElement, free: HTMLElement): [number, number] 
   const { left, top, width, height } = free.getBoundingClientRect();
   return [left - frame.left + width / 2, top - frame.top + height / 2];
 }
-
-/** Whether what is fitted to one size no longer fits into another. */
-export function hasLessRoom(fittedTo: Size, now: Size): boolean {
-  return now.width < fittedTo.width || now.height < fittedTo.height;
-}
-
-/** In whole pixels of the page. */
-export type Size = Readonly<Record<"width" | "height", number>>;

@@ -44,6 +44,14 @@ export function surveyRequests(http: StationHttp, stationNowMs: () => number | n
         client.GET("/api/surveys/{survey_id}/estimate", { params, signal }),
       );
     },
+    /** What a survey would take with these vehicles, without planning it. */
+    estimateDraft: (survey: NewSurvey, serials: readonly string[]) => {
+      const params = { query: { serial: [...serials] } };
+      const body = survey as SurveyRequest;
+      return answered(PLANNING, (signal) =>
+        client.POST("/api/surveys/estimate", { params, body, signal }),
+      );
+    },
     /** In which formats the flights of these vehicles can be downloaded, for other programs. */
     exports: (survey_id: number, serials: readonly string[], model: NamedAircraft | null) => {
       const params = { path: { survey_id }, query: { serial: [...serials], ...model } };

@@ -67,6 +67,7 @@ export function fakeSurveyRequests(flights: FakeFlights, requests: PageRequests)
       const drones = serials.map((serial) => ({ serial, vehicle_name: serial, ...one }));
       return answered({ ...flights.estimate, drones });
     },
+    estimateDraft: async () => answered(flights.estimate),
     exports: async (_id, _serials, model) => answered(planExports(model?.aircraft ?? null)),
     planFile: async (savedPlan, kind, serials, model) => {
       requests.sent.push({ savedPlan, kind, serials, model });

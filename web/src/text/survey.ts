@@ -73,6 +73,16 @@ export function estimateFacts(found: SurveyEstimateView): (readonly [string, str
   ];
 }
 
+/** The same of a form, in a line. */
+export function draftFacts(found: SurveyEstimateView, drones: number): string {
+  return text.estimate.draft({
+    drones: Math.max(1, drones),
+    time: minutes(found.time_s),
+    batteries: found.batteries,
+    photos: found.photos_in_all,
+  });
+}
+
 /** How high rows are above the ground over the region, where the ground is known. */
 function aboveGround(found: SurveyEstimateView): (readonly [string, string])[] {
   const { least_height_above_ground_m: least_m, most_height_above_ground_m: most_m } = found;

@@ -1,18 +1,19 @@
 import { createMemo, createResource, createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
-import type { Outcome, SurveyResponse } from "../../protocol";
+import type { NewSurvey as NewSurveyRequest, Outcome, SurveyResponse } from "../../protocol";
 import { valuesOf } from "../../protocol/values";
 import { text } from "../../text/catalogue";
 import { vehicleLabel } from "../../text/names";
-import { createLengthField, inLengthUnit, lengthUnit } from "../../text/units";
+import { inLengthUnit, lengthUnit } from "../../text/units";
+import { DraftEstimate } from "./DraftEstimate";
+import { createSurveyFigures, HIGHEST_M, LOWEST_M, type SurveyFigures } from "./surveyFigures";
+import { FASTEST_MPS } from "./surveyNumbers";
 
 /** The station's own planners, each under the name that a request has. */
 const PLANNERS = valuesOf(text.newSurvey.planners);
-
+/** The planner of a site without an imaging drone: no shade is known there. */
+const ANY_LIGHT = "lawnmower_once";
 const WHEN_DONE = valuesOf(text.newSurvey.thenDo);
-
-/** Heights that can be planned, above takeoff or above ground, and the one offered. */
-const [LOWEST_M, HIGHEST_M, USUAL_HEIGHT_M] = [10, 120, 50];
 
 /**
  * Form to plan a survey of a site region. Planning moves nothing, so a plain press suffices. Collapsed once
@@ -22,167 +23,299 @@ export function NewSurvey(props: {
   isFirst: boolean;
   onResult: (outcome: Outcome<SurveyResponse>) => void;
 }) {
-  const { source, fleet, lacks } = useConsole();
-  const height = createLengthField(USUAL_HEIGHT_M);
-  const [isPlanning, setPlanning] = createSignal(false);
-  const [cameras] = createResource(async () => {
-    const outcome = await source.surveys.cameras();
-    return outcome.kind === "answered" ? outcome.value : [];
-  });
-  /** The camera that all drones which could fly have, by the site's table. */
-  const usual = () => {
-    const own = new Set(
-      fleet.vehicles.filter(({ is_imager }) => !is_imager).map(({ camera }) => camera),
-    );
-    const [camera, ...others] = own;
-    return others.length === 0 ? (camera ?? "") : "";
-  };
-  const isGroundKnown = () => fleet.site?.terrain === "model";
-  const imagers = () => fleet.vehicles.filter(({ is_imager }) => is_imager);
-  /** Without an imaging drone no shade is known, and rows flown once are all that can be done. */
-  const usualPlanner = createMemo(() => (imagers().length > 0 ? "sunlit_first" : "lawnmower_once"));
+  const { fleet } = useConsole();
+  const [isOpen, setOpen] = createSignal(props.isFirst);
   const regions = () => (fleet.site?.areas ?? []).filter(({ kind }) => kind === "survey");
-  const plan = async (form: HTMLFormElement) => {
-    const height_m = height.metres();
-    if (height_m === null) return;
-    const data = new FormData(form);
-    setPlanning(true);
-    const model = String(data.get("camera") ?? "");
-    const outcome = await source.surveys.plan({
-      region: String(data.get("region")),
-      ...(data.get("above") === "ground"
-        ? { height_above_ground_m: height_m }
-        : { height_above_takeoff_m: height_m }),
-      speed_mps: Number(data.get("speed")),
-      planner: String(data.get("planner")),
-      camera: { model: model === "" ? null : model, interval_s: Number(data.get("interval")) },
-      side_step_allowed: data.get("side_step") !== null,
-      upwind_allowed: data.get("upwind") !== null,
-      ...reliefOf(String(data.get("battery") ?? "warn")),
-      when_done: data.get("when_done") === "hover" ? "hover" : "return_home",
-    });
-    setPlanning(false);
-    props.onResult(outcome);
-  };
   return (
     <Show
       when={regions().length > 0}
       fallback={<p class="panel-empty">{text.newSurvey.noRegions}</p>}
     >
-      <details class="section survey-new" open={props.isFirst}>
+      <details
+        class="section survey-new"
+        open={props.isFirst}
+        onToggle={(event) => setOpen(event.currentTarget.open)}
+      >
         <summary>{text.newSurvey.title}</summary>
-        <form
-          class="survey-form"
-          aria-label={text.newSurvey.title}
-          onSubmit={(event) => {
-            event.preventDefault();
-            void plan(event.currentTarget);
-          }}
-        >
-          <label class="survey-wide">
-            {text.newSurvey.region}
-            <select name="region">
-              <For each={regions()}>{({ name }) => <option value={name}>{name}</option>}</For>
-            </select>
-          </label>
-          <label>
-            {text.newSurvey.height(lengthUnit())}
-            <input
-              type="number"
-              min={Math.ceil(inLengthUnit(LOWEST_M))}
-              max={Math.floor(inLengthUnit(HIGHEST_M))}
-              step={1}
-              value={height.text()}
-              onInput={(event) => height.type(event.currentTarget.value)}
-              required
-            />
-          </label>
-          <label>
-            {text.newSurvey.above}
-            <select name="above">
-              <option value="takeoff">{text.newSurvey.references.takeoff}</option>
-              <option value="ground" disabled={!isGroundKnown()}>
-                {text.newSurvey.references[isGroundKnown() ? "ground" : "noGround"]}
-              </option>
-            </select>
-          </label>
-          <label>
-            {text.newSurvey.speed}
-            <input name="speed" type="number" min={1} max={15} step={0.5} value={5} required />
-          </label>
-          <label>
-            {text.newSurvey.interval}
-            <input name="interval" type="number" min={0.5} max={60} step={0.1} value={2} required />
-          </label>
-          <label class="survey-wide">
-            {text.newSurvey.camera}
-            <select name="camera">
-              <option value="">{text.newSurvey.otherCamera}</option>
-              <For each={cameras()}>
-                {({ name, title }) => (
-                  <option value={name} selected={name === usual()}>
-                    {title}
-                  </option>
-                )}
-              </For>
-            </select>
-          </label>
-          <label class="survey-wide">
-            {text.newSurvey.rows}
-            <select name="planner" value={usualPlanner()}>
-              <For each={PLANNERS}>
-                {(name) => <option value={name}>{text.newSurvey.planners[name]}</option>}
-              </For>
-            </select>
-          </label>
-          <label class="survey-wide">
-            {text.newSurvey.whenDone}
-            <select name="when_done">
-              <For each={WHEN_DONE}>
-                {(name) => <option value={name}>{text.newSurvey.thenDo[name]}</option>}
-              </For>
-            </select>
-          </label>
-          <label class="survey-wide survey-check">
-            <input name="side_step" type="checkbox" />
-            {text.newSurvey.sideStep}
-          </label>
-          <label class="survey-wide survey-check">
-            <input name="upwind" type="checkbox" />
-            {text.newSurvey.upwind}
-          </label>
-          <Show when={imagers().length > 0}>
-            <label class="survey-wide">
-              {text.newSurvey.battery}
-              <select name="battery">
-                <option value="warn">{text.newSurvey.batteryEnds.warn}</option>
-                <option value="home">{text.newSurvey.batteryEnds.home}</option>
-                <For each={imagers().length > 1 ? imagers() : []}>
-                  {(vehicle) => (
-                    <option value={vehicle.serial ?? "home"}>
-                      {text.newSurvey.spare(vehicleLabel(vehicle))}
-                    </option>
-                  )}
-                </For>
-              </select>
-            </label>
-          </Show>
-          <button
-            type="submit"
-            class="button"
-            disabled={isPlanning() || lacks("operator") !== null}
-            title={lacks("operator") ?? undefined}
-          >
-            {text.newSurvey.plan}
-          </button>
-        </form>
+        <Form
+          regions={regions().map(({ name }) => name)}
+          isOpen={isOpen()}
+          onResult={props.onResult}
+        />
       </details>
     </Show>
   );
 }
 
-/** What a survey may do when its imaging drone's battery ends: warn, return it home, or relieve it. */
-function reliefOf(battery: string) {
-  const spare_serial = battery === "warn" || battery === "home" ? null : battery;
-  return { relief_allowed: battery !== "warn", spare_serial };
+function Form(props: {
+  regions: readonly string[];
+  isOpen: boolean;
+  onResult: (outcome: Outcome<SurveyResponse>) => void;
+}) {
+  const { source, fleet, lacks, kept } = useConsole();
+  const [isPlanning, setPlanning] = createSignal(false);
+  const [changes, setChanges] = createSignal(0);
+  let form!: HTMLFormElement;
+  const [cameras] = createResource(async () => {
+    const outcome = await source.surveys.cameras();
+    return outcome.kind === "answered" ? outcome.value : [];
+  });
+  const own = () =>
+    new Set(fleet.vehicles.filter(({ is_imager }) => !is_imager).map(({ camera }) => camera));
+  const figures = createSurveyFigures({
+    cameras: () => cameras() ?? [],
+    usualCamera: () => (own().size === 1 ? ([...own()][0] ?? "") : ""),
+    fastest_mps: () => fleet.site?.limits.max_speed_mps ?? FASTEST_MPS,
+    kept,
+  });
+  const request = (): NewSurveyRequest | null => {
+    const asked = figures.asked();
+    return asked === null ? null : { ...asked, ...choicesOf(new FormData(form)) };
+  };
+  const draft = createMemo(() => {
+    changes();
+    const isAsked = props.isOpen && lacks("operator") === null && cameras.state === "ready";
+    // The numbers are read here too: the form's own fields are no signals.
+    return isAsked && figures.asked() !== null ? request() : null;
+  });
+  const plan = async () => {
+    const survey = request();
+    if (survey === null) return;
+    setPlanning(true);
+    const outcome = await source.surveys.plan(survey);
+    setPlanning(false);
+    props.onResult(outcome);
+  };
+  return (
+    <form
+      ref={form}
+      class="survey-form"
+      aria-label={text.newSurvey.title}
+      onInput={() => setChanges(changes() + 1)}
+      onSubmit={(event) => {
+        event.preventDefault();
+        void plan();
+      }}
+    >
+      <label class="survey-wide">
+        {text.newSurvey.region}
+        <select name="region">
+          <For each={props.regions}>{(name) => <option value={name}>{name}</option>}</For>
+        </select>
+      </label>
+      <label class="survey-wide">
+        {text.newSurvey.camera}
+        <select name="camera" onChange={(event) => figures.chooseCamera(event.currentTarget.value)}>
+          <option value="">{text.newSurvey.otherCamera}</option>
+          <For each={cameras()}>
+            {({ name, title }) => (
+              <option value={name} selected={name === figures.camera()?.name}>
+                {title}
+              </option>
+            )}
+          </For>
+        </select>
+      </label>
+      <Numbers figures={figures} />
+      <DraftEstimate survey={draft()} />
+      <Choices />
+      <button
+        type="submit"
+        class="button"
+        disabled={isPlanning() || lacks("operator") !== null}
+        title={lacks("operator") ?? undefined}
+      >
+        {text.newSurvey.plan}
+      </button>
+    </form>
+  );
+}
+
+/** Pixel and overlap first; what follows from them below, where it can be changed too. */
+function Numbers(props: { figures: SurveyFigures }) {
+  const { fleet } = useConsole();
+  const figures = props.figures;
+  const isGroundKnown = () => fleet.site?.terrain === "model";
+  return (
+    <>
+      <NumberField
+        label={text.newSurvey.pixel}
+        value={figures.pixel()}
+        onType={figures.typePixel}
+        range={[0.01, 100, 0.01]}
+        isFixed={figures.pixel() === ""}
+        placeholder={text.newSurvey.unknown}
+      />
+      <NumberField
+        label={text.newSurvey.bearing}
+        value={figures.bearing[0]()}
+        onType={figures.bearing[1]}
+        range={[0, 360, 1]}
+        placeholder={text.newSurvey.best}
+      />
+      <NumberField
+        label={text.newSurvey.front}
+        value={figures.front[0]()}
+        onType={figures.front[1]}
+        range={[0, 95, 1]}
+      />
+      <NumberField
+        label={text.newSurvey.side}
+        value={figures.sideways[0]()}
+        onType={figures.sideways[1]}
+        range={[0, 95, 1]}
+      />
+      <NumberField
+        label={text.newSurvey.height(lengthUnit())}
+        value={figures.height.text()}
+        onType={figures.height.type}
+        range={[Math.ceil(inLengthUnit(LOWEST_M)), Math.floor(inLengthUnit(HIGHEST_M)), 1]}
+      />
+      <label>
+        {text.newSurvey.above}
+        <select
+          name="above"
+          onChange={(event) => figures.setAboveGround(event.currentTarget.value === "ground")}
+        >
+          <option value="takeoff">{text.newSurvey.references.takeoff}</option>
+          <option value="ground" disabled={!isGroundKnown()}>
+            {text.newSurvey.references[isGroundKnown() ? "ground" : "noGround"]}
+          </option>
+        </select>
+      </label>
+      <NumberField
+        label={text.newSurvey.speed}
+        value={String(figures.speed_mps())}
+        onType={figures.typeSpeed}
+        range={[1, FASTEST_MPS, 0.1]}
+      />
+      <Show
+        when={figures.timer_s().length > 0}
+        fallback={
+          <NumberField
+            label={text.newSurvey.interval}
+            value={String(figures.interval_s())}
+            onType={figures.typeInterval}
+            range={[0.5, 60, 0.1]}
+          />
+        }
+      >
+        <label>
+          {text.newSurvey.interval}
+          <select
+            name="interval"
+            onChange={(event) => figures.typeInterval(event.currentTarget.value)}
+          >
+            <For each={figures.timer_s()}>
+              {(each) => (
+                <option value={each} selected={each === figures.interval_s()}>
+                  {each}
+                </option>
+              )}
+            </For>
+          </select>
+        </label>
+      </Show>
+    </>
+  );
+}
+
+function NumberField(props: {
+  label: string;
+  value: string;
+  onType: (text: string) => void;
+  /** Least, most, step. */
+  range: readonly [number, number, number];
+  placeholder?: string;
+  isFixed?: boolean;
+}) {
+  // While it is typed into, a field keeps what was typed.
+  const [typed, setTyped] = createSignal<string | null>(null);
+  return (
+    <label>
+      {props.label}
+      <input
+        type="number"
+        min={props.range[0]}
+        max={props.range[1]}
+        step={props.range[2]}
+        value={typed() ?? props.value}
+        placeholder={props.placeholder}
+        disabled={props.isFixed === true}
+        required={props.placeholder === undefined}
+        onInput={(event) => {
+          setTyped(event.currentTarget.value);
+          props.onType(event.currentTarget.value);
+        }}
+        onBlur={() => setTyped(null)}
+      />
+    </label>
+  );
+}
+
+/** What else a survey does; what the site cannot do is not offered. */
+function Choices() {
+  const { fleet } = useConsole();
+  const imagers = () => fleet.vehicles.filter(({ is_imager }) => is_imager);
+  return (
+    <>
+      <Show when={imagers().length > 0}>
+        <label class="survey-wide">
+          {text.newSurvey.rows}
+          <select name="planner">
+            <For each={PLANNERS}>
+              {(name) => <option value={name}>{text.newSurvey.planners[name]}</option>}
+            </For>
+          </select>
+        </label>
+      </Show>
+      <label class="survey-wide">
+        {text.newSurvey.whenDone}
+        <select name="when_done">
+          <For each={WHEN_DONE}>
+            {(name) => <option value={name}>{text.newSurvey.thenDo[name]}</option>}
+          </For>
+        </select>
+      </label>
+      <Show when={imagers().length > 0}>
+        <label class="survey-wide survey-check">
+          <input name="side_step" type="checkbox" />
+          {text.newSurvey.sideStep}
+        </label>
+        <label class="survey-wide survey-check">
+          <input name="upwind" type="checkbox" />
+          {text.newSurvey.upwind}
+        </label>
+        <label class="survey-wide">
+          {text.newSurvey.battery}
+          <select name="battery">
+            <option value="warn">{text.newSurvey.batteryEnds.warn}</option>
+            <option value="home">{text.newSurvey.batteryEnds.home}</option>
+            <For each={imagers().length > 1 ? imagers() : []}>
+              {(vehicle) => (
+                <option value={vehicle.serial ?? "home"}>
+                  {text.newSurvey.spare(vehicleLabel(vehicle))}
+                </option>
+              )}
+            </For>
+          </select>
+        </label>
+      </Show>
+    </>
+  );
+}
+
+/** What a request has of the form's choices. */
+function choicesOf(data: FormData) {
+  const battery = String(data.get("battery") ?? "warn");
+  return {
+    region: String(data.get("region")),
+    planner: String(data.get("planner") ?? ANY_LIGHT),
+    side_step_allowed: data.get("side_step") !== null,
+    upwind_allowed: data.get("upwind") !== null,
+    // What it may do when its imaging drone's battery ends: warn, return it home, or relieve it.
+    relief_allowed: battery !== "warn",
+    spare_serial: battery === "warn" || battery === "home" ? null : battery,
+    when_done: data.get("when_done") === "hover" ? ("hover" as const) : ("return_home" as const),
+  };
 }

@@ -304,6 +304,32 @@ const RELIEF: ImagerReliefView = {
   maps: 0,
 };
 
+function change(selector: string, value: string) {
+  const element = find<HTMLSelectElement>(page.root, selector);
+  element.value = value;
+  element.dispatchEvent(new Event("change", { bubbles: true }));
+}
+
+function field(label: string): HTMLInputElement {
+  const found = [...page.root.querySelectorAll("label")].find((each) =>
+    each.textContent?.startsWith(label),
+  );
+  return find<HTMLInputElement>(found ?? page.root, "input, select");
+}
+
+/** Types into a field and leaves it. */
+function type(label: string, value: string) {
+  field(label).value = value;
+  field(label).dispatchEvent(new InputEvent("input", { bubbles: true }));
+  field(label).dispatchEvent(new FocusEvent("blur"));
+}
+
+function showForm(...vehicles: VehicleView[]) {
+  const areas = [area("survey", [0, 0], 50, { name: "south field" })];
+  const base = station(vehicles);
+  page = renderPage(SurveyPanel, { ...base, site: base.site && { ...base.site, areas } });
+}
+
 describe("a new survey", () => {
   it("may relieve its imaging drone or return it home", () => {
     const regions = [area("survey", [0, 0], 50, { name: "south field" })];
@@ -335,7 +361,10 @@ describe("a new survey", () => {
         plannedSurvey: {
           region: "south field",
           height_above_takeoff_m: 50,
-          speed_mps: 5,
+          speed_mps: 6,
+          front_overlap: 0.75,
+          side_overlap: 0.6,
+          row_bearing_deg: null,
           planner: "lawnmower_once",
           camera: { model: null, interval_s: 2 },
           when_done: "return_home",
@@ -360,7 +389,7 @@ describe("a new survey", () => {
     expect([unknown.disabled, unknown.textContent]).toEqual([true, "Ground (no elevation model)"]);
     page.dispose();
     expect(begin("model").disabled).toBe(false);
-    find<HTMLSelectElement>(page.root, "select[name=above]").value = "ground";
+    change("select[name=above]", "ground");
     find<HTMLFormElement>(page.root, "form").dispatchEvent(
       new SubmitEvent("submit", { bubbles: true, cancelable: true }),
     );
@@ -389,8 +418,8 @@ describe("a new survey", () => {
     const site = base.site === null ? null : { ...base.site, areas: regions };
     page = renderPage(SurveyPanel, { ...base, site });
     await settled();
-    find<HTMLSelectElement>(page.root, "select[name=camera]").value = "mini3pro";
-    find<HTMLInputElement>(page.root, "input[name=interval]").value = "3";
+    change("select[name=camera]", "mini3pro");
+    change("select[name=interval]", "3");
     find<HTMLFormElement>(page.root, "form").dispatchEvent(
       new SubmitEvent("submit", { bubbles: true, cancelable: true }),
     );
@@ -400,7 +429,7 @@ describe("a new survey", () => {
 
   it("allows motions of the imaging drone only when the operator ticks them", () => {
     const regions = [area("survey", [0, 0], 50, { name: "south field" })];
-    const base = station([vehicle(1)]);
+    const base = station([vehicle(1), vehicle(3, { is_imager: true })]);
     const site = base.site === null ? null : { ...base.site, areas: regions };
     page = renderPage(SurveyPanel, { ...base, site });
     find<HTMLInputElement>(page.root, "input[name=side_step]").click();
@@ -411,6 +440,61 @@ describe("a new survey", () => {
     expect(page.requests).toMatchObject([
       { plannedSurvey: { side_step_allowed: true, upwind_allowed: true } },
     ]);
+  });
+
+  it("offers nothing that needs an imaging drone to a site without one", () => {
+    showForm(vehicle(1));
+    for (const name of ["planner", "side_step", "upwind", "battery"])
+      expect(page.root.querySelector(`[name=${name}]`)).toBeNull();
+  });
+
+  it("has its height and speed follow from pixel and overlap, until they are typed", async () => {
+    showForm(vehicle(1, { camera: "mini3pro" }));
+    await settled();
+    const value = (label: string) => field(label).value;
+    expect(value("Pixel size, cm")).toBe("1.73");
+    type("Pixel size, cm", "2");
+    expect([value("Height, m"), value("Speed, m/s"), value("Photo every, s")]).toEqual([
+      "58",
+      "7.5",
+      "2",
+    ]);
+    type("Front overlap, %", "90");
+    expect([value("Height, m"), value("Speed, m/s")]).toEqual(["58", "3"]);
+    type("Height, m", "40");
+    type("Pixel size, cm", "2");
+    type("Speed, m/s", "2.5");
+    type("Row bearing, °", "35");
+    find<HTMLFormElement>(page.root, "form").dispatchEvent(
+      new SubmitEvent("submit", { bubbles: true, cancelable: true }),
+    );
+    expect(page.requests).toMatchObject([
+      {
+        plannedSurvey: {
+          height_above_takeoff_m: 58,
+          speed_mps: 2.5,
+          front_overlap: 0.9,
+          row_bearing_deg: 35,
+        },
+      },
+    ]);
+  });
+
+  it("shows time, batteries and photos when nothing is typed for a moment", async () => {
+    showForm(vehicle(1));
+    await settled();
+    page.clock.advance(399);
+    await settled();
+    expect(page.root.textContent).not.toContain("batteries");
+    page.clock.advance(1);
+    await settled();
+    expect(page.root.textContent).toContain("1 drone: 6\u00a0min · 2 batteries · 214 photos");
+    page.estimateWith({ warnings: ["9 m/s is too fast"] });
+    type("Speed, m/s", "9");
+    page.clock.advance(400);
+    await settled();
+    expect(page.root.textContent).toContain("9 m/s is too fast");
+    expect(page.requests).toEqual([]);
   });
 
   it("is not available without survey regions", () => {

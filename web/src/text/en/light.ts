@@ -6,6 +6,7 @@ import type {
   SurveyRequest,
   SurveyView,
 } from "../../protocol";
+import { plural } from "./grammar";
 
 const exposures = { locked: "locked", notLocked: "not locked", automatic: "automatic" };
 
@@ -160,6 +161,14 @@ export const estimate = {
   unknown: (dash: string) => `Estimate: ${dash}`,
   withOne: "With one drone, each row once:",
   withSelected: "With the selected drones, each row once:",
+  draft: (of: { drones: number; time: string; batteries: number | null; photos: number | null }) =>
+    [
+      `${plural(of.drones, "drone")}: ${of.time}`,
+      ...(of.batteries === null
+        ? []
+        : [of.batteries === 1 ? "1 battery" : `${of.batteries} batteries`]),
+      ...(of.photos === null ? [] : [plural(of.photos, "photo")]),
+    ].join(" · "),
   time: "Time",
   inAir: "In the air",
   photosOnRows: "Photos on rows",
@@ -175,6 +184,12 @@ export const newSurvey = {
   noRegions: "The site has no survey regions.",
   title: "New survey",
   region: "Region",
+  pixel: "Pixel size, cm",
+  bearing: "Row bearing, °",
+  front: "Front overlap, %",
+  side: "Side overlap, %",
+  unknown: "Unknown",
+  best: "Automatic",
   height: (unit: string) => `Height, ${unit}`,
   above: "Height above",
   references: {
@@ -187,10 +202,11 @@ export const newSurvey = {
   otherCamera: "Other, 66° × 52°",
   interval: "Photo every, s",
   rows: "Rows",
+  /** The usual one first. */
   planners: {
-    lawnmower_once: "All rows once",
-    lawnmower_again: "Repeat until all is in sun",
     sunlit_first: "Sunlit rows first",
+    lawnmower_again: "Repeat until all is in sun",
+    lawnmower_once: "All rows once",
   },
   whenDone: "When complete",
   thenDo: { return_home: "Return home", hover: "Hover" } satisfies Record<
