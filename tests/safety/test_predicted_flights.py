@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from tests.safety.traffic import SETTINGS, aircraft, at, flies, judged, route, seen, waypoint
 
-from recon.model.command import Body, FlyMission, GoTo
+from recon.model.command import Body, FlyMission, FollowPath, GoTo
 from recon.model.control import Commanded, Intent
 from recon.model.mission import Mission
 from recon.model.vehicle import FlightMode, VehicleState
@@ -336,3 +336,20 @@ class TestWithoutAnOrder:
         """5 s, a second of reaction, and the braking."""
         flown = where(aircraft(velocity=(speed_mps, 0.0, 0.0)), Intent(), 6.0)
         assert flown.radius_m[0, 0] == pytest.approx(radius_m)
+
+
+class TestSteeredPaths:
+    def test_one_is_flown_where_a_mission_would_be(self) -> None:
+        steered = Intent(Commanded.STICK, mission=ALONG, passed=1, target=at(100.0, 0.0))
+        flown = Intent(Commanded.MISSION, mission=ALONG, passed=1)
+        assert written(aircraft(), steered) == written(aircraft(), flown)
+
+    def test_it_may_be_late_by_its_corners(self) -> None:
+        corner_s = SETTINGS.steered_corner_s
+        ordered = predict_order(seen(aircraft()), FollowPath(ALONG), SETTINGS)
+        whole = predict_order(seen(aircraft()), FlyMission(ALONG), SETTINGS)
+        start_s = SETTINGS.starts_within_s(ALONG)
+        assert ordered.delay_s == pytest.approx(whole.delay_s - start_s + 2.0 * corner_s)
+        under_way = Intent(Commanded.STICK, mission=ALONG, passed=1)
+        (seen_by_others,) = predict_traffic(seen(aircraft()), under_way, SETTINGS, 60.0)
+        assert seen_by_others.delay_s == pytest.approx(corner_s)

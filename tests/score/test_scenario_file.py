@@ -46,6 +46,7 @@ EXPECTED = {
     "clear-60ha-eight",
     "faults-wide",
     "clear-sky-faults",
+    "clear-sky-steered",
     "stress/cumulus-20",
     "stress/cumulus-40",
     "stress/cumulus-60",

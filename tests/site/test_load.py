@@ -250,8 +250,8 @@ def vehicle(line: str) -> str:
             "limits.min_height_above_ground_m: expected less than max_height_above_ground_m, 20 m, "
             "got 20 m",
         ),
-        (vehicle('serial = "B"\nmax_waypoints = 100'), "a whole number of 2 to 99, got 100"),
-        (vehicle('serial = "B"\nmax_waypoints = 9.5'), "a whole number of 2 to 99, got 9.5"),
+        (vehicle('serial = "B"\nmax_waypoints = 100'), "a whole number of 0 to 99, got 100"),
+        (vehicle('serial = "B"\nmax_waypoints = 9.5'), "a whole number of 0 to 99, got 9.5"),
         (
             vehicle('serial = "B"\npad = { latitude_deg = 1 }'),
             "pad.longitude_deg is missing: expected a numb",

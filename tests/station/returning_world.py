@@ -18,6 +18,7 @@ from recon.model.event import FleetReturnOrdered
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.vehicle import Failsafe
 from recon.safety import PreparedAirspace
+from recon.sim.app.commands import HoverOnGround
 from recon.sim.app.faults import parse_fault
 from recon.sim.fleet import Airborne, ImagerSetup, SimulationConfig, build_fleet
 from recon.sim.flight.flight_modes import Grounded, PositionHold
@@ -143,6 +144,7 @@ def returning_world(
     plan_takes_s: float = 0.05,
     elevation: ElevationModel | None = None,
     imagers: Mapping[str, ImagerSetup] = NO_IMAGERS,
+    hover_on_ground: HoverOnGround = HoverOnGround.NOTHING,
     **profile: object,
 ) -> ReturningWorld:
     """Return a fleet that hovers at (east, north, height above its pad), each with its pad.
@@ -168,6 +170,7 @@ def returning_world(
         vehicle_count=len(serials),
         imagers=imagers,
         airborne=Airborne.ALL,
+        hover_on_ground=hover_on_ground,
         seed=seed,
         pads=points,
         faults=tuple(parse_fault(text) for text in faults),

@@ -116,7 +116,17 @@ class HoldPosition:
     name: ClassVar[str] = "hold_position"
 
 
-SteeredBody = GoTo | Nudge | HoldPosition
+@dataclass(frozen=True, slots=True)
+class FollowPath:
+    """Fly a mission's waypoints, steered like `GoTo`, and hold at the last: for aircraft that take
+    no missions. It begins in the air; no corner is rounded, and nothing but flying is done."""
+
+    name: ClassVar[str] = "follow_path"
+
+    mission: Mission
+
+
+SteeredBody = GoTo | Nudge | HoldPosition | FollowPath
 """Orders that are not on the wire: the station steers them by `VirtualStick`."""
 WireBody = Hover | LandNow | ReturnHome | StartCamera | StopCamera | FlyMission | VirtualStick
 Body = WireBody | SteeredBody
@@ -129,6 +139,12 @@ MOVING_BODIES = (FlyMission, VirtualStick, *STEERED_BODIES)
 """Bodies that set a vehicle in motion along a path of the station's choosing."""
 TAKEOFF_BODIES = (Hover, FlyMission, VirtualStick)
 """Bodies that companion apps may carry out as a takeoff."""
+
+
+def mission_of_body(body: Body) -> Mission | None:
+    """Return the mission that an order flies, by the aircraft's own means or steered; else None."""
+    return body.mission if isinstance(body, (FlyMission, FollowPath)) else None
+
 
 BODY_NAMES: dict[type, str] = {kind: kind.name for kind in get_args(Body)}
 """The name of each body in the API and the audit; no other body is known."""

@@ -74,8 +74,9 @@ class Intent:
     """What a vehicle is doing by command of the station.
 
     `mission` is set for MISSION: the part last sent, with its first `passed` waypoints flown (0:
-    on the leg to the first). `target`, `target_height_above_takeoff_m` and `speed_mps` are set for
-    STICK (for a single stick only the height). `command_id` is the order that commanded it.
+    on the leg to the first); for STICK, the path that is steered, if any. `target`,
+    `target_height_above_takeoff_m` and `speed_mps` are set for STICK (for a single stick only the
+    height). `command_id` is the order that commanded it.
     """
 
     commanded: Commanded = Commanded.NOTHING

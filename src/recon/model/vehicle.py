@@ -132,6 +132,7 @@ class VehicleProfile:
     mount: Mount = Mount.GIMBAL
     pad: GeoPoint | None = None
     max_waypoints: int = DJI.max_waypoints
+    """0: its aircraft takes no missions; the station steers it along its paths."""
     battery_factor: float = 1.0
     """Multiplies the reported battery fraction: 2 for an app that halves it."""
     video_latency_s: float = 0.5
@@ -269,6 +270,14 @@ class VehicleState:
     """What its app has read of the aircraft's settings; None: it reports none."""
     photo_tally: PhotoTally | None = None
     """Its photos, if its app reports them."""
+
+    @property
+    def flies_missions(self) -> bool:
+        """Whether its aircraft takes missions: what its app has told, else its profile."""
+        facts = self.app_facts.value
+        if facts is not None and facts.can_fly_missions is not None:
+            return facts.can_fly_missions
+        return self.profile is None or self.profile.max_waypoints >= DJI.min_waypoints
 
     @property
     def display_name(self) -> str:

@@ -24,7 +24,7 @@ from math import atan2, cos, hypot, sin
 
 from recon.geo.distance import offset_north_east_m
 from recon.model.airspace import FlightLimits
-from recon.model.command import Body, FlyMission, StickFrame
+from recon.model.command import Body, StickFrame, mission_of_body
 from recon.model.geo import LatLon
 from recon.model.mission import Mission
 from recon.model.vehicle import VehicleProfile, VehicleState
@@ -153,9 +153,10 @@ def fraction_to_get_home(
 
 def need_of(uses: Consumption, vehicle: VehicleState, body: Body) -> Need | None:
     """Return what an order to move needs, the route home included; None while that is unknown."""
-    if isinstance(body, FlyMission):
-        points = mission_points(vehicle, body.mission)
-        return None if points is None else mission_need(uses, points, body.mission)
+    mission = mission_of_body(body)
+    if mission is not None:
+        points = mission_points(vehicle, mission)
+        return None if points is None else mission_need(uses, points, mission)
     path = path_of(body, vehicle, uses.settings)
     return None if path is None else path_need(uses, *path)
 
@@ -168,8 +169,9 @@ def leads_away(
     A mission leads away unless it only brings the vehicle down (`leads_home`); anything else when
     it ends farther from home than the vehicle is now.
     """
-    if isinstance(body, FlyMission):
-        return not leads_home(body.mission, vehicle, airspace)
+    mission = mission_of_body(body)
+    if mission is not None:
+        return not leads_home(mission, vehicle, airspace)
     path = path_of(body, vehicle, settings)
     if path is None:
         return True

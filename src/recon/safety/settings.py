@@ -252,6 +252,14 @@ class PredictionSettings:
     """Two vehicles already too near each other may be led apart: for this long only getting nearer
     is refused. Time for 100 m at a survey's speed."""
 
+    steered_corner_s: float = 4.0
+    """A path that the station steers may take this much longer at each corner than a mission: it
+    settles on the corner before it turns."""
+
+    def steered_lateness_s(self, mission: Mission, passed: int = 0) -> float:
+        """Return how much later than a mission a steered path may end."""
+        return self.steered_corner_s * (len(mission.waypoints) - passed)
+
     def starts_within_s(self, mission: Mission | None) -> float:
         """Return how long after its order a mission, or a takeoff without one, may begin. Many
         waypoints are uploaded in parts of as many as an aircraft takes."""
@@ -424,6 +432,9 @@ class SafetySettings:
     """Least speed to steer at: lower ones are within GNSS velocity noise."""
     max_nudge_m: float = 100.0
     """A nudge is judged by eye; farther is a goto, which names its place."""
+
+    max_followed_waypoints: int = 1_000
+    """Of a path that the station steers: no packet has to hold it."""
 
     max_camera_fps_hz: float = 30.0
     """No DJI video feed is faster."""

@@ -35,6 +35,7 @@ class ScenarioFleet:
     """Time on the ground to change the battery."""
     kept_share: float
     """A battery that is this full at landing is not changed."""
+    takes_missions: bool = True
 
     @property
     def serials(self) -> tuple[str, ...]:

@@ -96,6 +96,8 @@ class FleetTable(Table, frozen=True):
     swap_min: Annotated[float, Meta(ge=0.0, le=60.0)] = 3.0
     kept_share: Share = SURVEY_DEFAULT.battery_kept_fraction
     """A battery that is this full at landing is not changed."""
+    takes_missions: bool = True
+    """False: the station steers them along their rows, and they take off with a hover."""
 
 
 class ScenarioImagerTable(Table, frozen=True):

@@ -128,6 +128,7 @@ def _fleet(table: FleetTable, pads_m: tuple[EastNorth, ...]) -> ScenarioFleet:
         table.reserve_share,
         60.0 * table.swap_min,
         table.kept_share,
+        table.takes_missions,
     )
 
 

@@ -119,7 +119,7 @@ class VehicleTable(_Table, frozen=True):
     mount: Literal["gimbal", "fixed"] | None = None
     pad: PadTable | None = None
     app: Literal["legacy"] | None = None
-    max_waypoints: Annotated[int, Meta(ge=2, le=99)] | None = None
+    max_waypoints: Annotated[int, Meta(ge=0, le=99)] | None = None
     battery_factor: Annotated[float, Meta(ge=0.1, le=10.0)] | None = None
     endurance_min: Annotated[float, Meta(ge=1.0, le=240.0)] | None = None
     go_home_height_m: Annotated[float, Meta(ge=20.0, le=500.0)] | None = None

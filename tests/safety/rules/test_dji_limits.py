@@ -13,7 +13,7 @@ from tests.safety.cases import (
     waypoint,
 )
 
-from recon.model.command import Body, GoTo, HoldPosition, Nudge, StartCamera
+from recon.model.command import Body, FollowPath, GoTo, HoldPosition, Nudge, StartCamera
 from recon.model.geo import LatLon
 from recon.model.mission import Waypoint
 from recon.safety.rules.dji_limits import dji_limits
@@ -235,3 +235,29 @@ def test_an_unknown_vehicle_has_the_protocols_waypoint_limit() -> None:
         answer = dji_limits(command(mission(*line(100))), known)
         assert answer is not None
         assert answer.parameters["max_count"] == 99
+
+
+class TestFollowedPaths:
+    @pytest.mark.parametrize("count", [1, 2, 300])
+    def test_a_path_that_is_steered_needs_no_upload(self, count: int) -> None:
+        path = FollowPath(replace(mission().mission, waypoints=line(count, 0.1)))
+        assert is_taken(path, max_waypoints=0)
+        assert not is_taken(FollowPath(replace(path.mission, curved=True)))
+
+    def test_what_sticks_cannot_carry_is_refused(self) -> None:
+        for changed in (
+            {"height_above_takeoff_m": -1.0},
+            {"speed_mps": 0.0},
+            {"speed_mps": 15.1},
+            {"latitude_deg": 91.0},
+            {"loiter_s": 1.0},
+        ):
+            assert not is_taken(FollowPath(mission(waypoint(0.0, **changed)).mission)), changed
+        assert not is_taken(FollowPath(replace(mission().mission, waypoints=())))
+        assert not is_taken(FollowPath(replace(mission().mission, waypoints=line(1_001))))
+
+    def test_a_mission_is_refused_where_the_aircraft_takes_none(self) -> None:
+        state = vehicle(replace(TAKEOFF, max_waypoints=0))
+        answer = dji_limits(command(mission()), situation(state))
+        assert answer is not None
+        assert "flies no missions" in answer.reason

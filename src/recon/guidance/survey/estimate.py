@@ -256,7 +256,7 @@ def _flight(
         track, count = longest_mission(plan, route[flown:], vehicle)
         if track is None:
             break
-        used_s = _mission_s(plan, track, vehicle.place_m)
+        used_s = _mission_s(plan, track, vehicle)
         vehicle = _after_mission(vehicle, track, used_s)
         missions_s += used_s
         tracks.append(track)
@@ -266,12 +266,12 @@ def _flight(
     return _planned(plan, route[:flown], tracks, missions_s, vehicle, batteries), route[flown:]
 
 
-def _mission_s(plan: SurveyPlan, track: Track, start_m: EastNorth) -> float:
+def _mission_s(plan: SurveyPlan, track: Track, vehicle: Surveyor) -> float:
     """How long a mission takes with the leg to it, stops at corners included."""
     settings, speed_mps = plan.settings, plan.survey.speed_mps
     end_m = track.corners_m[-1]
-    used_s = flight_time_s(track, speed_mps, start_m, end_m, settings)
-    return used_s + settings.corner_s * len(track.corners_m)
+    used_s = flight_time_s(track, speed_mps, vehicle.place_m, end_m, settings)
+    return used_s + (settings.corner_s + vehicle.extra_corner_s) * len(track.corners_m)
 
 
 def _after_mission(vehicle: Surveyor, track: Track, used_s: float) -> Surveyor:

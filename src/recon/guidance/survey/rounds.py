@@ -258,6 +258,7 @@ def battery_lasts(plan: SurveyPlan, track: Track | None, surveyor: Surveyor) -> 
     home_m = surveyor.home_m or surveyor.place_m
     speed_mps = plan.survey.speed_mps
     needed_s = flight_time_s(track, speed_mps, surveyor.place_m, home_m, plan.settings)
+    needed_s += surveyor.extra_corner_s * len(track.corners_m)
     return needed_s <= surveyor.time_left_s * plan.settings.flight_time_share
 
 

@@ -30,6 +30,9 @@ class SurveySettings:
     turning_mps2: float = 2.5
     """What aircraft brake and start with: a stop costs speed over this."""
 
+    steered_corner_s: float = 1.5
+    """A vehicle that the station steers settles on a corner, where one on a mission stops at it."""
+
     flight_time_share: float = 0.8
     """Share of a battery's time that is planned with: wind, and turns that take longer."""
 

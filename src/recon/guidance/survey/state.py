@@ -41,6 +41,8 @@ class Surveyor:
     height_above_takeoff_m: float | None = None
     takeoff_up_m: float | None = None
     """The height of its takeoff point, up of the site's frame; a survey above ground needs it."""
+    extra_corner_s: float = 0.0
+    """Time at each corner beyond a mission's: the station steers it."""
 
 
 @dataclass(frozen=True, slots=True)

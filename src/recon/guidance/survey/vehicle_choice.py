@@ -242,6 +242,7 @@ class VehicleChoice:
     def _pace(self) -> Pace:
         speed_mps, settings = self.plan.survey.speed_mps, self.settings
         stop_s = speed_mps / settings.turning_mps2 + settings.corner_s
+        stop_s += self.surveyor.extra_corner_s
         # Stops within rows make them slower, on average.
         rows_mps = speed_mps / (1.0 + speed_mps * self.plan.stops_per_m * stop_s)
         return Pace(rows_mps, stop_s, settings.layer_s)

@@ -11,6 +11,7 @@ from recon.model.command import (
     Body,
     Command,
     FlyMission,
+    FollowPath,
     GoTo,
     HoldPosition,
     Hover,
@@ -103,7 +104,7 @@ def order_path(body: Body, vehicle: VehicleState) -> OrderPath:
     A nudge of a vehicle without a position, or a mission without waypoints, is a `HoldPath`.
     """
     match body:
-        case FlyMission(mission):
+        case FlyMission(mission) | FollowPath(mission):
             return mission if mission.waypoints else HoldPath()
         case GoTo():
             return StraightFlight(
@@ -124,7 +125,7 @@ def order_path(body: Body, vehicle: VehicleState) -> OrderPath:
 def speeds_mps(body: Body) -> Iterator[tuple[str, float]]:
     """Yield the speeds that an order asks for, each with what it is the speed of."""
     match body:
-        case FlyMission(mission):
+        case FlyMission(mission) | FollowPath(mission):
             for number, waypoint in enumerate(mission.waypoints, start=1):
                 yield f"Speed at waypoint {number}", as_sent(waypoint.speed_mps)
         case GoTo() | Nudge():

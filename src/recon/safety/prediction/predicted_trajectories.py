@@ -5,7 +5,7 @@ from math import hypot
 
 import numpy as np
 
-from recon.model.command import Body, FlyMission
+from recon.model.command import Body, FlyMission, FollowPath
 from recon.model.control import Commanded, Intent
 from recon.model.mission import Mission
 from recon.model.vehicle import VehicleState
@@ -47,8 +47,10 @@ def predict_order(motion: VehicleMotion, body: Body, settings: PredictionSetting
     predictor = Predictor(motion, settings)
     write_order(predictor, body)
     trajectory = predictor.writer.trajectory(motion.name, motion.drift_m)
-    start_s = settings.starts_within_s(body.mission) if isinstance(body, FlyMission) else 0.0
-    return replace(trajectory, delay_s=predictor.delay_s + start_s)
+    late_s = settings.starts_within_s(body.mission) if isinstance(body, FlyMission) else 0.0
+    if isinstance(body, FollowPath):
+        late_s = settings.steered_lateness_s(body.mission)
+    return replace(trajectory, delay_s=predictor.delay_s + late_s)
 
 
 def predict_traffic(
@@ -68,9 +70,10 @@ def predict_traffic(
     predictor = Predictor(motion, settings, until_s=until_s)
     predictor.follow(intent)
     trajectory = predictor.writer.trajectory(motion.name, motion.drift_m)
-    begins_late = _has_not_begun(motion, intent)
-    start_s = settings.starts_within_s(intent.mission) if begins_late else 0.0
-    return (replace(trajectory, delay_s=predictor.delay_s + start_s), *volumes)
+    late_s = settings.starts_within_s(intent.mission) if _has_not_begun(motion, intent) else 0.0
+    if intent.commanded is Commanded.STICK and intent.mission is not None:
+        late_s = settings.steered_lateness_s(intent.mission, intent.passed)
+    return (replace(trajectory, delay_s=predictor.delay_s + late_s), *volumes)
 
 
 def _has_not_begun(motion: VehicleMotion, intent: Intent) -> bool:

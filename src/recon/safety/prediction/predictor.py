@@ -60,7 +60,7 @@ class Predictor:
     def follow(self, intent: Intent) -> None:
         """Write what an intent makes a vehicle do."""
         match intent.commanded:
-            case Commanded.MISSION if intent.mission is not None:
+            case Commanded.MISSION | Commanded.STICK if intent.mission is not None:
                 self.fly_mission(intent.mission, intent.passed)
             case Commanded.STICK if intent.target is not None:
                 height_m = intent.target_height_above_takeoff_m

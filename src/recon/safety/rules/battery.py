@@ -2,7 +2,7 @@
 
 from math import ceil, floor, isfinite
 
-from recon.model.command import BODY_NAMES, Body, Command, FlyMission, Refusal
+from recon.model.command import BODY_NAMES, Body, Command, Refusal, mission_of_body
 from recon.model.vehicle import BatteryWarning, VehicleState
 from recon.safety.energy import Need, consumption, leads_away, need_of
 from recon.safety.path.order_path import is_stop
@@ -77,7 +77,7 @@ def _reserve(situation: Situation) -> float:
 
 def _too_little(vehicle: VehicleState, body: Body, need: Need, left: float, has: float) -> Refusal:
     name = BODY_NAMES[type(body)].replace("_", " ")
-    end = f"waypoint {need.at}" if isinstance(body, FlyMission) else "its end"
+    end = f"waypoint {need.at}" if mission_of_body(body) is not None else "its end"
     flown = f"{_near(need.flown)} % to {end}, " if need.at > 0 else ""
     return _refused(
         vehicle,

@@ -10,6 +10,7 @@ from recon.model.command import (
     Body,
     Command,
     FlyMission,
+    FollowPath,
     GoTo,
     HoldPosition,
     Hover,
@@ -43,6 +44,8 @@ def _refusals(body: Body, situation: Situation) -> Iterator[Refusal]:
             return _mission(body, situation)
         case VirtualStick():
             return _stick(body, situation)
+        case FollowPath():
+            return _followed(body, situation)
         case GoTo():
             return _goto(body, situation)
         case Nudge():
@@ -151,7 +154,12 @@ def _steering_speed(speed_mps: float, limits: SafetySettings) -> Iterator[Refusa
 
 
 def _mission(body: FlyMission, situation: Situation) -> Iterator[Refusal]:
-    mission, limits = body.mission, situation.settings
+    mission, limits, vehicle = body.mission, situation.settings, situation.vehicle
+    if vehicle is not None and not vehicle.flies_missions:
+        yield _refused(
+            f"{vehicle.display_name} flies no missions: its aircraft takes none. Give it a goto, "
+            "or a survey, which the station steers"
+        )
     yield from _count(mission, situation)
     yield from _too_high(mission, situation)
     for number, waypoint in enumerate(mission.waypoints, start=1):
@@ -175,6 +183,29 @@ def _too_high(mission: Mission, situation: Situation) -> Iterator[Refusal]:
             height_above_takeoff_m=highest_m,
             max_m=most_m,
         )
+
+
+def _followed(body: FollowPath, situation: Situation) -> Iterator[Refusal]:
+    """A path becomes sticks, which do nothing but fly, and end only where the station holds."""
+    mission, limits = body.mission, situation.settings
+    least, most = 1, limits.max_followed_waypoints
+    count = len(mission.waypoints)
+    if not least <= count <= most:
+        text = f"Path must have {least} to {most} waypoints; got {count}"
+        yield _refused(text, waypoint_count=count, min_count=least, max_count=most)
+    if mission.curved or any(each.loiter_s for each in mission.waypoints):
+        yield _refused("A path that is steered has no rounded corners and no waits; got some")
+    yield from _too_high(mission, situation)
+    for number, each in enumerate(mission.waypoints, start=1):
+        for refusal in _followed_waypoint(each, limits):
+            yield _refused(f"Waypoint {number}: {refusal.reason}", **refusal.parameters)
+
+
+def _followed_waypoint(waypoint: Waypoint, limits: SafetySettings) -> Iterator[Refusal]:
+    if not LatLon(waypoint.latitude_deg, waypoint.longitude_deg).is_valid():
+        yield _position(waypoint.latitude_deg, waypoint.longitude_deg, "position")
+    yield from _steered_height(waypoint.height_above_takeoff_m, limits)
+    yield from _steering_speed(waypoint.speed_mps, limits)
 
 
 def _count(mission: Mission, situation: Situation) -> Iterator[Refusal]:

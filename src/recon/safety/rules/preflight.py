@@ -1,6 +1,6 @@
 """Missions and takeoffs need a passed preflight checklist, or an explicit override."""
 
-from recon.model.command import Command, FlyMission, Refusal
+from recon.model.command import Command, Refusal, mission_of_body
 from recon.safety.checks import checklist
 from recon.safety.return_missions import leads_home
 from recon.safety.situation import Situation
@@ -14,12 +14,12 @@ def preflight(command: Command, situation: Situation) -> Refusal | None:
     A mission that only brings a vehicle down is not held back: the checklist makes a flight safe
     to begin, and a refusal would only leave the vehicle in the air.
     """
-    vehicle, body = situation.vehicle, command.body
-    if vehicle is None or not (isinstance(body, FlyMission) or command.takeoff):
+    vehicle, mission = situation.vehicle, mission_of_body(command.body)
+    if vehicle is None or (mission is None and not command.takeoff):
         return None
     if situation.preflight_override is not None:
         return None
-    if isinstance(body, FlyMission) and leads_home(body.mission, vehicle, situation.airspace):
+    if mission is not None and leads_home(mission, vehicle, situation.airspace):
         return None
     unmet = [check for check in checklist(vehicle, situation) if check.holds_back]
     if not unmet:

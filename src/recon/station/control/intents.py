@@ -71,6 +71,8 @@ def of_stream(stream: SetpointStream) -> Intent:
         target=stream.goal.target,
         target_height_above_takeoff_m=stream.goal.height_above_takeoff_m,
         speed_mps=stream.goal.speed_mps,
+        mission=None if stream.path is None else stream.path.mission,
+        passed=0 if stream.path is None else stream.path.index,
     )
 
 
@@ -110,7 +112,7 @@ def instruction_of(intent: Intent, has_begun: bool) -> Instruction:
     if not has_begun:
         return _SENT[intent.commanded]
     mission = intent.mission
-    if mission is not None and mission.land_at_end:
+    if intent.commanded is Commanded.MISSION and mission is not None and mission.land_at_end:
         return Instruction.MISSION_TO_LAND
     return _BEGUN[intent.commanded]
 
@@ -128,7 +130,7 @@ def place_of(intent: Intent, vehicle: VehicleState, kind: ModeKind | None) -> Pl
 
 def _is_at_end(intent: Intent, vehicle: VehicleState, is_level: bool) -> bool | None:
     position = vehicle.position.value
-    if intent.mission is not None:
+    if intent.commanded is Commanded.MISSION and intent.mission is not None:
         if position is None:
             return None
         end = intent.mission.waypoints[-1]

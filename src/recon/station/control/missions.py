@@ -8,7 +8,8 @@ alarm gives the reason. Nothing else is ever sent without an order.
 
 from dataclasses import replace
 
-from recon.model.command import Command, FlyMission, Phase, Refusal
+from recon.model.command import Command, FlyMission, FollowPath, Phase, Refusal
+from recon.model.mission import Mission
 from recon.model.units import ns_to_seconds, seconds_to_ns
 from recon.model.vehicle import VehicleProfile, VehicleState
 from recon.safety import Situation, judge_parts
@@ -18,6 +19,11 @@ from recon.station.state.station import Station
 from recon.station.state.steps import Judge, SendCommand, Stepped
 from recon.vehicles.mission_repair import repair
 from recon.vehicles.packets import describe_altitudes
+
+
+def body_for(vehicle: VehicleState, mission: Mission) -> FlyMission | FollowPath:
+    """Return the order that flies a mission: steered, where the aircraft takes none."""
+    return FlyMission(mission) if vehicle.flies_missions else FollowPath(mission)
 
 
 def plan(station: Station, command: Command) -> FlightPlan | None:

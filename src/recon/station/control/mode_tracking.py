@@ -319,7 +319,9 @@ def _count_passed(station: Station, serial: str, vehicle: VehicleState) -> Stati
     """Return the station with the waypoints counted that a vehicle has passed by now."""
     intent, tracking = _tracked(station, serial)
     core_at_ns, position = vehicle.core_received_at_ns, vehicle.position.value
-    if intent.mission is None or not tracking.has_begun or position is None:
+    if intent.commanded is not Commanded.MISSION or intent.mission is None:
+        return station  # a steered path counts its own
+    if not tracking.has_begun or position is None:
         return station
     if core_at_ns is None or core_at_ns == tracking.core_at_ns:
         return station

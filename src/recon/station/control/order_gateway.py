@@ -143,7 +143,7 @@ def update_streams(
     judge, update = _judge_at(now_ns), StreamUpdate(station)
     for serial in setpoint_streams.due_serials(station, now_ns, serials):
         update = setpoint_streams.advance(update, serial, now_ns, judge)
-        update = _with_intents(update, now_ns)
+        update = _with_corners_passed(_with_intents(update, now_ns), serial)
     return _apply(update, now_ns)
 
 
@@ -189,6 +189,14 @@ def _with_intents(update: StreamUpdate, now_ns: int) -> StreamUpdate:
     for serial, command_id, commanded in update.released:
         station = intents.after_stream(station, serial, command_id, commanded, now_ns)
     return replace(update, station=station, released=())
+
+
+def _with_corners_passed(update: StreamUpdate, serial: str) -> StreamUpdate:
+    """Count the waypoints of a steered path in its vehicle's intent, by which others keep clear."""
+    stream = update.station.control(serial).stream
+    if stream is None or stream.path is None:
+        return update
+    return replace(update, station=intents.with_passed(update.station, serial, stream.path.index))
 
 
 def _apply(update: StreamUpdate, now_ns: int) -> Stepped:

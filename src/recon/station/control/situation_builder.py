@@ -1,6 +1,6 @@
 """What the gate judges: an order as a command, and the situation it is judged in."""
 
-from recon.model.command import Command, FlyMission
+from recon.model.command import Command, mission_of_body
 from recon.model.event import OperatorOrder
 from recon.model.units import seconds_to_ns
 from recon.safety import ClaimingLink, Situation, Traffic
@@ -39,7 +39,7 @@ def situation(
     target = station.target(command.serial, command.link_id)
     serial = "" if target is None or target.serial is None else target.serial
     control = station.control(serial)
-    needs_checklist = isinstance(command.body, FlyMission) or command.takeoff
+    needs_checklist = mission_of_body(command.body) is not None or command.takeoff
     return Situation(
         now_ns=now_ns,
         vehicle=target,

@@ -118,6 +118,12 @@ class OrderRecord:
         return self.history[-1].note
 
     @property
+    def left_at_ns(self) -> int | None:
+        """When it was last sent, of a steered one its first stick; None: not yet."""
+        left = (each.at_ns for each in reversed(self.history) if each.phase is Phase.SENT)
+        return next(left, None)
+
+    @property
     def is_withdrawn(self) -> bool:
         """Whether it has ended unsent, and waits in no queue."""
         return self.phase.is_final and self.times_sent == 0 and not self.waiting_link_ids

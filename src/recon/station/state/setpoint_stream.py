@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from recon.guidance.path_following import SteeredPath
 from recon.guidance.steering import Goal, Steered
 from recon.model.command import Command
 from recon.model.units import seconds_to_ns
@@ -74,6 +75,8 @@ class SetpointStream:
     is_obeyed: bool = False
     arrived_at_ns: int | None = None
     closing: str | None = None
+    path: SteeredPath | None = None
+    """Of an order along a path; `goal` is then on its present leg."""
 
 
 def following_due_ns(due_ns: int, now_ns: int, settings: StreamSettings) -> int:

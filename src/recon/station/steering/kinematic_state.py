@@ -5,8 +5,9 @@ from math import hypot
 from typing import assert_never
 
 from recon.geo.distance import moved_m
+from recon.guidance.path_following import goal_on, path_from
 from recon.guidance.steering import Goal, KinematicState, SteeringSettings, stopping_place
-from recon.model.command import GoTo, HoldPosition, Nudge, Refusal, SteeredBody
+from recon.model.command import FollowPath, GoTo, HoldPosition, Nudge, Refusal, SteeredBody
 from recon.model.units import wrap_degrees
 from recon.model.vehicle import VehicleState
 from recon.station.state.setpoint_stream import StreamSettings
@@ -66,6 +67,8 @@ def goal_of(
         case HoldPosition():
             place = stopping_place(seen, steering)
             return Goal(place, seen.height_above_takeoff_m, settings.hold_speed_mps, seen.yaw_deg)
+        case FollowPath(mission):
+            return goal_on(path_from(mission, seen), seen, steering)
         case _ as unknown:
             assert_never(unknown)
 

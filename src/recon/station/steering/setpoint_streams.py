@@ -20,8 +20,9 @@ reconnect, no restart. `stream_ends` has the ends, `order_gateway` applies them.
 
 from collections.abc import Collection
 
+from recon.guidance.path_following import advanced, goal_on, path_from
 from recon.guidance.steering import KinematicState, begin, halted, has_arrived, steer
-from recon.model.command import STEERED_BODIES, Command, Phase, Refusal
+from recon.model.command import STEERED_BODIES, Command, FollowPath, Phase, Refusal
 from recon.model.event import CommandSent, OperatorOrder
 from recon.model.replacing import replace
 from recon.model.units import seconds_to_ns
@@ -72,18 +73,20 @@ def start_stream(
     vehicle = station.fleet.vehicles[serial]
     seen = kinematic_state(vehicle, now_ns)
     assert seen is not None, "asked before by `refusal_to_start`"
-    assert isinstance(command.body, STEERED_BODIES)
+    body = command.body
+    assert isinstance(body, STEERED_BODIES)
     fastest_mps = station.airspace.airspace.limits.max_speed_mps
     stream = SetpointStream(
         command=command,
         owner=owner,
-        goal=goal_of(command.body, seen, settings.steering, settings.streams),
+        goal=goal_of(body, seen, settings.steering, settings.streams),
         steered=begin(no_faster_than(seen, fastest_mps), now_ns),
         link_id=vehicle.link_id,
         started_at_ns=now_ns,
         next_due_ns=now_ns,
         seen_at_ns=now_ns - seconds_to_ns(seen.age_s),
         mode_before=vehicle.flight_mode.value,
+        path=path_from(body.mission, seen) if isinstance(body, FollowPath) else None,
     )
     return with_stream(station, serial, stream), stream
 
@@ -154,12 +157,24 @@ def advance(update: StreamUpdate, serial: str, now_ns: int, judge: Judge) -> Str
         return stream_ends.abort(update, serial, stream, failure, now_ns, judge)
     if seen is not None and seen.age_s > station.settings.streams.max_telemetry_age_s:
         seen = None
+    stream = _along_its_path(station, stream, seen)
     station, stream = _with_progress(station, stream, vehicle, seen, now_ns)
     update = replace(update, station=station)
     if stream_ends.has_held_long_enough(station, stream, now_ns):
         return stream_ends.end_held_place(update, serial, stream, now_ns, judge)
     stream = _with_next_setpoint(station, serial, stream, seen, now_ns)
     return _send(update, serial, stream, now_ns, judge)
+
+
+def _along_its_path(
+    station: Station, stream: SetpointStream, seen: KinematicState | None
+) -> SetpointStream:
+    """Return the stream with the goal of now, if it follows a path."""
+    if stream.path is None or seen is None:
+        return stream
+    steering = station.settings.steering
+    path = advanced(stream.path, seen, steering) if stream.is_obeyed else stream.path
+    return replace(stream, path=path, goal=goal_on(path, seen, steering))
 
 
 def _with_next_setpoint(
@@ -207,7 +222,8 @@ def _with_progress(
         stream = replace(stream, is_obeyed=True)
         note = "telemetry shows stick mode"
         station = change_phase(station, stream, Phase.STARTED, now_ns, note)
-    has_come = seen is not None and has_arrived(stream.goal, seen, station.settings.steering)
+    is_at_goal = seen is not None and has_arrived(stream.goal, seen, station.settings.steering)
+    has_come = is_at_goal and (stream.path is None or stream.path.is_on_last_leg)
     if stream.is_obeyed and stream.arrived_at_ns is None and has_come:
         stream = replace(stream, arrived_at_ns=now_ns)
         note = "telemetry shows it arrived; position held"

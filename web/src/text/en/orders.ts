@@ -51,6 +51,7 @@ export const orders = {
     goto: "Fly here",
     nudge: "Nudge",
     hold_position: "Hold position",
+    follow_path: "Steered path",
   } satisfies Record<Order["kind"], string> as Readonly<Record<string, string>>,
   allStop: "All stop",
   fleetReturn: "Return in layers (hold first)",

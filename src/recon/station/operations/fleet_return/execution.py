@@ -31,12 +31,13 @@ from recon.guidance.fleet_return import (
     mission_of,
     whole_claim,
 )
-from recon.model.command import FlyMission, Hover, Phase, Refusal, issued_by_station
+from recon.model.command import FollowPath, Hover, LandNow, Phase, Refusal, issued_by_station
 from recon.model.control import AuthorityHolder
 from recon.model.event import OperatorOrder
 from recon.model.units import seconds_to_ns
 from recon.safety import judge
 from recon.station.control import authority, order_gateway
+from recon.station.control.missions import body_for
 from recon.station.control.situation_builder import command_of, situation
 from recon.station.operations.fleet_return import planning
 from recon.station.operations.fleet_return.planning import is_same_pad
@@ -68,7 +69,9 @@ def advance(station: Station, now_ns: int, settings: ReturnSettings = RETURN_SET
     running = _with_zones_of_now(station, running)
     for member in running.members.values():
         running = running.put(updated(station, member, settings, now_ns))
+    station, running, landings = _land_steered(station, running, now_ns)
     station, stops = _hold_late_starters(station, running, now_ns)
+    stops = (*landings, *stops)
     if running.at(Stage.STOPPING):
         return replace(station, fleet_return=running), stops
     if any(member.flight is None for member in running.at(Stage.WAITING)):
@@ -100,6 +103,32 @@ def _hand_back_ended(station: Station, now_ns: int) -> Station:
             why = f"fleet return: {member.reason or 'landed'}"
             station = authority.hand_back(station, member.serial, member.by, why, now_ns)
     return station
+
+
+def _land_steered(
+    station: Station, running: FleetReturn, now_ns: int
+) -> tuple[Station, FleetReturn, tuple[Output, ...]]:
+    """Land vehicles that were steered to above their pads: a mission ends with its own landing."""
+    outputs: tuple[Output, ...] = ()
+    for member in running.at(Stage.FLYING):
+        record = station.orders.records.get(member.mission_id or 0)
+        if record is None or record.phase is not Phase.DONE:
+            continue
+        if isinstance(record.command.body, FollowPath):
+            station, number = take_id(station)
+            running = running.put(replace(member, mission_id=number))
+            given = record.command
+            land = OperatorOrder(
+                number,
+                LandNow(),
+                given.issued_by,
+                serial=member.serial,
+                role=given.role,
+                person=given.person,
+            )
+            station, sent = order_gateway.submit(station, land, now_ns)
+            outputs += sent
+    return station, running, outputs
 
 
 def _hold_late_starters(station: Station, running: FleetReturn, now_ns: int) -> Stepped:
@@ -250,9 +279,10 @@ def _order_mission(
     """Order the mission if the gate approves it; wait while its refusal may end with time."""
     speed_mps = station.airspace.airspace.limits.max_speed_mps
     mission = mission_of(flight, running.frame, flight.start_m, settings.plan, speed_mps)
+    vehicle = station.fleet.vehicles[member.serial]
     order = OperatorOrder(
         0,
-        FlyMission(mission),
+        body_for(vehicle, mission),
         f"{member.by}: fleet return",
         serial=member.serial,
         role=member.role,

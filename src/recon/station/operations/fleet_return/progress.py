@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from recon.link.outbox import Lane, lane_of
-from recon.model.command import Hover, Phase
+from recon.model.command import FollowPath, Hover, Phase
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import FlightMode, VehicleState
 from recon.station.operations.settings import ReturnSettings
@@ -141,6 +141,9 @@ def _under_way(
     if record is not None and record.phase in _NOT_FLOWN:
         return member.at(Stage.EXCLUDED, now_ns, f"its {mission_end_text(record)}")
     if member.stage is not Stage.ORDERED:
+        is_steered = record is not None and isinstance(record.command.body, FollowPath)
+        if is_steered and vehicle.flight_mode.value is FlightMode.JOYSTICK:
+            return replace(member, out_of_mission_since_ns=None)
         return _still_flying(member, vehicle, settings, now_ns)
     is_flown = record is not None and record.phase in _FLOWN
     if is_flown or _is_in_return_mode(vehicle, member):

@@ -52,6 +52,7 @@ def available_vehicles(station: Station, record: SurveyRecord, now_ns: int) -> I
             is_flying=vehicle.is_flying.value is True,
             height_above_takeoff_m=vehicle.height_above_takeoff_m.value,
             takeoff_up_m=takeoff_up_m(station.airspace, vehicle),
+            extra_corner_s=0.0 if vehicle.flies_missions else SURVEY_DEFAULT.steered_corner_s,
         )
 
 
@@ -131,8 +132,8 @@ def after_mission(
     Such a mission is not flown again automatically: an operator must check and start it again.
     """
     order, unsent_since_ns = _order(station, member), member.unsent_since_ns
-    sent = None if order is None else order.sent
-    if unsent_since_ns is not None and sent is not None and sent.sent_at_ns >= unsent_since_ns:
+    sent_at_ns = None if order is None else order.left_at_ns
+    if unsent_since_ns is not None and sent_at_ns is not None and sent_at_ns >= unsent_since_ns:
         member = replace(member, unsent_since_ns=None)
     if order is None or member.stop_reason is not None or not order.phase.is_final:
         return member, None

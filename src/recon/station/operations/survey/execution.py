@@ -66,6 +66,8 @@ from recon.station.state.station import Station, take_id
 from recon.station.state.steps import Job, JobKind, Output, Stepped
 from recon.station.state.survey_record import EastNorth, PendingStep, SurveyRecord
 
+TAKES_OFF = "takes off first: its aircraft takes no missions, and is steered along its rows"
+
 _OPEN = (SurveyPhase.RUNNING, SurveyPhase.PAUSED)
 
 
@@ -258,6 +260,10 @@ def _order_mission(
     station, number = take_id(station)
     station, sent = order_gateway.submit(station, replace(ready.order, command_id=number), now_ns)
     refusal = station.orders.records[number].refusal
+    if refusal is None and ready.is_takeoff:
+        flown = replace(member, may_take_off=False)
+        record = asked_again(record, flown, given.number, TAKES_OFF, now_ns)
+        return replace(station, surveys=station.surveys.put(record)), sent
     if refusal is None:
         used = replace(
             member,

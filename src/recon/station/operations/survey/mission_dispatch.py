@@ -16,7 +16,7 @@ import numpy as np
 
 from recon.geo.distance import horizontal_distance_m
 from recon.guidance.survey import SurveyPlan
-from recon.model.command import FlyMission, Refusal
+from recon.model.command import Hover, Refusal
 from recon.model.control import AuthorityHolder
 from recon.model.event import OperatorOrder
 from recon.model.geo import LatLon
@@ -30,6 +30,7 @@ from recon.safety.rules.keep_out import RULE as KEEP_OUT
 from recon.safety.rules.max_height import RULE as MAX_HEIGHT
 from recon.safety.rules.min_height import RULE as MIN_HEIGHT
 from recon.safety.rules.separation import RULE as SEPARATION
+from recon.station.control.missions import body_for
 from recon.station.control.situation_builder import command_of, situation
 from recon.station.operations.survey.approach_layers import (
     layers_above_takeoff_m,
@@ -59,6 +60,8 @@ class Dispatch:
     tried: str = ""
     in_the_way: Refusal | None = None
     """Another vehicle is in its way at all its heights, or it has none: it is not ordered now."""
+    is_takeoff: bool = False
+    """The order is a takeoff alone; the mission is to be asked for again in the air."""
 
 
 def dispatch(
@@ -71,8 +74,11 @@ def dispatch(
     """Return the order for a mission, judged beforehand by the gate's own rules.
 
     The first height is taken that neither a height rule nor another vehicle rules out. If height
-    rules refuse all, the first is ordered, so that the gate's refusal is on record.
+    rules refuse all, the first is ordered, so that the gate's refusal is on record. A path that is
+    steered begins in the air: its vehicle takes off first.
     """
+    if vehicle.is_flying.value is False and not vehicle.flies_missions:
+        return Dispatch(replace(_order(record, given, vehicle), body=Hover()), is_takeoff=True)
     straight = _straight(station, record, given, vehicle)
     if straight is not None and _refusal(station, straight, now_ns) is None:
         return Dispatch(straight)
@@ -103,7 +109,7 @@ def _straight(
     is_level = _is_at_rows_height(station, record, vehicle, here, height_m, first)
     if not is_level or far_m > within_m or given.stands_by:
         return None
-    return replace(_order(record, given, vehicle), body=FlyMission(given.mission))
+    return replace(_order(record, given, vehicle), body=body_for(vehicle, given.mission))
 
 
 def _is_at_rows_height(
@@ -145,7 +151,7 @@ def _orders(
             given.mission, vehicle, layers_m, given.approach, ends_in_layer=ends_in_layer
         )
     order = _order(record, given, vehicle)
-    return tuple(replace(order, body=FlyMission(mission)) for mission in missions)
+    return tuple(replace(order, body=body_for(vehicle, mission)) for mission in missions)
 
 
 def _own_layers_m(
@@ -173,7 +179,7 @@ def _order(record: SurveyRecord, given: MissionAssignment, vehicle: VehicleState
     member = record.members[given.serial]
     return OperatorOrder(
         0,
-        FlyMission(given.mission),
+        body_for(vehicle, given.mission),
         record.issuer,
         serial=given.serial,
         takeoff=member.may_take_off and vehicle.is_flying.value is False,
