@@ -16,7 +16,6 @@ from recon.camera import (
 from recon.geo import point_from_enu
 from recon.model.airspace import FlightLimits, LandingPad, Region
 from recon.model.geo import GroundGrid, LocalFrame
-from recon.model.mission import DJI
 from recon.model.vehicle import AltitudeReference, Failsafe, VehicleProfile
 from recon.score.scenario import EastNorth, ScenarioFleet, ScenarioImager
 from recon.site import Imager, Site, demo_site_folder
@@ -166,7 +165,6 @@ def _profiles(
             go_home_height_m=LOWEST_GO_HOME_M + apart_m * (number + 1),
             failsafe=Failsafe.GO_HOME,
             camera_interval_s=photo_interval_s,
-            max_waypoints=DJI.max_waypoints if fleet.takes_missions else 0,
         )
         for number, (serial, pad_m) in enumerate(zip(fleet.serials, fleet.pads_m, strict=True))
     }

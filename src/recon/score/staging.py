@@ -1,6 +1,6 @@
 """The place of a scenario: a site's folder, or a site generated around its task."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -64,7 +64,7 @@ def staged(path: Path, file: ScenarioFile, survey: Survey, errors: ScenarioError
         survey.camera.interval_s,
         moves_upwind=imager.is_upwind or survey.upwind_allowed,
     )
-    return Staged(site, frame, fleet, imager)
+    return Staged(_with_abilities(site, fleet), frame, fleet, imager)
 
 
 def _on_folder(folder: Path, file: ScenarioFile, errors: ScenarioErrors) -> Staged:
@@ -90,7 +90,15 @@ def _on_folder(folder: Path, file: ScenarioFile, errors: ScenarioErrors) -> Stag
     fleet = _fleet(file.fleet, _site_pads_m(site, frame, file.fleet, errors))
     east_m, north_m, up_m = only.marked_pose.position_enu_m.tolist()
     imager = _imager(file.imager, (east_m, north_m), up_m)
-    return Staged(site, frame, fleet, imager)
+    return Staged(_with_abilities(site, fleet), frame, fleet, imager)
+
+
+def _with_abilities(site: Site, fleet: ScenarioFleet) -> Site:
+    """Return the site with survey drones that take missions, or none."""
+    if fleet.takes_missions:
+        return site
+    drones = {s: replace(site.profiles[s], max_waypoints=0) for s in fleet.serials}
+    return replace(site, profiles={**site.profiles, **drones})
 
 
 def _site_pads_m(
