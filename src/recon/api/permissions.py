@@ -52,6 +52,7 @@ LEAST_ROLE: dict[tuple[str, str], Role] = {
     ("GET", "/api/surveys/{survey_id}/exports"): Role.OBSERVER,
     ("GET", "/api/surveys/{survey_id}/plan.{kind}"): Role.OBSERVER,
     ("GET", "/api/cameras"): Role.OBSERVER,
+    ("GET", "/api/flown-regions"): Role.OBSERVER,
     ("GET", "/api/zones"): Role.OBSERVER,
     ("GET", "/api/site/drawing"): Role.OBSERVER,
     ("GET", "/api/site/vehicles"): Role.OBSERVER,
@@ -80,6 +81,7 @@ LEAST_ROLE: dict[tuple[str, str], Role] = {
     ("POST", "/api/side-step"): Role.OPERATOR,
     ("POST", "/api/imager-relief"): Role.OPERATOR,
     ("POST", "/api/surveys"): Role.OPERATOR,
+    ("POST", "/api/surveys/again"): Role.OPERATOR,
     ("POST", "/api/surveys/estimate"): Role.OPERATOR,
     ("POST", "/api/surveys/{survey_id}/start"): Role.OPERATOR,
     # Regions to survey only; boundary, zones and pads need an administrator: see `EditedSite`.

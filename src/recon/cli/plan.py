@@ -21,6 +21,7 @@ from recon.cli.region_file import region_in
 from recon.cli.survey import RowOptions, names_file
 from recon.geo import enu_from_points
 from recon.guidance.survey import Surveyor, SurveyPlan, plan_survey, surroundings_of
+from recon.guidance.survey.again import with_rows
 from recon.guidance.survey.estimate import Batteries, SurveyEstimate, corner_of, estimate
 from recon.guidance.survey.imaging import (
     SpeedLimit,
@@ -34,12 +35,14 @@ from recon.model.airspace import Region
 from recon.model.command import Refusal
 from recon.model.errors import ReconError
 from recon.model.geo import LocalFrame
-from recon.model.survey import Survey
+from recon.model.survey import RowChoice, Survey
 from recon.model.survey_camera import CAMERAS, CameraModel, camera_named
 from recon.model.vehicle import VehicleProfile
+from recon.record.files.flown_region_file import day_of, read_regions
 from recon.safety.energy import Consumption, profile_consumption
 from recon.safety.settings import EnergySettings
 from recon.site import Site
+from recon.site.reading import FLOWN_FOLDER
 from recon.site.site import default_site
 from recon.site.survey_cameras import read_cameras_file
 
@@ -168,6 +171,8 @@ def _plan_at(
     model = camera_named(options.camera, cameras.values())
     name, area, frame = _region(options.region, rows, home)
     draft = _draft(name, area, home, model, options, rows)
+    if options.site is not None and options.region in home.layers.survey_regions:
+        draft = _on_kept_rows(replace(draft, region_name=name), frame, options.site, rows.choice)
     imaging = _imaging(draft, model, options.interval, _exposure_s(options.exposure), home)
     plan = _plan(draft, imaging, options.speed, frame, home)
     fleet = _fleet(plan, home, options.drones)
@@ -191,7 +196,9 @@ def _plan_at(
 
 
 def _table(figures: dict[str, Any], exports: Sequence[ExportedFiles]) -> list[tuple[str, str]]:
-    return [*plan_rows_of(figures), *rows_of_exports(exports)]
+    note: str = figures["rows_note"]
+    noted = [("rows' origin", note)] if note else []
+    return [*plan_rows_of(figures), *noted, *rows_of_exports(exports)]
 
 
 def _draft(
@@ -212,6 +219,17 @@ def _draft(
     if home.airspace.elevation is None:
         raise PlanError(NO_ELEVATION)
     return replace(draft, height_above_takeoff_m=None, height_above_ground_m=height_m)
+
+
+def _on_kept_rows(draft: Survey, frame: LocalFrame, site: Path, choice: RowChoice) -> Survey:
+    """Return a survey of a site's region with the rows that are kept of it, if they are wanted."""
+    known, troubles = read_regions(site / FLOWN_FOLDER)
+    for trouble in troubles:
+        print(f"recon plan: {printable(trouble)}", file=sys.stderr)
+    found = with_rows(draft, frame, known, choice, day_of)
+    if isinstance(found, Refusal):
+        raise RefusedPlanError(f"refused: {found.reason}")
+    return found
 
 
 def _region(name: str, rows: RowOptions, site: Site) -> tuple[str, Region, LocalFrame]:

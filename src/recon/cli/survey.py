@@ -17,21 +17,20 @@ from recon.cli.connection import (
     station_command,
 )
 from recon.cli.output import print_json, print_line, print_table
-from recon.client import ClientError, Refusal, Station, SurveyStatus
-from recon.client.surveys import SurveyVehicle
+from recon.cli.survey_again import print_flown_regions, region_asked, since_day
+from recon.cli.survey_output import print_answer, print_surveys
+from recon.client import ClientError, Refusal, Station
 from recon.model.geo import GeoPoint
-from recon.model.survey import PLANNER_GOALS, WhenDone, height_text, unknown_survey
-from recon.model.units import HECTARE_M2
+from recon.model.survey import PLANNER_GOALS, RowChoice, WhenDone, unknown_survey
 
-PHASES = {"created": "planned"}
-"""Words that differ from the API's."""
 REGION_SUFFIXES = (
     *(".geojson", ".json", ".kml", ".kmz", ".zip", ".gpkg", ".gpx", ".xml", ".plan"),
 )
 NO_ORIGIN = "the station's site has no origin: start the station with --site FOLDER"
 
 survey_app = App(
-    help="Survey a region: create, estimate, start, pause, abort, status.", no_args_is_help=True
+    help="Survey a region: create, resume, estimate, start, pause, abort, status.",
+    no_args_is_help=True,
 )
 
 NumberArgument = Annotated[int, typer.Argument(metavar="ID", help="The survey's number.")]
@@ -66,6 +65,14 @@ class RowOptions:
         float | None,
         typer.Option("--bearing", help="Of the rows, degrees; default: the fewest turns."),
     ] = None
+    choice: Annotated[
+        RowChoice,
+        typer.Option(
+            "--rows",
+            help="Of a site's region: those of last time if nothing differs (auto), those whatever "
+            "differs (as_before), or new ones.",
+        ),
+    ] = RowChoice.AUTO
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -156,6 +163,7 @@ class CreateOptions:
             "front_overlap": rows.front,
             "side_overlap": rows.side,
             "row_bearing_deg": rows.bearing,
+            "rows": rows.choice.value,
             "camera": {"model": self.camera, "interval_s": self.interval},
             "budget": {"rounds": self.rounds, "time_s": time_s},
             "when_done": self.when_done.value,
@@ -178,7 +186,7 @@ async def create_command(
     if survey.spare is not None:
         area["spare_serial"] = named_serials(station, [survey.spare])[0]
     answer = await station.surveys.create(**area, **survey.as_requested(rows))
-    return _print_answer(answer, as_json)
+    return print_answer(answer, as_json)
 
 
 @survey_app.command("start")
@@ -197,7 +205,55 @@ async def start_command(
     For a running survey: add vehicles, or resume those that stopped.
     """
     serials = named_serials(station, vehicles)
-    return _print_answer(await station.surveys.start(number, serials, takeoff=takeoff), as_json)
+    return print_answer(await station.surveys.start(number, serials, takeoff=takeoff), as_json)
+
+
+@survey_app.command("resume")
+@station_command
+async def resume_command(
+    station: Station,
+    region: Annotated[
+        str, typer.Argument(metavar="REGION", help="Name of a region, or id of `survey flown`.")
+    ],
+    vehicles: NamesArgument = None,
+    since: Annotated[
+        str | None,
+        typer.Option(
+            "--since",
+            help="Leave out what was imaged from this day on: 2026-05-01, or today. Default: since "
+            "the survey was begun.",
+        ),
+    ] = None,
+    all_again: Annotated[bool, typer.Option("--all", help="Leave nothing out.")] = False,
+    takeoff: Annotated[
+        bool, typer.Option("--takeoff", help="Allow takeoff for this start.")
+    ] = False,
+    as_json: JsonOption = False,
+) -> int:
+    """Fly the rest of a region, on the same rows.
+
+    After an abort, a restart of the station, or on another day. With vehicles it starts; without,
+    it is only planned.
+    """
+    known = await station.surveys.flown_regions()
+    asked, day = region_asked(known, region), since_day(known, since)
+    serials = named_serials(station, vehicles) if vehicles else []
+    answer = await station.surveys.again(asked.id, since=day, all_again=all_again)
+    if serials and not isinstance(answer, Refusal):
+        answer = await station.surveys.start(answer.id, serials, takeoff=takeoff)
+    return print_answer(answer, as_json)
+
+
+@survey_app.command("flown")
+@station_command
+async def flown_command(station: Station, as_json: JsonOption = False) -> int:
+    """Show the regions that were surveyed, on which days, and how much is left."""
+    known = await station.surveys.flown_regions()
+    if as_json:
+        print_json(msgspec.to_builtins(known))
+    else:
+        print_flown_regions(known)
+    return DONE
 
 
 @survey_app.command("estimate")
@@ -236,7 +292,7 @@ async def pause_command(
 
     Its vehicles hold position, under operator control.
     """
-    return _print_answer(await station.surveys.pause(number), as_json)
+    return print_answer(await station.surveys.pause(number), as_json)
 
 
 @survey_app.command("abort")
@@ -248,7 +304,7 @@ async def abort_command(
 
     Its vehicles hold position, under operator control.
     """
-    return _print_answer(await station.surveys.abort(number), as_json)
+    return print_answer(await station.surveys.abort(number), as_json)
 
 
 @survey_app.command("status")
@@ -268,7 +324,7 @@ async def status_command(
     if as_json:
         print_json(msgspec.to_builtins(surveys))
     else:
-        _print_surveys(surveys)
+        print_surveys(surveys)
     return DONE
 
 
@@ -293,71 +349,3 @@ async def _area(
     origin = GeoPoint(site.latitude_deg, site.longitude_deg, site.ground_altitude_m or 0.0)
     own_name, rings = read_region(path, rows.feature, origin, close_paths=rows.close_paths)
     return {"polygon": rings, "name": name or own_name}
-
-
-def _print_answer(answer: SurveyStatus | Refusal, as_json: bool) -> int:
-    if as_json:
-        print_json(msgspec.to_builtins(answer))
-    elif isinstance(answer, Refusal):
-        print_line(f"refused ({answer.rule}): {answer.reason}")
-    else:
-        print_line(_sentence(answer))
-        _print_surveys([answer])
-    return REFUSED if isinstance(answer, Refusal) else DONE
-
-
-def _sentence(survey: SurveyStatus) -> str:
-    """Return the survey's number, phase and name; later commands use the number."""
-    number, phase = survey.id, PHASES.get(survey.phase, survey.phase)
-    sentence = f"survey {number}: {phase}, {survey.name}"
-    if survey.phase != "created":
-        return sentence
-    return f"{sentence}. Start it with `recon survey start {number} VEHICLE...`"
-
-
-def _print_surveys(surveys: list[SurveyStatus]) -> None:
-    rows = [
-        (
-            f"survey {s.id}",
-            s.name,
-            PHASES.get(s.phase, s.phase),
-            f"{s.rows} rows",
-            height_text(s.height_above_takeoff_m, s.height_above_ground_m),
-            *_areas(s),
-            s.reason,
-        )
-        for s in surveys
-    ]
-    columns = (
-        *("number", "name", "phase", "rows", "height", "region"),
-        *("not reached", "not yet", "light unknown", "in shade", "in sun", "reason"),
-    )
-    print_table("surveys", columns, rows)
-    members = [
-        (f"survey {survey.id}", v.vehicle_name, _activity(v))
-        for survey in surveys
-        for v in survey.vehicles
-    ]
-    if members:
-        print_table("vehicles", ("survey", "vehicle", "activity"), members)
-
-
-def _activity(vehicle: SurveyVehicle) -> str:
-    """What it does for its survey; a reason against flying counts more than a mission not ended."""
-    flies = "flying rows" if vehicle.is_flying_rows else None
-    return vehicle.not_flying_reason or flies or vehicle.refused or "idle"
-
-
-def _areas(survey: SurveyStatus) -> tuple[str, ...]:
-    figures = survey.figures
-    if figures is None:
-        return "", "", "", "", "", ""
-    areas = {
-        "": figures.region_m2,
-        "not reached ": figures.region_m2 - figures.reached_m2,
-        "not yet ": figures.not_yet_m2,
-        "light unknown ": figures.sun_unknown_m2,
-        "in shade ": figures.in_shade_m2,
-        "in sun ": figures.in_sun_m2,
-    }
-    return tuple(f"{what}{area_m2 / HECTARE_M2:.2f} ha" for what, area_m2 in areas.items())

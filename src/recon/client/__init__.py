@@ -39,6 +39,9 @@ from recon.client.site import SiteCommands, SiteDrawing, SiteFeature, SiteVehicl
 from recon.client.station import FleetCommands, Station
 from recon.client.surveys import (
     DronePreview,
+    FlownDayStatus,
+    FlownRegionList,
+    FlownRegionStatus,
     SurveyCommands,
     SurveyLight,
     SurveyPreview,

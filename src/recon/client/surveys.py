@@ -1,6 +1,7 @@
 """Commands to surveys, and their status."""
 
 from collections.abc import Callable, Mapping, Sequence
+from datetime import date
 from typing import TYPE_CHECKING, Any, Literal
 from urllib.parse import quote
 
@@ -81,12 +82,55 @@ class SurveyStatus(msgspec.Struct, frozen=True):
     light: SurveyLight | None
     height_above_takeoff_m: float | None
     height_above_ground_m: float | None
+    rows_note: str
+    """Whose rows these are, or why they are new; may be empty."""
+    rest_since_unix_s: int | None
+    """Cells imaged from then on are left out; None: all are flown."""
     round: int
     missions: int
     flown_m: float
     rows: int
     vehicles: tuple[SurveyVehicle, ...]
     figures: SurveyProgress | None
+
+
+class FlownDayStatus(msgspec.Struct, frozen=True):
+    """The area of a region that was imaged last on a day, and last in sun."""
+
+    day: date
+    imaged_m2: float
+    in_sun_m2: float
+
+
+class FlownRegionStatus(msgspec.Struct, frozen=True):
+    """A region that was surveyed in one way, on any day; `left_m2` since it was begun.
+
+    `changes` are what differs now; with a `refusal` it cannot be flown again.
+    """
+
+    id: str
+    region: str
+    is_simulated: bool
+    planner: str
+    height_above_takeoff_m: float | None
+    height_above_ground_m: float | None
+    row_spacing_m: float
+    row_bearing_deg: float
+    begun_unix_s: int
+    started_unix_s: int
+    reached_m2: float
+    left_m2: float
+    days: tuple[FlownDayStatus, ...]
+    changes: tuple[str, ...]
+    refusal: str | None
+
+
+class FlownRegionList(msgspec.Struct, frozen=True):
+    """The regions that were surveyed, the one flown last first; `today` is the station's day."""
+
+    today: date
+    regions: tuple[FlownRegionStatus, ...]
+    unreadable: tuple[str, ...]
 
 
 class DronePreview(msgspec.Struct, frozen=True):
@@ -173,6 +217,22 @@ class SurveyCommands:
             **more,
         }
         return await self._post("/api/surveys", request)
+
+    async def flown_regions(self) -> FlownRegionList:
+        """Return the regions that were surveyed, in this run of the station or an earlier one."""
+        return await self._http.get("/api/flown-regions", FlownRegionList, "the flown regions")
+
+    async def again(
+        self, region_id: str, *, since: date | None = None, all_again: bool = False
+    ) -> SurveyStatus | Refusal:
+        """Plan what is left of a flown region, on its rows. Nothing moves.
+
+        Cells imaged since it was begun are left out, or those imaged from the day `since` on; none
+        with `all_again`.
+        """
+        day = None if since is None else since.isoformat()
+        request = {"id": region_id, "since": day, "all_again": all_again}
+        return await self._post("/api/surveys/again", request)
 
     async def start(
         self, survey_id: int, serials: Sequence[str], *, takeoff: bool = False

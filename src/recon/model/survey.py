@@ -7,6 +7,7 @@ from math import nan, radians, tan
 from types import MappingProxyType
 
 from recon.model.airspace import Region
+from recon.model.flown_before import FlownCells, KeptLattice
 from recon.model.geo import LatLon
 from recon.model.mission import Mission
 
@@ -61,6 +62,16 @@ class WhenDone(Enum):
     """Hover until commanded otherwise."""
 
 
+class RowChoice(Enum):
+    """Which rows a survey of a region gets that has been surveyed before."""
+
+    AUTO = "auto"
+    """Those of the last survey if nothing differs, else new ones."""
+    AS_BEFORE = "as_before"
+    """Those of the last survey, whatever differs."""
+    NEW = "new"
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Survey:
     """A survey request; `region` is in east-north metres of the site's local frame.
@@ -99,6 +110,14 @@ class Survey:
     spare_serial: str | None = None
     """The imaging drone that relieves it then; it takes off if the start allowed takeoff."""
     height_above_ground_m: float | None = None
+    region_name: str | None = None
+    """The site's name of the region; None for a drawn one, of which nothing is kept."""
+    lattice: KeptLattice | None = None
+    """The rows of an earlier survey, to be flown again; None: new ones."""
+    flown: FlownCells | None = None
+    """The cells that an earlier survey has imaged and this one leaves out; None: all are flown."""
+    rows_note: str = ""
+    """Whose rows these are, or why they are new, for operators."""
 
     @property
     def height_m(self) -> float:

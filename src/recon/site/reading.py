@@ -100,6 +100,8 @@ def refuse_non_finite(place: object, value: object, key: str) -> None:
 MAX_DIGESTED_FILES = 200
 HISTORY_FOLDER = "history"
 """Earlier versions of the layers, beside the site's files."""
+FLOWN_FOLDER = "flown"
+"""Rows and imaged cells of surveyed regions; without a site's folder, beside the audit."""
 MAPS_FOLDER = "maps"
 """Base maps: large, only shown, and read by `basemap/`."""
 MAX_DIGESTED_BYTES = 256 * 1024 * 1024
@@ -111,8 +113,8 @@ def site_digest(folder: Path) -> str:
 
     The audit records it: which boundary, zones and profiles a flight used.
 
-    Files over 256 MiB or beyond the first 200, and unreadable ones, count by name and size. Earlier
-    versions, in `history/`, base maps, in `maps/`, and hidden files are excluded.
+    Files over 256 MiB or beyond the first 200, and unreadable ones, count by name and size. What is
+    in `history/`, `maps/` and `flown/` is excluded, as are hidden files.
     """
     total = sha256()
     for number, path in enumerate(sorted(p for p in folder.rglob("*") if _is_in_use(folder, p))):
@@ -124,7 +126,7 @@ def site_digest(folder: Path) -> str:
 
 def _is_in_use(folder: Path, path: Path) -> bool:
     top = path.relative_to(folder).parts[0]
-    is_other = top in (HISTORY_FOLDER, MAPS_FOLDER) or top.startswith(".")
+    is_other = top in (HISTORY_FOLDER, MAPS_FOLDER, FLOWN_FOLDER) or top.startswith(".")
     return path.is_file() and not is_other
 
 

@@ -9,7 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from recon.guidance.survey import SurveyPlan, plan_survey
+from recon.guidance.survey.again import kept_lattice
 from recon.model.airspace import Region
+from recon.model.flown_region import FlownRegion
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.survey import Survey, SurveyBudget, SurveyCamera
 
@@ -18,6 +20,8 @@ BoolArray = npt.NDArray[np.bool_]
 
 FRAME = LocalFrame(GeoPoint(44.99, -93.2, 250.0))
 HEIGHT_M = 60.0
+FLOWN_S = 1_777_600_000
+"""When a flown region was imaged, in May 2026."""
 
 
 def region(*rings: Sequence[tuple[float, float]]) -> Region:
@@ -133,3 +137,22 @@ def _crossings(ring: FloatArray, points_m: FloatArray) -> npt.NDArray[np.int64]:
         east_m = a[0] + (points_m[:, 1] - a[1]) * (b[0] - a[0]) / (b[1] - a[1])
         crossed += spans & (points_m[:, 0] < east_m)
     return crossed
+
+
+def flown(plan: SurveyPlan, imaged: BoolArray | None = None) -> FlownRegion:
+    """What is kept of a survey that has imaged these cells in sun, by default all."""
+    shape = plan.cells.is_reached.shape
+    times_s = np.where(np.ones(shape, bool) if imaged is None else imaged, FLOWN_S, 0)
+    times_s = times_s.astype(np.uint32)
+    return FlownRegion(
+        survey=plan.survey,
+        lattice=kept_lattice(plan.lattice),
+        grid=plan.cells.grid,
+        is_reached=plan.cells.is_reached,
+        is_light_known=times_s > 0,
+        imaged_s=times_s,
+        in_sun_s=times_s,
+        begun_s=FLOWN_S - 60,
+        started_s=FLOWN_S,
+        is_simulated=False,
+    )

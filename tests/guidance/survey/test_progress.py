@@ -59,7 +59,7 @@ def row_flown(speed_mps: float = 8.0, hz: float = 1.0, **changes: float) -> list
 def counted(
     seen: list[PositionSample], *shade: ShadeMap, plan: SurveyPlan = PLAN
 ) -> CoverageProgress:
-    progress = first_progress(plan.cells)
+    progress = first_progress(plan)
     for each in shade:
         progress = with_shade(progress, each, plan)
     return count_settled(with_positions(progress, "A", seen, plan), plan, LATE_NS)
@@ -107,7 +107,7 @@ class TestImaged:
 
     def test_counting_bit_by_bit_is_counting_at_once(self) -> None:
         seen = row_flown(hz=2.0)
-        progress = first_progress(PLAN.cells)
+        progress = first_progress(PLAN)
         for each in seen:
             progress = with_positions(progress, "A", [each], PLAN)
             progress = count_settled(progress, PLAN, each.at_ns + seconds_to_ns(1.3))
@@ -153,7 +153,7 @@ class TestImaged:
         """When the buffer overflows the oldest are dropped, and the path to the next is unknown."""
         plan = replace(PLAN, settings=replace(PLAN.settings, positions_kept=4))
         seen = row_flown()
-        progress = with_positions(first_progress(plan.cells), "A", seen[:15], plan)
+        progress = with_positions(first_progress(plan), "A", seen[:15], plan)
         progress = count_settled(progress, plan, LATE_NS)
         few = count_settled(with_positions(progress, "A", seen[15:], plan), plan, LATE_NS)
         alone = [seen[11:15], seen[-4:]]
@@ -170,14 +170,14 @@ class TestImaged:
         assert np.array_equal(imaged(counted(bursts)), imaged(counted(seen[9::10])))
 
     def test_a_position_waits_for_the_shade_of_its_time(self) -> None:
-        progress = with_positions(first_progress(PLAN.cells), "A", row_flown(), PLAN)
+        progress = with_positions(first_progress(PLAN), "A", row_flown(), PLAN)
         assert count_settled(progress, PLAN, seconds_to_ns(13.5)) is progress
         later = count_settled(progress, PLAN, seconds_to_ns(30.0))
         assert 0 < imaged(later).sum() < imaged(count_settled(later, PLAN, LATE_NS)).sum()
 
     def test_what_waits_is_bounded(self) -> None:
         many = [PositionSample(seconds_to_ns(i), 1.0 * i, 0.0, 60.0) for i in range(3_000)]
-        progress = with_positions(first_progress(PLAN.cells), "A", many, PLAN)
+        progress = with_positions(first_progress(PLAN), "A", many, PLAN)
         assert len(progress.waiting["A"]) == PLAN.settings.positions_kept
         for second in range(100):
             progress = with_shade(progress, shade(float(second)), PLAN)
@@ -323,7 +323,7 @@ class TestGroundOutOfView:
 
     def missing_after(self, *maps: ShadeMap) -> BoolArray:
         progress = count_settled(
-            with_positions(first_progress(PLAN.cells), "A", row_flown(), PLAN), PLAN, LATE_NS
+            with_positions(first_progress(PLAN), "A", row_flown(), PLAN), PLAN, LATE_NS
         )
         for each in maps:
             progress = with_shade(progress, each, PLAN)
@@ -410,7 +410,7 @@ class TestFigures:
         assert observe(created, "A", row_flown()) is created
 
     def test_the_moment_of_95_percent_is_that_of_the_position(self) -> None:
-        progress = first_progress(PLAN.cells)
+        progress = first_progress(PLAN)
         rows = [
             float(PLAN.lattice.east_north_m([(0.0, PLAN.lattice.row_across_m(row))])[0, 1])
             for row in range(PLAN.lattice.rows)

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from recon.record.files import snapshot_file
 from recon.record.files.snapshot_file import (
     CURRENT,
-    MAX_BYTES,
     PREVIOUS,
+    SNAPSHOT,
     TEMPORARY,
     read_snapshot,
     write_snapshot,
@@ -172,7 +172,7 @@ def header(**changes: object) -> bytes:
     [
         (header(version=3), "format version 3; this station reads versions 1 to 2"),
         (header(format="recon-audit"), "not a recovery snapshot"),
-        (header(bytes=MAX_BYTES + 1), "the header announces 33554433"),
+        (header(bytes=SNAPSHOT.max_bytes + 1), "the header announces 33554433"),
         (header(bytes=-1), "header is damaged"),
         (header(bytes=10**400), "header is damaged"),
         (header(), "checksum does not match"),
@@ -225,5 +225,5 @@ def test_a_folder_or_a_pipe_in_its_place_is_a_trouble(tmp_path: Path) -> None:
 def test_a_payload_over_the_limit_is_an_error_before_anything_is_written(tmp_path: Path) -> None:
     write(tmp_path, OLD)
     with pytest.raises(OSError, match="up to 33554432 bytes"):
-        write(tmp_path, bytes(MAX_BYTES + 1))
+        write(tmp_path, bytes(SNAPSHOT.max_bytes + 1))
     assert read(tmp_path) == (OLD, ())

@@ -1,5 +1,6 @@
 """Survey requests and their state."""
 
+from datetime import date
 from typing import Annotated, Literal
 
 from pydantic import Field
@@ -91,8 +92,68 @@ class SurveyRequest(StrictMessage):
         default=None,
         description="the imaging drone that relieves it then, and takes off if the start allows",
     )
+    rows: Literal["auto", "as_before", "new"] = Field(
+        default="auto",
+        description="auto: a region's rows of last time if its outline, height, camera and overlap "
+        "are the same; as_before: those, whatever differs",
+    )
     camera: SurveyCameraRequest = SurveyCameraRequest()
     budget: SurveyBudgetRequest = SurveyBudgetRequest()
+
+
+Day = Annotated[date, Field(strict=False, ge=date(1970, 1, 2), le=date(2105, 12, 31))]
+"""A day as text, `2026-05-01`; times of cells are kept for this long."""
+
+
+class SurveyAgainRequest(StrictMessage):
+    """A survey to plan as a flown one was, on its rows. Nothing flies yet."""
+
+    id: Annotated[str, Field(max_length=40)] = Field(description="of `/api/flown-regions`")
+    since: Day | None = Field(
+        default=None,
+        description="cells imaged from this day on, by the station's calendar, are left out; null: "
+        "those imaged since the survey was begun",
+    )
+    all_again: bool = Field(default=False, description="no cell is left out")
+
+
+class FlownDayView(Message):
+    """The area of a region that was imaged last on a day, by the station's calendar."""
+
+    day: date
+    imaged_m2: float
+    in_sun_m2: float = Field(description="imaged last in sun on this day")
+
+
+class FlownRegionView(Message):
+    """A region that was surveyed in one way, on any day; kept through restarts."""
+
+    id: str
+    region: str
+    is_simulated: bool = Field(description="simulated drones flew it")
+    planner: str
+    height_above_takeoff_m: float | None
+    height_above_ground_m: float | None
+    speed_mps: float
+    camera_across_deg: float
+    camera_along_deg: float
+    row_spacing_m: float
+    row_bearing_deg: float
+    begun_unix_s: int = Field(description="when the survey was begun that can be resumed")
+    started_unix_s: int = Field(description="when it was last started")
+    reached_m2: float
+    left_m2: float = Field(description="not imaged as its planner wants since it was begun")
+    days: list[FlownDayView] = Field(description="the newest first")
+    changes: list[str] = Field(description="what differs now, in words: outline, origin")
+    refusal: str | None = Field(description="why it cannot be flown again; null: it can")
+
+
+class FlownRegionsView(Message):
+    """The regions that were surveyed, the one flown last first."""
+
+    today: date = Field(description="by the station's calendar")
+    regions: list[FlownRegionView]
+    unreadable: list[str] = Field(description="a sentence for each kept file that is not used")
 
 
 class SurveyStartRequest(GivenRequest):
@@ -201,6 +262,10 @@ class SurveyView(Message):
     height_above_takeoff_m: float | None = Field(description="null: it is above ground")
     height_above_ground_m: float | None = Field(description="null: it is above takeoff")
     speed_mps: float
+    rows_note: str = Field(description="whose rows these are, or why they are new; may be empty")
+    rest_since_unix_s: int | None = Field(
+        description="cells imaged from then on are left out; null: all are flown"
+    )
     round: int
     missions: int
     flown_m: float
@@ -260,6 +325,7 @@ class SurveyEstimateView(Message):
     photos_in_all: int | None = Field(description="by a timer that runs from takeoff to landing")
     batteries: int | None
     drones: list[DroneEstimateView]
+    rows_note: str = Field(description="whose rows these are, or why they are new; may be empty")
     warnings: list[str]
 
 

@@ -13,6 +13,7 @@ from recon.guidance.survey.imaging import SpeedLimit, blur_px
 from recon.guidance.survey.lattice import EastNorth
 from recon.guidance.survey.missions import Track, flight_time_s
 from recon.guidance.survey.plan import RULE, SurveyPlan
+from recon.guidance.survey.progress import first_pieces
 from recon.guidance.survey.rounds import longest_mission, shares
 from recon.guidance.survey.route import Route
 from recon.guidance.survey.state import Surveyor
@@ -113,7 +114,7 @@ def estimate(
     Each begins with the battery that is in it, a full one where that is unknown. A refusal names
     the row that no battery lasts for.
     """
-    given = shares(plan, plan.pieces, surveyors)
+    given = shares(plan, first_pieces(plan), surveyors)
     drones: list[DroneEstimate] = []
     for surveyor in surveyors:
         if surveyor.serial not in given:
@@ -154,6 +155,8 @@ class PlanFigures:
     photos: int | None
     photos_in_all: int | None
     batteries: int | None
+    rows_note: str
+    """Whose rows these are, or why they are new; may be empty."""
     warnings: list[str]
 
 
@@ -175,6 +178,7 @@ def plan_figures(
         least_height_above_ground_m=min((low for low, _ in above_m), default=None),
         most_height_above_ground_m=max((high for _, high in above_m), default=None),
         rows=plan.row_count,
+        rows_note=survey.rows_note,
         gsd_m=survey.camera.gsd_m(height_m),
         blur_px=blur_px(survey.camera, height_m, survey.speed_mps, exposure_s),
         speed_limit_mps=limit.speed_mps,

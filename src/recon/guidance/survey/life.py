@@ -48,12 +48,18 @@ from recon.guidance.survey.state import (
     Refused,
     Surveyor,
     SurveyState,
+    is_enough,
 )
 from recon.guidance.survey.vehicle_choice import named
 from recon.model.command import Refusal
 from recon.model.shade import ShadeMap
-from recon.model.survey import SurveyPhase
+from recon.model.survey import PLANNER_GOALS, SurveyPhase
 from recon.model.units import seconds_to_ns
+
+NOTHING_LEFT = (
+    "nothing is left to fly: all reachable ground has been imaged since then; choose a later day, "
+    "or fly all of it again"
+)
 
 PAUSED_BY_COMMAND = "paused"
 """The reason of a pause that was commanded; any other is why a survey has paused automatically."""
@@ -65,7 +71,10 @@ def create(plan: SurveyPlan) -> SurveyState | Refusal:
     if name not in PLANNERS:
         known = " or ".join(PLANNERS)
         return Refusal(RULE, f"Unknown planner {name}: choose {known}")
-    return SurveyState(plan, first_progress(plan.cells))
+    state = SurveyState(plan, first_progress(plan))
+    if plan.survey.flown is not None and is_enough(state, PLANNER_GOALS[name]):
+        return Refusal(RULE, NOTHING_LEFT)
+    return state
 
 
 def start(state: SurveyState, serials: Sequence[str], now_ns: int) -> SurveyState | Refusal:

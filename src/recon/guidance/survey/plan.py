@@ -14,7 +14,14 @@ from recon.guidance.survey.lattice import EastNorth, RowLattice, Swath, swath_of
 from recon.guidance.survey.missions import Track, track_of
 from recon.guidance.survey.region_paths import RegionPaths
 from recon.guidance.survey.route import Route, RowLeg
-from recon.guidance.survey.rows import Piece, best_bearing_deg, lattice_over, row_pieces
+from recon.guidance.survey.rows import (
+    MOST_ROWS,
+    Piece,
+    best_bearing_deg,
+    lattice_again,
+    lattice_over,
+    row_pieces,
+)
 from recon.guidance.survey.settings import DEFAULT, SurveySettings
 from recon.guidance.survey.terrain import Terrain, ground_range_m, terrain_over
 from recon.model.airspace import Airspace, ElevationModel, FlightLimits, Region, ZoneKind
@@ -30,10 +37,6 @@ MOST_CELLS = 4_000_000
 
 SLOWEST_MPS = 0.5
 """Slowest speed along rows: a survey this slow takes all day."""
-
-MOST_ROWS = 2_000
-"""More rows than this come from a wrong height or region."""
-
 
 HEIGHT_FAULT = (
     "give one height: either height_above_takeoff_m, above each vehicle's takeoff point, or "
@@ -266,7 +269,9 @@ def plan_survey(
     if fault is not None:
         return Refusal(RULE, fault)
     area, swath = shape_of(survey.region), swath_of(survey, settings)
-    lattice = lattice_over(area, row_bearing_deg(survey), swath, settings)
+    lattice = _lattice(survey, area, swath, settings)
+    if isinstance(lattice, str):
+        return Refusal(RULE, lattice)
     flyable = shapely.buffer(area, row_reach_m(lattice, swath) + settings.kept_off_m)
     if surroundings is not None:
         flyable = _without_closed(flyable, surroundings, settings)
@@ -310,8 +315,19 @@ def _stops_per_m(plan: SurveyPlan, terrain: Terrain) -> float:
     return stops / max(rows_m, 1.0)
 
 
+def _lattice(
+    survey: Survey, area: shapely.Geometry, swath: Swath, settings: SurveySettings
+) -> RowLattice | str:
+    """The rows of an earlier survey if it has them, else the best ones; a text: they do not fit."""
+    if survey.lattice is not None:
+        return lattice_again(survey.lattice, area, swath, settings)
+    return lattice_over(area, row_bearing_deg(survey), swath, settings)
+
+
 def row_bearing_deg(survey: Survey) -> float:
     """Return the bearing of the rows, 0 to 180, of a survey without a `survey_fault`."""
+    if survey.lattice is not None:
+        return survey.lattice.bearing_deg
     bearing_deg = survey.row_bearing_deg
     if bearing_deg is None:
         swath = swath_of(survey, DEFAULT)

@@ -23,16 +23,17 @@ from types import MappingProxyType
 import numpy as np
 import numpy.typing as npt
 
-from recon.guidance.survey.cells import CoverageCells
+from recon.geo.grid_cells import nearest_cells
 from recon.guidance.survey.plan import SurveyPlan
+from recon.guidance.survey.rows import Piece
 from recon.guidance.survey.settings import SurveySettings
 from recon.guidance.survey.view import Crossing, Window, crossing, nearest_map, sunlit_cells
 from recon.model.arrays import BoolArray, IntArray
+from recon.model.flown_before import StateArray
 from recon.model.shade import ShadeMap
-from recon.model.survey import CellState, Survey
+from recon.model.survey import PLANNER_GOALS, CellState, Survey
 from recon.model.units import ns_to_seconds, seconds_to_ns
 
-StateArray = npt.NDArray[np.uint8]
 ShareArray = npt.NDArray[np.float32]
 NEVER = -1
 
@@ -108,12 +109,26 @@ class CoverageProgress:
     in_sun_95_at_ns: int | None = None
 
 
-def first_progress(cells: CoverageCells) -> CoverageProgress:
-    """Return the progress of a survey that has not begun."""
+def first_progress(plan: SurveyPlan) -> CoverageProgress:
+    """Return the progress of a survey that has not begun: what it is to leave out counts."""
+    cells, flown = plan.cells, plan.survey.flown
     shape = (cells.grid.rows, cells.grid.cols)
     state = np.full(shape, CellState.NOT_YET, dtype=np.uint8)
-    seen = LightShown(np.ones(shape, dtype=np.float32))
-    return CoverageProgress(state, np.zeros(shape, dtype=np.bool_), seen)
+    is_known = np.zeros(shape, dtype=np.bool_)
+    if flown is not None and flown.grid.frame == cells.grid.frame:
+        rows, cols, is_on = nearest_cells(flown.grid, cells.grid)
+        is_on = is_on & cells.is_inside
+        state[is_on] = flown.state[rows, cols][is_on]
+        is_known[is_on] = flown.is_light_known[rows, cols][is_on]
+    return CoverageProgress(state, is_known, LightShown(np.ones(shape, dtype=np.float32)))
+
+
+def first_pieces(plan: SurveyPlan) -> tuple[Piece, ...]:
+    """Return what of the rows is flown first: all of them, or what an earlier survey has left."""
+    if plan.survey.flown is None:
+        return plan.pieces
+    wanted = PLANNER_GOALS[plan.survey.planner]
+    return plan.pieces_over(missing_cells(first_progress(plan), plan, wanted))
 
 
 def missing_cells(progress: CoverageProgress, plan: SurveyPlan, wanted: CellState) -> BoolArray:

@@ -7,7 +7,7 @@ farther from the region than `Piece`s say: half the spacing across, and the lead
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from math import ceil
+from math import ceil, floor
 
 import numpy as np
 import numpy.typing as npt
@@ -16,9 +16,16 @@ import shapely  # type: ignore[import-untyped, unused-ignore]
 from recon.guidance.survey.lattice import RowLattice, Swath, axes
 from recon.guidance.survey.settings import SurveySettings
 from recon.model.arrays import FloatArray
+from recon.model.flown_before import KeptLattice
 
 Span = tuple[float, float]
 ROUNDING_M = 1e-6
+
+MOST_ROWS = 2_000
+"""More rows than this come from a wrong height or region."""
+
+OUTLINE_SLACK_M = 0.05
+"""An outline that is read again from a file is off by the rounding of its coordinates."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +58,36 @@ def lattice_over(
     photos = max(1, ceil(settings.least_mark_m / swath.photo_m - ROUNDING_M))
     return RowLattice(
         bearing_deg, south + spacing_m / 2.0, spacing_m, count, west, photos * swath.photo_m
+    )
+
+
+def lattice_again(
+    kept: KeptLattice, area: shapely.Geometry, swath: Swath, settings: SurveySettings
+) -> RowLattice | str:
+    """Return the lattice of an earlier survey over an area, or why it does not fit.
+
+    Each row lies where it lay; if the area has grown there are more of them. Marks are of the
+    present distance between photos.
+    """
+    if kept.spacing_m > swath.widest_spacing_m + ROUNDING_M:
+        return (
+            f"the rows of the earlier survey are {kept.spacing_m:.1f} m apart, and this height and "
+            f"side overlap need {swath.widest_spacing_m:.1f} m: choose those of then, or new rows"
+        )
+    fresh = lattice_over(area, kept.bearing_deg, swath, settings)
+    edge_m = kept.first_row_m - kept.spacing_m / 2.0
+    _west, south, _east, north = turned(area, kept.bearing_deg).bounds
+    if (north - south) / kept.spacing_m > MOST_ROWS:
+        return f"rows {kept.spacing_m:.2g} m apart are more than {MOST_ROWS}: choose new rows"
+    first = floor((south - edge_m + OUTLINE_SLACK_M) / kept.spacing_m)
+    end = max(first + 1, ceil((north - edge_m - OUTLINE_SLACK_M) / kept.spacing_m))
+    return RowLattice(
+        kept.bearing_deg,
+        kept.first_row_m + first * kept.spacing_m,
+        kept.spacing_m,
+        end - first,
+        kept.first_mark_m,
+        fresh.mark_m,
     )
 
 

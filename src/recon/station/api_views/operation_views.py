@@ -59,6 +59,8 @@ def survey_view(station: Station, record: SurveyRecord, now_ns: int) -> schema.S
         height_above_takeoff_m=survey.height_above_takeoff_m,
         height_above_ground_m=survey.height_above_ground_m,
         speed_mps=survey.speed_mps,
+        rows_note=survey.rows_note,
+        rest_since_unix_s=None if survey.flown is None else survey.flown.since_s,
         round=0 if state is None else state.round,
         missions=0 if state is None else state.missions,
         flown_m=0.0 if state is None else state.flown_m,

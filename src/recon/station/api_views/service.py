@@ -24,6 +24,7 @@ from recon.station.api_views.state_view import DriverState, state_view
 from recon.station.api_views.survey_service import SurveyService
 from recon.station.api_views.vehicle_numbers import VehicleNumbers
 from recon.station.imaging.mosaic import mosaic, newest_images
+from recon.station.recovery.flown_regions import FlownRegions
 
 
 @dataclass(slots=True)
@@ -46,6 +47,7 @@ class Service:
     replay: Callable[[], schema.ReplayView | None] = lambda: None
     """Position of a replay; None on a live station."""
     numbers: VehicleNumbers = field(default_factory=VehicleNumbers)
+    flown: FlownRegions = field(default_factory=FlownRegions)
     drawing: SiteService = field(init=False)
     """The layers in the site's folder."""
     site_vehicles: SiteVehiclesService = field(init=False)
@@ -98,7 +100,7 @@ class Service:
     @property
     def surveys(self) -> SurveyService:
         """The surveys of this run."""
-        return SurveyService(self.driver, self.site, self._ids)
+        return SurveyService(self.driver, self.site, self._ids, self.flown)
 
     def commanded(self, event: Event, refusal: Refusal | None) -> schema.ActionResponse:
         """Handle an operator command, unless it is refused."""

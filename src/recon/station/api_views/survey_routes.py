@@ -46,6 +46,14 @@ def _add_commands(app: FastAPI, service: Service) -> None:
             return answer
         return _planned(await _until_planned(service, answer.survey))
 
+    @app.post("/api/surveys/again")
+    async def again(asked: schema.SurveyAgainRequest, request: Request) -> schema.SurveyResponse:
+        """Plan a survey of a flown region on its rows: what is left, or all. Nothing flies."""
+        answer = service.surveys.again(asked, person_of(request))
+        if answer.survey is None:
+            return answer
+        return _planned(await _until_planned(service, answer.survey))
+
     estimating = asyncio.Lock()
 
     @app.post("/api/surveys/estimate", responses=NOT_HELD)
@@ -110,6 +118,11 @@ def _add_views(app: FastAPI, service: Service) -> None:
         return await asyncio.to_thread(
             found(work, "" if work is not None else _no_rows(service, survey_id))
         )
+
+    @app.get("/api/flown-regions")
+    async def flown_regions() -> schema.FlownRegionsView:
+        """The regions that were surveyed on any day: when each was imaged, and what is left."""
+        return await asyncio.to_thread(service.surveys.flown_regions)
 
     @app.get("/api/cameras")
     async def cameras() -> list[schema.SurveyCameraView]:

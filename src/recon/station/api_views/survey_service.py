@@ -1,29 +1,33 @@
 """The surveys of a running station: requests become events, states become views."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
 
 from recon.api import schema
 from recon.guidance.survey import plan_survey, surroundings_of
+from recon.guidance.survey.again import with_rows
 from recon.guidance.survey.plan import HEIGHT_FAULT, RULE
 from recon.model.airspace import Region
 from recon.model.command import Refusal
 from recon.model.errors import SiteError
 from recon.model.event import SurveyRequested, SurveyStarted, SurveyStopped
 from recon.model.person import Person
-from recon.model.survey import Survey, SurveyBudget, SurveyCamera, WhenDone
+from recon.model.survey import RowChoice, Survey, SurveyBudget, SurveyCamera, WhenDone
 from recon.model.survey_camera import CAMERAS, CameraModel, SurveyCameraError, camera_named
+from recon.record.files.flown_region_file import day_of
 from recon.site import Site
 from recon.site.geojson import Feature, regions_of
 from recon.station.api_views import RunningStation, outcome_of
+from recon.station.api_views.flown_region_views import flown_regions_view, survey_again
 from recon.station.api_views.operation_views import cells_number, survey_paths, survey_view
 from recon.station.api_views.survey_exports import SurveyExports
 from recon.station.api_views.survey_preview import Preview, previewed_fleet, survey_preview
 from recon.station.operations.survey.commands import start_refusal, stop_refusal
 from recon.station.operations.survey.planning import NO_SITE
+from recon.station.recovery.flown_regions import FlownRegions
 
 DraftPreview = Callable[[], schema.SurveyEstimateView | Refusal]
 """Plans rows and estimates them; safe on any thread, some tens of milliseconds."""
@@ -47,14 +51,12 @@ class SurveyService:
     driver: RunningStation
     site: Site
     ids: Callable[[], int]
+    flown: FlownRegions = field(default_factory=FlownRegions)
+    """What is kept of earlier surveys."""
 
     def ask(self, asked: schema.SurveyRequest, by: Person) -> schema.SurveyResponse:
         """Request a survey; an invalid region is refused at once."""
-        survey = self._drafted(asked, self.ids)
-        if isinstance(survey, Refusal):
-            return _refused(survey)
-        self.driver.handle(SurveyRequested(survey, by.label))
-        return self._taken(survey.id)
+        return self._request(self._drafted(asked, self.ids), by)
 
     def draft_preview(
         self, asked: schema.SurveyRequest, serials: Sequence[str]
@@ -90,7 +92,26 @@ class SurveyService:
             return Refusal(RULE, str(problem))
         # Without an imaging drone no shade is known, and all that can be done is flying rows once.
         planner = asked.planner or ("sunlit_first" if imagers else "lawnmower_once")
-        return _survey(ids(), asked, region, camera, planner)
+        return self._with_rows(_survey(ids(), asked, region, camera, planner), asked.rows)
+
+    def again(self, asked: schema.SurveyAgainRequest, by: Person) -> schema.SurveyResponse:
+        """Request a survey of a flown region, or of what is left of it. Nothing flies yet."""
+        return self._request(survey_again(asked, self.ids(), self.flown, self.site), by)
+
+    def flown_regions(self) -> schema.FlownRegionsView:
+        """Return the regions that were surveyed; safe on any thread."""
+        return flown_regions_view(self.flown, self.site, self.driver.now_ns())
+
+    def _with_rows(self, survey: Survey, rows: str) -> Survey | Refusal:
+        if self.site.frame is None:
+            return survey
+        return with_rows(survey, self.site.frame, self.flown.all, RowChoice(rows), day_of)
+
+    def _request(self, survey: Survey | Refusal, by: Person) -> schema.SurveyResponse:
+        if isinstance(survey, Refusal):
+            return _refused(survey)
+        self.driver.handle(SurveyRequested(survey, by.label))
+        return self._taken(survey.id)
 
     def start(
         self, survey_id: int, asked: schema.SurveyStartRequest, by: Person
@@ -214,6 +235,7 @@ def _survey(
         region=region,
         height_above_takeoff_m=asked.height_above_takeoff_m,
         height_above_ground_m=asked.height_above_ground_m,
+        region_name=asked.region,
         speed_mps=asked.speed_mps,
         camera=camera,
         front_overlap=asked.front_overlap,

@@ -12,7 +12,7 @@ from recon.model.errors import RecordError
 from recon.model.event import RecordFailed
 from recon.record.mcap.record_process import IS_SUPPORTED
 from recon.site import own_folder
-from recon.site.reading import site_digest
+from recon.site.reading import FLOWN_FOLDER, site_digest
 from recon.site.vehicle_numbers import NUMBERS_FILE, numbers_text, read_numbers
 from recon.station.api_views.service import Service
 from recon.station.api_views.vehicle_numbers import VehicleNumbers
@@ -44,6 +44,7 @@ from recon.station.kernel.build import first_state
 from recon.station.kernel.driver import AsyncioDriver, station_clock
 from recon.station.kernel.worker import JobRunner, ThreadWorker
 from recon.station.recording.recording import Recorder, record_process
+from recon.station.recovery.flown_regions import FlownRegions
 from recon.station.recovery.restart import LastRun, restart_entries, restored
 from recon.station.recovery.snapshot_writer import SnapshotWriter, load_last_run
 from recon.station.state.settings import StationSettings
@@ -71,15 +72,17 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
         station = restored(begins, last_run, clock())
         auditor = _start_auditor(config, begun, last_run, clock, stack)
         auditor.put(restart_entries(station))
-        driver = AsyncioDriver(station, clock, auditor.observe)
+        flown = _flown_regions(config, place, stack)
+        observe = _both(flown.observe, auditor.observe)
+        driver = AsyncioDriver(station, clock, observe)
         auditor.handle = driver.handle
         if not place.is_shared:
             last_id = last_run.first_ids[0] - 1
             snapshots = SnapshotWriter(
                 place.folder, clock, last_order_id=last_id, keep_current=is_snapshot_good
             )
-            auditor.snapshot_problem = lambda: snapshots.problem
-            driver.observe = _both(snapshots.observe, auditor.observe)
+            auditor.snapshot_problem = lambda: snapshots.problem or flown.problem
+            driver.observe = _both(snapshots.observe, observe)
             snapshots.start(station)
             stack.callback(snapshots.close)
         _write_app_list(config, driver, stack)
@@ -88,6 +91,7 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
         service.edit(config.site_folder)
         recorder = _start_record(config, driver, auditor, service, stack)
         service.numbers = kept_numbers(given, numbers_file, stack)
+        service.flown = flown
         line = _start_guard(config, driver, service, doors, place.folder, stack)
         links = await _start_links_and_worker(config, driver, service, line, recorder, stack)
         if config.is_announced:
@@ -106,6 +110,19 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
             resumed=_resumed_state(station, (*begun.troubles, *last_run.troubles)),
         )
         await serve(config, driver, service, doors, lambda: on_start(started), stack)
+
+
+def _flown_regions(config: RunConfig, place: AuditPlace, stack: AsyncExitStack) -> FlownRegions:
+    """Return what is kept of surveyed regions: with the site, else with this port's audit."""
+    folder = own_folder(config.site_folder)
+    if folder is None and not place.is_shared:
+        folder = place.folder
+    flown = FlownRegions(None if folder is None else folder / FLOWN_FOLDER)
+    for trouble in flown.troubles:
+        print_warning(trouble)
+    flown.start()
+    stack.callback(flown.close)
+    return flown
 
 
 def _numbers_file(config: RunConfig, place: AuditPlace) -> Path | None:

@@ -185,6 +185,13 @@ def _vehicle_refusal(
     name = vehicle.display_name
     if station.is_stopped(serial):
         return Refusal(STOP_RULE, f"{name} is held by an all stop; release its stop first")
+    flown = record.survey.flown
+    if flown is not None and flown.is_simulated and not vehicle.is_simulated:
+        text = (
+            f"{name} is a real drone, and the rest of {record.survey.name} is what simulated ones "
+            "have left: plan all of it for real drones"
+        )
+        return Refusal(RULE, text)
     if serial in station.imaging.imagers:
         return Refusal(RULE, f"{name} is an imaging drone and cannot join a survey")
     other = station.surveys.running_with(serial)
