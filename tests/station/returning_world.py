@@ -145,13 +145,14 @@ def returning_world(
     elevation: ElevationModel | None = None,
     imagers: Mapping[str, ImagerSetup] = NO_IMAGERS,
     hover_on_ground: HoverOnGround = HoverOnGround.NOTHING,
+    photo_interval_s: float | None = None,
     **profile: object,
 ) -> ReturningWorld:
     """Return a fleet that hovers at (east, north, height above its pad), each with its pad.
 
     With an elevation model pads lie on its ground. Pads may be the same place for several vehicles.
     `go_home_height_m` is set in all aircraft. `profile` changes the profile of every vehicle.
-    `imagers` are the first of them.
+    `imagers` are the first of them. With a photo interval their apps report facts and photos.
     """
     others = len(places_m) - len(imagers)
     serials = [*imagers, *(f"SIM-{number}" for number in range(1, others + 1))]
@@ -173,6 +174,7 @@ def returning_world(
         hover_on_ground=hover_on_ground,
         seed=seed,
         pads=points,
+        photo_interval_s=photo_interval_s,
         faults=tuple(parse_fault(text) for text in faults),
     )
     apps = build_fleet(config, 0)

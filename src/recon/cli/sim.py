@@ -94,6 +94,7 @@ def _config(fleet: FleetOptions, running: RunningOptions) -> SimulationConfig:
         drift=FIELD_DRIFT,
         wind=_wind(fleet.wind_mps, fleet.wind_to_deg, running.seed),
         reports_mission_id=fleet.mission_ids,
+        photo_interval_s=fleet.photo_interval_s,
         faults=(*(parse_fault(text) for text in fleet.fault or ()), *script.faults),
         chances=script.chances,
         pads=pads_of(place) if is_on_pads else {},

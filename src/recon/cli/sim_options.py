@@ -97,6 +97,15 @@ class FleetOptions:
     wind_to_deg: Annotated[
         float, typer.Option(help="Direction the wind blows to, degrees clockwise from north.")
     ] = 50.0
+    photo_interval_s: Annotated[
+        float | None,
+        typer.Option(
+            min=0.5,
+            max=60.0,
+            help="Apps report facts and photos, one every so many seconds of a mission; "
+            "default: plain apps.",
+        ),
+    ] = None
     mission_ids: Annotated[
         bool,
         typer.Option(

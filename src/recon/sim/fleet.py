@@ -78,6 +78,9 @@ class SimulationConfig:
     """None: calm."""
     reports_mission_id: bool = True
     """False: the apps always report MissionID 0."""
+    photo_interval_s: float | None = None
+    """The interval of the cameras' timers, in apps that report facts and photos; None: plain apps,
+    which report neither."""
     seed: int = 0
     faults: tuple[InjectedFault, ...] = ()
     chances: tuple[RandomFault, ...] = ()
@@ -130,6 +133,7 @@ def _build_app(
             config.hover_on_ground,
             drawn_bias_m if config.altitude_bias_m is None else config.altitude_bias_m,
             config.reports_mission_id,
+            photo_interval_s=config.photo_interval_s,
         ),
         sensors=config.sensors,
         faults=(

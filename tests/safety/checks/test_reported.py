@@ -48,6 +48,12 @@ def reporting(facts: AppFacts, profile: VehicleProfile = TAKEOFF, **state: objec
             "go-home height not set",
         ),
         (
+            site_facts.camera_interval,
+            reporting(AppFacts(photo_interval_s=3.0)),
+            ATTENTION,
+            "the camera's timer is set to 3 s; site.toml states 2 s",
+        ),
+        (
             site_facts.failsafe,
             reporting(AppFacts(failsafe="go_home")),
             OK,

@@ -1,7 +1,7 @@
 """Surveys: a region cut into rows, shared among vehicles, flown in rounds, recorded cell by cell.
 
 `plan_survey` makes the rows. `create`, `start`, `pause`, `abort` and `step` are the life cycle.
-`observe` and `observe_shade` add positions and shade maps. Everything is pure.
+`observe` and `observe_shade` add positions, photos and shade maps. Everything is pure.
 """
 
 from recon.guidance.survey.closed_areas import ClosedArea
@@ -20,7 +20,7 @@ from recon.guidance.survey.life import (
 )
 from recon.guidance.survey.plan import SurveyPlan, SurveySurroundings, plan_survey, surroundings_of
 from recon.guidance.survey.planners import PLANNERS, Planner
-from recon.guidance.survey.progress import CoverageProgress, PositionSample
+from recon.guidance.survey.progress import CoverageProgress, PhotoSample, PositionSample
 from recon.guidance.survey.settings import SurveySettings
 from recon.guidance.survey.state import (
     AssignedMission,

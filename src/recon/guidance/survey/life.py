@@ -30,9 +30,11 @@ from math import dist
 from types import MappingProxyType
 
 from recon.guidance.survey.closed_areas import ClosedArea
+from recon.guidance.survey.photo_progress import count_settled_photos, with_photos
 from recon.guidance.survey.plan import RULE, SurveyPlan
 from recon.guidance.survey.planners import PLANNERS
 from recon.guidance.survey.progress import (
+    PhotoSample,
     PositionSample,
     count_settled,
     first_progress,
@@ -185,14 +187,19 @@ def _fly_on(
     return replace(state, flown_m=state.flown_m - refused.length_m + kept.unflown_m)
 
 
-def observe(state: SurveyState, serial: str, seen: Sequence[PositionSample]) -> SurveyState:
-    """Return the survey after positions of a vehicle; other vehicles change nothing.
+def observe(
+    state: SurveyState, serial: str, seen: Sequence[PositionSample | PhotoSample]
+) -> SurveyState:
+    """Return the survey after positions or photos of a vehicle; other vehicles change nothing.
 
-    Positions count while running and paused, not before the start or after the end.
+    They count while running and paused, not before the start or after the end.
     """
     if serial not in state.serials or state.phase.is_final:
         return state
-    return replace(state, progress=with_positions(state.progress, serial, seen, state.plan))
+    places = [each for each in seen if isinstance(each, PositionSample)]
+    photos = [each for each in seen if isinstance(each, PhotoSample)]
+    progress = with_positions(state.progress, serial, places, state.plan) if places else None
+    return replace(state, progress=with_photos(progress or state.progress, photos))
 
 
 def observe_shade(state: SurveyState, shade: ShadeMap) -> SurveyState:
@@ -217,6 +224,7 @@ def step(
     if state.phase not in (SurveyPhase.RUNNING, SurveyPhase.PAUSED):
         return state, ()
     progress = count_settled(state.progress, state.plan, now_ns)
+    progress = count_settled_photos(progress, state.plan, now_ns)
     state = replace(state, progress=progress, closed=tuple(closed))
     if state.phase is SurveyPhase.PAUSED:
         return state, ()

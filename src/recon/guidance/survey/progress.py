@@ -9,7 +9,8 @@ was in view, without a break, for at least that long: then a photo shows it, wha
 phase. It counts as imaged in sun when it was in view and sunlit for that long. By default only the
 row's own band counts, which is photographed from nearly above.
 
-Assumed: the timer runs, the camera looks straight down with its longer side across the course, and
+An app that reports its photos makes none of this necessary (`photo_progress`). Of the others is
+assumed: the timer runs, the camera looks straight down with its longer side across the course, and
 the vehicle flew straight between two positions a moment apart. What is flown across the rows, at
 another height, or faster than planned does not count.
 """
@@ -48,6 +49,20 @@ class PositionSample:
     height_above_takeoff_m: float
     takeoff_up_m: float | None = None
     """The height of its takeoff point, up of the site's frame; None: not known."""
+
+
+@dataclass(frozen=True, slots=True)
+class PhotoSample:
+    """A photo: where its vehicle was, in east-north metres of the site, and when."""
+
+    at_ns: int
+    east_m: float
+    north_m: float
+    height_above_takeoff_m: float
+    yaw_deg: float
+    takeoff_up_m: float | None = None
+    """The height of its takeoff point, up of the site's frame; None: not known."""
+    gimbal_pitch_deg: float | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -104,6 +119,8 @@ class CoverageProgress:
         default_factory=lambda: MappingProxyType({})
     )
     """Positions by serial whose path from the first on does not count yet."""
+    photos: tuple[PhotoSample, ...] = ()
+    """Reported photos that do not count yet."""
     in_view: Mapping[str, InView] = field(default_factory=lambda: MappingProxyType({}))
     imaged_95_at_ns: int | None = None
     in_sun_95_at_ns: int | None = None
@@ -190,12 +207,13 @@ def count_settled(progress: CoverageProgress, plan: SurveyPlan, now_ns: int) -> 
         for a, b in pairwise(waiting[serial][:number]):
             counting.path(serial, a, b)
         waiting[serial] = waiting[serial][number - 1 :]
-    return _with_95_times(
+    return with_95_times(
         replace(counting.result(), waiting=MappingProxyType(waiting)), plan, until_ns
     )
 
 
-def _with_95_times(progress: CoverageProgress, plan: SurveyPlan, at_ns: int) -> CoverageProgress:
+def with_95_times(progress: CoverageProgress, plan: SurveyPlan, at_ns: int) -> CoverageProgress:
+    """Return the progress with the moments noted at which most of it was imaged."""
     reached = plan.cells.is_reached
     states = progress.state[reached]
     enough = 0.95 * max(1, len(states))
@@ -235,7 +253,7 @@ class _Counter:
         lying = plan.lattice.along_across_m([(a.east_m, a.north_m), (b.east_m, b.north_m)])
         start, end = ((float(along), float(across)) for along, across in lying)
         moved_m = end[0] - start[0], end[1] - start[1]
-        off_m = _off_height_m(plan, (a, b))
+        off_m = off_height_m(plan, (a, b))
         if off_m is None or not is_flown_as_planned(
             plan.survey, plan.settings, (a.at_ns, b.at_ns), moved_m, off_m
         ):
@@ -276,9 +294,9 @@ class _Counter:
         )
 
 
-def _off_height_m(plan: SurveyPlan, ends: Sequence[PositionSample]) -> float | None:
-    """How far a path's ends are at most off the heights that its mission may have there; None: it
-    is not known."""
+def off_height_m(plan: SurveyPlan, ends: Sequence[PositionSample | PhotoSample]) -> float | None:
+    """Return how far places are at most off the heights that a mission may have there; None: it is
+    not known."""
     below_m, above_m = 0.0, 0.0
     if plan.terrain is not None:
         below_m, above_m = plan.settings.terrain_below_m, plan.settings.terrain_above_m

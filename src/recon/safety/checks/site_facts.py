@@ -67,6 +67,7 @@ def failsafe(vehicle: VehicleState, situation: Situation) -> Check:
     return FAILSAFE.ok(f"{_DOES[does]} when it loses its controller{_confirmed(stated)}")
 
 
+SAME_INTERVAL_S = 0.05
 SAME_IN_BOTH = "set the same in the aircraft and in site.toml, then load the site again"
 
 
@@ -74,13 +75,20 @@ def _confirmed(stated: object) -> str:
     return "" if stated is None else ", as the aircraft reports"
 
 
-def camera_interval(vehicle: VehicleState, _situation: Situation) -> Check:
-    """The camera interval is set; only photos depend on it."""
+def camera_interval(vehicle: VehicleState, situation: Situation) -> Check:
+    """The camera interval is set, and is the timer's where that is reported; only photos depend on
+    it."""
     seconds = _profile(vehicle).camera_interval_s
     if seconds is None:
         return CAMERA.attention(
             "camera interval not set",
             f"{_write(vehicle, 'camera_interval_s = SECONDS')}, if it takes survey photos",
+        )
+    stated_s = reported_facts(vehicle, situation.now_ns).photo_interval_s
+    if stated_s is not None and abs(stated_s - seconds) > SAME_INTERVAL_S:
+        return CAMERA.attention(
+            f"the camera's timer is set to {stated_s:g} s; site.toml states {seconds:g} s",
+            SAME_IN_BOTH,
         )
     return CAMERA.ok(f"a photo every {seconds:g} s, once the pilot has started the timer")
 

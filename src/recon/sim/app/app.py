@@ -48,6 +48,7 @@ from recon.sim.app.faults import (
     InjectedFault,
 )
 from recon.sim.app.link_buffers import AppInbox, AppOutbox
+from recon.sim.app.reporting import AppReporter
 from recon.sim.app.telemetry import (
     HomeAltitude,
     TelemetrySensors,
@@ -137,6 +138,8 @@ class SimulatedApp:
         random = Random(f"{settings.seed}/{settings.serial}/sensors")
         self._sensors = TelemetrySensors(home, self._altitude, settings.sensors, random)
         self._commands = CommandHandler(home, aircraft, feed, behaviour, self._altitude)
+        self.reporter = self._reporter()
+        """Its facts and photos; None: a plain app."""
         self._links: dict[int, _Link] = {}
         self._pending: deque[tuple[int, AppResponse]] = deque()
         self._start: tuple[int, MissionStart] | None = None
@@ -156,6 +159,21 @@ class SimulatedApp:
         self._next_core_ns = self._start_ns + phase_ns
         self._next_extended_ns = self._start_ns + phase_ns
 
+    def _reporter(self) -> AppReporter | None:
+        settings, interval_s = self.settings, self.settings.behaviour.photo_interval_s
+        if interval_s is None:
+            return None
+        random = Random(f"{settings.seed}/{settings.serial}/shutter")
+        return AppReporter(
+            settings.serial,
+            settings.home,
+            self.aircraft,
+            interval_s,
+            random.randrange(2**32),
+            random,
+            self._has,
+        )
+
     def inject(self, fault: InjectedFault) -> None:
         """Add a fault to those that are to happen, or have."""
         self._plan.add(fault)
@@ -169,6 +187,8 @@ class SimulatedApp:
         if self.feed is not None and link == MAIN_LINK:
             # No frames were taken while there was no link to send them on.
             self.feed.skip_to(now_ns)
+        if self.reporter is not None:
+            self.reporter.connected()
         self._send(wire.encode(wire.MessageString(type=MESSAGE_INFO, text=HELLO)), link, now_ns)
 
     def disconnected(self, link: int = MAIN_LINK) -> None:
@@ -265,6 +285,9 @@ class SimulatedApp:
             due_ns, work = self._next_core_ns, self._send_core
         if self._next_extended_ns < due_ns:
             due_ns, work = self._next_extended_ns, self._send_extended
+        reporter = self.reporter
+        if reporter is not None and reporter.next_due_ns < due_ns:
+            due_ns, work = max(reporter.next_due_ns, self._now_ns), self._send_reports
         return self._next_camera_work(due_ns, work)
 
     def _next_camera_work(
@@ -366,6 +389,12 @@ class SimulatedApp:
         reports_id = self.settings.behaviour.reports_mission_id
         packet = self._sensors.extended(self.aircraft, self.feed, serial, reports_id)
         self._broadcast(self._plan.as_frozen(packet, now_ns), now_ns)
+
+    def _send_reports(self, now_ns: int) -> None:
+        assert self.reporter is not None  # or it would not be due
+        for packet in self.reporter.texts(now_ns, bool(self._links)):
+            for link in self._links:
+                self._send(packet, link, now_ns)
 
     def _take_picture(self, feed: CameraFeed, now_ns: int) -> None:
         if self._has(FaultKind.CAMERA_STOPS, now_ns):

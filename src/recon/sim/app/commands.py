@@ -44,6 +44,9 @@ class AppBehaviour:
     """Upload time of each waypoint of a mission; the aircraft holds meanwhile."""
     start_s: float = 2.0
     """Time from a mission's upload until the aircraft flies it."""
+    photo_interval_s: float | None = None
+    """The interval of its camera's timer, in an app that reports facts and photos; None: a plain
+    app, which reports neither."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -70,6 +70,13 @@ class FaultKind(Enum):
     EXPOSURE_JUMPS = "exposure-jumps"
     """Exposure jumps from frame to frame, while active."""
 
+    PHOTO_TIMER_FAILS = "photo-timer-fails"
+    """The camera's timer takes no photo after the twentieth, while active (apps that report)."""
+    PHOTO_TIMER_SKIPS = "photo-timer-skips"
+    """The camera's timer leaves out every fifth photo, while active (apps that report)."""
+    PHOTO_TIMER_LATE = "photo-timer-late"
+    """The camera's timer starts 25 s into each mission, while active (apps that report)."""
+
     GUSTS = "gusts"
     """Gusts up to 9 m/s every 8 s on top of the wind, from a random direction, while active."""
     PILOT_TAKES = "pilot-takes"
@@ -116,6 +123,9 @@ _DEFAULT_TIMES_S: dict[FaultKind, tuple[float, float]] = {
     FaultKind.FRAMES_BLACK: (5.0, 3.0),
     FaultKind.FRAMES_TORN: (5.0, 10.0),
     FaultKind.EXPOSURE_JUMPS: (5.0, 30.0),
+    FaultKind.PHOTO_TIMER_FAILS: (0.0, inf),
+    FaultKind.PHOTO_TIMER_SKIPS: (0.0, inf),
+    FaultKind.PHOTO_TIMER_LATE: (0.0, inf),
     FaultKind.GUSTS: (5.0, 40.0),
     FaultKind.PILOT_TAKES: (5.0, inf),
     FaultKind.GNSS_LOSS: (5.0, inf),

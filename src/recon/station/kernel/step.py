@@ -9,6 +9,8 @@ from typing import Any
 
 from recon.fleet import pairing
 from recon.fleet import step as fleet_step
+from recon.fleet.app_facts import new_photos
+from recon.model.app_report import PhotosReport
 from recon.model.event import (
     AlarmAcknowledged,
     AllStopped,
@@ -121,7 +123,10 @@ def _packet(station: Station, event: PacketReceived, now_ns: int) -> Stepped:
     vehicle = station.fleet.vehicle_of_link(event.link_id)
     if vehicle is None:
         return station, outputs
-    station, more = _reported(station, vehicle, event.report, event.received_at_ns(now_ns))
+    received_at_ns = event.received_at_ns(now_ns)
+    station, more = _reported(station, vehicle, event.report, received_at_ns)
+    if isinstance(event.report, PhotosReport):
+        station = _photos(before, station, event.link_id, event.report, received_at_ns)
     if station.control(vehicle.serial).restored is not None:
         station = restart.recheck(station, vehicle.serial, now_ns)
     orders: tuple[Output, ...] = ()
@@ -129,6 +134,18 @@ def _packet(station: Station, event: PacketReceived, now_ns: int) -> Stepped:
         serials = () if vehicle.serial is None else (vehicle.serial,)
         station, orders = order_gateway.update_orders(station, now_ns, serials)
     return station, (*outputs, *more, *orders)
+
+
+def _photos(
+    before: Station, station: Station, link_id: int, report: PhotosReport, received_at_ns: int
+) -> Station:
+    """Give the operations the photos that were not known before the report."""
+    was, vehicle = before.fleet.vehicle_of_link(link_id), station.fleet.vehicle_of_link(link_id)
+    taken = () if was is None else new_photos(was, report, received_at_ns)
+    for operation in OPERATIONS:
+        if operation.on_photos is not None and vehicle is not None:
+            station = operation.on_photos(station, vehicle, taken)
+    return station
 
 
 def _reported(

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
+from recon.fleet.app_facts import TakenPhoto
 from recon.model.event import Event
 from recon.model.shade import ShadeMap
 from recon.model.vehicle import VehicleState
@@ -38,5 +39,7 @@ class Operation:
     """Entries for a step: state before, event, state after, station time in ns."""
     on_position: Callable[[Station, VehicleState, int], Station] | None = None
     """Takes core telemetry of a vehicle, up to 10 times a second for each."""
+    on_photos: Callable[[Station, VehicleState, tuple[TakenPhoto, ...]], Station] | None = None
+    """Takes the new photos that a vehicle's app reports."""
     on_shade: Callable[[Station, ShadeMap], Station] | None = None
     """Takes each new shade map."""

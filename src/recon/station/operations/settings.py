@@ -67,6 +67,10 @@ class SurveyTimes:
     shade_maps_kept: int = 16
     """Most shade maps kept between two steps: as many as a survey itself keeps."""
 
+    photo_overdue_intervals: float = 1.7
+    """No photo on a row for so many intervals of the camera is an alarm: within two, with a look
+    each half second; and a report may be late by seven tenths of one."""
+
     unsent_within_s: float = 60.0
     """A vehicle whose missions could not be sent for so long, for reasons that time ends otherwise,
     is stopped: its telemetry or link needs attention, and no takeoff comes as a surprise."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Generic, Literal, TypeVar
 
-from recon.guidance.survey import PositionSample, SurveyState
+from recon.guidance.survey import PhotoSample, PositionSample, SurveyState
 from recon.model.command import Refusal
 from recon.model.replacing import replace
 from recon.model.shade import ShadeMap
@@ -68,6 +68,21 @@ class SurveyMember:
     ordered_id: int | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class PhotoWatch:
+    """What is known of a vehicle's camera timer: whether photos come while it flies a row.
+
+    `sample` is its newest position that was looked at, `on_row_since_ns` since when it has flown
+    along a row without a break, None when it does not.
+    """
+
+    sample: PositionSample | None = None
+    on_row_since_ns: int | None = None
+    newest_photo_ns: int | None = None
+    silent_s: float | None = None
+    """How long no photo came on a row when that was too long; until the next one comes."""
+
+
 @dataclass(frozen=True, eq=False)
 class SurveyRecord:
     """One survey. `state` is None while its rows are being planned, and if it is refused.
@@ -91,13 +106,18 @@ class SurveyRecord:
     step_due_ns: int = 0
     trouble: str | None = None
     """Why the newest step failed."""
-    positions: NumberedBuffer[tuple[str, PositionSample]] = field(default_factory=NumberedBuffer)
+    positions: NumberedBuffer[tuple[str, PositionSample | PhotoSample]] = field(
+        default_factory=NumberedBuffer
+    )
+    """Of a vehicle whose app reports its photos, these instead."""
     shade_maps: NumberedBuffer[ShadeMap] = field(default_factory=NumberedBuffer)
     zone_changes: int = 0
     """`TemporaryZones.changes` when its rows were planned."""
     flown: Mapping[tuple[str, int], tuple[EastNorth, ...]] = field(
         default_factory=lambda: MappingProxyType({})
     )
+    photo_watches: Mapping[str, PhotoWatch] = field(default_factory=lambda: MappingProxyType({}))
+    """By serial, of the vehicles whose apps report their photos."""
 
     @property
     def issuer(self) -> str:
@@ -117,6 +137,12 @@ class SurveyRecord:
     def is_over(self) -> bool:
         """Whether it is refused, done or aborted."""
         return self.refusal is not None or (self.state is not None and self.state.phase.is_final)
+
+    @property
+    def is_open(self) -> bool:
+        """Whether it is running or paused: positions and photos count."""
+        phases = (SurveyPhase.RUNNING, SurveyPhase.PAUSED)
+        return self.state is not None and self.state.phase in phases
 
     @property
     def is_running(self) -> bool:

@@ -11,6 +11,7 @@ from recon.station.operations.survey.audit import survey_entries
 from recon.station.operations.survey.commands import start_survey, stop_survey
 from recon.station.operations.survey.conditions import conditions
 from recon.station.operations.survey.execution import advance, on_position, on_shade
+from recon.station.operations.survey.photos import on_photos
 from recon.station.operations.survey.planning import request_survey
 from recon.station.state.steps import on
 
@@ -25,5 +26,6 @@ SURVEY = Operation(
     ),
     audit=survey_entries,
     on_position=on_position,
+    on_photos=on_photos,
     on_shade=on_shade,
 )

@@ -22,6 +22,7 @@ RULE = "survey"
 RULE_LEFT = "survey_over"
 RULE_HOME = "survey_home"
 RULE_TAKEOFF = "survey_takeoff"
+RULE_PHOTOS = "survey_photos"
 
 
 def conditions(station: Station) -> Iterator[Condition]:
@@ -39,6 +40,7 @@ def conditions(station: Station) -> Iterator[Condition]:
             yield Condition(key, Severity.ERROR, RULE, "", f"{text}. Pause it")
         for member in record.members.values():
             yield from _of_vehicle(station, record, member)
+            yield from _of_photos(station, record, member)
 
 
 def _of_vehicle(
@@ -68,6 +70,23 @@ def _of_vehicle(
         why = "" if member.stop_reason is None else f"; it had stopped: {member.stop_reason}"
         text = f"hovers: survey {name} is over{why}. Recall it, or give it an order"
         yield _about(station, member, RULE_LEFT, text)
+
+
+def _of_photos(station: Station, record: SurveyRecord, member: SurveyMember) -> Iterator[Condition]:
+    """A camera that takes no photos: the rows flown meanwhile are flown for nothing."""
+    watch = record.photo_watches.get(member.serial)
+    vehicle = station.fleet.vehicles.get(member.serial)
+    if watch is None or watch.silent_s is None or not record.is_running or vehicle is None:
+        return
+    if vehicle.is_flying.value is False:
+        return
+    never = watch.newest_photo_ns is None
+    what = "has taken no photo yet" if never else f"took no photo for {watch.silent_s:.1f} s"
+    text = (
+        f"{what} on its row of survey {record.survey.name}, which needs one every "
+        f"{record.survey.camera.interval_s:g} s: start its camera's timer"
+    )
+    yield _about(station, member, RULE_PHOTOS, text)
 
 
 def _about_battery(station: Station, member: SurveyMember) -> str:

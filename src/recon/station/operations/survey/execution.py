@@ -43,6 +43,7 @@ from recon.station.operations.survey.availability import (
     is_flown,
 )
 from recon.station.operations.survey.mission_dispatch import dispatch
+from recon.station.operations.survey.photos import reports_photos, watch_timer
 from recon.station.operations.survey.planning import (
     StepSurvey,
     SurveyStepped,
@@ -68,15 +69,14 @@ from recon.station.state.survey_record import EastNorth, PendingStep, SurveyReco
 
 TAKES_OFF = "takes off first: its aircraft takes no missions, and is steered along its rows"
 
-_OPEN = (SurveyPhase.RUNNING, SurveyPhase.PAUSED)
-
 
 def on_position(station: Station, vehicle: VehicleState, now_ns: int) -> Station:
     """Keep a vehicle's new position for the surveys it belongs to."""
     surveys, serial = station.surveys, vehicle.serial
     frame = station.airspace.airspace.frame
+    by_photos = bool(surveys.records) and reports_photos(vehicle, now_ns)
     for record in surveys.records.values():
-        if serial is None or serial not in record.members or frame is None or not _is_open(record):
+        if serial is None or serial not in record.members or frame is None or not record.is_open:
             continue
         at, height_m = vehicle.position, vehicle.height_above_takeoff_m
         if at.value is None or height_m.value is None or at.received_at_ns != now_ns:
@@ -84,8 +84,11 @@ def on_position(station: Station, vehicle: VehicleState, now_ns: int) -> Station
         east_m, north_m = (float(metres) for metres in places_m(frame, [at.value])[0])
         takeoff_m = takeoff_up_m(station.airspace, vehicle)
         sample = PositionSample(now_ns, east_m, north_m, height_m.value, takeoff_m)
-        kept = record.positions.with_one((serial, sample), SURVEY_TIMES.positions_kept)
-        record = replace(record, positions=kept)
+        if by_photos:
+            record = watch_timer(record, serial, sample)
+        else:
+            kept = record.positions.with_one((serial, sample), SURVEY_TIMES.positions_kept)
+            record = replace(record, positions=kept)
         record = _with_path(station, record, serial, (east_m, north_m))
         surveys = surveys.put(record)
     return station if surveys is station.surveys else replace(station, surveys=surveys)
@@ -95,14 +98,10 @@ def on_shade(station: Station, shade: ShadeMap) -> Station:
     """Keep a new shade map for every running or paused survey."""
     surveys = station.surveys
     for record in surveys.records.values():
-        if _is_open(record):
+        if record.is_open:
             kept = record.shade_maps.with_one(shade, SURVEY_TIMES.shade_maps_kept)
             surveys = surveys.put(replace(record, shade_maps=kept))
     return station if surveys is station.surveys else replace(station, surveys=surveys)
-
-
-def _is_open(record: SurveyRecord) -> bool:
-    return record.state is not None and record.state.phase in _OPEN
 
 
 def _with_path(

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 
 from recon.guidance.survey import (
     ClosedArea,
+    PhotoSample,
     PositionSample,
     Surveyor,
     SurveyPlan,
@@ -51,7 +52,7 @@ class StepSurvey:
     """A survey, its observations since the last step, and its vehicles as they are now."""
 
     state: SurveyState
-    positions: tuple[tuple[str, PositionSample], ...]
+    positions: tuple[tuple[str, PositionSample | PhotoSample], ...]
     shade_maps: tuple[ShadeMap, ...]
     vehicles: tuple[Surveyor, ...]
     now_ns: int
@@ -162,9 +163,9 @@ def step_ended(station: Station, job_id: int) -> tuple[Station, SurveyRecord | N
 
 
 def _by_vehicle(
-    samples: Sequence[tuple[str, PositionSample]],
-) -> Mapping[str, list[PositionSample]]:
-    each: dict[str, list[PositionSample]] = {}
+    samples: Sequence[tuple[str, PositionSample | PhotoSample]],
+) -> Mapping[str, list[PositionSample | PhotoSample]]:
+    each: dict[str, list[PositionSample | PhotoSample]] = {}
     for serial, sample in samples:
         each.setdefault(serial, []).append(sample)
     return each
