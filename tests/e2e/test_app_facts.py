@@ -118,7 +118,7 @@ def station(folder: Path) -> Iterator[tuple[Started, str, int]]:
         yield process, *addresses(process)
 
 
-def test_facts_and_photos_reach_preflight_console_client_record_and_replay(tmp_path: Path) -> None:
+def test_facts_and_photos_reach_preflight_client_record_and_replay(tmp_path: Path) -> None:
     with station(tmp_path) as (process, url, port):
         with connected(port) as app:
             app.sendall(text(FACTS) + text(PHOTOS))
@@ -154,6 +154,13 @@ def test_facts_and_photos_reach_preflight_console_client_record_and_replay(tmp_p
     (record,) = (tmp_path / "records").glob("flight-*.mcap")
     with started("replay", str(record), "--http-port", "0") as replay:
         console = replay.line_with("console: http://127.0.0.1:").partition(": ")[2]
+        end = urllib.request.Request(
+            f"{console}/api/replay",
+            json.dumps({"position_s": 1e7}).encode(),
+            {"content-type": "application/json"},
+            method="POST",
+        )
+        urllib.request.urlopen(end, timeout=PATIENCE_S).close()
         again = vehicle_once(console, "photos")
         assert replay.end(signal.SIGINT) == 0
     assert again["app_facts"] == shown["app_facts"]
