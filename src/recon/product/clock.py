@@ -90,6 +90,8 @@ class ClockFit:
     """Indices of those on the track."""
     distance_m: float
     """Their median distance from the track."""
+    at_ns: IntArray | None = None
+    """Their station times, where their app has reported each of them."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -329,6 +331,8 @@ def times_of(shots: Shots, track: RecordedTrack, fit: ClockFit, utc_ahead_ns: in
 
     Within the step of the clock a photo was taken where its position is nearest to the track.
     """
+    if fit.at_ns is not None:
+        return fit.at_ns
     mine = shots.chosen(fit.photos)
     half_step_s = mine.step_s / 2.0
     at_ns = mine.clock_ns - utc_ahead_ns + round((fit.offset_s + half_step_s) * NS_PER_S)

@@ -25,6 +25,7 @@ from recon.model.errors import RecordError
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.survey import Survey, SurveyCamera
 from recon.model.units import NS_PER_S
+from recon.product.reported_shots import ReportedShots, shots_of_reports
 from recon.record.mcap.foxglove import SHADE_TOPIC
 from recon.record.mcap.mcap_file import ABOUT_NAME, STEPS_TOPIC
 from recon.record.mcap.mcap_read import McapReading, RecordAttachment, RecordMessage
@@ -45,6 +46,10 @@ LONGEST_WITHHELD_NS = 3_600 * NS_PER_S
 """Longest delay of a packet behind damaged bytes: otherwise silent links close long before."""
 FARTHEST_M = 1e7
 """Largest distance from the site's origin: a quarter of the way round the earth."""
+MOST_PHOTOS = 200_000
+"""Most reported photos: a day of several vehicles at two a second."""
+MOST_INDEX = 2**32
+LONGEST_AGE_S = 3_600.0
 MOST_STARTS = 1_000
 """Most starts of surveys."""
 BEFORE_ALL_NS = 0
@@ -132,6 +137,8 @@ class FlightData:
     """Why reading ended early; empty if it did not."""
     scenario: str = ""
     """What the record states of its simulated world; empty for a flight of real aircraft."""
+    reported: Sequence[ReportedShots] = ()
+    """Photos that apps have reported one by one, by vehicle and series."""
 
     def utc(self, at_ns: int) -> str:
         """Return a station time as ISO 8601 in UTC."""
@@ -227,6 +234,11 @@ class _Reader:
     _starts: int = 0
     _serials: dict[int, str] = field(default_factory=dict)
     _links: dict[int, list[TrackRow]] = field(default_factory=dict)
+    _reported: dict[tuple[str, int], dict[int, tuple[int, float, float]]] = field(
+        default_factory=dict
+    )
+    """Reported photos by serial and series, then index: time, east, north."""
+    _photos: int = 0
     _decoder: msgspec.msgpack.Decoder[_Step] = field(
         default_factory=lambda: msgspec.msgpack.Decoder(_Step)
     )
@@ -269,6 +281,7 @@ class _Reader:
             self._utc_ahead_ns,
             trouble,
             self._scenario,
+            shots_of_reports(self._reported),
         )
 
     def _about(self, data: bytes) -> None:
@@ -340,6 +353,8 @@ class _Reader:
         kind = report.get("_")
         if kind == "ExtendedReport" and report["serial"]:
             self._serials[link] = str(report["serial"])
+        elif kind == "PhotosReport":
+            self._photos_reported(report, link, at_ns)
         elif kind == "CoreReport" and report["position"] is not None:
             place, attitude = report["position"], report["attitude"]
             numbers = (
@@ -352,6 +367,31 @@ class _Reader:
                 math.nan if number is None else float(number) for number in numbers
             )
             self._links.setdefault(link, []).append((at_ns, latitude, longitude, height_m, yaw))
+
+    def _photos_reported(self, report: Mapping[str, Any], link: int, at_ns: int) -> None:
+        serial = report["serial"] or self._serials.get(link)
+        if serial is None or self._frame is None:
+            return
+        known = self._reported.setdefault((str(serial), _whole(report["series"])), {})
+        for photo in report["photos"]:
+            index, age_s = _whole(photo["index"]), float(photo["age_s"])
+            self._photos += 1
+            if not (0.0 <= age_s <= LONGEST_AGE_S and 0 <= index <= MOST_INDEX):
+                raise ValueError(f"expected a photo's index and age, got {index} and {age_s}")
+            if self._photos > MOST_PHOTOS:
+                raise ValueError(f"expected at most {MOST_PHOTOS} reported photos, got more")
+            known.setdefault(index, (at_ns - round(age_s * NS_PER_S), *self._place_m(photo)))
+
+    def _place_m(self, photo: Mapping[str, Any]) -> tuple[float, float]:
+        """Return where a photo was taken, east and north; NaN where that is not known."""
+        latitude_deg, longitude_deg = (_number(photo[name]) for name in _ORIGIN[:2])
+        assert self._frame is not None  # or it was not asked for
+        if latitude_deg is None or longitude_deg is None:
+            return math.nan, math.nan
+        ground_m = self._frame.origin.ellipsoid_height_m
+        enu_m = enu_from_geo(self._frame, latitude_deg, longitude_deg, ground_m)
+        east_m, north_m, _up_m = enu_m[0].tolist()
+        return east_m, north_m
 
     def _map(self, item: RecordMessage, frame: LocalFrame) -> None:
         try:

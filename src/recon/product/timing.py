@@ -1,11 +1,12 @@
 """Which photos belong to a flight, and when, where from and how each was taken.
 
-Photos of one camera share a clock; `clock` finds its offset. A photo's own statements of height and
+Photos that an app has reported are matched by their index (`reported_photos`). Others of one camera
+share a clock; `clock` finds its offset. A photo's own statements of height and
 attitude count more than the vehicle's telemetry.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -33,6 +34,7 @@ from recon.product.headings import (
     signed_deg,
 )
 from recon.product.photos.photo import GimbalAttitude, Photo
+from recon.product.reported_photos import numbers_of, reported_fits
 
 LOWEST_M = 5.0
 """Least height above takeoff: a photo on the ground shows a pad."""
@@ -82,9 +84,16 @@ class CameraClock:
     photos: int
     distance_m: float
     is_stated: bool = False
+    is_reported: bool = False
+    """Whether its app has reported each of the photos: no clock was searched for."""
 
     def __str__(self) -> str:
         name = f"{self.camera}, {self.photos} photos of {self.vehicle}"
+        if self.is_reported:
+            return (
+                f"{name}: each by its app's report, {self.distance_m:.1f} m from it; clock offset "
+                f"{offset_text(self.offset_s)}"
+            )
         if self.is_stated:
             return f"{name}: clock offset {offset_text(self.offset_s)}, as stated"
         return (
@@ -114,12 +123,13 @@ def timed_photos(flight: FlightData, photos: Sequence[Photo], stated: StatedCame
     for group in by_camera.values():
         group.sort(key=lambda photo: (photo.clock_ns, photo.name))
         shots = _shots(flight, group)
-        clocks = _clocks(flight, shots, tracks, stated)
+        clocks = _by_reports(flight, group, shots, tracks, stated)
+        clocks = clocks or _clocks(flight, shots, tracks, stated)
         for fit in clocks.fits:
             _add_fit(found, flight, group, shots, fit, stated)
         for index in clocks.left:
             found.refused[group[index].name] = clocks.reason
-        if len(clocks.fits) > 1:
+        if len({fit.serial for fit in clocks.fits}) > 1:
             found.warnings.append(
                 f"{group[0].camera_name}: its photos lie on the tracks of {len(clocks.fits)} "
                 "vehicles or flights: several cameras without serial numbers?"
@@ -146,6 +156,32 @@ def _clocks(
     if stated.clock_offset_s is None:
         return clocks_of(shots, tracks, flight.utc_ahead_ns)
     return stated_clock(shots, tracks, flight.utc_ahead_ns, stated.clock_offset_s)
+
+
+def _by_reports(
+    flight: FlightData,
+    group: Sequence[Photo],
+    shots: Shots,
+    tracks: Mapping[str, RecordedTrack],
+    stated: StatedCamera,
+) -> Clocks | None:
+    """Return the times that apps reported of a camera's photos; None where none was reported.
+
+    A photo without a report is dated by the offset of the others.
+    """
+    if stated.clock_offset_s is not None:
+        return None
+    numbers = numbers_of([photo.path.name for photo in group])
+    reports = [each for each in flight.reported if each.serial in tracks]
+    fits, left = reported_fits(shots, numbers, reports, flight.utc_ahead_ns)
+    if not fits:
+        return None
+    track = {fits[0].serial: tracks[fits[0].serial]}
+    offset_s = fits[0].offset_s
+    others = stated_clock(shots.chosen(left), track, flight.utc_ahead_ns, offset_s)
+    more = tuple(replace(fit, photos=left[fit.photos]) for fit in others.fits)
+    reason = "its app has reported no such photo, and it is not near the vehicle's track"
+    return Clocks((*fits, *more), left[others.left], reason)
 
 
 def _add_fit(
@@ -183,6 +219,7 @@ def _add_fit(
             len(fit.photos),
             fit.distance_m,
             stated.clock_offset_s is not None,
+            fit.at_ns is not None,
         )
     )
 
