@@ -17,7 +17,7 @@ PHOTO = PhotoSample(seconds_to_ns(10.0), 150.0, ROW_M, 60.0, 90.0)
 
 
 def counted(*photos: PhotoSample, maps: tuple[ShadeMap, ...] = ()) -> CoverageProgress:
-    progress = first_progress(PLAN.cells)
+    progress = first_progress(PLAN)
     for each in maps:
         progress = with_shade(progress, each, PLAN)
     return count_settled_photos(with_photos(progress, photos), PLAN, LATE_NS)
@@ -65,7 +65,7 @@ def test_it_counts_in_the_light_of_its_own_time() -> None:
 
 
 def test_it_counts_when_it_has_settled_and_once() -> None:
-    waiting = with_photos(first_progress(PLAN.cells), [PHOTO])
+    waiting = with_photos(first_progress(PLAN), [PHOTO])
     early = count_settled_photos(waiting, PLAN, PHOTO.at_ns)
     assert early is waiting
     done = count_settled_photos(waiting, PLAN, LATE_NS)

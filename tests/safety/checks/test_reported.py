@@ -119,13 +119,6 @@ def planned(highest_m: float | None = None, photos: int | None = None) -> dict[s
             FAILS,
             "maximum height is 50 m above takeoff; the survey is flown at up to 60 m",
         ),
-        (
-            reported.aircraft_limits,
-            reporting(AppFacts(can_fly_missions=False)),
-            {},
-            FAILS,
-            "no waypoint missions",
-        ),
         (reported.storage, reporting(AppFacts(storage_left_photos=90)), {}, OK, "90 photos"),
         (
             reported.storage,

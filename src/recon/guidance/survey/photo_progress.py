@@ -15,12 +15,12 @@ from recon.guidance.survey.plan import SurveyPlan
 from recon.guidance.survey.progress import (
     CoverageProgress,
     PhotoSample,
-    StateArray,
     off_height_m,
     with_95_times,
 )
 from recon.guidance.survey.view import crossing, nearest_map, sunlit_cells
 from recon.model.arrays import BoolArray
+from recon.model.flown_before import StateArray
 from recon.model.survey import CellState
 from recon.model.units import seconds_to_ns
 

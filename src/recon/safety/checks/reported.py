@@ -44,10 +44,6 @@ def home_point(vehicle: VehicleState, situation: Situation) -> Check | None:
 def aircraft_limits(vehicle: VehicleState, situation: Situation) -> Check | None:
     """The aircraft's own limits allow what is planned; DJI rejects what exceeds them silently."""
     facts, plan = reported_facts(vehicle, situation.now_ns), situation.facts.planned
-    if facts.can_fly_missions is False:
-        return LIMITS.fails(
-            "its app reports that it flies no waypoint missions", "fly it by hand, or change it"
-        )
     most_m, farthest_m = facts.max_height_m, facts.max_distance_m
     if most_m is None and farthest_m is None:
         return None

@@ -1,6 +1,6 @@
 """An app that tells more than its packets: facts and photos, in texts of `recon 1` (docs/icd.md).
 
-Its camera's timer runs while the aircraft flies a mission, as apps start it, at a phase of its own.
+Its camera's timer runs while the aircraft flies a mission or is steered, at a phase of its own.
 What it truly took stays here, for tests and scores: the station learns what the texts say.
 """
 
@@ -19,6 +19,8 @@ from recon.sim.app.telemetry import position_deg
 from recon.sim.flight.aircraft import Aircraft
 
 MESSAGE_DEBUG = 0
+SURVEYING = (FlightMode.GPS_WAYPOINT, FlightMode.JOYSTICK)
+"""Modes in which rows are flown: by a mission, or steered."""
 LEAST_NS = NS_PER_S
 """Least time between two texts of a kind."""
 LOOK_NS = NS_PER_S // 10
@@ -98,7 +100,7 @@ class AppReporter:
         return found
 
     def _run_timer(self, now_ns: int) -> None:
-        if self.aircraft.flight_mode is not FlightMode.GPS_WAYPOINT:
+        if self.aircraft.flight_mode not in SURVEYING:
             self._mission_since_ns = None
             return
         if self._mission_since_ns is None:
