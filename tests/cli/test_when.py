@@ -11,6 +11,8 @@ from typer.testing import CliRunner, Result
 
 from recon.cli.commands import app
 from recon.model.errors import ReconError
+from recon.site import load_site
+from recon.site.expected_wind import wind_report
 
 QUERY = "/v1/forecast?latitude={latitude}&longitude={longitude}&hourly=cloud_cover"
 PATH = "/v1/forecast?latitude=41.90&longitude=-93.60&hourly=cloud_cover"
@@ -63,7 +65,15 @@ def test_hours_follow_from_fetched_weather(folder: Path, monkeypatch: pytest.Mon
         "Sun 2026-06-21 17:55 - 24:00: the sun is below 30 degrees, 30 at most",
     ]
     checked = run("site", "check", str(folder)).output
-    assert "weather of 127.0.0.1, fetched " in checked
+    assert "weather of 127.0.0.1, fetched 3 days ago, until 2026-06-22 23:00 there\n" in checked
+    (line,) = wind_report(load_site(folder), time.time())
+    assert line == (
+        "until maps show the shadows' motion, 10.0 m/s towards 45 degrees is expected: the wind at "
+        "850 hPa by the weather, fetched 3 days ago"
+    )
+    at(60 * 3600.0, monkeypatch)
+    assert "there: it is over, and is not used" in run("site", "check", str(folder)).output
+    assert wind_report(load_site(folder), time.time()) == ()
 
 
 def test_without_weather_the_sun_decides_and_the_command_states_it(folder: Path) -> None:

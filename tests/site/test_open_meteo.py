@@ -14,6 +14,7 @@ from recon.model.geo import LatLon
 from recon.model.weather import Weather
 from recon.site.open_meteo import LARGEST_BYTES, MOST_HOURS, decoded, weather_of
 from recon.site.weather_file import WEATHER_FILE, read_weather, weather_bytes
+from recon.station.recording.recorded_values import values_codec
 
 PLACE = LatLon(41.9012, -93.6034)
 
@@ -158,6 +159,8 @@ def test_what_is_kept_reads_the_same_and_holds_nothing_else(tmp_path) -> None:
     assert weather.notice == "weather data by Open-Meteo.com, CC BY 4.0"
     assert b"xx" not in data
     assert b"soil" not in data
+    codec = values_codec()
+    assert codec.decode(codec.encode(weather, Weather), Weather) == weather
     (tmp_path / WEATHER_FILE).write_bytes(data[:50])
     with pytest.raises(SiteError, match=r"weather\.json: expected"):
         read_weather(tmp_path, PLACE)

@@ -20,6 +20,7 @@ from recon.record.audit.audit import shown
 from recon.record.files.users_file import state_folder
 from recon.site import Site, default_site, own_folder, site_report
 from recon.site.app_list import APPS_FILE, read_app_list
+from recon.site.expected_wind import expected_wind, wind_report
 from recon.site.fetched_report import fetched_report
 from recon.station.api_views.app import create_app
 from recon.station.api_views.service import Service
@@ -108,8 +109,10 @@ class RunOptions:
     def config(self) -> RunConfig:
         """Return how the station is started; raises `ReconError` for what cannot be read."""
         apps_file = self.apps or apps_file_of(self.site)
+        site = default_site() if self.site is None else opened_site(self.site)
+        wind = expected_wind(site, time())
         return RunConfig(
-            site=default_site() if self.site is None else opened_site(self.site),
+            site=site,
             link_host=self.link_host,
             link_port=self.link_port,
             is_announced=self.announce,
@@ -129,6 +132,7 @@ class RunOptions:
             link=LinkSettings(garbage_limit_bytes=self.garbage_limit),
             apps_file=apps_file,
             apps=None if apps_file is None else read_app_list(apps_file),
+            wind_aloft_mps=None if wind is None else (wind.east_mps, wind.north_mps),
         )
 
 
@@ -163,8 +167,10 @@ def records_of(site: Path | None) -> Path:
 
 
 def describe(site: Site) -> None:
-    """Print how well the control points fit, and the site's warnings."""
-    for line in (*site_report(site), *fetched_report(site, time())):
+    """Print how well the control points fit, the site's warnings, and what was fetched."""
+    now_s = time()
+    fetched = (*fetched_report(site, now_s), *wind_report(site, now_s))
+    for line in (*site_report(site), *fetched):
         print_now(line)
 
 

@@ -11,7 +11,8 @@ Theory of operation, per forecast:
 3. From shade to sun the probability rises over an edge that is the softer, the later and the
    farther off; under thin even cloud, which changes little with distance, it stays sharp.
 4. Followed shadows change their shape: deviations fade with `shade_memory_s`.
-5. Without a velocity the shade above each cell is the guide, as far off as shadows usually move.
+5. Without a velocity the wind at the clouds' height is, if a weather forecast states it, as far off
+   as it may be wrong; else the shade above each cell, as far off as shadows usually move.
 """
 
 from dataclasses import dataclass, replace
@@ -112,10 +113,10 @@ class _Seen:
         """Return the row and column that are read for each cell, and how far in metres they are
         from the place upwind: 0 where that is seen itself."""
         grid = self.grid
-        moved_mps = (0.0, 0.0) if motion is None else (motion.east_mps, motion.north_mps)
+        expected, error_mps = _expected(motion, settings)
         # All cells of a row have the same row upwind of them, all of a column the same column.
-        rows = _moved(grid.rows, moved_mps[1] * lead_s / grid.cell_m)
-        cols = _moved(grid.cols, -moved_mps[0] * lead_s / grid.cell_m)
+        rows = _moved(grid.rows, expected.north_mps * lead_s / grid.cell_m)
+        cols = _moved(grid.cols, -expected.east_mps * lead_s / grid.cell_m)
         near_rows, near_cols = (
             each.take(_index(rows), axis=0).take(_index(cols), axis=1) for each in self.nearest
         )
@@ -123,9 +124,20 @@ class _Seen:
         off_m = np.hypot(down - near_rows, right - near_cols) * np.float32(grid.cell_m)
         is_there = off_m < grid.cell_m
         off_m[is_there] = 0.0
-        if motion is None:
-            off_m += np.float32(settings.usual_speed_mps * lead_s)
+        if error_mps > 0.0:
+            off_m += np.float32(error_mps * lead_s)
         return np.where(is_there, down, near_rows), np.where(is_there, right, near_cols), off_m
+
+
+def _expected(
+    motion: ShadowMotion | None, settings: ForecastSettings
+) -> tuple[ShadowMotion, float]:
+    """Return the motion to look upwind by, and how wrong it may be, in m/s."""
+    if motion is not None:
+        return motion, 0.0
+    if settings.wind_aloft_mps is not None:
+        return ShadowMotion(*settings.wind_aloft_mps), settings.wind_aloft_error_mps
+    return ShadowMotion(0.0, 0.0), settings.usual_speed_mps
 
 
 def _moved(count: int, by: float) -> FloatMap:

@@ -88,6 +88,12 @@ class ForecastSettings:
     """Time constant of the same for shadows that are followed: they change their shape."""
     usual_speed_mps: float = 6.0
     """Speed of shadows of unknown motion: what shades a place now has moved on so far."""
+    wind_aloft_mps: tuple[float, float] | None = None
+    """Wind at the clouds' height, east and north, from a weather forecast: the motion that is
+    expected until maps show it. None: none is."""
+    wind_aloft_error_mps: float = 3.0
+    """How far off that may be: half of the usual speed, for the forecast's wind and the clouds'
+    height are both inexact."""
     least_pooled_contrast: float = 0.02
     """Standard deviation of the transmittance below which maps are not compared."""
     hindcast_lead_s: tuple[float, ...] = (15.0, 30.0, 60.0, 120.0, 300.0)

@@ -7,6 +7,7 @@ from pathlib import Path
 from tempfile import TemporaryFile
 
 from recon.api.addresses import app_hosts, app_url, in_url
+from recon.forecast import ForecastSettings
 from recon.link.server import LinkServer
 from recon.model.errors import RecordError
 from recon.model.event import RecordFailed
@@ -267,7 +268,9 @@ def first_station(config: RunConfig) -> Station:
 
 def _settings(config: RunConfig) -> StationSettings:
     return StationSettings(
-        failsafe_matrix=config.site.failsafe, sun_time_ahead_s=config.sun_time_ahead_s
+        failsafe_matrix=config.site.failsafe,
+        forecast=ForecastSettings(wind_aloft_mps=config.wind_aloft_mps),
+        sun_time_ahead_s=config.sun_time_ahead_s,
     )
 
 

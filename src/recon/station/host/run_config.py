@@ -50,6 +50,8 @@ class RunConfig:
     """The list of admitted apps; None: any app is admitted."""
     apps: tuple[AllowedApp, ...] | None = None
     """The entries of that file."""
+    wind_aloft_mps: tuple[float, float] | None = None
+    """Wind at the clouds' height, east and north, by a forecast fetched before; None: unknown."""
     sun_time_ahead_s: float = 0.0
     """How far the time of day of simulated drones is ahead of the computer's clock."""
     scenario: str = ""
