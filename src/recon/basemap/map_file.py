@@ -38,6 +38,8 @@ class MapInfo:
     max_zoom: int
     tile_px: int
     bounds_deg: tuple[float, float, float, float]
+    fetched_utc_s: float | None = None
+    """When its first tiles were fetched from a server; None for other files."""
 
 
 @dataclass(frozen=True, slots=True)

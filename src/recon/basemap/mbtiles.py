@@ -3,6 +3,7 @@
 A hostile file may hold a view that never ends: SQLite asks now and then whether time is up.
 """
 
+import re
 import sqlite3
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -24,6 +25,7 @@ from recon.basemap.map_file import (
     share_of_tiles,
     within_s,
 )
+from recon.basemap.mbtiles_writer import FETCHED
 from recon.basemap.web_mercator import DEEPEST_ZOOM, MapArea, tile_bounds_deg
 from recon.model.arrays import IntArray
 from recon.model.foreign_text import one_line
@@ -97,6 +99,7 @@ class MBTiles:
             max_zoom=zooms[-1],
             tile_px=picture_of(data)[1],
             bounds_deg=stated or self._extent(zooms[-1]),
+            fetched_utc_s=_fetched_utc_s(facts.get(FETCHED)),
         )
 
     def _facts(self) -> dict[str, Any]:
@@ -169,3 +172,7 @@ def _sentence(problem: Exception) -> str:
             "without an index on its tiles; export it again"
         )
     return f"expected a whole MBTiles file, got: {one_line(problem)}; copy or export it again"
+
+
+def _fetched_utc_s(text: object) -> float | None:
+    return float(str(text)) if re.fullmatch(r"\d{1,11}", str(text)) else None

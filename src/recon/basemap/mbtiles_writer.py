@@ -1,6 +1,7 @@
 """Writes an MBTiles file while others read it: a few tiles are saved together, and stay saved."""
 
 import sqlite3
+import time
 from pathlib import Path
 from types import TracebackType
 
@@ -15,6 +16,7 @@ CREATE TABLE IF NOT EXISTS tiles (
 );
 """
 DIGEST = "recon_server_sha256"
+FETCHED = "recon_fetched_utc_s"
 FORMATS = {"image/png": "png", "image/jpeg": "jpg", "image/webp": "webp"}
 
 
@@ -43,6 +45,8 @@ class MBTilesWriter:
         if is_new:
             self._database.executescript(SCHEMA)
             self._state(DIGEST, self._digest)
+            # Later fetches add what is missing: the file is as old as its first tiles.
+            self._state(FETCHED, str(int(time.time())))
             self._database.commit()
         facts = dict(self._database.execute("SELECT name, value FROM metadata LIMIT 100"))
         self._has_format = "format" in facts

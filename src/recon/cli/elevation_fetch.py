@@ -28,7 +28,7 @@ from recon.site.elevation import Datum, flown_area_m, refuse_other_datum
 from recon.site.elevation_tiles import DegreeTile, has_places, tile_address, tiles_over
 from recon.site.elevation_window import ElevationWindow, elevation_window, needed_bounds_deg
 from recon.site.fetched_files import stage_elevation
-from recon.site.height_file import opened_on_disk
+from recon.site.height_file import HeightFile, opened_on_disk
 from recon.site.terrain_source import KnownElevation, TerrainSource, known_elevation
 
 LARGEST_TILE_BYTES = 768 * 1024 * 1024
@@ -65,17 +65,7 @@ async def fetch_elevation(
         )
     source = _source(addresses, known, found, datum)
     with ExitStack() as stack:
-        opened = []
-        for path in found.files:
-            try:
-                opened.append(stack.enter_context(opened_on_disk(path)))
-                refuse_other_datum(opened[-1], datum)
-            except SiteError:
-                # A fetched one that is no GeoTIFF would be found again, and refused again.
-                if path.parent == unfinished:
-                    path.unlink(missing_ok=True)
-                raise
-        window = elevation_window(site, opened)
+        window = elevation_window(site, _opened(stack, found.files, unfinished, datum))
         geotiff = window.geotiff(source)
     assert site.frame is not None, "a folder's site has an origin"
     origin = site.frame.origin
@@ -143,6 +133,23 @@ async def _fetch(host: str, named: dict[str, str], folder: Path, found: _FoundTi
         ) from problem
     except OSError as problem:
         raise FetchError(f"{folder} cannot be written: {problem.strerror or problem}") from problem
+
+
+def _opened(
+    stack: ExitStack, files: Sequence[Path], unfinished: Path, datum: Datum
+) -> list[HeightFile]:
+    """Return the open tiles, which `stack` closes. Raises `SiteError` for what is none."""
+    opened = []
+    for path in files:
+        try:
+            opened.append(stack.enter_context(opened_on_disk(path)))
+            refuse_other_datum(opened[-1], datum)
+        except SiteError:
+            # A fetched one would be found again, and refused again.
+            if path.parent == unfinished:
+                path.unlink(missing_ok=True)
+            raise
+    return opened
 
 
 def _source(

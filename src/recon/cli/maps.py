@@ -2,6 +2,7 @@
 
 import asyncio
 import re
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -125,11 +126,14 @@ def _area_line(site: "Site", area: "MapArea") -> str:
 
 def _map_lines(known: "KnownMap") -> list[str]:
     from recon.basemap.coverage import finest_covered
+    from recon.site.fetched_report import age_text
 
     if known.info is None:
         return [f"{known.name}: not used: {known.problem}"]
     covers = finest_covered(known.coverage)
-    head = f"{known.name}: {known.info.kind}, {known.size_bytes / 1e6:.1f} MB"
+    fetched_s = known.info.fetched_utc_s
+    age = "" if fetched_s is None else f", {age_text(fetched_s, time.time())}"
+    head = f"{known.name}: {known.info.kind}, {known.size_bytes / 1e6:.1f} MB{age}"
     if covers is None:
         return [f"{head}: too many tiles over the site to count"]
     lines = [
