@@ -4,6 +4,7 @@ import { useConsole } from "./console";
 import { vehicleKey } from "./fleet/vehicleStatus";
 import { actOnKey, isAllStop } from "./keys";
 import { MapView } from "./map/MapView";
+import { createNumberEntry } from "./numberEntry";
 import { AlarmList } from "./panels/alarms/AlarmList";
 import { SilenceBanner } from "./panels/alarms/SoundControls";
 import { ConnectionBanner } from "./panels/bar/ConnectionBanner";
@@ -59,12 +60,18 @@ const PANELS: readonly (readonly [PanelName, () => ReturnType<typeof AlarmList>]
 export function App() {
   const { source, fleet, selection, orderApi, theme, fit, flyHere, zoneDraft, panels } =
     useConsole();
-  const { siteDraft, isReplay, largeCamera } = useConsole();
+  const { siteDraft, isReplay, largeCamera, clock } = useConsole();
   const [isHelpOpen, setHelpOpen] = createSignal(false);
   const keys = () => fleet.vehicles.map(vehicleKey);
   const select = (key: number, action: (key: number) => void) => {
     if (keys().includes(key)) action(key);
   };
+
+  const numberEntry = createNumberEntry(
+    clock,
+    (number) => keys().includes(number),
+    (number, isAdded) => (isAdded ? selection.toggle(number) : selection.only(number)),
+  );
 
   const clear = () => {
     if (isHelpOpen()) setHelpOpen(false);
@@ -73,11 +80,13 @@ export function App() {
   };
 
   onMount(() => {
-    const onStopKey = (event: KeyboardEvent) => {
-      if (!isAllStop(event)) return;
+    // Before any button: Enter behind a number presses none.
+    const onFirst = (event: KeyboardEvent) => {
+      const isStop = isAllStop(event);
+      if (!numberEntry.take(event) && !isStop) return;
       event.preventDefault();
       event.stopPropagation();
-      void orderApi.allStop();
+      if (isStop) void orderApi.allStop();
     };
     const onKeyDown = (event: KeyboardEvent) => {
       actOnKey(event, {
@@ -95,10 +104,10 @@ export function App() {
         help: () => setHelpOpen(!isHelpOpen()),
       });
     };
-    window.addEventListener("keydown", onStopKey, { capture: true });
+    window.addEventListener("keydown", onFirst, { capture: true });
     window.addEventListener("keydown", onKeyDown);
     onCleanup(() => {
-      window.removeEventListener("keydown", onStopKey, { capture: true });
+      window.removeEventListener("keydown", onFirst, { capture: true });
       window.removeEventListener("keydown", onKeyDown);
     });
   });
@@ -124,6 +133,13 @@ export function App() {
         <SilenceBanner />
         <SeparationBanner />
         <AnswerNotice />
+        <Show when={numberEntry.number()}>
+          {(number) => (
+            <p class="card notice" role="status">
+              {text.page.enterSelects(number())}
+            </p>
+          )}
+        </Show>
       </div>
       <aside class="dock dock-left" aria-label={text.page.vehicles}>
         <VehicleList />

@@ -1,6 +1,12 @@
 import { describe, expect, it } from "vitest";
 import { vehicle } from "../testing/fakeState";
-import { FIRST_CHOICE, isSameList, type ListChoice, listVehicles } from "./vehicleOrder";
+import {
+  FIRST_CHOICE,
+  firstFound,
+  isSameList,
+  type ListChoice,
+  listVehicles,
+} from "./vehicleOrder";
 
 const FLEET = [
   vehicle(2),
@@ -18,14 +24,14 @@ function listed(choice: Partial<ListChoice>, selected: readonly number[] = []) {
 
 describe("the list of vehicles", () => {
   it.each([
-    [{}, [1, 2, 3, 12]],
+    [{}, [12, 1, 2, 3]],
     [{ sort: "battery" }, [12, 1, 3, 2]],
     [{ sort: "trouble" }, [12, 1, 2, 3]],
-    [{ sort: "name" }, [1, 2, 3, 12]],
-    [{ search: "1" }, [1, 12]],
+    [{ sort: "name" }, [12, 1, 2, 3]],
+    [{ search: "1" }, [12, 1]],
     [{ search: "birch" }, [2]],
     [{ search: "1581f" }, [12]],
-    [{ filter: "flying" }, [1, 2, 12]],
+    [{ filter: "flying" }, [12, 1, 2]],
     [{ filter: "trouble" }, [12]],
     [{ filter: "selected" }, [2]],
   ] as const)("with %j is %j", (choice, numbers) => {
@@ -34,14 +40,22 @@ describe("the list of vehicles", () => {
 
   it("is grouped by what they do, and by kind", () => {
     expect(listed({ group: "activity" })).toEqual([
+      ["Contact lost", [12]],
       ["Flying", [1, 2]],
       ["On the ground", [3]],
-      ["Contact lost", [12]],
     ]);
     expect(listed({ group: "role" })).toEqual([
-      ["Survey drones", [1, 2, 12]],
+      ["Survey drones", [12, 1, 2]],
       ["Imaging drones", [3]],
     ]);
+  });
+
+  it("is searched for a number before a part of a name", () => {
+    const found = (search: string) => {
+      const groups = listVehicles(FLEET, { ...FIRST_CHOICE, search }, () => false, 0);
+      return firstFound(groups, search)?.number ?? null;
+    };
+    expect(["1", " 12", "bir", "x", " "].map(found)).toEqual([1, 12, 2, null, null]);
   });
 
   it("is the same list while its vehicles and their order are the same", () => {

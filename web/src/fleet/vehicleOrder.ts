@@ -32,6 +32,21 @@ export interface VehicleGroup<T> {
   readonly vehicles: readonly T[];
 }
 
+/** The vehicle that a search means: of that number, else the first found; null for an empty search. */
+export function firstFound<T extends VehicleView>(
+  groups: readonly VehicleGroup<T>[],
+  search: string,
+): T | null {
+  const found = search.trim() === "" ? [] : groups.flatMap(({ vehicles }) => vehicles);
+  return found.find(({ number }) => String(number) === search.trim()) ?? found[0] ?? null;
+}
+
+/** Whether contact was lost in flight: such vehicles are listed first, however the list is sorted. */
+function isLost(vehicle: VehicleView, behindS: number): boolean {
+  const { activity, severity } = vehicleStatus(vehicle, behindS);
+  return activity === "Contact lost" && severity === "critical";
+}
+
 /** The vehicles as listed; `behindS` is the age of the newest state. */
 export function listVehicles<T extends VehicleView>(
   vehicles: readonly T[],
@@ -41,7 +56,12 @@ export function listVehicles<T extends VehicleView>(
 ): VehicleGroup<T>[] {
   const shown = vehicles
     .filter((one) => isFound(one, choice.search) && passes(one, choice.filter, isSelected, behindS))
-    .sort((a, b) => compare(a, b, choice.sort, behindS) || rank(a) - rank(b));
+    .sort(
+      (a, b) =>
+        Number(isLost(b, behindS)) - Number(isLost(a, behindS)) ||
+        compare(a, b, choice.sort, behindS) ||
+        rank(a) - rank(b),
+    );
   const titles = new Map<string, T[]>();
   for (const one of shown) {
     const title = groupTitle(one, choice.group, behindS);

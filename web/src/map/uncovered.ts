@@ -7,20 +7,31 @@ const OVER_THE_MAP = ".card, .map-tools .button, .map-notes > *";
 export interface Uncovered {
   readonly window: Frame;
   readonly covers: readonly Frame[];
+  /** The part that no panel covers, without its tools and notes. */
+  readonly room: Frame;
 }
 
 /** Measures what of the map is in sight now. */
 export function uncoveredOf(map: HTMLElement): Uncovered {
   const { left: x, top: y, width, height } = map.getBoundingClientRect();
-  const covers = [...document.querySelectorAll(OVER_THE_MAP)].map((element) => {
+  const frameOf = (element: Element): Frame => {
     const { left, top, right, bottom } = element.getBoundingClientRect();
     return { left: left - x, top: top - y, right: right - x, bottom: bottom - y };
-  });
-  return { window: { left: 0, top: 0, right: width, bottom: height }, covers };
+  };
+  const window = { left: 0, top: 0, right: width, bottom: height };
+  const [free, tools, notes] = [".map-free", ".map-tools", ".map-notes"].map((part) => {
+    const element = document.querySelector(part);
+    return element === null ? window : frameOf(element);
+  }) as [Frame, Frame, Frame];
+  const covers = [...document.querySelectorAll(OVER_THE_MAP)].map(frameOf);
+  return { window, covers, room: { ...free, right: tools.left, bottom: notes.top } };
 }
 
 /** Whether all of a frame is inside the map's window, and nothing stands over it. */
-export function isInSight(frame: Frame, { window, covers }: Uncovered): boolean {
+export function isInSight(
+  frame: Frame,
+  { window, covers }: Pick<Uncovered, "window" | "covers">,
+): boolean {
   const { left, top, right, bottom } = window;
   const isInside =
     frame.left >= left && frame.right <= right && frame.top >= top && frame.bottom <= bottom;

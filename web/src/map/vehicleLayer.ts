@@ -1,10 +1,18 @@
 import { type Map as MapLibre, Marker } from "maplibre-gl";
-import { simulation, stalenessNow, vehicleKey, vehicleStatus } from "../fleet/vehicleStatus";
+import {
+  badgeText,
+  simulation,
+  stalenessNow,
+  vehicleKey,
+  vehicleStatus,
+} from "../fleet/vehicleStatus";
 import type { VehicleView } from "../protocol";
 import { text } from "../text/catalogue";
+import { vehicleLabel } from "../text/names";
 import { agedBy, formatAge } from "../text/quantities";
 import { formatHeight } from "../text/units";
 import { clustersOf, type Spot } from "./clusters";
+import { EdgeMarkers, edgeMarksOf, type NamedSpot } from "./edgeMarks";
 import { type Frame, type LabelSpot, placeLabels, type Side } from "./labels";
 import type { LonLat } from "./localGrid";
 import { type Layer, positionOf, type Scene } from "./scene";
@@ -25,7 +33,7 @@ interface Placed {
 }
 
 /** A vehicle's place on the screen. */
-interface PlacedSpot extends Spot, LabelSpot {
+interface PlacedSpot extends Spot, LabelSpot, NamedSpot {
   /** Whether its label is shown at every zoom. */
   readonly isMarked: boolean;
   readonly isStale: boolean;
@@ -44,11 +52,13 @@ export class VehicleLayer implements Layer {
   private placed: readonly Placed[] = [];
   private targets: readonly Target[] = [];
   private sides = new Map<number, Side>();
+  private edges: EdgeMarkers | null = null;
 
   constructor(private readonly press: MarkerPress) {}
 
   add(map: MapLibre): void {
     this.map = map;
+    this.edges = new EdgeMarkers(map);
     map.on("move", () => this.arrange());
   }
 
@@ -81,6 +91,7 @@ export class VehicleLayer implements Layer {
     const fixed = this.targets.map((one) => ({ text: one.text, ...onScreen(map, one.at) }));
     const uncovered = uncoveredOf(map.getContainer());
     const isShown = (frame: Frame) => isInSight(frame, uncovered);
+    this.edges?.show(edgeMarksOf(spots, uncovered));
     this.sides = placeLabels(wanted, alone, this.sides, fixed, isShown);
     for (const { key, text: label, isStale } of spots)
       this.markers.get(key)?.setLabel(label, this.sides.get(key), isStale);
@@ -139,6 +150,8 @@ function spotOf(
   return {
     key: vehicleKey(vehicle),
     ...onScreen(map, at),
+    badge: badgeText(vehicle),
+    name: vehicleLabel(vehicle),
     standsAlone: isSelected || isTrouble,
     isMarked: isSelected || isStale,
     isStale,

@@ -2,6 +2,7 @@ import { createMemo, createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import {
   createListChoice,
+  firstFound,
   isSameList,
   type ListChoice,
   listVehicles,
@@ -70,7 +71,14 @@ export function VehicleList() {
     >
       <Show when={!isFolded()}>
         <Show when={hasTools()}>
-          <Tools choice={choice()} onChoose={choose} />
+          <Tools
+            choice={choice()}
+            onChoose={choose}
+            onEnter={() => {
+              const vehicle = firstFound(groups(), choice().search);
+              if (vehicle !== null) selection.only(vehicleKey(vehicle));
+            }}
+          />
         </Show>
         <Show when={fleet.vehicles.length > 0} fallback={<NoVehicles />}>
           <div class="vehicle-scroll">
@@ -97,7 +105,11 @@ export function VehicleList() {
   );
 }
 
-function Tools(props: { choice: ListChoice; onChoose: (next: Partial<ListChoice>) => void }) {
+function Tools(props: {
+  choice: ListChoice;
+  onChoose: (next: Partial<ListChoice>) => void;
+  onEnter: () => void;
+}) {
   return (
     <div class="vehicle-tools">
       <input
@@ -107,6 +119,7 @@ function Tools(props: { choice: ListChoice; onChoose: (next: Partial<ListChoice>
         placeholder={text.vehicles.search}
         value={props.choice.search}
         onInput={(event) => props.onChoose({ search: event.currentTarget.value })}
+        onKeyDown={(event) => event.key === "Enter" && props.onEnter()}
       />
       <Choice
         label={text.vehicles.filter}

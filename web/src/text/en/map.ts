@@ -1,5 +1,5 @@
 import type { AreaView, ZoneKind } from "../../protocol";
-import { plural } from "./grammar";
+import { listSome, plural } from "./grammar";
 
 export const map = {
   name: "Map",
@@ -14,6 +14,9 @@ export const map = {
   vehicle: (vehicle: string, activity: string) => `vehicle ${vehicle}, ${activity}`,
   simulatedVehicle: (vehicle: string, activity: string) =>
     `simulated vehicle ${vehicle}, ${activity}`,
+  manyOut: (count: number) => `${count}×`,
+  outOfSight: (vehicles: readonly string[]) =>
+    `Out of sight: ${listSome(vehicles, 3)}. Move the map there`,
   cluster: (count: number) => `${count} vehicles: zoom in`,
   old: (age: string) => `${age} old`,
   onGround: "on ground",

@@ -4,6 +4,7 @@ import { listNames, listSome, plural } from "./grammar";
 export const page = {
   vehicles: "Vehicles",
   panels: "Panels",
+  enterSelects: (number: number) => `Enter selects ${number}`,
   replayTitle: (product: string) => `REPLAY · ${product}`,
   noOrdersInReplay: "This is a replay: no orders are possible",
 };
@@ -108,6 +109,7 @@ export const help = {
     { keys: "Hold Shift + L", action: "Land the selected vehicles (1.5 s)" },
     { keys: "1 to 9", action: "Select only that vehicle" },
     { keys: "Shift + 1 to 9", action: "Add that vehicle to the selection, or remove it" },
+    { keys: "17 Enter", action: "Select that vehicle by its number; with Shift, add or remove it" },
     { keys: "Ctrl + A", action: "Select all vehicles" },
     { keys: "G", action: "Fly here: set a target on the map for the selected vehicle" },
     { keys: "D", action: "Details of the selected vehicle" },
