@@ -1,6 +1,7 @@
-import { createEffect, createSignal, For, onCleanup, onMount, Show } from "solid-js";
+import { createEffect, createMemo, createSignal, For, onCleanup, onMount, Show } from "solid-js";
 import { Dynamic } from "solid-js/web";
 import { useConsole } from "./console";
+import { happening } from "./fleet/happening";
 import { vehicleKey } from "./fleet/vehicleStatus";
 import { actOnKey, isAllStop } from "./keys";
 import { MapView } from "./map/MapView";
@@ -60,7 +61,7 @@ const PANELS: readonly (readonly [PanelName, () => ReturnType<typeof AlarmList>]
 export function App() {
   const { source, fleet, selection, orderApi, theme, fit, flyHere, zoneDraft, panels } =
     useConsole();
-  const { siteDraft, isReplay, largeCamera, clock } = useConsole();
+  const { siteDraft, isReplay, largeCamera, clock, behindS } = useConsole();
   const [isHelpOpen, setHelpOpen] = createSignal(false);
   const keys = () => fleet.vehicles.map(vehicleKey);
   const select = (key: number, action: (key: number) => void) => {
@@ -72,6 +73,11 @@ export function App() {
     (number) => keys().includes(number),
     (number, isAdded) => (isAdded ? selection.toggle(number) : selection.only(number)),
   );
+
+  const sentence = createMemo(() => {
+    const state = source.state();
+    return state === null ? null : happening(state, behindS());
+  });
 
   const clear = () => {
     if (isHelpOpen()) setHelpOpen(false);
@@ -127,6 +133,7 @@ export function App() {
     >
       <MapView />
       <TopBar onHelp={() => setHelpOpen(!isHelpOpen())} />
+      <Show when={sentence()}>{(words) => <p class="card happening wire-text">{words()}</p>}</Show>
       <div class="notices">
         <ConnectionBanner />
         <StopBanner />

@@ -140,6 +140,7 @@ def _played(options: DemoOptions) -> "_Demo":
     began_ns, start_ns = time_ns(), monotonic_ns()
     config = replace(
         options.config(played.site, options.console_port),
+        repeats_surveys=options.survey,
         scenario=world_text(path, seed, began_ns),
         sun_time_ahead_s=sky_of(played, seed).settings.sun.start_utc_s - time(),
     )

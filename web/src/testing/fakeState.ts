@@ -225,6 +225,7 @@ export function station(
       apps_listed: null,
       separation_hold_on: true,
       guard_stop_url: null,
+      repeats_surveys: false,
     },
     site: {
       name: "Field by the creek",

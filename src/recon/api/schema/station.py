@@ -87,6 +87,9 @@ class StationView(Message):
     separation_hold_on: bool = Field(
         description="whether the watchdogs hold vehicles; if not, they only raise alarms"
     )
+    repeats_surveys: bool = Field(
+        description="a demonstration: another survey begins when all batteries are good"
+    )
 
 
 class ReturningView(Message):

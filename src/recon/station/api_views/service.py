@@ -40,6 +40,8 @@ class Service:
     app_url: str | None = None
     """The first address for apps on other devices; None on loopback."""
     guard_stop_url: str | None = None
+    repeats_surveys: bool = False
+    """Whether this is a demonstration, which begins one survey after another."""
     lost_bytes: Callable[[], int] = lambda: 0
     """How many bytes of links the record has lost so far."""
     recording: Callable[[], Path | None] = lambda: None
@@ -143,6 +145,7 @@ class Service:
             capture_folder=self.capture_folder,
             capture_dropped_bytes=self.lost_bytes(),
             guard_stop_url=self.guard_stop_url,
+            repeats_surveys=self.repeats_surveys,
             separation_hold_on=self.driver.station.watchdog_state.is_hold_on,
             connections_refused=0 if links is None else links.refused_connections,
             apps_listed=None if listed is None else len(listed),

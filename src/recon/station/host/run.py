@@ -89,6 +89,7 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
         _write_app_list(config, driver, stack)
         folder = _text(config.record_folder)
         service = Service.around(driver, config.site, folder, begun.log, last_run.first_ids[0])
+        service.repeats_surveys = config.repeats_surveys
         service.edit(config.site_folder)
         recorder = _start_record(config, driver, auditor, service, stack)
         service.numbers = kept_numbers(given, numbers_file, stack)

@@ -54,6 +54,8 @@ class RunConfig:
     """Wind at the clouds' height, east and north, by a forecast fetched before; None: unknown."""
     sun_time_ahead_s: float = 0.0
     """How far the time of day of simulated drones is ahead of the computer's clock."""
+    repeats_surveys: bool = False
+    """Whether this is a demonstration, which begins one survey after another."""
     scenario: str = ""
     """The simulated world, for the record (`score/truth.py`); empty for real aircraft."""
 

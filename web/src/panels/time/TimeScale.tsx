@@ -1,4 +1,4 @@
-import { createMemo, createSignal, For, Show } from "solid-js";
+import { createEffect, createMemo, createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import { Legend } from "../../map/LayersButton";
 import type { ForecastView } from "../../protocol";
@@ -9,13 +9,21 @@ import "./time.css";
 /** The light on the field over the next minutes, as a scale: a press shows the forecast for that time. */
 export function TimeScale() {
   const { fleet } = useConsole();
-  return <Show when={fleet.shade?.forecast}>{(forecast) => <Scale forecast={forecast()} />}</Show>;
+  const known = () => {
+    const forecast = fleet.shade?.forecast;
+    return forecast ? knownPart(forecast) : null;
+  };
+  return <Show when={known()}>{(forecast) => <Scale forecast={forecast()} />}</Show>;
 }
 
 function Scale(props: { forecast: ForecastView }) {
   const { overlay } = useConsole();
   const [isFolded, setFolded] = createSignal(false);
   const leads = () => props.forecast.lead_s;
+  // What is shown stays on the scale when less is known than before.
+  createEffect(() => {
+    if (!leads().includes(overlay.lead_s())) overlay.setLead(leads().at(-1) ?? 0);
+  });
   const index = () => Math.max(0, leads().indexOf(overlay.lead_s()));
   const lead_s = () => leads()[index()] ?? 0;
   const when = () =>
@@ -80,6 +88,21 @@ function Scale(props: { forecast: ForecastView }) {
       </Show>
     </section>
   );
+}
+
+/** Less of the field than this known is as good as nothing. */
+const LEAST_KNOWN = 0.05;
+
+/** A forecast up to the last lead at which some of the field is known, and at least one step of it. */
+export function knownPart(forecast: ForecastView): ForecastView {
+  const last = forecast.predicted_share.findLastIndex((share) => share >= LEAST_KNOWN);
+  const count = Math.max(2, last + 1);
+  return {
+    ...forecast,
+    lead_s: forecast.lead_s.slice(0, count),
+    sun_share: forecast.sun_share.slice(0, count),
+    predicted_share: forecast.predicted_share.slice(0, count),
+  };
 }
 
 /** A lead as `45 s` or `2 min`; leads are whole seconds. */

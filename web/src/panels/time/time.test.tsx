@@ -2,7 +2,7 @@ import { afterEach, describe, expect, it } from "vitest";
 import { shadeLine, survey } from "../../testing/fakeField";
 import { station, vehicle } from "../../testing/fakeState";
 import { find, type RenderedPage, renderPage } from "../../testing/renderPage";
-import { gradient, nearestRight, TimeScale, ticksOf } from "./TimeScale";
+import { gradient, knownPart, nearestRight, TimeScale, ticksOf } from "./TimeScale";
 
 let page: RenderedPage;
 afterEach(() => page.dispose());
@@ -30,6 +30,16 @@ describe("the time scale", () => {
     const text = page.root.textContent;
     expect(text).toContain("Sun in 1 min · 71\u00a0% of the field · 93\u00a0% correct recently");
     expect(slider.getAttribute("aria-valuetext")).toBe("Sun in 1 min");
+  });
+
+  it("ends where nothing of the field is known any more", () => {
+    const lead_s = [0, 30, 60, 120, 600];
+    const share = [1, 1, 1, 1, 1];
+    const cut = (predicted_share: number[]) =>
+      knownPart({ ...forecast(), lead_s, sun_share: share, predicted_share }).lead_s;
+    expect(cut([1, 0.8, 0.4, 0.02, 0])).toEqual([0, 30, 60]);
+    expect(cut([0, 0, 0, 0, 0])).toEqual([0, 30]);
+    expect(cut([1, 1, 1, 1, 0.1])).toEqual(lead_s);
   });
 
   it("has labels and a legend", () => {

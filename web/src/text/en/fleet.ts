@@ -22,6 +22,26 @@ export const activity = {
   holding: "Holding",
 };
 
+const fly = (names: string, count: number) => `${names} ${count === 1 ? "flies" : "fly"} rows`;
+
+/** What happens now. */
+export const happening = {
+  sunlit: (names: string, count: number, time: string | null) =>
+    time === null
+      ? `${fly(names, count)} in sun.`
+      : `${fly(names, count)} in sun; more of the field has sun at ${time}.`,
+  unknownLight: (names: string, count: number) =>
+    `${fly(names, count)}; the light is not known yet.`,
+  rows: (names: string, count: number) => `${fly(names, count)}.`,
+  waits: (name: string, decision: string) => `${name} ${decision}.`,
+  nobody: "No drone flies rows.",
+  paused: "The survey is paused.",
+  landing: (names: string, count: number) =>
+    `The survey is complete. ${names} ${count === 1 ? "is" : "are"} still flying.`,
+  complete: "The survey is complete.",
+  another: "The survey is complete. Another one begins when all batteries are good.",
+};
+
 /** The state of station and fleet, with its reasons. */
 export const readiness = {
   labels: {

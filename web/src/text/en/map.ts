@@ -16,7 +16,9 @@ export const map = {
     `simulated vehicle ${vehicle}, ${activity}`,
   manyOut: (count: number) => `${count}×`,
   outOfSight: (vehicles: readonly string[]) =>
-    `Out of sight: ${listSome(vehicles, 3)}. Move the map there`,
+    vehicles.length > 1
+      ? `${vehicles.length}× out of sight: ${listSome(vehicles, 3)}. Move the map there`
+      : `Out of sight: ${listSome(vehicles, 1)}. Move the map there`,
   cluster: (count: number) => `${count} vehicles: zoom in`,
   old: (age: string) => `${age} old`,
   onGround: "on ground",
