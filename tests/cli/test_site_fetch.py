@@ -177,6 +177,18 @@ def ellipsoidal(_: bytes) -> bytes:
     return written(heights, crs="EPSG:4979", transform=transform)
 
 
+def fine_beyond_reason(_: bytes) -> bytes:
+    transform = Affine(1e-8, 0.0, AT[1] - 2.5e-7, 0.0, -1e-8, AT[0] + 2.5e-7)
+    return written(np.zeros((50, 50), "float32"), crs="EPSG:4326", transform=transform)
+
+
+def blind_around_the_site(_: bytes) -> bytes:
+    """A projection of half the globe whose rim is beside the origin."""
+    crs = f"+proj=ortho +lat_0={AT[0]} +lon_0={AT[1] - 89.9999}"
+    transform = Affine(100.0, 0.0, 6_375_000.0, 0.0, -100.0, 5_000.0)
+    return written(np.zeros((100, 100), "float32"), crs=crs, transform=transform)
+
+
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
@@ -184,6 +196,8 @@ def ellipsoidal(_: bytes) -> bytes:
         (lambda _: b"", "expected a GeoTIFF, got an empty file"),
         (lambda data: data[:200], "expected a whole GeoTIFF"),
         (far_away, "expected heights at the site's origin, got none there"),
+        (fine_beyond_reason, "expected at most 16000000 pixels around the site"),
+        (blind_around_the_site, "expected"),
         (ellipsoidal, "expected heights with elevation.datum = 'geoid'"),
     ],
 )

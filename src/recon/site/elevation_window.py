@@ -25,6 +25,7 @@ interpolated between pixels."""
 TOGETHER = 200_000
 """Pixels placed at once."""
 NO_DATA = -9999.0
+FARTHEST_PIXEL = 1e9
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -85,6 +86,11 @@ def elevation_window(site: Site, tiles: Sequence[HeightFile]) -> ElevationWindow
     assert site.frame is not None, "a folder's site has an origin"
     base = _tile_at_origin(site.frame, tiles)
     pixels = base.pixels(site.frame, _rim_m(site)[:, :2])
+    if not (np.abs(pixels) < FARTHEST_PIXEL).all():
+        raise SiteError(
+            f"{base.place}: expected a projection that knows all of the site's ground, got another "
+            "one; export it in EPSG:4326"
+        )
     first, end = np.floor(pixels.min(axis=0)).astype(int), np.ceil(pixels.max(axis=0)).astype(int)
     rows, cols = (end - first + 1).tolist()
     if rows * cols > MOST_PIXELS:
