@@ -37,7 +37,8 @@ class AppSettings(private val stored: SharedPreferences) {
     val simulatedSerial: String
         get() = stored.getString("simulated_serial", null) ?: newSerial()
 
-    fun session(appName: String) = SessionSettings(altitudeReference, missionOnLinkLoss, hoverOnGround, appName)
+    fun session(appName: String, startedS: Long) =
+        SessionSettings(altitudeReference, missionOnLinkLoss, hoverOnGround, appName, startedS)
 
     private fun newSerial(): String = String.format(Locale.ROOT, "SIM-%04X", Random.nextInt(0x10000)).also {
         stored.edit().putString("simulated_serial", it).apply()

@@ -136,9 +136,8 @@ class CompanionHost(
 
     /** One companion app from start to stop; the listener's functions are called by its thread. */
     private inner class Run(val station: StationAddress) : CompanionListener {
-        val app = CompanionApp(settings.session(source.appName), source.open(::report), station, JpegEncoder, this) {
-            tune(station, it)
-        }
+        private val session = settings.session(source.appName, startedS = clockMs() / 1_000)
+        val app = CompanionApp(session, source.open(::report), station, JpegEncoder, this) { tune(station, it) }
         private val newest = AtomicReference<Status?>()
         private var loggedNs = 0L
 

@@ -136,6 +136,7 @@ class RunCompanions : Callable<Int> {
             missionOnLinkLoss = missionOnLostLink,
             hoverOnGround = hoverOnGround,
             appName = "Recon companion ${Version.TEXT}, simulated aircraft",
+            startedS = System.currentTimeMillis() / 1_000,
         )
         val aircraft = aircraftSettings(index)
         return CompanionApp(settings, SimulatedAircraft(aircraft), address(), encoder(), Printed(aircraft.serial))

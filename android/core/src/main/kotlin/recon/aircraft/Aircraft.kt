@@ -16,6 +16,9 @@ interface Aircraft {
 
     /** Passes every frame of the camera feed to [listener], from any thread, until replaced by null. */
     fun onFrame(listener: ((VideoFrame) -> Unit)?)
+
+    /** Passes every photo that the camera has confirmed to [listener], from any thread, until replaced by null. */
+    fun onPhoto(listener: ((ReleasedPhoto) -> Unit)?) {}
 }
 
 /** What the session asks of an aircraft. Each ends what the aircraft did before; none takes off but [TakeOff]. */
@@ -40,7 +43,16 @@ sealed interface AircraftCommand {
     data class SetStick(val setpoint: StickSetpoint) : AircraftCommand
 
     data class SetVideo(val isOn: Boolean) : AircraftCommand
+
+    /** Hold exposure and white balance as they are, or give them back; state shows what is held. */
+    data class LockCamera(val isLocked: Boolean) : AircraftCommand
+
+    /** Whether it moves the aircraft, or ends what moves it. */
+    val isMotion: Boolean get() = this !is SetVideo && this !is LockCamera && this !is ConfirmLanding
 }
+
+/** The steps of a mission on its way: to the aircraft, into it, and its start. */
+enum class MissionAction { UPLOAD, LOAD, START }
 
 /** The aircraft's answer to a command. */
 sealed interface Answer {
@@ -49,8 +61,11 @@ sealed interface Answer {
     /** Accepted, with a sentence for the operator. */
     data class Noted(val note: String) : Answer
 
-    /** [reason] is a sentence for the operator. */
-    data class Refused(val reason: String) : Answer
+    /**
+     * [reason] is a sentence for the operator. [code] is that of the aircraft's SDK, and [action] the step of
+     * a mission that failed, where they are known.
+     */
+    data class Refused(val reason: String, val code: String? = null, val action: MissionAction? = null) : Answer
 }
 
 /** Velocity setpoint of the virtual stick: heading and height are held, whatever the velocity. */

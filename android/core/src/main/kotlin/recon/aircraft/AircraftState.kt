@@ -82,6 +82,7 @@ data class AircraftState(
     /** It waits at 0.3 m until the app confirms that the ground is fit to land on. */
     val needsLandingConfirmation: Boolean = false,
     val capabilities: Capabilities = Capabilities(),
+    val facts: AircraftFacts = AircraftFacts(),
 ) {
     /** Whether it stands on the ground with no takeoff under way. */
     val isOnGround: Boolean get() = !isFlying && !flightMode.isTakeoff

@@ -58,6 +58,7 @@ class CompanionApp(
 
     fun start() {
         aircraft.onFrame(::frameTaken)
+        aircraft.onPhoto { photo -> tasks.add { session.photoTaken(photo, it) } }
         // Before the first link, which begins with the aircraft's identity.
         session.aircraftState(aircraft.state(), System.nanoTime())
         thread.start()
@@ -76,6 +77,7 @@ class CompanionApp(
     override fun close() {
         isClosed = true
         aircraft.onFrame(null)
+        aircraft.onPhoto(null)
         thread.join(JOIN_MS)
         connection.close()
         encoderThread.shutdownNow()

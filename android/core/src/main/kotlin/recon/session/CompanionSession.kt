@@ -3,6 +3,7 @@ package recon.session
 import recon.aircraft.AircraftCommand
 import recon.aircraft.AircraftState
 import recon.aircraft.Answer
+import recon.aircraft.ReleasedPhoto
 import recon.aircraft.VideoFrame
 import recon.wire.ArrivedPacket
 import recon.wire.CameraControl
@@ -27,6 +28,7 @@ import recon.wire.shownText
  *   is undone by repeating the newer order.
  * - *Motion.* Sticks are in `StickStream` with the dead-man, the mission in `MissionRun`; each order
  *   to move ends the other. A lost link ends sticks at once with a hover, and a mission as set.
+ * - *Extension.* Facts, photos and how actions ended are told in texts of their own (`Extension`).
  * - *Release.* The person beside the phone can take the aircraft from the station at any time; then
  *   only stops are passed on, until control is allowed again.
  *
@@ -41,6 +43,7 @@ class CompanionSession(val settings: SessionSettings) {
     private val mission = MissionRun(settings)
     private val landing = LandingConfirmation(settings)
     private val video = VideoPacer(settings)
+    private val extension = Extension(settings.appName, settings.startedS)
     private var lastMotion: AircraftCommand = AircraftCommand.Hover
     private var wasStale = false
 
@@ -67,12 +70,13 @@ class CompanionSession(val settings: SessionSettings) {
     val dropped: Pair<Long, Long> get() = link.droppedImages to link.droppedTelemetry
 
     /** When [tick] has work next, if nothing else happens before. */
-    val dueNs: Long get() = minOf(link.dueNs, calls.dueNs, minOf(stick.dueNs, mission.dueNs))
+    val dueNs: Long get() = listOf(link.dueNs, calls.dueNs, stick.dueNs, mission.dueNs, extension.dueNs).min()
 
     fun takeOutputs(): List<Output> = outputs.toList().also { outputs.clear() }
 
     fun linkOpened(nowNs: Long) {
         link.open(nowNs)
+        extension.open(nowNs)
         mission.linkRestored()
         if (state?.isSimulated == true) link.report(Severity.INFO, SIMULATED_HELLO, nowNs)
         link.report(Severity.INFO, introduction(), nowNs)
@@ -83,6 +87,7 @@ class CompanionSession(val settings: SessionSettings) {
     fun linkClosed(reason: String, nowNs: Long) {
         if (!link.isOpen) return
         link.close()
+        extension.close(nowNs)
         calls.forgetSources()
         if (video.isOn) stopVideo(null, nowNs)
         notice(Severity.WARNING, "Link to the station lost: $reason")
@@ -102,7 +107,10 @@ class CompanionSession(val settings: SessionSettings) {
         val isIdentified = newest?.serial != null && newest.serial != state?.serial
         state = newest
         if (newest != null) observe(newest, nowNs)
-        if (isIdentified) link.extendedNow(nowNs)
+        if (isIdentified) {
+            link.extendedNow(nowNs)
+            extension.identified(nowNs)
+        }
         tick(nowNs)
     }
 
@@ -111,7 +119,7 @@ class CompanionSession(val settings: SessionSettings) {
         when (answer) {
             is Answer.Accepted -> accepted(call, null, nowNs)
             is Answer.Noted -> accepted(call, shownText(answer.note), nowNs)
-            is Answer.Refused -> refused(call, shownText(answer.reason), nowNs)
+            is Answer.Refused -> refused(call, answer.copy(reason = shownText(answer.reason)), nowNs)
         }
         tick(nowNs)
     }
@@ -119,6 +127,12 @@ class CompanionSession(val settings: SessionSettings) {
     /** Takes a frame of the camera feed; most are not sent. */
     fun frameTaken(frame: VideoFrame, nowNs: Long) {
         if (link.isOpen && video.takes(nowNs)) outputs.add(Output.Encode(frame, video.targetFpsHz))
+    }
+
+    /** Takes a photo that the camera has confirmed, with or without a link. */
+    fun photoTaken(photo: ReleasedPhoto, nowNs: Long) {
+        extension.photoTaken(photo)
+        tick(nowNs)
     }
 
     /** Takes back a frame as the packet that was asked for by [Output.Encode]. */
@@ -156,6 +170,7 @@ class CompanionSession(val settings: SessionSettings) {
         checkCalls(nowNs)
         if (!link.isOpen) return
         link.queueTelemetry(state, mission.idFor(state), nowNs)
+        extension.due(freshState(nowNs), nowNs).forEach(link::queueText)
         noticeStaleState(nowNs)
         if (link.isStalled(nowNs)) outputs.add(Output.CloseLink("the station has not read for ${stalledS()} s"))
     }
@@ -175,6 +190,7 @@ class CompanionSession(val settings: SessionSettings) {
             is Order.Stick -> commandStick(order, arrived, nowNs)
             is Order.StartVideo -> startVideo(order, nowNs)
             is Order.StopVideo -> stopVideo(pid, nowNs)
+            is Order.Lock -> fly(AircraftCommand.LockCamera(order.isLocked), "Camera lock", pid, nowNs)
             is Order.Done -> link.acknowledge(pid, isPositive = true)
             is Order.Refused -> refuse(pid, order.reason, nowNs)
         }
@@ -224,7 +240,7 @@ class CompanionSession(val settings: SessionSettings) {
     }
 
     private fun fly(command: AircraftCommand, what: String, pid: Int?, nowNs: Long) {
-        if (isMotion(command)) lastMotion = command
+        if (command.isMotion) lastMotion = command
         val call = calls.begin(command, what, pid, nowNs)
         outputs.add(Output.Execute(call.id, command))
     }
@@ -246,7 +262,8 @@ class CompanionSession(val settings: SessionSettings) {
         note?.let { report(Severity.INFO, "${call.what}: $it", nowNs) }
         val command = call.command
         if (command is AircraftCommand.FlyMission) missionAccepted(nowNs)
-        if (isMotion(command)) landing.ordered(landsAtEnd(command))
+        if (command.isMotion) landing.ordered(landsAtEnd(command))
+        okOutcome(command, mission.number)?.let(extension::ended)
         call.sourcePid?.let { link.acknowledge(it, isPositive = true) }
     }
 
@@ -255,10 +272,11 @@ class CompanionSession(val settings: SessionSettings) {
         if (!link.isOpen) mission.linkLost(nowNs)
     }
 
-    private fun refused(call: Call, reason: String, nowNs: Long) {
+    private fun refused(call: Call, answer: Answer.Refused, nowNs: Long) {
         if (call.command is AircraftCommand.SetStick) stick.stop()
         if (call.command is AircraftCommand.SetVideo) video.stop()
-        val text = "${call.what} refused by the aircraft: $reason"
+        failedOutcome(call.command, answer)?.let(extension::ended)
+        val text = "${call.what} refused by the aircraft: ${answer.reason}"
         val pid = call.sourcePid
         if (pid != null) refuse(pid, text, nowNs) else report(Severity.ERROR, text, nowNs)
     }
@@ -283,6 +301,7 @@ class CompanionSession(val settings: SessionSettings) {
     private fun checkMission(nowNs: Long) {
         if (mission.failedToStart(nowNs)) {
             report(Severity.ERROR, MISSION_NOT_STARTED, nowNs)
+            extension.ended(Outcome("mission_start", isOk = false, text = MISSION_NOT_STARTED, missionId = mission.number))
         }
         val action = mission.linkLossAction(nowNs) ?: return
         val command = if (action == LinkLossAction.RETURN) AircraftCommand.GoHome else AircraftCommand.Hover
@@ -294,7 +313,7 @@ class CompanionSession(val settings: SessionSettings) {
         for (call in calls.slow(nowNs)) {
             report(Severity.WARNING, "${call.what}: the aircraft has not answered yet", nowNs)
         }
-        for (call in calls.expired(nowNs)) refused(call, "no answer", nowNs)
+        for (call in calls.expired(nowNs)) refused(call, Answer.Refused("no answer"), nowNs)
     }
 
     private fun noticeStaleState(nowNs: Long) {
@@ -330,9 +349,6 @@ class CompanionSession(val settings: SessionSettings) {
         const val TELEMETRY_LOST = "Telemetry of the aircraft lost: check its controller"
         const val MISSION_NOT_STARTED =
             "The aircraft accepted the mission and did not start it: check its limits and warnings"
-
-        fun isMotion(command: AircraftCommand): Boolean =
-            command !is AircraftCommand.SetVideo && command !is AircraftCommand.ConfirmLanding
 
         fun landsAtEnd(command: AircraftCommand): Boolean =
             command is AircraftCommand.Land || command is AircraftCommand.GoHome ||

@@ -17,7 +17,9 @@ import recon.aircraft.FlightMode
  * telemetry while it is flown.
  */
 class MissionRun(private val settings: SessionSettings) {
-    private var number = 0
+    /** The number of the newest mission that was accepted; 0 before the first. */
+    var number = 0
+        private set
     private var isAccepted = false
     private var isFlown = false
     private var startsByNs = Long.MAX_VALUE

@@ -25,6 +25,9 @@ sealed interface Order {
 
     data object StopVideo : Order
 
+    /** Hold exposure and white balance, or give them back. */
+    data class Lock(val isLocked: Boolean) : Order
+
     /** Already as ordered: nothing to do. */
     data class Done(val what: String) : Order
 
@@ -74,14 +77,21 @@ class Orders(private val settings: SessionSettings) {
 
     private fun camera(packet: CameraControl, state: AircraftState?): Order {
         if (packet.action == CameraControl.STOP) return Order.StopVideo
+        if (packet.action == CameraControl.LOCK || packet.action == CameraControl.UNLOCK) return lock(packet, state)
         val fps = packet.targetFpsHz
         return when {
             packet.action != CameraControl.START ->
-                Order.Refused("Camera action must be 0 or 1; got ${packet.action}")
+                Order.Refused("Camera action must be 0 to 3; got ${packet.action}")
             !(fps.isFinite() && fps > 0f) -> Order.Refused("Frame rate must be over 0 Hz; got ${shown(fps.toDouble())}")
             state == null -> Order.Refused(NO_STATE)
             else -> lacking(state.capabilities.camera, "camera feed") ?: Order.StartVideo(fps)
         }
+    }
+
+    private fun lock(packet: CameraControl, state: AircraftState?): Order = when {
+        state == null -> Order.Refused(NO_STATE)
+        !state.facts.locksCamera -> Order.Refused("This aircraft's camera cannot be locked by the app")
+        else -> Order.Lock(packet.action == CameraControl.LOCK)
     }
 
     private fun mission(packet: ExecuteWaypointMission, state: AircraftState?): Order {

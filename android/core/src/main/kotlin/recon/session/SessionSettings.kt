@@ -22,6 +22,8 @@ data class SessionSettings(
     val missionOnLinkLoss: LinkLossAction = LinkLossAction.HOLD,
     val hoverOnGround: HoverOnGround = HoverOnGround.IGNORE,
     val appName: String = "Recon companion",
+    /** When the app started, seconds since 1970: the number of its first series of photos. */
+    val startedS: Long = 0,
 
     /** Reconnections within this time do not count as a lost link for a mission. */
     val missionLinkLossDelayNs: Long = 5_000_000_000,

@@ -97,6 +97,11 @@ class StationLink(private val settings: SessionSettings) {
         outbox.addMessage(encode(MessageString(MESSAGE_TYPES.getValue(severity), Bytes.of(text))))
     }
 
+    /** Queues a text that is for the station's program, not for a person. */
+    fun queueText(text: String) {
+        if (isOpen) outbox.addMessage(encode(MessageString(MessageString.DEBUG, Bytes.of(text))))
+    }
+
     fun queueImage(packet: Packet) {
         if (isOpen) outbox.addImage(encode(packet))
     }

@@ -1,16 +1,19 @@
 package recon.sim
 
 import recon.aircraft.AircraftCommand
+import recon.aircraft.AircraftFacts
 import recon.aircraft.AircraftState
 import recon.aircraft.Answer
 import recon.aircraft.Attitude
 import recon.aircraft.BatteryWarning
+import recon.aircraft.CameraMode
 import recon.aircraft.CameraState
 import recon.aircraft.Capabilities
 import recon.aircraft.Capability
 import recon.aircraft.Failsafe
 import recon.aircraft.FlightMode
 import recon.aircraft.MissionPlan
+import recon.aircraft.RtkState
 import recon.aircraft.StickSetpoint
 import recon.aircraft.VelocityNed
 import recon.geo.LatLon
@@ -52,6 +55,7 @@ class SimulatedFlight(private val settings: SimulatedSettings, startNs: Long) {
     private var home = Motion()
     private var charge = 1.0
     private var isVideoOn = false
+    private var isCameraLocked = false
 
     /** Errors of GNSS and barometer: values that never change are those of a hung sensor. */
     private val noise = Random(settings.serial.hashCode().toLong())
@@ -87,6 +91,7 @@ class SimulatedFlight(private val settings: SimulatedSettings, startNs: Long) {
         is AircraftCommand.FlyMission -> flyMission(command.plan)
         is AircraftCommand.SetStick -> setStick(command.setpoint)
         is AircraftCommand.SetVideo -> Answer.Accepted.also { isVideoOn = command.isOn }
+        is AircraftCommand.LockCamera -> Answer.Accepted.also { isCameraLocked = command.isLocked }
     }
 
     fun state(): AircraftState = AircraftState(
@@ -110,6 +115,20 @@ class SimulatedFlight(private val settings: SimulatedSettings, startNs: Long) {
         cameraState = cameraState(),
         needsLandingConfirmation = (phase as? Landing)?.isWaiting ?: false,
         capabilities = settings.capabilities,
+        facts = facts(),
+    )
+
+    private fun facts() = AircraftFacts(
+        home = plane.position(home.northM, home.eastM),
+        maxHeightM = settings.maxHeightM,
+        maxDistanceM = settings.maxDistanceM,
+        model = "simulated",
+        rtk = RtkState.OFF,
+        cameraMode = CameraMode.PHOTO,
+        isExposureLocked = isCameraLocked,
+        isWhiteBalanceLocked = isCameraLocked,
+        reportsPhotos = false,
+        locksCamera = settings.capabilities.camera == Capability.SUPPORTED,
     )
 
     private fun tick(seconds: Double) {

@@ -15,7 +15,7 @@ data class EmergencyCommand(val action: Int) : Packet {
     }
 }
 
-/** PID 254; [action] 0 stop sending images, 1 start at [targetFpsHz]. */
+/** PID 254; [action] 0 stop sending images, 1 start at [targetFpsHz]; by the extension 2 lock the camera, 3 unlock. */
 data class CameraControl(val action: Int, val targetFpsHz: Float) : Packet {
     override val pid get() = PID
 
@@ -28,6 +28,8 @@ data class CameraControl(val action: Int, val targetFpsHz: Float) : Packet {
         const val PID = 254
         const val STOP = 0
         const val START = 1
+        const val LOCK = 2
+        const val UNLOCK = 3
         internal val FORMAT = fixedFormat(PID, 5) { CameraControl(it.u8(), it.f32()) }
     }
 }

@@ -15,7 +15,6 @@ import recon.wire.Deframer
 import recon.wire.MessageString
 import recon.wire.Packet
 import recon.wire.encode
-import recon.wire.shownText
 
 const val MS = 1_000_000L
 const val SECOND = 1_000 * MS
@@ -55,7 +54,15 @@ class Harness(settings: SessionSettings = SessionSettings(), private val isReadi
 
     val commands: List<AircraftCommand> get() = executed.map { it.command }
     val acknowledgments: List<Acknowledgment> get() = packets()
-    val messages: List<String> get() = packets<MessageString>().map { it.text.shownText() }
+    /** Sentences for people. */
+    val messages: List<String> get() = texts(isForPeople = true)
+
+    /** Texts of the extension. */
+    val appTexts: List<String> get() = texts(isForPeople = false)
+
+    private fun texts(isForPeople: Boolean) =
+        packets<MessageString>().filter { (it.type != MessageString.DEBUG) == isForPeople }
+            .map { String(it.text.toByteArray(), Charsets.UTF_8) }
 
     inline fun <reified T : Packet> packets(): List<T> = sent.map { it.second }.filterIsInstance<T>()
 

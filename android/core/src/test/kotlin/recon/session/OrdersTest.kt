@@ -129,7 +129,7 @@ class OrdersTest {
     fun `values outside the document are refused with what was expected`() {
         assertRefused("Emergency action must be 0, 1 or 2; got 3", EmergencyCommand(3))
         assertEquals("Emergency", harness.session.lastOrder)
-        assertRefused("Camera action must be 0 or 1; got 9", CameraControl(9, 1f))
+        assertRefused("Camera action must be 0 to 3; got 9", CameraControl(9, 1f))
         assertRefused("Frame rate must be over 0 Hz; got NaN", CameraControl(1, Float.NaN))
         assertRefused("Frame rate must be over 0 Hz; got -1", CameraControl(1, -1f))
         assertRefused("Stick mode must be 0 or 1; got 2", STICK.copy(mode = 2))
