@@ -24,6 +24,7 @@ class Call(
 /** The unanswered calls, oldest first. */
 class Calls(private val settings: SessionSettings) {
     private val open = LinkedHashMap<Long, Call>()
+    private val givenUp = LinkedHashSet<Long>()
     private var count = 0L
 
     /** Whether a mission waits for its answer: a second one is refused until then. */
@@ -42,6 +43,9 @@ class Calls(private val settings: SessionSettings) {
     /** The call that this answer ends; null for one that has ended already. */
     fun end(id: Long): Call? = open.remove(id)
 
+    /** Whether this answer comes for a mission whose operator was told that there is none; asked once. */
+    fun wasGivenUp(id: Long): Boolean = givenUp.remove(id)
+
     /** The link of these calls has ended: on the next one an acknowledgment would answer another command. */
     fun forgetSources() {
         open.values.forEach { it.sourcePid = null }
@@ -57,9 +61,15 @@ class Calls(private val settings: SessionSettings) {
         open.values.filter { !it.isAnnounced && nowNs - it.issuedNs >= settings.slowAnswerNs }
             .onEach { it.isAnnounced = true }
 
-    /** Calls without an answer for too long; they are forgotten. */
+    /** Calls without an answer for too long; they are forgotten, but for missions that may still be accepted. */
     fun expired(nowNs: Long): List<Call> =
-        open.values.filter { nowNs - it.issuedNs >= settings.answerTimeoutNs }.onEach { open.remove(it.id) }
+        open.values.filter { nowNs - it.issuedNs >= settings.answerTimeoutNs }.onEach(::giveUp)
+
+    private fun giveUp(call: Call) {
+        open.remove(call.id)
+        if (call.command is AircraftCommand.FlyMission) givenUp.add(call.id)
+        while (givenUp.size > MOST_OPEN) givenUp.remove(givenUp.first())
+    }
 
     private fun dueOf(call: Call): Long =
         call.issuedNs + if (call.isAnnounced) settings.answerTimeoutNs else settings.slowAnswerNs

@@ -115,7 +115,7 @@ class CompanionSession(val settings: SessionSettings) {
     }
 
     fun answered(callId: Long, answer: Answer, nowNs: Long) {
-        val call = calls.end(callId) ?: return
+        val call = calls.end(callId) ?: return answeredLate(callId, answer, nowNs)
         when (answer) {
             is Answer.Accepted -> accepted(call, null, nowNs)
             is Answer.Noted -> accepted(call, shownText(answer.note), nowNs)
@@ -267,6 +267,15 @@ class CompanionSession(val settings: SessionSettings) {
         call.sourcePid?.let { link.acknowledge(it, isPositive = true) }
     }
 
+    /** A mission that was told to have failed must not fly: what was ordered since is repeated, or it hovers. */
+    private fun answeredLate(callId: Long, answer: Answer, nowNs: Long) {
+        if (!calls.wasGivenUp(callId) || answer is Answer.Refused) return
+        report(Severity.WARNING, "Mission accepted after it was given up: it is ended", nowNs)
+        val newest = lastMotion.takeUnless { it is AircraftCommand.FlyMission } ?: AircraftCommand.Hover
+        fly(newest, "Repeat of the newest order", null, nowNs)
+        tick(nowNs)
+    }
+
     private fun missionAccepted(nowNs: Long) {
         mission.accepted(nowNs)
         if (!link.isOpen) mission.linkLost(nowNs)
@@ -313,7 +322,14 @@ class CompanionSession(val settings: SessionSettings) {
         for (call in calls.slow(nowNs)) {
             report(Severity.WARNING, "${call.what}: the aircraft has not answered yet", nowNs)
         }
-        for (call in calls.expired(nowNs)) refused(call, Answer.Refused("no answer"), nowNs)
+        for (call in calls.expired(nowNs)) giveUp(call, nowNs)
+    }
+
+    private fun giveUp(call: Call, nowNs: Long) {
+        refused(call, Answer.Refused("no answer"), nowNs)
+        val isMission = call.command is AircraftCommand.FlyMission && !call.isSuperseded
+        // It may fly all the same, and nobody would know.
+        if (isMission) fly(AircraftCommand.Hover, "Hover after a mission without an answer", null, nowNs)
     }
 
     private fun noticeStaleState(nowNs: Long) {

@@ -36,6 +36,20 @@ class MissionTest {
     }
 
     @Test
+    fun `a mission that is never answered is given up with a hover, and ended if it is accepted later`() {
+        harness.answers = null
+        harness.receive(mission())
+        harness.pass(21 * SECOND)
+        assertEquals(listOf(Acknowledgment(0, 253)), harness.acknowledgments)
+        assertEquals(AircraftCommand.Hover, harness.commands.last())
+        val upload = harness.executed.first()
+        repeat(2) { harness.answer(upload, Answer.Accepted) }
+        assertTrue("Mission accepted after it was given up: it is ended" in harness.messages)
+        assertEquals(3, harness.commands.size)
+        assertEquals(AircraftCommand.Hover, harness.commands.last())
+    }
+
+    @Test
     fun `what the aircraft notes of a mission is told`() {
         harness.answers = Answer.Noted("DJI's check found no fault")
         harness.receive(mission())

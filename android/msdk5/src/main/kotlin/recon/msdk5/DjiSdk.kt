@@ -63,11 +63,15 @@ data class DjiSnapshot(
     val isVirtualStickSupported: Boolean? = null,
     val isVirtualStickEnabled: Boolean? = null,
     val missionState: String? = null,
+    /** Name of the mission that is flown, whoever has started it. */
+    val missionName: String? = null,
     /** Whether the SDK lists a camera; null before it has listed any. */
     val hasCamera: Boolean? = null,
     /** DJI's `ProductType` and `CameraType` by their names: `UNRECOGNIZED` for some seconds after the start. */
     val product: String? = null,
     val camera: String? = null,
+    /** -90 straight down. */
+    val gimbalPitchDeg: Double? = null,
 )
 
 /**
@@ -95,6 +99,19 @@ interface DjiSdk {
     fun startMission(name: String, done: Done)
 
     fun stopMission(name: String, done: Done)
+
+    /** Holds whatever mission is flown; it can be resumed by the controller only. */
+    fun pauseMission(done: Done)
+
+    /** What changes seldom; read at most once a second. */
+    fun readings(): DjiReadings
+
+    fun lockExposure(isLocked: Boolean, done: Done)
+
+    fun setWhiteBalance(wanted: WhiteBalance, done: Done)
+
+    /** Passes what the camera tells of its photos, until null. */
+    fun onCamera(listener: ((CameraEvent) -> Unit)?)
 
     /** Passes frames in NV21 to the listener (bytes, width, height), until null. */
     fun onFrame(listener: ((ByteArray, Int, Int) -> Unit)?)

@@ -1,5 +1,6 @@
 package recon.msdk5
 
+import recon.aircraft.AircraftFacts
 import recon.aircraft.AircraftState
 import recon.aircraft.Attitude
 import recon.aircraft.BatteryWarning
@@ -41,9 +42,12 @@ private val FLIGHT_MODES = mapOf(
 
 private val MISSION_RUNS = setOf("ENTER_WAYLINE", "EXECUTING", "INTERRUPTED", "RECOVERING", "RETURN_TO_START_POINT")
 
+/** Whether a mission is flown, by whomever it was started. */
+internal val DjiSnapshot.isMissionFlown: Boolean get() = missionState in MISSION_RUNS
+
 /** Whether a mission is being prepared or flown, which a new order must stop. */
 internal val DjiSnapshot.isMissionActive: Boolean
-    get() = missionState in MISSION_RUNS || missionState == "PREPARING" || missionState == "UPLOADING"
+    get() = isMissionFlown || missionState == "PREPARING" || missionState == "UPLOADING"
 
 internal val DjiSnapshot.mode: FlightMode get() = FLIGHT_MODES[flightMode] ?: FlightMode.OTHER
 
@@ -53,7 +57,9 @@ internal val DjiSnapshot.mode: FlightMode get() = FLIGHT_MODES[flightMode] ?: Fl
  * DJI's location altitude is already relative to the takeoff point; a position of exactly 0, 0 or NaN is
  * a receiver without a fix.
  */
-internal fun aircraftState(snapshot: DjiSnapshot, isVideoOn: Boolean): AircraftState? {
+internal fun aircraftState(
+    snapshot: DjiSnapshot, isVideoOn: Boolean, facts: AircraftFacts = AircraftFacts(),
+): AircraftState? {
     val isFlying = snapshot.isFlying ?: return null
     return AircraftState(
         updatedNs = snapshot.updatedNs,
@@ -77,10 +83,11 @@ internal fun aircraftState(snapshot: DjiSnapshot, isVideoOn: Boolean): AircraftS
         cameraState = cameraState(snapshot, isVideoOn),
         needsLandingConfirmation = snapshot.isLandingConfirmationNeeded ?: false,
         capabilities = capabilities(snapshot),
+        facts = facts,
     )
 }
 
-private fun position(snapshot: DjiSnapshot): LatLon? {
+internal fun position(snapshot: DjiSnapshot): LatLon? {
     val latitude = snapshot.latitudeDeg?.takeIf { it.isFinite() } ?: return null
     val longitude = snapshot.longitudeDeg?.takeIf { it.isFinite() } ?: return null
     return LatLon(latitude, longitude).takeUnless { latitude == 0.0 && longitude == 0.0 }

@@ -1,7 +1,6 @@
 package recon.msdk5
 
-/** A step of a mission on its way to the aircraft, which DJI can refuse. */
-internal enum class MissionStep { UPLOAD, START }
+import recon.aircraft.MissionAction
 
 private const val AGAIN = "send the mission again, with the controller near the aircraft"
 private const val TAKE_OUT =
@@ -57,15 +56,18 @@ private val TRY = mapOf(
 
 /** Codes that tell that the aircraft has the file and does not take what is in it. */
 private val LOADING = setOf("WPMZ_FILE_LOAD_ERROR", "WAYLINE_INFO_ERROR")
+private const val OF_ROUTE = "TRAJ_"
+
+/** Whether DJI refuses the content of a mission's file, and not the moment. */
+internal fun isOfContent(error: DjiError): Boolean = error.code in LOADING || error.code.startsWith(OF_ROUTE)
 
 /** A failed step as a sentence: which one, DJI's words and code, and what to try where that is known. */
-internal fun missionFailure(step: MissionStep, error: DjiError): String {
-    val isOfContent = error.code in LOADING || error.code.startsWith("TRAJ_")
-    val what = when {
-        step == MissionStep.UPLOAD -> "Upload failed"
-        isOfContent -> "Uploaded, but the aircraft cannot load the file"
-        else -> "Uploaded, but not started"
+internal fun missionFailure(step: MissionAction, error: DjiError): String {
+    val what = when (step) {
+        MissionAction.UPLOAD -> "Upload failed"
+        MissionAction.LOAD -> "Uploaded, but the aircraft cannot load the file"
+        MissionAction.START -> "Uploaded, but not started"
     }
-    val advice = TRY[error.code] ?: if (error.code.startsWith("TRAJ_")) TAKE_OUT else null
+    val advice = TRY[error.code] ?: TAKE_OUT.takeIf { error.code.startsWith(OF_ROUTE) }
     return "$what: $error" + (advice?.let { ". To try: $it" } ?: "")
 }

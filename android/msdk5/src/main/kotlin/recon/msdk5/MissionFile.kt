@@ -13,14 +13,26 @@ import recon.mission.planProblem
 /** The model that is connected; null while DJI does not tell it. */
 internal val DjiSnapshot.model: AircraftModel? get() = aircraftModelOf(product, camera)
 
-/** The file of a mission for the aircraft that is connected, and sentences for the operator about it. */
-internal class MissionFile(private val plan: MissionPlan, private val aircraft: DjiSnapshot?, createdMs: Long) {
+/**
+ * The file of a mission for the aircraft that is connected, and sentences for the operator about it.
+ *
+ * A mission that looks straight down from its first waypoint is one of a survey. It takes the photos itself, at
+ * the interval that the camera's timer is set to, where the model can and the camera is not in timer mode.
+ */
+internal class MissionFile(
+    private val plan: MissionPlan, private val aircraft: DjiSnapshot?, camera: DjiReadings, createdMs: Long,
+) {
     private val model = aircraft?.model
     private val drone = model?.numberWith(aircraft?.camera)
-    private val takesPhotos = model?.has(ModelFunction.PHOTO_TIMER) == true && drone?.camera != null
-    private val flown = if (takesPhotos) plan else plan.copy(photoEveryS = null)
+    private val isSurvey = plan.photoEveryS != null || plan.points.firstOrNull()?.gimbalPitchDeg in STRAIGHT_DOWN
+    private val canTakePhotos = model?.has(ModelFunction.PHOTO_TIMER) == true && drone?.camera != null
+    private val everyS = (plan.photoEveryS ?: camera.photoIntervalS?.takeIf { it > 0.0 && camera.cameraMode == SINGLE })
+        .takeIf { isSurvey && canTakePhotos }
 
-    val kmz: ByteArray = kmzOf(flown, WpmlOptions(createdMs, drone, aircraft?.goHomeHeightM?.toDouble()))
+    val kmz: ByteArray by lazy {
+        val options = WpmlOptions(createdMs, drone, aircraft?.goHomeHeightM?.toDouble())
+        kmzOf(plan.copy(photoEveryS = everyS), options)
+    }
 
     /** Why this file must not reach an aircraft, or null; one that cannot be read back must not. */
     fun problem(): String? = planProblem(plan) ?: try {
@@ -37,14 +49,22 @@ internal class MissionFile(private val plan: MissionPlan, private val aircraft: 
         else "its file names no aircraft: DJI does not tell the model (${aircraft?.product}, ${aircraft?.camera})"
 
     private fun photos(): String? = when {
-        plan.photoEveryS == null -> null
-        takesPhotos -> "it takes a photo every ${plan.photoEveryS} s from its first waypoint to its last"
-        else -> "it takes no photos with this aircraft: start the camera's timer at ${plan.photoEveryS} s"
+        !isSurvey -> null
+        everyS != null -> "it takes a photo every $everyS s from its first waypoint to its last: leave the timer off"
+        else -> "it takes no photos: start the camera's timer"
     }
 
     private fun checked(check: FileCheck): String = when (check) {
         is FileCheck.Passed -> "DJI's check found no fault"
         is FileCheck.Absent -> "DJI's check was not made, because ${check.reason}"
         is FileCheck.Faulty -> "DJI's check found: ${faultWords(check.numbers)}"
+    }
+
+    private companion object {
+        const val SINGLE = "PHOTO_NORMAL"
+        val STRAIGHT_DOWN = -90.5..-89.5
+
+        operator fun ClosedFloatingPointRange<Double>.contains(value: Double?) =
+            value != null && value >= start && value <= endInclusive
     }
 }

@@ -3,8 +3,8 @@ package recon.msdk5
 import dji.sdk.keyvalue.key.BatteryKey
 import dji.sdk.keyvalue.key.CameraKey
 import dji.sdk.keyvalue.key.DJIActionKeyInfo
-import dji.sdk.keyvalue.key.DJIKeyInfo
 import dji.sdk.keyvalue.key.FlightControllerKey
+import dji.sdk.keyvalue.key.GimbalKey
 import dji.sdk.keyvalue.key.KeyTools
 import dji.sdk.keyvalue.key.ProductKey
 import dji.sdk.keyvalue.value.common.ComponentIndexType
@@ -18,7 +18,9 @@ import dji.v5.common.callback.CommonCallbacks
 import dji.v5.common.error.IDJIError
 import dji.v5.manager.KeyManager
 import dji.v5.manager.aircraft.virtualstick.VirtualStickManager
+import dji.v5.manager.aircraft.waypoint3.WaylineExecutingInfoListener
 import dji.v5.manager.aircraft.waypoint3.WaypointMissionManager
+import dji.v5.manager.aircraft.waypoint3.model.WaylineExecutingInfo
 import dji.v5.manager.datacenter.MediaDataCenter
 import dji.v5.manager.interfaces.ICameraStreamManager
 import java.io.File
@@ -31,7 +33,9 @@ import java.io.File
  */
 class Msdk5(private val folder: File, private val check: (File) -> FileCheck, private val clockNs: () -> Long) :
     DjiSdk, AutoCloseable {
-    private val keys = KeyManager.getInstance()
+    private val manager = KeyManager.getInstance()
+    private val keys = Msdk5Keys(manager)
+    private val camera = Msdk5Camera(manager, keys)
     private val missions = WaypointMissionManager.getInstance()
     private val sticks = VirtualStickManager.getInstance()
     private val streams: ICameraStreamManager = MediaDataCenter.getInstance().cameraStreamManager
@@ -44,58 +48,74 @@ class Msdk5(private val folder: File, private val check: (File) -> FileCheck, pr
     private var missionState: String? = null
 
     @Volatile
+    private var missionName: String? = null
+
+    @Volatile
     private var hasCamera: Boolean? = null
+
+    private val executing = object : WaylineExecutingInfoListener {
+        override fun onWaylineExecutingInfoUpdate(info: WaylineExecutingInfo?) {
+            missionName = info?.missionFileName?.removeSuffix(".kmz")?.ifBlank { null }
+        }
+
+        override fun onWaylineExecutingInterruptReasonUpdate(error: IDJIError?) = Unit
+    }
 
     init {
         sticks.init()
         missions.init()
-        keys.listen(KeyTools.createKey(FlightControllerKey.KeyAircraftAttitude), this) { _, _ -> updatedNs = clockNs() }
+        manager.listen(KeyTools.createKey(FlightControllerKey.KeyAircraftAttitude), this) { _, _ -> updatedNs = clockNs() }
         missions.addWaypointMissionExecuteStateListener { missionState = it?.name }
+        missions.addWaylineExecutingInfoListener(executing)
         streams.addAvailableCameraUpdatedListener { hasCamera = it.isNotEmpty() }
     }
 
     override fun close() {
-        keys.cancelListen(this)
+        manager.cancelListen(this)
         missions.clearAllWaypointMissionExecuteStateListener()
+        missions.clearAllWaylineExecutingInfoListener()
         onFrame(null)
+        onCamera(null)
     }
 
     override fun snapshot(): DjiSnapshot? {
-        val location = value(FlightControllerKey.KeyAircraftLocation3D)
-        val velocity = value(FlightControllerKey.KeyAircraftVelocity)
-        val attitude = value(FlightControllerKey.KeyAircraftAttitude)
+        val location = keys.value(FlightControllerKey.KeyAircraftLocation3D)
+        val velocity = keys.value(FlightControllerKey.KeyAircraftVelocity)
+        val attitude = keys.value(FlightControllerKey.KeyAircraftAttitude)
         return DjiSnapshot(
             updatedNs = updatedNs ?: return null,
-            serial = value(FlightControllerKey.KeySerialNumber),
-            isFlying = value(FlightControllerKey.KeyIsFlying),
-            flightMode = value(FlightControllerKey.KeyFCFlightMode)?.name,
+            serial = keys.value(FlightControllerKey.KeySerialNumber),
+            isFlying = keys.value(FlightControllerKey.KeyIsFlying),
+            flightMode = keys.value(FlightControllerKey.KeyFCFlightMode)?.name,
             latitudeDeg = location?.latitude,
             longitudeDeg = location?.longitude,
             altitudeM = location?.altitude,
-            takeoffAltitudeM = value(FlightControllerKey.KeyTakeoffLocationAltitude),
+            takeoffAltitudeM = keys.value(FlightControllerKey.KeyTakeoffLocationAltitude),
             velocityNorthMps = velocity?.x,
             velocityEastMps = velocity?.y,
             velocityDownMps = velocity?.z,
             yawDeg = attitude?.yaw,
             pitchDeg = attitude?.pitch,
             rollDeg = attitude?.roll,
-            satellites = value(FlightControllerKey.KeyGPSSatelliteCount),
-            gpsLevel = value(FlightControllerKey.KeyGPSSignalLevel)?.name,
-            isNearHeightLimit = value(FlightControllerKey.KeyIsNearHeightLimit),
-            isNearDistanceLimit = value(FlightControllerKey.KeyIsNearDistanceLimit),
-            batteryPercent = value(BatteryKey.KeyChargeRemainingInPercent),
-            isLowBattery = value(FlightControllerKey.KeyIsLowBatteryWarning),
-            isSeriousLowBattery = value(FlightControllerKey.KeyIsSeriousLowBatteryWarning),
-            windWarning = value(FlightControllerKey.KeyWindWarning)?.name,
-            isLandingConfirmationNeeded = value(FlightControllerKey.KeyIsLandingConfirmationNeeded),
-            goHomeHeightM = value(FlightControllerKey.KeyGoHomeHeight),
-            failsafe = value(FlightControllerKey.KeyFailsafeAction)?.name,
-            isVirtualStickSupported = isSupported(FlightControllerKey.KeyVirtualStickEnabled),
-            isVirtualStickEnabled = value(FlightControllerKey.KeyVirtualStickEnabled),
+            satellites = keys.value(FlightControllerKey.KeyGPSSatelliteCount),
+            gpsLevel = keys.value(FlightControllerKey.KeyGPSSignalLevel)?.name,
+            isNearHeightLimit = keys.value(FlightControllerKey.KeyIsNearHeightLimit),
+            isNearDistanceLimit = keys.value(FlightControllerKey.KeyIsNearDistanceLimit),
+            batteryPercent = keys.value(BatteryKey.KeyChargeRemainingInPercent),
+            isLowBattery = keys.value(FlightControllerKey.KeyIsLowBatteryWarning),
+            isSeriousLowBattery = keys.value(FlightControllerKey.KeyIsSeriousLowBatteryWarning),
+            windWarning = keys.value(FlightControllerKey.KeyWindWarning)?.name,
+            isLandingConfirmationNeeded = keys.value(FlightControllerKey.KeyIsLandingConfirmationNeeded),
+            goHomeHeightM = keys.value(FlightControllerKey.KeyGoHomeHeight),
+            failsafe = keys.value(FlightControllerKey.KeyFailsafeAction)?.name,
+            isVirtualStickSupported = keys.isSupported(FlightControllerKey.KeyVirtualStickEnabled),
+            isVirtualStickEnabled = keys.value(FlightControllerKey.KeyVirtualStickEnabled),
             missionState = missionState,
+            missionName = missionName,
             hasCamera = hasCamera,
-            product = value(ProductKey.KeyProductType)?.name,
-            camera = value(CameraKey.KeyCameraType)?.name,
+            product = keys.value(ProductKey.KeyProductType)?.name,
+            camera = keys.value(CameraKey.KeyCameraType)?.name,
+            gimbalPitchDeg = keys.value(GimbalKey.KeyGimbalAttitude)?.pitch,
         )
     }
 
@@ -113,13 +133,13 @@ class Msdk5(private val folder: File, private val check: (File) -> FileCheck, pr
     }
 
     override fun enableVirtualStick(done: Done) {
-        sticks.enableVirtualStick(completion { error ->
+        sticks.enableVirtualStick(keys.completion { error ->
             if (error == null) sticks.setVirtualStickAdvancedModeEnabled(true)
             done(error)
         })
     }
 
-    override fun disableVirtualStick(done: Done) = sticks.disableVirtualStick(completion(done))
+    override fun disableVirtualStick(done: Done) = sticks.disableVirtualStick(keys.completion(done))
 
     override fun sendStick(stick: DjiStick) {
         val frame = if (stick.isBodyFrame) FlightCoordinateSystem.BODY else FlightCoordinateSystem.GROUND
@@ -147,14 +167,24 @@ class Msdk5(private val folder: File, private val check: (File) -> FileCheck, pr
 
                 override fun onSuccess() = done(null)
 
-                override fun onFailure(error: IDJIError) = done(described(error))
+                override fun onFailure(error: IDJIError) = done(Msdk5Keys.errorOf(error))
             },
         )
     }
 
-    override fun startMission(name: String, done: Done) = missions.startMission(name, completion(done))
+    override fun startMission(name: String, done: Done) = missions.startMission(name, keys.completion(done))
 
-    override fun stopMission(name: String, done: Done) = missions.stopMission(name, completion(done))
+    override fun pauseMission(done: Done) = missions.pauseMission(keys.completion(done))
+
+    override fun readings(): DjiReadings = camera.addedTo(msdk5Readings(keys))
+
+    override fun lockExposure(isLocked: Boolean, done: Done) = camera.lockExposure(isLocked, done)
+
+    override fun setWhiteBalance(wanted: WhiteBalance, done: Done) = camera.setWhiteBalance(wanted, done)
+
+    override fun onCamera(listener: ((CameraEvent) -> Unit)?) = camera.onEvent(listener)
+
+    override fun stopMission(name: String, done: Done) = missions.stopMission(name, keys.completion(done))
 
     override fun onFrame(listener: ((ByteArray, Int, Int) -> Unit)?) {
         frames?.let(streams::removeFrameListener)
@@ -171,27 +201,14 @@ class Msdk5(private val folder: File, private val check: (File) -> FileCheck, pr
 
     private fun fileOf(name: String, kmz: ByteArray) = File(folder, "$name.kmz").apply { writeBytes(kmz) }
 
-    private fun isSupported(key: DJIKeyInfo<*>): Boolean = keys.isKeySupported(KeyTools.createKey(key))
-
-    private fun <T> value(key: DJIKeyInfo<T>): T? = keys.getValue(KeyTools.createKey(key))
-
     private fun perform(key: DJIActionKeyInfo<EmptyMsg, EmptyMsg>, done: Done) {
-        keys.performAction(
+        manager.performAction(
             KeyTools.createKey(key),
             object : CommonCallbacks.CompletionCallbackWithParam<EmptyMsg> {
                 override fun onSuccess(result: EmptyMsg?) = done(null)
 
-                override fun onFailure(error: IDJIError) = done(described(error))
+                override fun onFailure(error: IDJIError) = done(Msdk5Keys.errorOf(error))
             },
         )
     }
-
-    private fun completion(done: Done) = object : CommonCallbacks.CompletionCallback {
-        override fun onSuccess() = done(null)
-
-        override fun onFailure(error: IDJIError) = done(described(error))
-    }
-
-    private fun described(error: IDJIError) =
-        DjiError(error.errorCode() ?: "no code", error.description() ?: "no description")
 }

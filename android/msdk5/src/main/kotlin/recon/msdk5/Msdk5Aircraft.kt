@@ -5,98 +5,118 @@ import recon.aircraft.AircraftCommand
 import recon.aircraft.AircraftState
 import recon.aircraft.Answer
 import recon.aircraft.FlightMode
+import recon.aircraft.MissionAction
 import recon.aircraft.MissionPlan
+import recon.aircraft.ReleasedPhoto
 import recon.aircraft.StickSetpoint
 import recon.aircraft.VideoFrame
 
 /**
  * A DJI aircraft by Mobile SDK 5.
  *
- * Theory of operation. Each command becomes steps that follow one another by DJI's callbacks; the first
- * that fails is the answer. Whatever the aircraft flies is ended first: sticks, mission, return, landing
- * or takeoff, each by its own call, as the state shows it. The newest command wins: steps of an older one
- * that have not begun are dropped, and that command is refused.
+ * Theory of operation. Each command becomes steps (`OrderSteps`); the first that fails is the answer. Whatever
+ * the aircraft flies is ended first: sticks, mission, return, landing or takeoff, each by its own call, as the
+ * state shows it. What had ended already is no failure, and neither is anything that a landing or a return
+ * replaces.
  *
  * Virtual stick runs in velocity mode. The height is held here, by a vertical velocity in proportion to
- * the error: DJI's position mode was reported to climb by the height each time it is sent.
+ * the error: DJI's position mode was reported to climb by the height each time it is sent. An attempt to
+ * enable it that DJI never answers is given up after 5 s.
  */
-class Msdk5Aircraft(private val sdk: DjiSdk, private val clockMs: () -> Long) : Aircraft {
-    private var newest = 0
+class Msdk5Aircraft(
+    private val sdk: DjiSdk, private val clockNs: () -> Long, private val clockMs: () -> Long,
+) : Aircraft {
+    private val monitor = Any()
+    private val orders = OrderSteps(monitor, clockNs, LONGEST_ORDER_NS)
+    private val lock = CameraLock(sdk)
+    private val releases = PhotoReleases()
     private var missions = 0
     private var missionName: String? = null
     private var listener: ((VideoFrame) -> Unit)? = null
     private var isVideoOn = false
-
-    @Volatile
     private var setpoint: StickSetpoint? = null
-    private var isEnabling = false
+    private var enablingUntilNs: Long? = null
+    private var readings = DjiReadings()
+    private var readingsNs: Long? = null
+    private var readingsSerial: String? = null
 
-    override fun state(): AircraftState? = sdk.snapshot()?.let { aircraftState(it, isVideoOn) }
-
-    @Synchronized
-    override fun onFrame(listener: ((VideoFrame) -> Unit)?) {
-        this.listener = listener
+    override fun state(): AircraftState? = synchronized(monitor) {
+        sdk.snapshot()?.let { aircraftState(it, isVideoOn, factsOf(it, readings(it.serial))) }
     }
 
-    @Synchronized
-    override fun execute(command: AircraftCommand, answered: (Answer) -> Unit) {
+    override fun onFrame(listener: ((VideoFrame) -> Unit)?) = synchronized(monitor) { this.listener = listener }
+
+    override fun onPhoto(listener: ((ReleasedPhoto) -> Unit)?) =
+        sdk.onCamera(listener?.let { { event -> completed(event)?.let(listener) } })
+
+    override fun execute(command: AircraftCommand, answered: (Answer) -> Unit): Unit = synchronized(monitor) {
         when (command) {
-            is AircraftCommand.Hover -> run(endMotion(), answered)
-            is AircraftCommand.TakeOff -> run(listOf(action(FlightAction.START_TAKEOFF)), answered)
+            is AircraftCommand.Hover -> orders.run(endMotion(), answered)
+            is AircraftCommand.TakeOff -> orders.run(listOf(action(FlightAction.START_TAKEOFF)), answered)
             is AircraftCommand.Land -> begin(FlightAction.START_AUTO_LANDING, LANDING_MODES, answered)
             is AircraftCommand.GoHome -> begin(FlightAction.START_GO_HOME, setOf(FlightMode.GO_HOME), answered)
             // Part of the landing that goes on: it ends nothing and is no newer order.
             is AircraftCommand.ConfirmLanding ->
-                sdk.perform(FlightAction.CONFIRM_LANDING) { answered(answerOf(it)) }
+                orders.runBeside(listOf(action(FlightAction.CONFIRM_LANDING)), answered)
             is AircraftCommand.FlyMission -> flyMission(command.plan, answered)
             is AircraftCommand.SetStick -> setStick(command.setpoint, answered)
             is AircraftCommand.SetVideo -> setVideo(command.isOn, answered)
+            is AircraftCommand.LockCamera -> {
+                readingsNs = null
+                orders.runBeside(lock.steps(command.isLocked, readings(readingsSerial).whiteBalance), answered)
+            }
         }
     }
 
     /** Begins a landing or a return, unless it goes on already: beginning it again would interrupt it. */
     private fun begin(action: FlightAction, modes: Set<FlightMode>, answered: (Answer) -> Unit) {
         val goesOn = sdk.snapshot()?.mode in modes
-        run(if (goesOn) emptyList() else endMotion() + action(action), answered)
+        orders.run(if (goesOn) emptyList() else endMotion().map { it.optional() } + action(action), answered)
     }
 
     private fun flyMission(plan: MissionPlan, answered: (Answer) -> Unit) {
-        val file = MissionFile(plan, sdk.snapshot(), clockMs())
-        file.problem()?.let { return answered(Answer.Refused(it)) }
-        val name = "recon-${++missions}"
+        val snapshot = sdk.snapshot()
+        val file = MissionFile(plan, snapshot, readings(snapshot?.serial), clockMs())
+        file.problem()?.let { return answered(Answer.Refused(it, action = MissionAction.UPLOAD)) }
+        // A name of another run of the app could still be on the aircraft.
+        val name = "recon-${clockMs() / MS_PER_S}-${++missions}"
         val check = sdk.checkMission(name, file.kmz)
-        if (check is FileCheck.Faulty) return answered(Answer.Refused(refusedFile(check)))
+        if (check is FileCheck.Faulty) return answered(refusedFile(check))
         val steps = endMotion() + listOf(
-            Step({ missionFailure(MissionStep.UPLOAD, it) }) { done -> sdk.pushMission(name, file.kmz, done) },
-            Step({ missionFailure(MissionStep.START, it) }) { done ->
+            Step({ refusalOf(MissionAction.UPLOAD, it) }) { done -> sdk.pushMission(name, file.kmz, done) },
+            Step({ refusalOf(MissionAction.START, it) }) { done ->
                 missionName = name
                 sdk.startMission(name, done)
             },
         )
-        run(steps) { answered(if (it is Answer.Accepted) Answer.Noted(file.note(check)) else it) }
+        orders.run(steps) { answered(if (it is Answer.Accepted) Answer.Noted(file.note(check)) else it) }
     }
 
-    private fun refusedFile(check: FileCheck.Faulty) =
+    private fun refusedFile(check: FileCheck.Faulty) = Answer.Refused(
         "Not uploaded: DJI's check of the file found ${faultWords(check.numbers)}. To try: another shape of this " +
-            "mission, or its plan as a file in DJI's own app"
+            "mission, or its plan as a file in DJI's own app",
+        "${check.numbers.first()}",
+        MissionAction.UPLOAD,
+    )
 
     private fun setStick(setpoint: StickSetpoint, answered: (Answer) -> Unit) {
         this.setpoint = setpoint
-        val snapshot = sdk.snapshot()
-        if (snapshot?.isVirtualStickEnabled == true) {
+        if (sdk.snapshot()?.isVirtualStickEnabled == true) {
             sendStick()
             return answered(Answer.Accepted)
         }
         // Repeats while virtual stick is being enabled: the newest setpoint is sent when it is.
         if (isEnabling) return answered(Answer.Accepted)
-        isEnabling = true
-        val steps = endMotion(keepsSticks = true) + Step { done -> sdk.enableVirtualStick(done) }
-        run(steps) { answer ->
-            isEnabling = false
+        val untilNs = clockNs() + LONGEST_ENABLING_NS
+        enablingUntilNs = untilNs
+        orders.run(endMotion(keepsSticks = true) + Step { sdk.enableVirtualStick(it) }) { answer ->
+            if (enablingUntilNs == untilNs) enablingUntilNs = null
             if (answer is Answer.Accepted) sendStick()
             answered(answer)
         }
     }
+
+    private val isEnabling: Boolean get() = enablingUntilNs?.let { clockNs() < it } ?: false
 
     private fun sendStick() {
         val wanted = setpoint ?: return
@@ -124,16 +144,41 @@ class Msdk5Aircraft(private val sdk: DjiSdk, private val clockMs: () -> Long) : 
         listener?.invoke(VideoFrame(width, height, nv21))
     }
 
+    private fun completed(event: CameraEvent): ReleasedPhoto? = synchronized(monitor) {
+        val snapshot = sdk.snapshot()
+        val now = ReleasedPhoto(
+            clockNs(), clockMs(), snapshot?.serial?.ifBlank { null }, snapshot?.let { position(it) }, snapshot?.altitudeM,
+            snapshot?.yawDeg, snapshot?.gimbalPitchDeg, LENSES[snapshot?.model?.number?.camera?.lens],
+        )
+        releases.of(event, now)
+    }
+
+    /** Read once a second, and at once for another aircraft: its facts are not those of the one before. */
+    private fun readings(serial: String?): DjiReadings {
+        val nowNs = clockNs()
+        val isFresh = readingsNs?.let { nowNs - it < READ_PERIOD_NS } ?: false
+        if (!isFresh || serial != readingsSerial) {
+            readings = sdk.readings()
+            readingsNs = nowNs
+            readingsSerial = serial
+        }
+        return readings
+    }
+
     /** The steps that end what the aircraft flies now. */
     private fun endMotion(keepsSticks: Boolean = false): List<Step> {
         val snapshot = sdk.snapshot()
         val steps = mutableListOf<Step>()
         if (!keepsSticks && (snapshot?.isVirtualStickEnabled == true || isEnabling)) steps += Step { endSticks(it) }
-        val mission = missionName
-        if (mission != null && snapshot?.isMissionActive == true) steps += Step { sdk.stopMission(mission, it) }
+        val mission = snapshot?.missionName ?: missionName
+        if (snapshot?.isMissionActive == true && mission != null) steps += endMission { sdk.stopMission(mission, it) }
+        else if (snapshot?.isMissionFlown == true) steps += endMission { sdk.pauseMission(it) }
         STOP_ACTIONS[snapshot?.mode]?.let { steps += action(it) }
         return steps
     }
+
+    private fun endMission(start: (Done) -> Unit) =
+        Step({ if (it.code in NOT_RUNNING) null else refusalOf(it) }, start)
 
     private fun endSticks(done: Done) {
         setpoint = setpoint?.stopped
@@ -143,39 +188,6 @@ class Msdk5Aircraft(private val sdk: DjiSdk, private val clockMs: () -> Long) : 
     }
 
     private fun action(action: FlightAction) = Step { done -> sdk.perform(action, done) }
-
-    private fun run(steps: List<Step>, answered: (Answer) -> Unit) {
-        next(steps, ++newest, answered)
-    }
-
-    private fun next(steps: List<Step>, command: Int, answered: (Answer) -> Unit) {
-        if (steps.isEmpty()) return answered(Answer.Accepted)
-        if (command != newest) return answered(Answer.Refused("a newer order came before it was carried out"))
-        val step = steps.first()
-        step.start(onceDone { error ->
-            synchronized(this) {
-                if (error == null) next(steps.drop(1), command, answered)
-                else answered(Answer.Refused(step.words(error)))
-            }
-        })
-    }
-
-    /** DJI's callbacks have been seen to come twice; only the first counts. */
-    private fun onceDone(done: Done): Done {
-        var isDone = false
-        return { error ->
-            if (!isDone) {
-                isDone = true
-                done(error)
-            }
-        }
-    }
-
-    private fun answerOf(error: DjiError?): Answer =
-        if (error == null) Answer.Accepted else Answer.Refused(error.toString())
-
-    /** One call to DJI, and how its failure is told. */
-    private class Step(val words: (DjiError) -> String = DjiError::toString, val start: (Done) -> Unit)
 
     internal companion object {
         private val LANDING_MODES = setOf(FlightMode.AUTO_LANDING, FlightMode.CONFIRM_LANDING)
@@ -187,6 +199,14 @@ class Msdk5Aircraft(private val sdk: DjiSdk, private val clockMs: () -> Long) : 
             FlightMode.ASSISTED_TAKEOFF to FlightAction.STOP_TAKEOFF,
             FlightMode.MOTORS_JUST_STARTED to FlightAction.STOP_TAKEOFF,
         )
+        private val NOT_RUNNING = setOf("CANNOT_STOP_WAYLINE_WHEN_WAYLINE_NOT_RUNNING", "MISSION_ID_NOT_EXIST")
+        private val LENSES = mapOf("wide" to "wide", "visable" to "visible")
+        private const val MS_PER_S = 1_000
+        private const val READ_PERIOD_NS = 1_000_000_000L
+        private const val LONGEST_ENABLING_NS = 5_000_000_000L
+
+        /** Just below the time after which the session tells the operator that there is no answer. */
+        private const val LONGEST_ORDER_NS = 19_000_000_000L
 
         /** Vertical velocity per metre of error: two seconds to the height, without overshoot. */
         private const val HEIGHT_GAIN_PER_S = 0.5

@@ -2,8 +2,10 @@ package recon.msdk5
 
 import recon.aircraft.AircraftCommand
 import recon.aircraft.Answer
+import recon.aircraft.MissionAction
 import recon.aircraft.MissionPlan
 import recon.aircraft.PlanPoint
+import recon.aircraft.ReleasedPhoto
 import recon.aircraft.StickSetpoint
 import recon.aircraft.VideoFrame
 import recon.geo.LatLon
@@ -17,7 +19,8 @@ import kotlin.test.assertTrue
 
 class Msdk5AircraftTest {
     private val sdk = RecordingSdk()
-    private val aircraft = Msdk5Aircraft(sdk) { 1_700_000_000_000 }
+    private var nowNs = 0L
+    private val aircraft = Msdk5Aircraft(sdk, { nowNs }, { 1_700_000_000_000 })
     private val answers = mutableListOf<Answer>()
     private val setpoint = StickSetpoint(false, 45.0, 5.0, -2.0, 30.0)
     private val plan = MissionPlan(
@@ -83,7 +86,7 @@ class Msdk5AircraftTest {
     fun `sticks that DJI refuses are refused with its reason`() {
         sdk.errors["enable sticks"] = DjiError("41", "not in normal mode")
         execute(AircraftCommand.SetStick(setpoint))
-        assertEquals(listOf<Answer>(Answer.Refused("not in normal mode (41)")), answers)
+        assertEquals(listOf<Answer>(Answer.Refused("not in normal mode (41)", "41")), answers)
         assertEquals(emptyList(), sdk.sticks)
         sdk.errors.clear()
         execute(AircraftCommand.SetStick(setpoint))
@@ -105,7 +108,7 @@ class Msdk5AircraftTest {
     fun `a mission is uploaded as a file that reads back, then started`() {
         execute(AircraftCommand.FlyMission(plan))
         execute(AircraftCommand.FlyMission(plan))
-        assertEquals(listOf("push recon-1", "start recon-1", "push recon-2", "start recon-2"), sdk.calls)
+        assertEquals(listOf("push recon-1700000000-1", "start recon-1700000000-1", "push recon-1700000000-2", "start recon-1700000000-2"), sdk.calls)
         assertEquals(plan.points.map { it.position }, planOfKmz(sdk.files.first()).points.map { it.position })
         assertTrue(planOfKmz(sdk.files.first()).landsAtEnd)
     }
@@ -116,7 +119,7 @@ class Msdk5AircraftTest {
         sdk.calls.clear()
         sdk.snapshot = FLYING.copy(flightMode = "NAVI_GO", missionState = "EXECUTING")
         execute(AircraftCommand.GoHome)
-        assertEquals(listOf("stop recon-1", "START_GO_HOME"), sdk.calls)
+        assertEquals(listOf("stop recon-1700000000-1", "START_GO_HOME"), sdk.calls)
     }
 
     @Test
@@ -137,16 +140,18 @@ class Msdk5AircraftTest {
         }
         sdk.errors["start"] = DjiError("99", "unheard of")
         execute(AircraftCommand.FlyMission(plan))
-        assertEquals(Answer.Refused("Uploaded, but not started: unheard of (99)"), answers.last())
+        assertEquals(Answer.Refused("Uploaded, but not started: unheard of (99)", "99", MissionAction.START), answers.last())
     }
 
     @Test
     fun `a failed upload starts nothing, and a plan that cannot be flown reaches nothing`() {
         sdk.errors["push"] = DjiError("FILE_TRANSFER_FAIL", "upload failed")
         execute(AircraftCommand.FlyMission(plan))
-        assertEquals(listOf("push recon-1"), sdk.calls)
+        assertEquals(listOf("push recon-1700000000-1"), sdk.calls)
         execute(AircraftCommand.FlyMission(plan.copy(points = plan.points.take(1))))
-        assertEquals(Answer.Refused("A mission has 2 to 99 waypoints; got 1"), answers.last())
+        assertEquals(
+            Answer.Refused("A mission has 2 to 99 waypoints; got 1", action = MissionAction.UPLOAD), answers.last(),
+        )
         assertEquals(1, sdk.calls.size)
     }
 
@@ -182,7 +187,7 @@ class Msdk5AircraftTest {
             assertEquals(everyS, planOfKmz(sdk.files.last()).photoEveryS, camera)
             assertEquals(numbers, numbersIn(sdk.files.last()), camera)
             val note = assertIs<Answer.Noted>(answers.last()).note
-            assertTrue(words in note && (everyS != null || "it takes no photos with this aircraft" in note), note)
+            assertTrue(words in note && (everyS != null || "it takes no photos" in note), note)
         }
     }
 
@@ -203,7 +208,7 @@ class Msdk5AircraftTest {
         push(null)
         landing(null)
         landing(null)
-        assertEquals(listOf("push recon-1", "START_AUTO_LANDING"), sdk.calls)
+        assertEquals(listOf("push recon-1700000000-1", "START_AUTO_LANDING"), sdk.calls)
         assertIs<Answer.Refused>(answers.first())
         assertEquals(Answer.Accepted, answers.last())
         assertEquals(2, answers.size)
@@ -219,6 +224,109 @@ class Msdk5AircraftTest {
         assertEquals(listOf("CONFIRM_LANDING"), sdk.calls)
         execute(AircraftCommand.TakeOff)
         assertEquals("START_TAKEOFF", sdk.calls.last())
+    }
+
+    @Test
+    fun `a mission that another app has started is stopped by its name, or held without one`() {
+        sdk.snapshot = FLYING.copy(flightMode = "NAVI_GO", missionState = "EXECUTING", missionName = "theirs")
+        execute(AircraftCommand.Hover)
+        sdk.snapshot = FLYING.copy(flightMode = "NAVI_GO", missionState = "EXECUTING")
+        execute(AircraftCommand.Hover)
+        assertEquals(listOf("stop theirs", "pause"), sdk.calls)
+    }
+
+    @Test
+    fun `what had ended already keeps no order from being carried out`() {
+        sdk.snapshot = FLYING.copy(missionState = "EXECUTING", missionName = "a", isVirtualStickEnabled = true)
+        sdk.errors["stop"] = DjiError("CANNOT_STOP_WAYLINE_WHEN_WAYLINE_NOT_RUNNING", "not running")
+        execute(AircraftCommand.Hover)
+        sdk.errors["disable"] = DjiError("TIMEOUT", "no answer")
+        execute(AircraftCommand.GoHome)
+        assertEquals(listOf<Answer>(Answer.Accepted, Answer.Accepted), answers)
+        assertEquals("START_GO_HOME", sdk.calls.last())
+        sdk.errors["stop"] = DjiError("SYSTEM_ERROR", "x")
+        sdk.errors.remove("disable")
+        execute(AircraftCommand.Hover)
+        assertEquals(Answer.Refused("x (SYSTEM_ERROR)", "SYSTEM_ERROR"), answers.last())
+    }
+
+    @Test
+    fun `an attempt to enable virtual stick that is never answered is given up`() {
+        sdk.waiting = mutableListOf()
+        execute(AircraftCommand.SetStick(setpoint))
+        nowNs = 4_000_000_000
+        execute(AircraftCommand.SetStick(setpoint))
+        assertEquals(1, sdk.calls.size)
+        nowNs = 5_100_000_000
+        execute(AircraftCommand.SetStick(setpoint))
+        assertEquals(listOf("enable sticks", "enable sticks"), sdk.calls)
+    }
+
+    @Test
+    fun `no step begins when the operator has been told that there was no answer`() {
+        sdk.waiting = mutableListOf()
+        execute(AircraftCommand.FlyMission(plan))
+        nowNs = 20_000_000_000
+        sdk.waiting!!.single()(null)
+        assertEquals(1, sdk.calls.size)
+        assertTrue("took too long" in assertIs<Answer.Refused>(answers.single()).reason)
+    }
+
+    @Test
+    fun `a survey's mission takes its photos at the camera's interval, unless its timer is on`() {
+        val survey = plan.copy(points = listOf(plan.points[0].copy(gimbalPitchDeg = -90.0), plan.points[1]))
+        for ((mode, everyS) in listOf("PHOTO_NORMAL" to 2.0, "PHOTO_INTERVAL" to null)) {
+            nowNs += 2_000_000_000
+            sdk.readings = DjiReadings(cameraMode = mode, photoIntervalS = 2.0)
+            execute(AircraftCommand.FlyMission(survey))
+            assertEquals(everyS, planOfKmz(sdk.files.last()).photoEveryS)
+        }
+        execute(AircraftCommand.FlyMission(plan))
+        assertEquals(null, planOfKmz(sdk.files.last()).photoEveryS)
+    }
+
+    @Test
+    fun `facts are read once a second, and at once for another aircraft`() {
+        sdk.readings = DjiReadings(heightLimitM = 120)
+        repeat(5) { assertEquals(120.0, aircraft.state()!!.facts.maxHeightM) }
+        assertEquals(1, sdk.readingsCount)
+        sdk.snapshot = FLYING.copy(serial = "OTHER")
+        sdk.readings = DjiReadings(heightLimitM = 60)
+        assertEquals(60.0, aircraft.state()!!.facts.maxHeightM)
+        nowNs = 1_000_000_000
+        aircraft.state()
+        assertEquals(3, sdk.readingsCount)
+    }
+
+    @Test
+    fun `a camera is locked as it is, and gets its white balance back`() {
+        sdk.readings = DjiReadings(whiteBalance = WhiteBalance("AUTO", 56))
+        for (isLocked in listOf(true, false, false)) execute(AircraftCommand.LockCamera(isLocked))
+        val expected = listOf("true", "white balance MANUAL 56", "false", "white balance AUTO 56", "false")
+        assertEquals(expected, sdk.calls.map { it.removePrefix("lock exposure ") })
+        sdk.calls.clear()
+        sdk.readings = DjiReadings(whiteBalance = WhiteBalance("SUNNY", null))
+        execute(AircraftCommand.LockCamera(true))
+        sdk.readings = DjiReadings(whiteBalance = WhiteBalance("AUTO", 0))
+        execute(AircraftCommand.LockCamera(true))
+        assertEquals(listOf("lock exposure true", "lock exposure true"), sdk.calls)
+        val reason = assertIs<Answer.Refused>(answers.last()).reason
+        assertTrue(reason.startsWith("the exposure is locked, the white balance is not"), reason)
+    }
+
+    @Test
+    fun `a photo has time and place of its shutter`() {
+        val photos = mutableListOf<ReleasedPhoto>()
+        aircraft.onPhoto { photos += it }
+        nowNs = 100
+        sdk.camera!!(CameraEvent.Shutter)
+        nowNs = 900_000_000
+        sdk.snapshot = FLYING.copy(latitudeDeg = 46.0)
+        sdk.camera!!(CameraEvent.StoredFile("JPEG", 100, 7))
+        assertEquals(100 to LatLon(45.0, -93.0), photos.single().let { it.takenNs.toInt() to it.position })
+        assertEquals("wide" to "1581F5BKD22BJ00A", photos.single().let { it.lens to it.serial })
+        aircraft.onPhoto(null)
+        assertEquals(null, sdk.camera)
     }
 
     @Test

@@ -6,7 +6,10 @@ class RecordingSdk : DjiSdk {
     val sticks = mutableListOf<DjiStick>()
     val files = mutableListOf<ByteArray>()
     var frames: ((ByteArray, Int, Int) -> Unit)? = null
+    var camera: ((CameraEvent) -> Unit)? = null
     var snapshot: DjiSnapshot? = FLYING
+    var readings = DjiReadings()
+    var readingsCount = 0
 
     /** DJI's error for calls that begin with a text; the others succeed. */
     val errors = mutableMapOf<String, DjiError>()
@@ -40,6 +43,19 @@ class RecordingSdk : DjiSdk {
     override fun startMission(name: String, done: Done) = record("start $name", done)
 
     override fun stopMission(name: String, done: Done) = record("stop $name", done)
+
+    override fun pauseMission(done: Done) = record("pause", done)
+
+    override fun readings() = readings.also { readingsCount++ }
+
+    override fun lockExposure(isLocked: Boolean, done: Done) = record("lock exposure $isLocked", done)
+
+    override fun setWhiteBalance(wanted: WhiteBalance, done: Done) =
+        record("white balance ${wanted.mode} ${wanted.temperature}", done)
+
+    override fun onCamera(listener: ((CameraEvent) -> Unit)?) {
+        camera = listener
+    }
 
     override fun onFrame(listener: ((ByteArray, Int, Int) -> Unit)?) {
         frames = listener

@@ -20,7 +20,7 @@ class DjiApplication : ReconApplication() {
 
     override fun aircraftSource(): AircraftSource = DjiSource(
         register = { SdkRegistration.begin(this, it) },
-        connect = { Msdk5Aircraft(sdk(), System::currentTimeMillis) },
+        connect = { Msdk5Aircraft(sdk(), System::nanoTime, System::currentTimeMillis) },
     )
 
     private fun sdk() = Msdk5(missionFolder(), WpmzCheck(this)::of, System::nanoTime)

@@ -4,6 +4,7 @@ import recon.aircraft.Aircraft
 import recon.aircraft.AircraftCommand
 import recon.aircraft.AircraftState
 import recon.aircraft.Answer
+import recon.aircraft.ReleasedPhoto
 import recon.aircraft.VideoFrame
 import recon.app.AircraftSource
 import recon.session.Severity
@@ -65,11 +66,13 @@ private class RegisteredAircraft : Aircraft {
     @Volatile
     private var registered: Aircraft? = null
     private var listener: ((VideoFrame) -> Unit)? = null
+    private var photoListener: ((ReleasedPhoto) -> Unit)? = null
 
     @Synchronized
     fun connected(aircraft: Aircraft) {
         registered = aircraft
         aircraft.onFrame(listener)
+        aircraft.onPhoto(photoListener)
     }
 
     override fun state(): AircraftState? = registered?.state()
@@ -82,5 +85,11 @@ private class RegisteredAircraft : Aircraft {
     override fun onFrame(listener: ((VideoFrame) -> Unit)?) {
         this.listener = listener
         registered?.onFrame(listener)
+    }
+
+    @Synchronized
+    override fun onPhoto(listener: ((ReleasedPhoto) -> Unit)?) {
+        photoListener = listener
+        registered?.onPhoto(listener)
     }
 }
