@@ -6,6 +6,7 @@ import android.view.ViewGroup
 import android.widget.Button
 import android.widget.EditText
 import android.widget.TextView
+import recon.aircraft.modelSentences
 import recon.link.StationAddress
 import recon.session.Severity
 import java.text.SimpleDateFormat
@@ -39,6 +40,7 @@ class Screen(private val activity: Activity) {
 
     fun showNote(note: String) {
         activity.findViewById<TextView>(R.id.note).text = note
+        activity.findViewById<TextView>(R.id.models).text = modelSentences().joinToString("\n")
     }
 
     /** [text] null: the address can be used. */
@@ -69,6 +71,7 @@ class Screen(private val activity: Activity) {
         val link = activity.getString(R.string.link_to, host.station?.toString().orEmpty())
         show(R.id.link, link, status.link)
         show(R.id.aircraft, activity.getString(R.string.aircraft), status.aircraft)
+        show(R.id.functions, activity.getString(R.string.functions), status.functions)
         show(R.id.control, activity.getString(R.string.control), status.control)
         show(R.id.altitude_reference, activity.getString(R.string.altitude_reference), status.altitudeReference)
         show(R.id.link_loss, activity.getString(R.string.lost_link_choice), status.missionOnLinkLoss)
@@ -108,7 +111,7 @@ class Screen(private val activity: Activity) {
         )
         val NOTHING = Row("-")
         val CONNECTING = Status(
-            Row("Connecting"), NOTHING, NOTHING, NOTHING, NOTHING, hoverOnGround = null, lastOrder = NOTHING,
+            Row("Connecting"), NOTHING, NOTHING, NOTHING, NOTHING, NOTHING, hoverOnGround = null, lastOrder = NOTHING,
             isReleased = false, isFlyingForStation = false,
         )
     }

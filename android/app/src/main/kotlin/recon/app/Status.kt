@@ -3,6 +3,10 @@ package recon.app
 import recon.aircraft.AircraftState
 import recon.aircraft.AltitudeReference
 import recon.aircraft.BatteryWarning
+import recon.aircraft.Capability
+import recon.aircraft.ModelFunction
+import recon.aircraft.functionWords
+import recon.aircraft.has
 import recon.session.CompanionSession
 import recon.session.HoverOnGround
 import recon.session.LinkLossAction
@@ -17,6 +21,8 @@ data class Row(val words: String, val level: Level = Level.NORMAL)
 data class Status(
     val link: Row,
     val aircraft: Row,
+    /** What the aircraft can do, as it answers, or as is expected of its model. */
+    val functions: Row,
     val control: Row,
     val altitudeReference: Row,
     val missionOnLinkLoss: Row,
@@ -32,6 +38,7 @@ data class Status(
 fun statusOf(session: CompanionSession, nowNs: Long): Status = Status(
     link = if (session.isLinkOpen) Row("Connected") else Row("No station", Level.PROBLEM),
     aircraft = aircraftRow(session.state, nowNs - session.settings.stateTimeoutNs),
+    functions = functionsRow(session.state),
     control = controlRow(session),
     altitudeReference = altitudeRow(session.settings.altitudeReference),
     missionOnLinkLoss = linkLossRow(session.settings.missionOnLinkLoss),
@@ -48,6 +55,12 @@ private fun aircraftRow(state: AircraftState?, staleBeforeNs: Long): Row {
     val flight = if (state.isOnGround) "on the ground" else "flying, ${state.heightAboveTakeoffM.roundToInt()} m"
     val battery = state.batteryPercent?.let { "battery $it %" } ?: "battery unknown"
     return Row("$name: $flight, $battery", batteryLevel(state.batteryWarning))
+}
+
+private fun functionsRow(state: AircraftState?): Row {
+    if (state == null) return Row("-")
+    val isLimited = state.has(ModelFunction.MISSIONS) == Capability.UNSUPPORTED
+    return Row(functionWords(state), if (isLimited) Level.CAUTION else Level.NORMAL)
 }
 
 private fun batteryLevel(warning: BatteryWarning): Level = when (warning) {

@@ -310,7 +310,7 @@ class CompanionSession(val settings: SessionSettings) {
     private fun checkMission(nowNs: Long) {
         if (mission.failedToStart(nowNs)) {
             report(Severity.ERROR, MISSION_NOT_STARTED, nowNs)
-            extension.ended(Outcome("mission_start", isOk = false, text = MISSION_NOT_STARTED, missionId = mission.number))
+            extension.ended(Outcome("mission_start", isOk = false, null, MISSION_NOT_STARTED, mission.number))
         }
         val action = mission.linkLossAction(nowNs) ?: return
         val command = if (action == LinkLossAction.RETURN) AircraftCommand.GoHome else AircraftCommand.Hover

@@ -15,7 +15,8 @@ internal class JsonText {
 
     fun flag(key: String, value: Boolean?) = raw(key, value?.toString())
 
-    fun whole(key: String, value: Long?, least: Long, most: Long) = raw(key, value?.takeIf { it in least..most }?.toString())
+    fun whole(key: String, value: Long?, least: Long, most: Long) =
+        raw(key, value?.takeIf { it in least..most }?.toString())
 
     fun number(key: String, value: Double?, least: Double, most: Double, digits: Int) =
         raw(key, value?.takeIf { it in least..most }?.let { plain(it, digits) })

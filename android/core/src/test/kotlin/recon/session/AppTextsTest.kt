@@ -52,7 +52,8 @@ class AppTextsTest {
     @Property(tries = 200)
     fun `whatever the aircraft reports, a text keeps the document's bounds`(@ForAll seed: Int) {
         val random = Random(seed)
-        val state = hovering().copy(facts = drawnFacts(random), capabilities = Capabilities(goHomeHeightM = odd(random)))
+        val can = Capabilities(goHomeHeightM = odd(random))
+        val state = hovering().copy(facts = drawnFacts(random), capabilities = can)
         val facts = factsText(state, drawnName(random), PhotoSeries(random.nextLong(), random.nextLong(-5, 5), null))
         val photos = List(random.nextInt(1, 17)) { NumberedPhoto(7, it + 1L, drawnPhoto(random)) }
         val outcome = Outcome("hover", random.nextBoolean(), drawnName(random), drawnName(random), random.nextInt())
@@ -124,7 +125,8 @@ class AppTextsTest {
             .associate { row -> row.split("|").map { it.trim() }.let { it[1].trim('`') to it[2] } }
 
     private companion object {
-        val VALID: JsonObject = JsonParser.parseString(File("../../vectors/app_texts/valid.json").readText()).asJsonObject
+        val VECTORS = File("../../vectors/app_texts/valid.json")
+        val VALID: JsonObject = JsonParser.parseString(VECTORS.readText()).asJsonObject
         val DOCUMENT = File("../../docs/icd.md").readText()
         val TABLES = mapOf("facts" to "Facts", "photos" to "Photos", "outcome" to "Outcomes")
     }

@@ -135,6 +135,46 @@ class ExtensionTest {
     }
 
     @Test
+    fun `each refused order has its outcome, told once while it waits, and what waits is bounded`() {
+        harness.answers = Answer.Refused("no", "X")
+        harness.connect()
+        val video = CameraControl(1, 2f)
+        harness.receive(RETURN, LAND, OrdersTest.STICK, video, HOVER, HOVER)
+        harness.state = locking
+        harness.pass(10 * MS)
+        harness.receive(CameraControl(CameraControl.LOCK, 0f), CameraControl(CameraControl.UNLOCK, 0f))
+        for (action in listOf(MissionAction.UPLOAD, MissionAction.LOAD)) {
+            harness.answers = Answer.Refused("no", "X", action)
+            harness.receive(mission())
+        }
+        harness.pass(20 * SECOND)
+        val words = "go_home land virtual_stick video hover lock_camera unlock_camera mission_upload mission_load"
+        assertEquals(words.split(" "), of("outcome").map { it["action"].asString })
+        harness.sent.clear()
+        repeat(100) { harness.answers = Answer.Refused("no $it").also { harness.receive(HOVER) } }
+        harness.pass(110 * SECOND)
+        assertTrue(of("outcome").size in 64..66, "${of("outcome").size}")
+    }
+
+    @Test
+    fun `an aircraft that reports no more is told nothing of, and what waits is sent when it does`() {
+        harness.connect()
+        harness.passInSilence(3 * SECOND)
+        harness.sent.clear()
+        take(0)
+        harness.passInSilence(3 * SECOND)
+        assertEquals(emptyList(), indexes())
+        harness.pass(2 * SECOND)
+        assertEquals(listOf(1L), indexes())
+        harness.closeLink()
+        harness.session.photoTaken(ReleasedPhoto(0, 0), harness.nowNs)
+        harness.session.linkOpened(harness.nowNs)
+        harness.pass(2 * SECOND)
+        // The first once more; one of an aircraft without a serial is of the series that runs.
+        assertEquals(listOf(1L, 1L, 2L), indexes())
+    }
+
+    @Test
     fun `a mission that starts, or is accepted and never flown, is told`() {
         harness.connect()
         harness.receive(mission())

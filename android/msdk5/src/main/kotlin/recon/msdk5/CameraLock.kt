@@ -21,7 +21,10 @@ internal class CameraLock(private val sdk: DjiSdk) {
         }
     }
 
-    private fun giveBack(): Step? = before?.let { Step { done -> sdk.setWhiteBalance(it.also { before = null }, done) } }
+    private fun giveBack(): Step? = before?.let { balance ->
+        before = null
+        Step { sdk.setWhiteBalance(balance, it) }
+    }
 
     private fun refused(reason: String) = Step({ failed(it.description, code = null) }) { it(DjiError("", reason)) }
 

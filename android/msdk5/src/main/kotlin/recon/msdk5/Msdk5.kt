@@ -64,7 +64,8 @@ class Msdk5(private val folder: File, private val check: (File) -> FileCheck, pr
     init {
         sticks.init()
         missions.init()
-        manager.listen(KeyTools.createKey(FlightControllerKey.KeyAircraftAttitude), this) { _, _ -> updatedNs = clockNs() }
+        val attitude = KeyTools.createKey(FlightControllerKey.KeyAircraftAttitude)
+        manager.listen(attitude, this) { _, _ -> updatedNs = clockNs() }
         missions.addWaypointMissionExecuteStateListener { missionState = it?.name }
         missions.addWaylineExecutingInfoListener(executing)
         streams.addAvailableCameraUpdatedListener { hasCamera = it.isNotEmpty() }

@@ -36,6 +36,9 @@ class Msdk5Aircraft(
     private var isVideoOn = false
     private var setpoint: StickSetpoint? = null
     private var enablingUntilNs: Long? = null
+
+    /** Number of the order that flies by sticks; 0 before the first. */
+    private var stickOrder = 0
     private var readings = DjiReadings()
     private var readingsNs: Long? = null
     private var readingsSerial: String? = null
@@ -101,15 +104,18 @@ class Msdk5Aircraft(
 
     private fun setStick(setpoint: StickSetpoint, answered: (Answer) -> Unit) {
         this.setpoint = setpoint
+        val isRepeat = orders.newest == stickOrder
         if (sdk.snapshot()?.isVirtualStickEnabled == true) {
+            // A mission that is being uploaded would start all the same.
+            if (!isRepeat) stickOrder = orders.run(emptyList()) {}
             sendStick()
             return answered(Answer.Accepted)
         }
         // Repeats while virtual stick is being enabled: the newest setpoint is sent when it is.
-        if (isEnabling) return answered(Answer.Accepted)
+        if (isEnabling && isRepeat) return answered(Answer.Accepted)
         val untilNs = clockNs() + LONGEST_ENABLING_NS
         enablingUntilNs = untilNs
-        orders.run(endMotion(keepsSticks = true) + Step { sdk.enableVirtualStick(it) }) { answer ->
+        stickOrder = orders.run(endMotion(keepsSticks = true) + Step { sdk.enableVirtualStick(it) }) { answer ->
             if (enablingUntilNs == untilNs) enablingUntilNs = null
             if (answer is Answer.Accepted) sendStick()
             answered(answer)
@@ -147,8 +153,9 @@ class Msdk5Aircraft(
     private fun completed(event: CameraEvent): ReleasedPhoto? = synchronized(monitor) {
         val snapshot = sdk.snapshot()
         val now = ReleasedPhoto(
-            clockNs(), clockMs(), snapshot?.serial?.ifBlank { null }, snapshot?.let { position(it) }, snapshot?.altitudeM,
-            snapshot?.yawDeg, snapshot?.gimbalPitchDeg, LENSES[snapshot?.model?.number?.camera?.lens],
+            clockNs(), clockMs(), snapshot?.serial?.ifBlank { null }, snapshot?.let { position(it) },
+            snapshot?.altitudeM, snapshot?.yawDeg, snapshot?.gimbalPitchDeg,
+            LENSES[snapshot?.model?.number?.camera?.lens],
         )
         releases.of(event, now)
     }

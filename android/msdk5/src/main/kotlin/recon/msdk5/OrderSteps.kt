@@ -28,12 +28,15 @@ internal fun refusalOf(action: MissionAction, error: DjiError): Answer.Refused {
  * All is guarded by [monitor], which DJI's callbacks take in turn.
  */
 internal class OrderSteps(private val monitor: Any, private val clockNs: () -> Long, private val longestNs: Long) {
-    private var newest = 0
+    /** Number of the newest order. */
+    var newest = 0
+        private set
 
-    /** Runs the steps of an order that replaces the one before. */
-    fun run(steps: List<Step>, answered: (Answer) -> Unit) = synchronized(monitor) {
+    /** Runs the steps of an order that replaces the one before; returns its number. */
+    fun run(steps: List<Step>, answered: (Answer) -> Unit): Int = synchronized(monitor) {
         val order = ++newest
         next(steps, { if (order == newest) null else SUPERSEDED }, clockNs() + longestNs, answered)
+        order
     }
 
     /** Runs steps beside the newest order, which goes on. */

@@ -108,7 +108,8 @@ class Msdk5AircraftTest {
     fun `a mission is uploaded as a file that reads back, then started`() {
         execute(AircraftCommand.FlyMission(plan))
         execute(AircraftCommand.FlyMission(plan))
-        assertEquals(listOf("push recon-1700000000-1", "start recon-1700000000-1", "push recon-1700000000-2", "start recon-1700000000-2"), sdk.calls)
+        val names = listOf(1, 2).map { "recon-1700000000-$it" }
+        assertEquals(names.flatMap { listOf("push $it", "start $it") }, sdk.calls)
         assertEquals(plan.points.map { it.position }, planOfKmz(sdk.files.first()).points.map { it.position })
         assertTrue(planOfKmz(sdk.files.first()).landsAtEnd)
     }
@@ -140,7 +141,8 @@ class Msdk5AircraftTest {
         }
         sdk.errors["start"] = DjiError("99", "unheard of")
         execute(AircraftCommand.FlyMission(plan))
-        assertEquals(Answer.Refused("Uploaded, but not started: unheard of (99)", "99", MissionAction.START), answers.last())
+        val unheard = Answer.Refused("Uploaded, but not started: unheard of (99)", "99", MissionAction.START)
+        assertEquals(unheard, answers.last())
     }
 
     @Test
