@@ -16,7 +16,6 @@ from typer.testing import CliRunner
 
 from recon.cli.commands import app
 from recon.geo import enu_from_geo
-from recon.model.errors import RecordError
 from recon.model.units import NS_PER_S
 from recon.product.charts import NOT_SHOWN, SHADE_ONLY, SUNLIT, WELL_SUNLIT
 from recon.product.exports import FLIGHT_FORMATS, coverage_picture, kml
@@ -113,15 +112,29 @@ def test_ground_of_the_region_without_photos_has_a_colour_of_its_own() -> None:
         assert colour in console
 
 
+def test_long_reading_shows_its_progress(
+    record: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("rich.console.Console.is_terminal", True)
+    for name, words in (("a.csv", "reading tracks"), ("a.png", "reading the flight")):
+        result = export(record, tmp_path / name)
+        assert words in result.stderr
+        assert words not in result.stdout
+    report = CliRunner().invoke(app, ["report", str(record), "--out", str(tmp_path / "r.html")])
+    assert "reading decisions and forecasts" in report.stderr
+    out = ["shadow-record", str(record), "--out", str(tmp_path / "sr")]
+    assert "reading the flight" in CliRunner().invoke(app, out).stderr
+
+
 def test_what_cannot_be_exported_is_refused(record: Path, tmp_path: Path) -> None:
     bare = write_record(replace(flight(), maps=[], surveys=[]), tmp_path / "bare.mcap")
     result = export(bare, tmp_path / "sun.tif")
-    assert isinstance(result.exception, RecordError)
-    assert "expected a flight with shade maps" in str(result.exception)
+    assert result.exit_code == 2
+    assert "expected a flight with shade maps" in result.stderr
     assert not (tmp_path / "sun.tif").exists()
     found = json.loads(FLIGHT_FORMATS[".json"](read_flight(bare)))
     assert found["region_m2"] is None
     assert export(record, tmp_path / "a.shp").exit_code == 2
     (tmp_path / "a.kml").write_text("mine")
-    assert isinstance(export(record, tmp_path / "a.kml").exception, RecordError)
+    assert export(record, tmp_path / "a.kml").exit_code == 2
     assert (tmp_path / "a.kml").read_text() == "mine"

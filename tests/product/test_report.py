@@ -3,6 +3,7 @@
 import contextlib
 import math
 from dataclasses import replace
+from datetime import UTC, datetime, timedelta, timezone
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
@@ -35,7 +36,7 @@ from recon.model.units import NS_PER_S
 from recon.product.exports import figures as figures_of
 from recon.product.flight import RecordedTrack, read_flight
 from recon.product.flight_log import FORECAST_TOPIC, FlightLog, LogReader, read_log
-from recon.product.report import FlightReport, flight_report
+from recon.product.report import AlarmSpan, FlightReport, flight_report
 from recon.product.report_page import report_html
 from recon.product.tagged import tagged_photos
 from recon.record.mcap.mcap_read import RecordMessage
@@ -227,14 +228,42 @@ def test_the_page_states_what_the_report_holds(report: FlightReport) -> None:
     for part in ("made field", "battery empty", "Drone 1: took off", "+1.00", "detection.method"):
         assert part in text
     assert report.covered is not None
-    assert f"In sun on 3 photos{100.0 * report.covered.enough:.0f} %, estimated" in text
+    assert f"In sun on 3 photos{100.0 * report.covered.enough:.0f} %estimated" in text
     assert page.tags.count("svg") == 5
+
+
+def test_an_alarm_that_comes_again_is_one_row(report: FlightReport) -> None:
+    late = "the station is late: no step for {} s"
+    spans = [
+        AlarmSpan(START_NS + at, START_NS + at + 3 * NS_PER_S, "error", late.format(each))
+        for at, each in ((NS_PER_S, "0.7"), (9 * NS_PER_S, "0.5"), (20 * NS_PER_S, "2"))
+    ]
+    others = [
+        AlarmSpan(START_NS, None, "error", f"Drone {each}: battery at 20 %") for each in (1, 2)
+    ]
+    page = Page(report_html(replace(report, alarms=[*spans, *others]), zone=UTC))
+    text = " ".join(page.text.split())
+    assert "3 times, 9 s together; the last: the station is late: no step for 2 s" in text
+    assert text.count("the station is late") == 1
+    assert "Drone 1: battery at 20 %" in text
+    assert "Drone 2: battery at 20 %" in text
+
+
+def test_local_time_is_beside_utc(report: FlightReport) -> None:
+    five_and_a_half = timezone(timedelta(hours=5, minutes=30), "field")
+    text = " ".join(Page(report_html(report, zone=five_and_a_half)).text.split())
+    utc = datetime.fromisoformat(report.flight.utc(report.begin_ns))
+    local = utc.astimezone(five_and_a_half)
+    assert f"Flight report, {local:%Y-%m-%d}, {local:%H:%M:%S} to " in text
+    assert "local time (UTC+05:30, field)" in text
+    assert f"{utc:%H:%M:%S} to " in text
+    assert "this computer's zone" in Page(report_html(report)).text
 
 
 def test_light_that_few_maps_know_is_not_that_of_the_flight(report: FlightReport) -> None:
     few = replace(report, cover=report.cover[:2])
     text = " ".join(Page(report_html(few)).text.split())
-    assert f"%, known in 2 of {len(report.flight.maps)} shade maps" in text
+    assert f"%known in 2 of {len(report.flight.maps)} shade maps" in text
     assert figures_of(few)["shade_maps_of_the_region"] == 2
     assert "share of the shade maps that show the place" in text
 

@@ -7,6 +7,7 @@ import typer
 
 from recon.cli.opened_flight import opened_flight
 from recon.cli.output import print_line, printable
+from recon.cli.progress import opener
 from recon.model.errors import RecordError
 from recon.product.exports import FLIGHT_FORMATS
 from recon.record.files.atomic_file import replace_file
@@ -46,7 +47,7 @@ def export_command(
 
 
 def _write_tracks(file: Path, out: Path) -> None:
-    tracks = read_tracks(file)
+    tracks = read_tracks(file, opener("reading tracks"))
     replace_file(out, FORMATS[out.suffix.lower()](tracks.points).encode(), 0o644)
     for name, track in tracks.points.items():
         print_line(printable(f"{name}: {len(track)} positions"))

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from recon.cli.output import print_warning
+from recon.cli.progress import opener
 from recon.model.errors import RecordError
 from recon.product.flight import FlightData, read_flight
 
@@ -10,7 +11,7 @@ from recon.product.flight import FlightData, read_flight
 def opened_flight(path: Path) -> FlightData:
     """Return a record's flight, with a warning if it ends early; raises `RecordError`."""
     try:
-        flight = read_flight(path)
+        flight = read_flight(path, opener("reading the flight"))
     except OSError as problem:
         raise RecordError(f"{path}: {problem.strerror}") from problem
     if flight.trouble:

@@ -2,10 +2,15 @@
 
 import os
 from collections.abc import Iterable, Iterator
-from typing import TypeVar
+from contextlib import AbstractContextManager
+from pathlib import Path
+from typing import BinaryIO, TypeVar
 
+import rich.progress
 from rich.console import Console
 from rich.progress import track
+
+from recon.record.mcap.mcap_read import Opener
 
 Item = TypeVar("Item")
 
@@ -14,6 +19,18 @@ def progress_over(items: Iterable[Item], title: str, count: int) -> Iterator[Ite
     """Yield the items, showing how many of `count` are done and how long the rest will take."""
     console = Console(stderr=True)
     yield from track(items, title, count, console=console, disable=not console.is_terminal)
+
+
+def opener(title: str) -> Opener:
+    """Return what opens a file for one pass, showing how much of it is read."""
+
+    def open_shown(path: Path) -> AbstractContextManager[BinaryIO]:
+        console = Console(stderr=True)
+        return rich.progress.open(
+            path, "rb", description=title, console=console, disable=not console.is_terminal
+        )
+
+    return open_shown
 
 
 def usable_cores() -> int:

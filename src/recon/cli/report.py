@@ -5,11 +5,13 @@ import subprocess
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Annotated
+from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 import typer
 
 from recon.cli.opened_flight import opened_flight
 from recon.cli.output import print_line
+from recon.cli.progress import opener
 from recon.model.errors import RecordError
 from recon.product.flight_log import read_log
 from recon.product.mosaic.finished import finished_mosaic
@@ -38,20 +40,37 @@ def report_command(
     pdf: Annotated[
         Path | None, typer.Option(help="PDF to write too; needs Chromium, Chrome or Edge.")
     ] = None,
+    time_zone: Annotated[
+        str | None,
+        typer.Option(
+            help="Zone of the local times, as America/Chicago; default: this computer's. UTC "
+            "stands beside them."
+        ),
+    ] = None,
 ) -> None:
     """Write a flight's report: coverage in sun, sky, tracks, decisions, alarms, forecasts."""
+    zone = None if time_zone is None else _zone(time_zone)
     flight = opened_flight(file)
     photos = None if tagged is None else tagged_photos(tagged, flight)
     try:
-        log = read_log(file, flight)
+        log = read_log(file, flight, opener("reading decisions and forecasts"))
     except OSError as problem:
         raise RecordError(f"{file}: {problem.strerror}") from problem
     picture = None if mosaic is None else finished_mosaic(mosaic, flight.path.name)
-    write_text(out, report_html(flight_report(flight, log, photos), picture))
+    write_text(out, report_html(flight_report(flight, log, photos), picture, zone))
     print_line(f"written: {out}")
     if pdf is not None:
         print_pdf(out, pdf)
         print_line(f"written: {pdf}")
+
+
+def _zone(name: str) -> ZoneInfo:
+    try:
+        return ZoneInfo(name)
+    except (ZoneInfoNotFoundError, ValueError, OSError):
+        raise typer.BadParameter(
+            f"--time-zone: expected a name like America/Chicago, got {name!a}"
+        ) from None
 
 
 def print_pdf(page: Path, pdf: Path) -> None:

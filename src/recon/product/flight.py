@@ -28,7 +28,7 @@ from recon.model.units import NS_PER_S
 from recon.product.reported_shots import ReportedShots, shots_of_reports
 from recon.record.mcap.foxglove import SHADE_TOPIC
 from recon.record.mcap.mcap_file import ABOUT_NAME, STEPS_TOPIC
-from recon.record.mcap.mcap_read import McapReading, RecordAttachment, RecordMessage
+from recon.record.mcap.mcap_read import McapReading, Opener, RecordAttachment, RecordMessage, opened
 from recon.record.mcap.tracks import utc_text
 
 ByteMap = npt.NDArray[np.uint8]
@@ -188,14 +188,14 @@ class FlightData:
         return {s: track for s, track in self.tracks.items() if s not in self.imagers}
 
 
-def read_flight(path: Path) -> FlightData:
+def read_flight(path: Path, open_record: Opener = opened) -> FlightData:
     """Return a record's flight, as far as the file goes.
 
     Raises `RecordError` for a file that is no flight record, without positions, or without the
     place of its site; and OSError.
     """
     reader = _Reader(path)
-    with path.open("rb") as file:
+    with open_record(path) as file:
         reading = McapReading(file)
         for item in reading.items():
             reader.take(item)

@@ -25,7 +25,7 @@ from recon.model.units import NS_PER_S
 from recon.product.flight import UNKNOWN, FlightData, KeptMap
 from recon.product.shadow_record import SUNLIT
 from recon.record.mcap.mcap_file import ABOUT_NAME, STEPS_TOPIC
-from recon.record.mcap.mcap_read import McapReading, RecordAttachment, RecordMessage
+from recon.record.mcap.mcap_read import McapReading, Opener, RecordAttachment, RecordMessage, opened
 
 FORECAST_TOPIC, LEAD_PREFIX = "/forecast", "sun_in_"
 MOST_LINES = 100_000
@@ -94,10 +94,10 @@ class FlightLog:
         return dict(_flat(settings, "", 0)) if isinstance(settings, dict) else {}
 
 
-def read_log(path: Path, flight: FlightData) -> FlightLog:
+def read_log(path: Path, flight: FlightData, open_record: Opener = opened) -> FlightLog:
     """Return the log of a flight's record; raises `RecordError` for a damaged one, and OSError."""
     reader = LogReader(path, flight)
-    with path.open("rb") as file:
+    with open_record(path) as file:
         for item in McapReading(file).items():
             reader.take(item)
     reader.log.lines.sort(key=lambda line: line.at_ns)

@@ -4,6 +4,7 @@ All text from the record passes the template's escaping; the page forbids script
 """
 
 from collections.abc import Sequence
+from datetime import tzinfo
 from importlib.resources import files
 from typing import Any
 
@@ -13,34 +14,44 @@ from recon import version
 from recon.model.severity import Severity
 from recon.model.units import HECTARE_M2, NS_PER_S
 from recon.product import charts
+from recon.product.alarm_groups import AlarmGroup, grouped
 from recon.product.coverage import ENOUGH_VIEWS
-from recon.product.flight import FlightData
 from recon.product.flight_log import LEADS_S
+from recon.product.local_time import LocalTime
 from recon.product.mosaic.choice import Light
 from recon.product.mosaic.finished import FinishedMosaic
-from recon.product.report import AlarmSpan, FlightReport
+from recon.product.report import FlightReport
 
 MOST_DECISIONS, MOST_ALARMS = 300, 100
 LEVELS = frozenset(each.value for each in Severity)
 STATES = ("sunlit", "mixed", "shaded", "unknown")
 
 
-def report_html(report: FlightReport, mosaic: FinishedMosaic | None = None) -> str:
-    """Return the page, with a mosaic's picture if it has one."""
+def report_html(
+    report: FlightReport, mosaic: FinishedMosaic | None = None, zone: tzinfo | None = None
+) -> str:
+    """Return the page, with a mosaic's picture if it has one.
+
+    `zone` is of the local times; None: that of this computer.
+    """
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
     template = environment.from_string(
         files("recon.product").joinpath("report.html").read_text(encoding="utf-8")
     )
-    return template.render(**_context(report), mosaic=_mosaic(mosaic))
+    return template.render(**_context(report, zone), mosaic=_mosaic(mosaic))
 
 
-def _context(report: FlightReport) -> dict[str, Any]:
+def _context(report: FlightReport, zone: tzinfo | None) -> dict[str, Any]:
     flight, covered = report.flight, report.covered
+    local, alarms = LocalTime(zone, flight.utc_ahead_ns), grouped(report.alarms)
     classes = charts.vehicle_classes(report)
     settings = report.log.settings()
     return {
         "site": str(report.log.about.get("site") or "Flight"),
-        "day": flight.utc(report.begin_ns)[:10],
+        "day": f"{local.at(report.begin_ns):%Y-%m-%d}",
+        "local_begin": local.clock(report.begin_ns),
+        "local_end": local.clock(report.end_ns),
+        "zone": local.name(report.begin_ns),
         "begin": flight.utc(report.begin_ns)[11:19],
         "end": flight.utc(report.end_ns)[11:19],
         "trouble": flight.trouble,
@@ -57,10 +68,15 @@ def _context(report: FlightReport) -> dict[str, Any]:
         "battery_chart": charts.batteries(report),
         "leads": [_lead(report, lead_s) for lead_s in sorted(report.log.leads)],
         "shortest_lead": f"{LEADS_S[0]:g} s",
-        "alarms": [_alarm(flight, each) for each in report.alarms[:MOST_ALARMS]],
-        "more_alarms": max(0, len(report.alarms) - MOST_ALARMS),
+        "alarms": [_alarm(report, local, each) for each in alarms[:MOST_ALARMS]],
+        "more_alarms": max(0, len(alarms) - MOST_ALARMS),
         "decisions": [
-            {"at": flight.utc(each.at_ns)[11:19], "text": each.text, "by": each.by}
+            {
+                "local": local.clock(each.at_ns),
+                "at": flight.utc(each.at_ns)[11:19],
+                "text": each.text,
+                "by": each.by,
+            }
             for each in report.decisions[:MOST_DECISIONS]
         ],
         "more_decisions": max(0, len(report.decisions) - MOST_DECISIONS),
@@ -93,26 +109,26 @@ def _mosaic(mosaic: FinishedMosaic | None) -> dict[str, Any] | None:
     }
 
 
-def _figures(report: FlightReport) -> Sequence[tuple[str, str, str]]:
-    """Return the figures at the top: label, value, unit."""
-    covered, rows = report.covered, list[tuple[str, str, str]]()
+def _figures(report: FlightReport) -> Sequence[tuple[str, str, str, str]]:
+    """Return the figures at the top: label, value, unit, and a note below them."""
+    covered, rows = report.covered, list[tuple[str, str, str, str]]()
     if covered is not None and covered.region.any():
-        unit = "%, estimated" if covered.is_estimated else "%"
+        note = "estimated" if covered.is_estimated else ""
         rows += [
-            ("Region", f"{covered.area_m2 / HECTARE_M2:.1f}", "ha"),
-            ("Photographed", f"{100.0 * covered.share(0):.0f}", unit),
-            ("In sun on a photo", f"{100.0 * covered.share(1):.0f}", unit),
-            (f"In sun on {ENOUGH_VIEWS} photos", f"{100.0 * covered.enough:.0f}", unit),
+            ("Region", f"{covered.area_m2 / HECTARE_M2:.1f}", "ha", ""),
+            ("Photographed", f"{100.0 * covered.share(0):.0f}", "%", note),
+            ("In sun on a photo", f"{100.0 * covered.share(1):.0f}", "%", note),
+            (f"In sun on {ENOUGH_VIEWS} photos", f"{100.0 * covered.enough:.0f}", "%", note),
         ]
     if report.photo_states:
         sunlit = f"{report.photo_states.get('sunlit', 0)} sunlit"
-        rows.append(("Photos", f"{sum(report.photo_states.values())}", sunlit))
+        rows.append(("Photos", f"{sum(report.photo_states.values())}", "", sunlit))
     if report.mean_sun is not None:
         known, maps = len(report.cover), len(report.flight.maps)
-        unit = "%" if known == maps else f"%, known in {known} of {maps} shade maps"
-        rows.append(("Mean sun on the region", f"{100.0 * report.mean_sun:.0f}", unit))
-    rows.append(("Duration", _minutes((report.end_ns - report.begin_ns) / NS_PER_S), "min"))
-    rows.append(("In the air, together", _minutes(report.airborne_s), "min"))
+        note = "" if known == maps else f"known in {known} of {maps} shade maps"
+        rows.append(("Mean sun on the region", f"{100.0 * report.mean_sun:.0f}", "%", note))
+    rows.append(("Duration", _minutes((report.end_ns - report.begin_ns) / NS_PER_S), "min", ""))
+    rows.append(("In the air, together", _minutes(report.airborne_s), "min", ""))
     return rows
 
 
@@ -144,13 +160,19 @@ def _lead(report: FlightReport, lead_s: float) -> dict[str, str]:
     }
 
 
-def _alarm(flight: FlightData, each: AlarmSpan) -> dict[str, str]:
+def _alarm(report: FlightReport, local: LocalTime, group: AlarmGroup) -> dict[str, str]:
+    first, last = group.spans[0], group.spans[-1]
+    lasted_s = group.lasted_ns(report.end_ns) / NS_PER_S
+    ended = "at the end" if last.ended_ns is None else local.clock(last.ended_ns)
+    times = f"{len(group.spans)} times, {lasted_s:.0f} s together; the last: "
     return {
-        "began": flight.utc(each.began_ns)[11:19],
-        "ended": "at the end" if each.ended_ns is None else flight.utc(each.ended_ns)[11:19],
-        "severity": each.severity,
-        "level": each.severity if each.severity in LEVELS else "",
-        "text": each.text,
+        "local": local.clock(first.began_ns),
+        "began": report.flight.utc(first.began_ns)[11:19],
+        "ended": ended,
+        "severity": first.severity,
+        "level": first.severity if first.severity in LEVELS else "",
+        "count": times if len(group.spans) > 1 else "",
+        "text": last.text,
     }
 
 

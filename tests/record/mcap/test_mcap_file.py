@@ -94,7 +94,7 @@ def test_a_file_cut_anywhere_keeps_every_whole_chunk(tmp_path: Path, seed: int) 
     path = tmp_path / "cut.mcap"
     path.write_bytes(data[:cut])
     if cut < 8:
-        with pytest.raises(RecordError, match="expected an MCAP file"):
+        with pytest.raises(RecordError, match="expected a flight record"):
             repair(path)
         return
     with path.open("rb") as file:

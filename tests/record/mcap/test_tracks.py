@@ -7,6 +7,7 @@ import math
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
+import msgspec
 import pytest
 from typer.testing import CliRunner
 
@@ -14,7 +15,7 @@ from recon.cli.commands import app
 from recon.model.errors import RecordError
 from recon.model.geo import LatLon
 from recon.record.mcap import foxglove
-from recon.record.mcap.mcap_file import McapFile
+from recon.record.mcap.mcap_file import STEPS_TOPIC, McapFile
 from recon.record.mcap.tracks import FORMATS, RecordedPosition, read_tracks, utc_text
 
 AT_NS = 1_780_000_000_123_000_000
@@ -82,8 +83,8 @@ def test_the_command_writes_and_replaces_nothing(record: Path, tmp_path: Path) -
     assert "B: 1 positions" in ended.output
     before = out.read_bytes()
     ended = CliRunner().invoke(app, ["export", str(record), str(out)])
-    assert isinstance(ended.exception, RecordError)
-    assert "exists" in str(ended.exception)
+    assert ended.exit_code == 2
+    assert "exists" in ended.stderr
     assert out.read_bytes() == before
     assert CliRunner().invoke(app, ["export", str(record), "x.shp"]).exit_code == 2
 
@@ -93,3 +94,20 @@ def test_a_record_without_positions_is_refused(tmp_path: Path) -> None:
     file.finish()
     with pytest.raises(RecordError, match="expected a record with positions"):
         read_tracks(file.path)
+
+
+def test_a_link_has_the_name_that_its_vehicle_turned_out_to_have(tmp_path: Path) -> None:
+    """Positions come before serials; another link never becomes a vehicle."""
+    file = McapFile(tmp_path / "a.mcap", "test")
+    steps = file.add_channel(STEPS_TOPIC, "msgpack")
+    rows = (("link-1", 1), ("link-2", 2), ("A", 1), ("link-2", 2), ("A", 1))
+    topics = {name: file.add_channel(f"/vehicles/{name}/location", "protobuf") for name, _ in rows}
+    for number, (name, link_id) in enumerate(rows):
+        fix = foxglove.location(LatLon(45.0, float(number)), None, name, number)
+        file.add_message(topics[name], number, number, fix.SerializeToString())
+        step = msgspec.msgpack.encode({"event": {"is": "PacketReceived", "link_id": link_id}})
+        file.add_message(steps, number, number, step)
+    file.finish()
+    points = read_tracks(file.path).points
+    found = {name: [p.longitude_deg for p in track] for name, track in points.items()}
+    assert found == {"A": [0.0, 2.0, 4.0], "link-2": [1.0, 3.0]}

@@ -7,8 +7,10 @@ process has left as well as a finished file. It never trusts a size that the fil
 import struct
 import zlib
 from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from io import BytesIO
+from pathlib import Path
 from typing import BinaryIO
 
 import lz4.frame
@@ -20,6 +22,7 @@ from mcap.records import Attachment, Channel, Schema
 from mcap.writer import MCAP0_MAGIC
 
 from recon.model.errors import RecordError
+from recon.model.file_kind import file_kind
 from recon.record.mcap.mcap_file import CHUNK_HEAD, RECORD_HEAD
 
 MOST_RECORD_BYTES = 512 * 1024 * 1024
@@ -59,6 +62,15 @@ class RawRecord:
     length: int
     """Length with its head of 9 bytes."""
     content: bytes | None
+
+
+Opener = Callable[[Path], AbstractContextManager[BinaryIO]]
+"""Opens a record for one pass; a command line shows how far it has come."""
+
+
+def opened(path: Path) -> AbstractContextManager[BinaryIO]:
+    """Open a record, showing nothing; raises OSError."""
+    return path.open("rb")
 
 
 class DamagedMcapError(RecordError):
@@ -153,7 +165,7 @@ def attachment_of(content: bytes) -> RecordAttachment:
 def check_magic(start: bytes) -> None:
     """Raise `DamagedMcapError` unless these are MCAP's first bytes."""
     if start != MAGIC:
-        raise DamagedMcapError(f"expected an MCAP file, got one that begins with {start!a}")
+        raise DamagedMcapError(f"expected a flight record (MCAP), got {file_kind(start)}")
 
 
 def chunk_records(data: bytes) -> Iterator[tuple[int, int, int]]:

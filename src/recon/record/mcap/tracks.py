@@ -6,18 +6,22 @@ import json
 import math
 import re
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
 from xml.sax.saxutils import escape
 
+import msgspec
 from foxglove_schemas_protobuf.LocationFix_pb2 import LocationFix
 from google.protobuf.message import DecodeError
 
 from recon.model.errors import RecordError
 from recon.model.units import NS_PER_S
-from recon.record.mcap.mcap_read import McapReading, RecordMessage
+from recon.record.mcap.mcap_file import STEPS_TOPIC
+from recon.record.mcap.mcap_read import McapReading, Opener, RecordMessage, opened
 
+LINK_NAME = re.compile(r"link-\d+")
 PREFIX, SUFFIX = "/vehicles/", "/location"
 
 
@@ -39,19 +43,69 @@ class Tracks:
     trouble: str = ""
 
 
-def read_tracks(path: Path) -> Tracks:
+def read_tracks(path: Path, open_record: Opener = opened) -> Tracks:
     """Return the tracks of a record; raises `RecordError` for a file without one, and OSError."""
-    tracks = Tracks()
-    with path.open("rb") as file:
+    tracks, names = Tracks(), _LinkNames()
+    with open_record(path) as file:
         reading = McapReading(file)
         for item in reading.items():
-            if isinstance(item, RecordMessage) and item.topic.endswith(SUFFIX):
-                name = item.topic.removeprefix(PREFIX).removesuffix(SUFFIX)
-                tracks.points.setdefault(name, []).append(_point(item))
+            if not isinstance(item, RecordMessage):
+                continue
+            names.take(item)
+            if item.topic.endswith(SUFFIX):
+                tracks.points.setdefault(_name_of(item), []).append(_point(item))
+    tracks.points = names.named(tracks.points)
     if not tracks.points:
         raise RecordError(f"{path}: expected a record with positions of vehicles, got none")
     tracks.trouble = reading.trouble
     return tracks
+
+
+class _PacketEvent(msgspec.Struct, frozen=True):
+    link_id: int | None = None
+
+
+class _PacketStep(msgspec.Struct, frozen=True):
+    event: _PacketEvent
+
+
+class _LinkNames:
+    """Which vehicle each link turned out to be: its first packets came before its serial did.
+
+    A packet's position is recorded right before its step, at the same time.
+    """
+
+    def __init__(self) -> None:
+        self._unnamed: set[str] = set()
+        self._serials: dict[str, str] = {}
+        self._newest: RecordMessage | None = None
+
+    def take(self, item: RecordMessage) -> None:
+        """Take the next message of the record."""
+        newest, self._newest = self._newest, item if item.topic.endswith(SUFFIX) else None
+        if newest is None or item.topic != STEPS_TOPIC or item.log_ns != newest.log_ns:
+            return
+        name = _name_of(newest)
+        if LINK_NAME.fullmatch(name):
+            self._unnamed.add(name)
+        elif len(self._serials) < len(self._unnamed):
+            with suppress(msgspec.MsgspecError):
+                link_id = msgspec.msgpack.decode(item.data, type=_PacketStep).event.link_id
+                if (link := f"link-{link_id}") in self._unnamed:
+                    self._serials[link] = name
+
+    def named(
+        self, points: Mapping[str, list[RecordedPosition]]
+    ) -> dict[str, list[RecordedPosition]]:
+        """Return tracks by serial; a link that never became a vehicle keeps its own name."""
+        found: dict[str, list[RecordedPosition]] = {}
+        for name, track in points.items():
+            found.setdefault(self._serials.get(name, name), []).extend(track)
+        return {name: sorted(track, key=lambda point: point.at_ns) for name, track in found.items()}
+
+
+def _name_of(item: RecordMessage) -> str:
+    return item.topic.removeprefix(PREFIX).removesuffix(SUFFIX)
 
 
 def _point(item: RecordMessage) -> RecordedPosition:
