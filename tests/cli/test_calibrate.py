@@ -74,7 +74,7 @@ def test_foreign_and_broken_files_are_named(photos: list[str], tmp_path: Path) -
     text.write_text("not a photo")
     refused(
         calibrate(out, photos[0], str(text), *BOARD),
-        "notes.jpg: expected a JPEG or PNG file, got one that starts with 6e6f7420",
+        "notes.jpg: expected a JPEG or PNG file, got one that begins with b'not a ",
         tmp_path,
     )
     torn = tmp_path / "torn.png"

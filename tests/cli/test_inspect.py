@@ -13,8 +13,10 @@ import pytest
 import typer
 from hypothesis import given
 from hypothesis import strategies as st
+from typer.testing import CliRunner
 
 from recon import wire
+from recon.cli.commands import app
 from recon.cli.inspect import inspect, inspect_command, printable_bytes
 from recon.record.mcap.link_bytes import LINKS_TOPIC, LinkMessage
 from recon.record.mcap.mcap_file import McapFile
@@ -146,13 +148,11 @@ def test_bytes_without_a_packet_are_an_error(
     assert "EmergencyCommand" in output.out
 
 
-def test_a_missing_file_is_one_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(typer.Exit) as left:
-        inspect_command([str(tmp_path / "none")])
-    assert left.value.exit_code == 2
-    output = capsys.readouterr().err
-    assert output.startswith("recon inspect: cannot read ")
-    assert output.endswith("none: No such file or directory\n")
+def test_a_missing_file_is_one_sentence(tmp_path: Path) -> None:
+    ended = CliRunner().invoke(app, ["inspect", str(tmp_path / "none")])
+    assert ended.exit_code == 2
+    assert ended.stderr.startswith("recon inspect: cannot read ")
+    assert ended.stderr.endswith("none: No such file or directory\n")
 
 
 def test_a_file_and_a_pipe_show_the_same(

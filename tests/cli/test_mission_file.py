@@ -64,9 +64,9 @@ def test_heights_of_a_line_are_above_takeoff(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("value", "sentence"),
     [
-        ("", "expected JSON"),
-        ("{", "expected JSON"),
-        ("[" * 100_000, "expected JSON"),
+        ("", "expected a mission: Recon's own JSON"),
+        ("{", "expected a mission: Recon's own JSON"),
+        ("[" * 100_000, "expected a mission: Recon's own JSON"),
         ('{"waypoints": [NaN]}', "NaN is not a JSON number"),
         ("[1]", "expected a JSON object"),
         ({}, "got neither"),

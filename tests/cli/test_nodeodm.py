@@ -197,7 +197,8 @@ def test_the_command_asks_first_and_ends_with_the_result(node: FakeNode, tmp_pat
     record = write_record(flight(), tmp_path / "flight.mcap")
     words = ["tag", str(tmp_path / "card"), "--flight", str(record), "--out", str(tmp_path / "out")]
     refused = CliRunner().invoke(app, [*words, "--nodeodm", "http://127.0.0.1:9"])
-    assert "expected a NodeODM at http://127.0.0.1:9" in str(refused.exception)
+    assert "expected a NodeODM at http://127.0.0.1:9" in refused.stderr
+    assert refused.exit_code == 1
     assert not (tmp_path / "out").exists()
     done = CliRunner().invoke(app, [*words, "--nodeodm", node.url])
     assert done.exit_code == 0, done.output

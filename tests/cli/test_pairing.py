@@ -99,5 +99,5 @@ def test_a_station_without_a_list_says_so(tmp_path: Path) -> None:
 def test_a_list_that_is_not_there_stops_the_start(tmp_path: Path) -> None:
     options = (*run_options(tmp_path / "audit"), "--apps", str(tmp_path / "none.toml"))
     with started(*options) as process:
-        assert process.wait() == 1
+        assert process.wait() == 2
         assert "expected a list of apps" in process.text

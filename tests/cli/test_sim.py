@@ -9,20 +9,16 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-import typer
 from hypothesis import given
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 from recon import wire
-from recon.cli.sim import sim_command
+from recon.cli.commands import app
 from recon.cli.sim_options import parse_address, parse_home, parse_size
 from recon.sim.errors import SimulationError
 
 LIMIT_S = 120.0
-
-command = typer.Typer()
-command.command()(sim_command)
 
 
 @pytest.mark.parametrize(
@@ -46,7 +42,7 @@ command.command()(sim_command)
     ],
 )
 def test_bad_options_get_one_sentence_and_exit_code_2(options: list[str], words: str) -> None:
-    result = CliRunner().invoke(command, options)
+    result = CliRunner().invoke(app, ["sim", *options])
     assert result.exit_code == 2
     assert words in result.stderr
     assert result.stderr.startswith("recon sim: ")

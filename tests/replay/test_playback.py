@@ -314,7 +314,7 @@ def test_files_that_cannot_be_replayed_are_refused_with_a_sentence(tmp_path: Pat
     damaged = copied(survey, tmp_path / "damaged.mcap", start=b"garbage")
     endless = copied(survey, tmp_path / "endless.mcap", later_ns=2**60)
     expected = {
-        text: "expected an MCAP file, got one that begins with b'not a re'",
+        text: r"expected a flight record \(MCAP\), got one that begins with b'not a re'",
         tmp_path / "foreign.mcap": "expected a flight record of Recon, got another MCAP file",
         without: r"a record of version \S+ has no keyframes for the console; recon replay --check",
         stepless: "the record ends before its first event",

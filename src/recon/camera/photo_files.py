@@ -11,6 +11,7 @@ import numpy as np
 
 from recon.camera.decode import decode_jpeg, jpeg_size
 from recon.camera.errors import FrameDecodeError
+from recon.model.file_kind import file_kind
 from recon.model.imagery import RgbImage
 
 SUFFIXES = frozenset({".jpg", ".jpeg", ".png"})
@@ -71,9 +72,7 @@ def _size(data: bytes) -> tuple[int, int]:
     elif data.startswith(b"\xff\xd8"):
         rows, cols = jpeg_size(data)
     else:
-        raise FrameDecodeError(
-            f"expected a JPEG or PNG file, got one that starts with {data[:4].hex() or 'nothing'}"
-        )
+        raise FrameDecodeError(f"expected a JPEG or PNG file, got {file_kind(data[:8])}")
     if not 0 < rows * cols <= MOST_PIXELS:
         raise FrameDecodeError(f"expected 1 to {MOST_PIXELS} pixels, got {cols} x {rows}")
     return rows, cols

@@ -1,10 +1,8 @@
 """`recon audit show` and `recon audit verify`: the entries of an audit, and its integrity."""
 
 import re
-import sys
 from collections import deque
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
 from datetime import UTC, datetime, time, timedelta
 from pathlib import Path
 from typing import Annotated
@@ -13,8 +11,7 @@ import msgspec
 import typer
 
 from recon.cli.commands import App
-from recon.cli.connection import WRONG_USE
-from recon.cli.output import print_json, print_line, printable
+from recon.cli.output import print_json, print_line
 from recon.model.errors import RecordError
 from recon.record.audit.audit import AuditLine, decode_line
 from recon.record.audit.audit_check import AuditCheck, check_audit
@@ -68,13 +65,12 @@ def show_command(
             and line.utc >= first_utc
         )
 
-    with _exits_when_unreadable():
-        chosen = filter(is_chosen, _lines(paths))
-        for line in chosen if tail is None else deque(chosen, tail):
-            if as_json:
-                print_json(msgspec.to_builtins(line))
-            else:
-                print_line(f"{line.utc}  {line.n:>6}  {line.kind:<24}  {line.by:<24}  {line.text}")
+    chosen = filter(is_chosen, _lines(paths))
+    for line in chosen if tail is None else deque(chosen, tail):
+        if as_json:
+            print_json(msgspec.to_builtins(line))
+        else:
+            print_line(f"{line.utc}  {line.n:>6}  {line.kind:<24}  {line.by:<24}  {line.text}")
 
 
 @audit_app.command("verify")
@@ -86,8 +82,7 @@ def verify_command(
 
     Exit code 0 when all are intact, 1 when one is damaged, 2 when one cannot be read.
     """
-    with _exits_when_unreadable():
-        verdicts = [check_audit(path) for path in _files(paths)]
+    verdicts = [check_audit(path) for path in _files(paths)]
     if as_json:
         print_json([_values(verdict) for verdict in verdicts])
     else:
@@ -121,16 +116,6 @@ def _start_of(since: str, now: datetime) -> str:
 def is_by(by: str, person: str) -> bool:
     """Return whether an entry is of a person, named with or without an address."""
     return by == person or by.startswith((f"{person} (", f"{person}:"))
-
-
-@contextmanager
-def _exits_when_unreadable() -> Iterator[None]:
-    """Exit with 2 for a file that cannot be read; a damaged one exits with 1."""
-    try:
-        yield
-    except RecordError as problem:
-        print(f"recon: {printable(str(problem))}", file=sys.stderr)
-        raise typer.Exit(WRONG_USE) from None
 
 
 def _files(paths: Sequence[Path]) -> list[Path]:

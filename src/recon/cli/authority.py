@@ -11,8 +11,6 @@ import msgspec
 import typer
 
 from recon.cli.connection import (
-    DONE,
-    REFUSED,
     JsonOption,
     NameArgument,
     NamesArgument,
@@ -20,6 +18,7 @@ from recon.cli.connection import (
     named_serials,
     station_command,
 )
+from recon.cli.exit_codes import DONE, REFUSED
 from recon.cli.failsafe_table import print_failsafe_matrix
 from recon.cli.output import print_json, print_line, print_table
 from recon.client import Preflight, Refusal, Station

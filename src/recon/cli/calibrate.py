@@ -20,11 +20,10 @@ from recon.camera.calibration import (
     warnings_of,
 )
 from recon.camera.photo_files import photo_size, read_photo
-from recon.cli.connection import WRONG_USE
 from recon.cli.output import print_line, print_table, printable
 from recon.cli.picture import png_of
 from recon.cli.progress import progress_over
-from recon.model.errors import ReconError, RecordError
+from recon.model.errors import RecordError
 from recon.record.files.atomic_file import replace_file
 
 MOST_PHOTOS = 200
@@ -56,19 +55,15 @@ def calibrate_command(
     picture: PictureOption = None,
 ) -> None:
     """Fit a lens to photos of a chessboard, for `camera-model.txt` of a site."""
-    try:
-        board = Chessboard(rows, cols, square_mm)
-        size = _common_size(photos)
-        seen = _boards(photos, board)
-        calibration = calibrate_lens(board, seen, *size)
-        circle = _image_circle(photos, calibration)
-        coverage = coverage_of(calibration, circle)
-        _write(out, format_camera(calibration.camera).encode())
-        drawn = picture or out.with_suffix(".png")
-        _write(drawn, png_of(residual_picture(calibration, coverage, circle)))
-    except ReconError as problem:
-        print(f"recon calibrate: {printable(str(problem))}", file=sys.stderr)
-        raise typer.Exit(WRONG_USE) from None
+    board = Chessboard(rows, cols, square_mm)
+    size = _common_size(photos)
+    seen = _boards(photos, board)
+    calibration = calibrate_lens(board, seen, *size)
+    circle = _image_circle(photos, calibration)
+    coverage = coverage_of(calibration, circle)
+    _write(out, format_camera(calibration.camera).encode())
+    drawn = picture or out.with_suffix(".png")
+    _write(drawn, png_of(residual_picture(calibration, coverage, circle)))
     _print_residuals(calibration)
     _print_summary(calibration, coverage, circle)
     print_line(f"wrote {out} and {drawn}")

@@ -13,6 +13,8 @@ from typing import Any, NamedTuple, TypeVar
 import typer
 from typer.core import TyperCommand, TyperGroup
 
+from recon.cli.exit_codes import report_error
+from recon.model.errors import ReconError
 from recon.model.units import is_finite
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -196,6 +198,14 @@ class LazyGroup(TyperGroup):
         command = typer.main.get_command(app)
         command.name = cmd_name
         return command
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run a command; an expected error is one sentence and an exit code, no traceback."""
+        try:
+            return super().invoke(ctx)
+        except ReconError as problem:
+            code = report_error(problem, f"recon {ctx.invoked_subcommand}")
+        raise typer.Exit(code)
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
         """Write the summaries into the help page."""

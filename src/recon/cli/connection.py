@@ -1,7 +1,4 @@
-"""What every command that connects to a running station shares: its address, vehicle names, ends.
-
-Exit codes: 0 done; 1 refused, or not confirmed by telemetry; 2 wrong use, or no connection.
-"""
+"""What every command that connects to a running station shares: its address, names, ends."""
 
 import asyncio
 import inspect
@@ -19,8 +16,6 @@ import typer
 from recon.cli.options import with_options
 from recon.client import ClientError, Station, Telemetry
 from recon.client.errors import AddressError
-
-DONE, REFUSED, WRONG_USE = 0, 1, 2
 
 Seen = TypeVar("Seen")
 READ_EVERY_S = 0.5
@@ -129,9 +124,9 @@ def named_serials(station: Station, names: Sequence[str] | None) -> list[str]:
 
     A serial takes precedence over an equal name. Names match in any case.
     """
-    if not names:
-        raise VehicleNameError("Name the vehicles")
     known = station.vehicles()
+    if not names:
+        raise VehicleNameError(f"name the vehicles; connected are: {_choices(known)}")
     return list(dict.fromkeys(_serial_of(name, known) for name in names))
 
 
@@ -144,7 +139,10 @@ def _serial_of(name: str, known: Sequence[Telemetry]) -> str:
         return matches[0]
     if matches:
         raise VehicleNameError(f"{len(matches)} vehicles have the name {name!r}: use a serial")
-    choices = ", ".join(f"{v.serial} ({v.name})" for v in known if v.serial) or "none"
     raise VehicleNameError(
-        f"expected a vehicle's serial or name, got {name!r}; connected vehicles: {choices}"
+        f"expected a vehicle's serial or name, got {name!r}; connected vehicles: {_choices(known)}"
     )
+
+
+def _choices(known: Sequence[Telemetry]) -> str:
+    return ", ".join(f"{v.serial} ({v.name})" for v in known if v.serial) or "none"

@@ -18,7 +18,6 @@ from recon.cli.opened_site import opened_site
 from recon.cli.options import with_options
 from recon.cli.run import HAS_GUARD, console_folder, guard_port, print_started
 from recon.cli.scripted_operator import fly_surveys
-from recon.model.errors import ReconError
 from recon.score import Scenario, ScenarioError, load_scenario
 from recon.score.scenario_sky import sky_of
 from recon.score.truth import world_text
@@ -122,11 +121,7 @@ def demo_command(options: DemoOptions) -> None:
 
     It runs until Ctrl+C.
     """
-    try:
-        demo = _played(options) if options.site is None else _rehearsed(options.site, options)
-    except ReconError as problem:
-        print(f"recon demo: {problem}", file=sys.stderr)
-        raise typer.Exit(2) from None
+    demo = _played(options) if options.site is None else _rehearsed(options.site, options)
     run_in_loop(demo.run())
 
 

@@ -2,7 +2,6 @@
 
 import csv
 import shutil
-import sys
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from enum import Enum
@@ -26,16 +25,15 @@ from recon.camera import (
 from recon.camera.image_circle import find_image_circle
 from recon.camera.photo_files import read_photo
 from recon.camera.registration import RegistrationSettings, RegistrationState, step, view_of
-from recon.cli.connection import WRONG_USE
 from recon.cli.contact_sheet import MOST_TILES, sheet_png, tile
-from recon.cli.output import print_line, printable
+from recon.cli.output import print_line
 from recon.cli.progress import progress_over
 from recon.cli.recorded_frames import RecordedFrame, Recording, open_recording
 from recon.cli.recorded_maps import refuse_used
 from recon.detection import DETECTORS, DetectionSettings, DetectionState, RejectedFrame
 from recon.geo import enu_from_points
 from recon.geo.sun import sun_position
-from recon.model.errors import ReconError, RecordError
+from recon.model.errors import RecordError
 from recon.model.geo import GeoPoint, GroundGrid, LatLon, LocalFrame
 from recon.model.imagery import CameraPose, GroundImage, RgbImage
 from recon.model.shade import ShadeMap
@@ -105,20 +103,16 @@ def detect_command(
 ) -> None:
     """Find shade in a recorded flight: GeoTIFFs, a contact sheet, cover over time."""
     options = Options(method, exposure, cell_m, start_utc, every)
-    try:
-        if method not in DETECTORS:
-            raise RecordError(f"--method: expected {' or '.join(DETECTORS)}, got {method!a}")
-        refuse_used(out)
-        lens = load_camera(camera)
-        recording = open_recording(source, step_s)
-        if gcps is not None:
-            start = _start_by_points(lens, gcps, marked, recording)
-        else:
-            start = _start_by_height(height_m, latitude_deg, longitude_deg, yaw_deg)
-        _write_all(out, lens, recording, start, options)
-    except ReconError as problem:
-        print(f"recon detect: {printable(str(problem))}", file=sys.stderr)
-        raise typer.Exit(WRONG_USE) from None
+    if method not in DETECTORS:
+        raise RecordError(f"--method: expected {' or '.join(DETECTORS)}, got {method!a}")
+    refuse_used(out)
+    lens = load_camera(camera)
+    recording = open_recording(source, step_s)
+    if gcps is not None:
+        start = _start_by_points(lens, gcps, marked, recording)
+    else:
+        start = _start_by_height(height_m, latitude_deg, longitude_deg, yaw_deg)
+    _write_all(out, lens, recording, start, options)
 
 
 def _start_by_points(

@@ -5,8 +5,6 @@ from collections.abc import Sequence
 import msgspec
 
 from recon.cli.connection import (
-    DONE,
-    REFUSED,
     JsonOption,
     NamesArgument,
     WaitOption,
@@ -14,6 +12,7 @@ from recon.cli.connection import (
     read_until,
     station_command,
 )
+from recon.cli.exit_codes import DONE, REFUSED
 from recon.cli.output import print_json, print_table
 from recon.client import Station, VehicleReturn
 
@@ -70,7 +69,8 @@ def _print_flights(flights: Sequence[VehicleReturn], as_json: bool) -> None:
         )
         for flight in flights
     ]
-    print_table("fleet return", ("vehicle", "stage", "wave", "height", "pad", "reason"), rows)
+    columns = ("vehicle", "stage", "wave", "height", "pad", "reason")
+    print_table("fleet return", columns, rows, has_heads=True)
 
 
 def _metres(height_m: float | None) -> str:

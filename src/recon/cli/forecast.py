@@ -1,14 +1,12 @@
 """`recon forecast`: predicted sun from the newest of recorded maps."""
 
-import sys
 from pathlib import Path
 from typing import Annotated
 
 import numpy as np
 import typer
 
-from recon.cli.connection import WRONG_USE
-from recon.cli.output import print_line, printable
+from recon.cli.output import print_line
 from recon.cli.recorded_maps import (
     FolderArgument,
     RecordedMaps,
@@ -19,7 +17,7 @@ from recon.cli.recorded_maps import (
     refuse_used,
 )
 from recon.forecast import FORECASTERS, ForecastSettings, ForecastState
-from recon.model.errors import ReconError, RecordError
+from recon.model.errors import RecordError
 from recon.model.shade import SURE, SunForecast
 from recon.record.raster.sun_geotiff import write_sun
 from recon.score.table_rows import percent, plain, table
@@ -37,19 +35,15 @@ def forecast_command(
     shade: ShadeOption = 0.0,
 ) -> None:
     """Forecast the sun after the newest of recorded maps: a GeoTIFF for each lead."""
-    try:
-        if method not in FORECASTERS:
-            raise RecordError(f"--method: expected {' or '.join(FORECASTERS)}, got {method}")
-        leads_s = _leads_s(leads)
-        refuse_used(out)
-        recorded = recorded_maps(folder, step_s, sun, shade)
-        found = _forecast(recorded, method, leads_s)
-        _create(out)
-        rows = [_written(out, recorded, found, lead_s) for lead_s in leads_s]
-        _print(recorded, found, rows, out)
-    except ReconError as problem:
-        print(f"recon forecast: {printable(str(problem))}", file=sys.stderr)
-        raise typer.Exit(WRONG_USE) from None
+    if method not in FORECASTERS:
+        raise RecordError(f"--method: expected {' or '.join(FORECASTERS)}, got {method}")
+    leads_s = _leads_s(leads)
+    refuse_used(out)
+    recorded = recorded_maps(folder, step_s, sun, shade)
+    found = _forecast(recorded, method, leads_s)
+    _create(out)
+    rows = [_written(out, recorded, found, lead_s) for lead_s in leads_s]
+    _print(recorded, found, rows, out)
 
 
 def _leads_s(text: str) -> tuple[float, ...]:

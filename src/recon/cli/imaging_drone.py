@@ -6,15 +6,8 @@ from typing import Annotated, TypeVar
 import msgspec
 import typer
 
-from recon.cli.connection import (
-    DONE,
-    REFUSED,
-    JsonOption,
-    WaitOption,
-    named_serials,
-    read_until,
-    station_command,
-)
+from recon.cli.connection import JsonOption, WaitOption, named_serials, read_until, station_command
+from recon.cli.exit_codes import DONE, REFUSED
 from recon.cli.output import print_json, print_line
 from recon.client import ImagerReliefStatus, Refusal, SideStepStatus, Station
 

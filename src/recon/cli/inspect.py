@@ -71,8 +71,7 @@ def _inspect_file(file: str, as_json: bool) -> bool:
         return True
     except OSError as problem:
         name = printable_bytes(file.encode(errors="replace"))
-        typer.echo(f"recon inspect: cannot read {name}: {problem.strerror}", err=True)
-        raise typer.Exit(2) from None
+        raise RecordError(f"cannot read {name}: {problem.strerror}") from problem
 
 
 def inspect(source: BinaryIO, json_lines: bool, out: TextIO) -> bool:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from recon.client import ClientError, Mission, Waypoint
+from recon.model.file_kind import file_kind
 
 LARGEST_FILE_BYTES = 4 * 1024 * 1024
 MOST_WAYPOINTS = 5_000
@@ -57,10 +58,22 @@ def _read(path: Path) -> dict[str, Any]:
     try:
         data = json.loads(text, parse_constant=_no_constant)
     except (ValueError, RecursionError) as problem:
-        raise MissionFileError(f"{path}: expected JSON: {problem}") from problem
+        raise MissionFileError(
+            f"{path}: expected a mission: Recon's own JSON with waypoints, or GeoJSON with one "
+            f"LineString; got {_kind(text, problem)}"
+        ) from problem
     if not isinstance(data, dict):
         raise MissionFileError(f"{path}: expected a JSON object, got {_shown(data)}")
     return data
+
+
+def _kind(text: bytes, problem: Exception) -> str:
+    """Return what came, and where other files are read."""
+    kind = file_kind(text[:8])
+    if kind.startswith("a JSON"):
+        return f"damaged JSON: {problem}"
+    areas = "XML" in kind or "KML" in kind or "KMZ" in kind
+    return kind + (": recon plan and recon site import read areas" if areas else "")
 
 
 def _no_constant(word: str) -> float:

@@ -7,8 +7,6 @@ from typing import Annotated
 import typer
 
 from recon.cli.connection import (
-    DONE,
-    REFUSED,
     JsonOption,
     NameArgument,
     StationOptions,
@@ -17,6 +15,7 @@ from recon.cli.connection import (
     run_at_station,
     station_command,
 )
+from recon.cli.exit_codes import DONE, REFUSED
 from recon.cli.mission_file import read_mission
 from recon.cli.options import with_options
 from recon.cli.output import await_outcomes, print_json, print_line, print_outcomes

@@ -63,6 +63,12 @@ def _place(url: str) -> str:
     return f"{parts.scheme}://{parts.hostname}" + (f":{port}" if port else "")
 
 
+class NodeError(RecordError):
+    """A NodeODM that does not answer, or not as its interface has it."""
+
+    is_failure = True
+
+
 def process(node: "Node", project: Path) -> None:
     """Send a project's photos and masks, wait for the result and fetch it; raises `RecordError`.
 
@@ -183,10 +189,10 @@ def _said(sentence: str, reason: Callable[[], str] = str) -> Iterator[None]:
     try:
         yield
     except (OdmError, RequestException, zipfile.BadZipFile, OSError) as problem:
-        raise RecordError(f"{sentence}: {_text(reason() or problem)}") from problem
+        raise NodeError(f"{sentence}: {_text(reason() or problem)}") from problem
     except (ValueError, KeyError, TypeError, AttributeError) as problem:
         # What pyodm raises where an answer is not as the interface has it.
-        raise RecordError(f"{sentence}: unexpected answer ({_text(problem)})") from problem
+        raise NodeError(f"{sentence}: unexpected answer ({_text(problem)})") from problem
 
 
 def _text(problem: object) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from recon.cli.connection import DONE, REFUSED
+from recon.cli.exit_codes import DONE, REFUSED
 from recon.client import Order, Refusal, Station, VehicleAnswer, WaitTimeoutError
 
 
@@ -87,8 +87,17 @@ def printable(text: str) -> str:
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
-def print_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-    """Print a table as wide as the terminal; into a file or pipe, one line per row."""
+def print_table(
+    title: str,
+    columns: Sequence[str],
+    rows: Sequence[Sequence[str]],
+    *,
+    has_heads: bool = False,
+) -> None:
+    """Print a table as wide as the terminal; into a file or pipe, one line per row.
+
+    `has_heads`: there too, the first line names the columns.
+    """
     # Imported here: it takes longer to load than a stop may wait.
     from rich.console import Console
     from rich.table import Table
@@ -96,7 +105,7 @@ def print_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]
 
     console = Console(markup=False, highlight=False)
     if not console.is_terminal:
-        for row in rows:
+        for row in (columns, *rows) if has_heads else rows:
             print_line("  ".join(cell or "-" for cell in row))
         return
     table = Table(title=title, title_justify="left")

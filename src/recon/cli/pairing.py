@@ -6,14 +6,8 @@ from typing import Annotated
 import msgspec
 import typer
 
-from recon.cli.connection import (
-    DONE,
-    REFUSED,
-    JsonOption,
-    StationOptions,
-    VehicleNameError,
-    run_at_station,
-)
+from recon.cli.connection import JsonOption, StationOptions, VehicleNameError, run_at_station
+from recon.cli.exit_codes import DONE, REFUSED
 from recon.cli.options import with_options
 from recon.cli.output import print_json, print_line, print_table, refused
 from recon.client import LinkStatus, Refusal, Station

@@ -1,7 +1,6 @@
 """`recon plan`: what a survey will take, before any station, drone or battery is needed."""
 
 import re
-import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from math import isfinite, nan
@@ -10,10 +9,11 @@ from typing import Annotated, Any
 
 import typer
 
-from recon.cli.connection import REFUSED, WRONG_USE, JsonOption
+from recon.cli.connection import JsonOption
+from recon.cli.exit_codes import REFUSED
 from recon.cli.opened_site import opened_site
 from recon.cli.options import with_options
-from recon.cli.output import print_json, print_table, printable
+from recon.cli.output import print_json, print_table, print_warning
 from recon.cli.plan_export import ExportedFiles, PlanExportOptions, export_plans, rows_of_exports
 from recon.cli.plan_output import ImagingFigures, figures_of, geojson_of, plan_rows_of
 from recon.cli.plan_picture import Theme, picture_png
@@ -63,6 +63,8 @@ class PlanError(ReconError):
 
 class RefusedPlanError(PlanError):
     """A survey that cannot be flown: the region, or the numbers."""
+
+    is_failure = True
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -135,17 +137,13 @@ def plan_command(options: PlanOptions, rows: RowOptions, export: PlanExportOptio
 
     Nothing flies and nothing is sent. `--export` writes the flights for other programs.
     """
-    try:
-        home = default_site() if options.site is None else opened_site(options.site)
-        own = {} if options.cameras is None else read_cameras_file(options.cameras)
-        cameras = {**home.cameras, **own}
-        if options.camera == "list":
-            _print_cameras({**CAMERAS, **cameras})
-            return
-        warnings = _plan_at(home, cameras, options, rows, export)
-    except ReconError as problem:
-        print(f"recon plan: {printable(str(problem))}", file=sys.stderr)
-        raise typer.Exit(REFUSED if isinstance(problem, RefusedPlanError) else WRONG_USE) from None
+    home = default_site() if options.site is None else opened_site(options.site)
+    own = {} if options.cameras is None else read_cameras_file(options.cameras)
+    cameras = {**home.cameras, **own}
+    if options.camera == "list":
+        _print_cameras({**CAMERAS, **cameras})
+        return
+    warnings = _plan_at(home, cameras, options, rows, export)
     if warnings:
         raise typer.Exit(REFUSED)
 
@@ -225,7 +223,7 @@ def _on_kept_rows(draft: Survey, frame: LocalFrame, site: Path, choice: RowChoic
     """Return a survey of a site's region with the rows that are kept of it, if they are wanted."""
     known, troubles = read_regions(site / FLOWN_FOLDER)
     for trouble in troubles:
-        print(f"recon plan: {printable(trouble)}", file=sys.stderr)
+        print_warning(trouble)
     found = with_rows(draft, frame, known, choice, day_of)
     if isinstance(found, Refusal):
         raise RefusedPlanError(f"refused: {found.reason}")

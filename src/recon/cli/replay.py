@@ -13,6 +13,7 @@ import numpy as np
 import typer
 
 from recon import version
+from recon.model.errors import RecordError
 from recon.record.audit.audit import shown
 from recon.station.recording.recorded_values import FlightStart, this_machine
 from recon.station.recording.replay import Checked, check
@@ -55,7 +56,7 @@ def replay_command(
 
     The console plays it at 0.1 to 50 times its speed; nothing can be ordered.
 
-    Exit code of --check and --what-if 0: equal to the bit; 1: a difference, or no record; 3: equal
+    Exit code of --check and --what-if 0: equal to the bit; 1: a difference; 2: no record; 3: equal
     as far as the record could be compared.
     """
     file, methods = _file_and_methods(words, asks)
@@ -65,8 +66,7 @@ def replay_command(
     try:
         found = _asked(file, methods, scenario) if asks else check(file, _report)
     except OSError as problem:
-        typer.echo(f"recon replay: cannot read {file}: {problem.strerror}", err=True)
-        raise typer.Exit(2) from None
+        raise RecordError(f"cannot read {file}: {problem.strerror}") from problem
     for line in lines(found):
         typer.echo(line)
     if found.differences:
@@ -97,8 +97,7 @@ def _show(file: Path, http_port: int, site: Path | None) -> None:
     try:
         run_in_loop(run_replay(file, http_port, console_folder(), started, site))
     except OSError as problem:
-        typer.echo(f"recon replay: cannot read {file}: {problem.strerror}", err=True)
-        raise typer.Exit(2) from None
+        raise RecordError(f"cannot read {file}: {problem.strerror}") from problem
 
 
 def _file_and_methods(words: list[str], asks: bool) -> tuple[Path, dict[str, str]]:

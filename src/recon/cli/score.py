@@ -12,7 +12,6 @@ import typer
 
 from recon.cli.progress import usable_cores
 from recon.forecast import FORECASTERS
-from recon.model.errors import ReconError
 from recon.record.files.users_file import state_folder
 from recon.score import RunScore, Scenario, ScenarioError, load_scenario, tables
 from recon.score.kept_runs import KeptRuns
@@ -78,18 +77,14 @@ def score_command(
     surveys_only: SurveysOption = False,
 ) -> None:
     """Fly a scenario by the whole station in virtual time and score its methods."""
-    try:
-        _check_numbers(seeds, first_seed, jobs)
-        chosen = Chosen(planner, detection, forecast, exposure, surveys_only)
-        loaded, other = chosen.scenario(scenario), chosen.other(scenario, against)
-        if against is not None and other is None:
-            loaded = _compared(loaded, against)
-        flying = Flying(range(first_seed, first_seed + seeds), jobs, fresh)
-        runs = flying.runs_of(scenario, loaded)
-        others = [] if other is None else flying.runs_of(*other)
-    except ReconError as problem:
-        print(f"recon score: {problem}", file=sys.stderr)
-        raise typer.Exit(2) from None
+    _check_numbers(seeds, first_seed, jobs)
+    chosen = Chosen(planner, detection, forecast, exposure, surveys_only)
+    loaded, other = chosen.scenario(scenario), chosen.other(scenario, against)
+    if against is not None and other is None:
+        loaded = _compared(loaded, against)
+    flying = Flying(range(first_seed, first_seed + seeds), jobs, fresh)
+    runs = flying.runs_of(scenario, loaded)
+    others = [] if other is None else flying.runs_of(*other)
     print(tables(loaded, runs, against if other is None else None))
     if against is not None and other is not None:
         limit_s = min(loaded.limit_s, other[1].limit_s)

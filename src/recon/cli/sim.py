@@ -1,7 +1,6 @@
 """`recon sim`: simulated companion apps; `recon sim scenario`: those of a scenario."""
 
 import asyncio
-import sys
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -21,7 +20,6 @@ from recon.cli.sim_options import (
 )
 from recon.cli.sim_photos import photos_command
 from recon.cli.sim_proxy import proxy_command
-from recon.model.errors import ReconError
 from recon.model.geo import GeoPoint, LatLon
 from recon.model.vehicle import AltitudeReference
 from recon.score import load_scenario
@@ -61,12 +59,8 @@ def sim_command(context: typer.Context, fleet: FleetOptions, running: RunningOpt
     """
     if context.invoked_subcommand is not None:
         return
-    try:
-        config = _config(fleet, running)
-        asyncio.run(until_stopped(run_fleet(config, print_now), "simulation ended"))
-    except ReconError as problem:
-        print(f"recon sim: {problem}", file=sys.stderr)
-        raise typer.Exit(2) from None
+    config = _config(fleet, running)
+    asyncio.run(until_stopped(run_fleet(config, print_now), "simulation ended"))
 
 
 def _config(fleet: FleetOptions, running: RunningOptions) -> SimulationConfig:
@@ -118,18 +112,14 @@ def scenario_command(
 
     They run until Ctrl+C. The station should run the scenario's site.
     """
-    try:
-        host, port = running.address
-        if not 0.0 < running.fps <= MAX_FPS_HZ:
-            raise SimulationError(
-                f"--fps: expected up to {MAX_FPS_HZ:g} per second, got {running.fps:g}"
-            )
-        config = simulation_of(load_scenario(scenario), abs(running.seed), running.feed)
-        config = replace(config, station_host=host, station_port=port)
-        asyncio.run(until_stopped(run_fleet(config, print_now, start_ns), "simulation ended"))
-    except ReconError as problem:
-        print(f"recon sim scenario: {problem}", file=sys.stderr)
-        raise typer.Exit(2) from None
+    host, port = running.address
+    if not 0.0 < running.fps <= MAX_FPS_HZ:
+        raise SimulationError(
+            f"--fps: expected up to {MAX_FPS_HZ:g} per second, got {running.fps:g}"
+        )
+    config = simulation_of(load_scenario(scenario), abs(running.seed), running.feed)
+    config = replace(config, station_host=host, station_port=port)
+    asyncio.run(until_stopped(run_fleet(config, print_now, start_ns), "simulation ended"))
 
 
 sim_app.command("proxy")(proxy_command)

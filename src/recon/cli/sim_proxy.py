@@ -1,14 +1,12 @@
 """`recon sim proxy`: a degraded link between any app and the station."""
 
 import asyncio
-import sys
 from typing import Annotated
 
 import typer
 
 from recon.cli.foreground import print_now, until_stopped
 from recon.cli.sim_options import parse_address
-from recon.model.errors import ReconError
 from recon.sim.proxy import Damage, ProxyConfig, Towards, run_proxy
 
 MS_PER_S = 1_000.0
@@ -34,24 +32,20 @@ def proxy_command(
 
     It runs until Ctrl+C.
     """
-    try:
-        damage = Damage(
-            delay_s=delay_ms / MS_PER_S,
-            jitter_s=jitter_ms / MS_PER_S,
-            rate_bytes_per_s=float("inf") if rate_kb_s is None else rate_kb_s * BYTES_PER_KB,
-            stalls_per_min=stalls_per_min,
-            stall_s=stall_s,
-            resets_per_min=resets_per_min,
-            corrupted_per_mb=corruption_per_mb,
-        )
-        config = ProxyConfig(
-            listen=parse_address("--listen", listen, lowest_port=0),
-            station=parse_address("--station", station),
-            damage=damage,
-            towards=towards,
-            seed=seed,
-        )
-        asyncio.run(until_stopped(run_proxy(config, print_now), "proxy ended"))
-    except ReconError as problem:
-        print(f"recon sim proxy: {problem}", file=sys.stderr)
-        raise typer.Exit(2) from None
+    damage = Damage(
+        delay_s=delay_ms / MS_PER_S,
+        jitter_s=jitter_ms / MS_PER_S,
+        rate_bytes_per_s=float("inf") if rate_kb_s is None else rate_kb_s * BYTES_PER_KB,
+        stalls_per_min=stalls_per_min,
+        stall_s=stall_s,
+        resets_per_min=resets_per_min,
+        corrupted_per_mb=corruption_per_mb,
+    )
+    config = ProxyConfig(
+        listen=parse_address("--listen", listen, lowest_port=0),
+        station=parse_address("--station", station),
+        damage=damage,
+        towards=towards,
+        seed=seed,
+    )
+    asyncio.run(until_stopped(run_proxy(config, print_now), "proxy ended"))

@@ -6,11 +6,8 @@ from typing import Annotated
 import msgspec
 import typer
 
-from recon.cli.connection import (
-    DONE,
-    JsonOption,
-    station_command,
-)
+from recon.cli.connection import JsonOption, station_command
+from recon.cli.exit_codes import DONE
 from recon.cli.output import print_json, print_line, print_table
 from recon.client import AlarmStatus, OrderStatus, Station, StopLatchStatus, Telemetry
 

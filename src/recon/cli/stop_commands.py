@@ -12,8 +12,6 @@ from typing import Annotated
 import typer
 
 from recon.cli.connection import (
-    DONE,
-    REFUSED,
     JsonOption,
     NamesArgument,
     StationOptions,
@@ -23,6 +21,7 @@ from recon.cli.connection import (
     run_at_station,
     station_at,
 )
+from recon.cli.exit_codes import DONE, REFUSED
 from recon.cli.guard_stop import STATION_ANSWERS_WITHIN_S, guard_port_of, stop_all_at_guard
 from recon.cli.options import with_options
 from recon.cli.output import Outcome, await_outcomes, print_line, print_outcomes

@@ -8,14 +8,8 @@ import msgspec
 import typer
 
 from recon.cli.commands import App
-from recon.cli.connection import (
-    DONE,
-    REFUSED,
-    JsonOption,
-    NamesArgument,
-    named_serials,
-    station_command,
-)
+from recon.cli.connection import JsonOption, NamesArgument, named_serials, station_command
+from recon.cli.exit_codes import DONE, REFUSED
 from recon.cli.output import print_json, print_line, print_table
 from recon.cli.survey_again import print_flown_regions, region_asked, since_day
 from recon.cli.survey_output import print_answer, print_surveys

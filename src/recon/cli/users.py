@@ -79,7 +79,8 @@ def remove_command(name: NameArgument, users: UsersOption = None) -> None:
     """Remove a user; a running station ends its streams within two seconds."""
 
     def without(known: tuple[User, ...]) -> Sequence[User]:
-        return [user for user in known if user is not _named(known, name)]
+        gone = _named(known, name)
+        return [user for user in known if user is not gone]
 
     change_users(users or default_users_file(), without)
     print_line(f"{name} is removed and logged out")

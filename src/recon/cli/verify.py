@@ -1,14 +1,12 @@
 """`recon verify`: forecast methods on recorded maps, each compared with what came."""
 
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from recon.cli.connection import WRONG_USE
-from recon.cli.output import print_line, printable
+from recon.cli.output import print_line
 from recon.cli.recorded_maps import (
     FolderArgument,
     RecordedMaps,
@@ -19,7 +17,7 @@ from recon.cli.recorded_maps import (
 )
 from recon.cli.reliability import reliability_png
 from recon.forecast import FORECASTERS
-from recon.model.errors import ReconError, RecordError
+from recon.model.errors import RecordError
 from recon.score.forecast_figures import Calibration, LeadScore, SeenCells
 from recon.score.forecast_scoring import ForecastKey
 from recon.score.forecast_tables import leads_table
@@ -35,16 +33,12 @@ def verify_command(
     plot: Annotated[Path | None, typer.Option(help="PNG of reliability to write.")] = None,
 ) -> None:
     """Run all forecast methods over recorded maps and compare them with what came."""
-    try:
-        recorded = recorded_maps(folder, step_s, sun, shade)
-        sums = verified(recorded.maps(), tuple(FORECASTERS))
-        for line in _tables(sums, recorded).splitlines():
-            print_line(line)
-        if plot is not None:
-            _draw(plot, sums, recorded.time_scale)
-    except ReconError as problem:
-        print(f"recon verify: {printable(str(problem))}", file=sys.stderr)
-        raise typer.Exit(WRONG_USE) from None
+    recorded = recorded_maps(folder, step_s, sun, shade)
+    sums = verified(recorded.maps(), tuple(FORECASTERS))
+    for line in _tables(sums, recorded).splitlines():
+        print_line(line)
+    if plot is not None:
+        _draw(plot, sums, recorded.time_scale)
 
 
 def _tables(sums: Mapping[ForecastKey, LeadScore], recorded: RecordedMaps) -> str:

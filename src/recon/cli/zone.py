@@ -7,14 +7,8 @@ import msgspec
 import typer
 
 from recon.cli.commands import App
-from recon.cli.connection import (
-    DONE,
-    REFUSED,
-    JsonOption,
-    StationOptions,
-    run_at_station,
-    station_command,
-)
+from recon.cli.connection import JsonOption, StationOptions, run_at_station, station_command
+from recon.cli.exit_codes import DONE, REFUSED
 from recon.cli.options import with_options
 from recon.cli.output import print_json, print_line, print_table, refused
 from recon.client import ClientError, Refusal, Station, TemporaryZoneStatus

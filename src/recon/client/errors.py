@@ -26,6 +26,8 @@ class AddressError(ClientError):
 class StationUnreachableError(ClientError):
     """No connection to the station was made; nothing was sent."""
 
+    is_failure = True
+
 
 class CertificateError(StationUnreachableError):
     """The station's certificate is not the pinned one, or no known authority vouches for it."""
@@ -33,6 +35,8 @@ class CertificateError(StationUnreachableError):
 
 class RequestRefusedError(ClientError):
     """The station rejected the request (token, host name, version); nothing was executed."""
+
+    is_failure = True
 
 
 class OrderInvalidError(RequestRefusedError):
@@ -42,6 +46,8 @@ class OrderInvalidError(RequestRefusedError):
 class BadAnswerError(ClientError):
     """The response is not JSON, has an unexpected structure, or is too long."""
 
+    is_failure = True
+
 
 class MaybeSentError(ClientError):
     """An order was sent without a valid answer and may be executed.
@@ -49,10 +55,16 @@ class MaybeSentError(ClientError):
     The client never repeats it. Check the vehicle before sending it again.
     """
 
+    is_failure = True
+
 
 class ConnectionLostError(ClientError):
     """The stream of states is lost, or the station has restarted."""
 
+    is_failure = True
+
 
 class WaitTimeoutError(ClientError):
     """A vehicle did not connect, or an order did not reach a phase, in the given time."""
+
+    is_failure = True

@@ -23,6 +23,7 @@ from recon.client.trust import CertificateTrust, is_untrusted
 
 LONGEST_ANSWER_BYTES = 16 * 1024 * 1024
 ORDER_INVALID = 422
+ROLE_TOO_LOW = 403
 
 M = TypeVar("M")
 
@@ -128,6 +129,8 @@ class Http:
             reason = shown(data)
         if status == ORDER_INVALID:
             raise OrderInvalidError(reason)
+        if status == ROLE_TOO_LOW:
+            raise RequestRefusedError(f"refused (role): {reason}")
         raise RequestRefusedError(
             f"{self._address.http}{path}: refused (HTTP {status}): {reason}; nothing was executed"
         )

@@ -35,6 +35,8 @@ T = TypeVar("T")
 class FetchError(ReconError):
     """Something cannot be fetched; the text states what was expected, what came, what to do."""
 
+    is_failure = True
+
 
 class AskFailedError(Exception):
     """One request failed; perhaps another try succeeds, `after_s` from now."""

@@ -25,6 +25,8 @@ _NOT_IN_HOST_NAMES = re.compile(r"[^A-Za-z0-9-]+")
 class AnnouncementError(ReconError):
     """The station cannot be announced; apps still connect by its address."""
 
+    is_failure = True
+
 
 class Announcement:
     """The announcement of one station, from `start` to `stop`; both block: call them on a thread

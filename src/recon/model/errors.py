@@ -12,16 +12,21 @@
     |- AnnouncementError    recon.link: the station cannot announce itself by mDNS
     |- StartError           recon.station: the station cannot start
 
-The command line prints the text of a `ReconError` as one sentence and exits with 1. Refused
-commands are values, not errors (`recon.model.command.Refusal`).
+The command line prints the text of a `ReconError` as one sentence; `recon.cli.exit_codes` gives its
+exit code. Refused commands are values, not errors (`recon.model.command.Refusal`).
 """
 
 import traceback
 from pathlib import Path
+from typing import ClassVar
 
 
 class ReconError(Exception):
     """An error that is reported to the user as one sentence."""
+
+    is_failure: ClassVar[bool] = False
+    """Whether the work failed though it was asked for rightly; else the person names what is not
+    there or does not fit."""
 
 
 class SiteError(ReconError):

@@ -205,7 +205,10 @@ def _read_site_file(path: Path) -> dict[str, Any]:
         return read_toml(path, LARGEST_FILE_BYTES, "a site file")
     except SiteError as problem:
         if isinstance(problem.__cause__, FileNotFoundError | NotADirectoryError):
-            raise SiteError(f"{path}: Folder or {SITE_FILE} not found") from problem
+            raise SiteError(
+                f"{path}: Folder or {SITE_FILE} not found; make a site with recon site new "
+                f"{path.parent} --at LAT,LON --ground-above-sea-level HEIGHT"
+            ) from problem
         raise
 
 
