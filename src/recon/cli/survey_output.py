@@ -2,7 +2,7 @@
 
 import msgspec
 
-from recon.cli.connection import DONE, REFUSED
+from recon.cli.exit_codes import DONE, REFUSED
 from recon.cli.output import print_json, print_line, print_table
 from recon.client import Refusal, SurveyStatus, SurveyVehicle
 from recon.model.survey import height_text
