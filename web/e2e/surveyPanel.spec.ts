@@ -1,4 +1,5 @@
 import { expect, test } from "@playwright/test";
+import { flownRegion } from "../src/testing/fakeField";
 import { fieldPicture } from "./fake/picture";
 import { FakeStation } from "./fake/station";
 import { surveyedState, WAYS } from "./fake/surveyedState";
@@ -15,6 +16,7 @@ const SIZES = [
 test("is legible during surveys in each theme", async ({ page }) => {
   const fake = await FakeStation.behind(page, surveyedState(0));
   fake.paths = WAYS;
+  fake.flown = { ...fake.flown, regions: [flownRegion({ region: "orchard", is_simulated: true })] };
   fake.showPicture(await fieldPicture(page));
   await page.goto("/");
   const begin_ms = performance.now();
@@ -26,6 +28,7 @@ test("is legible during surveys in each theme", async ({ page }) => {
   await page.keyboard.press("3");
   const panel = page.getByRole("region", { name: "Survey", exact: true });
   await expect(panel.getByText("recalled")).toBeVisible();
+  await panel.getByText("Resume a survey").click();
   await panel.getByText("New survey").click();
   await inEachTheme(page, async (theme) => {
     for (const [width, height] of SIZES) {

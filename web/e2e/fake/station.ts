@@ -3,6 +3,7 @@ import type {
   AccessView,
   BaseMapsView,
   CalibrationView,
+  FlownRegionsView,
   FrozenFrameView,
   OrderRequest,
   OrderResult,
@@ -42,6 +43,7 @@ export class FakeStation {
   /** The gate's result for checked orders. */
   checkResult: Partial<OrderResult> = {};
   preflight: PreflightView | null = null;
+  flown: FlownRegionsView = { today: "2026-05-03", regions: [], unreadable: [] };
   /** The person of the page's requests: this computer's user. */
   person: AccessView = {
     name: "local-operator",
@@ -155,6 +157,7 @@ export class FakeStation {
     if (path.startsWith("/api/maps/") && this.picture !== null)
       return { body: this.picture, contentType: "image/png" };
     if (path === "/api/surveys/estimate") return { json: surveyEstimate({ survey_id: 0 }) };
+    if (path === "/api/flown-regions") return { json: this.flown };
     if (path === "/api/cameras") return { json: [MINI_3_PRO] };
     if (path.startsWith("/api/site/drawing")) return { json: this.drawingResult };
     const isControlRequest = /\/(authority|override|release|zones|end)$/.test(path);

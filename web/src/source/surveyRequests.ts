@@ -1,4 +1,10 @@
-import type { NewSurvey, SurveyPaths, SurveyRequest, SurveyResponse } from "../protocol";
+import type {
+  NewSurvey,
+  SurveyAgainRequest,
+  SurveyPaths,
+  SurveyRequest,
+  SurveyResponse,
+} from "../protocol";
 import { answered, CHANGE, PLANNING, READ, type StationHttp } from "./stationHttp";
 
 /** An aircraft that a .kmz names, and its camera where it has none of its own. */
@@ -19,6 +25,11 @@ export function surveyRequests(http: StationHttp, stationNowMs: () => number | n
       const body = survey as SurveyRequest;
       return answered(PLANNING, (signal) => client.POST("/api/surveys", { body, signal }), asPairs);
     },
+    /** The regions that were surveyed, in this run or another one. */
+    flownRegions: () => answered(READ, (signal) => client.GET("/api/flown-regions", { signal })),
+    /** Plans what is left of a flown region, or all of it, on its rows; nothing moves. */
+    again: (body: SurveyAgainRequest) =>
+      answered(PLANNING, (signal) => client.POST("/api/surveys/again", { body, signal }), asPairs),
     /** Starts a survey with these vehicles and gives guidance control of them. */
     start: (survey_id: number, serials: readonly string[], takeoff: boolean) => {
       const body = { serials: [...serials], takeoff, given_at_unix_ms: stationNowMs() };

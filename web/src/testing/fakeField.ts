@@ -1,5 +1,6 @@
 import type {
   BaseMapView,
+  FlownRegionView,
   GroundImageView,
   PlanExportsView,
   ShadeLineView,
@@ -67,11 +68,40 @@ export function surveyLight(changes: Partial<SurveyLightView> = {}): SurveyLight
   };
 }
 
+/** A region of two hectares, flown on two days, with `changes` applied. */
+export function flownRegion(changes: Partial<FlownRegionView> = {}): FlownRegionView {
+  return {
+    id: "77fbea7c1a8d8637",
+    region: "south field",
+    is_simulated: false,
+    planner: "sunlit_first",
+    height_above_takeoff_m: 50,
+    height_above_ground_m: null,
+    speed_mps: 5,
+    camera_across_deg: 66,
+    camera_along_deg: 52,
+    row_spacing_m: 25.9,
+    row_bearing_deg: 90,
+    begun_unix_s: 1_777_630_000,
+    started_unix_s: 1_777_800_000,
+    reached_m2: 20_000,
+    left_m2: 8_000,
+    days: [
+      { day: "2026-05-03", imaged_m2: 6_000, in_sun_m2: 5_000 },
+      { day: "2026-05-01", imaged_m2: 9_000, in_sun_m2: 7_000 },
+    ],
+    changes: [],
+    refusal: null,
+    ...changes,
+  };
+}
+
 /** A survey of two hectares with one vehicle flying rows, with `changes` applied. */
 export function survey(id: number, changes: Partial<SurveyView> = {}): SurveyView {
   return {
     id,
     name: "south field",
+    region: "south field",
     phase: "running",
     reason: "round 1",
     asked_by: "api 127.0.0.1",

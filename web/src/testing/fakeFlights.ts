@@ -1,6 +1,7 @@
 import type {
   FlightFiguresView,
   FlightView,
+  FlownRegionsView,
   Outcome,
   SurveyCameraView,
   SurveyEstimateView,
@@ -27,6 +28,7 @@ export interface FakeFlights {
   records: Outcome<FlightView[]>;
   figures: Outcome<FlightFiguresView>;
   estimate: SurveyEstimateView;
+  flown: FlownRegionsView;
 }
 
 export function fakeFlights(): FakeFlights {
@@ -34,6 +36,7 @@ export function fakeFlights(): FakeFlights {
     records: answered([]),
     figures: failed("no figures in this test"),
     estimate: surveyEstimate(),
+    flown: { today: "2026-05-03", regions: [], unreadable: [] },
   };
 }
 
@@ -58,6 +61,8 @@ export function fakeFlightRequests(flights: FakeFlights, requests: PageRequests)
 export function fakeSurveyRequests(flights: FakeFlights, requests: PageRequests): SurveyRequests {
   const none = { survey: null };
   return {
+    flownRegions: async () => answered(flights.flown),
+    again: (surveyAgain) => requests.answer({ surveyAgain }, none),
     plan: (plannedSurvey) => requests.answer({ plannedSurvey }, none),
     start: (startedSurvey, serials, takeoff) =>
       requests.answer({ startedSurvey, serials, takeoff }, none),

@@ -6,6 +6,7 @@ import type {
   NewZone,
   Outcome,
   ReplayTransport,
+  SurveyAgainRequest,
 } from "../protocol";
 import type { NamedAircraft } from "../source/surveyRequests";
 
@@ -28,6 +29,7 @@ export type PageRequest =
   | { readonly sideStep: string }
   | { readonly relieved: string; readonly spare: string; readonly takeoff: boolean }
   | { readonly plannedSurvey: NewSurvey }
+  | { readonly surveyAgain: SurveyAgainRequest }
   | {
       readonly startedSurvey: number;
       readonly serials: readonly string[];

@@ -9,6 +9,7 @@ import type {
   Connection,
   FlightFiguresView,
   FlightView,
+  FlownRegionView,
   NamedOrder,
   OrderResult,
   PreflightView,
@@ -48,6 +49,8 @@ export interface RenderedPage {
   answerWith(results: readonly OrderResult[]): void;
   /** Sets the answer to every further request other than orders. */
   answerRequestsWith(response: ActionResponse): void;
+  /** Sets the regions that were flown before; read when a survey's phase changes. */
+  showFlown(...regions: FlownRegionView[]): void;
   /** Sets what every further estimate of a survey finds. */
   estimateWith(changes: Partial<SurveyEstimateView>): void;
   /** Sets the place upwind of further answers. */
@@ -127,6 +130,9 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
     },
     answerRequestsWith: (response) => {
       requests.response = response;
+    },
+    showFlown: (...regions) => {
+      flights.flown = { ...flights.flown, regions };
     },
     estimateWith: (changes) => {
       flights.estimate = surveyEstimate(changes);

@@ -33,7 +33,7 @@ function imagedInSunAndLeft({ reached_m2, in_sun_m2, not_shown_m2 }: Figures): [
 }
 
 /** The planner that flies all rows in whatever light; the others fly again what is in shade. */
-const ANY_LIGHT = "lawnmower_once";
+export const ANY_LIGHT = "lawnmower_once";
 
 /** Before that a rate means nothing. */
 const LEAST_AGE_S = 60;
@@ -92,8 +92,10 @@ function aboveGround(found: SurveyEstimateView): (readonly [string, string])[] {
   return [[text.estimate.aboveGround, range]];
 }
 
-/** A survey's height with its reference. */
-export function surveyHeight(survey: SurveyView): string {
+/** The height of a survey, or of a flown region, with its reference. */
+export function surveyHeight(
+  survey: Pick<SurveyView, "height_above_ground_m" | "height_above_takeoff_m">,
+): string {
   const { height_above_ground_m: ground_m, height_above_takeoff_m: takeoff_m } = survey;
   return ground_m === null
     ? text.surveys.aboveTakeoff(formatLength(takeoff_m))

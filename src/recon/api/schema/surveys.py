@@ -247,6 +247,7 @@ class SurveyView(Message):
 
     id: int
     name: str
+    region: str | None = Field(description="the site's name of its region; null: it was drawn")
     phase: SurveyPhaseName
     reason: str
     asked_by: str

@@ -44,6 +44,7 @@ def survey_view(station: Station, record: SurveyRecord, now_ns: int) -> schema.S
     return schema.SurveyView(
         id=survey.id,
         name=survey.name,
+        region=survey.region_name,
         phase=phase,
         reason=reason,
         asked_by=record.by,

@@ -40,9 +40,15 @@ export function DraftEstimate(props: { survey: NewSurvey | null }) {
       ? draftFacts(found.value, targets().serials.length)
       : null;
   };
+  /** Whose rows these are. */
+  const note = () => {
+    const found = outcome();
+    return found?.kind === "answered" && props.survey !== null ? found.value.rows_note : "";
+  };
   return (
     <div class="survey-wide" role="status">
       <Show when={facts()}>{(line) => <p>{line()}</p>}</Show>
+      <Show when={note()}>{(line) => <p class="muted wire-text">{withLengthUnit(line())}</p>}</Show>
       <For each={problems()}>
         {(problem) => <p class="survey-warning wire-text">{withLengthUnit(problem)}</p>}
       </For>

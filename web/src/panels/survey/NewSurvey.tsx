@@ -13,6 +13,8 @@ import { FASTEST_MPS } from "./surveyNumbers";
 const PLANNERS = valuesOf(text.newSurvey.planners);
 /** The planner of a site without an imaging drone: no shade is known there. */
 const ANY_LIGHT = "lawnmower_once";
+/** Where the rows of a region lie that was flown before. */
+const LINES = valuesOf(text.flown.lineChoices);
 const WHEN_DONE = valuesOf(text.newSurvey.thenDo);
 
 /**
@@ -21,6 +23,8 @@ const WHEN_DONE = valuesOf(text.newSurvey.thenDo);
  */
 export function NewSurvey(props: {
   isFirst: boolean;
+  /** Names of the regions that were flown before. */
+  flown: readonly string[];
   onResult: (outcome: Outcome<SurveyResponse>) => void;
 }) {
   const { fleet } = useConsole();
@@ -39,6 +43,7 @@ export function NewSurvey(props: {
         <summary>{text.newSurvey.title}</summary>
         <Form
           regions={regions().map(({ name }) => name)}
+          flown={props.flown}
           isOpen={isOpen()}
           onResult={props.onResult}
         />
@@ -49,6 +54,7 @@ export function NewSurvey(props: {
 
 function Form(props: {
   regions: readonly string[];
+  flown: readonly string[];
   isOpen: boolean;
   onResult: (outcome: Outcome<SurveyResponse>) => void;
 }) {
@@ -118,7 +124,7 @@ function Form(props: {
       </label>
       <Numbers figures={figures} />
       <DraftEstimate survey={draft()} />
-      <Choices />
+      <Choices isAnyFlown={props.flown.length > 0} />
       <button
         type="submit"
         class="button"
@@ -254,7 +260,7 @@ function NumberField(props: {
 }
 
 /** What else a survey does; what the site cannot do is not offered. */
-function Choices() {
+function Choices(props: { isAnyFlown: boolean }) {
   const { fleet } = useConsole();
   const imagers = () => fleet.vehicles.filter(({ is_imager }) => is_imager);
   return (
@@ -265,6 +271,16 @@ function Choices() {
           <select name="planner">
             <For each={PLANNERS}>
               {(name) => <option value={name}>{text.newSurvey.planners[name]}</option>}
+            </For>
+          </select>
+        </label>
+      </Show>
+      <Show when={props.isAnyFlown}>
+        <label class="survey-wide">
+          {text.flown.lines}
+          <select name="lines">
+            <For each={LINES}>
+              {(name) => <option value={name}>{text.flown.lineChoices[name]}</option>}
             </For>
           </select>
         </label>
@@ -311,6 +327,7 @@ function choicesOf(data: FormData) {
   return {
     region: String(data.get("region")),
     planner: String(data.get("planner") ?? ANY_LIGHT),
+    rows: LINES.find((name) => name === data.get("lines")) ?? ("auto" as const),
     side_step_allowed: data.get("side_step") !== null,
     upwind_allowed: data.get("upwind") !== null,
     // What it may do when its imaging drone's battery ends: warn, return it home, or relieve it.

@@ -1,4 +1,4 @@
-import { createSignal, For, Show } from "solid-js";
+import { createResource, createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import { targetsKey } from "../../orders/targets";
 import type { Outcome, SurveyingView, SurveyResponse, SurveyView } from "../../protocol";
@@ -7,6 +7,7 @@ import { formatArea, sharePercent, surveyHeight, surveyStatus, timeLeft } from "
 import { withLengthUnit } from "../../text/units";
 import { BRIEF_MS, GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Panel, Problem } from "../Panel";
+import { FlownRegions } from "./FlownRegions";
 import { NewSurvey } from "./NewSurvey";
 import { SurveyLight } from "./SurveyLight";
 import { SurveyPreview } from "./SurveyPreview";
@@ -15,12 +16,22 @@ import "./survey.css";
 
 /** Surveys: plan, start with the selected vehicles, pause, abort; and their coverage. */
 export function SurveyPanel() {
-  const { fleet, isReplay } = useConsole();
+  const { fleet, source, isReplay } = useConsole();
   const [problem, setProblem] = createSignal<string | null>(null);
   /** What flies, or may go on, comes before what is planned or over. */
   const surveys = () => {
     const rank = ({ phase }: SurveyView) => (phase === "running" ? 0 : phase === "paused" ? 1 : 2);
     return [...fleet.surveys].sort((a, b) => rank(a) - rank(b));
+  };
+  // Read again when a survey begins or ends: that changes what is left.
+  const phases = () => `${fleet.surveys.map(({ id, phase }) => `${id} ${phase}`)}`;
+  const [flown] = createResource(
+    () => !isReplay() && phases(),
+    () => source.surveys.flownRegions(),
+  );
+  const known = () => {
+    const latest = flown.latest;
+    return latest?.kind === "answered" ? latest.value : null;
   };
   const showProblem = (outcome: Outcome<SurveyResponse>) => setProblem(problemOf(outcome));
   return (
@@ -30,7 +41,14 @@ export function SurveyPanel() {
       </For>
       <Problem text={problem()} />
       <Show when={!isReplay()}>
-        <NewSurvey isFirst={fleet.surveys.length === 0} onResult={showProblem} />
+        <Show when={known()}>
+          {(found) => <FlownRegions known={found()} onResult={showProblem} />}
+        </Show>
+        <NewSurvey
+          isFirst={fleet.surveys.length === 0}
+          flown={(known()?.regions ?? []).map(({ region }) => region)}
+          onResult={showProblem}
+        />
       </Show>
     </Panel>
   );
@@ -73,7 +91,11 @@ function SurveySection(props: SurveyProps) {
         {surveyStatus(props.survey)}
         <Show when={reason()}>{(why) => <span class="muted">: {withLengthUnit(why())}</span>}</Show>
       </p>
-      <p class="muted">{surveyHeight(props.survey)}</p>
+      <p class="muted wire-text">
+        {[surveyHeight(props.survey), withLengthUnit(props.survey.rows_note)]
+          .filter((line) => line !== "")
+          .join(" · ")}
+      </p>
       <Coverage survey={props.survey} />
       <Show when={is("running", "paused") && notShown(props.survey)}>
         {(line) => <p class="muted wire-text">{line()}</p>}

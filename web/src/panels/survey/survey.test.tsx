@@ -365,6 +365,7 @@ describe("a new survey", () => {
           front_overlap: 0.75,
           side_overlap: 0.6,
           row_bearing_deg: null,
+          rows: "auto",
           planner: "lawnmower_once",
           camera: { model: null, interval_s: 2 },
           when_done: "return_home",

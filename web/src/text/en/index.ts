@@ -1,5 +1,6 @@
 import * as detail from "./detail";
 import * as fleet from "./fleet";
+import * as flown from "./flown";
 import * as light from "./light";
 import * as map from "./map";
 import * as newSite from "./newSite";
@@ -16,6 +17,7 @@ export const english = {
   ...detail,
   ...map,
   ...light,
+  ...flown,
   ...site,
   ...newSite,
   ...station,

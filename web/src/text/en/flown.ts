@@ -1,0 +1,28 @@
+/** Regions that were surveyed, in this run of the station or on another day. */
+export const flown = {
+  title: "Resume a survey",
+  titleNone: "Fly a region again",
+  left: (percent: number, area: string) => `${percent} % left · ${area}`,
+  complete: "Complete",
+  days: (days: readonly string[]) => `Flown ${days.join(", ")}`,
+  day: (day: string, area: string) => `${day} (${area})`,
+  today: "today",
+  older: (count: number) => `${count} earlier days`,
+  simulated: "by simulated drones",
+  leaveOut: "Leave out what was imaged",
+  sinceBegun: (day: string) => `since it began, ${day}`,
+  sinceToday: "today",
+  sinceDay: (day: string) => `since ${day}`,
+  nothing: "never: fly all again",
+  resume: "Resume: plan the rest",
+  again: "Plan all of it again",
+  resumeOf: (region: string) => `Resume ${region}: plan the rest`,
+  againOf: (region: string) => `Plan all of ${region} again`,
+  sameRows: "On the same rows. Nothing flies before you start it.",
+  lines: "Where rows lie",
+  lineChoices: {
+    auto: "As last time, if nothing differs",
+    as_before: "As last time",
+    new: "Anew",
+  },
+};
