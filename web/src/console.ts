@@ -24,6 +24,7 @@ import { type Calibration, createCalibration } from "./site/calibration";
 import { createSiteDraft, type SiteDraft } from "./site/siteDraft";
 import { createVehicleTable, type VehicleTable } from "./site/vehicleTable";
 import { type AlarmSound, createAlarmSound } from "./sound/alarmSound";
+import type { Notifier } from "./sound/attention";
 import type { Mutes } from "./sound/mutes";
 import type { Speaker } from "./sound/speaker";
 import type { Clock, Instant } from "./source/clock";
@@ -103,7 +104,7 @@ export function createConsole(
   clock: Clock,
   now: Accessor<Instant>,
   panels: OpenPanels,
-  sound: { readonly mutes: Mutes; readonly speaker: Speaker },
+  sound: { readonly mutes: Mutes; readonly speaker: Speaker; readonly notifier: Notifier },
   login: Login = NO_LOGIN,
   kept: Kept = NOTHING_KEPT,
 ): Console {
@@ -179,7 +180,7 @@ export function createConsole(
     theme,
     panels,
     largeCamera: createLargeCamera(),
-    alarmSound: createAlarmSound(source, isReplay, now, sound.mutes, sound.speaker),
+    alarmSound: createAlarmSound(source, isReplay, now, sound.mutes, sound.speaker, sound.notifier),
     login,
     replay,
     isReplay,

@@ -5,6 +5,7 @@ import "./theme/page.css";
 import { App } from "./App";
 import { ConsoleProvider, createConsole } from "./console";
 import { createOpenPanels, NARROW } from "./panels/openPanels";
+import { createNotifier, keepScreenOn } from "./sound/attention";
 import { createMutes } from "./sound/mutes";
 import { createSpeaker } from "./sound/speaker";
 import { browserClock } from "./source/clock";
@@ -47,7 +48,11 @@ function Page() {
     browserClock,
     now,
     createOpenPanels(localStorage, () => matchMedia(NARROW).matches),
-    { mutes: createMutes(localStorage), speaker: createSpeaker(window) },
+    {
+      mutes: createMutes(localStorage),
+      speaker: createSpeaker(window),
+      notifier: createNotifier(window),
+    },
     {
       hasToken: given.token !== null,
       fingerprint: given.fingerprint,
@@ -55,6 +60,9 @@ function Page() {
       logOut: () => reloadWith(null),
     },
     localStorage,
+  );
+  keepScreenOn(document, navigator.wakeLock, () =>
+    shared.fleet.vehicles.some(({ is_flying }) => is_flying.value === true),
   );
   return (
     <ConsoleProvider value={shared}>

@@ -41,6 +41,7 @@ export function LayersButton() {
         <div class="card layers-list">
           <OverlayChoice />
           <BaseMapChoice />
+          <p class="muted">{text.layers.ato}</p>
         </div>
       )}
     </Popover>

@@ -27,7 +27,7 @@ const MARK_PX = 44;
 /** A symbol is in sight while its middle is. */
 const MIDDLE_PX = 4;
 
-/** Marks for the vehicles beyond the map's edge or under a panel; none while there is hardly a map. */
+/** Marks for the vehicles beyond the map's edge or under a panel; none where there is hardly a map. */
 export function edgeMarksOf(spots: readonly NamedSpot[], seen: Uncovered): EdgeMark[] {
   const inner = inset(seen.room, MARK_PX / 2);
   if (inner.right - inner.left < 2 * MARK_PX || inner.bottom - inner.top < 2 * MARK_PX) return [];
@@ -35,8 +35,11 @@ export function edgeMarksOf(spots: readonly NamedSpot[], seen: Uncovered): EdgeM
   for (const spot of spots) {
     if (isInSight(inset(atPoint(spot), -MIDDLE_PX), seen)) continue;
     // At the window's edge, or beside the panel that stands there.
-    const outer = markOf(spot, inset(seen.window, MARK_PX / 2));
-    const mark = isInSight(inset(atPoint(outer), -MARK_PX / 2), seen) ? outer : markOf(spot, inner);
+    const frames = [inset(seen.window, MARK_PX / 2), inner];
+    const mark = frames
+      .map((frame) => markOf(spot, frame))
+      .find((place) => isInSight(inset(atPoint(place), 1 - MARK_PX / 2), seen));
+    if (mark === undefined) continue;
     const near = marks.findIndex(
       ({ x_px, y_px }) => Math.hypot(x_px - mark.x_px, y_px - mark.y_px) < MARK_PX,
     );

@@ -5,6 +5,7 @@ import type { Instant } from "../source/clock";
 import type { StationSource } from "../source/stationSource";
 import { text } from "../text/catalogue";
 import { announce, SILENT } from "./announcements";
+import type { Notifier } from "./attention";
 import type { Mutes } from "./mutes";
 import type { SoundProblem, Speaker } from "./speaker";
 
@@ -20,6 +21,7 @@ export interface AlarmSound {
   readonly silenced: Accessor<readonly AlarmGroup[]>;
   /** A tone and a sentence, to check loudness and voice. */
   test(): void;
+  readonly notifier: Notifier;
 }
 
 /** Kinds whose silence is always shown. */
@@ -46,6 +48,7 @@ export function createAlarmSound(
   now: Accessor<Instant>,
   mutes: Mutes,
   speaker: Speaker,
+  notifier: Notifier,
 ): AlarmSound {
   const causes = createMemo(() => {
     if (isReplay()) return [];
@@ -73,7 +76,9 @@ export function createAlarmSound(
       now().monotonicMs,
     );
     announcer = next;
-    if (announcement !== null) speaker.announce(announcement);
+    if (announcement === null) return;
+    speaker.announce(announcement);
+    notifier.notify(announcement);
   });
   return {
     mutes,
@@ -81,6 +86,7 @@ export function createAlarmSound(
     problem: speaker.problem,
     causes,
     silenced,
+    notifier,
     test: () =>
       speaker.announce({ severity: "warning", text: text.sound.testSentence, interrupts: false }),
   };

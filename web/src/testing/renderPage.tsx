@@ -180,6 +180,7 @@ function createFakeSound() {
   return {
     announced,
     block,
+    notifier: { permission: () => "absent" as const, ask: async () => {}, notify: () => {} },
     mutes: createMutes({ getItem: () => null, setItem: () => {} }),
     speaker: {
       announce: (announcement: Announcement) => announced.push(announcement),

@@ -64,9 +64,10 @@ export function plainWords(word: string): string {
   return word.toLowerCase().replaceAll("_", " ");
 }
 
-/** A vehicle's label in orders and alarms: its number, then its name. */
-export function vehicleLabel(vehicle: Pick<VehicleView, "number" | "name">): string {
-  return vehicle.number > 0 ? `${vehicle.number} ${vehicle.name}` : `? ${vehicle.name}`;
+/** A vehicle's label in orders and alarms: its number, then its name; the name alone if it has the number. */
+export function vehicleLabel({ number, name }: Pick<VehicleView, "number" | "name">): string {
+  if (number > 0 && new RegExp(`(^|\\D)${number}(\\D|$)`).test(name)) return name;
+  return number > 0 ? `${number} ${name}` : `? ${name}`;
 }
 
 /** The words with their first letter in upper case. */

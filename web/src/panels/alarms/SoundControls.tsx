@@ -1,4 +1,4 @@
-import { For, Show } from "solid-js";
+import { createSignal, For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import { causeName } from "../../fleet/alarmGroups";
 import { kindOf } from "../../sound/alarmSound";
@@ -20,7 +20,12 @@ export function SpeakerIcon(props: { isMuted: boolean }) {
 /** All sound on or off, a test of it, and the kinds that are muted of their own. */
 export function SoundControls() {
   const { alarmSound, isReplay } = useConsole();
-  const { mutes } = alarmSound;
+  const { mutes, notifier } = alarmSound;
+  const [permission, setPermission] = createSignal(notifier.permission());
+  const askForNotes = async () => {
+    await notifier.ask();
+    setPermission(notifier.permission());
+  };
   const state = () => {
     if (isReplay()) return text.sound.replay;
     if (mutes.isAllMuted()) return text.sound.allMuted;
@@ -44,6 +49,11 @@ export function SoundControls() {
         <button type="button" class="button" onClick={() => alarmSound.test()}>
           {text.sound.test}
         </button>
+        <Show when={permission() === "default"}>
+          <button type="button" class="button" onClick={() => void askForNotes()}>
+            {text.sound.allowNotes}
+          </button>
+        </Show>
         <For each={mutes.kinds()}>
           {(kind) => (
             <button type="button" class="button" onClick={() => mutes.mute(kind, false)}>

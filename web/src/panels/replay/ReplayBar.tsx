@@ -1,13 +1,14 @@
 import { createEffect, createMemo, createSignal, For, onCleanup, onMount, Show } from "solid-js";
 import { useConsole } from "../../console";
+import { isAlarmNow } from "../../fleet/alarmGroups";
 import type { ReplayMark as Mark, ReplayTransport, ReplayView } from "../../protocol";
+import { titleOf } from "../../sound/attention";
 import { text } from "../../text/catalogue";
 import { formatDay, formatPosition, formatTimeOfDay } from "../../text/replay";
 import { Problem } from "../Panel";
 import "./replay.css";
 
 export const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 5, 10, 20, 50] as const;
-const TITLE = "Recon";
 const MARKS_AGAIN_MS = 2_000;
 /** How long the next state may take to show where a seek went. */
 const SETTLES_MS = 300;
@@ -25,9 +26,11 @@ export function ReplayMark() {
 
 /** The transport of a replay; nothing on a live station. */
 export function ReplayBar() {
-  const { isReplay, replay } = useConsole();
+  const { isReplay, replay, fleet } = useConsole();
+  const fresh = () =>
+    fleet.alarms.filter((alarm) => isAlarmNow(alarm) && !alarm.is_acknowledged).length;
   createEffect(() => {
-    document.title = isReplay() ? text.page.replayTitle(TITLE) : TITLE;
+    document.title = isReplay() ? text.page.replayTitle(text.page.product) : titleOf(fresh());
   });
   return <Show when={isReplay() && replay()}>{(view) => <Transport view={view()} />}</Show>;
 }

@@ -57,7 +57,10 @@ export function VehicleRow(props: { vehicle: VehicleView }) {
           </Show>
         </span>
         <Battery vehicle={vehicle()} />
-        <span class={`vehicle-doing tone-${status().severity ?? "none"}`}>
+        <span
+          class={`vehicle-doing tone-${status().severity ?? "none"}`}
+          title={text.vehicles.doingHint(doing(vehicle(), part(), behindS()))}
+        >
           {doing(vehicle(), part(), behindS())}
           <Show when={vehicle().conflict_link_ids.length > 0}>
             {" "}

@@ -57,6 +57,7 @@ export const groundImage = {
 export const layers = {
   name: "Map and overlay",
   overlay: "Map overlay",
+  ato: "Heights: ATO is above the takeoff point.",
   overlays: {
     none: "No overlay",
     shade: "Shade now",

@@ -52,7 +52,7 @@ export const orders = {
     nudge: "Nudge",
     hold_position: "Hold position",
     follow_path: "Steered path",
-  } satisfies Record<Order["kind"], string> as Readonly<Record<string, string>>,
+  } satisfies Record<Order["kind"] | "follow_path", string> as Readonly<Record<string, string>>,
   allStop: "All stop",
   fleetReturn: "Return in layers (hold first)",
   allFlying: "all flying vehicles",

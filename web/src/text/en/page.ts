@@ -4,6 +4,8 @@ import { listNames, listSome, plural } from "./grammar";
 export const page = {
   vehicles: "Vehicles",
   panels: "Panels",
+  product: "Recon",
+  alarmsTitle: (count: number) => `${count} ${count === 1 ? "ALARM" : "ALARMS"} · Recon`,
   enterSelects: (number: number) => `Enter selects ${number}`,
   replayTitle: (product: string) => `REPLAY · ${product}`,
   noOrdersInReplay: "This is a replay: no orders are possible",
