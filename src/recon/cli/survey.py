@@ -294,7 +294,7 @@ async def pause_command(
 async def abort_command(
     station: Station, number: NumberArgument, as_json: JsonOption = False
 ) -> int:
-    """End a survey; it cannot be resumed.
+    """End a survey; `resume` plans what is left of it anew.
 
     Its vehicles hold position, under operator control.
     """

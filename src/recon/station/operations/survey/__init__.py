@@ -2,7 +2,8 @@
 
 `commands` has what operators may command, `planning` the worker's jobs, `execution` the step on a
 tick, `mission_dispatch` how missions become orders, `availability` which vehicles can fly, and
-`return_to_home` their route home. Surveys live in memory only: after a restart none continues.
+`return_to_home` their route home. Surveys live in memory only: after a restart none continues. What
+they have imaged is kept for the next one (`station.recovery.flown_regions`).
 """
 
 from recon.model.event import SurveyRequested, SurveyStarted, SurveyStopped
