@@ -33,3 +33,28 @@ describe("the theme", () => {
     expect(["light", "dark"]).toContain(document.documentElement.dataset["theme"]);
   });
 });
+
+const STYLES = import.meta.glob("../**/*.css", { query: "?raw", import: "default", eager: true });
+
+describe("the lengths of the page", () => {
+  it("are tokens of theme.css: a pixel elsewhere is an exception", () => {
+    const raw = Object.entries(STYLES).flatMap(([path, css]) =>
+      String(css)
+        .replace(/\/\*[\s\S]*?\*\//g, "")
+        .split("\n")
+        .filter((line) => !line.trim().startsWith("--"))
+        .flatMap((line) => (line.match(/[\d.]+px/g) ?? []).map((px) => `${path}: ${px}`)),
+    );
+    expect(Object.keys(STYLES).length).toBeGreaterThan(25);
+    // Widths at which the page changes (media queries take no token), and sizes of one place.
+    expect(raw.length, raw.join("\n")).toBeLessThanOrEqual(60);
+  });
+
+  it("are all defined", () => {
+    const all = Object.values(STYLES).join("\n");
+    const defined = new Set(Array.from(all.matchAll(/(--[\w-]+):/g), ([, name]) => name));
+    const used = Array.from(all.matchAll(/var\((--[\w-]+)\)/g), ([, name]) => name);
+    const set = ["--own", "--towards", "--fill"];
+    expect(used.filter((name) => !defined.has(name) && !set.includes(name ?? ""))).toEqual([]);
+  });
+});
