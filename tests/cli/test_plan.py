@@ -5,6 +5,7 @@ import json
 from dataclasses import replace
 from math import atan, cos, degrees, radians
 from pathlib import Path
+from shutil import copytree
 from typing import Any
 
 import cv2
@@ -13,6 +14,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from shapely.geometry import shape  # type: ignore[import-untyped, unused-ignore]
+from tests.guidance.survey.fields import FLOWN_S, flown
 from tests.site.terrain import geotiff, load, plane
 from typer.testing import CliRunner
 
@@ -25,11 +27,14 @@ from recon.model.airspace import Region
 from recon.model.arrays import FloatArray
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.survey import Survey
+from recon.model.survey_camera import camera_named
 from recon.model.units import Stamped
 from recon.model.vehicle import VehicleProfile, VehicleState
+from recon.record.files.flown_region_file import day_of, write_region
 from recon.safety import PreparedAirspace
 from recon.safety.settings import EnergySettings
-from recon.site import Site, demo_site_folder
+from recon.site import Site, demo_site_folder, load_site
+from recon.site.reading import FLOWN_FOLDER
 from recon.station.operations.survey.availability import time_left_s
 
 LATITUDE, LONGITUDE = 41.9, -93.6
@@ -315,6 +320,25 @@ def test_a_region_outside_the_sites_boundary_is_a_sentence(tmp_path: Path) -> No
     code, out = recon(far, "--height", 40, "--site", demo_site_folder())
     assert code == 1
     assert "refused: the region north 40 lies outside the site's boundary" in out
+
+
+def test_a_region_of_the_site_is_planned_on_the_rows_of_last_time(tmp_path: Path) -> None:
+    site = tmp_path / "site"
+    copytree(demo_site_folder(), site)
+    home, options = load_site(site), ("west field", "--height", 60, "--site", site)
+    assert "rows' origin" not in recon(*options)[1]
+    model = camera_named("mavic3m", home.cameras.values())
+    region = home.layers.survey_regions["west field"]
+    survey = Survey(1, "west field", region, 60.0, 5.0, model.at_interval(2.0), 0.7, 0.6, 77.0)
+    assert home.frame is not None
+    plan = plan_survey(replace(survey, region_name="west field"), home.frame)
+    assert isinstance(plan, SurveyPlan)
+    write_region(site / FLOWN_FOLDER, flown(plan))
+    code, out = recon(*options, "--json")
+    assert code == 0, out
+    assert json.loads(out)["rows_note"] == f"Same rows as on {day_of(FLOWN_S)}"
+    assert "rows ran at 77.0° and 10.0° is asked for" in recon(*options, "--bearing", 10)[1]
+    assert "New rows: asked for" in recon(*options, "--rows", "new")[1]
 
 
 def test_a_region_that_batteries_do_not_last_for_is_a_sentence(field: Path) -> None:

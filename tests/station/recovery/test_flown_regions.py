@@ -8,11 +8,12 @@ import pytest
 from tests.flown_once import flown_once
 from tests.station.surveyed_world import SURVEY_ID, SurveyedWorld, asked, field, surveyed_world
 
-from recon.model.event import SurveyStarted, Tick
+from recon.model.event import SurveyRequested, SurveyStarted, Tick
 from recon.model.flown_region import FlownRegion
 from recon.model.survey import CellState, Survey, SurveyPhase
 from recon.model.units import NS_PER_S
 from recon.station.operations.survey.commands import start_refusal
+from recon.station.recording.recorded_values import values_codec
 from recon.station.recovery.flown_regions import FlownRegions
 from recon.station.state.steps import StepTaken
 
@@ -89,6 +90,16 @@ def test_the_rest_is_flown_and_nothing_else(tmp_path: Path) -> None:
     assert float(whole.is_left(whole.begun_s).sum()) * 16.0 < 0.05 * left_m2
     was_imaged = region.imaged_s > 0
     assert np.array_equal(whole.imaged_s[was_imaged], region.imaged_s[was_imaged])
+
+
+def test_a_rest_is_recorded_and_read_with_its_cells(tmp_path: Path) -> None:
+    codec, rest = values_codec(), rest_of(kept(FlownRegions(tmp_path), half_flown()))
+    asked_for = SurveyRequested(rest, "ann")
+    read = codec.decode(codec.encode(asked_for, SurveyRequested), SurveyRequested).survey
+    assert read.lattice == rest.lattice
+    assert rest.flown is not None
+    assert np.array_equal(read.flown.state, rest.flown.state)
+    assert np.array_equal(read.flown.is_light_known, rest.flown.is_light_known)
 
 
 def test_a_survey_of_all_begins_anew_and_keeps_the_days_of_before(tmp_path: Path) -> None:

@@ -99,7 +99,8 @@ class SurveyService:
         return self._request(survey_again(asked, self.ids(), self.flown, self.site), by)
 
     def flown_regions(self) -> schema.FlownRegionsView:
-        """Return the regions that were surveyed; safe on any thread."""
+        """Return the regions that were surveyed, as of now; not on the event loop."""
+        self.flown.note()
         return flown_regions_view(self.flown, self.site, self.driver.now_ns())
 
     def _with_rows(self, survey: Survey, rows: str) -> Survey | Refusal:

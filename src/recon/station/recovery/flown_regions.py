@@ -51,6 +51,7 @@ class FlownRegions:
         self._unwritten: set[str] = set()
         self._latest: tuple[Station, int] | None = None
         self._taken: tuple[Station, int] | None = None
+        self._turn = threading.Lock()
         self._wakes = threading.Event()
         self._is_ending = threading.Event()
         self._thread = threading.Thread(target=self._run, name="flown regions", daemon=True)
@@ -90,7 +91,14 @@ class FlownRegions:
         self.note()
 
     def note(self) -> None:
-        """Note and write what the newest station has that is not kept yet: the thread's part."""
+        """Note and write what the newest station has that is not kept yet.
+
+        The thread does so every two seconds; one that answers an operator may do so before.
+        """
+        with self._turn:
+            self._note()
+
+    def _note(self) -> None:
         latest = self._latest
         try:
             if latest is not None and latest is not self._taken:
