@@ -14,6 +14,7 @@ describe("the readiness label", () => {
       label: "Ready",
       count: "2 of 2",
       severity: null,
+      cause: null,
       reasons: [],
     });
   });
@@ -37,6 +38,15 @@ describe("the readiness label", () => {
     const mode = { value: "auto_landing", age_s: 0.1 };
     const landing = station([vehicle(1), vehicle(2, { flight_mode: mode })]);
     expect(readiness(landing, LIVE, 0).label).toBe("Landing");
+  });
+
+  it("has a cause where its colour comes from something else", () => {
+    const separation = alarm(1, { rule: "separation", severity: "critical" });
+    const flying = station([vehicle(1)], { alarms: [alarm(2), separation] });
+    expect(readiness(flying, LIVE, 0)).toMatchObject({ label: "Flying", cause: "Separation" });
+    expect(readiness(station([vehicle(1)], { alarms: [alarm(2)] }), LIVE, 0).cause).toBeNull();
+    const lost = station([vehicle(2, { staleness: "lost", telemetry_age_s: 4 })]);
+    expect(readiness(lost, LIVE, 0).cause).toBeNull();
   });
 
   it("is Contact lost when a flying vehicle sends no telemetry", () => {
@@ -78,7 +88,7 @@ describe("the readiness label", () => {
     const raised = alarm(1, { rule: "battery", text: "Dogwood: the battery is low" });
     const { reasons } = readiness(station([low], { alarms: [raised] }), LIVE, 0);
     expect(reasons).toEqual([
-      { severity: "warning", vehicleName: "Dogwood", text: "The battery is low" },
+      { rule: "battery", severity: "warning", vehicleName: "Dogwood", text: "The battery is low" },
     ]);
     expect(readiness(station([low]), LIVE, 0).reasons).toHaveLength(1);
   });

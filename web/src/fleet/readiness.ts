@@ -2,6 +2,7 @@ import type { AlarmView, Connection, Severity, StationState, VehicleView } from 
 import { text } from "../text/catalogue";
 import { alarmText, plainWords } from "../text/names";
 import { formatAge, formatFraction } from "../text/quantities";
+import { causeName } from "./alarmGroups";
 import { severityRank, worstSeverity } from "./severity";
 import { isFlyingNow, simulation, vehicleStatus } from "./vehicleStatus";
 
@@ -20,6 +21,8 @@ export interface Reason {
   /** The vehicle concerned; null for the station. */
   readonly vehicleName: string | null;
   readonly text: string;
+  /** The station's rule for it; absent for what only the page finds. */
+  readonly rule?: string;
 }
 
 /** The state of station and fleet, with all reasons, worst first. */
@@ -28,6 +31,8 @@ export interface Readiness {
   /** How many vehicles the label is about, such as `4 of 5`; empty without vehicles. */
   readonly count: string;
   readonly severity: Severity | null;
+  /** What a grave severity is about, where the label does not say it; null if it does. */
+  readonly cause: string | null;
   readonly reasons: readonly Reason[];
 }
 
@@ -46,14 +51,34 @@ export function readiness(
   ].sort((a, b) => severityRank(a.severity) - severityRank(b.severity));
   const severity = worstSeverity(reasons.map((reason) => reason.severity));
   const label = readinessLabel(state, connection, behindS, severity);
-  return { label, count: countOf(label, state, behindS), severity, reasons };
+  const cause = causeOf(label, severity, reasons);
+  return { label, count: countOf(label, state, behindS), severity, cause, reasons };
+}
+
+/** Labels that are red only because of something else. */
+const SAY_NO_CAUSE: readonly ReadinessLabel[] = ["Landing", "Flying", "Not ready"];
+
+function causeOf(
+  label: ReadinessLabel,
+  severity: Severity | null,
+  [worst]: readonly Reason[],
+): string | null {
+  const isGrave = severity === "critical" || severity === "error";
+  if (!isGrave || !SAY_NO_CAUSE.includes(label)) return null;
+  return worst?.rule === undefined ? null : causeName(worst.rule);
 }
 
 function withoutState(connection: Connection): Readiness {
   const why = connection.kind === "lost" ? `${connection.reason}.` : text.readiness.waiting;
   const label = connection.kind === "lost" ? "Station lost" : "Not ready";
   const severity = connection.kind === "lost" ? "critical" : "info";
-  return { label, count: "", severity, reasons: [{ severity, vehicleName: null, text: why }] };
+  return {
+    label,
+    count: "",
+    severity,
+    cause: null,
+    reasons: [{ severity, vehicleName: null, text: why }],
+  };
 }
 
 function countOf(label: ReadinessLabel, { vehicles }: StationState, behindS: number): string {
@@ -101,6 +126,7 @@ function alarmReasons(state: StationState): Reason[] {
     .filter((alarm) => alarm.is_active)
     .map((alarm) => ({
       severity: alarm.severity,
+      rule: alarm.rule,
       text: alarmText(alarm),
       vehicleName: alarm.vehicle_name === "" ? null : alarm.vehicle_name,
     }));
@@ -117,7 +143,7 @@ function vehicleReasons(
     .map((alarm) => alarm.rule);
   return conditionsOf(vehicle, behindS)
     .filter(({ rule }) => !raised.includes(rule))
-    .map(({ severity, text }) => ({ severity, text, vehicleName: vehicle.name }));
+    .map((found) => ({ ...found, vehicleName: vehicle.name }));
 }
 
 function isAbout(alarm: AlarmView, vehicle: VehicleView): boolean {

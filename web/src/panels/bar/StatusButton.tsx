@@ -25,6 +25,9 @@ export function StatusButton() {
             <span class="status-count" data-testid="status-count">
               {now().count}
             </span>
+            <Show when={now().cause}>
+              {(cause) => <span class="status-cause"> · {cause()}</span>}
+            </Show>
             <Show when={SIMULATION[simulation(fleet.vehicles)]}>
               {(words) => <span class="status-simulation">{words()}</span>}
             </Show>

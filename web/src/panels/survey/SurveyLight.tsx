@@ -30,10 +30,13 @@ export function SurveyLight(props: { light: SurveyLightView }) {
   const subject = (...parts: string[]) => (isUnderWay() ? "" : parts.join(" "));
   return (
     <div class="survey-light" data-testid="survey-light">
-      <For each={props.light.imagers}>
-        {(imager) => <p class="wire-text">{leavesText(imager, props.light, timeIn)}</p>}
-      </For>
-      <Warning text={warning(props.light, behindS())} />
+      {/* In a demonstration an imaging drone does not run down, and its return moves all the time. */}
+      <Show when={fleet.station?.repeats_surveys !== true}>
+        <For each={props.light.imagers}>
+          {(imager) => <p class="wire-text">{leavesText(imager, props.light, timeIn)}</p>}
+        </For>
+        <Warning text={warning(props.light, behindS())} />
+      </Show>
       <div class="section-buttons">
         <For each={props.light.imagers}>
           {(imager) => (
