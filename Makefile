@@ -126,9 +126,9 @@ test-android: setup android ## The companion app's tests, its jar against the re
 study-android: setup android fuzz-android ## Long runs of the same: a survey of eight, every bad link, ten minutes without a loss
 	RECON_THOROUGH=1 $(ANDROID_TESTS) -s
 
-fuzz-android: ## A million hostile inputs for the companion app's codec, and as many for its session
+fuzz-android: ## A million hostile inputs for the companion app's codec, as many for its session; 5,000 schedules of its adapter
 	@tools/require.sh java mvn
-	$(MAVEN) test -pl core -Dtest='*FuzzTest' -Dfuzz.inputs=1000000
+	$(MAVEN) test -pl core,msdk5 -Dtest='*FuzzTest,SchedulesTest' -Dsurefire.failIfNoSpecifiedTests=false -Dfuzz.inputs=1000000 -Dfuzz.schedules=5000
 
 bench: setup web ## Measurements, each beside a baseline of the same run
 	cargo bench -p recon-wire

@@ -1,7 +1,7 @@
 """`recon inspect`: the packets in a file, one per line or as JSON lines.
 
-A flight record (MCAP) holds several streams, each with its own deframer; anything else is one
-stream of bare bytes.
+A flight record (MCAP) holds several streams, each with its own deframer; the log of the companion
+app holds lines, and no packets; anything else is one stream of bare bytes.
 """
 
 import json
@@ -17,6 +17,7 @@ from typing import Annotated, Any, BinaryIO, NamedTuple, TextIO
 import typer
 
 from recon import wire
+from recon.cli.app_log import is_app_log, show_app_log
 from recon.model.errors import RecordError
 
 READ_BYTES = 64 * 1024
@@ -35,13 +36,15 @@ class Read(NamedTuple):
 def inspect_command(
     files: Annotated[
         list[str],
-        typer.Argument(metavar="FILE...", help="Flight records or bare streams; - for stdin."),
+        typer.Argument(
+            metavar="FILE...", help="Flight records, bare streams or logs of the app; - for stdin."
+        ),
     ],
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object per line.")] = False,
 ) -> None:
-    """Print the packets of a flight record or of bare bytes.
+    """Print the packets of a flight record or of bare bytes, or the lines of the app's log.
 
-    After them come the deframer's counters. Exit code 1: a file holds no packet.
+    After them come the deframer's counters, or the log's summary. Exit code 1: a file holds none.
     """
     are_packets = True
     for file in files:
@@ -75,13 +78,19 @@ def _inspect_file(file: str, as_json: bool) -> bool:
 
 
 def inspect(source: BinaryIO, json_lines: bool, out: TextIO) -> bool:
-    """Write every packet of `source` to `out`, then the counters; return whether there was one."""
+    """Write every packet of `source` to `out`, then the counters; return whether there was one.
+
+    Of a log of the companion app its lines are written, and its summary.
+    """
+    start = _exactly(source, len(MCAP_START))
+    if is_app_log(start):
+        return show_app_log(start, source, json_lines, out)
     deframers: dict[str | None, wire.Deframer] = {}
     latest: dict[str | None, Read] = {}
     show = _show_json if json_lines else _show_line
     trouble = ""
     try:
-        for read in _reads(source):
+        for read in _reads(start, source):
             deframer = deframers.setdefault(read.stream, wire.Deframer())
             latest[read.stream] = read
             for packet in deframer.feed(read.data, read.time_ns or 0):
@@ -106,8 +115,7 @@ def printable_bytes(data: bytes) -> str:
     )
 
 
-def _reads(source: BinaryIO) -> Iterator[Read]:
-    start = _exactly(source, len(MCAP_START))
+def _reads(start: bytes, source: BinaryIO) -> Iterator[Read]:
     if start == MCAP_START:
         yield from _record_reads(source)
         return

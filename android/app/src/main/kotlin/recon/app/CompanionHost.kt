@@ -1,5 +1,6 @@
 package recon.app
 
+import android.os.Build
 import android.os.Handler
 import recon.errors.ReconError
 import recon.link.CompanionApp
@@ -61,6 +62,7 @@ class CompanionHost(
         val station = StationAddress.parse(settings.address)
         log.begin()
         log.add("start", "${source.appName}, station $station")
+        log.add("start", "${Build.MANUFACTURER} ${Build.MODEL}, Android ${Build.VERSION.RELEASE}")
         val started = Run(station)
         if (settings.isReleased) started.app.releaseControl()
         run = started
@@ -144,6 +146,8 @@ class CompanionHost(
         val status: Status? get() = newest.get()
 
         override fun notice(notice: Output.Notice) = report(notice.severity, notice.text)
+
+        override fun told(text: String) = log.add("told", text)
 
         override fun changed(session: CompanionSession) {
             val nowNs = System.nanoTime()

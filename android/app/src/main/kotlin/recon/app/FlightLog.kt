@@ -47,6 +47,6 @@ class FlightLog(private val folder: File, private val executor: Executor, privat
 
     private companion object {
         const val MOST_FILES = 10
-        const val LONGEST_BYTES = 4_000_000L
+        const val LONGEST_BYTES = 8_000_000L
     }
 }

@@ -55,10 +55,16 @@ class RunCompanions : Callable<Int> {
     @Option(
         names = ["--home"],
         paramLabel = "LAT,LON,ALT",
-        defaultValue = "41.9012,-93.6034,275",
-        description = ["Pad of the first, WGS84 degrees and metres. [\${DEFAULT-VALUE}]"],
+        description = ["Pad of the first, WGS84 degrees and metres. [the origin of the station's site]"],
     )
-    lateinit var home: String
+    var home: String? = null
+
+    @Option(
+        names = ["--console"],
+        paramLabel = "URL",
+        description = ["Where the station's console tells its site, without --home. [http://HOST:8080]"],
+    )
+    var console: String? = null
 
     @Option(
         names = ["--spacing-m"],
@@ -119,7 +125,9 @@ class RunCompanions : Callable<Int> {
 
     override fun call(): Int {
         if (vehicles !in 1..MOST_VEHICLES) throw wrong("--vehicles must be 1 to $MOST_VEHICLES; got $vehicles")
-        val companions = (0 until vehicles).map(::companion)
+        val place = homePlace()
+        println("home: ${place.origin}: ${place.latitudeDeg}, ${place.longitudeDeg}, ${place.altitudeM} m")
+        val companions = (0 until vehicles).map { companion(it, place) }
         val end = CountDownLatch(1)
         Runtime.getRuntime().addShutdownHook(Thread {
             companions.forEach { it.close() }
@@ -130,7 +138,7 @@ class RunCompanions : Callable<Int> {
         return 0
     }
 
-    private fun companion(index: Int): CompanionApp {
+    private fun companion(index: Int, place: Home): CompanionApp {
         val settings = SessionSettings(
             altitudeReference = waypointAltitude,
             missionOnLinkLoss = missionOnLostLink,
@@ -138,17 +146,16 @@ class RunCompanions : Callable<Int> {
             appName = "Recon companion ${Version.TEXT}, simulated aircraft",
             startedS = System.currentTimeMillis() / 1_000,
         )
-        val aircraft = aircraftSettings(index)
+        val aircraft = aircraftSettings(index, place)
         return CompanionApp(settings, SimulatedAircraft(aircraft), address(), encoder(), Printed(aircraft.serial))
     }
 
-    private fun aircraftSettings(index: Int): SimulatedSettings {
-        val (latitude, longitude, altitude) = homeNumbers()
-        val pad = LocalPlane(LatLon(latitude, longitude)).position(0.0, index * spacingM)
+    private fun aircraftSettings(index: Int, place: Home): SimulatedSettings {
+        val pad = LocalPlane(LatLon(place.latitudeDeg, place.longitudeDeg)).position(0.0, index * spacingM)
         return SimulatedSettings(
             serial = serialOf(serial, index),
             home = pad,
-            takeoffAltitudeM = altitude,
+            takeoffAltitudeM = place.altitudeM,
             // Vehicles that return at once are separated by their heights.
             goHomeHeightM = goHomeM + 8.0 * index,
             enduranceMin = enduranceMin,
@@ -156,10 +163,11 @@ class RunCompanions : Callable<Int> {
         )
     }
 
-    private fun homeNumbers(): List<Double> {
-        val numbers = home.split(",").mapNotNull { it.trim().toDoubleOrNull() }
-        if (numbers.size != 3) throw wrong("--home must be LAT,LON,ALT; got '$home'")
-        return numbers
+    private fun homePlace(): Home {
+        val named = home ?: return homeOfStation(console ?: "http://${address().host}:8080")
+        val numbers = named.split(",").mapNotNull { it.trim().toDoubleOrNull() }
+        if (numbers.size != 3) throw wrong("--home must be LAT,LON,ALT; got '$named'")
+        return Home(numbers[0], numbers[1], numbers[2], "as --home names it")
     }
 
     private fun address(): StationAddress = try {

@@ -22,6 +22,9 @@ import java.util.concurrent.atomic.AtomicBoolean
 interface CompanionListener {
     fun notice(notice: Output.Notice)
 
+    /** A text of the extension `recon 1` that goes to the station. */
+    fun told(text: String) {}
+
     /** Called about twenty times a second with the session, to be read only during the call. */
     fun changed(session: CompanionSession) {}
 }
@@ -132,6 +135,7 @@ class CompanionApp(
             is Output.Encode -> encode(output.frame, output.targetFpsHz)
             is Output.CloseLink -> connection.reconnect(output.reason)
             is Output.Notice -> listener.notice(output)
+            is Output.Told -> listener.told(output.text)
         }
     }
 

@@ -170,7 +170,10 @@ class CompanionSession(val settings: SessionSettings) {
         checkCalls(nowNs)
         if (!link.isOpen) return
         link.queueTelemetry(state, mission.idFor(state), nowNs)
-        extension.due(freshState(nowNs), nowNs).forEach(link::queueText)
+        for (text in extension.due(freshState(nowNs), nowNs)) {
+            link.queueText(text)
+            outputs.add(Output.Told(text))
+        }
         noticeStaleState(nowNs)
         if (link.isStalled(nowNs)) outputs.add(Output.CloseLink("the station has not read for ${stalledS()} s"))
     }

@@ -6,6 +6,7 @@ import recon.aircraft.Capability
 import recon.aircraft.StickSetpoint
 import recon.mission.PlanResult
 import recon.mission.planOf
+import recon.mission.reachProblem
 import recon.mission.shown
 import recon.wire.CameraControl
 import recon.wire.EmergencyCommand
@@ -98,7 +99,8 @@ class Orders(private val settings: SessionSettings) {
         if (state == null) return Order.Refused(NO_STATE)
         lacking(state.capabilities.waypointMissions, "waypoint missions")?.let { return it }
         return when (val result = planOf(packet, settings.altitudeReference, state.takeoffAltitudeM)) {
-            is PlanResult.Ready -> Order.Fly(AircraftCommand.FlyMission(result.plan), "Mission")
+            is PlanResult.Ready -> reachProblem(result.plan, state)?.let { Order.Refused(it) }
+                ?: Order.Fly(AircraftCommand.FlyMission(result.plan), "Mission")
             is PlanResult.Refused -> Order.Refused(result.reason)
         }
     }

@@ -13,6 +13,9 @@ sealed interface Output {
     /** Encode a frame as an image packet and pass it back. */
     data class Encode(val frame: VideoFrame, val targetFpsHz: Float) : Output
 
+    /** A text of the extension that goes to the station, for the log. */
+    data class Told(val text: String) : Output
+
     data class CloseLink(val reason: String) : Output
 
     /** A sentence for the person beside the phone: screen, speech and log. */

@@ -89,45 +89,45 @@ class AppTextsTest {
         assertTrue(read.keySet().all { it in rules || it == "kind" }, "$table: ${read.keySet()}")
     }
 
-    private fun drawnFacts(random: Random) = AircraftFacts(
-        home = LatLon(odd(random), odd(random)), maxHeightM = odd(random), maxDistanceM = odd(random),
-        model = drawnName(random), firmware = drawnName(random),
-        batteryCellsV = List(random.nextInt(60)) { if (random.nextInt(30) == 0) odd(random) else 3.9 },
-        batteryTemperatureC = odd(random), rtk = RtkState.entries.random(random), storageLeftMb = random.nextInt(),
-        storageLeftPhotos = random.nextInt(-3, 100), gimbal = Attitude(odd(random), odd(random), odd(random)),
-        photoIntervalS = odd(random), djiCheck = drawnName(random),
-    )
-
-    private fun drawnPhoto(random: Random) = ReleasedPhoto(
-        random.nextLong(20 * SECOND), random.nextLong(), null, LatLon(odd(random), odd(random)), odd(random),
-        odd(random), odd(random), drawnName(random),
-    )
-
-    private fun odd(random: Random): Double = when (random.nextInt(6)) {
-        0 -> Double.NaN
-        1 -> Double.NEGATIVE_INFINITY
-        2 -> random.nextDouble(-1e300, 1e300)
-        3 -> -0.0
-        else -> random.nextDouble(-200.0, 200.0)
-    }
-
-    private fun drawnName(random: Random) = String(CharArray(random.nextInt(300)) { random.nextInt(0x10000).toChar() })
-
-    private fun objectOf(text: String): JsonObject {
-        assertTrue(text.startsWith("recon 1 {"), text.take(20))
-        val reader = JsonReader(StringReader(text.removePrefix("recon 1 "))).apply { strictness = Strictness.STRICT }
-        return JsonParser.parseReader(reader).asJsonObject
-    }
-
     /** The rows of a table of the document, by their keys: what stands in their second column. */
     private fun rulesOf(table: String): Map<String, String> =
         DOCUMENT.substringAfter("### $table\n").substringBefore("\n##").lines().filter { it.startsWith("| `") }
             .associate { row -> row.split("|").map { it.trim() }.let { it[1].trim('`') to it[2] } }
 
-    private companion object {
-        val VECTORS = File("../../vectors/app_texts/valid.json")
-        val VALID: JsonObject = JsonParser.parseString(VECTORS.readText()).asJsonObject
-        val DOCUMENT = File("../../docs/icd.md").readText()
-        val TABLES = mapOf("facts" to "Facts", "photos" to "Photos", "outcome" to "Outcomes")
+    companion object {
+        private val VECTORS = File("../../vectors/app_texts/valid.json")
+        private val VALID: JsonObject = JsonParser.parseString(VECTORS.readText()).asJsonObject
+        private val DOCUMENT = File("../../docs/icd.md").readText()
+        private val TABLES = mapOf("facts" to "Facts", "photos" to "Photos", "outcome" to "Outcomes")
+
+        fun drawnFacts(random: Random) = AircraftFacts(
+            home = LatLon(odd(random), odd(random)), maxHeightM = odd(random), maxDistanceM = odd(random),
+            model = drawnName(random), firmware = drawnName(random),
+            batteryCellsV = List(random.nextInt(60)) { if (random.nextInt(30) == 0) odd(random) else 3.9 },
+            batteryTemperatureC = odd(random), rtk = RtkState.entries.random(random), storageLeftMb = random.nextInt(),
+            storageLeftPhotos = random.nextInt(-3, 100), gimbal = Attitude(odd(random), odd(random), odd(random)),
+            photoIntervalS = odd(random), djiCheck = drawnName(random),
+        )
+
+        fun drawnPhoto(random: Random) = ReleasedPhoto(
+            random.nextLong(20 * SECOND), random.nextLong(), null, LatLon(odd(random), odd(random)), odd(random),
+            odd(random), odd(random), drawnName(random),
+        )
+
+        private fun odd(random: Random): Double = when (random.nextInt(6)) {
+            0 -> Double.NaN
+            1 -> Double.NEGATIVE_INFINITY
+            2 -> random.nextDouble(-1e300, 1e300)
+            3 -> -0.0
+            else -> random.nextDouble(-200.0, 200.0)
+        }
+
+        fun drawnName(random: Random) = String(CharArray(random.nextInt(300)) { random.nextInt(0x10000).toChar() })
+
+        fun objectOf(text: String): JsonObject {
+            assertTrue(text.startsWith("recon 1 {"), text.take(20))
+            val reader = JsonReader(StringReader(text.removePrefix("recon 1 "))).apply { strictness = Strictness.STRICT }
+            return JsonParser.parseReader(reader).asJsonObject
+        }
     }
 }

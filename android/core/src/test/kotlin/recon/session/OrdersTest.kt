@@ -1,11 +1,13 @@
 package recon.session
 
 import recon.aircraft.AircraftCommand
+import recon.aircraft.AircraftFacts
 import recon.aircraft.AltitudeReference
 import recon.aircraft.Answer
 import recon.aircraft.Capabilities
 import recon.aircraft.Capability
 import recon.aircraft.FlightMode
+import recon.geo.LatLon
 import recon.wire.Acknowledgment
 import recon.wire.Bytes
 import recon.wire.CameraControl
@@ -105,6 +107,28 @@ class OrdersTest {
         assertEquals(listOf(AircraftCommand.Hover, AircraftCommand.Land), harness.commands)
         assertEquals(listOf(1, 1, 0, 0, 0, 0), harness.acknowledgments.map { it.positive }.sortedDescending())
         assertTrue(harness.messages.single().startsWith("No telemetry from the aircraft"))
+    }
+
+    @Test
+    fun `a mission far away, or beyond the aircraft's own limits, is refused with what to do`() {
+        val near = mission().waypoints.first()
+        for ((state, expected) in listOf(
+            hovering().copy(position = LatLon(near.latitudeDeg + 0.144, near.longitudeDeg)) to
+                "The first waypoint is 16.0 km from the aircraft, at most 10.0 km can be flown: is the station's site",
+            hovering().copy(facts = AircraftFacts(maxHeightM = 20.0)) to
+                "Waypoint 1 is 30 m above takeoff, and the aircraft's maximum height is set to 20 m: raise it",
+            hovering().copy(facts = AircraftFacts(LatLon(45.0, -93.02), maxDistanceM = 500.0)) to
+                "Waypoint 1 is 1.6 km from the home point, and the aircraft's maximum distance is set to 0.5 km:",
+        )) {
+            harness.state = state
+            harness.pass(10 * MS)
+            harness.receive(mission())
+            assertTrue(harness.messages.last().startsWith(expected), harness.messages.last())
+        }
+        harness.state = hovering().copy(position = null, facts = AircraftFacts(maxDistanceM = 500.0, maxHeightM = 50.0))
+        harness.pass(10 * MS)
+        harness.receive(mission())
+        assertEquals(1, harness.commands.size)
     }
 
     @Test

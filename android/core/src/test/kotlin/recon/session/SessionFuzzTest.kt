@@ -1,7 +1,10 @@
 package recon.session
 
 import recon.aircraft.AircraftCommand
+import recon.aircraft.Answer
 import recon.aircraft.FlightMode
+import recon.aircraft.MissionAction
+import recon.wire.CameraControl
 import recon.wire.FUZZ_INPUTS
 import recon.wire.drawnPart
 import recon.wire.drawnStream
@@ -22,17 +25,21 @@ class SessionFuzzTest {
     private fun fuzzed(random: Random): Int {
         val harness = Harness(isReading = random.nextInt(10) > 0).connect()
         repeat(50) {
-            when (random.nextInt(8)) {
+            when (random.nextInt(11)) {
                 0 -> harness.state = drawnState(random)
                 1 -> harness.passInSilence(random.nextLong(3) * SECOND)
                 2 -> harness.session.received(drawnStream(random), harness.nowNs)
                 3 -> harness.session.received(commandLike(random), harness.nowNs)
                 4 -> if (random.nextInt(5) == 0) reconnect(harness) else harness.receive(HOVER)
+                5 -> harness.receive(CameraControl(random.nextInt(5), random.nextFloat()))
+                6 -> harness.session.photoTaken(drawnPhoto(random, harness.nowNs), harness.nowNs)
+                7 -> harness.answers = drawnAnswer(random)
                 else -> harness.session.received(drawnPart(random), harness.nowNs)
             }
             harness.pass(random.nextLong(40) * MS)
         }
         harness.commands.forEach(::assertSound)
+        harness.appTexts.forEach(::assertStrict)
         return harness.commands.size
     }
 
@@ -45,7 +52,24 @@ class SessionFuzzTest {
     private fun drawnState(random: Random) = when (random.nextInt(4)) {
         0 -> null
         1 -> standing()
-        else -> hovering(mode = FlightMode.entries.random(random))
+        else -> hovering(mode = FlightMode.entries.random(random)).copy(facts = AppTextsTest.drawnFacts(random))
+    }
+
+    private fun drawnAnswer(random: Random): Answer? = when (random.nextInt(4)) {
+        0 -> null
+        1 -> Answer.Noted(AppTextsTest.drawnName(random))
+        2 -> Answer.Refused(AppTextsTest.drawnName(random), AppTextsTest.drawnName(random), MissionAction.LOAD)
+        else -> Answer.Accepted
+    }
+
+    private fun drawnPhoto(random: Random, nowNs: Long) = AppTextsTest.drawnPhoto(random).copy(
+        takenNs = nowNs - random.nextLong(-SECOND, 4_000 * SECOND), serial = AppTextsTest.drawnName(random),
+    )
+
+    /** What the station's reader refuses would be lost whole: JSON of one object, and its size. */
+    private fun assertStrict(text: String) {
+        assertTrue(text.encodeToByteArray().size <= LONGEST_APP_TEXT_BYTES, text)
+        AppTextsTest.objectOf(text)
     }
 
     private fun commandLike(random: Random): ByteArray {
