@@ -20,7 +20,7 @@ _START = re.compile(rb"\d{4}-\d\d-")
 _LINE = re.compile(rb"(\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(?:\.\d{1,9})?Z) ([a-z]{1,16}) +(.*)")
 
 
-class LogLine(NamedTuple):
+class AppLogLine(NamedTuple):
     """One line: its time as it is written, its kind, and its text made safe for a terminal."""
 
     time: str
@@ -30,7 +30,7 @@ class LogLine(NamedTuple):
 
 
 @dataclass(slots=True)
-class LogSummary:
+class AppLogSummary:
     """What a person who was not there asks first."""
 
     first: str = ""
@@ -42,23 +42,25 @@ class LogSummary:
     photos: dict[int, set[int]] = field(default_factory=dict)
     failed: Counter[str] = field(default_factory=Counter)
 
-    def add(self, line: LogLine) -> None:
+    def add(self, line: AppLogLine) -> None:
         """Count a line."""
         self.first, self.last = self.first or line.time, line.time
         self.kinds[line.kind] += 1
         if line.kind == "start" and line.text not in self.versions[:10]:
             self.versions.append(line.text)
         if line.kind == "told":
-            self._add_told(line.raw)
+            self._add_report(line.raw)
 
-    def _add_told(self, raw: bytes) -> None:
-        told = read_app_text(raw)
-        if isinstance(told, AppFacts):
-            self.facts = told
-        elif isinstance(told, PhotosReport):
-            self.photos.setdefault(told.series, set()).update(each.index for each in told.photos)
-        elif isinstance(told, OutcomeReport) and not told.ok:
-            self.failed[f"{told.action.value} {told.code or 'without a code'}"] += 1
+    def _add_report(self, raw: bytes) -> None:
+        report = read_app_text(raw)
+        if isinstance(report, AppFacts):
+            self.facts = report
+        elif isinstance(report, PhotosReport):
+            self.photos.setdefault(report.series, set()).update(
+                each.index for each in report.photos
+            )
+        elif isinstance(report, OutcomeReport) and not report.ok:
+            self.failed[f"{report.action.value} {report.code or 'without a code'}"] += 1
 
     def lines(self) -> Iterator[str]:
         """Yield the summary."""
@@ -80,14 +82,14 @@ def is_app_log(start: bytes) -> bool:
 
 def show_app_log(start: bytes, source: BinaryIO, json_lines: bool, out: TextIO) -> bool:
     """Write each line and the summary to `out`; return whether there was a line."""
-    summary = LogSummary()
+    summary = AppLogSummary()
     for raw in _raw_lines(start, source):
         found = _LINE.fullmatch(raw)
         if found is None:
             summary.unread += 1
             continue
         time, kind, text = found.groups()
-        line = LogLine(time.decode(), kind.decode(), printable(text, LONGEST_LINE_BYTES), text)
+        line = AppLogLine(time.decode(), kind.decode(), printable(text, LONGEST_LINE_BYTES), text)
         summary.add(line)
         shown = {"time": line.time, "kind": line.kind, "text": line.text}
         print(json.dumps(shown) if json_lines else "  ".join(shown.values()), file=out)
