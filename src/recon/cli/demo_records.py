@@ -7,8 +7,8 @@ from recon.record.files.users_file import state_folder
 from recon.record.mcap.record_ceiling import remove_oldest_demos
 from recon.station.recording.keyframe import RecordDetail
 
-DEMO_DETAIL = RecordDetail(keyframe_s=4.0, has_all_maps=False, flight_file_s=1_800.0, is_demo=True)
-"""All frames, a quarter of the maps: a demonstration runs for hours and its imaging drone never
+DEMO_DETAIL = RecordDetail(keyframe_s=6.0, has_all_maps=False, flight_file_s=1_800.0, is_demo=True)
+"""All frames, a twelfth of the maps: a demonstration runs for hours and its imaging drone never
 lands, so that its record would be one file without end."""
 MOST_RECORD_BYTES = 2_000_000_000
 """All records of demonstrations: some hours of them."""
