@@ -153,7 +153,7 @@ class TestOnTheGround:
 
     def test_acknowledging_an_unknown_alarm_is_an_error(self, station: StationProcess) -> None:
         result = station.recon("alarms", "--ack", "999")
-        assert result.code == 2
+        assert result.code == 1
         assert "Alarm 999 not found" in result.err
 
 
@@ -184,7 +184,7 @@ class TestReadiness:
 
     def test_a_connected_vehicle_has_no_hazard_area(self, station: StationProcess) -> None:
         result = station.recon("dismiss", "SIM-2")
-        assert result.code == 2
+        assert result.code == 1
         assert "No hazard area" in result.err
 
     def test_separation_holds_are_switched_and_audited(self, station: StationProcess) -> None:
@@ -218,12 +218,12 @@ class TestWrongUse:
 
     def test_an_unreachable_station_is_one_sentence(self, station: StationProcess) -> None:
         result = station.recon("all-stop", address="http://127.0.0.1:9")
-        assert result.code == 2
+        assert result.code == 1
         assert "nothing was ordered" in result.err
 
     def test_another_kind_of_server_is_an_error(self, station: StationProcess) -> None:
         result = station.recon("all-stop", address=f"http://127.0.0.1:{station.link_port}")
-        assert result.code == 2
+        assert result.code == 1
 
 
 class TestInFlight:
@@ -289,14 +289,14 @@ def test_a_token_is_read_from_a_file_and_not_audited(tmp_path: Path) -> None:
         pinned = f"{url}/#fingerprint={fingerprint}"
         station = StationProcess(process, None, pinned, link_port, audit)
         refused = station.recon("status")
-        assert refused.code == 2
+        assert refused.code == 1
         assert "token missing" in refused.err
         unpinned = station.recon("status", "--token-file", token, address=url)
-        assert (unpinned.code, "RECON_FINGERPRINT" in unpinned.err) == (2, True)
+        assert (unpinned.code, "RECON_FINGERPRINT" in unpinned.err) == (1, True)
         assert station.recon("status", "--token-file", token).code == 0
         assert station.recon("all-stop", "--token-file", token).out == "no vehicles to command\n"
         released = station.recon("release-stop", "--all", "--token-file", token)
-        assert (released.code, "this needs operator" in released.err) == (2, True)
+        assert (released.code, "this needs operator" in released.err) == (1, True)
         wrong = station.recon("status", "--token-file", tmp_path / "none")
         assert (wrong.code, "cannot read the token file" in wrong.err) == (2, True)
         assert process.end(signal.SIGTERM) == 0
