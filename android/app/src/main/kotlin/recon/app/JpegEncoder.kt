@@ -12,12 +12,10 @@ import java.io.ByteArrayOutputStream
 
 /** PID 5 of the later revisions: the frame as a JPEG file, by Android's encoder. */
 object JpegEncoder : FrameEncoder {
-    private const val QUALITY = 85
-
-    override fun encode(frame: VideoFrame, targetFpsHz: Float): Packet {
+    override fun encode(frame: VideoFrame, targetFpsHz: Float, quality: Int): Packet {
         val image = YuvImage(frame.nv21, ImageFormat.NV21, frame.width, frame.height, null)
         val file = ByteArrayOutputStream()
-        image.compressToJpeg(Rect(0, 0, frame.width, frame.height), QUALITY, file)
+        image.compressToJpeg(Rect(0, 0, frame.width, frame.height), quality, file)
         return CompressedImage(targetFpsHz, Bytes.copyOf(file.toByteArray()))
     }
 }

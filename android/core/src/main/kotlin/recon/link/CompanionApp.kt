@@ -132,7 +132,7 @@ class CompanionApp(
     private fun carryOut(output: Output) {
         when (output) {
             is Output.Execute -> aircraft.execute(output.command) { answered(output.callId, it) }
-            is Output.Encode -> encode(output.frame, output.targetFpsHz)
+            is Output.Encode -> encode(output)
             is Output.CloseLink -> connection.reconnect(output.reason)
             is Output.Notice -> listener.notice(output)
             is Output.Told -> listener.told(output.text)
@@ -144,12 +144,12 @@ class CompanionApp(
     }
 
     /** Encodes one frame at a time: with the encoder busy, the newer frame waits for the next turn. */
-    private fun encode(frame: VideoFrame, targetFpsHz: Float) {
+    private fun encode(asked: Output.Encode) {
         if (!encoding.tryAcquire()) return
         try {
             encoderThread.execute {
                 try {
-                    val packet: Packet = encoder.encode(frame, targetFpsHz)
+                    val packet: Packet = encoder.encode(asked.frame, asked.targetFpsHz, asked.quality)
                     tasks.add { session.imageEncoded(packet) }
                 } finally {
                     encoding.release()
@@ -179,7 +179,7 @@ class CompanionApp(
         }
 
         override fun sent(link: Int) {
-            tasks.add { if (link == openLink) session.packetSent() }
+            tasks.add { now -> if (link == openLink) session.packetSent(now) }
         }
 
         override fun closed(link: Int, reason: String) {

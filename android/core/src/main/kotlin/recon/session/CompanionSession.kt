@@ -126,7 +126,9 @@ class CompanionSession(val settings: SessionSettings) {
 
     /** Takes a frame of the camera feed; most are not sent. */
     fun frameTaken(frame: VideoFrame, nowNs: Long) {
-        if (link.isOpen && video.takes(nowNs)) outputs.add(Output.Encode(frame, video.targetFpsHz))
+        if (link.isOpen && video.takes(nowNs)) {
+            outputs.add(Output.Encode(frame, video.targetFpsHz, video.quality))
+        }
     }
 
     /** Takes a photo that the camera has confirmed, with or without a link. */
@@ -143,7 +145,9 @@ class CompanionSession(val settings: SessionSettings) {
     /** The next packet to write to the socket, or null; call [packetSent] when it has been written. */
     fun nextToSend(nowNs: Long): ByteArray? = link.nextToSend(nowNs)
 
-    fun packetSent() = link.sent()
+    fun packetSent(nowNs: Long) {
+        link.sent(nowNs)?.let(video::written)
+    }
 
     /** The person beside the phone takes the aircraft: what the station started ends with a hover. */
     fun releaseControl(nowNs: Long) {

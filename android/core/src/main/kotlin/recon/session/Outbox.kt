@@ -42,10 +42,16 @@ class Outbox {
         extended = packet
     }
 
+    /** Whether the packet last given by [poll] was an image. */
+    var isImagePolled = false
+        private set
+
     /** The next packet to send, or null. */
-    fun poll(): ByteArray? =
-        acknowledgments.removeFirstOrNull() ?: pollTelemetry() ?: messages.removeFirstOrNull()
-            ?: images.removeFirstOrNull()
+    fun poll(): ByteArray? {
+        val other = acknowledgments.removeFirstOrNull() ?: pollTelemetry() ?: messages.removeFirstOrNull()
+        isImagePolled = other == null
+        return other ?: images.removeFirstOrNull()
+    }
 
     fun dropImages() {
         images.clear()

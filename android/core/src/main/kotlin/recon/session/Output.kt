@@ -10,8 +10,8 @@ sealed interface Output {
     /** Pass the command to the aircraft, and its answer back with [callId]. */
     data class Execute(val callId: Long, val command: AircraftCommand) : Output
 
-    /** Encode a frame as an image packet and pass it back. */
-    data class Encode(val frame: VideoFrame, val targetFpsHz: Float) : Output
+    /** Encode a frame as an image packet and pass it back; [quality] is a JPEG file's, in percent. */
+    data class Encode(val frame: VideoFrame, val targetFpsHz: Float, val quality: Int) : Output
 
     /** A text of the extension that goes to the station, for the log. */
     data class Told(val text: String) : Output

@@ -49,6 +49,8 @@ data class SessionSettings(
     /** One write to the socket that takes longer means that the station has stopped reading. */
     val stalledWriteNs: Long = 5_000_000_000,
     val fastestVideoHz: Double = 10.0,
+    /** On a link that carries little, images come at this rate at least, with less quality then. */
+    val slowestVideoHz: Double = 0.2,
     /** The same sentence is not repeated to the station within this time. */
     val repeatedReportNs: Long = 5_000_000_000,
 )

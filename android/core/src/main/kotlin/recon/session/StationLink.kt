@@ -66,8 +66,11 @@ class StationLink(private val settings: SessionSettings) {
         return outbox.poll()?.also { sendingSinceNs = nowNs }
     }
 
-    fun sent() {
+    /** Takes the news that the packet is written; returns how long that took if it was an image. */
+    fun sent(nowNs: Long): Long? {
+        val tookNs = sendingSinceNs?.let { nowNs - it }
         sendingSinceNs = null
+        return tookNs?.takeIf { outbox.isImagePolled }
     }
 
     /** Whether one write has taken so long that the station cannot be reading. */

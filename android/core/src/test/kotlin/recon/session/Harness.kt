@@ -132,6 +132,6 @@ class Harness(settings: SessionSettings = SessionSettings(), private val isReadi
     private fun deliver(packet: ByteArray) {
         station.push(packet, nowNs)
         while (true) sent += nowNs to (station.poll() ?: break).packet
-        if (isReading) session.packetSent()
+        if (isReading) session.packetSent(nowNs)
     }
 }

@@ -50,6 +50,42 @@ class VideoAndLinkTest {
     }
 
     @Test
+    fun `a link that carries less gets fewer images, then poorer ones, and all again when it can`() {
+        val pacer = VideoPacer(SessionSettings()).apply { start(5f, 0) }
+        val slow = seen(pacer, bytesPerSecond = 40_000.0, seconds = 120)
+        assertTrue(slow.last().bytes * slow.rate() in 15_000.0..40_000.0, "${slow.rate()}")
+        assertTrue(pacer.quality == 85 && slow.rate() < 0.5)
+        val slower = seen(pacer, bytesPerSecond = 8_000.0, seconds = 120)
+        assertTrue(pacer.quality < 85 && slower.rate() >= 0.19, "${slower.rate()}")
+        val fast = seen(pacer, bytesPerSecond = 10_000_000.0, seconds = 120)
+        assertEquals(85, pacer.quality)
+        assertEquals(5.0, fast.rate(), 0.2)
+    }
+
+    private class Written(val atNs: Long, val bytes: Int)
+
+    /** Images a second over the last half. */
+    private fun List<Written>.rate(): Double = drop(size / 2).let { (it.size - 1) * 1e9 / (it.last().atNs - it.first().atNs) }
+
+    private var nowNs = 0L
+
+    /** The images that a link takes one after the other: 85 kB at full quality. */
+    private fun seen(pacer: VideoPacer, bytesPerSecond: Double, seconds: Int): List<Written> {
+        val all = mutableListOf<Written>()
+        val endNs = nowNs + seconds * SECOND
+        while (nowNs < endNs) {
+            nowNs += 33 * MS
+            if (!pacer.takes(nowNs)) continue
+            val bytes = 1_000 * pacer.quality
+            val tookNs = (bytes / bytesPerSecond * SECOND).toLong()
+            all += Written(nowNs, bytes)
+            nowNs += tookNs
+            pacer.written(tookNs)
+        }
+        return all
+    }
+
+    @Test
     fun `a lost link stops the feed`() {
         val harness = Harness().connect()
         harness.receive(CameraControl(CameraControl.START, 5f))
@@ -73,7 +109,7 @@ class VideoAndLinkTest {
         for (number in 1..5) harness.session.imageEncoded(CompressedImage(5f, Bytes.of("image $number")))
         val waiting = mutableListOf<Any>()
         repeat(20) {
-            harness.session.packetSent()
+            harness.session.packetSent(harness.nowNs)
             waiting += decode(harness.session.nextToSend(harness.nowNs) ?: return@repeat)
         }
         assertEquals(listOf("image 4", "image 5"), waiting.filterIsInstance<CompressedImage>().map {

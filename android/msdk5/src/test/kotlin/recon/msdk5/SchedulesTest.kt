@@ -204,7 +204,7 @@ private class World(private val random: Random, private val seed: Int) {
     }
 
     private fun received(bytes: ByteArray) {
-        session.packetSent()
+        session.packetSent(sdk.nowNs)
         station.push(bytes, sdk.nowNs)
         while (true) {
             when (val packet = station.poll()?.packet ?: break) {
