@@ -162,6 +162,7 @@ study: setup ## Long runs: the sky against measurements, random fences, fleets a
 	$(RUN) python -m studies.mosaic
 	$(RUN) python -m studies.fences --scenes 10000
 	$(RUN) python -m studies.fleets --scenes 10000
+	$(RUN) python -m studies.app_texts
 	$(RUN) python -m studies.session --seconds 100000
 	$(RUN) python -m studies.closed_loop --runs 100 --first-seed 1000 --jobs 2
 	$(RUN) python -m studies.same_again --seconds 600

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from studies.app_texts import HostileRun
 
 from recon import wire
 from recon.model.app_report import AppFacts, OutcomeReport, PhotosReport, ReportedPhoto
@@ -114,3 +115,10 @@ def test_texts_are_sanitised() -> None:
     assert isinstance(found, AppFacts)
     assert found.model is not None
     assert found.model.isprintable()
+
+
+def test_hostile_texts_raise_nothing_in_the_whole_step() -> None:
+    """A million of them: `python -m studies.app_texts`."""
+    run = HostileRun(seed=1)
+    run.take(1_500)
+    assert {"AppFacts", "PhotosReport", "OutcomeReport", "IgnoredReport"} <= set(run.counts)
