@@ -19,12 +19,16 @@ POINTS = st.lists(
 def applied(base: dict[str, Any], change: dict[str, Any]) -> dict[str, Any]:
     """A reader's part, as the console has it in TypeScript."""
     assert change["since"] == base["time_ns"]
-    state = {**base, **{k: v for k, v in change.items() if k not in ("since", "kept")}}
+    own = ("since", "kept", "same_facts")
+    state = {**base, **{k: v for k, v in change.items() if k not in own}}
+    facts = {vehicle["serial"]: vehicle["app_facts"] for vehicle in base["vehicles"]}
     tracks = {vehicle["serial"]: vehicle["track"] for vehicle in base["vehicles"]}
     for vehicle in state["vehicles"]:
         kept = change["kept"].get(vehicle["serial"], 0)
         if kept:
             vehicle["track"] = tracks[vehicle["serial"]][-kept:] + vehicle["track"]
+        if vehicle["serial"] in change.get("same_facts", ()):
+            vehicle["app_facts"] = facts[vehicle["serial"]]
     return state
 
 

@@ -75,7 +75,6 @@ class PhotosReported(msgspec.Struct, frozen=True):
 
     count: int
     missing: int
-    newest_age_s: float | None
 
 
 class Telemetry(msgspec.Struct, frozen=True, kw_only=True):
@@ -109,6 +108,7 @@ class Telemetry(msgspec.Struct, frozen=True, kw_only=True):
     """What the app reports of the aircraft's settings; None: it reports none."""
     app_facts_age_s: float | None = None
     photos: PhotosReported | None = None
+    newest_photo_age_s: float | None = None
 
     @property
     def is_live(self) -> bool:
@@ -131,9 +131,7 @@ class Telemetry(msgspec.Struct, frozen=True, kw_only=True):
             )
         }
         changes["app_facts_age_s"] = _older(self.app_facts_age_s, seconds)
-        if self.photos is not None:
-            newest_age_s = _older(self.photos.newest_age_s, seconds)
-            changes["photos"] = msgspec.structs.replace(self.photos, newest_age_s=newest_age_s)
+        changes["newest_photo_age_s"] = _older(self.newest_photo_age_s, seconds)
         if self.lease is not None:
             changes["lease"] = self.lease.older_by(seconds)
         age_s = _older(self.telemetry_age_s, seconds)

@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import type { Connection, StationState } from "../protocol";
 import { FakeClock } from "../testing/fakeClock";
 import { FakeSocket } from "../testing/fakeSocket";
-import { station, vehicle } from "../testing/fakeState";
+import { appFacts, station, vehicle } from "../testing/fakeState";
 import { OPENING_MS, RECONNECT_DELAYS_MS, readState, SILENCE_MS, Stream } from "./stream";
 
 function setUp() {
@@ -43,19 +43,23 @@ describe("the stream", () => {
 
   it("puts changes on the state before, and reconnects at one of another state", () => {
     const { stream, newest, states, connections } = setUp();
-    const first = station([vehicle(1), vehicle(2)], { time_ns: 1 });
+    const facts = appFacts({ rtk: "fixed" });
+    const first = station([vehicle(1, { app_facts: facts }), vehicle(2)], { time_ns: 1 });
     stream.open();
     newest().accept();
     newest().deliver(first);
     const { site: _site, ...rest } = station([vehicle(1), vehicle(2)], { time_ns: 2 });
     const [one, two] = rest.vehicles;
     const vehicles = [{ ...one, track: [[9, 9]] }, two];
-    newest().deliver({ ...rest, vehicles, since: 1, kept: { "SN-001": 3 } } as never);
+    const change = { since: 1, kept: { "SN-001": 3 }, same_facts: ["SN-001"] };
+    newest().deliver({ ...rest, vehicles, ...change } as never);
     const { state } = states[1] ?? {};
     expect(state?.site).toEqual(first.site);
     expect(state?.vehicles[0]?.track).toEqual([...vehicle(1).track.slice(-3), [9, 9]]);
     expect(state?.vehicles[1]?.track).toEqual(vehicle(2).track);
+    expect(state?.vehicles.map(({ app_facts }) => app_facts)).toEqual([facts, null]);
     expect(state).not.toHaveProperty("since");
+    expect(state).not.toHaveProperty("same_facts");
     newest().deliver({ ...rest, time_ns: 9, since: 8, kept: {} } as never);
     expect(states).toHaveLength(2);
     expect(connections.at(-1)?.kind).toBe("lost");

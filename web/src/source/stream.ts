@@ -184,7 +184,8 @@ const LISTS = ["vehicles", "links", "commands", "alarms"] as const;
 
 /**
  * The state in a message, whole or as a change of the one before; null when it is neither. A part that is absent in
- * a change is as before; of the vehicles in `kept`, a track holds the new points only.
+ * a change is as before; of the vehicles in `kept`, a track holds the new points only, and those in `same_facts` have
+ * the facts of before.
  */
 export function readState(data: unknown, base: StationState | null = null): StationState | null {
   if (typeof data !== "string") return null;
@@ -207,21 +208,28 @@ type Fields = Record<string, unknown>;
 interface Change extends Fields {
   readonly since: unknown;
   readonly kept: unknown;
+  readonly same_facts?: unknown;
 }
 
 /** A change put on its base; null when it is a change of another state. */
-function withBase({ since, kept, ...changed }: Change, base: StationState | null): Fields | null {
+function withBase(
+  { since, kept, same_facts, ...changed }: Change,
+  base: StationState | null,
+): Fields | null {
   if (base === null || since !== base.time_ns || typeof kept !== "object") return null;
   const points = new Map(Object.entries((kept ?? {}) as Record<string, number>));
-  const before = new Map(base.vehicles.map(({ serial, track }) => [serial, track]));
+  const sameFacts = new Set(Array.isArray(same_facts) ? (same_facts as string[]) : []);
+  const before = new Map(base.vehicles.map((vehicle) => [vehicle.serial, vehicle]));
   const vehicles = Array.isArray(changed["vehicles"])
     ? (changed["vehicles"] as VehicleView[])
     : base.vehicles;
   const whole = vehicles.map((vehicle) => {
-    const count = vehicle.serial === null ? 0 : (points.get(vehicle.serial) ?? 0);
-    const track = before.get(vehicle.serial);
-    if (count <= 0 || track === undefined) return vehicle;
-    return { ...vehicle, track: [...track.slice(-count), ...vehicle.track] };
+    const was = before.get(vehicle.serial);
+    if (vehicle.serial === null || was === undefined) return vehicle;
+    const count = points.get(vehicle.serial) ?? 0;
+    const track = count > 0 ? [...was.track.slice(-count), ...vehicle.track] : vehicle.track;
+    const app_facts = sameFacts.has(vehicle.serial) ? was.app_facts : vehicle.app_facts;
+    return { ...vehicle, track, app_facts };
   });
   return { ...base, ...changed, vehicles: whole };
 }

@@ -77,6 +77,7 @@ export function vehicle(number: number, changes: Partial<VehicleView> = {}): Veh
     app_facts: null,
     app_facts_age_s: null,
     photos: null,
+    newest_photo_age_s: null,
     ...changes,
   };
 }

@@ -91,7 +91,6 @@ class PhotoTallyView(Message):
 
     count: int = Field(description="index of the newest photo")
     missing: int = Field(description="photos of which no report came")
-    newest_age_s: float | None
 
 
 class DoubtView(Message):
@@ -224,6 +223,7 @@ class VehicleView(Message):
     app_facts: AppFactsView | None = Field(description="null: its app reports none")
     app_facts_age_s: float | None
     photos: PhotoTallyView | None = Field(description="null: its app reports none")
+    newest_photo_age_s: float | None
     track: list[tuple[float, float]] = Field(description="longitude, latitude; oldest first")
     frame: FrameView | None
     hazard: HazardView | None

@@ -25,6 +25,16 @@ LEAST_NS = NS_PER_S
 """Least time between two texts of a kind."""
 LOOK_NS = NS_PER_S // 10
 """The app looks this often whether there is something to tell."""
+CHANGING = frozenset(
+    (
+        "battery_cells_v",
+        "battery_temperature_c",
+        "storage_left_mb",
+        "storage_left_photos",
+        "photo_count",
+    )
+)
+"""What changes all the time, and is no reason to send facts."""
 REPEAT_NS = 10 * NS_PER_S
 """Facts are sent this often in any case."""
 MOST_IN_A_TEXT = 16
@@ -150,14 +160,15 @@ class AppReporter:
         )
 
     def _facts(self, now_ns: int) -> list[bytes]:
-        facts = json.dumps(self._known_facts(now_ns))
+        known = self._known_facts()
+        facts = json.dumps({name: each for name, each in known.items() if name not in CHANGING})
         is_old = self._facts_ns is None or now_ns - self._facts_ns >= REPEAT_NS
         if facts == self._sent_facts and not is_old:
             return []
         self._sent_facts, self._facts_ns = facts, now_ns
-        return [_text(json.loads(facts))]
+        return [_text(known)]
 
-    def _known_facts(self, now_ns: int) -> dict[str, Any]:
+    def _known_facts(self) -> dict[str, Any]:
         aircraft, settings, count = self.aircraft, self.aircraft.settings, len(self.taken)
         home = position_deg(self.home, aircraft.home_north_m, aircraft.home_east_m)
         return {

@@ -6,9 +6,7 @@ from functools import lru_cache
 from typing import Any
 
 from recon.api import schema
-from recon.model.app_report import AppFacts
-from recon.model.units import ns_to_seconds
-from recon.model.vehicle import VehicleState
+from recon.model.app_report import AppFacts, PhotoTally
 
 _COUNTS = ("photo_series", "photo_count")
 """For the station: `PhotoTallyView` has what it makes of them."""
@@ -23,17 +21,10 @@ def app_facts_view(facts: AppFacts) -> schema.AppFactsView:
     return schema.AppFactsView(**{name: _plain(getattr(facts, name)) for name in _NAMES})
 
 
-def photo_tally_view(vehicle: VehicleState, now_ns: int) -> schema.PhotoTallyView | None:
-    """Return the photos that a vehicle's app has reported; None while it has reported none."""
-    tally = vehicle.photo_tally
-    if tally is None:
-        return None
-    age_s = None if tally.newest_at_ns is None else ns_to_seconds(now_ns - tally.newest_at_ns)
-    return schema.PhotoTallyView(
-        count=tally.newest_index,
-        missing=tally.missing,
-        newest_age_s=None if age_s is None else round(age_s, 3),
-    )
+@lru_cache(maxsize=256)
+def photo_tally_view(tally: PhotoTally) -> schema.PhotoTallyView:
+    """Return the photos that an app has reported; made once for each report."""
+    return schema.PhotoTallyView(count=tally.newest_index, missing=tally.missing)
 
 
 def _plain(value: Any) -> Any:

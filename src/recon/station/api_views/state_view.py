@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from enum import Enum
+from functools import lru_cache
 from typing import Any
 
 from recon.api import schema
@@ -102,7 +103,7 @@ def _vehicle(
 ) -> schema.VehicleView:
     profile = vehicle.profile
     reference = AltitudeReference.UNSET if profile is None else profile.waypoint_altitude
-    aged = _Aging(now_ns)
+    aged, tally = _Aging(now_ns), vehicle.photo_tally
     return schema.VehicleView(
         number=number,
         serial=vehicle.serial,
@@ -148,7 +149,8 @@ def _vehicle(
         conflict_link_ids=list(vehicle.rival_link_ids),
         app_facts=_facts(vehicle),
         app_facts_age_s=aged.age_s(vehicle.app_facts),
-        photos=photo_tally_view(vehicle, now_ns),
+        photos=None if tally is None else photo_tally_view(tally),
+        newest_photo_age_s=None if tally is None else _age_s(tally.newest_at_ns, now_ns),
         track=[
             (round(p.longitude_deg, TRACK_DIGITS), round(p.latitude_deg, TRACK_DIGITS))
             for p in vehicle.track[-TRACK_POINTS_SHOWN:]
@@ -240,11 +242,18 @@ def _link_figures(record: LinkRecord, now_ns: int) -> schema.LinkFiguresView | N
     found = link_figures(record.arrivals, now_ns) if record.is_open else None
     if found is None:
         return None
+    return _figures(
+        round(found.rate_hz, 1), round(found.jitter_s, 2), round(found.longest_gap_s, 1), found.bars
+    )
+
+
+@lru_cache(maxsize=4096)
+def _figures(
+    rate_hz: float, jitter_s: float, longest_gap_s: float, bars: int
+) -> schema.LinkFiguresView:
+    """Links whose telemetry comes evenly have the same few figures in all messages."""
     return schema.LinkFiguresView(
-        rate_hz=round(found.rate_hz, 1),
-        jitter_s=round(found.jitter_s, 2),
-        longest_gap_s=round(found.longest_gap_s, 1),
-        bars=found.bars,
+        rate_hz=rate_hz, jitter_s=jitter_s, longest_gap_s=longest_gap_s, bars=bars
     )
 
 

@@ -10,7 +10,7 @@ from typing import Any
 from recon.fleet import pairing
 from recon.fleet import step as fleet_step
 from recon.fleet.app_facts import new_photos
-from recon.model.app_report import PhotosReport
+from recon.model.app_report import AppFacts, PhotosReport
 from recon.model.event import (
     AlarmAcknowledged,
     AllStopped,
@@ -119,6 +119,8 @@ def _app_list_failed(station: Station, event: AppListFailed, _now_ns: int) -> St
 def _packet(station: Station, event: PacketReceived, now_ns: int) -> Stepped:
     before = station
     station, outputs = _fleet(station, event, now_ns)
+    if isinstance(event.report, AppFacts):  # settings of the aircraft: no order's end
+        return station, outputs
     station = preflight.after_packet(before, station, event.link_id)
     vehicle = station.fleet.vehicle_of_link(event.link_id)
     if vehicle is None:
@@ -130,7 +132,8 @@ def _packet(station: Station, event: PacketReceived, now_ns: int) -> Stepped:
     if station.control(vehicle.serial).restored is not None:
         station = restart.recheck(station, vehicle.serial, now_ns)
     orders: tuple[Output, ...] = ()
-    if not isinstance(event.report, ImageReport):  # it confirms camera orders only: ticks see them
+    # Images confirm camera orders only, and photos none: ticks see them.
+    if not isinstance(event.report, ImageReport | PhotosReport):
         serials = () if vehicle.serial is None else (vehicle.serial,)
         station, orders = order_gateway.update_orders(station, now_ns, serials)
     return station, (*outputs, *more, *orders)

@@ -18,7 +18,7 @@ it("shows what the app knows, with its age", () => {
 });
 
 it("shows photos, and those without a report", () => {
-  const photos = { count: 41, missing: 2, newest_age_s: 1.5 };
+  const photos = { count: 41, missing: 2 };
   expect(appFactsOf(vehicle(1, { photos })).map(({ text }) => text)).toEqual([
     "41, of which 2 without a report",
   ]);

@@ -22,7 +22,7 @@ export function appFactsOf(vehicle: VehicleView): Fact[] {
             name: photosReported,
             text:
               photos.missing > 0 ? photosWithout(photos.count, photos.missing) : `${photos.count}`,
-            ageS: photos.newest_age_s,
+            ageS: vehicle.newest_photo_age_s,
           },
         ];
   return [...aged, ...counted].map((each) => ({ ...each, why: null }));
