@@ -21,10 +21,10 @@ it("names who flies, and when more sun comes", () => {
   const surveys = [survey(7)];
   const at = formatMinuteOfDay(1e3 + 60_000);
   expect(field({ surveys, shade: forecast([0.3, 0.6, 0.9], [1, 0.8, 0.2]) })).toBe(
-    `Alder flies rows in sun; more of the field has sun at ${at}.`,
+    `Alder flies rows, sunlit ones first; more of the field has sun at ${at}.`,
   );
   expect(field({ surveys, shade: forecast([0.6, 0.62, 0.6], [1, 1, 1]) })).toBe(
-    "Alder flies rows in sun.",
+    "Alder flies rows, sunlit ones first.",
   );
   expect(field({ surveys })).toBe("Alder flies rows; the light is not known yet.");
   expect(field({ surveys: [survey(7, { planner: "lawnmower_once" })] })).toBe("Alder flies rows.");

@@ -93,10 +93,14 @@ function Scale(props: { forecast: ForecastView }) {
 /** Less of the field than this known is as good as nothing. */
 const LEAST_KNOWN = 0.05;
 
-/** A forecast up to the last lead at which some of the field is known, and at least one step of it. */
+/** So much is shown even where nothing is known: a scale has two ends. */
+const LEAST_S = 60;
+
+/** A forecast up to the last lead at which some of the field is known. */
 export function knownPart(forecast: ForecastView): ForecastView {
   const last = forecast.predicted_share.findLastIndex((share) => share >= LEAST_KNOWN);
-  const count = Math.max(2, last + 1);
+  const near = forecast.lead_s.filter((lead) => lead <= LEAST_S).length;
+  const count = Math.max(near, last + 1);
   return {
     ...forecast,
     lead_s: forecast.lead_s.slice(0, count),

@@ -37,8 +37,8 @@ describe("the time scale", () => {
     const share = [1, 1, 1, 1, 1];
     const cut = (predicted_share: number[]) =>
       knownPart({ ...forecast(), lead_s, sun_share: share, predicted_share }).lead_s;
-    expect(cut([1, 0.8, 0.4, 0.02, 0])).toEqual([0, 30, 60]);
-    expect(cut([0, 0, 0, 0, 0])).toEqual([0, 30]);
+    expect(cut([1, 0.8, 0.4, 0.2, 0])).toEqual([0, 30, 60, 120]);
+    expect(cut([0, 0, 0, 0, 0])).toEqual([0, 30, 60]);
     expect(cut([1, 1, 1, 1, 0.1])).toEqual(lead_s);
   });
 

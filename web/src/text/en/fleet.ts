@@ -28,8 +28,8 @@ const fly = (names: string, count: number) => `${names} ${count === 1 ? "flies" 
 export const happening = {
   sunlit: (names: string, count: number, time: string | null) =>
     time === null
-      ? `${fly(names, count)} in sun.`
-      : `${fly(names, count)} in sun; more of the field has sun at ${time}.`,
+      ? `${fly(names, count)}, sunlit ones first.`
+      : `${fly(names, count)}, sunlit ones first; more of the field has sun at ${time}.`,
   unknownLight: (names: string, count: number) =>
     `${fly(names, count)}; the light is not known yet.`,
   rows: (names: string, count: number) => `${fly(names, count)}.`,
