@@ -28,6 +28,7 @@ from recon.model.command import (
     FlyMission,
     Hover,
     LandNow,
+    LockCamera,
     Refusal,
     ReturnHome,
     StartCamera,
@@ -57,6 +58,7 @@ BODIES: list[Body] = [
     ReturnHome(),
     StartCamera(2.0),
     StopCamera(),
+    LockCamera(True),
     FlyMission(Mission((Waypoint(41.9, -93.6, 50.0, 5.0, loiter_s=2.0),) * 2, land_at_end=True)),
     VirtualStick(StickFrame.BODY, 90.0, 1.0, 2.0, 30.0, 0.5),
 ]

@@ -15,6 +15,7 @@ from recon.model.command import (
     Body,
     Hover,
     LandNow,
+    LockCamera,
     ReturnHome,
     StartCamera,
     StickFrame,
@@ -29,6 +30,7 @@ EVERY_BODY: list[Body] = [
     ReturnHome(),
     StartCamera(2.0),
     StopCamera(),
+    LockCamera(True),
     mission(),
     STICK,
 ]
@@ -60,6 +62,8 @@ def test_hover_is_the_documents_example() -> None:
 
 def test_a_stop_carries_0_for_its_ignored_rate() -> None:
     assert to_packet(StopCamera(), 0.0) == wire.CameraControl(action=0, target_fps_hz=0.0)
+    assert to_packet(LockCamera(True), 0.0) == wire.CameraControl(action=2, target_fps_hz=0.0)
+    assert to_packet(LockCamera(False), 0.0) == wire.CameraControl(action=3, target_fps_hz=0.0)
     assert to_packet(StartCamera(2.0), 0.0) == wire.CameraControl(action=1, target_fps_hz=2.0)
 
 

@@ -14,6 +14,7 @@ from recon.model.command import (
     HoldPosition,
     Hover,
     LandNow,
+    LockCamera,
     Nudge,
     Refusal,
     ReturnHome,
@@ -130,6 +131,13 @@ class Vehicle:
     async def stop_camera(self) -> Order | Refusal:
         """Stop sending images."""
         return await self._order_api.send_one(self.serial, StopCamera())
+
+    async def lock_camera(self, is_locked: bool = True) -> Order | Refusal:
+        """Lock exposure and white balance at what they are, or unlock both.
+
+        Refused for an app that does not report that it takes this order.
+        """
+        return await self._order_api.send_one(self.serial, LockCamera(is_locked))
 
     async def take(self, *, take_over: bool = False) -> Refusal | None:
         """Take operator control, from guidance or a pilot who agrees; None on success.

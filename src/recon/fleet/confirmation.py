@@ -17,6 +17,7 @@ from recon.model.command import (
     FlyMission,
     Hover,
     LandNow,
+    LockCamera,
     ReturnHome,
     StartCamera,
     StopCamera,
@@ -200,6 +201,17 @@ def _camera_stop(
     return _complete_if(_core_is_new(sent, state) and is_quiet)
 
 
+def _camera_lock(
+    body: LockCamera, sent: SentContext, state: VehicleState, _now_ns: int
+) -> Progress:
+    """Both are as ordered, as the app has read them back since."""
+    facts, read_ns = state.app_facts.value, state.app_facts.received_at_ns
+    if facts is None or read_ns is None or read_ns <= sent.sent_at_ns:
+        return Progress.UNSEEN
+    both = (facts.exposure_locked, facts.white_balance_locked)
+    return _complete_if(both == (body.is_locked, body.is_locked))
+
+
 _CONFIRMATIONS: dict[type, Callable[[Any, SentContext, VehicleState, int], Progress]] = {
     Hover: _hover,
     LandNow: _land,
@@ -208,4 +220,5 @@ _CONFIRMATIONS: dict[type, Callable[[Any, SentContext, VehicleState, int], Progr
     VirtualStick: _stick,
     StartCamera: _camera_start,
     StopCamera: _camera_stop,
+    LockCamera: _camera_lock,
 }

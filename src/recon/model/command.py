@@ -48,6 +48,15 @@ class StopCamera:
 
 
 @dataclass(frozen=True, slots=True)
+class LockCamera:
+    """Lock exposure and white balance at what they are, or unlock both. For apps that take it."""
+
+    name: ClassVar[str] = "camera_lock"
+
+    is_locked: bool
+
+
+@dataclass(frozen=True, slots=True)
 class FlyMission:
     """Fly a waypoint mission, replacing the one being flown."""
 
@@ -128,12 +137,14 @@ class FollowPath:
 
 SteeredBody = GoTo | Nudge | HoldPosition | FollowPath
 """Orders that are not on the wire: the station steers them by `VirtualStick`."""
-WireBody = Hover | LandNow | ReturnHome | StartCamera | StopCamera | FlyMission | VirtualStick
+WireBody = (
+    Hover | LandNow | ReturnHome | StartCamera | StopCamera | LockCamera | FlyMission | VirtualStick
+)
 Body = WireBody | SteeredBody
 """A new kind enters here; mypy names each `match` that must have it."""
 
 EMERGENCY_BODIES = (Hover, LandNow, ReturnHome)
-CAMERA_BODIES = (StartCamera, StopCamera)
+CAMERA_BODIES = (StartCamera, StopCamera, LockCamera)
 STEERED_BODIES: tuple[type[SteeredBody], ...] = get_args(SteeredBody)
 MOVING_BODIES = (FlyMission, VirtualStick, *STEERED_BODIES)
 """Bodies that set a vehicle in motion along a path of the station's choosing."""

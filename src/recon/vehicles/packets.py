@@ -10,6 +10,7 @@ from recon.model.command import (
     FlyMission,
     Hover,
     LandNow,
+    LockCamera,
     ReturnHome,
     StartCamera,
     StickFrame,
@@ -65,6 +66,10 @@ def _camera_stop(_body: StopCamera, _offset_m: float) -> wire.Packet:
     return wire.CameraControl(action=0, target_fps_hz=0.0)
 
 
+def _camera_lock(body: LockCamera, _offset_m: float) -> wire.Packet:
+    return wire.CameraControl(action=2 if body.is_locked else 3, target_fps_hz=0.0)
+
+
 def _mission(body: FlyMission, offset_m: float) -> wire.Packet:
     mission = body.mission
     return wire.ExecuteWaypointMission(
@@ -103,6 +108,7 @@ _WRITERS: dict[type, Callable[[Any, float], wire.Packet]] = {
     ReturnHome: _emergency(2),
     StartCamera: _camera_start,
     StopCamera: _camera_stop,
+    LockCamera: _camera_lock,
     FlyMission: _mission,
     VirtualStick: _stick,
 }
@@ -113,6 +119,7 @@ _KINDS: dict[type, AnsweredKind] = {
     ReturnHome: AnsweredKind.EMERGENCY,
     StartCamera: AnsweredKind.CAMERA,
     StopCamera: AnsweredKind.CAMERA,
+    LockCamera: AnsweredKind.CAMERA,
     FlyMission: AnsweredKind.MISSION,
     VirtualStick: AnsweredKind.STICK,
 }

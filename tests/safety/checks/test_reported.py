@@ -8,7 +8,8 @@ from tests.safety.cases import FACTS, NOW, PLACE, TAKEOFF, S, command, mission, 
 from tests.safety.checks.checked import ATTENTION, FAILS, OK, UNKNOWN, checked
 from tests.safety.checks.test_checklist import KEYS
 
-from recon.model.app_report import AppFacts
+from recon.model.app_report import AppFacts, AppOrder
+from recon.model.command import LockCamera
 from recon.model.units import Stamped
 from recon.model.vehicle import Failsafe, VehicleProfile, VehicleState
 from recon.safety.check import Check, CheckState
@@ -191,6 +192,15 @@ def test_a_mission_beyond_the_aircrafts_own_limits_is_refused(facts: AppFacts, w
     refused = dji_limits(command(mission()), situation(state))
     assert refused is not None
     assert words in refused.reason
+
+
+def test_only_an_app_that_takes_it_is_sent_a_lock() -> None:
+    lock = command(LockCamera(True))
+    plain, able = vehicle(), reporting(AppFacts(orders=(AppOrder.LOCK_CAMERA,)))
+    refused = dji_limits(lock, situation(plain))
+    assert refused is not None
+    assert "lock them in the app" in refused.reason
+    assert dji_limits(lock, situation(able)) is None
 
 
 def test_a_mission_within_the_aircrafts_own_limits_is_not() -> None:

@@ -211,7 +211,7 @@ PLACES = [
 CASES = (*ORDERS, *DJI_NUMBERS, *DJI_MISSIONS, *TELEMETRY, *PLACES)
 
 EXPECTED = """
-known_order | Order type str is unknown; known types: hover, land, return_home, camera_start, camera_stop, mission, stick, goto, nudge, hold_position, follow_path
+known_order | Order type str is unknown; known types: hover, land, return_home, camera_start, camera_stop, camera_lock, mission, stick, goto, nudge, hold_position, follow_path
 reachable | A is unknown: no app has reported this serial
 reachable | A is not connected: its companion app must connect first |  | stale
 identified | A: links 1 and 2 claim this serial; only hold, land and return without takeoff are sent until one of them closes or becomes silent

@@ -30,7 +30,7 @@ def test_a_refusal_names_it_and_what_is_known() -> None:
     assert known_order(command(Loop()), situation()) == Refusal(  # type: ignore[arg-type]
         "known_order",
         "Order type Loop is unknown; known types: hover, land, return_home, camera_start, "
-        "camera_stop, mission, stick, goto, nudge, hold_position, follow_path",
+        "camera_stop, camera_lock, mission, stick, goto, nudge, hold_position, follow_path",
     )
 
 

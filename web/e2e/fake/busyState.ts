@@ -1,5 +1,6 @@
 import type { StationState } from "../../src/protocol";
 import { alarm, at, command, link, station, vehicle } from "../../src/testing/fakeState";
+import { REPORTS } from "../../src/testing/fullState";
 
 /** A field with many problems: everything the page must be able to show at once. */
 export function busyState(elapsed_s: number): StationState {
@@ -8,7 +9,13 @@ export function busyState(elapsed_s: number): StationState {
       is_imager: true,
       frame: { id: 12, received_age_s: 0.3, captured_age_s: 0.8, captured_sigma_s: 0.2 },
     }),
-    vehicle(2, { flight_mode: { value: "auto_landing", age_s: 0.4 } }),
+    vehicle(2, {
+      flight_mode: { value: "auto_landing", age_s: 0.4 },
+      app_facts: REPORTS,
+      app_facts_age_s: 3.2,
+      photos: { count: 41, missing: 2 },
+      newest_photo_age_s: 1.4,
+    }),
     vehicle(3, {
       staleness: "lost",
       telemetry_age_s: 4.2,

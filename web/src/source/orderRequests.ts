@@ -110,6 +110,7 @@ const IS_STEERED: Readonly<Record<Order["kind"], boolean>> = {
   return_home: false,
   camera_start: false,
   camera_stop: false,
+  camera_lock: false,
   mission: false,
   stick: false,
   goto: true,

@@ -21,7 +21,7 @@ const REPORTED = {
   battery_warning: aged("low"),
   camera_state: aged("on"),
 };
-const REPORTS = appFacts({
+export const REPORTS = appFacts({
   go_home_height_m: 60,
   failsafe: "go_home",
   home_latitude_deg: 44.7,
@@ -44,6 +44,7 @@ const REPORTS = appFacts({
   can_fly_missions: true,
   dji_check_passed: true,
   reports_photos: true,
+  orders: ["lock_camera"],
 });
 const HERE = at(20, 30);
 const [LON, LAT] = HERE;

@@ -14,6 +14,7 @@ from recon.model.command import (
     HoldPosition,
     Hover,
     LandNow,
+    LockCamera,
     Nudge,
     ReturnHome,
     StartCamera,
@@ -77,6 +78,17 @@ class CameraStopOrder(StrictMessage):
     def body(self) -> StopCamera:
         """Return what is ordered."""
         return StopCamera()
+
+
+class CameraLockOrder(StrictMessage):
+    """Lock exposure and white balance at what they are, or unlock both."""
+
+    kind: Literal["camera_lock"]
+    is_locked: bool
+
+    def body(self) -> LockCamera:
+        """Return what is ordered."""
+        return LockCamera(is_locked=self.is_locked)
 
 
 class WaypointOrder(StrictMessage):
@@ -172,6 +184,7 @@ AnyOrder = Annotated[
     | ReturnHomeOrder
     | CameraStartOrder
     | CameraStopOrder
+    | CameraLockOrder
     | MissionOrder
     | StickOrder
     | GoToOrder

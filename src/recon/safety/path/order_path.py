@@ -16,6 +16,7 @@ from recon.model.command import (
     HoldPosition,
     Hover,
     LandNow,
+    LockCamera,
     Nudge,
     ReturnHome,
     StartCamera,
@@ -116,7 +117,9 @@ def order_path(body: Body, vehicle: VehicleState) -> OrderPath:
             return _stick(body, vehicle)
         case Hover():
             return TakeoffClimb()
-        case LandNow() | ReturnHome() | StartCamera() | StopCamera() | HoldPosition():
+        case LandNow() | ReturnHome() | HoldPosition():
+            return HoldPath()
+        case StartCamera() | StopCamera() | LockCamera():
             return HoldPath()
         case _ as unknown:
             assert_never(unknown)
@@ -133,7 +136,9 @@ def speeds_mps(body: Body) -> Iterator[tuple[str, float]]:
         case VirtualStick():
             north_mps, east_mps = as_sent(body.velocity_x_mps), as_sent(body.velocity_y_mps)
             yield "Horizontal stick speed", hypot(north_mps, east_mps)
-        case Hover() | LandNow() | ReturnHome() | StartCamera() | StopCamera() | HoldPosition():
+        case Hover() | LandNow() | ReturnHome() | HoldPosition():
+            return
+        case StartCamera() | StopCamera() | LockCamera():
             return
         case _ as unknown:
             assert_never(unknown)

@@ -6,6 +6,7 @@ from math import hypot
 from typing import assert_never
 
 from recon.geo.distance import horizontal_distance_m
+from recon.model.app_report import AppOrder
 from recon.model.command import (
     Body,
     Command,
@@ -15,6 +16,7 @@ from recon.model.command import (
     HoldPosition,
     Hover,
     LandNow,
+    LockCamera,
     Nudge,
     Refusal,
     ReturnHome,
@@ -52,6 +54,8 @@ def _refusals(body: Body, situation: Situation) -> Iterator[Refusal]:
             return _nudge(body, situation)
         case StartCamera():
             return _camera(body, situation)
+        case LockCamera():
+            return _lock(situation)
         case Hover() | LandNow() | ReturnHome() | StopCamera() | HoldPosition():
             return iter(())
         case _ as unknown:
@@ -101,6 +105,17 @@ def _camera(body: StartCamera, situation: Situation) -> Iterator[Refusal]:
     limit_hz = situation.settings.max_camera_fps_hz
     if not 0.0 < as_sent(body.fps_hz) <= limit_hz:
         yield _above_zero("Frame rate", "frame_rate", body.fps_hz, limit_hz, "Hz", "")
+
+
+def _lock(situation: Situation) -> Iterator[Refusal]:
+    """An app that does not know the order may take it for a start or a stop of its video."""
+    if AppOrder.LOCK_CAMERA not in (
+        reported_facts(situation.vehicle, situation.now_ns).orders or ()
+    ):
+        yield _refused(
+            "its app does not report that it takes orders to lock exposure and white balance: lock "
+            "them in the app"
+        )
 
 
 def _stick(body: VirtualStick, situation: Situation) -> Iterator[Refusal]:

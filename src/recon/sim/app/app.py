@@ -140,6 +140,8 @@ class SimulatedApp:
         self._commands = CommandHandler(home, aircraft, feed, behaviour, self._altitude)
         self.reporter = self._reporter()
         """Its facts and photos; None: a plain app."""
+        if self.reporter is not None:
+            self._commands.lock_camera = self.reporter.lock
         self._links: dict[int, _Link] = {}
         self._pending: deque[tuple[int, AppResponse]] = deque()
         self._start: tuple[int, MissionStart] | None = None

@@ -72,8 +72,15 @@ class MissionStart:
     start: Callable[[], str]
 
 
+LOCK_ACTIONS = {2: True, 3: False}
+"""Actions of CameraControl in the extension `recon 1`: whether exposure is locked."""
+
+
 class CommandHandler:
     """Turns command packets into the responses of one app."""
+
+    lock_camera: Callable[[bool], str] | None = None
+    """Locks exposure and white balance, in an app that takes orders of the extension."""
 
     def __init__(
         self,
@@ -135,6 +142,10 @@ class CommandHandler:
         return self._behaviour.hover_on_ground is HoverOnGround.TAKEOFF
 
     def _camera(self, packet: wire.CameraControl) -> AppResponse:
+        lock = self.lock_camera
+        if lock is not None and packet.action in LOCK_ACTIONS:
+            is_locked = LOCK_ACTIONS[packet.action]
+            return AppResponse(packet.PID, True, lambda now_ns: lock(is_locked))
         feed = self._feed
         if feed is None:
             return _refusal(packet.PID, "camera control: no camera")

@@ -94,6 +94,11 @@ class AppReporter:
         """Begin a connection: facts are sent first."""
         self._facts_ns = None
 
+    def lock(self, is_locked: bool) -> str:
+        """Lock exposure and white balance, or unlock both."""
+        self.is_locked = is_locked
+        return f"camera {'locked' if is_locked else 'unlocked'}"
+
     def texts(self, now_ns: int, is_connected: bool) -> list[bytes]:
         """Advance to a time; return the packets to send. Without a connection they wait."""
         self._run_timer(now_ns)

@@ -4,6 +4,11 @@ import type { OrderApi } from "../../orders/orderApi";
 import { text } from "../../text/catalogue";
 import { Answer } from "../orders/AnswerNotice";
 
+type CameraOrder =
+  | { kind: "camera_start"; fps_hz: number }
+  | { kind: "camera_stop" }
+  | { kind: "camera_lock"; is_locked: boolean };
+
 /** Selectable frame rates. */
 const RATES_HZ = [1, 2, 5] as const;
 
@@ -12,10 +17,16 @@ const RATES_HZ = [1, 2, 5] as const;
  * vehicle. Answers go to `orderApi`, which outlives this component.
  */
 export function CameraControl(props: { orderApi: OrderApi }) {
-  const { targets, selection, lacks } = useConsole();
+  const { fleet, targets, selection, lacks } = useConsole();
   const [fps_hz, setFps_hz] = createSignal<number>(RATES_HZ[0]);
   const isOne = () => selection.keys().length === 1 && targets().serials.length === 1;
-  const order = (order: { kind: "camera_start"; fps_hz: number } | { kind: "camera_stop" }) => {
+  /** The facts of the vehicle's app, if it takes orders to lock exposure. */
+  const lockable = () => {
+    const serial = isOne() ? targets().serials[0] : null;
+    const facts = fleet.vehicles.find((vehicle) => vehicle.serial === serial)?.app_facts;
+    return facts?.orders?.includes("lock_camera") ? facts : null;
+  };
+  const order = (order: CameraOrder) => {
     if (!isOne()) return;
     const { serials, labels } = targets();
     void props.orderApi.order({ serials, order }, labels);
@@ -59,6 +70,23 @@ export function CameraControl(props: { orderApi: OrderApi }) {
           {text.camera.stop}
         </button>
       </div>
+      <Show when={lockable()}>
+        {(facts) => (
+          <div class="camera-buttons">
+            <button
+              type="button"
+              class="button"
+              disabled={lacks("operator") !== null}
+              title={lacks("operator") ?? undefined}
+              onClick={() =>
+                order({ kind: "camera_lock", is_locked: facts().exposure_locked !== true })
+              }
+            >
+              {facts().exposure_locked === true ? text.camera.unlock : text.camera.lock}
+            </button>
+          </div>
+        )}
+      </Show>
       <Show when={!isOne()}>
         <p class="muted">{disabledReason(selection.keys().length)}</p>
       </Show>

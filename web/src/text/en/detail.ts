@@ -99,6 +99,8 @@ export const camera = {
   perSecond: "pictures per second",
   start: "Start camera",
   stop: "Stop camera",
+  lock: "Lock exposure",
+  unlock: "Unlock exposure",
   selectFirst: "Camera: select a vehicle first.",
   selectOne: "Camera: select only one vehicle.",
   noSerial: "Camera: waiting for serial number.",

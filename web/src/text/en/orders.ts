@@ -46,6 +46,7 @@ export const orders = {
     return_home: "Return home",
     camera_start: "Camera on",
     camera_stop: "Camera off",
+    camera_lock: "Exposure lock",
     mission: "Mission",
     stick: "Stick",
     goto: "Fly here",
