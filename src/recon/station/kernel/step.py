@@ -10,7 +10,7 @@ from typing import Any
 from recon.fleet import pairing
 from recon.fleet import step as fleet_step
 from recon.fleet.app_facts import new_photos
-from recon.model.app_report import AppFacts, PhotosReport
+from recon.model.app_report import AppFacts, OutcomeReport, PhotosReport
 from recon.model.event import (
     AlarmAcknowledged,
     AllStopped,
@@ -57,6 +57,7 @@ from recon.model.vehicle import VehicleState
 from recon.station.alarms import event_alarms
 from recon.station.alarms.conditions import raise_alarms
 from recon.station.control import (
+    app_outcomes,
     handover,
     operator_lease,
     order_gateway,
@@ -158,6 +159,8 @@ def _reported(
     match report:
         case ImageReport():
             return frames.on_frame(station, vehicle, report, received_at_ns)
+        case OutcomeReport():
+            return app_outcomes.on_outcome(station, vehicle, report, received_at_ns), ()
         case MessageReport():
             return event_alarms.on_message(station, vehicle, report, received_at_ns)
         case CoreReport() if vehicle.core_received_at_ns == received_at_ns:
