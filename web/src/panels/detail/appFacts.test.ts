@@ -11,7 +11,7 @@ it("shows what the app knows, with its age", () => {
   const shown = appFactsOf(vehicle(1, { app_facts: facts, app_facts_age_s: 4 }));
   expect(shown.map(({ name, text }) => `${name}: ${text}`)).toEqual([
     "Go-home height: 60\u00a0m",
-    "When its controller is lost: hovers",
+    "Controller lost: hovers",
     "Exposure: automatic",
   ]);
   expect(shown[0]?.ageS).toBe(4);

@@ -18,7 +18,7 @@ export const detail = {
 /** What an app reports of its aircraft. */
 export const appFacts = {
   goHomeHeight: "Go-home height",
-  failsafe: "When its controller is lost",
+  failsafe: "Controller lost",
   failsafes: { go_home: "goes home", hover: "hovers", land: "lands" } as Record<string, string>,
   homePoint: "Home point",
   maxHeight: "Maximum height",
