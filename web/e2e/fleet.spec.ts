@@ -12,8 +12,13 @@ test("64 drones stay readable: list, alarms by cause, clusters", async ({ page }
   await test.step("the list is searched, sorted and filtered", async () => {
     const rows = page.locator(".vehicle");
     await expect(rows).toHaveCount(64);
+    await expect(rows.first(), "lost ones come first").toContainText("Drone 11");
+    for (const key of ["4", "7", "Enter"]) await page.keyboard.press(key);
+    await expect(page.locator(".vehicle.is-selected")).toHaveText(/Drone 47/);
     await page.getByLabel("Search by number, name or serial").fill("Drone 64");
     await expect(rows).toHaveCount(1);
+    await page.keyboard.press("Enter");
+    await expect(page.locator(".vehicle.is-selected")).toHaveText(/Drone 64/);
     await page.getByLabel("Search by number, name or serial").fill("");
     await page.getByLabel("Show").selectOption("With a problem");
     await expect(rows).toHaveCount(2);
@@ -50,6 +55,9 @@ test("a height on the map is in sight as a whole or not shown, wherever the map 
   const map = page.getByRole("region", { name: "Map" }).first();
   await expect(page.locator("button.craft")).toHaveCount(12);
   await page.getByRole("button", { name: "Zoom in" }).click();
+  await expect(
+    page.getByRole("button", { name: /out of sight: .*Move the map there/i }).first(),
+  ).toBeVisible();
   let shown = 0;
   for (const key of ["ArrowLeft", "ArrowUp", "ArrowRight", "ArrowRight", "ArrowDown"]) {
     await map.locator("canvas").first().press(key);

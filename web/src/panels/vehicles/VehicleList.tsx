@@ -30,6 +30,10 @@ export function VehicleList() {
     [],
     { equals: isSameList },
   );
+  // By title: a new order moves rows, and replaces none.
+  const titles = createMemo(() => groups().map(({ title }) => title), [], { equals: isSameText });
+  const membersOf = (title: string) =>
+    groups().find((group) => group.title === title)?.vehicles ?? [];
   const shown = () => groups().flatMap(({ vehicles }) => vehicles.map(vehicleKey));
   const isAll = () => shown().length > 0 && shown().every(selection.has);
   return (
@@ -82,18 +86,18 @@ export function VehicleList() {
         </Show>
         <Show when={fleet.vehicles.length > 0} fallback={<NoVehicles />}>
           <div class="vehicle-scroll">
-            <For each={groups()} fallback={<p class="panel-empty">{text.vehicles.noneMatches}</p>}>
-              {(group) => (
-                <section aria-label={group.title || text.page.vehicles}>
-                  <Show when={group.title}>
-                    {(title) => (
-                      <h3 class="vehicle-group">
-                        {title()} {group.vehicles.length}
-                      </h3>
-                    )}
+            <For each={titles()} fallback={<p class="panel-empty">{text.vehicles.noneMatches}</p>}>
+              {(title) => (
+                <section aria-label={title || text.page.vehicles}>
+                  <Show when={title}>
+                    <h3 class="vehicle-group">
+                      {title} {membersOf(title).length}
+                    </h3>
                   </Show>
                   <ul>
-                    <For each={group.vehicles}>{(vehicle) => <VehicleRow vehicle={vehicle} />}</For>
+                    <For each={membersOf(title)}>
+                      {(vehicle) => <VehicleRow vehicle={vehicle} />}
+                    </For>
                   </ul>
                 </section>
               )}
@@ -103,6 +107,10 @@ export function VehicleList() {
       </Show>
     </Panel>
   );
+}
+
+function isSameText(a: readonly string[], b: readonly string[]): boolean {
+  return a.length === b.length && a.every((one, index) => one === b[index]);
 }
 
 function Tools(props: {
