@@ -25,7 +25,8 @@ export function smallTargets(page: Page): Promise<Fault[]> {
     const kinds = "button, input, select, textarea, summary, a[href], [role=button], [role=slider]";
     const targets = [...document.querySelectorAll<HTMLElement>(kinds)];
     return targets
-      .filter((target) => target.checkVisibility())
+      // A row that has just moved has no size before it is drawn again.
+      .filter((target) => target.checkVisibility({ contentVisibilityAuto: true }))
       .flatMap((target) => {
         const { width, height } = (target.closest("label") ?? target).getBoundingClientRect();
         const name = target.getAttribute("aria-label") ?? target.textContent;
