@@ -24,14 +24,16 @@ export function smallTargets(page: Page): Promise<Fault[]> {
   return page.evaluate(() => {
     const kinds = "button, input, select, textarea, summary, a[href], [role=button], [role=slider]";
     const targets = [...document.querySelectorAll<HTMLElement>(kinds)];
-    return targets
-      // A row that has just moved has no size before it is drawn again.
-      .filter((target) => target.checkVisibility({ contentVisibilityAuto: true }))
-      .flatMap((target) => {
-        const { width, height } = (target.closest("label") ?? target).getBoundingClientRect();
-        const name = target.getAttribute("aria-label") ?? target.textContent;
-        return width < 44 || height < 44 ? [`${width} x ${height}: ${name}`] : [];
-      });
+    return (
+      targets
+        // A row that has just moved has no size before it is drawn again.
+        .filter((target) => target.checkVisibility({ contentVisibilityAuto: true }))
+        .flatMap((target) => {
+          const { width, height } = (target.closest("label") ?? target).getBoundingClientRect();
+          const name = target.getAttribute("aria-label") ?? target.textContent;
+          return width < 44 || height < 44 ? [`${width} x ${height}: ${name}`] : [];
+        })
+    );
   });
 }
 
