@@ -51,7 +51,7 @@ test("a station is restarted while the page is open: it recovers, and each drone
       list
         .getByRole("checkbox")
         .evaluateAll((all) => all.map((one) => one.getAttribute("aria-label")));
-    const numbered = [1, 2, 3].map((number) => `Add ${number} Drone ${number} to the selection`);
+    const numbered = [1, 2, 3].map((number) => `Add Drone ${number} to the selection`);
     await expect.poll(named).toEqual(numbered);
     await page.keyboard.press("2");
 

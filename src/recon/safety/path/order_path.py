@@ -117,9 +117,9 @@ def order_path(body: Body, vehicle: VehicleState) -> OrderPath:
             return _stick(body, vehicle)
         case Hover():
             return TakeoffClimb()
-        case LandNow() | ReturnHome() | HoldPosition():
-            return HoldPath()
-        case StartCamera() | StopCamera() | LockCamera():
+        case (
+            LandNow() | ReturnHome() | HoldPosition() | StartCamera() | StopCamera() | LockCamera()
+        ):
             return HoldPath()
         case _ as unknown:
             assert_never(unknown)
