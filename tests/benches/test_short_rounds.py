@@ -22,7 +22,12 @@ COMMANDS = {
     "station.bench_load": (*FEW, "--streams", "1", "--seconds", "1"),
     "station.bench_stick_jitter": (*FEW, "--seconds", "2", "--shared"),
 }
-MEASURED_BY_HAND = {"console.bench_console", "product.bench_mosaic", "score.bench_flights"}
+MEASURED_BY_HAND = {
+    "console.bench_console",
+    "product.bench_mosaic",
+    "score.bench_flights",
+    "station.bench_app_reports",
+}
 """Minutes of Chromium, of a peer that is fetched, or of two checkouts; that their imports exist is
 tested with all others."""
 

@@ -147,7 +147,7 @@ def test_a_flight_gives_maps_a_sheet_and_cover_over_time(flight: Path, tmp_path:
 @pytest.mark.parametrize(
     ("name", "data", "words"),
     [
-        ("000.png", b"text", "000.png: expected a JPEG or PNG file, got one that starts with"),
+        ("000.png", b"text", "000.png: expected a JPEG or PNG file, got one that begins with"),
         ("003.jpg", b"\xff\xd8\xff", "003.jpg: JPEG: expected a frame header"),
     ],
 )

@@ -84,7 +84,7 @@ class FakeStation:
 def _status(number: int) -> SurveyStatus:
     return SurveyStatus(
         *(number, "small", "created", "", "", "hover", False, False, False, None, None, 40.0, None),
-        *(0, 0, 0.0, 1, (), None),
+        *("", None, 0, 0, 0.0, 1, (), None),
     )
 
 

@@ -27,7 +27,7 @@ LIMIT_S = 120.0
 def test_bad_options_get_one_sentence_and_exit_code_2(options: list[str], words: str) -> None:
     result = CliRunner().invoke(app, ["sim", "proxy", *options])
     assert result.exit_code == 2
-    assert result.stderr.startswith("recon sim proxy: ")
+    assert result.stderr.startswith("recon sim: ")
     assert words in result.stderr
     assert len(result.stderr.splitlines()) == 1
 

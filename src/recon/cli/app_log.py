@@ -12,7 +12,6 @@ from dataclasses import asdict, dataclass, field
 from typing import BinaryIO, NamedTuple, TextIO
 
 from recon.model.app_report import AppFacts, OutcomeReport, PhotosReport
-from recon.vehicles.app_texts import read_app_text
 from recon.vehicles.printable import printable
 
 LONGEST_LINE_BYTES = 8192
@@ -52,6 +51,8 @@ class AppLogSummary:
             self._add_report(line.raw)
 
     def _add_report(self, raw: bytes) -> None:
+        from recon.vehicles.app_texts import read_app_text
+
         report = read_app_text(raw)
         if isinstance(report, AppFacts):
             self.facts = report

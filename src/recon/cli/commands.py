@@ -86,7 +86,7 @@ COMMANDS = {
     ),
     "survey": CommandSource(
         "survey:survey_app",
-        "Survey a region: create, estimate, start, pause, abort, status.",
+        "Survey a region: create, resume, estimate, start, pause, abort, status.",
     ),
     "site": CommandSource("site:site_app", "Make, check and fill a site's folder: import, fetch."),
     "when": CommandSource(
@@ -167,7 +167,7 @@ COMMANDS = {
     ),
     "inspect": CommandSource(
         "inspect:inspect_command",
-        "Print the packets of a flight record or of bare bytes.",
+        "Print the packets of a flight record or of bare bytes, or the lines of the app's log.",
     ),
     "openapi": CommandSource("run:openapi_command", "Print the API's OpenAPI document."),
 }

@@ -21,7 +21,9 @@ NAMES_NO_SUCH_FILE = frozenset(
 def exit_code(problem: ReconError) -> int:
     """Return the exit code of an error."""
     cause = problem.__cause__
-    has_failed = isinstance(cause, OSError) and cause.errno not in NAMES_NO_SUCH_FILE
+    # GDAL's own errors are of the system by their type, and without a number.
+    errno_ = cause.errno if isinstance(cause, OSError) else None
+    has_failed = errno_ is not None and errno_ not in NAMES_NO_SUCH_FILE
     return REFUSED if problem.is_failure or has_failed else WRONG_USE
 
 

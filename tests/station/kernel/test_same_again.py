@@ -22,6 +22,7 @@ def test_eight_vehicles_with_commands_faults_and_pictures_in_two_processes() -> 
     assert [line.split(":")[0] for line in first] == ["flights", "faults", "pictures"]
 
 
+@pytest.mark.flight
 def test_the_scene_has_commands_answers_closed_links_and_jobs() -> None:
     seen: list[Event] = []
     scene = eight_vehicles(3, sees=True, faults=FAULTS)

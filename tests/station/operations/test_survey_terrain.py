@@ -217,8 +217,7 @@ class TestShown:
     ) -> None:
         world = on_the_slope()
         world.asks(survey)
-        preview = survey_preview(world.driver.station, world.record(), ("SIM-1", "SIM-2"))
-        assert preview is not None
+        preview = survey_preview(world.driver.station, world.state().plan, ("SIM-1", "SIM-2"))
         shown = preview()
         assert shown.refusal is None
         found_m = shown.least_height_above_ground_m, shown.most_height_above_ground_m
@@ -227,8 +226,7 @@ class TestShown:
     def test_without_serials_it_is_for_a_takeoff_at_the_regions_corner(self) -> None:
         world = on_the_slope()
         world.asks(asked(field_of(240.0, 60.0), height_above_takeoff_m=HEIGHT_M))
-        preview = survey_preview(world.driver.station, world.record(), ())
-        assert preview is not None
+        preview = survey_preview(world.driver.station, world.state().plan, ())
         assert preview().least_height_above_ground_m == pytest.approx(16.0, abs=0.6)
         assert preview().most_height_above_ground_m == pytest.approx(40.0, abs=0.6)
 
