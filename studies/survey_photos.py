@@ -17,7 +17,8 @@ from recon.model.event import ClockRead
 from recon.model.imagery import GroundImage
 from recon.model.shade import ShadeMap
 from recon.model.units import NS_PER_S
-from recon.product.flight import FlightData, read_flight
+from recon.product.flight import FlightData
+from recon.product.flight_reader import read_flight
 from recon.score.ideal_detection import IdealDetection
 from recon.score.run import StationRun
 from recon.score.scenario import Scenario

@@ -10,8 +10,9 @@ from tests.product.made_flight import HEIGHT_M, ONE, flight, track, write_record
 from tests.product.test_timing import cards
 
 from recon.product.exports import kml
-from recon.product.flight import FlightData, read_flight
+from recon.product.flight import FlightData
 from recon.product.flight_log import FlightLog
+from recon.product.flight_reader import read_flight
 from recon.product.report import flight_report
 from recon.product.timing import StatedCamera, timed_photos
 

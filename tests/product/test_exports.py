@@ -19,7 +19,8 @@ from recon.geo import enu_from_geo
 from recon.model.units import NS_PER_S
 from recon.product.charts import NOT_SHOWN, SHADE_ONLY, SUNLIT, WELL_SUNLIT
 from recon.product.exports import FLIGHT_FORMATS, coverage_picture, kml
-from recon.product.flight import FlownSurvey, read_flight
+from recon.product.flight import FlownSurvey
+from recon.product.flight_reader import read_flight
 
 HOSTILE = '<b>&"]]>\x00\x1b\ud800'
 

@@ -34,8 +34,9 @@ from recon.geo import cell_centres_m
 from recon.model.errors import RecordError
 from recon.model.units import NS_PER_S
 from recon.product.exports import figures as figures_of
-from recon.product.flight import RecordedTrack, read_flight
+from recon.product.flight import RecordedTrack
 from recon.product.flight_log import FORECAST_TOPIC, FlightLog, LogReader, read_log
+from recon.product.flight_reader import read_flight
 from recon.product.report import AlarmSpan, FlightReport, flight_report
 from recon.product.report_page import report_html
 from recon.product.tagged import tagged_photos

@@ -18,7 +18,8 @@ from tests.product.made_flight import (
 
 from recon.model.errors import RecordError
 from recon.model.units import NS_PER_S
-from recon.product.flight import FlightData, read_flight
+from recon.product.flight import FlightData
+from recon.product.flight_reader import read_flight
 from recon.product.photos.photo import Photo, read_photo_facts
 from recon.product.reported_photos import numbers_of
 from recon.product.reported_shots import ReportedShots

@@ -28,7 +28,7 @@ from recon.cli.commands import app
 from recon.geo import cell_centres_m, geo_from_enu
 from recon.model.errors import RecordError
 from recon.model.units import NS_PER_S
-from recon.product.flight import read_flight
+from recon.product.flight_reader import read_flight
 from recon.product.tagged import tagged_photos
 from recon.product.write import COLUMNS
 

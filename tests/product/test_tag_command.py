@@ -39,7 +39,7 @@ from recon.model.airspace import Region
 from recon.model.errors import RecordError
 from recon.model.survey import Survey
 from recon.model.units import NS_PER_S
-from recon.product.flight import read_flight
+from recon.product.flight_reader import read_flight
 from recon.product.footprint import Aim, PhotoView, projected
 from recon.product.write import masked_name
 

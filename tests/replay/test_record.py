@@ -34,7 +34,7 @@ from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.report import ImageReport
 from recon.model.shade import ShadeMap, SunForecast
 from recon.model.units import seconds_to_ns
-from recon.product.flight import read_flight
+from recon.product.flight_reader import read_flight
 from recon.record.mcap import foxglove
 from recon.record.mcap.flight_messages import FlightMessages
 from recon.record.mcap.items import BULK_BYTES, HEAD, STEP_HEAD, Beginning, Item, ItemKind

@@ -16,7 +16,7 @@ from recon.model.arrays import FloatArray
 from recon.safety.prediction import Conflict, FlightPart, Trajectory, first_conflict
 from recon.safety.prediction.conflicts import segments_apart_m
 from recon.safety.prediction.trajectory import TrajectoryWriter
-from recon.safety.settings import PredictionSettings
+from recon.safety.prediction_settings import PredictionSettings
 
 OTHER = standing(0.0)
 

@@ -22,7 +22,8 @@ from recon.safety.go_home import (
 )
 from recon.safety.prediction import Predictor
 from recon.safety.prediction.trajectory import HIGH_0, LOW_0
-from recon.safety.settings import GoHomeSettings, PredictionSettings
+from recon.safety.prediction_settings import PredictionSettings
+from recon.safety.settings import GoHomeSettings
 from recon.safety.watchdogs.go_home import go_home
 from recon.safety.watchdogs.separation import separation
 

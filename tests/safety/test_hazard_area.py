@@ -16,7 +16,7 @@ from recon.safety.prediction.trajectory import (
     NORTH_1,
     sample,
 )
-from recon.safety.settings import PredictionSettings
+from recon.safety.prediction_settings import PredictionSettings
 
 SLOWEST_0 = replace(SETTINGS, hazard_least_speed_mps=0.0)
 

@@ -34,7 +34,7 @@ from recon.safety.prediction.trajectory import (
     Row,
     TrajectoryWriter,
 )
-from recon.safety.settings import PredictionSettings
+from recon.safety.prediction_settings import PredictionSettings
 
 SETTINGS = PredictionSettings()
 BRAKING = SETTINGS.braking_mps2

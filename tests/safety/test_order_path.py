@@ -28,7 +28,8 @@ from recon.safety.path.order_path import (
     as_sent,
     order_path,
 )
-from recon.safety.settings import SafetySettings, StickBounds
+from recon.safety.prediction_settings import StickBounds
+from recon.safety.settings import SafetySettings
 
 LIMITS = SafetySettings()
 SPEEDS = st.floats(-15.0, 15.0, width=32)

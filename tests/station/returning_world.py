@@ -16,9 +16,9 @@ from recon.model.airspace import ElevationModel, FlightLimits, LandingPad, Zone
 from recon.model.command import Phase
 from recon.model.event import FleetReturnOrdered
 from recon.model.geo import GeoPoint, LocalFrame
+from recon.model.mission import DJI
 from recon.model.vehicle import Failsafe
 from recon.safety import PreparedAirspace
-from recon.sim.app.commands import HoverOnGround
 from recon.sim.app.faults import parse_fault
 from recon.sim.fleet import Airborne, ImagerSetup, SimulationConfig, build_fleet
 from recon.sim.flight.flight_modes import Grounded, PositionHold
@@ -144,7 +144,7 @@ def returning_world(
     plan_takes_s: float = 0.05,
     elevation: ElevationModel | None = None,
     imagers: Mapping[str, ImagerSetup] = NO_IMAGERS,
-    hover_on_ground: HoverOnGround = HoverOnGround.NOTHING,
+    takes_missions: bool = True,
     photo_interval_s: float | None = None,
     **profile: object,
 ) -> ReturningWorld:
@@ -171,7 +171,7 @@ def returning_world(
         vehicle_count=len(serials),
         imagers=imagers,
         airborne=Airborne.ALL,
-        hover_on_ground=hover_on_ground,
+        takes_missions=takes_missions,
         seed=seed,
         pads=points,
         photo_interval_s=photo_interval_s,
@@ -184,6 +184,7 @@ def returning_world(
             points[serial] if knows_pads else None,
             **{
                 "failsafe": Failsafe.HOVER,
+                "max_waypoints": DJI.max_waypoints if takes_missions else 0,
                 "go_home_height_m": go_home_height_m or app.aircraft.settings.go_home_height_m,
                 **profile,
             },

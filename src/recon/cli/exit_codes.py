@@ -22,8 +22,8 @@ def exit_code(problem: ReconError) -> int:
     """Return the exit code of an error."""
     cause = problem.__cause__
     # GDAL's own errors are of the system by their type, and without a number.
-    errno_ = cause.errno if isinstance(cause, OSError) else None
-    has_failed = errno_ is not None and errno_ not in NAMES_NO_SUCH_FILE
+    number = cause.errno if isinstance(cause, OSError) else None
+    has_failed = number is not None and number not in NAMES_NO_SUCH_FILE
     return REFUSED if problem.is_failure or has_failed else WRONG_USE
 
 

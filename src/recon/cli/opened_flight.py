@@ -5,7 +5,8 @@ from pathlib import Path
 from recon.cli.output import print_warning
 from recon.cli.progress import opener
 from recon.model.errors import RecordError
-from recon.product.flight import FlightData, read_flight
+from recon.product.flight import FlightData
+from recon.product.flight_reader import read_flight
 
 
 def opened_flight(path: Path) -> FlightData:

@@ -8,7 +8,6 @@ from recon.score.scenario import Scenario
 from recon.score.scenario_conditions import conditions_of
 from recon.score.scenario_sky import sky_of
 from recon.sim.app.camera_feed import FeedSettings
-from recon.sim.app.commands import HoverOnGround
 from recon.sim.app.faults import InjectedFault, RandomFault
 from recon.sim.app.telemetry import TelemetrySensorSettings
 from recon.sim.camera.field import FieldRenderer
@@ -47,7 +46,7 @@ def simulation_of(
         vehicle_count=len(fleet.serials) + len(imagers),
         imagers=imagers,
         airborne=Airborne.IMAGER,
-        hover_on_ground=HoverOnGround.NOTHING if fleet.takes_missions else HoverOnGround.TAKEOFF,
+        takes_missions=fleet.takes_missions,
         endurance_s=fleet.endurance_s,
         endurances_s=dict.fromkeys(imagers, IMAGER_ENDURANCE_S),
         battery_swap_s=fleet.swap_s,

@@ -60,6 +60,8 @@ class SimulationConfig:
     """The imaging drones by serial."""
     altitude_reference: AltitudeReference = AltitudeReference.TAKEOFF
     hover_on_ground: HoverOnGround = HoverOnGround.NOTHING
+    takes_missions: bool = True
+    """False: the survey drones do not, and take off with a hover."""
     airborne: Airborne = Airborne.IMAGER
     wanders: bool = False
     """Survey vehicles fly back and forth automatically until commanded otherwise."""
@@ -124,16 +126,18 @@ def _build_app(
     endurance_s = config.endurances_s.get(serial, config.endurance_s)
     battery = Battery(random.uniform(0.9, 1.0), endurance_s)
     home = _home_of(config, serial, number)
+    takes_missions = config.takes_missions or serial in config.imagers
     app = AppSettings(
         serial=serial,
         home=home,
         seed=config.seed,
         behaviour=AppBehaviour(
             config.altitude_reference,
-            config.hover_on_ground,
+            config.hover_on_ground if takes_missions else HoverOnGround.TAKEOFF,
             drawn_bias_m if config.altitude_bias_m is None else config.altitude_bias_m,
             config.reports_mission_id,
             photo_interval_s=config.photo_interval_s,
+            takes_missions=takes_missions,
         ),
         sensors=config.sensors,
         faults=(

@@ -12,13 +12,8 @@ from recon.model.failsafe_matrix import FailsafeCondition
 from recon.model.geo import LatLon
 from recon.model.vehicle import Failsafe
 from recon.safety import PreparedAirspace
-from recon.safety.settings import (
-    EnergySettings,
-    GoHomeSettings,
-    PredictionSettings,
-    SafetySettings,
-    WatchdogSettings,
-)
+from recon.safety.prediction_settings import PredictionSettings
+from recon.safety.settings import EnergySettings, GoHomeSettings, SafetySettings, WatchdogSettings
 from recon.safety.watchdogs import (
     CommandedHold,
     WatchedVehicle,

@@ -11,11 +11,10 @@ from recon.model.event import OperatorOrder
 from recon.model.survey import SurveyPhase
 from recon.model.units import Stamped
 from recon.model.vehicle import VehicleProfile, VehicleState
-from recon.sim.app.commands import HoverOnGround
 from recon.station.state.fleet_return_record import Stage
 from recon.station.state.orders import OrderRecord
 
-NO_MISSIONS = {"max_waypoints": 0, "hover_on_ground": HoverOnGround.TAKEOFF}
+NO_MISSIONS = {"takes_missions": False}
 
 
 def bodies(world: SurveyedWorld, serial: str) -> list[type]:

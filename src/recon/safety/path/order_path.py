@@ -28,7 +28,7 @@ from recon.model.geo import LatLon
 from recon.model.mission import Mission
 from recon.model.units import wrap_degrees
 from recon.model.vehicle import VehicleState
-from recon.safety.settings import StickBounds
+from recon.safety.prediction_settings import StickBounds
 from recon.safety.situation import Situation
 
 

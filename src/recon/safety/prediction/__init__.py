@@ -28,4 +28,4 @@ from recon.safety.prediction.motion import (
 from recon.safety.prediction.predicted_trajectories import predict_order, predict_traffic
 from recon.safety.prediction.predictor import Predictor
 from recon.safety.prediction.trajectory import FOREVER_S, FlightPart, Trajectory, part_text
-from recon.safety.settings import PredictionSettings
+from recon.safety.prediction_settings import PredictionSettings

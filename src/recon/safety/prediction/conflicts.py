@@ -15,8 +15,8 @@ from recon.safety.prediction.trajectory import (
     Trajectory,
     sample,
 )
+from recon.safety.prediction_settings import PredictionSettings
 from recon.safety.separation_minima import SeparationMinima
-from recon.safety.settings import PredictionSettings
 
 _APART_S = 4.0 * FOREVER_S
 """Trajectories' times are placed one behind the other on one axis, this far apart."""

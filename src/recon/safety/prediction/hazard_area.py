@@ -17,7 +17,7 @@ from recon.safety.prediction.trajectory import (
     Trajectory,
     TrajectoryWriter,
 )
-from recon.safety.settings import PredictionSettings
+from recon.safety.prediction_settings import PredictionSettings
 
 LONGEST_RISE_S = 10.0
 """Longest time that a climb under way is assumed to continue."""

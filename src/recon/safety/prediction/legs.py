@@ -4,7 +4,7 @@ from math import atan2, cos, hypot, sin, sqrt
 from typing import NamedTuple
 
 from recon.safety.prediction.trajectory import FOREVER_S, FlightPart, TrajectoryWriter
-from recon.safety.settings import PredictionSettings
+from recon.safety.prediction_settings import PredictionSettings
 
 LEAST_M = 1e-3
 LEAST_S = 1e-3

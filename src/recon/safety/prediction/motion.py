@@ -15,7 +15,7 @@ from recon.safety.airspace import PreparedAirspace
 from recon.safety.datum import home, is_takeoff_height_known, takeoff_up_m_at
 from recon.safety.go_home import seen_height_m
 from recon.safety.prediction.trajectory import ALL_HEIGHTS_M
-from recon.safety.settings import PredictionSettings
+from recon.safety.prediction_settings import PredictionSettings
 
 S_PER_HOUR = 3_600.0
 

@@ -36,8 +36,8 @@ from recon.safety.prediction.trajectory import (
     FlightPart,
     Trajectory,
 )
+from recon.safety.prediction_settings import PredictionSettings
 from recon.safety.separation_minima import SeparationMinima
-from recon.safety.settings import PredictionSettings
 
 ROUNDING_M = 1e-6
 

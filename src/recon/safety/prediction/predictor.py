@@ -25,7 +25,7 @@ from recon.safety.prediction.trajectory import (
     FlightPart,
     TrajectoryWriter,
 )
-from recon.safety.settings import PredictionSettings
+from recon.safety.prediction_settings import PredictionSettings
 
 UNDER_WAY_MPS = 2.0
 """A returning vehicle this fast towards its home is under way, at whatever height."""

@@ -25,7 +25,7 @@ from recon.safety.prediction.trajectory import (
     FlightPart,
     Trajectory,
 )
-from recon.safety.settings import PredictionSettings
+from recon.safety.prediction_settings import PredictionSettings
 
 MOST_PIECES = 400
 """Most pieces of one row: enough for 2 km at walking pace; slower rows get longer pieces."""

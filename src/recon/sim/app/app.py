@@ -171,6 +171,7 @@ class SimulatedApp:
             settings.home,
             self.aircraft,
             interval_s,
+            settings.behaviour.takes_missions,
             random.randrange(2**32),
             random,
             self._has,

@@ -39,6 +39,8 @@ class AppBehaviour:
     """Bias of every absolute altitude in the app, the home altitude included."""
     reports_mission_id: bool = True
     """False: MissionID in telemetry is always 0, as from some apps in the field."""
+    takes_missions: bool = True
+    """False: a model that an app can steer only."""
     sdk: SdkLimits = field(default_factory=SdkLimits)
     upload_s: float = 0.1
     """Upload time of each waypoint of a mission; the aircraft holds meanwhile."""
@@ -161,6 +163,8 @@ class CommandHandler:
         points = self.mission_points(packet)
         is_curved = packet.curved_flight == 1
         problem = mission_problem(points, is_curved, self._limits()) or self._no_app_control()
+        if not self._behaviour.takes_missions:
+            problem = "this model takes none"
         if problem is not None:
             return f"mission rejected silently: {problem}"
         # A mission under way must be stopped before another one is uploaded.

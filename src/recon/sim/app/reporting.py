@@ -65,6 +65,7 @@ class AppReporter:
     home: GeoPoint
     aircraft: Aircraft
     interval_s: float
+    takes_missions: bool
     series: int
     random: Random
     has: Callable[[FaultKind, int], bool]
@@ -197,8 +198,8 @@ class AppReporter:
             "photo_interval_s": self.interval_s,
             "exposure_locked": self.is_locked,
             "white_balance_locked": self.is_locked,
-            "can_fly_missions": True,
-            "max_waypoints": 99,
+            "can_fly_missions": self.takes_missions,
+            "max_waypoints": 99 if self.takes_missions else 0,
             "dji_check_passed": True,
             "reports_photos": True,
             "photo_series": self.series,

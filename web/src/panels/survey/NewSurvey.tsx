@@ -259,6 +259,25 @@ function NumberField(props: {
   );
 }
 
+/** One of a few values, each with its words. */
+function Choice<Name extends string>(props: {
+  label: string;
+  name: string;
+  values: readonly Name[];
+  shown: Readonly<Record<Name, string>>;
+}) {
+  return (
+    <label class="survey-wide">
+      {props.label}
+      <select name={props.name}>
+        <For each={props.values}>
+          {(value) => <option value={value}>{props.shown[value]}</option>}
+        </For>
+      </select>
+    </label>
+  );
+}
+
 /** What else a survey does; what the site cannot do is not offered. */
 function Choices(props: { isAnyFlown: boolean }) {
   const { fleet } = useConsole();
@@ -266,33 +285,27 @@ function Choices(props: { isAnyFlown: boolean }) {
   return (
     <>
       <Show when={imagers().length > 0}>
-        <label class="survey-wide">
-          {text.newSurvey.rows}
-          <select name="planner">
-            <For each={PLANNERS}>
-              {(name) => <option value={name}>{text.newSurvey.planners[name]}</option>}
-            </For>
-          </select>
-        </label>
+        <Choice
+          label={text.newSurvey.rows}
+          name="planner"
+          values={PLANNERS}
+          shown={text.newSurvey.planners}
+        />
       </Show>
       <Show when={props.isAnyFlown}>
-        <label class="survey-wide">
-          {text.flown.lines}
-          <select name="lines">
-            <For each={LINES}>
-              {(name) => <option value={name}>{text.flown.lineChoices[name]}</option>}
-            </For>
-          </select>
-        </label>
+        <Choice
+          label={text.flown.lines}
+          name="lines"
+          values={LINES}
+          shown={text.flown.lineChoices}
+        />
       </Show>
-      <label class="survey-wide">
-        {text.newSurvey.whenDone}
-        <select name="when_done">
-          <For each={WHEN_DONE}>
-            {(name) => <option value={name}>{text.newSurvey.thenDo[name]}</option>}
-          </For>
-        </select>
-      </label>
+      <Choice
+        label={text.newSurvey.whenDone}
+        name="when_done"
+        values={WHEN_DONE}
+        shown={text.newSurvey.thenDo}
+      />
       <Show when={imagers().length > 0}>
         <label class="survey-wide survey-check">
           <input name="side_step" type="checkbox" />

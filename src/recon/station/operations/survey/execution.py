@@ -65,7 +65,7 @@ from recon.station.operations.survey.unsent_missions import (
 from recon.station.operations.survey.zone_changes import is_outdated, start_replan
 from recon.station.state.station import Station, take_id
 from recon.station.state.steps import Job, JobKind, Output, Stepped
-from recon.station.state.survey_record import EastNorth, PendingStep, SurveyRecord
+from recon.station.state.survey_record import EastNorth, PendingStep, SurveyMember, SurveyRecord
 
 TAKES_OFF = "takes off first: its aircraft takes no missions, and is steered along its rows"
 
@@ -259,19 +259,9 @@ def _order_mission(
     station, number = take_id(station)
     station, sent = order_gateway.submit(station, replace(ready.order, command_id=number), now_ns)
     refusal = station.orders.records[number].refusal
-    if refusal is None and ready.is_takeoff:
-        flown = replace(member, may_take_off=False)
-        record = asked_again(record, flown, given.number, TAKES_OFF, now_ns)
-        return replace(station, surveys=station.surveys.put(record)), sent
     if refusal is None:
-        used = replace(
-            member,
-            number=given.number,
-            command_id=number,
-            ordered_id=number,
-            may_take_off=False,
-        )
-        return replace(station, surveys=station.surveys.put(record.put(used))), sent
+        record = _ordered(record, member, given, number, now_ns, takes_off=ready.is_takeoff)
+        return replace(station, surveys=station.surveys.put(record)), sent
     why = f"{refusal.reason}{ready.tried}"
     if may_end(refusal):
         record = asked_again(record, member, given.number, why, now_ns)
@@ -291,6 +281,24 @@ def _order_mission(
     if returns_home(record) and refusal.rule == BATTERY and not flies_on:
         return send_home(station, survey_id, given.serial, NO_BATTERY, now_ns)
     return station, sent
+
+
+def _ordered(
+    record: SurveyRecord,
+    member: SurveyMember,
+    given: MissionAssignment,
+    order_id: int,
+    now_ns: int,
+    *,
+    takes_off: bool,
+) -> SurveyRecord:
+    """Return the survey with a mission ordered; after a takeoff alone it is asked for again."""
+    member = replace(member, may_take_off=False)
+    if takes_off:
+        return asked_again(record, member, given.number, TAKES_OFF, now_ns)
+    return record.put(
+        replace(member, number=given.number, command_id=order_id, ordered_id=order_id)
+    )
 
 
 def _may_take_fewer(state: SurveyState, serial: str) -> bool:
