@@ -1,9 +1,8 @@
-"""The limit of processor time, on a run of two tests in two processes."""
+"""Processor time is shown for a run, in one process and in two."""
 
 from pathlib import Path
 
 import pytest
-from tests import processor_time
 
 pytest_plugins = ["pytester"]
 
@@ -12,7 +11,6 @@ import time
 from tests import processor_time
 
 processor_time.BUDGET_S = 0.1
-processor_time.slowness = lambda: SLOWNESS
 
 def pytest_configure(config):
     config.addinivalue_line("markers", "flight: long")
@@ -48,29 +46,18 @@ def test_flies():
 
 
 @pytest.mark.parametrize("workers", ["0", "2"])
-def test_a_test_over_it_fails_without_the_marker(
+def test_a_test_over_it_without_the_marker_is_named_and_fails_nothing(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch, workers: str
 ) -> None:
     monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parents[1]))
-    pytester.makeconftest(RUN.replace("SLOWNESS", "1.0"))
+    pytester.makeconftest(RUN)
     pytester.makepyfile(TESTS)
     result = pytester.runpytest_subprocess("-n", workers, "--dist", "loadfile")
-    result.assert_outcomes(passed=4, errors=1)
+    result.assert_outcomes(passed=4)
     result.stdout.re_match_lines(
         [
-            r"Took 0\.[12] s of processor; at most 0 s without the marker `flight`\..*",
             r"=+ dearest tests, s of processor =+",
-            r" +0\.2 .*::test_flies",
-            r" +0\.[12] .*::test_shared",
+            r" +0\.2 .*::test_flies$",
+            r" +0\.[12] .*::test_shared \(over 0\.1 s without `flight`\)$",
         ]
     )
-
-
-def test_on_a_slower_processor_more_is_allowed(
-    pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parents[1]))
-    pytester.makeconftest(RUN.replace("SLOWNESS", "50.0"))
-    pytester.makepyfile(TESTS)
-    pytester.runpytest_subprocess().assert_outcomes(passed=4)
-    assert processor_time.slowness() >= 1.0
