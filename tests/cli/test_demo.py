@@ -18,6 +18,14 @@ def children_of(pid: int) -> list[int]:
     return [int(word) for word in text.split()]
 
 
+def await_gone(pids: list[int]) -> None:
+    """Wait until these have ended; one that was killed needs the processor for that."""
+    give_up_at_s = time.monotonic() + PATIENCE_S
+    while any(Path(f"/proc/{pid}").exists() for pid in pids):
+        assert time.monotonic() < give_up_at_s, f"still running: {pids}"
+        time.sleep(0.02)
+
+
 def test_vehicles_fly_and_all_that_it_started_ends_with_the_demo(tmp_path: Path) -> None:
     scenario = small_field(tmp_path, drones=2)
     ports = ("--http-port", "0", "--link-port", "0")
@@ -34,7 +42,7 @@ def test_vehicles_fly_and_all_that_it_started_ends_with_the_demo(tmp_path: Path)
         assert demo.end(signal.SIGINT) == 0
         assert "Traceback" not in demo.text
         assert "scripted operator" not in demo.text
-        assert not any(Path(f"/proc/{pid}").exists() for pid in children)
+        await_gone(children)
     (record,) = (tmp_path / "records").iterdir()
     assert record.name.startswith("flight-")
     words = ("replay", "--what-if", "detection=otsu", "forecast=persistence", str(record))
@@ -53,7 +61,7 @@ def test_it_ends_as_cleanly_before_anything_flies(tmp_path: Path) -> None:
         children = children_of(demo.pid)
         assert demo.end(signal.SIGTERM) == 0
         assert "Traceback" not in demo.text
-        assert not any(Path(f"/proc/{pid}").exists() for pid in children)
+        await_gone(children)
 
 
 def test_a_bad_scenario_is_an_error_and_nothing_is_started(tmp_path: Path) -> None:

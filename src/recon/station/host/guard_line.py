@@ -114,6 +114,7 @@ class GuardLine:
                 self._process.wait(ENDS_WITHIN_S)
             except subprocess.TimeoutExpired:
                 self._process.kill()
+                self._process.wait()
         self._stop_socket.close()
 
     def _start(self) -> None:
