@@ -17,7 +17,7 @@ from tests.product.made_flight import flight, write_record
 from recon.api.flight_routes import FlightBusyError, FlightFileError
 from recon.api.security import Access, AccessCheck
 from recon.station.api_views.app import create_app
-from recon.station.host import flight_archive
+from recon.station.host import background_process, flight_archive
 from recon.station.host.flight_archive import RecordedFlights
 
 Made = Callable[..., RecordedFlights]
@@ -73,7 +73,7 @@ def test_figures_are_made_by_the_command_in_its_own_process(
     recorded: Made, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # At its own priority it waits for everything else on this computer.
-    monkeypatch.setattr(flight_archive, "NICENESS", 0)
+    monkeypatch.setattr(background_process, "NICENESS", 0)
     client = application(recorded(folder))
     figures = client.get(f"/api/flights/{NAME}").json()
     assert figures["record"] == f"{NAME}.mcap"

@@ -46,6 +46,8 @@ LEAST_ROLE: dict[tuple[str, str], Role] = {
     ("GET", "/api/flights/{name}"): Role.OBSERVER,
     ("GET", "/api/flights/{name}/record.mcap"): Role.OBSERVER,
     ("GET", "/api/flights/{name}/files/{file}"): Role.OBSERVER,
+    ("GET", "/api/photos"): Role.OBSERVER,
+    ("GET", "/api/photos/files/{file}"): Role.OBSERVER,
     ("GET", "/api/maps"): Role.OBSERVER,
     ("GET", "/api/maps/{name}/{zoom}/{col}/{row}"): Role.OBSERVER,
     ("GET", "/api/surveys/{survey_id}/estimate"): Role.OBSERVER,
@@ -89,6 +91,9 @@ LEAST_ROLE: dict[tuple[str, str], Role] = {
     ("POST", "/api/site/drawing/check"): Role.OPERATOR,
     ("POST", "/api/site/drawing/undo"): Role.OPERATOR,
     ("POST", "/api/site/import"): Role.OPERATOR,
+    # The station reads a folder of its computer that the request names.
+    ("POST", "/api/photos"): Role.OPERATOR,
+    ("DELETE", "/api/photos"): Role.OPERATOR,
     ("POST", "/api/site/calibration"): Role.OPERATOR,
     ("POST", "/api/site/calibration/fit"): Role.OPERATOR,
     ("POST", "/api/site/calibration/freeze"): Role.OPERATOR,

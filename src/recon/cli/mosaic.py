@@ -11,11 +11,18 @@ from typing import Annotated
 
 import typer
 
+from recon.cli.json_lines import report_facts
 from recon.cli.opened_flight import opened_flight
 from recon.cli.opened_site import opened_site
 from recon.cli.options import with_options
-from recon.cli.output import print_line
-from recon.cli.photo_cards import CameraOptions, print_refused, read_card, reasons_of
+from recon.cli.output import print_line, printable
+from recon.cli.photo_cards import (
+    CameraOptions,
+    main_reason,
+    print_refused,
+    read_card,
+    reasons_of,
+)
 from recon.cli.progress import progress_over, usable_cores
 from recon.model.errors import RecordError
 from recon.model.units import HECTARE_M2
@@ -104,7 +111,9 @@ def mosaic_command(options: MosaicOptions, camera: CameraOptions) -> None:
     timed = read.timed(flight, camera)
     read.print_left_out({**read.refused, **timed.refused, **reasons_of(read.panels)})
     if not timed.photos:
-        print("no photo is of this flight", file=sys.stderr)
+        print(
+            printable(f"no photo is of this flight: {main_reason(timed.refused)}"), file=sys.stderr
+        )
         raise typer.Exit(NO_PHOTO_USED)
     history = sun_history(flight)
     with _geometry(options, flight, timed.photos, read.shots) as found:
@@ -231,6 +240,8 @@ def _built(build: MosaicBuild) -> MosaicReport:
 
 def _print_report(out: Path, report: MosaicReport, settings: MosaicSettings) -> None:
     print_refused(dict(report.failed))
+    areas_m2 = {f"{light.name.lower()}_m2": report.areas_m2[light] for light in Light}
+    report_facts(mosaic={"resolution_m": report.resolution_m, **areas_m2})
     print_line(
         f"{report.used} of {report.photos} photos make a mosaic of "
         f"{report.total_m2 / HECTARE_M2:.2f} ha, {100.0 * report.resolution_m:g} cm a pixel"

@@ -1,6 +1,7 @@
 """The photos of a flight's cards, as `recon tag` and `recon mosaic` read them, and what is said of
 files that they leave out."""
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -9,6 +10,7 @@ from typing import Annotated
 
 import typer
 
+from recon.cli.json_lines import report_facts
 from recon.cli.output import print_line, print_warning
 from recon.cli.progress import progress_over, usable_cores
 from recon.model.errors import RecordError
@@ -21,7 +23,7 @@ from recon.product.photos.names import unique_names
 from recon.product.photos.photo import Photo, read_photo_facts
 from recon.product.photos.photo_error import PhotoError
 from recon.product.photos.shots import CameraShot, shots_of
-from recon.product.timing import StatedCamera, Timed, timed_photos
+from recon.product.timing import CameraClock, StatedCamera, Timed, timed_photos
 
 MOST_OFF_S = 1e9
 """Largest offset of a camera's clock: thirty years, as after an empty battery."""
@@ -63,6 +65,7 @@ class ReadCard:
         timed = timed_photos(flight, [shot.lead for shot in self.shots], stated)
         for clock in timed.clocks:
             print_line(str(clock))
+        report_facts(clocks=[_facts(clock) for clock in timed.clocks])
         for warning in timed.warnings:
             print_warning(warning)
         return timed
@@ -118,6 +121,30 @@ def _read_photos(paths: Sequence[Path]) -> tuple[list[Photo], dict[str, str]]:
         raise RecordError(f"{problem.filename}: {problem.strerror}") from problem
     refused.update({name: f"{COPY} {first}" for name, first in copies.items()})
     return photos, refused
+
+
+def main_reason(refused: Mapping[str, str]) -> str:
+    """Return why most of the refused photos are."""
+    reasons = Counter(
+        reason.removeprefix(f"{name}: ")
+        for name, reason in refused.items()
+        if not reason.startswith(COPY)
+    )
+    return next((reason for reason, _count in reasons.most_common(1)), "there was none")
+
+
+def _facts(clock: CameraClock) -> dict[str, str | float | bool]:
+    """Return a clock as the API has it."""
+    return {
+        "camera": clock.camera,
+        "vehicle": clock.vehicle,
+        "photos": clock.photos,
+        "offset_s": clock.offset_s,
+        "sigma_s": clock.sigma_s,
+        "distance_m": clock.distance_m,
+        "is_stated": clock.is_stated,
+        "is_reported": clock.is_reported,
+    }
 
 
 def reasons_of(panels: Sequence[PanelShot]) -> dict[str, str]:

@@ -10,6 +10,7 @@ import rich.progress
 from rich.console import Console
 from rich.progress import track
 
+from recon.cli.json_lines import reported_over, wants_lines
 from recon.record.mcap.mcap_read import Opener
 
 Item = TypeVar("Item")
@@ -17,6 +18,9 @@ Item = TypeVar("Item")
 
 def progress_over(items: Iterable[Item], title: str, count: int) -> Iterator[Item]:
     """Yield the items, showing how many of `count` are done and how long the rest will take."""
+    if wants_lines():
+        yield from reported_over(items, title, count)
+        return
     console = Console(stderr=True)
     yield from track(items, title, count, console=console, disable=not console.is_terminal)
 

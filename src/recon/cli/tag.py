@@ -10,11 +10,19 @@ from typing import Annotated
 
 import typer
 
+from recon.cli.json_lines import report_facts
 from recon.cli.nodeodm import opened_node, process
 from recon.cli.opened_flight import opened_flight
 from recon.cli.options import with_options
-from recon.cli.output import print_line, print_warning
-from recon.cli.photo_cards import MOST_NAMED, CameraOptions, ReadCard, read_card, reasons_of
+from recon.cli.output import print_line, print_warning, printable
+from recon.cli.photo_cards import (
+    MOST_NAMED,
+    CameraOptions,
+    ReadCard,
+    main_reason,
+    read_card,
+    reasons_of,
+)
 from recon.cli.progress import progress_over, usable_cores
 from recon.cli.tag_all import FlightLight, tag_all
 from recon.model.errors import RecordError
@@ -65,6 +73,9 @@ class TagOptions:
             help="Let the camera's sun sensor tell where shade maps know too little.",
         ),
     ] = False
+    odm: Annotated[
+        bool, typer.Option("--odm/--no-odm", help="Write the chosen photos for OpenDroneMap.")
+    ] = True
     nodeodm: Annotated[
         str,
         typer.Option(
@@ -82,7 +93,7 @@ def tag_command(options: TagOptions, camera: CameraOptions) -> None:
     files, panels, refused = _files(read, flight, camera)
     if not files.photos:
         read.print_left_out(refused)
-        print("no photo was tagged", file=sys.stderr)
+        print(printable(f"no photo was tagged: {main_reason(refused)}"), file=sys.stderr)
         raise typer.Exit(NO_PHOTO_TAGGED)
     light = _light(options, flight, files)
     tags, selection = _written(options, light, files, panels)
@@ -136,7 +147,8 @@ def _written(
             folder.mkdir(exist_ok=True)
         tags, shown = tag_all(out, files, light)
         selection = select(files.leading, shown, light.ground, options.overlap)
-        _write_projects(out, light.flight, files, files.of(selection.chosen))
+        if options.odm:
+            _write_projects(out, light.flight, files, files.of(selection.chosen))
         if panels or (out / PANELS).exists():
             write_panels(out / PANELS, panels, min(each.photo.clock_ns for each in files.photos))
     except OSError as problem:
@@ -149,7 +161,7 @@ def _written(
 def _print_quality(quality: Mapping[str, str]) -> None:
     """Print what speaks against photos, the first ones by name."""
     for name, reasons in islice(sorted(quality.items()), MOST_NAMED):
-        print(f"poor: {name}: {reasons}")
+        print_line(f"poor: {name}: {reasons}")
     if len(quality) > MOST_NAMED:
         print(f"poor: {len(quality) - MOST_NAMED} more, in the column quality of tags.csv")
 
@@ -208,6 +220,8 @@ def _print_summary(
         if states[name]
     )
     print(f"{len(tags)} photos: {counts}")
+    by_light = {name: states[name] for name in ("sunlit", "mixed", "shaded", "unknown")}
+    report_facts(counts={"photos": len(tags), **by_light})
     cells = len(selection.sunlit)
     in_sun = 100.0 * float((selection.sunlit > 0).mean()) if cells else 0.0
     print(
@@ -215,8 +229,10 @@ def _print_summary(
         f"they show {in_sun:.1f} % of the ground in sun, on {selection.views} photos where there "
         "are as many"
     )
-    area_ha = sum(each.area for each in selection.again) / HECTARE_M2
+    area_m2 = sum(each.area for each in selection.again)
+    report_facts(gaps={"area_m2": area_m2, "regions": len(selection.again)})
     if selection.again:
+        area_ha = area_m2 / HECTARE_M2
         print(f"to fly again: {area_ha:.2f} ha in {len(selection.again)} regions")
     else:
         print("nothing to fly again")

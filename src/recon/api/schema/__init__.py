@@ -11,6 +11,7 @@ from recon.api.schema.maps import *
 from recon.api.schema.message import *
 from recon.api.schema.new_site import *
 from recon.api.schema.orders import *
+from recon.api.schema.photos import *
 from recon.api.schema.replay import *
 from recon.api.schema.requests import *
 from recon.api.schema.site import *

@@ -9,6 +9,7 @@ from recon.api.addresses import SharedAddress
 from recon.api.app import add_console, add_errors_and_headers, new_app
 from recon.api.flight_routes import FlightArchive, NoFlights, add_flight_routes
 from recon.api.map_routes import MapFolder, NoMaps, add_map_routes
+from recon.api.photo_routes import NoPhotos, PhotoWork, add_photo_routes
 from recon.api.replay_routes import Replaying, add_replay_routes
 from recon.station.api_views.operation_routes import add_operation_routes
 from recon.station.api_views.order_routes import add_order_routes
@@ -30,12 +31,14 @@ def create_app(
     flights: FlightArchive | None = None,
     replay: Replaying | None = None,
     maps: MapFolder | None = None,
+    photos: PhotoWork | None = None,
 ) -> FastAPI:
     """Return the application around a station, to be put behind an `AccessCheck`.
 
     `console` is the folder with the built console; without one a page describes how to build it.
-    `shared` is the address for other computers; `flights` are the station's records;
-    `maps` its base maps; with a `replay` everything is refused that orders or changes anything.
+    `shared` is the address for other computers; `flights` are the station's records, `photos` the
+    work on photos of these; `maps` its base maps; with a `replay` everything is refused that orders
+    or changes anything.
     """
     app = new_app("Recon", version)
     add_access_routes(app, lambda: service.app_url, shared)
@@ -48,6 +51,7 @@ def create_app(
     add_site_routes(app, service)
     add_survey_routes(app, service)
     add_flight_routes(app, flights or NoFlights())
+    add_photo_routes(app, photos or NoPhotos())
     add_map_routes(app, maps or NoMaps())
     add_zone_routes(app, service)
     add_replay_routes(app, replay)

@@ -19,6 +19,7 @@ from pydantic import ValidationError
 
 from recon.api import schema
 from recon.api.flight_routes import FlightBusyError, FlightFileError
+from recon.station.host.background_process import background_process
 
 SUFFIX = ".mcap"
 MOST_LISTED = 1_000
@@ -26,7 +27,6 @@ MOST_WAITING = 4
 """Most requests that wait for the file being made."""
 MOST_KEPT = 12
 WITHIN_S = 600.0
-NICENESS = 15
 LONGEST_SENTENCE = 500
 RECON = (sys.executable, "-m", "recon")
 
@@ -148,23 +148,13 @@ class RecordedFlights:
         return out
 
     def _run(self, command: Sequence[str]) -> tuple[bool, bytes]:
-        """Run a command at low priority; return whether it succeeded, and its errors.
-
-        On a thread: the loop's own way copies the page tables of all of the station's memory.
-        """
-        nothing = subprocess.DEVNULL
-        with subprocess.Popen(
-            command, stdin=nothing, stdout=nothing, stderr=subprocess.PIPE
-        ) as process:
+        """Run a command; return whether it succeeded, and its errors."""
+        with background_process(command) as process:
             self._process = process
             try:
-                if hasattr(os, "setpriority"):
-                    with contextlib.suppress(OSError):
-                        os.setpriority(os.PRIO_PROCESS, process.pid, NICENESS)
                 _out, errors = process.communicate(timeout=WITHIN_S)
             finally:
                 self._process = None
-                process.kill()
         return process.returncode == 0, errors
 
 

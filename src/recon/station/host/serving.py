@@ -23,6 +23,7 @@ from recon.station.host.http_servers import (
     stop_on_signals,
     url_of,
 )
+from recon.station.host.photo_job import PhotoJob
 from recon.station.host.run_config import RunConfig
 from recon.station.host.users_watch import UsersWatch
 from recon.station.kernel.driver import AsyncioDriver, freeze_loaded_objects
@@ -91,13 +92,17 @@ def _servers(
     users.read()
     watching = asyncio.create_task(users.run())
     stack.callback(watching.cancel)
-    flights = None
+    flights = photos = None
     if config.record_folder is not None:
         flights = RecordedFlights(config.record_folder, service.recording)
         stack.callback(flights.close)
+        photos = PhotoJob(config.record_folder, flights.record)
+        stack.callback(photos.close)
     maps = maps_of(config.site_folder, lambda: service.site)
     stack.callback(maps.close)
-    app = create_app(service, config.console, version(), doors.shared, flights, maps=maps)
+    app = create_app(
+        service, config.console, version(), doors.shared, flights, maps=maps, photos=photos
+    )
     servers = [(loopback_server(app, login, config.http_host), doors.loopback)]
     if doors.network is not None and doors.certificate is not None:
         servers.append((network_server(app, login, doors.certificate), doors.network))

@@ -1,0 +1,300 @@
+"""The photos of a flight: `recon tag`, `recon mosaic` and `recon report`, one after the other.
+
+Each command is a process in the background: a hostile photo, a card that is pulled out or a full
+disk ends that process, and its step says so. What earlier steps have made stays, in a folder beside
+the flight records; the cards are only read. The commands report progress and results as lines of
+JSON (`cli/json_lines.py`). One job at a time.
+"""
+
+import asyncio
+import contextlib
+import json
+import os
+import shutil
+import signal
+import sys
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from threading import Thread
+from typing import Any
+
+from pydantic import ValidationError
+
+from recon.api import schema
+from recon.api.photo_routes import PhotoBusyError, PhotoRequestError
+from recon.record.files.atomic_file import replace_file
+from recon.station.host.background_process import background_process, lines_of
+
+RECON = (sys.executable, "-m", "recon")
+FOLDER_END = "-photos"
+KEPT = "photos.json"
+LARGEST_KEPT_BYTES = 1_000_000
+LEAST_FREE_BYTES = 1_000_000_000
+"""Left to the flight records, which are on the same disk."""
+WITHIN_S = 6 * 3600.0
+ANSWERS_WITHIN_S = 5.0
+"""A card or a network's disk that does not answer for so long is refused."""
+LINES_WANTED, LINE_MARK = "RECON_JSON_LINES", "\x1e"
+FACTS = frozenset(("doing", "share", "clocks", "counts", "gaps", "mosaic"))
+MOST_WARNINGS, LONGEST_SENTENCE = 20, 500
+AGAIN = "start again, and it continues from there"
+STEPS: tuple[schema.PhotoStepName, ...] = ("clock", "tags", "gaps", "mosaic", "report")
+FOUND_BY: tuple[tuple[str, schema.PhotoStepName, schema.PhotoStepName], ...] = (
+    ("clocks", "clock", "tags"),
+    ("counts", "tags", "gaps"),
+)
+"""What is reported when a step is done, the step, and the one after it."""
+MADE: dict[schema.PhotoFileName, tuple[schema.PhotoStepName, str]] = {
+    "tags.csv": ("gaps", "tagged/tags.csv"),
+    "fly-again.geojson": ("gaps", "tagged/fly-again.geojson"),
+    "mosaic.png": ("mosaic", "mosaic/preview.png"),
+    "report.html": ("report", "report.html"),
+}
+
+
+class _EndedError(Exception):
+    """The running command is ended; the text states why, and what to do."""
+
+
+class PhotoJob:
+    """Implements the API's `PhotoWork` for the flight records of a folder."""
+
+    def __init__(
+        self,
+        records: Path,
+        record: Callable[[str], Path | None],
+        command: Sequence[str] = RECON,
+    ) -> None:
+        """Take the records' folder; `record` returns the file of a flight's name."""
+        self._records = records
+        self._record = record
+        self._command = command
+        self._job = _last_job(records)
+        self._is_busy = self._is_cancelled = False
+        self._thread: Thread | None = None
+
+    def close(self) -> None:
+        """End a running job, and wait for its process."""
+        self._is_cancelled = True
+        if self._thread is not None:
+            self._thread.join(2.0)
+
+    def view(self) -> schema.PhotosView:
+        """Return how far the job is, or what the last one found."""
+        return schema.PhotosView(job=self._job)
+
+    async def start(self, asked: schema.PhotoRequest) -> schema.PhotosView:
+        """Begin a job; raises `PhotoBusyError` and `PhotoRequestError`."""
+        if self._is_busy:
+            raise PhotoBusyError("A job on photos is running: wait for it, or cancel it")
+        self._is_busy = True
+        try:
+            checking = asyncio.to_thread(self._checked, asked)
+            record, folders = await asyncio.wait_for(checking, ANSWERS_WITHIN_S)
+        except BaseException as problem:
+            self._is_busy = False
+            if isinstance(problem, TimeoutError):
+                text = "The folder does not answer: pull the card out, put it in and try again"
+                raise PhotoRequestError(text) from problem
+            raise
+        self._is_cancelled = False
+        self._job = schema.PhotoJobView(
+            flight=asked.flight,
+            folders=folders,
+            out=str(self._out(asked.flight)),
+            steps=[schema.PhotoStepView(name=name, state="waiting") for name in STEPS],
+        )
+        self._thread = Thread(target=self._work, args=(asked, record, folders), daemon=True)
+        self._thread.start()
+        return self.view()
+
+    def cancel(self) -> schema.PhotosView:
+        """End a running job; what it has found stays."""
+        self._is_cancelled = True
+        return self.view()
+
+    def file(self, name: schema.PhotoFileName) -> Path | None:
+        """Return a file of the job; None before there is one."""
+        job = self._job
+        if job is None or name not in job.files:
+            return None
+        path = self._out(job.flight) / MADE[name][1]
+        return path if path.is_file() else None
+
+    def _out(self, flight: str) -> Path:
+        return self._records / f"{flight}{FOLDER_END}"
+
+    def _checked(self, asked: schema.PhotoRequest) -> tuple[Path, list[str]]:
+        """Return the record and the folders; raises `PhotoRequestError`. May wait for a disk."""
+        record = self._record(asked.flight)
+        if record is None:
+            raise PhotoRequestError(f"No flight record {asked.flight!r} in the station's folder")
+        folders = [_folder(text, self._records) for text in asked.folders]
+        try:
+            self._out(asked.flight).mkdir(mode=0o700, exist_ok=True)
+        except OSError as problem:
+            text = f"{self._out(asked.flight)} cannot be made: {problem.strerror}"
+            raise PhotoRequestError(text) from problem
+        return record, folders
+
+    def _work(self, asked: schema.PhotoRequest, record: Path, folders: list[str]) -> None:
+        out = self._out(asked.flight)
+        camera = [
+            f"{option}={value!r}"
+            for option, value in (
+                ("--clock-offset", asked.clock_offset_s),
+                ("--field", asked.field_deg),
+            )
+            if value is not None
+        ]
+        tagged, mosaic = str(out / "tagged"), str(out / "mosaic")
+        flight = ("--flight", str(record), "--out", tagged, "--no-odm")
+        try:
+            if self._has_done("clock", ("tag", *folders, *flight, *camera)):
+                words = ("mosaic", str(record), *folders, "--out", mosaic, *camera)
+                shown = ("--mosaic", mosaic) if self._has_done("mosaic", words) else ()
+                page = ("--out", str(out / "report.html"), "--tagged", tagged, *shown)
+                self._has_done("report", ("report", str(record), *page))
+        finally:
+            self._end(out)
+
+    def _end(self, out: Path) -> None:
+        has_failed = any(step.state == "failed" for step in self._now.steps)
+        state = "cancelled" if self._is_cancelled else "failed" if has_failed else "done"
+        self._change(state=state, doing="", share=None)
+        with contextlib.suppress(OSError):
+            replace_file(out / KEPT, self._now.model_dump_json().encode())
+        self._is_busy = False
+
+    def _has_done(self, first: schema.PhotoStepName, words: Sequence[str]) -> bool:
+        """Run a command, whose steps begin with `first`; return whether it succeeded."""
+        if self._is_cancelled:
+            return False
+        self._mark(first, "running")
+        try:
+            problem = self._run(words)
+        except _EndedError as ended:
+            problem = str(ended)
+        except OSError as failed:
+            problem = f"It could not be started: {failed.strerror}"
+        running = next(step.name for step in self._now.steps if step.state == "running")
+        self._mark(running, "failed" if problem else "done", problem)
+        self._change(doing="", share=None)
+        return not problem
+
+    def _run(self, words: Sequence[str]) -> str:
+        """Return why a command failed; empty if it has not. Raises `_EndedError`."""
+        environment = {**os.environ, LINES_WANTED: "1", "PYTHONUNBUFFERED": "1"}
+        last, begun = "", time.monotonic()
+        with background_process((*self._command, *words), environment, merged=True) as process:
+            for line in lines_of(process):
+                if line.startswith(LINE_MARK):
+                    self._take(line[len(LINE_MARK) :])
+                elif line.startswith("warning: "):
+                    self._warn(line.removeprefix("warning: "))
+                elif line.strip():
+                    last = line
+                self._require_room(begun)
+            code = process.wait()
+        return "" if code == 0 else _sentence(code, last)
+
+    def _require_room(self, begun_s: float) -> None:
+        """Raise `_EndedError` when the command must not go on."""
+        if self._is_cancelled:
+            raise _EndedError(f"Cancelled: {AGAIN}")
+        if time.monotonic() - begun_s > WITHIN_S:
+            raise _EndedError(
+                f"It took longer than {WITHIN_S / 3600.0:g} h: take fewer photos at once"
+            )
+        if shutil.disk_usage(self._records).free < LEAST_FREE_BYTES:
+            raise _EndedError(
+                f"Less than {LEAST_FREE_BYTES / 1e9:g} GB is free on the disk of {self._records}, "
+                f"which the flight records need: free some, then {AGAIN}"
+            )
+
+    @property
+    def _now(self) -> schema.PhotoJobView:
+        assert self._job is not None, "a job has begun"
+        return self._job
+
+    def _change(self, **changes: Any) -> None:
+        self._job = self._now.model_copy(update=changes)
+
+    def _mark(self, name: schema.PhotoStepName, state: str, problem: str = "") -> None:
+        """Set a step's state; what is done has its files."""
+        steps = [
+            each.model_copy(update={"state": state, "problem": problem})
+            if each.name == name
+            else each
+            for each in self._now.steps
+        ]
+        done = {step.name for step in steps if step.state == "done"}
+        self._change(steps=steps, files=[each for each, (step, _) in MADE.items() if step in done])
+
+    def _take(self, line: str) -> None:
+        """Take what a command reports; a line that is no such thing is left out."""
+        with contextlib.suppress(ValueError, ValidationError):
+            facts = json.loads(line)
+            if not isinstance(facts, dict) or not facts.keys() <= FACTS:
+                return
+            self._job = schema.PhotoJobView.model_validate(self._now.model_dump() | facts)
+            states = {step.name: step.state for step in self._now.steps}
+            for fact, step, following in FOUND_BY:
+                if facts.get(fact) and states[step] == "running":
+                    self._mark(step, "done")
+                    self._mark(following, "running")
+
+    def _warn(self, text: str) -> None:
+        known = dict.fromkeys((*self._now.warnings, text[:LONGEST_SENTENCE]))
+        self._change(warnings=list(known)[:MOST_WARNINGS])
+
+
+def _folder(text: str, records: Path) -> str:
+    """Return a folder that can be read; raises `PhotoRequestError`."""
+    path = Path(text.strip().strip("\"'")).expanduser()
+    if not path.is_absolute():
+        raise PhotoRequestError(
+            f"Give the folder's whole path on the station's computer, such as /media/card/DCIM; "
+            f"got {text!r}"
+        )
+    try:
+        if not path.exists():
+            raise PhotoRequestError(
+                f"No folder {path} on the station's computer: is the card in it, and is the path "
+                "right?"
+            )
+        if not path.is_dir():
+            raise PhotoRequestError(f"{path} is a file: give the folder that holds it")
+        with os.scandir(path) as entries:
+            next(entries, None)
+        whole = path.resolve()
+        if records.resolve().is_relative_to(whole):
+            raise PhotoRequestError(
+                f"{path} holds the station's flight records: give the folder of the photos alone"
+            )
+    except (OSError, ValueError) as problem:
+        reason = getattr(problem, "strerror", None) or problem
+        raise PhotoRequestError(
+            f"{path} cannot be read by the station: {reason}. Copy the photos into a folder of the "
+            "station's user"
+        ) from problem
+    return str(path)
+
+
+def _sentence(code: int, last: str) -> str:
+    """Return why a command failed, by its exit code and last line."""
+    if code == -signal.SIGKILL or "MemoryError" in last:
+        return f"There was not enough memory: close other programs and {AGAIN}"
+    text = last.strip().removeprefix("recon: ")[:LONGEST_SENTENCE]
+    return text if code > 0 and text else f"It ended without a reason (code {code}): {AGAIN}"
+
+
+def _last_job(records: Path) -> schema.PhotoJobView | None:
+    """Return the newest job that an earlier run of the station has finished here."""
+    with contextlib.suppress(OSError, ValidationError):
+        kept = list(records.glob(f"*{FOLDER_END}/{KEPT}"))
+        newest = max(kept, key=lambda path: path.stat().st_mtime_ns, default=None)
+        if newest is not None and newest.stat().st_size <= LARGEST_KEPT_BYTES:
+            return schema.PhotoJobView.model_validate_json(newest.read_bytes())
+    return None
