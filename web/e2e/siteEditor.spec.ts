@@ -21,6 +21,9 @@ test("is drawn, checked and changed with the keyboard alone", async ({ page }) =
   await panel.getByRole("button", { name: "Edit", exact: true }).press("Enter");
   await panel.getByRole("button", { name: "At map centre" }).press("Enter");
   await panel.getByText("Outline: 4 corners").press("Enter");
+  await expect(panel.getByRole("button", { name: "Save, in force at once" })).toBeInViewport({
+    ratio: 1,
+  });
   const corner = panel.getByLabel("Corner 1: latitude, longitude");
   await corner.fill("41.95, -93.65");
   await corner.press("Enter");

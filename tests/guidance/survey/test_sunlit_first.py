@@ -46,7 +46,9 @@ from recon.guidance.survey import (
 )
 from recon.guidance.survey.closed_areas import closed_ground
 from recon.guidance.survey.own_share import finished_together_s
+from recon.guidance.survey.route import RowLeg
 from recon.guidance.survey.segments import NONE, expected_sun, segments_of
+from recon.guidance.survey.vehicle_choice import named
 from recon.model.shade import ShadeMap, SunForecast
 from recon.model.survey import CellState, MissionAssignment, SurveyBudget, SurveyPhase, WhenDone
 from recon.model.units import seconds_to_ns
@@ -272,6 +274,12 @@ class TestSurveys:
         state, missions = decided(blind, *here, state=seen, now_s=1.0)
         assert len(missions) == 2
         assert state.reason == "under way"
+
+    def test_a_part_of_a_row_is_named_so(self) -> None:
+        whole = PLAN.pieces[0]
+        half = replace(whole, end_m=whole.start_m + whole.length_m / 2)
+        assert named([RowLeg(half, is_reversed=False)], PLAN) == f"part of row {whole.row + 1}"
+        assert named([RowLeg(whole, is_reversed=True)], PLAN) == f"row {whole.row + 1}"
 
     def test_until_any_light_is_known_rows_are_flown_and_then_decided_on(self) -> None:
         here, unseen = Surveyor("S-1", (0.0, 0.0)), np.full((GRID.rows, GRID.cols), np.nan)

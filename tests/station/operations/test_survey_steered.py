@@ -66,7 +66,8 @@ def test_a_hold_stops_it_and_nothing_flies_it_on(on_its_rows: SurveyedWorld) -> 
     world.runs(10.0)
     assert newest_path(world).phase is Phase.SUPERSEDED
     assert world.fleet.place_m("SIM-1") == pytest.approx(here, abs=1.0)
-    assert "mission stopped" in (world.record().members["SIM-1"].stop_reason or "")
+    why = "mission stopped: hover was ordered by bob"
+    assert world.record().members["SIM-1"].stop_reason == why
 
 
 def test_the_whole_path_ahead_is_known_to_others(on_its_rows: SurveyedWorld) -> None:

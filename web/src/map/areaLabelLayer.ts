@@ -1,7 +1,7 @@
 import { type Map as MapLibre, Marker } from "maplibre-gl";
 import type { AreaView, TemporaryZoneView } from "../protocol";
 import { zoneLabel } from "../text/zones";
-import { areaText, extent, type LabelPlace, labelPlaces } from "./areas";
+import { areaText, extent, type LabelPlace, labelPlaces, shownAreas } from "./areas";
 import { type Frame, placeFrames } from "./labels";
 import type { LonLat } from "./localGrid";
 import type { Layer, Scene } from "./scene";
@@ -54,7 +54,7 @@ export class AreaLabelLayer implements Layer {
     if (map === null) return;
     const labels = [
       ...state.temporary_zones.map((zone) => zoneLabelOf(zone, behindS)),
-      ...(state.site?.areas ?? []).filter(hasCorners).map(areaLabelOf),
+      ...shownAreas(state).map(areaLabelOf),
     ];
     // Sites rarely change, and states arrive ten times a second.
     const wanted = JSON.stringify(labels);
@@ -118,10 +118,6 @@ export class AreaLabelLayer implements Layer {
 function measure(label: ShownLabel): ShownLabel {
   const { offsetWidth: width_px, offsetHeight: height_px } = label.marker.getElement();
   return Object.assign(label, { width_px, height_px });
-}
-
-function hasCorners({ rings }: AreaView): boolean {
-  return (rings[0]?.length ?? 0) > 2;
 }
 
 function areaLabelOf(area: AreaView, index: number): WantedLabel {

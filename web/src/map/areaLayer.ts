@@ -1,6 +1,6 @@
 import type { FillLayerSpecification, LineLayerSpecification, Map as MapLibre } from "maplibre-gl";
 import type { AreaView } from "../protocol";
-import { areaFeatures, areasOf } from "./areas";
+import { areaFeatures, shownAreas } from "./areas";
 import type { Colours } from "./colours";
 import { addFeatures, setFeatures } from "./features";
 import { type Hatch, hatchImage } from "./hatch";
@@ -40,13 +40,12 @@ export class AreaLayer implements Layer {
 
   update(scene: Scene): void {
     if (this.map === null) return;
-    const { site } = scene.state;
-    const areas = areasOf(site, this.style.kind);
+    const areas = shownAreas(scene.state).filter(({ kind }) => kind === this.style.kind);
     // Sites rarely change, and states arrive ten times a second.
     const shown = JSON.stringify(areas);
     if (shown === this.shown) return;
     this.shown = shown;
-    setFeatures(this.map, this.id, areaFeatures(site, this.style.kind));
+    setFeatures(this.map, this.id, areaFeatures(areas));
   }
 
   recolour(colours: Colours): void {

@@ -1,6 +1,7 @@
 import { describe, expect, it } from "vitest";
+import { survey } from "../testing/fakeField";
 import { area, at, FIELD, station, vehicle } from "../testing/fakeState";
-import { areaFeatures, areasOf, areaText, labelPlaces } from "./areas";
+import { areaFeatures, areaText, labelPlaces, shownAreas } from "./areas";
 import { hatchImage } from "./hatch";
 import { padText } from "./padLayer";
 
@@ -33,9 +34,7 @@ describe("areas on the map", () => {
   it("are drawn by kind, with their holes", () => {
     const hole = area("keep_out", [0, 0], 10).rings[0] ?? [];
     const ring = area("keep_out", [0, 0], 50);
-    const areas = [{ ...ring, rings: [...ring.rings, hole] }, area("boundary", [0, 0], 300)];
-    const [feature, ...others] = areaFeatures(site && { ...site, areas }, "keep_out");
-    expect(others).toEqual([]);
+    const [feature] = areaFeatures([{ ...ring, rings: [...ring.rings, hole] }]);
     expect(feature?.geometry).toMatchObject({
       type: "Polygon",
       coordinates: [ring.rings[0], hole],
@@ -44,8 +43,18 @@ describe("areas on the map", () => {
 
   it("are omitted without corners or without a site", () => {
     const empty = area("keep_out", [0, 0], 50, { rings: [] });
-    expect(areasOf(site && { ...site, areas: [empty] }, "keep_out")).toEqual([]);
-    expect(areasOf(null, "keep_out")).toEqual([]);
+    expect(shownAreas({ site: site && { ...site, areas: [empty] }, surveys: [] })).toEqual([]);
+    expect(shownAreas({ site: null, surveys: [] })).toEqual([]);
+  });
+
+  it("are without the site's survey regions while a drawn area is flown", () => {
+    const areas = [area("boundary", [0, 0], 300), area("survey", [0, 0], 50)];
+    const kinds = (region: string | null) =>
+      shownAreas({ site: site && { ...site, areas }, surveys: [survey(7, { region })] }).map(
+        ({ kind }) => kind,
+      );
+    expect(kinds("Barn")).toEqual(["boundary", "survey"]);
+    expect(kinds(null)).toEqual(["boundary"]);
   });
 
   it("have their labels at the centre, a boundary at its northern edge", () => {

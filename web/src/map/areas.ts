@@ -1,12 +1,21 @@
 import type { Feature } from "geojson";
-import type { AreaView, SiteView } from "../protocol";
+import { activeSurveys } from "../fleet/activity";
+import type { AreaView, StationState } from "../protocol";
 import { text } from "../text/catalogue";
 import { formatLength } from "../text/units";
 import type { LonLat } from "./localGrid";
 
-/** The areas of one kind as GeoJSON features. */
-export function areaFeatures(site: SiteView | null, kind: AreaView["kind"]): Feature[] {
-  return areasOf(site, kind).map((area) => ({
+/** The site's areas with an outline. While a drawn area is flown, its survey regions are left out. */
+export function shownAreas({ site, surveys }: Pick<StationState, "site" | "surveys">): AreaView[] {
+  const isDrawn = activeSurveys(surveys).some(({ region }) => region === null);
+  return (site?.areas ?? []).filter(
+    (area) => outerRing(area).length > 2 && (area.kind !== "survey" || !isDrawn),
+  );
+}
+
+/** Areas as GeoJSON features. */
+export function areaFeatures(areas: readonly AreaView[]): Feature[] {
+  return areas.map((area) => ({
     type: "Feature",
     geometry: {
       type: "Polygon",
@@ -14,10 +23,6 @@ export function areaFeatures(site: SiteView | null, kind: AreaView["kind"]): Fea
     },
     properties: {},
   }));
-}
-
-export function areasOf(site: SiteView | null, kind: AreaView["kind"]): AreaView[] {
-  return (site?.areas ?? []).filter((area) => area.kind === kind && outerRing(area).length > 2);
 }
 
 /** An area's label on the map; heights include their datum. */

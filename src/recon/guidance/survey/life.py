@@ -179,7 +179,7 @@ def _fly_on(
     state: SurveyState, serial: str, refused: AssignedMission, kept: AssignedMission, now_ns: int
 ) -> SurveyState:
     """The survey with the mission that a refused one was to replace."""
-    text = f"flies on with {named(kept.rows_left)}: other rows were refused"
+    text = f"flies on with {named(kept.rows_left, state.plan)}: other rows were refused"
     again_ns = now_ns + seconds_to_ns(state.plan.settings.retry_soon_s)
     # What was asked once, when light became known, is not asked again.
     kept = replace(kept, is_in_any_light=False)

@@ -178,7 +178,7 @@ def decide_in_known_light(choice: VehicleChoice, able: Mapping[str, Surveyor]) -
     flight = state.flights[serial]
     left = choice.passing(flight.rows_left, 0.0)
     sun = left.lit_m2(choice.expected) / max(left.missing_m2, 1.0)
-    text = f"flies on with {named(flight.rows_left)}: probability of sun {sun:.1f}"
+    text = f"flies on with {named(flight.rows_left, state.plan)}: probability of sun {sun:.1f}"
     state = state.with_flight(serial, replace(flight, is_in_any_light=False))
     return state.with_decision(serial, Decision(text)), ()
 

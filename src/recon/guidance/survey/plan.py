@@ -358,8 +358,8 @@ def _without_closed(
     if surroundings.boundary is not None:
         inside = shapely.buffer(shape_of(surroundings.boundary), -margin_m)
         flyable = shapely.intersection(flyable, inside)
-    shut = [shapely.buffer(shape_of(region), margin_m) for region in surroundings.keep_out]
-    return shapely.difference(flyable, shapely.union_all(shut))
+    closed = [shapely.buffer(shape_of(region), margin_m) for region in surroundings.keep_out]
+    return shapely.difference(flyable, shapely.union_all(closed))
 
 
 def _no_rows(survey: Survey, surroundings: SurveySurroundings | None) -> str:

@@ -272,7 +272,7 @@ def _fly_in_any_light(state: SurveyState, vehicles: Sequence[Surveyor], now_ns: 
         for serial in dict.fromkeys(mission.serial for mission in missions):
             flight = replace(state.flights[serial], is_in_any_light=True)
             # It is shown for minutes, and stays true when light is known meanwhile.
-            text = f"flies {named(flight.route)}; light not known yet"
+            text = f"flies {named(flight.route, state.plan)}; light not known yet"
             state = state.with_flight(serial, flight).with_decision(serial, Decision(text))
         return replace(state, reason="under way") if missions else state, missions
     if state.flights:

@@ -281,7 +281,7 @@ class VehicleChoice:
             return self.wait(text, self.settings.retry_s)
         passed = self.passing(route[:count])
         sun = passed.lit_m2(self.expected) / max(passed.missing_m2, 1.0)
-        text = f"{why}flies {named(route[:count])}: probability of sun {sun:.1f}"
+        text = f"{why}flies {named(route[:count], self.plan)}: probability of sun {sun:.1f}"
         speed_mps, stops_s = self.plan.survey.speed_mps, self._pace.stop_s * len(track.corners_m)
         climbing_s = track.climbing_s(speed_mps, self.settings.climb_mps)
         ends_s = self._starts_s + track.length_m / speed_mps + stops_s + climbing_s
@@ -367,7 +367,15 @@ class VehicleChoice:
         return self.state.with_decision(self.surveyor.serial, decision)
 
 
-def named(route: Sequence[RowLeg]) -> str:
-    """Name the rows of a route."""
-    rows = sorted({leg.piece.row + 1 for leg in route})
-    return f"row {rows[0]}" if len(rows) == 1 else f"rows {rows[0]} to {rows[-1]}"
+PART_OF_ROW = 0.95
+"""Below this share of its length a row is flown in part; two vehicles may fly parts of one row."""
+
+
+def named(route: Sequence[RowLeg], plan: SurveyPlan) -> str:
+    """Name the rows of a route, and whether it is a part of one."""
+    rows = sorted({leg.piece.row for leg in route})
+    if len(rows) > 1:
+        return f"rows {rows[0] + 1} to {rows[-1] + 1}"
+    flown_m = sum(leg.piece.length_m for leg in route)
+    whole_m = sum(piece.length_m for piece in plan.pieces if piece.row == rows[0])
+    return f"{'part of ' * (flown_m < PART_OF_ROW * whole_m)}row {rows[0] + 1}"

@@ -49,7 +49,7 @@ export function SaveSection(props: {
     </button>
   );
   return (
-    <section class="section" aria-label={props.title}>
+    <section class="section save-section" aria-label={props.title}>
       <Show when={props.edits}>
         {(edits) => (
           <div class="section-buttons">

@@ -81,6 +81,9 @@ function SurveySection(props: SurveyProps) {
     const isRepeated = is("created") || shown.toLowerCase() === status.toLowerCase();
     return isRepeated || /^round \d+$/.test(shown) ? "" : shown;
   };
+  const { source } = useConsole();
+  const line = (vehicle: SurveyingView) =>
+    lineOf(vehicle, is("done"), source.person()?.name ?? null);
   return (
     <section class="section" data-testid={`survey-${props.survey.id}`}>
       <p class="survey-head wire-text">
@@ -101,7 +104,7 @@ function SurveySection(props: SurveyProps) {
         {(line) => <p class="muted wire-text">{line()}</p>}
       </Show>
       <Show when={props.survey.light}>{(light) => <SurveyLight light={light()} />}</Show>
-      <Decisions lines={active().map((vehicle) => lineOf(vehicle, is("done")))} />
+      <Decisions lines={active().map(line)} />
       <Show when={is("created")}>
         <SurveyPreview survey={props.survey} />
       </Show>
@@ -130,12 +133,25 @@ function notShown({ figures }: SurveyView): string | null {
   return percent > 0 ? text.surveys.notShown(formatArea(figures.not_shown_m2), percent) : null;
 }
 
-/** A drone and what it does for the survey, with the reason. */
-function lineOf(vehicle: SurveyingView, isDone: boolean): readonly [string, string] {
+/** The station's words before the order that stopped a mission; it can be resumed. */
+const STOPPED = "mission stopped: ";
+
+/** A drone and what it does for the survey, with the reason; `person` reads it. */
+function lineOf(
+  vehicle: SurveyingView,
+  isDone: boolean,
+  person: string | null,
+): readonly [string, string] {
   const idle = isDone ? text.surveys.returnsHome : text.surveys.noRows;
   const activity = vehicle.is_flying_rows ? text.surveys.fliesRows : idle;
   const why = vehicle.not_flying_reason ?? vehicle.refused ?? vehicle.decision;
   if (why === null) return [vehicle.vehicle_name, activity];
+  if (why.startsWith(STOPPED)) {
+    const order = why.slice(STOPPED.length);
+    const isOwn = person !== null && order.endsWith(` by ${person}`);
+    const by = isOwn ? order.slice(0, -person.length) + text.surveys.you : order;
+    return [vehicle.vehicle_name, text.surveys.stoppedBy(withLengthUnit(by))];
+  }
   // A decision begins with what is flown; a reason stands beside it.
   return [vehicle.vehicle_name, why === vehicle.decision ? why : `${activity}: ${why}`];
 }

@@ -138,6 +138,21 @@ describe("a survey in the list", () => {
     expect(shown(9)).not.toContain("not started yet");
   });
 
+  it("says who stopped a drone, and how it resumes", () => {
+    const stopped = (by: string) => {
+      const why = `mission stopped: hover was ordered by ${by}`;
+      const [one] = survey(7).vehicles;
+      if (one === undefined) throw new Error("no vehicle");
+      show(survey(7, { vehicles: [{ ...one, is_flying_rows: false, not_flying_reason: why }] }));
+      page.nameAs({ name: "bob", role: "pilot", is_logged_in: true, urls: [], fingerprint: null });
+      return find(page.root, "[data-testid=survey-7]").textContent;
+    };
+    const line = "does not fly rows: hover was ordered by";
+    expect(stopped("anna")).toContain(`${line} anna. Select it to resume`);
+    page.dispose();
+    expect(stopped("bob")).toContain(`${line} you. Select it to resume`);
+  });
+
   it("offers its flights as files for other programs before its start", async () => {
     const saved: string[] = [];
     vi.spyOn(HTMLAnchorElement.prototype, "click").mockImplementation(function (

@@ -18,7 +18,7 @@ export const activity = {
   unknown: "Flight state unknown",
   allStop: "All stop",
   surveying: "Surveying",
-  toTarget: "Flying to target",
+  toTarget: "To target",
   holding: "Holding",
 };
 

@@ -129,7 +129,10 @@ export const surveys = {
   fliesRows: "flies rows",
   noRows: "does not fly rows",
   start: "Start with selected",
-  add: "Add selected drones",
+  /** After the drone's name; the order is the station's: `hover was ordered by anna`. */
+  stoppedBy: (order: string) => `does not fly rows: ${order}. Select it to resume`,
+  you: "you",
+  add: "Resume or add selected",
   resume: "Resume with selected",
   allowTakeoff: "Allow takeoff for this start",
   stops: { pause: "Pause", abort: "Abort", hold: "Hold returning drones" },

@@ -139,7 +139,7 @@ def _under_way(
     if vehicle.is_flying.value is False and (vehicle.core_received_at_ns or 0) > member.since_ns:
         return member.at(Stage.LANDED, now_ns)
     if record is not None and record.phase in _NOT_FLOWN:
-        return member.at(Stage.EXCLUDED, now_ns, f"its {mission_end_text(record)}")
+        return member.at(Stage.EXCLUDED, now_ns, f"its {mission_end_text(station.orders, record)}")
     if member.stage is not Stage.ORDERED:
         is_steered = record is not None and isinstance(record.command.body, FollowPath)
         if is_steered and vehicle.flight_mode.value is FlightMode.JOYSTICK:

@@ -86,8 +86,8 @@ def hindrance(station: Station, member: SurveyMember, now_ns: int) -> str | None
     if member.stop_reason is not None:
         return member.stop_reason
     if member.return_reason is not None:
-        verb = "has flown" if is_on_ground(station, member) else "was called"
-        return f"it {verb} home: {member.return_reason}"
+        verb = "has returned home" if is_on_ground(station, member) else "was recalled"
+        return f"it {verb}: {member.return_reason}"
     authority = station.control(member.serial).authority
     if authority.holder is not AuthorityHolder.GUIDANCE:
         return f"it is controlled by the {authority.holder.value} ({authority.reason})"
@@ -139,7 +139,7 @@ def after_mission(
         return member, None
     if order.phase is Phase.DONE:
         return member, None
-    return replace(member, stop_reason=mission_end_text(order)), order
+    return replace(member, stop_reason=mission_end_text(station.orders, order)), order
 
 
 def time_left_s(

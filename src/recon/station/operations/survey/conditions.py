@@ -49,7 +49,7 @@ def _of_vehicle(
     name = record.survey.name
     if record.is_running and member.stop_reason is not None:
         text = f"stopped flying survey {name}: {member.stop_reason}"
-        yield _about(station, member, RULE, f"{text}. Check it, then start it again")
+        yield _about(station, member, RULE, f"{text}. Check it, then resume it")
     elif takes_off_automatically(station, record, member):
         text = (
             f"on the ground, and takes off automatically as soon as survey {name} has rows for it. "
@@ -64,7 +64,7 @@ def _of_vehicle(
         text = f"let it join survey {name} again ({again})"
         of_battery = _about_battery(station, member)
         yield _about(
-            station, member, RULE, f"has flown home: {member.return_reason}. {of_battery} {text}"
+            station, member, RULE, f"has returned home: {member.return_reason}. {of_battery} {text}"
         )
     elif record.is_over and _hovers_since(station, member):
         why = "" if member.stop_reason is None else f"; it had stopped: {member.stop_reason}"
