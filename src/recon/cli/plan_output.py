@@ -96,7 +96,10 @@ def rows_of(
         ("rows", f"{figures['rows']}"),
         *flown,
         *_above_ground(figures),
-        ("photos", f"{figures['photos']} on rows, {figures['photos_in_all']} in total by the timer"),
+        (
+            "photos",
+            f"{figures['photos']} on rows, {figures['photos_in_all']} in total by the timer",
+        ),
         ("time", minutes(figures["time_s"])),
         ("in the air", f"{minutes(figures['flown_s'])}, all drones together"),
         ("batteries", batteries),
