@@ -170,6 +170,7 @@ class TestView:
         assert vehicle.is_flying.value is True
         assert vehicle.flight_mode.value == "gps_atti"
         assert vehicle.waypoint_altitude == "takeoff"
+        assert vehicle.flies_missions is True
 
     def test_what_is_unknown_is_null(self, bench: Bench) -> None:
         bench.open(1, core(latitude_deg=0.0, longitude_deg=0.0, altitude_m=float("nan")))

@@ -22,6 +22,7 @@ import { ForecastLayer, ShadeLayer, SurveyCellsLayer } from "./overlays";
 import { PadLayer } from "./padLayer";
 import { createSunHere, SunHereNote } from "./SunHere";
 import { type DraftShapes, type Layer, type PlannedTarget, positionOf, wholeView } from "./scene";
+import { createSelectionBand, keysIn } from "./selectionBand";
 import { SiteDraftLayer } from "./siteDraftLayer";
 import { createSiteEditing } from "./siteEditing";
 import { SurveyRowsLayer } from "./surveyRowsLayer";
@@ -46,6 +47,7 @@ export function MapView() {
     useConsole();
   const { aim, setMapCentre, siteDraft, calibration, baseMaps } = useConsole();
   const [map, setMap] = createSignal<MapLibre | null>(null);
+  const [isBanding, setBanding] = createSignal(false);
   const ground = createDisplayedGround(source);
   const sunHere = createSunHere(
     source.light,
@@ -80,6 +82,12 @@ export function MapView() {
       new TargetLayer(),
       new VehicleLayer({ select: selection.only, toggle: selection.toggle }),
     ];
+    const removeBand = createSelectionBand(made, isBanding, (band) => {
+      setBanding(false);
+      const found = keysIn(band, source.state()?.vehicles ?? [], made);
+      selection.all([...new Set([...selection.keys(), ...found])]);
+    });
+    onCleanup(removeBand);
     made.on("click", ({ lngLat }) => aim({ lon: lngLat.lng, lat: lngLat.lat }));
     // A tap moves no pointer, and the keyboard moves the map under its centre.
     for (const kind of ["mousemove", "click"] as const)
@@ -223,6 +231,16 @@ export function MapView() {
           <button
             type="button"
             class="button"
+            aria-pressed={isBanding()}
+            onClick={() => setBanding(!isBanding())}
+            title={text.map.bandHint}
+            aria-label={text.map.band}
+          >
+            <BandIcon />
+          </button>
+          <button
+            type="button"
+            class="button"
             onClick={() => fit(false)}
             title={text.map.fitHint}
             aria-label={text.map.fit}
@@ -274,6 +292,16 @@ function BaseMapNote() {
         </p>
       )}
     </Show>
+  );
+}
+
+/** A dashed box around a dot. */
+function BandIcon() {
+  return (
+    <svg class="fit-icon" viewBox="0 0 24 24" width="22" height="22" aria-hidden="true">
+      <path stroke-dasharray="4 3" d="M4 4h16v16H4z" />
+      <path d="M11 12h2" />
+    </svg>
   );
 }
 

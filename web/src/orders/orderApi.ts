@@ -17,6 +17,8 @@ export interface OrderAnswer {
 export interface OrderApi {
   readonly lastAnswer: Accessor<OrderAnswer | null>;
   order(order: NamedOrder, labels: readonly string[]): Promise<void>;
+  /** Sends takeoffs, one for each vehicle, and keeps their results as one answer. */
+  takeOff(orders: readonly NamedOrder[], labels: readonly string[]): Promise<void>;
   allStop(): Promise<void>;
   /** Starts a return in layers; null means every vehicle in reach. */
   fleetReturn(serials: readonly string[] | null, labels: readonly string[]): Promise<void>;
@@ -57,11 +59,25 @@ export function createOrderApi(orders: Orders, clock: Clock): OrderApi {
       if (order.serials.length === 0) return;
       await run(commandName(order.order.kind), labels, () => orders.send(order));
     },
+    takeOff: (takeoffs, labels) =>
+      run(text.orders.takeOff, labels, async () =>
+        joined(await Promise.all(takeoffs.map((one) => orders.send(one)))),
+      ),
     allStop: () => run(text.orders.allStop, [text.orders.allFlying], () => orders.allStop()),
     fleetReturn: (serials, labels) =>
       run(text.orders.fleetReturn, labels, () => orders.fleetReturn(serials)),
     dismiss: () => setLastAnswer(null),
   };
+}
+
+/** The results of all; a request without an answer is what is told. */
+function joined(
+  outcomes: readonly Outcome<readonly OrderResult[]>[],
+): Outcome<readonly OrderResult[]> {
+  const failed = outcomes.find(({ kind }) => kind === "failed");
+  if (failed !== undefined) return failed;
+  const value = outcomes.flatMap((each) => (each.kind === "answered" ? each.value : []));
+  return { kind: "answered", value };
 }
 
 function isAllAccepted(outcome: Outcome<readonly OrderResult[]>): boolean {

@@ -28,6 +28,8 @@ export interface Picture {
 export interface NamedOrder {
   readonly serials: readonly string[];
   readonly order: Order;
+  /** Allows vehicles on the ground to take off with it; left out: they stay there. */
+  readonly takeoff?: true;
 }
 
 /** A temporary zone to draw; omitted fields use the station's defaults. */

@@ -33,15 +33,15 @@ export type OrderRequests = ReturnType<typeof orderRequests>;
 /** Whatever moves vehicles, or stops them. */
 export function orderRequests(http: StationHttp, context: OrderContext) {
   const { client } = http;
-  const bodyOf = ({ serials, order }: NamedOrder) => ({
+  const bodyOf = ({ serials, order, takeoff }: NamedOrder) => ({
     serials: [...serials],
     order,
-    takeoff: false,
+    takeoff: takeoff ?? false,
     given_at_unix_ms: context.stationNowMs(),
     ...(IS_STEERED[order.kind] && { owner: context.owner() }),
   });
   return {
-    /** Sends an order, always without takeoff. */
+    /** Sends an order. */
     send: (named: NamedOrder) => {
       const body = bodyOf(named);
       return answered(ORDER, (signal) => client.POST("/api/orders", { body, signal }), resultsOf);

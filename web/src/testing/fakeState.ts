@@ -68,6 +68,7 @@ export function vehicle(number: number, changes: Partial<VehicleView> = {}): Veh
     mission_id: aged(12, 0.4),
     camera_state: aged("feed_on", 0.4),
     waypoint_altitude: "takeoff",
+    flies_missions: true,
     conflict_link_ids: [],
     track: Array.from({ length: 12 }, (_, i) =>
       at(60 * number - 150 - 8 * (12 - i), 30 * number - 60 - 40 * Math.sin((12 - i) / 4)),

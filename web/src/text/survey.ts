@@ -1,7 +1,7 @@
 import type { SurveyEstimateView, SurveyView } from "../protocol";
 import { text } from "./catalogue";
 import { formatQuantity, UNKNOWN } from "./quantities";
-import { formatLength } from "./units";
+import { formatLength, withLengthUnit } from "./units";
 
 /** A survey's status as text; one whose drones have all stopped is not running. */
 export function surveyStatus({ phase, vehicles }: SurveyView): string {
@@ -44,6 +44,13 @@ export function shownSurvey(surveys: readonly SurveyView[]): SurveyView | null {
   const withRows = surveys.filter(({ cells }) => cells !== null);
   const inPhase = (phase: SurveyView["phase"]) => withRows.find((survey) => survey.phase === phase);
   return inPhase("running") ?? inPhase("paused") ?? inPhase("created") ?? withRows[0] ?? null;
+}
+
+/** What a drone does whose mission was stopped by an order, as `person` reads it; null for another reason. */
+export function stoppedText(reason: string, person: string | null): string | null {
+  const [, order, by] = /^mission stopped: (.*\bby )?(.*)$/.exec(withLengthUnit(reason)) ?? [];
+  if (by === undefined) return null;
+  return text.surveys.stoppedBy(order ?? "", by === person ? text.surveys.you : by);
 }
 
 const HECTARE_M2 = 10_000;

@@ -219,6 +219,7 @@ class VehicleView(Message):
     mission_id: AgedNumber
     camera_state: AgedText
     waypoint_altitude: Literal["unset", "wgs84", "takeoff"]
+    flies_missions: bool = Field(description="false: its model is steered along paths instead")
     conflict_link_ids: list[int]
     app_facts: AppFactsView | None = Field(description="null: its app reports none")
     app_facts_age_s: float | None

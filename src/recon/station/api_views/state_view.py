@@ -146,6 +146,7 @@ def _vehicle(
         mission_id=aged.number(vehicle.mission_id),
         camera_state=aged.word(vehicle.camera_state),
         waypoint_altitude=reference.value,
+        flies_missions=vehicle.flies_missions,
         conflict_link_ids=list(vehicle.rival_link_ids),
         app_facts=_facts(vehicle),
         app_facts_age_s=aged.age_s(vehicle.app_facts),

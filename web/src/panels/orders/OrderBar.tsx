@@ -1,9 +1,13 @@
-import { For, Match, onCleanup, onMount, Show, Switch } from "solid-js";
+import { createMemo, For, Match, onCleanup, onMount, Show, Switch } from "solid-js";
 import { useConsole } from "../../console";
+import { selectedVehicles } from "../../fleet/selection";
 import { createHoldTimer, type HoldTimer } from "../../orders/holdToConfirm";
+import { TAKEOFF_HEIGHT_M, takeoffOrder } from "../../orders/takeOff";
 import { ORDER_KINDS, type OrderKind, targetsKey } from "../../orders/targets";
 import { text } from "../../text/catalogue";
-import { listSome } from "../../text/names";
+import { listSome, vehicleLabel } from "../../text/names";
+import { formatLength } from "../../text/units";
+import { GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { OrderButton } from "./OrderButton";
 import { holdByKey } from "./shortcuts";
 import "./orders.css";
@@ -52,6 +56,7 @@ export function OrderBar() {
             <OrderButton order={order} timer={timer} labels={targets().labels} />
           )}
         </For>
+        <TakeOff />
         <button
           type="button"
           class="button orders-goto"
@@ -74,6 +79,37 @@ export function OrderBar() {
         </button>
       </div>
     </section>
+  );
+}
+
+/** For the selected vehicles that stand on the ground; the button is there only for those. */
+function TakeOff() {
+  const { fleet, selection, orderApi } = useConsole();
+  const standing = createMemo(() =>
+    selectedVehicles(fleet.vehicles, selection).flatMap((vehicle) => {
+      const order = takeoffOrder(vehicle);
+      return order === null ? [] : [{ order, label: vehicleLabel(vehicle) }];
+    }),
+  );
+  const labels = () => standing().map(({ label }) => label);
+  return (
+    <Show when={standing().length > 0}>
+      <div class="orders-takeoff">
+        <GuardButton
+          label={text.orders.takeOffTo(formatLength(TAKEOFF_HEIGHT_M))}
+          of={listSome(labels(), NAMES_SHOWN)}
+          needs="pilot"
+          hold_ms={GUARD_MS}
+          subject={JSON.stringify(labels())}
+          onConfirm={() =>
+            void orderApi.takeOff(
+              standing().map(({ order }) => order),
+              labels(),
+            )
+          }
+        />
+      </div>
+    </Show>
   );
 }
 

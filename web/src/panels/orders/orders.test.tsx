@@ -136,6 +136,36 @@ describe("an order button", () => {
   });
 });
 
+describe("a takeoff", () => {
+  const grounded = { is_flying: { value: false, age_s: 0.1 } };
+  const button = () => page.root.querySelector<HTMLElement>(".orders-takeoff button");
+
+  it("is offered only for selected vehicles on the ground, and held", async () => {
+    page.receive(station([vehicle(1, grounded), vehicle(2), vehicle(4, grounded)]));
+    page.shared.selection.only(2);
+    expect(button()).toBeNull();
+    page.shared.selection.all([1, 2]);
+    expect(button()?.getAttribute("aria-label")).toBe("Take off to 30\u00a0m, hold 1.5 s: 1 Alder");
+    button()?.dispatchEvent(new PointerEvent("pointerdown", { bubbles: true, button: 0 }));
+    page.clock.advance(1400);
+    expect(page.orders).toEqual([]);
+    page.clock.advance(200);
+    expect(page.orders).toMatchObject([{ serials: ["SN-001"], takeoff: true }]);
+    const [{ order } = { order: null }] = page.orders;
+    expect(order).toMatchObject({ kind: "mission", land_at_end: false });
+  });
+
+  it("of a model that flies no missions is a hover", () => {
+    page.receive(
+      station([vehicle(1, { ...grounded, flies_missions: false }), vehicle(4, grounded)]),
+    );
+    page.shared.selection.all([1, 4]);
+    button()?.dispatchEvent(new PointerEvent("pointerdown", { bubbles: true, button: 0 }));
+    page.clock.advance(1600);
+    expect(page.orders.map(({ order }) => order.kind)).toEqual(["hover", "mission"]);
+  });
+});
+
 describe("all stop", () => {
   it("needs one press, whatever the selection or the connection", () => {
     page.connect({ kind: "lost", reason: "gone", attempt: 1 });

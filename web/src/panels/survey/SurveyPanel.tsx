@@ -3,7 +3,14 @@ import { useConsole } from "../../console";
 import { targetsKey } from "../../orders/targets";
 import type { Outcome, SurveyingView, SurveyResponse, SurveyView } from "../../protocol";
 import { text } from "../../text/catalogue";
-import { formatArea, sharePercent, surveyHeight, surveyStatus, timeLeft } from "../../text/survey";
+import {
+  formatArea,
+  sharePercent,
+  stoppedText,
+  surveyHeight,
+  surveyStatus,
+  timeLeft,
+} from "../../text/survey";
 import { withLengthUnit } from "../../text/units";
 import { BRIEF_MS, GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Panel, Problem } from "../Panel";
@@ -133,9 +140,6 @@ function notShown({ figures }: SurveyView): string | null {
   return percent > 0 ? text.surveys.notShown(formatArea(figures.not_shown_m2), percent) : null;
 }
 
-/** The station's words before the order that stopped a mission; it can be resumed. */
-const STOPPED = "mission stopped: ";
-
 /** A drone and what it does for the survey, with the reason; `person` reads it. */
 function lineOf(
   vehicle: SurveyingView,
@@ -146,12 +150,8 @@ function lineOf(
   const activity = vehicle.is_flying_rows ? text.surveys.fliesRows : idle;
   const why = vehicle.not_flying_reason ?? vehicle.refused ?? vehicle.decision;
   if (why === null) return [vehicle.vehicle_name, activity];
-  if (why.startsWith(STOPPED)) {
-    const order = why.slice(STOPPED.length);
-    const isOwn = person !== null && order.endsWith(` by ${person}`);
-    const by = isOwn ? order.slice(0, -person.length) + text.surveys.you : order;
-    return [vehicle.vehicle_name, text.surveys.stoppedBy(withLengthUnit(by))];
-  }
+  const stopped = stoppedText(why, person);
+  if (stopped !== null) return [vehicle.vehicle_name, stopped];
   // A decision begins with what is flown; a reason stands beside it.
   return [vehicle.vehicle_name, why === vehicle.decision ? why : `${activity}: ${why}`];
 }

@@ -129,8 +129,8 @@ export const surveys = {
   fliesRows: "flies rows",
   noRows: "does not fly rows",
   start: "Start with selected",
-  /** After the drone's name; the order is the station's: `hover was ordered by anna`. */
-  stoppedBy: (order: string) => `does not fly rows: ${order}. Select it to resume`,
+  /** After the drone's name; the order is the station's words: `hover was ordered by `. */
+  stoppedBy: (order: string, by: string) => `does not fly rows: ${order}${by}. Select it to resume`,
   you: "you",
   add: "Resume or add selected",
   resume: "Resume with selected",

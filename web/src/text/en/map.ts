@@ -5,6 +5,8 @@ export const map = {
   name: "Map",
   fit: "Fit",
   fitHint: "Show everything (F)",
+  band: "Select by dragging",
+  bandHint: "Add the vehicles in a box to the selection (Shift and drag)",
   zoomIn: "Zoom in",
   zoomOut: "Zoom out",
   northArrow: "N ↑",

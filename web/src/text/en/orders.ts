@@ -34,6 +34,8 @@ export const orders = {
     return_home: "Climbs to the aircraft's go-home height first.",
     land: "Land at the current position.",
   },
+  takeOff: "Take off",
+  takeOffTo: (height: string) => `Take off to ${height}`,
   flyHere: "Fly here",
   flyHereOff: "Select one vehicle to send it to a place",
   flyHereHint: "Fly the selected vehicle to a position on the map (G)",

@@ -113,6 +113,7 @@ export const help = {
     { keys: "Shift + 1 to 9", action: "Add that vehicle to the selection, or remove it" },
     { keys: "17 Enter", action: "Select that vehicle by its number; with Shift, add or remove it" },
     { keys: "Ctrl + A", action: "Select all vehicles" },
+    { keys: "Shift + drag", action: "Add the vehicles in a box on the map to the selection" },
     { keys: "G", action: "Fly here: set a target on the map for the selected vehicle" },
     { keys: "D", action: "Details of the selected vehicle" },
     {
@@ -132,7 +133,7 @@ export const help = {
   ],
   orders: "Orders",
   ordersText: [
-    "Hover, return home and land are sent to the selected vehicles only. Hover takes one press. Hold the others until the bar is full; releasing early, sliding off or changing the selection cancels the order. None of these orders makes a vehicle take off.",
+    "Hover, return home and land are sent to the selected vehicles only. Hover takes one press. Hold the others until the bar is full; releasing early, sliding off or changing the selection cancels the order. None of these makes a vehicle take off; Take off does, for those selected on the ground.",
     "Return home climbs to the aircraft's go-home height first. Return in layers flies each vehicle home at a separate height. Fly here shows the safety gate's result before you confirm; the vehicle holds the target while this page stays open and stops if it closes.",
     "ALL STOP takes one press. All flying vehicles hold position; motors stay on. It stays in force: only hover, return and land are sent until the vehicles are released. The pilot's sticks always override the station.",
   ],
