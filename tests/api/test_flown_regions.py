@@ -1,15 +1,18 @@
 """Flown regions by HTTP: what is kept of them, and their rest as a survey."""
 
+import json
 from dataclasses import replace
 from datetime import date, timedelta
 from pathlib import Path
 
 import numpy as np
 import pytest
+import shapely
 from tests.api.client import Client
 from tests.api.fake_station import FakeStation, application
 from tests.guidance.survey.fields import FLOWN_S, flown
 
+from recon.geo import geojson_geometry
 from recon.record.files.flown_region_file import write_region
 from recon.site import demo_site_folder, load_site
 from recon.station.recovery.flown_regions import FlownRegions
@@ -96,3 +99,31 @@ def test_what_cannot_be_flown_again_is_a_sentence(client: Client, station: FakeS
 def test_a_day_that_is_none_is_refused_by_its_form(client: Client) -> None:
     answer = client.post("/api/surveys/again", json={"id": "0", "since": "yesterday"})
     assert answer.status_code == 422
+
+
+def test_only_the_gaps_of_the_photos_are_planned(
+    client: Client, station: FakeStation, tmp_path: Path
+) -> None:
+    (region,) = client.get("/api/flown-regions").json()["regions"]
+    assert region["gaps_m2"] is None
+    asked = {"id": region["id"], "gaps": True}
+    refused = client.post("/api/surveys/again", json=asked).json()
+    assert (
+        refused["reason"] == f"no gap of the photos lies in region {REGION}: nothing is left of it"
+    )
+    frame = station.site.frame
+    assert frame is not None
+    outline_m = station.site.layers.survey_regions[REGION].outline_m
+    # In the western half, which the survey itself counts as imaged in sun.
+    (west, south), (east, north) = outline_m.min(axis=0), outline_m.max(axis=0)
+    gap = shapely.box(west, south, west + 0.3 * (east - west), north)
+    file = tmp_path / "fly-again.geojson"
+    file.write_text(json.dumps(geojson_geometry(frame, gap)))
+    station.gaps_file = lambda: file
+    (region,) = client.get("/api/flown-regions").json()["regions"]
+    assert 0.1 * region["reached_m2"] < region["gaps_m2"] < 0.5 * region["reached_m2"]
+    planned = client.post("/api/surveys/again", json=asked).json()
+    assert planned["survey"]["figures"]["not_yet_m2"] == pytest.approx(region["gaps_m2"], abs=17.0)
+    assert planned["survey"]["rows_note"] == f"Same rows as on {DAY.isoformat()}"
+    file.write_text("{}")
+    assert client.get("/api/flown-regions").json()["regions"][0]["gaps_m2"] is None

@@ -1,5 +1,7 @@
 import { expect, type Page } from "@playwright/test";
 import type { ReplayView, StationState, TimelineEntryView } from "../src/protocol";
+import { flownRegion } from "../src/testing/fakeField";
+import { photoJob } from "../src/testing/fakeFlights";
 import { link, vehicle, zone } from "../src/testing/fakeState";
 import { english } from "../src/text/en";
 import { busyState } from "./fake/busyState";
@@ -86,11 +88,16 @@ async function openConsole(page: Page) {
   fake.showPicture(await fieldPicture(page));
   fake.vehiclesResult = REFUSED_VEHICLE;
   fake.preflight = CHECKLIST;
+  fake.flown = { ...fake.flown, regions: [flownRegion({ gaps_m2: 7_000 })] };
   await page.route("**/api/timeline?**", (route) =>
     route.fulfill({ json: { entries: [ENTRY], has_more: true } }),
   );
   const marks = { marks: [], read_share: 1 };
   await page.route("**/api/replay/marks", (route) => route.fulfill({ json: marks }));
+  await page.route("**/api/photos", (route) => route.fulfill({ json: { job: photoJob() } }));
+  await page.route("**/api/photos/files/*", async (route) =>
+    route.fulfill({ body: await fieldPicture(page), contentType: "image/png" }),
+  );
   await page.route("**/api/flights", (route) => route.fulfill({ json: [FLIGHT] }));
   await page.addInitScript(() => localStorage.setItem("recon.panels", ""));
   await page.goto("/");

@@ -21,6 +21,7 @@ import { LoginDialog } from "./panels/login/LoginDialog";
 import type { PanelName } from "./panels/openPanels";
 import { AnswerNotice } from "./panels/orders/AnswerNotice";
 import { OrderBar } from "./panels/orders/OrderBar";
+import { PhotosPanel } from "./panels/photos/PhotosPanel";
 import { ReplayBar } from "./panels/replay/ReplayBar";
 import { FleetReturn } from "./panels/return/FleetReturn";
 import { SeparationBanner } from "./panels/separation/SeparationHold";
@@ -53,6 +54,7 @@ const PANELS: readonly (readonly [PanelName, () => ReturnType<typeof AlarmList>]
   ["orders", CommandList],
   ["timeline", TimelinePanel],
   ["links", LinkList],
+  ["photos", PhotosPanel],
   ["flights", FlightsPanel],
   ["station", StationPanel],
 ];

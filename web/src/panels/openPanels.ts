@@ -15,6 +15,7 @@ export const PANEL_NAMES = [
   "orders",
   "timeline",
   "links",
+  "photos",
   "flights",
   "station",
 ] as const;

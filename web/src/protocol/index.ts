@@ -86,6 +86,11 @@ export type BaseMapView = Schemas["BaseMapView"];
 export type BaseMapsView = Schemas["BaseMapsView"];
 export type FlightView = Schemas["FlightView"];
 export type FlightFiguresView = Schemas["FlightFiguresView"];
+export type PhotosView = Schemas["PhotosView"];
+export type PhotoJobView = Schemas["PhotoJobView"];
+export type PhotoStepView = Schemas["PhotoStepView"];
+export type PhotoRequest = Schemas["PhotoRequest"];
+export type CameraClockView = Schemas["CameraClockView"];
 export type ActionResponse = Schemas["ActionResponse"];
 export type OrderRequest = Schemas["OrderRequest"];
 export type OrderResponse = Schemas["OrderResponse"];
@@ -106,6 +111,7 @@ export type {
   NewSurvey,
   NewZone,
   Outcome,
+  PhotoFile,
   Picture,
   TimelineFilter,
   TimelineSubject,

@@ -43,6 +43,10 @@ export type NewSurvey = Pick<SurveyRequest, "speed_mps"> &
 export type FlightFile =
   operations["file_api_flights__name__files__file__get"]["parameters"]["path"]["file"];
 
+/** A file that the job on photos has made. */
+export type PhotoFile =
+  operations["file_api_photos_files__file__get"]["parameters"]["path"]["file"];
+
 type TimelineQuery = NonNullable<operations["timeline_api_timeline_get"]["parameters"]["query"]>;
 
 export type TimelineSubject = NonNullable<TimelineQuery["about"]>;

@@ -6,6 +6,7 @@ import { FramePacer, type NextFrame } from "./framePacer";
 import { lightRequests } from "./lightRequests";
 import { mapRequests } from "./mapRequests";
 import { orderRequests } from "./orderRequests";
+import { photoRequests } from "./photoRequests";
 import { replayRequests } from "./replayRequests";
 import { siteRequests } from "./siteRequests";
 import { StationHttp } from "./stationHttp";
@@ -51,6 +52,7 @@ export class LiveSource implements StationSource {
   readonly site;
   readonly maps;
   readonly flights;
+  readonly photos;
   readonly replay;
   readonly station;
   private readonly lag = new StreamLag();
@@ -82,6 +84,7 @@ export class LiveSource implements StationSource {
     this.site = siteRequests(http);
     this.maps = mapRequests(http);
     this.flights = flightRequests(http);
+    this.photos = photoRequests(http);
     this.replay = replayRequests(http);
     this.station = stationRequests(http);
     const url = `${origin.replace(/^http/, "ws")}/api/stream`;

@@ -5,6 +5,7 @@ import type { FlightRequests } from "./flightRequests";
 import type { LightRequests } from "./lightRequests";
 import type { MapRequests } from "./mapRequests";
 import type { OrderRequests } from "./orderRequests";
+import type { PhotoRequests } from "./photoRequests";
 import type { ReplayRequests } from "./replayRequests";
 import type { SiteRequests } from "./siteRequests";
 import type { StationRequests } from "./stationRequests";
@@ -25,6 +26,7 @@ export interface StationSource {
   readonly site: SiteRequests;
   readonly maps: MapRequests;
   readonly flights: FlightRequests;
+  readonly photos: PhotoRequests;
   /** Moves a replay; a live station refuses it. */
   readonly replay: ReplayRequests;
   readonly station: StationRequests;

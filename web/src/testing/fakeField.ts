@@ -86,6 +86,7 @@ export function flownRegion(changes: Partial<FlownRegionView> = {}): FlownRegion
     started_unix_s: 1_777_800_000,
     reached_m2: 20_000,
     left_m2: 8_000,
+    gaps_m2: null,
     days: [
       { day: "2026-05-03", imaged_m2: 6_000, in_sun_m2: 5_000 },
       { day: "2026-05-01", imaged_m2: 9_000, in_sun_m2: 7_000 },

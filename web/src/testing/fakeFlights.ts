@@ -3,10 +3,13 @@ import type {
   FlightView,
   FlownRegionsView,
   Outcome,
+  PhotoJobView,
+  PhotosView,
   SurveyCameraView,
   SurveyEstimateView,
 } from "../protocol";
 import type { FlightRequests } from "../source/flightRequests";
+import type { PhotoRequests } from "../source/photoRequests";
 import type { SurveyRequests } from "../source/surveyRequests";
 import { planExports, surveyEstimate } from "./fakeField";
 import { answered, failed, noPicture, type PageRequests } from "./pageRequests";
@@ -29,6 +32,7 @@ export interface FakeFlights {
   figures: Outcome<FlightFiguresView>;
   estimate: SurveyEstimateView;
   flown: FlownRegionsView;
+  photos: Outcome<PhotosView>;
 }
 
 export function fakeFlights(): FakeFlights {
@@ -37,6 +41,7 @@ export function fakeFlights(): FakeFlights {
     figures: failed("no figures in this test"),
     estimate: surveyEstimate(),
     flown: { today: "2026-05-03", regions: [], unreadable: [] },
+    photos: answered({ job: null }),
   };
 }
 
@@ -54,6 +59,62 @@ export function fakeFlightRequests(flights: FakeFlights, requests: PageRequests)
     record: async (flight) => {
       requests.sent.push({ flight, file: "record.mcap" });
       return failed("no record in this test");
+    },
+  };
+}
+
+/** A finished job that has found everything, with `changes` applied. */
+export function photoJob(changes: Partial<PhotoJobView> = {}): PhotoJobView {
+  const names = ["clock", "tags", "gaps", "mosaic", "report"] as const;
+  return {
+    flight: "flight-20250620T160412Z",
+    folders: ["/media/card/DCIM"],
+    out: "/home/anna/records/flight-20250620T160412Z-photos",
+    state: "done",
+    steps: names.map((name) => ({ name, state: "done", problem: "" })),
+    doing: "",
+    share: null,
+    clocks: [
+      {
+        camera: "CAM-1",
+        vehicle: "Drone 1",
+        photos: 48,
+        offset_s: -18_037.6,
+        sigma_s: 0.3,
+        distance_m: 1.5,
+        is_stated: false,
+        is_reported: false,
+      },
+    ],
+    counts: { photos: 48, sunlit: 12, mixed: 4, shaded: 30, unknown: 2 },
+    gaps: { area_m2: 7_000, regions: 2 },
+    mosaic: {
+      resolution_m: 0.5,
+      sun_m2: 10_000,
+      shade_m2: 28_000,
+      unknown_m2: 1_000,
+      missing_m2: 1_000,
+    },
+    files: ["tags.csv", "fly-again.geojson", "mosaic.png", "report.html"],
+    warnings: ["CAM-1: its clock is off by no time zone"],
+    ...changes,
+  };
+}
+
+export function fakePhotoRequests(flights: FakeFlights, requests: PageRequests): PhotoRequests {
+  return {
+    view: async () => flights.photos,
+    start: async (startedPhotos) => {
+      requests.sent.push({ startedPhotos });
+      return flights.photos;
+    },
+    cancel: async () => {
+      requests.sent.push({ cancelled: "photos" });
+      return flights.photos;
+    },
+    file: async (photoFile) => {
+      requests.sent.push({ photoFile });
+      return answered({ blob: new Blob(["x"]), frameId: null });
     },
   };
 }

@@ -14,7 +14,12 @@ import type {
   UpwindView,
 } from "../protocol";
 import type { StationSource } from "../source/stationSource";
-import { fakeFlightRequests, fakeFlights, fakeSurveyRequests } from "./fakeFlights";
+import {
+  fakeFlightRequests,
+  fakeFlights,
+  fakePhotoRequests,
+  fakeSurveyRequests,
+} from "./fakeFlights";
 import { fakeSite, fakeSiteRequests } from "./fakeSite";
 import { answered, failed, noPicture, PageRequests } from "./pageRequests";
 
@@ -118,6 +123,7 @@ export function fakeSource(station: FakeStation): StationSource {
       tileRequest: (url) => ({ url }),
     },
     flights: fakeFlightRequests(station.flights, requests),
+    photos: fakePhotoRequests(station.flights, requests),
     replay: {
       marks: async () => answered(station.marks),
       change: async (transport) => {

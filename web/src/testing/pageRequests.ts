@@ -5,6 +5,8 @@ import type {
   NewSurvey,
   NewZone,
   Outcome,
+  PhotoFile,
+  PhotoRequest,
   ReplayTransport,
   SurveyAgainRequest,
 } from "../protocol";
@@ -43,6 +45,9 @@ export type PageRequest =
     }
   | { readonly stoppedSurvey: number; readonly word: "pause" | "abort" }
   | { readonly transport: ReplayTransport }
+  | { readonly startedPhotos: PhotoRequest }
+  | { readonly cancelled: "photos" }
+  | { readonly photoFile: PhotoFile }
   | { readonly flight: string; readonly file?: FlightFile | "record.mcap" };
 
 /** The requests of a page other than orders, and the answer to those that the station may refuse. */

@@ -12,6 +12,7 @@ import type {
   FlownRegionView,
   NamedOrder,
   OrderResult,
+  PhotoJobView,
   PreflightView,
   ReplayMarksView,
   StationState,
@@ -60,6 +61,8 @@ export interface RenderedPage {
   showMaps(maps: BaseMapsView): void;
   /** Sets the marks of a replay. */
   showMarks(marks: ReplayMarksView): void;
+  /** Sets the job on photos, or why it cannot be read. */
+  showPhotos(job: PhotoJobView | null | string): void;
   /** Sets the flight records, or why they cannot be read, and the figures of each. */
   showFlights(flights: readonly FlightView[] | string, figures: FlightFiguresView | string): void;
   failPreflight(problem: string): void;
@@ -146,6 +149,9 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
     showFlights: (records, figures) => {
       flights.records = typeof records === "string" ? failed(records) : answered([...records]);
       flights.figures = typeof figures === "string" ? failed(figures) : answered(figures);
+    },
+    showPhotos: (job) => {
+      flights.photos = typeof job === "string" ? failed(job) : answered({ job });
     },
     showMaps: (maps) => {
       station.maps = answered(maps);

@@ -73,7 +73,7 @@ class PhotoStepView(Message):
 
     name: PhotoStepName
     state: Literal["waiting", "running", "done", "failed"]
-    problem: str = Field(default="", description="why it failed, and what to do")
+    problem: str = Field(description="why it failed, and what to do; empty if it has not")
 
 
 class PhotoJobView(Message):
@@ -82,16 +82,16 @@ class PhotoJobView(Message):
     flight: str
     folders: list[str]
     out: str = Field(description="folder of the results, on the station's computer")
-    state: Literal["running", "done", "failed", "cancelled"] = "running"
+    state: Literal["running", "done", "failed", "cancelled"]
     steps: list[PhotoStepView]
-    doing: str = Field(default="", description="what is counted by `share`")
-    share: float | None = Field(default=None, description="of what is being done, 0 to 1")
-    clocks: list[CameraClockView] = Field(default_factory=list)
-    counts: PhotoCountsView | None = None
-    gaps: PhotoGapsView | None = None
-    mosaic: PhotoMosaicView | None = None
-    files: list[PhotoFileName] = Field(default_factory=list)
-    warnings: list[str] = Field(default_factory=list)
+    doing: str = Field(description="what is counted by `share`")
+    share: float | None = Field(description="of what is being done, 0 to 1")
+    clocks: list[CameraClockView]
+    counts: PhotoCountsView | None
+    gaps: PhotoGapsView | None
+    mosaic: PhotoMosaicView | None
+    files: list[PhotoFileName]
+    warnings: list[str]
 
 
 class PhotosView(Message):

@@ -115,6 +115,9 @@ class SurveyAgainRequest(StrictMessage):
         "those imaged since the survey was begun",
     )
     all_again: bool = Field(default=False, description="no cell is left out")
+    gaps: bool = Field(
+        default=False, description="all cells are left out but those in gaps of `/api/photos`"
+    )
 
 
 class FlownDayView(Message):
@@ -143,6 +146,9 @@ class FlownRegionView(Message):
     started_unix_s: int = Field(description="when it was last started")
     reached_m2: float
     left_m2: float = Field(description="not imaged as its planner wants since it was begun")
+    gaps_m2: float | None = Field(
+        description="of the ground that the photos show too little in sun; null without photos"
+    )
     days: list[FlownDayView] = Field(description="the newest first")
     changes: list[str] = Field(description="what differs now, in words: outline, origin")
     refusal: str | None = Field(description="why it cannot be flown again; null: it can")

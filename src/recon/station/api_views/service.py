@@ -50,6 +50,8 @@ class Service:
     """Position of a replay; None on a live station."""
     numbers: VehicleNumbers = field(default_factory=VehicleNumbers)
     flown: FlownRegions = field(default_factory=FlownRegions)
+    gaps_file: Callable[[], Path | None] = lambda: None
+    """The gaps that the newest photos show."""
     drawing: SiteService = field(init=False)
     """The layers in the site's folder."""
     site_vehicles: SiteVehiclesService = field(init=False)
@@ -102,7 +104,7 @@ class Service:
     @property
     def surveys(self) -> SurveyService:
         """The surveys of this run."""
-        return SurveyService(self.driver, self.site, self._ids, self.flown)
+        return SurveyService(self.driver, self.site, self._ids, self.flown, self.gaps_file)
 
     def commanded(self, event: Event, refusal: Refusal | None) -> schema.ActionResponse:
         """Handle an operator command, unless it is refused."""

@@ -49,8 +49,8 @@ def _add_commands(app: FastAPI, service: Service) -> None:
     @app.post("/api/surveys/again")
     async def again(asked: schema.SurveyAgainRequest, request: Request) -> schema.SurveyResponse:
         """Plan a survey of a flown region on its rows: what is left, or all. Nothing flies."""
-        await asyncio.to_thread(service.flown.note)
-        answer = service.surveys.again(asked, person_of(request))
+        drafted = await asyncio.to_thread(service.surveys.drafted_again, asked)
+        answer = service.surveys.request(drafted, person_of(request))
         if answer.survey is None:
             return answer
         return _planned(await _until_planned(service, answer.survey))

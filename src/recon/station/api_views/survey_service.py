@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
@@ -53,10 +54,12 @@ class SurveyService:
     ids: Callable[[], int]
     flown: FlownRegions = field(default_factory=FlownRegions)
     """What is kept of earlier surveys."""
+    gaps_file: Callable[[], Path | None] = lambda: None
+    """The gaps of a flight's photos, as `recon tag` writes them."""
 
     def ask(self, asked: schema.SurveyRequest, by: Person) -> schema.SurveyResponse:
         """Request a survey; an invalid region is refused at once."""
-        return self._request(self._drafted(asked, self.ids), by)
+        return self.request(self._drafted(asked, self.ids), by)
 
     def draft_preview(
         self, asked: schema.SurveyRequest, serials: Sequence[str]
@@ -94,21 +97,24 @@ class SurveyService:
         planner = asked.planner or ("sunlit_first" if imagers else "lawnmower_once")
         return self._with_rows(_survey(ids(), asked, region, camera, planner), asked.rows)
 
-    def again(self, asked: schema.SurveyAgainRequest, by: Person) -> schema.SurveyResponse:
-        """Request a survey of a flown region, or of what is left of it. Nothing flies yet."""
-        return self._request(survey_again(asked, self.ids(), self.flown, self.site), by)
+    def drafted_again(self, asked: schema.SurveyAgainRequest) -> Survey | Refusal:
+        """Return the survey of a flown region, or of what is left of it; not on the event loop."""
+        self.flown.note()
+        return survey_again(asked, self.ids(), self.flown, self.site, self.gaps_file())
 
     def flown_regions(self) -> schema.FlownRegionsView:
         """Return the regions that were surveyed, as of now; not on the event loop."""
         self.flown.note()
-        return flown_regions_view(self.flown, self.site, self.driver.now_ns())
+        now_ns = self.driver.now_ns()
+        return flown_regions_view(self.flown, self.site, now_ns, self.gaps_file())
 
     def _with_rows(self, survey: Survey, rows: str) -> Survey | Refusal:
         if self.site.frame is None:
             return survey
         return with_rows(survey, self.site.frame, self.flown.all, RowChoice(rows), day_of)
 
-    def _request(self, survey: Survey | Refusal, by: Person) -> schema.SurveyResponse:
+    def request(self, survey: Survey | Refusal, by: Person) -> schema.SurveyResponse:
+        """Request a survey that is drafted. Nothing flies yet."""
         if isinstance(survey, Refusal):
             return _refused(survey)
         self.driver.handle(SurveyRequested(survey, by.label))

@@ -99,12 +99,7 @@ class PhotoJob:
                 raise PhotoRequestError(text) from problem
             raise
         self._is_cancelled = False
-        self._job = schema.PhotoJobView(
-            flight=asked.flight,
-            folders=folders,
-            out=str(self._out(asked.flight)),
-            steps=[schema.PhotoStepView(name=name, state="waiting") for name in STEPS],
-        )
+        self._job = _begun(asked.flight, folders, self._out(asked.flight))
         self._thread = Thread(target=self._work, args=(asked, record, folders), daemon=True)
         self._thread.start()
         return self.view()
@@ -248,6 +243,25 @@ class PhotoJob:
     def _warn(self, text: str) -> None:
         known = dict.fromkeys((*self._now.warnings, text[:LONGEST_SENTENCE]))
         self._change(warnings=list(known)[:MOST_WARNINGS])
+
+
+def _begun(flight: str, folders: list[str], out: Path) -> schema.PhotoJobView:
+    """Return a job that has found nothing yet."""
+    return schema.PhotoJobView(
+        flight=flight,
+        folders=folders,
+        out=str(out),
+        state="running",
+        steps=[schema.PhotoStepView(name=name, state="waiting", problem="") for name in STEPS],
+        doing="",
+        share=None,
+        clocks=[],
+        counts=None,
+        gaps=None,
+        mosaic=None,
+        files=[],
+        warnings=[],
+    )
 
 
 def _folder(text: str, records: Path) -> str:

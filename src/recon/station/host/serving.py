@@ -98,6 +98,7 @@ def _servers(
         stack.callback(flights.close)
         photos = PhotoJob(config.record_folder, flights.record)
         stack.callback(photos.close)
+        service.gaps_file = lambda: photos.file("fly-again.geojson")
     maps = maps_of(config.site_folder, lambda: service.site)
     stack.callback(maps.close)
     app = create_app(

@@ -59,6 +59,7 @@ function Region(props: {
       id: props.region.id,
       since: typeof chosen === "object" ? chosen.since : null,
       all_again: chosen === "none",
+      gaps: false,
     });
     setPlanning(false);
     props.onResult(outcome);

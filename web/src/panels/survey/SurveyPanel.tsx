@@ -75,6 +75,7 @@ interface SurveyProps {
 }
 
 function SurveySection(props: SurveyProps) {
+  const { panels } = useConsole();
   const is = (...phases: SurveyView["phase"][]) => phases.includes(props.survey.phase);
   /** Vehicles to list; of a finished survey only those still returning home. */
   const active = () =>
@@ -124,6 +125,11 @@ function SurveySection(props: SurveyProps) {
         </Show>
         <Show when={is("created", "running", "paused")}>
           <Stop survey={props.survey} onResult={props.onResult} word="abort" />
+        </Show>
+        <Show when={is("done", "aborted")}>
+          <button type="button" class="button" onClick={() => panels.open("photos")}>
+            {text.photos.open}
+          </button>
         </Show>
         <Show when={is("done") && active().length > 0}>
           <Stop survey={props.survey} onResult={props.onResult} word="hold" />

@@ -29,7 +29,7 @@ describe("a region that was flown", () => {
     expect(find<HTMLDetailsElement>(page.root, "details").open).toBe(true);
     find(page.root, "[aria-label='Resume south field: plan the rest']").click();
     expect(page.requests).toEqual([
-      { surveyAgain: { id: "77fbea7c1a8d8637", since: null, all_again: false } },
+      { surveyAgain: { id: "77fbea7c1a8d8637", since: null, all_again: false, gaps: false } },
     ]);
   });
 

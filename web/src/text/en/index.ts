@@ -6,6 +6,7 @@ import * as map from "./map";
 import * as newSite from "./newSite";
 import * as orders from "./orders";
 import * as page from "./page";
+import * as photos from "./photos";
 import * as site from "./site";
 import * as station from "./station";
 
@@ -18,6 +19,7 @@ export const english = {
   ...map,
   ...light,
   ...flown,
+  ...photos,
   ...site,
   ...newSite,
   ...station,

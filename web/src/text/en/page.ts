@@ -37,6 +37,7 @@ export const panels = {
     orders: "Orders",
     timeline: "Timeline",
     links: "Links",
+    photos: "Photos",
     flights: "After the flight",
     station: "Station and site",
   },
