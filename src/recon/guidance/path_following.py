@@ -2,11 +2,11 @@
 
 The law settles on a goal; on a path it need not: a corner counts as reached within `corner_m`, at
 walking pace, and the vehicle turns. On the way between two waypoints the height follows the
-straight line between them, since that is what was judged, and the speed is what height takes.
+straight line between them, since that is what was judged, and the progress is what height takes.
 """
 
 from dataclasses import dataclass, replace
-from math import atan2, degrees, hypot
+from math import atan2, degrees, hypot, inf
 
 from recon.geo.distance import offset_north_east_m
 from recon.guidance.steering import Goal, KinematicState, SteeringSettings
@@ -71,6 +71,7 @@ def goal_on(path: SteeredPath, seen: KinematicState, settings: SteeringSettings)
     """Return the goal now: the leg's end, at the height of the leg where the vehicle is."""
     waypoint = path.waypoint
     speed_mps = path.mission.waypoints[max(0, path.index - 1)].speed_mps
+    progress_mps = inf
     along = offset_north_east_m(path.start, _place(waypoint))
     far_m = hypot(*along)
     rise_m = waypoint.height_above_takeoff_m - path.start_height_above_takeoff_m
@@ -81,8 +82,8 @@ def goal_on(path: SteeredPath, seen: KinematicState, settings: SteeringSettings)
         ahead = seen.speed_mps * (seen.age_s + settings.latency_s) / far_m
         height_m -= (1.0 - min(1.0, max(0.0, share + ahead))) * rise_m
         rate_mps = settings.climb_mps if rise_m > 0.0 else settings.sink_mps
-        speed_mps = min(speed_mps, rate_mps * far_m / max(abs(rise_m), 1e-9))
-    return Goal(_place(waypoint), height_m, speed_mps, leg_yaw_deg(path))
+        progress_mps = rate_mps * far_m / max(abs(rise_m), 1e-9)
+    return Goal(_place(waypoint), height_m, speed_mps, leg_yaw_deg(path), progress_mps)
 
 
 def _is_at(waypoint: Waypoint, seen: KinematicState, settings: SteeringSettings) -> bool:

@@ -19,7 +19,7 @@ Theory of operation. At each setpoint:
 """
 
 from dataclasses import dataclass, replace
-from math import hypot, sqrt
+from math import hypot, inf, sqrt
 
 from recon.geo.distance import moved_m, offset_north_east_m
 from recon.model.geo import LatLon
@@ -84,12 +84,17 @@ class SteeringSettings:
 
 @dataclass(frozen=True, slots=True)
 class Goal:
-    """Where a vehicle is to go, at which horizontal speed, and how it points."""
+    """Where a vehicle is to go, at which horizontal speed, and how it points.
+
+    `speed_mps` bounds the demand, correction for wind included; `progress_mps` only how fast it
+    comes nearer, where a climb takes longer than the way: it must not bind the correction.
+    """
 
     target: LatLon
     height_above_takeoff_m: float
     speed_mps: float
     yaw_deg: float
+    progress_mps: float = inf
 
 
 @dataclass(frozen=True, slots=True)
@@ -213,7 +218,8 @@ def _wanted_velocity(
     distance_m = hypot(north_m, east_m)
     share = 0.0
     if distance_m > 0.0:
-        share = min(goal.speed_mps, approach_speed_mps(distance_m, settings)) / distance_m
+        nearer_mps = min(goal.speed_mps, goal.progress_mps)
+        share = min(nearer_mps, approach_speed_mps(distance_m, settings)) / distance_m
     # Within the ordered speed, whatever the wind: what was judged is never exceeded.
     return _clipped(north_m * share - push_mps[0], east_m * share - push_mps[1], goal.speed_mps)
 
