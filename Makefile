@@ -32,7 +32,7 @@ demo: setup web ## Run a survey under broken cloud: station, simulated drones, c
 test: setup web ## Set everything up and pass all tests but the long flights
 	@$(MAKE) -j3 test-e2e test-python test-rust test-web $(ALSO)
 
-test-all: setup web ## All tests with the long flights, as CI runs them
+test-all: setup web ## All tests with the long flights, as before a release
 	@$(MAKE) test CHOSEN=
 
 # In parts, so that `make -j2 check` of CI fills two cores: each part is mostly one process.
