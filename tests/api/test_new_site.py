@@ -3,12 +3,17 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 from tests.api.client import Client
 
 from recon.api.new_site_app import PAGE, create_new_site_app
 from recon.api.security import Access, AccessCheck
+from recon.geo import Polygon, enu_from_points
 from recon.site import load_site
+from recon.site.drawing import read_drawing
+from recon.site.load import read_rehearsal
+from recon.station.api_views.site_service import feature_view
 from recon.station.host.new_site import NewSite, awaits_site
 
 ASKED = {
@@ -25,6 +30,12 @@ FIELD = {
         "type": "Polygon",
         "coordinates": [[[-93.61, 41.9], [-93.6, 41.9], [-93.6, 41.91], [-93.61, 41.9]]],
     },
+}
+
+
+EAST = {
+    "type": "Polygon",
+    "coordinates": [[[-93.598, 41.9], [-93.595, 41.9], [-93.595, 41.905], [-93.598, 41.9]]],
 }
 
 
@@ -65,7 +76,52 @@ def test_a_site_is_made_that_a_station_starts_with(client: Client, new_site: New
     assert site.frame.origin.latitude_deg == 41.9012
     # Sea level is about 30 m below the ellipsoid there.
     assert site.frame.origin.ellipsoid_height_m == pytest.approx(244.9, abs=1.0)
-    assert list(site.profiles) == ["SIM-1", "SIM-2"]
+    assert list(site.profiles) == ["SIM-1", "SIM-2", "SIM-IMAGER"]
+
+
+def test_the_shapes_of_a_file_are_kept_and_pads_are_beside_the_crop(
+    client: Client, new_site: NewSite
+) -> None:
+    regions = [
+        {"name": "north", "geometry": FIELD["geometry"]},
+        {"name": "north", "geometry": EAST},
+    ]
+    asked = {**ASKED, "regions": regions, "margin_m": 40.0}
+    shown = client.post("/api/site/new/shapes", json=asked).json()
+    assert shown["accepted"] is True
+    assert not new_site.folder.exists()
+    assert client.post("/api/site/new", json=asked).json()["accepted"] is True
+    site = load_site(new_site.folder)
+    assert list(site.layers.survey_regions) == ["north", "north 2"]
+    drawn = [feature_view(each).model_dump(mode="json") for each in read_drawing(new_site.folder)]
+    assert sorted(map(str, drawn)) == sorted(map(str, shown["features"]))
+    assert site.frame is not None
+    assert site.layers.boundary is not None
+    crops = [Polygon(region) for region in site.layers.survey_regions.values()]
+    corners_m = np.vstack([each.outline_m for each in site.layers.survey_regions.values()])
+    rooms_m = Polygon(site.layers.boundary).distance_to_edge_m(corners_m)
+    assert rooms_m.min() == pytest.approx(40.0, abs=2.0)
+    pads_m = enu_from_points(site.frame, [pad.place for pad in site.layers.landing_pads])[:, :2]
+    assert len(pads_m) == 3
+    gaps_m = np.hypot(*(pads_m[:, None] - pads_m).T) + 1e3 * np.eye(3)
+    assert gaps_m.min() > 24.9
+    off_m = -np.array([crop.distance_to_edge_m(pads_m) for crop in crops]).max(axis=0)
+    assert off_m == pytest.approx(np.full(3, 15.0), abs=0.5)
+    assert Polygon(site.layers.boundary).distance_to_edge_m(pads_m).min() > 20.0
+
+
+def test_a_place_alone_is_a_square_field_with_an_imaging_drone(
+    client: Client, new_site: NewSite
+) -> None:
+    asked = {**ASKED, "cloud_cover_percent": 70.0, "wind_mps": 6.0, "wind_from_deg": 180.0}
+    assert client.post("/api/site/new", json=asked).json()["accepted"] is True
+    site = load_site(new_site.folder)
+    (region,) = site.layers.survey_regions.values()
+    assert Polygon(region).area_m2 == pytest.approx(40_000.0, rel=1e-3)
+    assert list(site.imagers) == ["SIM-IMAGER"]
+    assert all(profile.pad is not None for profile in site.profiles.values())
+    sky = read_rehearsal(new_site.folder)
+    assert (sky.cloud_cover_percent, sky.wind_mps, sky.wind_from_deg) == (70.0, 6.0, 180.0)
 
 
 @pytest.mark.parametrize(
@@ -73,7 +129,15 @@ def test_a_site_is_made_that_a_station_starts_with(client: Client, new_site: New
     [
         ({"latitude_deg": 91.0}, "expected a latitude of -90 to 90, got 91"),
         ({"longitude_deg": -181.0}, "expected a longitude of -180 to 180, got -181"),
-        ({"simulated_drones": 65}, "expected 0 to 64 drones, got 65"),
+        ({"simulated_drones": 65}, "expected 0 to 63 drones, got 65"),
+        ({"margin_m": 5.0}, "expected a margin of 20 to 300 m, got 5 m"),
+        (
+            {"simulated_drones": 60},
+            "expected at most 35 vehicles, got 61: the field's edge has no room for more pads "
+            "25 m apart",
+        ),
+        ({"cloud_cover_percent": 101.0}, "expected a cover of 0 to 100 %, got 101"),
+        ({"wind_mps": -1.0}, "expected a wind of 0 to 15 m/s, got -1"),
         ({"name": ""}, "expected a name of 1 to 64 printable letters, got ''"),
         ({"name": "a\nb"}, "expected a name of 1 to 64 printable letters, got 'a\\nb'"),
     ],

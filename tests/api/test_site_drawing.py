@@ -19,7 +19,7 @@ from recon.model.geo import GeoPoint
 from recon.model.person import Person, Role
 from recon.record.files import file_set
 from recon.site import load_site
-from recon.site.new_site import make_site
+from recon.site.new_site import NewSiteFields, make_site
 from recon.station.control import site_drawing
 from recon.station.state.steps import StepTaken
 
@@ -75,7 +75,9 @@ class Editor(SiteEditor):
 @pytest.fixture
 def editor(tmp_path: Path) -> Editor:
     folder = tmp_path / "field"
-    make_site(folder, "field", GeoPoint(LAT, LON, 275.0), 2)
+    make_site(
+        folder, GeoPoint(LAT, LON, 275.0), NewSiteFields(name="field", drones=2, has_imager=False)
+    )
     return Editor(folder, FakeStation(load_site(folder)))
 
 

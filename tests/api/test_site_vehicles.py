@@ -19,7 +19,7 @@ from recon.model.geo import GeoPoint
 from recon.model.person import Person, Role
 from recon.model.vehicle import AltitudeReference
 from recon.site import load_site
-from recon.site.new_site import make_site
+from recon.site.new_site import NewSiteFields, make_site
 from recon.site.vehicle_rows import VehicleRow, VehicleRowError, read_vehicle_rows, stage_vehicles
 from recon.vehicles.reports import to_report
 
@@ -53,13 +53,13 @@ class Editor(SiteEditor):
 @pytest.fixture
 def editor(tmp_path: Path) -> Editor:
     folder = tmp_path / "field"
-    make_site(folder, "field", PLACE, 2)
+    make_site(folder, PLACE, NewSiteFields(name="field", drones=2, has_imager=False))
     return Editor(folder, FakeStation(load_site(folder)))
 
 
 def commented(tmp_path: Path) -> Path:
     folder = tmp_path / "commented"
-    make_site(folder, "field", PLACE, 0)
+    make_site(folder, PLACE, NewSiteFields(name="field", drones=0, has_imager=False))
     with (folder / "site.toml").open("a") as file:
         file.write(COMMENTED)
     return folder
@@ -211,7 +211,7 @@ def test_comments_and_other_keys_stay_with_their_vehicle(tmp_path: Path) -> None
 
 def test_vehicles_in_another_form_are_refused_not_damaged(tmp_path: Path) -> None:
     folder = tmp_path / "inline"
-    make_site(folder, "field", PLACE, 0)
+    make_site(folder, PLACE, NewSiteFields(name="field", drones=0, has_imager=False))
     text = (folder / "site.toml").read_text()
     (folder / "site.toml").write_text('vehicles = [{ serial = "A-1" }]\n' + text)
     with pytest.raises(Exception, match=r"\[\[vehicles\]\] section with one key a line"):

@@ -18,7 +18,7 @@ from recon.model.errors import RecordError
 from recon.model.geo import GeoPoint
 from recon.record.mcap.link_bytes import LINKS_TOPIC, link_bytes
 from recon.record.mcap.mcap_repair import is_finished
-from recon.site.new_site import make_site
+from recon.site.new_site import NewSiteFields, make_site
 from recon.site.reading import MAPS_FOLDER
 from recon.station.recording.playback import Playback
 from recon.station.recording.replay import check
@@ -200,7 +200,11 @@ def test_wrong_options_are_one_sentence(options: tuple[str, ...], text: str) -> 
 
 def test_a_station_shows_the_base_maps_of_its_sites_folder(tmp_path: Path) -> None:
     folder = tmp_path / "field"
-    make_site(folder, "field", GeoPoint(41.9015, -93.602, 275.0), drones=0)
+    make_site(
+        folder,
+        GeoPoint(41.9015, -93.602, 275.0),
+        NewSiteFields(name="field", drones=0, has_imager=False),
+    )
     (folder / MAPS_FOLDER).mkdir()
     first, *keys = keys_over(FIELD, range(15, 17))
     assert keys[0][0] == first[0] == 15

@@ -43,9 +43,12 @@ def layer_file(path: Path, *names: str, kind: str = "Polygon") -> Path:
 
 def test_a_new_folder_is_a_site_with_drones_to_rehearse_with(folder: Path) -> None:
     site = load_site(folder)
-    assert (site.name, list(site.profiles)) == ("west field", ["SIM-1", "SIM-2", "SIM-3"])
+    assert (site.name, list(site.profiles)) == (
+        "west field",
+        ["SIM-1", "SIM-2", "SIM-3", "SIM-IMAGER"],
+    )
     text = recon_site("check", str(folder))
-    assert "site west field: 3 vehicle profiles" in text
+    assert "site west field: 4 vehicle profiles" in text
     assert "warning: no boundary" in text
     with pytest.raises(SiteError, match="exists already"):
         recon_site("new", str(folder), *PLACE)

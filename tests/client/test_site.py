@@ -10,7 +10,7 @@ from tests.patient_loop import run_patiently
 from recon.client import Refusal, SiteDrawing, SiteFeature, SiteVehicle, SiteVehicles, Station
 from recon.model.geo import GeoPoint
 from recon.site import load_site
-from recon.site.new_site import make_site
+from recon.site.new_site import NewSiteFields, make_site
 
 RING = [[-93.604, 41.901], [-93.602, 41.901], [-93.602, 41.903], [-93.604, 41.901]]
 
@@ -23,7 +23,11 @@ def region(*ring: list[float]) -> SiteFeature:
 @pytest.fixture
 def fake(tmp_path: Path) -> FakeStation:
     """A station that edits a new site's folder."""
-    make_site(tmp_path, "field", GeoPoint(41.9012, -93.6034, 275.0), 1)
+    make_site(
+        tmp_path,
+        GeoPoint(41.9012, -93.6034, 275.0),
+        NewSiteFields(name="field", drones=1, has_imager=False),
+    )
     station = FakeStation(load_site(tmp_path))
     station.edit(tmp_path)
     return station

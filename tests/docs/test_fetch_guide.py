@@ -11,7 +11,7 @@ from recon.guidance.flying_hours import FlyingLimits, corner_deg
 from recon.model.survey_camera import CAMERAS
 from recon.site.elevation_tiles import DegreeTile, has_places, tile_address
 from recon.site.load import read_fetch_table
-from recon.site.new_site import make_site, point_above_sea_level
+from recon.site.new_site import NewSiteFields, make_site, point_above_sea_level
 from recon.site.open_meteo import FARTHEST_DEG, MOST_HOURS
 from recon.site.terrain_source import KNOWN, known_elevation
 
@@ -41,7 +41,11 @@ def test_the_addresses_name_the_tiles_as_their_publishers_do() -> None:
 
 def test_the_table_for_the_sites_file_is_one(tmp_path: Path) -> None:
     (text,) = (block for language, block in BLOCKS if language == "toml")
-    path = make_site(tmp_path, "x", point_above_sea_level(50.0, 14.0, 200.0), 0)
+    path = make_site(
+        tmp_path,
+        point_above_sea_level(50.0, 14.0, 200.0),
+        NewSiteFields(name="x", drones=0, has_imager=False),
+    )
     path.write_text(path.read_text() + text)
     table = read_fetch_table(tmp_path)
     assert table.elevation == tomllib.loads(text)["fetch"]["elevation"]

@@ -16,7 +16,7 @@ from tests.e2e.test_restart import free_port
 
 from recon.geo import geo_from_enu
 from recon.model.geo import GeoPoint, LocalFrame
-from recon.site.new_site import make_site
+from recon.site.new_site import NewSiteFields, make_site
 
 HOME = GeoPoint(44.99, -93.2, 250.0)
 FIELD_M = (0.0, 160.0, 0.0, 60.0)
@@ -36,7 +36,7 @@ def write_layer(path: Path, west_east_south_north_m: tuple[float, ...]) -> None:
 
 def write_site(folder: Path) -> None:
     """A site with one region beside its drone's pad."""
-    toml = make_site(folder, "farm", HOME, 1)
+    toml = make_site(folder, HOME, NewSiteFields(name="farm", drones=1, has_imager=False))
     write_layer(folder / "regions.geojson", FIELD_M)
     write_layer(folder / "boundary.geojson", FENCE_M)
     layers = '[layers]\nsurvey_regions = "regions.geojson"\nboundary = "boundary.geojson"\n'

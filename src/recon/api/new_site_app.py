@@ -24,6 +24,10 @@ class NewSitePort(Importing, Protocol):
         """Return the folder, and a name for the site."""
         ...
 
+    async def shapes(self, asked: schema.NewSiteRequest) -> schema.NewSiteShapes:
+        """Return the layers that the site would have, or why there is no such site."""
+        ...
+
     async def make(self, asked: schema.NewSiteRequest) -> schema.ActionResponse:
         """Make the site, or return why not."""
         ...
@@ -39,6 +43,11 @@ def create_new_site_app(port: NewSitePort, console: Path, version: str) -> FastA
         return port.about()
 
     add_import(app, lambda: port)
+
+    @app.post("/api/site/new/shapes")
+    async def shapes(asked: schema.NewSiteRequest) -> schema.NewSiteShapes:
+        """The layers that the site would have, to be looked at. Nothing is written."""
+        return await port.shapes(asked)
 
     @app.post("/api/site/new")
     async def make(asked: schema.NewSiteRequest) -> schema.ActionResponse:

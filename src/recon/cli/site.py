@@ -57,11 +57,14 @@ def new_command(
     ] = None,
     name: Annotated[str | None, typer.Option(help="Default: the folder's name.")] = None,
     drones: Annotated[
-        int, typer.Option(min=0, max=64, help="Simulated drones to rehearse with; 0: none.")
+        int,
+        typer.Option(
+            min=0, max=63, help="Simulated drones to rehearse with, and an imaging drone; 0: none."
+        ),
     ] = 3,
 ) -> None:
     """Make a site's folder. Its layers are drawn in the console, or imported."""
-    from recon.site.new_site import make_site, point_above_sea_level
+    from recon.site.new_site import NewSiteFields, make_site, point_above_sea_level
 
     place = _place(at)
     if (above_sea_level is None) == (altitude_m is None):
@@ -70,7 +73,8 @@ def new_command(
         origin = GeoPoint(*place, altitude_m)
     else:
         origin = point_above_sea_level(*place, _height_m(above_sea_level or ""))
-    path = make_site(folder, name or folder.resolve().name, origin, drones)
+    asked = NewSiteFields(name=name or folder.resolve().name, drones=drones, has_imager=drones > 0)
+    path = make_site(folder, origin, asked)
     print_line(f"{path} is written")
     print_line(f"draw it and rehearse: recon demo --site {folder}")
 

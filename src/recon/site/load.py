@@ -31,6 +31,7 @@ from recon.site.schema import (
     LayersTable,
     LimitsTable,
     OriginTable,
+    RehearsalTable,
     SiteTable,
     TileServerTable,
     VehicleTable,
@@ -142,6 +143,7 @@ def load_site(folder: Path) -> Site:
     failsafe = failsafe_from_tables(path, table.failsafe)
     _tile_server(path, table)
     convert(path, table.fetch, FetchTable, "fetch")
+    convert(path, table.rehearsal, RehearsalTable, "rehearsal")
     cameras = read_survey_cameras(folder)
     _refuse_unknown_cameras(path, profiles, cameras)
     site = Site(
@@ -171,6 +173,13 @@ def read_fetch_table(folder: Path) -> FetchTable:
     path = folder / SITE_FILE
     table = convert(path, _read_site_file(path), SiteTable, "")
     return convert(path, table.fetch, FetchTable, "fetch")
+
+
+def read_rehearsal(folder: Path) -> RehearsalTable:
+    """Return the sky and wind that a site's folder is rehearsed under. Raises `SiteError`."""
+    path = folder / SITE_FILE
+    table = convert(path, _read_site_file(path), SiteTable, "")
+    return convert(path, table.rehearsal, RehearsalTable, "rehearsal")
 
 
 def _tile_server(path: Path, table: SiteTable) -> TileServerTable | None:

@@ -97,6 +97,17 @@ class GroundImageTable(_Table, frozen=True):
     cell_m: Annotated[float, Meta(ge=0.01, le=100.0)] = 1.0
 
 
+class RehearsalTable(_Table, frozen=True):
+    """[rehearsal]: the sky and the wind that `recon demo --site` simulates over the site."""
+
+    cloud_cover_percent: Annotated[float, Meta(ge=0.0, le=100.0)] = 40.0
+    """Fair-weather cumulus, as in the demonstration."""
+    wind_mps: Annotated[float, Meta(ge=0.0, le=15.0)] = 3.5
+    """Ten metres above the ground."""
+    wind_from_deg: Annotated[float, Meta(ge=0.0, le=360.0)] = 250.0
+    """Where it comes from, clockwise from north."""
+
+
 class PadTable(_Table, frozen=True):
     """pad: where a vehicle takes off and lands."""
 
@@ -228,4 +239,5 @@ class SiteTable(_Table, frozen=True):
     failsafe: dict[str, Any] = {}
     tile_server: dict[str, Any] | None = None
     fetch: dict[str, Any] = {}
+    rehearsal: dict[str, Any] = {}
     vehicles: list[dict[str, Any]] = []

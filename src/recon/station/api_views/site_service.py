@@ -115,7 +115,7 @@ class SiteService:
         read = await self.edited.read(read_drawing)
         return schema.SiteDrawingView(
             revision=read.revision,
-            features=[_feature_view(each) for each in read.found],
+            features=[feature_view(each) for each in read.found],
             locked_reason=read.locked_reason,
             undo=read.undo,
         )
@@ -126,7 +126,8 @@ def _feature(view: schema.DrawnFeatureView) -> DrawnFeature:
     return DrawnFeature(view.layer, geometry, view.properties)
 
 
-def _feature_view(feature: DrawnFeature) -> schema.DrawnFeatureView:
+def feature_view(feature: DrawnFeature) -> schema.DrawnFeatureView:
+    """Return a feature as the API shows it."""
     return schema.DrawnFeatureView(
         layer=feature.layer,
         geometry=schema.DrawnGeometry.model_validate(feature.geometry),

@@ -5,16 +5,25 @@ from collections.abc import Callable
 from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from recon import version
 from recon.api import schema
 from recon.api.login import Login
 from recon.api.new_site_app import create_new_site_app
 from recon.model.errors import SiteError
-from recon.site.new_site import make_site, point_above_sea_level
+from recon.model.geo import GeoPoint
+from recon.site.new_site import (
+    MOST_LETTERS,
+    NewSiteFields,
+    layers_of,
+    make_site,
+    point_above_sea_level,
+    rehearsal_of,
+)
 from recon.station.api_views import outcome_of
 from recon.station.api_views.edited_site import site_refusal
-from recon.station.api_views.site_service import FileImports
+from recon.station.api_views.site_service import FileImports, feature_view
 from recon.station.host.http_servers import listen, loopback_server, stop_on_signals, url_of
 
 HOST = "127.0.0.1"
@@ -39,17 +48,53 @@ class NewSite:
         """Return the polygons and points of a file, or why it is refused."""
         return await self._imports.read(name, data, close_paths=close_paths)
 
+    async def shapes(self, asked: schema.NewSiteRequest) -> schema.NewSiteShapes:
+        """Return the layers that the site would have, or why there is no such site."""
+        try:
+            origin, fields = _asked(asked)
+            drawn = await asyncio.to_thread(layers_of, origin, fields)
+        except SiteError as problem:
+            refused = outcome_of(site_refusal(str(problem)))
+            return schema.NewSiteShapes(**refused, features=[])
+        features = [feature_view(each) for each in drawn.features]
+        return schema.NewSiteShapes(**outcome_of(None), features=features)
+
     async def make(self, asked: schema.NewSiteRequest) -> schema.ActionResponse:
         """Make the site, or return why not."""
         try:
-            origin = point_above_sea_level(
-                asked.latitude_deg, asked.longitude_deg, asked.ground_above_sea_level_m
-            )
-            make_site(self.folder, asked.name, origin, asked.simulated_drones)
+            origin, fields = _asked(asked)
+            await asyncio.to_thread(make_site, self.folder, origin, fields)
         except SiteError as problem:
             return schema.ActionResponse(**outcome_of(site_refusal(str(problem))))
         self.made.set()
         return schema.ActionResponse(**outcome_of(None))
+
+
+def _asked(asked: schema.NewSiteRequest) -> tuple[GeoPoint, NewSiteFields]:
+    """Return the origin and the fields of a request. Raises `SiteError`."""
+    origin = point_above_sea_level(
+        asked.latitude_deg, asked.longitude_deg, asked.ground_above_sea_level_m
+    )
+    fields = NewSiteFields(
+        name=asked.name,
+        drones=asked.simulated_drones,
+        has_imager=asked.simulated_drones > 0,
+        regions=_by_name(asked.regions, asked.name),
+        margin_m=asked.margin_m,
+        rehearsal=rehearsal_of(asked.cloud_cover_percent, asked.wind_mps, asked.wind_from_deg),
+    )
+    return origin, fields
+
+
+def _by_name(regions: list[schema.NewRegion], site: str) -> dict[str, dict[str, Any]]:
+    """Return the polygons by names that are all different; one without a name has the site's."""
+    named: dict[str, dict[str, Any]] = {}
+    for region in regions:
+        name = base = region.name[: MOST_LETTERS - 4].strip() or site
+        while name in named:
+            name = f"{base} {len(named) + 1}"
+        named[name] = region.geometry.model_dump()
+    return named
 
 
 def awaits_site(folder: Path) -> bool:
