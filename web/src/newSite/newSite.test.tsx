@@ -34,12 +34,15 @@ class FakeBrowser implements Browser {
   answers: Record<string, (() => Response | Promise<Response>)[]> = {
     "api/site/new": [() => json({ folder: "/fields/north", name: "north" })],
   };
+  /** What the station would make of each request. */
+  layers: unknown[] = [];
   coords: GeolocationCoordinates | null = NOWHERE;
   isOpen = false;
 
   async fetch(path: string, init?: RequestInit): Promise<Response> {
     const [place = ""] = path.split("?");
     this.asked.push({ path, body: init?.body });
+    if (place === "api/site/new/shapes") return json({ features: this.layers });
     const answer = this.answers[place]?.shift();
     if (answer === undefined) throw new TypeError("no connection");
     return answer();
@@ -48,6 +51,12 @@ class FakeBrowser implements Browser {
   async locate() {
     if (this.coords === null) throw new Error("denied");
     return { coords: this.coords };
+  }
+
+  /** The bodies of requests to a path, except those without one. */
+  sent(path: string): Record<string, unknown>[] {
+    const bodies = this.asked.filter((each) => each.path === path && each.body !== undefined);
+    return bodies.map(({ body }) => JSON.parse(String(body)));
   }
 
   async wait() {}
@@ -90,6 +99,19 @@ function type(label: string, text: string) {
   field.dispatchEvent(new InputEvent("input", { bubbles: true }));
 }
 
+function slide(label: string, value: number) {
+  const slider = input(label);
+  slider.value = String(value);
+  slider.dispatchEvent(new InputEvent("input", { bubbles: true }));
+}
+
+const shape = (name: string, geometry: unknown) => ({
+  name,
+  geometry,
+  layer: null,
+  properties: {},
+});
+
 async function make() {
   root.querySelector("form")?.dispatchEvent(new SubmitEvent("submit", { bubbles: true }));
   for (let turn = 0; turn < 6; turn += 1) await settled();
@@ -111,34 +133,45 @@ describe("the page that makes a site", () => {
       () => json({}),
     ];
     type("latitude", "47.1, 8.6");
-    type("Ground there", "450,5");
+    type("Height above", "450,5");
     type("Simulated drones", "2");
+    type("Wind, m/s", "6");
+    slide("Clouds", 65);
     await make();
-    expect(JSON.parse(String(browser.asked[1]?.body))).toEqual({
-      name: "north",
-      latitude_deg: 47.1,
-      longitude_deg: 8.6,
-      ground_above_sea_level_m: 450.5,
-      simulated_drones: 2,
-    });
+    expect(browser.sent("api/site/new")).toEqual([
+      {
+        name: "north",
+        latitude_deg: 47.1,
+        longitude_deg: 8.6,
+        ground_above_sea_level_m: 450.5,
+        simulated_drones: 2,
+        regions: [],
+        margin_m: 30,
+        cloud_cover_percent: 65,
+        wind_mps: 6,
+        wind_from_deg: 250,
+      },
+    ]);
     expect(browser.asked.filter(({ path }) => path === "api/state")).toHaveLength(3);
     expect(browser.isOpen).toBe(true);
   });
 
   it("sends metres of a height typed in feet", async () => {
-    chooseLengthUnit("ft");
+    const unit = root.querySelector("select");
+    if (unit === null) throw new Error("no choice of units");
+    unit.value = "ft";
+    unit.dispatchEvent(new Event("change", { bubbles: true }));
     type("latitude", "47.1, 8.6");
-    type("Ground there", "1000");
+    type("Height above", "1000");
     browser.answers["api/site/new"] = [() => json(ACCEPTED)];
     await make();
-    const body = JSON.parse(String(browser.asked[1]?.body)) as { ground_above_sea_level_m: number };
-    expect(body.ground_above_sea_level_m).toBe(304.8);
+    expect(browser.sent("api/site/new")[0]?.["ground_above_sea_level_m"]).toBe(304.8);
   });
 
   it("reports a station that does not start after all", async () => {
     browser.answers["api/site/new"] = [() => json(ACCEPTED)];
     type("latitude", "47.1, 8.6");
-    type("Ground there", "450");
+    type("Height above", "450");
     root.querySelector("form")?.dispatchEvent(new SubmitEvent("submit", { bubbles: true }));
     for (let turn = 0; turn < 500 && !notice()?.includes("did not start"); turn += 1)
       await settled();
@@ -148,20 +181,21 @@ describe("the page that makes a site", () => {
 
   it.each([
     ["latitude", "somewhere", "Place: expected latitude and longitude"],
-    ["Ground there", "high", "Ground above sea level: expected a number"],
+    ["Height above", "high", "Height above sea level: expected a number"],
+    ["Wind, m/s", "breezy", "Wind: expected a speed in m/s"],
     ["Simulated drones", "2.5", "Simulated drones: expected a whole number"],
   ])("refuses a wrong %s and sends nothing", async (label, text, sentence) => {
     type("latitude", "47.1, 8.6");
-    type("Ground there", "450");
+    type("Height above", "450");
     type(label, text);
     await make();
     expect(notice()).toContain(sentence);
-    expect(browser.asked).toHaveLength(1);
+    expect(browser.sent("api/site/new")).toEqual([]);
   });
 
   it("shows the station's refusal, and why it does not answer", async () => {
     type("latitude", "47.1, 8.6");
-    type("Ground there", "450");
+    type("Height above", "450");
     const reason = "/fields/north/site.toml exists already; choose another folder";
     browser.answers["api/site/new"] = [() => json({ accepted: false, rule: "site", reason })];
     await make();
@@ -173,14 +207,52 @@ describe("the page that makes a site", () => {
     expect(notice()).toBe("name: too long");
   });
 
-  it("takes the middle of a file's shapes for the place", async () => {
+  it("keeps the shapes of a file, with the boundary as far out as its slider says", async () => {
     browser.answers["api/site/import"] = [
-      () => json({ reason: null, features: [{ geometry: KML }] }),
+      () => json({ reason: null, features: [shape("west", KML), shape("east", KML)] }),
     ];
+    browser.layers = [{ layer: "boundary", geometry: KML, properties: {} }];
     await choose(new File(["kml"], "north field.kml"));
-    expect(input("latitude").value).toBe("47.1500000, 8.6000000");
-    expect(browser.asked[1]?.path).toBe("api/site/import?name=north%20field.kml");
-    expect(notice()).toContain("Import its shapes later");
+    expect(browser.asked.map(({ path }) => path)).toContain(
+      "api/site/import?name=north%20field.kml",
+    );
+    expect(document.activeElement).toBe(input("Height above"));
+    expect(root.querySelector("svg .field-picture-boundary")).not.toBeNull();
+    expect(root.textContent).not.toContain("latitude, longitude");
+    input("west").click();
+    slide("Boundary", 45);
+    type("Height above", "450");
+    await make();
+    expect(notice()).toBe("Choose a field of the file.");
+    input("east").click();
+    browser.answers["api/site/new"] = [() => json(ACCEPTED)];
+    await make();
+    const [asked] = browser.sent("api/site/new");
+    expect(asked).toMatchObject({
+      latitude_deg: 47.15,
+      longitude_deg: 8.6,
+      margin_m: 45,
+      regions: [{ name: "east", geometry: KML }],
+    });
+    expect(browser.sent("api/site/new/shapes").at(-1)).toMatchObject({ margin_m: 45 });
+  });
+
+  it("shows that it reads while it reads, and a file without a field", async () => {
+    let end = (_: Response) => {};
+    browser.answers["api/site/import"] = [
+      () =>
+        new Promise<Response>((resolve) => {
+          end = resolve;
+        }),
+    ];
+    await choose(new File(["kml"], "slow.kml"));
+    expect(root.querySelector("[role=status]")?.textContent).toBe("Reading slow.kml");
+    expect(root.querySelector("progress")).not.toBeNull();
+    const point = { type: "Point", coordinates: [8.5, 47.1] };
+    end(json({ reason: null, features: [shape("gate", point)] }));
+    for (let turn = 0; turn < 4; turn += 1) await settled();
+    expect(root.querySelector("progress")).toBeNull();
+    expect(notice()).toContain("slow.kml has no field");
   });
 
   it("shows why a file is not read", async () => {

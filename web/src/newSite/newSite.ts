@@ -1,5 +1,7 @@
 import { createSignal } from "solid-js";
-import { cornerOf, cornerText } from "../site/siteFeatures";
+import type { LonLat } from "../map/localGrid";
+import type { DrawnFeatureView, ImportedView } from "../protocol";
+import { cornerOf, cornerText, ringsOf } from "../site/siteFeatures";
 import { text } from "../text/catalogue";
 import { metresOf, numberIn } from "../text/units";
 
@@ -15,18 +17,27 @@ export interface Browser {
 /** What is asked of a new site, as it is typed. */
 export interface Fields {
   readonly name: string;
-  /** Latitude and longitude in degrees. */
+  /** Latitude and longitude in degrees; of no use where a file has the field's shape. */
   readonly place: string;
   readonly groundHeight: string;
   readonly drones: string;
+  /** Speed in m/s and where it comes from in degrees. */
+  readonly wind: string;
+  readonly windFrom: string;
+  /** From the field to the boundary. */
+  readonly margin_m: number;
+  readonly cover_percent: number;
+}
+
+/** A polygon of a file. */
+export interface FieldShape {
+  readonly name: string;
+  readonly geometry: DrawnFeatureView["geometry"];
+  /** Whether it is a field to survey. */
+  readonly isChosen: boolean;
 }
 
 export type Notice = { readonly kind: "error" | "done"; readonly text: string };
-
-type Position = readonly [lon: number, lat: number];
-interface Shape {
-  readonly geometry: { readonly coordinates: unknown };
-}
 
 const ASK_AGAIN_MS = 500;
 /** Three times as long as a station takes to start on a slow computer. */
@@ -35,8 +46,9 @@ const STARTS_WITHIN_MS = 60_000;
 export type NewSite = ReturnType<typeof createNewSite>;
 
 /**
- * A site to be made: asks the station which folder it is for, finds the field's place, and has the site made. The station
- * then begins at the same address, and the console opens.
+ * A site to be made: asks the station which folder it is for, finds the field's shape or place, shows the layers that
+ * the station would make of it, and has the site made. The station then begins at the same address, and the console
+ * opens.
  */
 export function createNewSite(browser: Browser) {
   const [folder, setFolder] = createSignal("");
@@ -45,74 +57,114 @@ export function createNewSite(browser: Browser) {
     place: "",
     groundHeight: "",
     drones: "3",
+    wind: "3.5",
+    windFrom: "250",
+    margin_m: 30,
+    cover_percent: 40,
   });
+  const [shapes, setShapes] = createSignal<readonly FieldShape[]>([]);
+  const [layers, setLayers] = createSignal<readonly DrawnFeatureView[]>([]);
   const [notice, setNotice] = createSignal<Notice | null>(null);
-  const [isBusy, setBusy] = createSignal(false);
-  const change = (changed: Partial<Fields>) => setFields((before) => ({ ...before, ...changed }));
+  const [busyWith, setBusyWith] = createSignal<string | null>(null);
   const refuse = (why: string) => setNotice({ kind: "error", text: why });
 
   /** Runs one piece of work at a time; a problem becomes the notice. */
-  const working = async (work: () => Promise<void>) => {
-    setBusy(true);
+  const working = async (what: string, work: () => Promise<void>) => {
+    setBusyWith(what);
     setNotice(null);
     try {
       await work();
     } catch (problem) {
       refuse(problem instanceof Error ? problem.message : String(problem));
     } finally {
-      setBusy(false);
+      setBusyWith(null);
     }
   };
 
-  const answer = async (path: string, init?: RequestInit): Promise<Record<string, unknown>> => {
+  const answer = async <T>(path: string, init?: RequestInit): Promise<T> => {
     const response = await browser.fetch(path, init).catch(() => {
       throw new Error(text.newSite.noAnswer);
     });
-    const body = (await response.json()) as Record<string, unknown>;
+    const body = await response.json();
     if (!response.ok) throw new Error(String(body["error"] ?? response.statusText));
-    return body;
+    return body as T;
+  };
+  const post = <T>(path: string, body: unknown) =>
+    answer<T>(path, {
+      method: "POST",
+      headers: { "Content-Type": "application/json" },
+      body: JSON.stringify(body),
+    });
+
+  let isLooking = false;
+  let isChanged = false;
+  /** Shows the layers of what is asked for, the newest one of quick changes; nothing while that is incomplete. */
+  const look = async () => {
+    isChanged = true;
+    if (isLooking) return;
+    isLooking = true;
+    while (isChanged) {
+      isChanged = false;
+      setLayers(await layersOf(fields(), shapes()).catch(() => []));
+    }
+    isLooking = false;
+  };
+  const layersOf = async (typed: Fields, chosen: readonly FieldShape[]) => {
+    // The picture is flat: any height will do.
+    const request = requestOf({ ...typed, groundHeight: "0" }, chosen);
+    return (await post<{ features: DrawnFeatureView[] }>("api/site/new/shapes", request)).features;
   };
 
+  const change = (changed: Partial<Fields>) => {
+    setFields((before) => ({ ...before, ...changed }));
+    void look();
+  };
+  const take = (found: readonly FieldShape[]) => {
+    setShapes(found);
+    void look();
+  };
+  const choose = (index: number, isChosen: boolean) =>
+    take(shapes().map((shape, at) => (at === index ? { ...shape, isChosen } : shape)));
+
   const begin = () =>
-    working(async () => {
-      const about = await answer("api/site/new");
-      setFolder(String(about["folder"]));
-      change({ name: String(about["name"]) });
+    working(text.newSite.starting, async () => {
+      const about = await answer<{ folder: string; name: string }>("api/site/new");
+      setFolder(about.folder);
+      change({ name: about.name });
     });
 
   const readFile = (file: File) =>
-    working(async () => {
-      const read = await answer(`api/site/import?name=${encodeURIComponent(file.name)}`, {
-        method: "POST",
-        body: file,
-      });
-      const reason = read["reason"];
-      if (typeof reason === "string") throw new Error(reason);
-      const place = middleOf(read["features"] as readonly Shape[]);
-      change({ place: cornerText(place) });
-      setNotice({
-        kind: "done",
-        text: text.newSite.middleOf(file.name),
-      });
+    working(text.newSite.reading(file.name), async () => {
+      const read = await answer<ImportedView>(
+        `api/site/import?name=${encodeURIComponent(file.name.slice(-100))}`,
+        { method: "POST", body: file },
+      );
+      if (read.reason !== null) throw new Error(read.reason);
+      const polygons = read.features.filter(
+        ({ geometry, layer }) =>
+          geometry.type === "Polygon" && (layer ?? "survey_regions") === "survey_regions",
+      );
+      if (polygons.length === 0) throw new Error(text.newSite.noPolygon(file.name));
+      take(polygons.map(({ name, geometry }, at) => ({ name, geometry, isChosen: at === 0 })));
     });
 
   const locate = () =>
-    working(async () => {
+    working(text.newSite.locating, async () => {
       const found = await browser.locate().catch(() => {
         throw new Error(text.newSite.unknownPlace);
       });
       const { latitude, longitude } = found.coords;
+      take([]);
       change({ place: cornerText({ lat: latitude, lon: longitude }) });
     });
 
   const make = () =>
-    working(async () => {
-      const made = await answer("api/site/new", {
-        method: "POST",
-        headers: { "Content-Type": "application/json" },
-        body: JSON.stringify(asked(fields())),
-      });
-      if (made["accepted"] !== true) throw new Error(String(made["reason"]));
+    working(text.newSite.making, async () => {
+      const made = await post<{ accepted: boolean; reason: string | null }>(
+        "api/site/new",
+        requestOf(fields(), shapes()),
+      );
+      if (!made.accepted) throw new Error(String(made.reason));
       setNotice({ kind: "done", text: text.newSite.made });
       await untilStarted();
       browser.openConsole();
@@ -127,40 +179,60 @@ export function createNewSite(browser: Browser) {
     throw new Error(text.newSite.notStarted);
   };
 
-  return { folder, fields, change, notice, isBusy, begin, readFile, locate, make };
+  const forget = () => take([]);
+  return {
+    folder,
+    fields,
+    shapes,
+    layers,
+    notice,
+    /** What the page waits for, as a sentence; null: nothing. */
+    busyWith,
+    change,
+    choose,
+    /** Goes back to a place without a shape. */
+    forget,
+    begin,
+    readFile,
+    locate,
+    make,
+  };
 }
 
 /** The request for a site; throws a sentence for what is no number. */
-function asked(fields: Fields) {
-  const place = cornerOf(fields.place);
+function requestOf(fields: Fields, shapes: readonly FieldShape[]) {
+  const chosen = shapes.filter(({ isChosen }) => isChosen);
+  if (shapes.length > 0 && chosen.length === 0) throw new Error(text.newSite.noneChosen);
+  const place = chosen.length > 0 ? middleOf(chosen) : cornerOf(fields.place);
   if (place === null) throw new Error(text.newSite.badPlace);
-  const height = numberIn(fields.groundHeight);
-  if (typeof height !== "number") throw new Error(text.newSite.badHeight);
-  const drones = numberIn(fields.drones);
-  if (typeof drones !== "number" || !Number.isInteger(drones))
-    throw new Error(text.newSite.badDrones);
+  const drones = number(fields.drones, text.newSite.badDrones);
+  if (!Number.isInteger(drones)) throw new Error(text.newSite.badDrones);
   return {
     name: fields.name,
     latitude_deg: place.lat,
     longitude_deg: place.lon,
-    ground_above_sea_level_m: metresOf(height),
+    ground_above_sea_level_m: metresOf(number(fields.groundHeight, text.newSite.badHeight)),
     simulated_drones: drones,
+    regions: chosen.map(({ name, geometry }) => ({ name, geometry })),
+    margin_m: fields.margin_m,
+    cloud_cover_percent: fields.cover_percent,
+    wind_mps: number(fields.wind, text.newSite.badWind),
+    wind_from_deg: number(fields.windFrom, text.newSite.badWind),
   };
 }
 
-/** The middle of the box around all shapes. */
-function middleOf(shapes: readonly Shape[]) {
-  const corners = shapes.flatMap(({ geometry }) => positions(geometry.coordinates));
-  const lons = corners.map(([lon]) => lon);
-  const lats = corners.map(([, lat]) => lat);
-  const middle = (values: readonly number[]) => (Math.min(...values) + Math.max(...values)) / 2;
-  return { lon: middle(lons), lat: middle(lats) };
+function number(typed: string, problem: string): number {
+  const value = numberIn(typed);
+  if (value === null) throw new Error(problem);
+  return value;
 }
 
-/** All positions of GeoJSON coordinates, however deep. */
-function positions(coordinates: unknown): Position[] {
-  if (!Array.isArray(coordinates)) return [];
-  const [lon, lat] = coordinates as readonly unknown[];
-  if (typeof lon === "number" && typeof lat === "number") return [[lon, lat]];
-  return coordinates.flatMap(positions);
+/** The middle of the box around all shapes, to a centimetre. */
+function middleOf(shapes: readonly FieldShape[]): LonLat {
+  const corners = shapes.flatMap(({ geometry }) => ringsOf(geometry).flat());
+  const middle = (values: readonly number[]) => {
+    const [least, most] = [Math.min(...values), Math.max(...values)];
+    return Number(((least + most) / 2).toFixed(7));
+  };
+  return { lon: middle(corners.map(({ lon }) => lon)), lat: middle(corners.map(({ lat }) => lat)) };
 }

@@ -4,7 +4,7 @@ import type {
   SiteDrawingRequest,
   SiteVehiclesRequest,
 } from "../protocol";
-import { answered, SITE_READ, SITE_SAVE, type StationHttp } from "./stationHttp";
+import { answered, SITE_IMPORT, SITE_READ, SITE_SAVE, type StationHttp } from "./stationHttp";
 
 export type SiteRequests = ReturnType<typeof siteRequests>;
 
@@ -50,7 +50,7 @@ export function siteRequests(http: StationHttp) {
     /** Reads the polygons and points of a file of another program; nothing is saved. */
     readFile: (file: File, closePaths = false) =>
       http.read(
-        SITE_READ,
+        SITE_IMPORT,
         `/api/site/import?close_paths=${closePaths}&name=${encodeURIComponent(file.name.slice(-100))}`,
         { method: "POST", body: file },
         (response): Promise<ImportedView> => response.json(),

@@ -26,9 +26,11 @@ export const PLANNING: Limit = {
   ms: 12_000,
   ifLate: text.requests.planningLate,
 };
-/** The site's files are read or written, or an imported file is read. */
+/** The site's files are read or written. */
 const SITE_MS = 25_000;
 export const SITE_READ: Limit = { ms: SITE_MS, ifLate: text.requests.siteReadLate };
+/** A file to import may be read for 120 s, after another one, and the station says what is wrong with a slow one. */
+export const SITE_IMPORT: Limit = { ms: 150_000, ifLate: text.requests.siteReadLate };
 export const SITE_SAVE: Limit = {
   ms: SITE_MS,
   ifLate: text.requests.siteSaveLate,

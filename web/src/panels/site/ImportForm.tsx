@@ -46,7 +46,10 @@ export function ImportForm() {
       />
       <p class="muted">{text.imports.formats}</p>
       <Show when={isBusy()}>
-        <p role="status">{text.imports.reading}</p>
+        <label class="site-reading" role="status">
+          {text.imports.reading}
+          <progress />
+        </label>
       </Show>
       <NoticeLine notice={notice()?.about === "import" ? notice() : null} />
       <Reading />
