@@ -5,7 +5,7 @@ import { expect, type Page, test } from "@playwright/test";
 import { axeFaults } from "./axe";
 import { smallTargets } from "./legibility";
 import { openPanel } from "./openPanel";
-import { DEMO_SITE, startStation } from "./stationProcess";
+import { DEMO_SITE, runRecon, startStation } from "./stationProcess";
 import { THEMES } from "./themes";
 
 const CONNECT_WITHIN_MS = 180_000;
@@ -28,17 +28,20 @@ async function pressMap(page: Page, ...places: (readonly [number, number])[]) {
   for (const [x, y] of places) await page.mouse.click(x * width, y * height);
 }
 
-test("a site is drawn and imported, flown, and its fences keep while it is flown", async ({
+test("an empty folder and a KML become a rehearsal with sun and forecast, in four presses", async ({
   page,
 }) => {
   test.setTimeout(480_000);
   // As docs/how-to/draw-a-site.md begins: a folder with nothing in it.
   const folder = await mkdtemp(join(tmpdir(), "recon-site-"));
+  const began_ms = Date.now();
   const station = await startStation("--site", folder);
+  let presses = 0;
   try {
     await page.goto(station.url);
-    await test.step("a site is made where the field is", async () => {
-      await expect(page.getByRole("heading", { name: "Where is your field?" })).toBeVisible();
+    await expect(page.getByRole("heading", { name: "Where is your field?" })).toBeVisible();
+    const waited_ms = await test.step("the page is readable in each theme", async () => {
+      const looked_ms = Date.now();
       expect(await smallTargets(page)).toEqual([]);
       for (const { name } of THEMES) {
         await page.evaluate((theme) => {
@@ -46,17 +49,86 @@ test("a site is drawn and imported, flown, and its fences keep while it is flown
         }, name);
         expect(await axeFaults(page)).toEqual([]);
       }
-      await page.getByLabel("Name").fill("North field");
+      return Date.now() - looked_ms;
+    });
+    await test.step("a site is made of the field's outline", async () => {
+      presses += 2; // the button, and the file in the dialog
       await page
         .getByLabel("Read it from a file")
         .setInputFiles({ name: "fields.kml", mimeType: "text/xml", buffer: Buffer.from(KML) });
-      await expect(page.getByLabel("latitude, longitude")).toHaveValue("41.9012000, -93.6034000");
-      await page.getByLabel(/^Ground there/).fill("275");
-      await page.getByLabel("Simulated drones").fill("2");
+      await expect(page.getByRole("checkbox", { name: /^north, \d/ })).toBeChecked();
+      await expect(page.getByRole("img", { name: /^The field, the boundary/ })).toBeVisible();
+      await expect(page.getByLabel("Height above sea level")).toBeFocused();
+      await page.keyboard.type("275");
+      presses += 1;
       await page.getByRole("button", { name: "Make the site" }).click();
     });
-    await expect(page.locator("button.craft")).toHaveCount(2, { timeout: CONNECT_WITHIN_MS });
-    await expect(page.getByRole("banner").getByText("North field")).toBeVisible();
+    const survey = page.getByRole("region", { name: "Survey", exact: true });
+    const rehearse = survey.getByRole("button", { name: /^Rehearse, hold 1.5 s/ });
+    await test.step("one button plans the survey and takes off", async () => {
+      await expect(page.locator("button.craft")).not.toHaveCount(0, { timeout: CONNECT_WITHIN_MS });
+      await expect(survey.getByText(/^3 simulated drones take off/)).toBeVisible();
+      presses += 1;
+      await rehearse.hover();
+      await page.mouse.down();
+      await expect(survey.getByText(/^Running/)).toBeVisible();
+      await page.mouse.up();
+    });
+    await test.step("all fly, with sun and forecast", async () => {
+      await expect(page.getByText(/^Sun now · \d+\s%/)).toBeVisible({ timeout: CONNECT_WITHIN_MS });
+      await expect(page.getByRole("slider", { name: "Time of the forecast" })).toBeVisible();
+      await expect(page.getByTestId("status-count")).toHaveText("4 of 4");
+      await expect(survey.getByText(/does not fly rows/)).toHaveCount(0);
+    });
+    const minutes = (Date.now() - began_ms - waited_ms) / 60_000;
+    console.log(`rehearsal from an empty folder: ${presses} presses, ${minutes.toFixed(2)} min`);
+    expect(presses).toBe(4);
+
+    await test.step("while a drone flies, a fence stays, and the refusal names it", async () => {
+      await openPanel(page, "Edit site");
+      const panel = page.getByRole("region", { name: "Edit site", exact: true });
+      await panel.getByRole("button", { name: "Edit", exact: true }).click();
+      await panel.getByRole("combobox", { name: "Add" }).selectOption("Keep-out zone");
+      await panel.getByRole("button", { name: "At map centre" }).click();
+      await panel.getByRole("button", { name: /^Save/ }).click();
+      await expect(
+        panel.getByText(/^Not saved: Boundary, zones and pads change only/),
+      ).toContainText("Drone 1");
+      await openPanel(page, "Site vehicles");
+      const table = page.getByRole("region", { name: "Site vehicles", exact: true });
+      const reference = table.getByRole("combobox", { name: "Altitude reference of SIM-1" });
+      await reference.selectOption("WGS84 ellipsoid");
+      await expect(table.getByText(/change, and it is added or removed, only while/)).toContainText(
+        "Drone 1. Land first",
+      );
+    });
+  } finally {
+    await station.stop();
+    await rm(folder, { recursive: true });
+  }
+});
+
+test("a site is drawn and imported in the browser, in force at once", async ({ page }) => {
+  test.setTimeout(480_000);
+  const folder = await mkdtemp(join(tmpdir(), "recon-site-"));
+  await runRecon(
+    "site",
+    "new",
+    folder,
+    "--at",
+    "41.9012,-93.6034",
+    "--drones",
+    "2",
+    "--ground-above-sea-level",
+    "275m",
+    "--name",
+    "North",
+  );
+  const station = await startStation("--site", folder);
+  try {
+    await page.goto(station.url);
+    await expect(page.locator("button.craft")).toHaveCount(3, { timeout: CONNECT_WITHIN_MS });
+    await expect(page.getByRole("banner").getByText("North")).toBeVisible();
     await openPanel(page, "Edit site");
     const panel = page.getByRole("region", { name: "Edit site", exact: true });
     const save = panel.getByRole("button", { name: /^Save/ });
@@ -117,31 +189,6 @@ test("a site is drawn and imported, flown, and its fences keep while it is flown
       await table.getByRole("button", { name: /^Undo last save: vehicles/ }).click();
       await expect(table.getByText("Undone. In force now")).toBeVisible();
       await expect(page.getByRole("checkbox", { name: /Birch/ })).toBeVisible();
-    });
-
-    await test.step("while a drone flies, a fence stays, and the refusal names it", async () => {
-      const survey = page.getByRole("region", { name: "Survey", exact: true });
-      await survey.getByRole("button", { name: "Plan survey" }).click();
-      await expect(survey.getByText("Planned, not started")).toBeVisible();
-      await page.getByRole("checkbox", { name: /Drone 1/ }).press("Space");
-      await survey.getByLabel("Allow takeoff for this start").check();
-      const start = survey.getByRole("button", { name: /^Start with selected, .*Drone 1/ });
-      await start.focus();
-      await page.keyboard.down("Enter");
-      await expect(survey.getByText(/^(Running|Stopped)/)).toBeVisible();
-      await page.keyboard.up("Enter");
-      await expect(page.getByTestId("status-count")).toHaveText("1 of 2");
-      await panel.getByRole("combobox", { name: "Add" }).selectOption("Keep-out zone");
-      await panel.getByRole("button", { name: "At map centre" }).click();
-      await save.click();
-      await expect(
-        panel.getByText(/^Not saved: Boundary, zones and pads change only/),
-      ).toContainText("Drone 1");
-      const reference = table.getByRole("combobox", { name: "Altitude reference of SIM-1" });
-      await reference.selectOption("WGS84 ellipsoid");
-      await expect(table.getByText(/change, and it is added or removed, only while/)).toContainText(
-        "Drone 1. Land first",
-      );
     });
   } finally {
     await station.stop();

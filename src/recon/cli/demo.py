@@ -8,6 +8,7 @@ from pathlib import Path
 from time import monotonic_ns, time, time_ns
 from typing import Annotated, Any
 
+import msgspec
 import typer
 
 import recon
@@ -18,11 +19,14 @@ from recon.cli.opened_site import opened_site
 from recon.cli.options import with_options
 from recon.cli.run import HAS_GUARD, console_folder, guard_port, print_started
 from recon.cli.scripted_operator import fly_surveys
+from recon.model.geo import LatLon
 from recon.score import Scenario, ScenarioError, load_scenario
+from recon.score.rehearsal import sun_over
 from recon.score.scenario_sky import sky_of
 from recon.score.truth import world_text
 from recon.site import Site, SiteError
-from recon.site.load import SITE_FILE
+from recon.site.load import SITE_FILE, read_rehearsal
+from recon.site.schema import RehearsalTable
 from recon.station.audit.start import default_place
 from recon.station.host.new_site import awaits_site, make_in_browser
 from recon.station.host.run import run
@@ -33,6 +37,8 @@ HTTP_PORT, LINK_PORT = 8080, 3001
 FEED = ("--fps", "2", "--image-format", "jpeg", "--jpeg-quality", "75")
 """What the imaging drone sends. A record keeps frames as they came: raw ones take 5 GB an hour.
 The quality is inside the range that simulated flights draw theirs from (`sim/conditions.py`)."""
+BATTERIES = ("--imager-endurance-min", "600", "--battery-swap-min", "3")
+"""As in a scenario: the imaging drone stays up, others fly again three minutes after landing."""
 SIMULATED = "SIM-"
 """The serials of simulated drones begin with it."""
 DEMO_SCENARIO = "cumulus-40.toml"
@@ -56,6 +62,23 @@ class DemoOptions:
             help="Your own site: its simulated drones wait there for your orders. An empty or "
             "missing folder: a page of the console asks where the field is, and makes the site."
         ),
+    ] = None
+    cover: Annotated[
+        float | None,
+        typer.Option(
+            min=0.0,
+            max=100.0,
+            help="With --site: share of the sky with clouds, percent; default: as its site.toml "
+            "states under [rehearsal], or 40.",
+        ),
+    ] = None
+    wind_mps: Annotated[
+        float | None,
+        typer.Option(min=0.0, max=15.0, help="With --site: wind 10 m above ground, m/s."),
+    ] = None
+    wind_from_deg: Annotated[
+        float | None,
+        typer.Option(min=0.0, max=360.0, help="With --site: where the wind comes from, degrees."),
     ] = None
     survey: Annotated[
         bool, typer.Option("--survey/--no-survey", help="Fly surveys with a scripted operator.")
@@ -86,6 +109,16 @@ class DemoOptions:
         ),
     ] = None
     no_record: Annotated[bool, typer.Option("--no-record", help="Record no flights.")] = False
+
+    def rehearsal(self, folder: Path) -> RehearsalTable:
+        """The sky and wind over a site: as asked for, else as its folder states."""
+        given = {
+            "cloud_cover_percent": self.cover,
+            "wind_mps": self.wind_mps,
+            "wind_from_deg": self.wind_from_deg,
+        }
+        asked = {key: value for key, value in given.items() if value is not None}
+        return msgspec.structs.replace(read_rehearsal(folder), **asked)
 
     @property
     def console_port(self) -> int:
@@ -163,10 +196,29 @@ def _rehearsed(folder: Path, options: DemoOptions) -> "_Demo":
             f"{folder}: expected [[vehicles]] with a serial that begins with {SIMULATED}, got "
             "none; recon site new makes a site with three"
         )
-    config = replace(options.config(own, http_port), site_folder=folder, is_record_required=False)
+    if not own.imagers:
+        print_now(
+            f"{folder} has no imaging drone: no ground image, sun or forecast. Add a simulated one "
+            f"with recon site imager {folder}"
+        )
+    air = options.rehearsal(folder)
+    assert own.frame is not None, "a folder's site has an origin"
+    origin = own.frame.origin
+    sun = sun_over(LatLon(origin.latitude_deg, origin.longitude_deg))
+    config = replace(
+        options.config(own, http_port),
+        site_folder=folder,
+        is_record_required=False,
+        sun_time_ahead_s=sun.start_utc_s - time(),
+    )
+    vehicles = len(simulated) + len(own.imagers.keys() - simulated)
+    words = ("--site", str(folder), "--vehicles", str(vehicles), "--seed", str(options.seed))
+    sky = ("--cover", f"{air.cloud_cover_percent:g}", "--wind-mps", f"{air.wind_mps:g}")
+    wind = ("--wind-to-deg", f"{(air.wind_from_deg + 180.0) % 360.0:g}")
     imager = ("--imager", *FEED) if own.imagers else ("--no-imager",)
-    words = ("--site", str(folder), "--vehicles", str(len(simulated)))
-    return _Demo(config, (*words, "--seed", str(options.seed), *imager), None)
+    # Fences change on the ground only: while there is no field to rehearse over, they are drawn.
+    start = () if own.layers.survey_regions else ("--grounded",)
+    return _Demo(config, (*words, *sky, *wind, *BATTERIES, *imager, *start), None)
 
 
 def _made_in_browser(folder: Path, http_port: int) -> int:

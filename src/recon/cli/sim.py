@@ -23,6 +23,7 @@ from recon.cli.sim_proxy import proxy_command
 from recon.model.geo import GeoPoint, LatLon
 from recon.model.vehicle import AltitudeReference
 from recon.score import load_scenario
+from recon.score.rehearsal import rehearsal_sky, rehearsal_wind
 from recon.score.simulation import go_home_heights_of, pads_of, rig_of, simulation_of
 from recon.sim.app.fault_file import FaultScript, load_faults
 from recon.sim.app.faults import parse_fault
@@ -35,8 +36,9 @@ from recon.sim.errors import SimulationError
 from recon.sim.fleet import IMAGER_SERIAL, Airborne, ImagerSetup, SimulationConfig
 from recon.sim.flight.estimate import FIELD_DRIFT
 from recon.sim.run import run_fleet
-from recon.sim.world import LayerSettings, Sky, SkySettings, SunSettings, WindSettings
 from recon.site import Imager, Site, SiteError, demo_site_folder, load_site
+from recon.site.new_site import rehearsal_of
+from recon.site.schema import RehearsalTable
 
 MAX_FPS_HZ = 30.0
 
@@ -48,6 +50,8 @@ class ImagerWorld(NamedTuple):
 
     rig: CameraRig | None
     source: FrameSource
+    hover_m: float | None = None
+    """Height at which it waits, where no marked frame states one."""
 
 
 @sim_app.callback(invoke_without_command=True)
@@ -77,16 +81,20 @@ def _config(fleet: FleetOptions, running: RunningOptions) -> SimulationConfig:
         station_host=host,
         station_port=port,
         vehicle_count=fleet.vehicles,
-        imagers={s: ImagerSetup(w.source, feed, w.rig) for s, w in worlds.items()},
+        imagers={s: ImagerSetup(w.source, feed, w.rig, w.hover_m) for s, w in worlds.items()},
         altitude_reference=AltitudeReference(fleet.altitude_reference.value),
         hover_on_ground=fleet.hover_on_ground,
         airborne=_AIRBORNE[fleet.airborne],
         wanders=fleet.wander,
         altitude_bias_m=fleet.altitude_bias_m,
         endurance_s=60.0 * fleet.endurance_min,
+        endurances_s=dict.fromkeys(
+            worlds, 60.0 * (fleet.imager_endurance_min or fleet.endurance_min)
+        ),
+        battery_swap_s=None if fleet.battery_swap_min is None else 60.0 * fleet.battery_swap_min,
         seed=running.seed,
         drift=FIELD_DRIFT,
-        wind=_wind(fleet.wind_mps, fleet.wind_to_deg, running.seed),
+        wind=rehearsal_wind(_air(fleet), abs(running.seed)),
         reports_mission_id=fleet.mission_ids,
         photo_interval_s=fleet.photo_interval_s,
         faults=(*(parse_fault(text) for text in fleet.fault or ()), *script.faults),
@@ -126,10 +134,10 @@ sim_app.command("proxy")(proxy_command)
 sim_app.command("photos")(photos_command)
 
 
-def _wind(speed_mps: float, heading_deg: float, seed: int) -> WindSettings | None:
-    if speed_mps == 0.0:
-        return None
-    return WindSettings(seed=abs(seed), speed_10m_mps=speed_mps, heading_deg=heading_deg)
+def _air(fleet: FleetOptions) -> RehearsalTable:
+    """Return clouds and wind as a site's folder states them."""
+    from_deg = (fleet.wind_to_deg + 180.0) % 360.0
+    return rehearsal_of(fleet.cover, fleet.wind_mps, from_deg)
 
 
 def _load_site(folder: Path | None) -> Site:
@@ -171,19 +179,25 @@ def _imager_worlds(place: Site, fleet: FleetOptions, seed: int) -> dict[str, Ima
             "expected a site with an [imager], or --frames, or --no-imager, got none"
         )
     assert place.frame is not None, "a site with an imaging drone has an origin"
-    sky, camera = _sky(place.frame.origin, seed), CameraSettings(seed)
+    origin, camera = place.frame.origin, CameraSettings(seed)
+    sky = rehearsal_sky(LatLon(origin.latitude_deg, origin.longitude_deg), _air(fleet), abs(seed))
     worlds = {}
     for serial, rig in rigs.items():
         circle = place.imagers[serial].image_circle
-        worlds[serial] = ImagerWorld(rig, FieldRenderer(rig.camera, circle, seed, sky, camera))
+        source = FieldRenderer(rig.camera, circle, seed, sky, camera)
+        worlds[serial] = ImagerWorld(rig, source, _hover_m(place, place.imagers[serial]))
     return worlds
 
 
-def _sky(origin: GeoPoint, seed: int) -> Sky:
-    """Return fair weather over a place: many small clouds, with frequent shadows."""
-    sun = SunSettings(LatLon(origin.latitude_deg, origin.longitude_deg))
-    clouds = LayerSettings(cover=0.35, outer_scale_m=2_500.0, softness=0.15)
-    return Sky(SkySettings(seed, sun, (clouds,)))
+HIGHEST_HOVER_M, BELOW_LIMIT_M = 110.0, 10.0
+"""Height of an imaging drone over one's own site: below what most countries allow."""
+
+
+def _hover_m(place: Site, imager: Imager) -> float | None:
+    """Return where an imaging drone hovers that telemetry places; a marked frame states it."""
+    if imager.solution is not None:
+        return None
+    return min(HIGHEST_HOVER_M, place.limits.max_height_above_ground_m - BELOW_LIMIT_M)
 
 
 def _rig(place: Site, imager: Imager) -> CameraRig:

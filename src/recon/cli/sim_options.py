@@ -81,6 +81,13 @@ class FleetOptions:
     endurance_min: Annotated[float, typer.Option(help="Hover time of a full battery, minutes.")] = (
         25.0
     )
+    imager_endurance_min: Annotated[
+        float | None, typer.Option(help="The same of imaging drones; default: as the others'.")
+    ] = None
+    battery_swap_min: Annotated[
+        float | None,
+        typer.Option(help="Minutes from landing to a full battery; default: it stays as it is."),
+    ] = None
     fault: Annotated[
         list[str] | None,
         typer.Option(
@@ -97,6 +104,9 @@ class FleetOptions:
     wind_to_deg: Annotated[
         float, typer.Option(help="Direction the wind blows to, degrees clockwise from north.")
     ] = 50.0
+    cover: Annotated[
+        float, typer.Option(min=0.0, max=100.0, help="Share of the sky with clouds, percent.")
+    ] = 40.0
     photo_interval_s: Annotated[
         float | None,
         typer.Option(

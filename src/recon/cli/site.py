@@ -79,6 +79,17 @@ def new_command(
     print_line(f"draw it and rehearse: recon demo --site {folder}")
 
 
+@site_app.command("imager")
+def imager_command(folder: FolderArgument) -> None:
+    """Add a simulated imaging drone to a site: rehearsals then have sun and forecast."""
+    from recon.site.drawing import stage_files
+    from recon.site.new_site import imager_files
+
+    opened_site(folder)
+    save_staged(folder, stage_files(folder, imager_files(folder)), "imaging drone")
+    print_line(f"{folder} has a simulated imaging drone; rehearse: recon demo --site {folder}")
+
+
 @site_app.command("check")
 def check_command(folder: FolderArgument) -> None:
     """Read a site as a start does: print its report and warnings, or what is wrong."""

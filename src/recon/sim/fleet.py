@@ -26,7 +26,7 @@ from recon.sim.world import Wind, WindSettings
 
 IMAGER_SERIAL = "SIM-IMAGER"
 IMAGER_HEIGHT_M = 130.0
-PADS_TO_A_ROW, PAD_SPACING_M = 8, 20.0
+PADS_TO_A_ROW, PAD_SPACING_M = 8, 25.0
 LARGEST_BIAS_M = 40.0
 """Error of DJI's absolute altitude: tens of metres."""
 
@@ -46,6 +46,8 @@ class ImagerSetup:
     source: FrameSource
     feed: FeedSettings = field(default_factory=FeedSettings)
     rig: CameraRig | None = None
+    hover_m: float | None = None
+    """With it, it starts this high above the origin of the rig's frame, from a pad of its own."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -153,7 +155,7 @@ def _build_app(
         battery_swap_s=config.battery_swap_s,
         battery_kept_share=config.battery_kept_share,
     )
-    motion = _imager_start(config, imager) if imager else _survey_start(config, number)
+    motion = _imager_start(config, imager, home) if imager else _survey_start(config, number)
     active_mode: ActiveMode = Grounded() if motion.height_m == 0.0 else PositionHold()
     east_m, north_m = (float(v) for v in enu_from_point(LocalFrame(config.home), home)[:2])
     if config.wanders and imager is None:
@@ -176,7 +178,8 @@ def _home_of(config: SimulationConfig, serial: str, number: int) -> GeoPoint:
     """Return the takeoff point: an imaging drone's below its marked position, others on pads."""
     imager = config.imagers.get(serial)
     rig = None if imager is None else imager.rig
-    if rig is not None:
+    has_pad = imager is not None and imager.hover_m is not None and serial in config.pads
+    if rig is not None and not has_pad:
         ground_m = rig.frame.origin.ellipsoid_height_m
         beneath = GeoPoint(rig.marked.latitude_deg, rig.marked.longitude_deg, ground_m)
         up_m = float(enu_from_point(rig.frame, beneath)[2])
@@ -193,11 +196,14 @@ def _go_home_height_m(number: int) -> float:
     return 40.0 + 8.0 * ((number - 1) % 10)
 
 
-def _imager_start(config: SimulationConfig, imager: ImagerSetup) -> AircraftMotion:
+def _imager_start(config: SimulationConfig, imager: ImagerSetup, home: GeoPoint) -> AircraftMotion:
     rig = imager.rig
     yaw_deg = 0.0 if rig is None else rig.marked.yaw_deg
     if config.airborne is Airborne.NONE:
         return AircraftMotion(yaw_deg=yaw_deg)
+    if rig is not None and imager.hover_m is not None:
+        east_m, north_m = enu_from_point(LocalFrame(home), rig.frame.origin)[:2].tolist()
+        return AircraftMotion(north_m, east_m, imager.hover_m, yaw_deg=yaw_deg)
     height_m = IMAGER_HEIGHT_M if rig is None else rig.marked.height_above_takeoff_m
     return AircraftMotion(height_m=height_m, yaw_deg=yaw_deg)
 

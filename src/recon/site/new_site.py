@@ -13,7 +13,8 @@ from recon.model.errors import SiteError
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.site.drawing import stage_drawing
 from recon.site.field_layers import USUAL_MARGIN_M, FieldLayers, field_layers, square_field
-from recon.site.load import MOST_VEHICLES, SITE_FILE, demo_site_folder
+from recon.site.load import LARGEST_FILE_BYTES, MOST_VEHICLES, SITE_FILE, demo_site_folder
+from recon.site.reading import read_bounded
 from recon.site.schema import RehearsalTable
 from recon.site.toml_lines import key_line
 
@@ -180,6 +181,13 @@ width_m = 544.0
 height_m = 544.0
 cell_m = 1.0
 """
+
+
+def imager_files(folder: Path) -> dict[str, bytes]:
+    """Return the files of a site's folder with a simulated imaging drone. Raises `SiteError`."""
+    text = read_bounded(folder / SITE_FILE, LARGEST_FILE_BYTES, "a site file").decode()
+    camera = (demo_site_folder() / CAMERA_FILE).read_bytes()
+    return {SITE_FILE: f"{text.rstrip()}\n{IMAGER_TEXT}".encode(), CAMERA_FILE: camera}
 
 
 def _drone(number: int) -> str:

@@ -7,6 +7,7 @@ import type {
   PhotosView,
   SurveyCameraView,
   SurveyEstimateView,
+  SurveyView,
 } from "../protocol";
 import type { FlightRequests } from "../source/flightRequests";
 import type { PhotoRequests } from "../source/photoRequests";
@@ -33,6 +34,8 @@ export interface FakeFlights {
   estimate: SurveyEstimateView;
   flown: FlownRegionsView;
   photos: Outcome<PhotosView>;
+  /** What a plan becomes. */
+  planned: SurveyView | null;
 }
 
 export function fakeFlights(): FakeFlights {
@@ -42,6 +45,7 @@ export function fakeFlights(): FakeFlights {
     estimate: surveyEstimate(),
     flown: { today: "2026-05-03", regions: [], unreadable: [] },
     photos: answered({ job: null }),
+    planned: null,
   };
 }
 
@@ -124,7 +128,7 @@ export function fakeSurveyRequests(flights: FakeFlights, requests: PageRequests)
   return {
     flownRegions: async () => answered(flights.flown),
     again: (surveyAgain) => requests.answer({ surveyAgain }, none),
-    plan: (plannedSurvey) => requests.answer({ plannedSurvey }, none),
+    plan: (plannedSurvey) => requests.answer({ plannedSurvey }, { survey: flights.planned }),
     start: (startedSurvey, serials, takeoff) =>
       requests.answer({ startedSurvey, serials, takeoff }, none),
     stop: (stoppedSurvey, word) => requests.answer({ stoppedSurvey, word }, none),

@@ -17,6 +17,7 @@ import type {
   ReplayMarksView,
   StationState,
   SurveyEstimateView,
+  SurveyView,
   UpwindPlaceView,
 } from "../protocol";
 import type { Announcement } from "../sound/announcements";
@@ -64,6 +65,8 @@ export interface RenderedPage {
   /** Sets the job on photos, or why it cannot be read. */
   showPhotos(job: PhotoJobView | null | string): void;
   /** Sets the flight records, or why they cannot be read, and the figures of each. */
+  /** What the next plan becomes. */
+  planAs(planned: SurveyView): void;
   showFlights(flights: readonly FlightView[] | string, figures: FlightFiguresView | string): void;
   failPreflight(problem: string): void;
   /** Sets how vehicle pictures are fetched. */
@@ -136,6 +139,9 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
     },
     showFlown: (...regions) => {
       flights.flown = { ...flights.flown, regions };
+    },
+    planAs: (planned) => {
+      flights.planned = planned;
     },
     estimateWith: (changes) => {
       flights.estimate = surveyEstimate(changes);

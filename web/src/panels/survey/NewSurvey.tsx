@@ -6,6 +6,7 @@ import { text } from "../../text/catalogue";
 import { vehicleLabel } from "../../text/names";
 import { inLengthUnit, lengthUnit } from "../../text/units";
 import { DraftEstimate } from "./DraftEstimate";
+import { isRehearsal, Rehearse } from "./Rehearse";
 import { createSurveyFigures, HIGHEST_M, LOWEST_M, type SurveyFigures } from "./surveyFigures";
 import { FASTEST_MPS } from "./surveyNumbers";
 
@@ -28,16 +29,21 @@ export function NewSurvey(props: {
   onResult: (outcome: Outcome<SurveyResponse>) => void;
 }) {
   const { fleet } = useConsole();
-  const [isOpen, setOpen] = createSignal(props.isFirst);
+  // What is to be pressed first stands alone.
+  const isFirstForm = () => props.isFirst && !isRehearsal(fleet);
+  const [isOpen, setOpen] = createSignal(isFirstForm());
   const regions = () => (fleet.site?.areas ?? []).filter(({ kind }) => kind === "survey");
   return (
     <Show
       when={regions().length > 0}
       fallback={<p class="panel-empty">{text.newSurvey.noRegions}</p>}
     >
+      <Show when={props.isFirst && isRehearsal(fleet)}>
+        <Rehearse region={regions()[0]?.name ?? ""} onResult={props.onResult} />
+      </Show>
       <details
         class="section survey-new"
-        open={props.isFirst}
+        open={isFirstForm()}
         onToggle={(event) => setOpen(event.currentTarget.open)}
       >
         <summary>{text.newSurvey.title}</summary>

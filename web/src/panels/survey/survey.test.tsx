@@ -513,6 +513,34 @@ describe("a new survey", () => {
     expect(page.requests).toEqual([]);
   });
 
+  it("is one button where all drones are simulated: the hold plans, and allows takeoff", async () => {
+    const simulated = { is_simulated: true };
+    showForm(
+      vehicle(1, simulated),
+      vehicle(2, simulated),
+      vehicle(3, { ...simulated, is_imager: true }),
+    );
+    expect(find<HTMLDetailsElement>(page.root, "details.survey-new").open).toBe(false);
+    expect(page.root.textContent).toContain("2 simulated drones take off and survey south field.");
+    const rehearse = "Rehearse, hold 1.5 s: takeoff and survey of south field";
+    hold(rehearse, 1400);
+    expect(page.requests).toEqual([]);
+    page.planAs(survey(4));
+    hold(rehearse, 1600);
+    await settled();
+    await settled();
+    expect(page.requests).toMatchObject([
+      { plannedSurvey: { region: "south field", height_above_takeoff_m: 50 } },
+      { startedSurvey: 4, serials: ["SN-001", "SN-002"], takeoff: true },
+    ]);
+  });
+
+  it("is a form where a real drone is among them, or a script flies them", () => {
+    showForm(vehicle(1, { is_simulated: true }), vehicle(2));
+    expect(page.root.textContent).not.toContain("Rehearse");
+    expect(find<HTMLDetailsElement>(page.root, "details.survey-new").open).toBe(true);
+  });
+
   it("is not available without survey regions", () => {
     show();
     expect(page.root.textContent).toContain("The site has no survey regions");

@@ -7,6 +7,7 @@ import * as newSite from "./newSite";
 import * as orders from "./orders";
 import * as page from "./page";
 import * as photos from "./photos";
+import * as rehearsal from "./rehearsal";
 import * as site from "./site";
 import * as station from "./station";
 
@@ -22,5 +23,6 @@ export const english = {
   ...photos,
   ...site,
   ...newSite,
+  ...rehearsal,
   ...station,
 };
