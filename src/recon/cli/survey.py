@@ -219,6 +219,9 @@ async def resume_command(
         ),
     ] = None,
     all_again: Annotated[bool, typer.Option("--all", help="Leave nothing out.")] = False,
+    gaps: Annotated[
+        bool, typer.Option("--gaps", help="Only the gaps of the photos that the station tagged.")
+    ] = False,
     takeoff: Annotated[
         bool, typer.Option("--takeoff", help="Allow takeoff for this start.")
     ] = False,
@@ -232,7 +235,7 @@ async def resume_command(
     known = await station.surveys.flown_regions()
     asked, day = region_asked(known, region), since_day(known, since)
     serials = named_serials(station, vehicles) if vehicles else []
-    answer = await station.surveys.again(asked.id, since=day, all_again=all_again)
+    answer = await station.surveys.again(asked.id, since=day, all_again=all_again, gaps=gaps)
     if serials and not isinstance(answer, Refusal):
         answer = await station.surveys.start(answer.id, serials, takeoff=takeoff)
     return print_answer(answer, as_json)

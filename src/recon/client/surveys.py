@@ -223,15 +223,20 @@ class SurveyCommands:
         return await self._http.get("/api/flown-regions", FlownRegionList, "the flown regions")
 
     async def again(
-        self, region_id: str, *, since: date | None = None, all_again: bool = False
+        self,
+        region_id: str,
+        *,
+        since: date | None = None,
+        all_again: bool = False,
+        gaps: bool = False,
     ) -> SurveyStatus | Refusal:
         """Plan what is left of a flown region, on its rows. Nothing moves.
 
         Cells imaged since it was begun are left out, or those imaged from the day `since` on; none
-        with `all_again`.
+        with `all_again`; all but the gaps of the photos with `gaps`.
         """
         day = None if since is None else since.isoformat()
-        request = {"id": region_id, "since": day, "all_again": all_again}
+        request = {"id": region_id, "since": day, "all_again": all_again, "gaps": gaps}
         return await self._post("/api/surveys/again", request)
 
     async def start(

@@ -42,7 +42,7 @@ def background_process(
 
 
 def lines_of(process: "subprocess.Popen[bytes]") -> Iterator[str]:
-    """Yield the lines of a process's output as they come, and an empty one every `TICK_S`."""
+    """Yield the lines of a process's output as they come, and empty ones at least each `TICK_S`."""
     assert process.stdout is not None
     fd, rest = process.stdout.fileno(), b""
     with selectors.DefaultSelector() as selector:
@@ -54,7 +54,8 @@ def lines_of(process: "subprocess.Popen[bytes]") -> Iterator[str]:
             data = os.read(fd, LONGEST_LINE)
             *lines, rest = (rest + data).split(b"\n")
             rest = rest[-LONGEST_LINE:]
-            yield from (line.decode(errors="replace") for line in lines if line)
+            yield from (line.decode(errors="replace") for line in lines)
+            yield ""
             if not data:
                 yield rest.decode(errors="replace")
                 return
