@@ -10,7 +10,7 @@ import rich.progress
 from rich.console import Console
 from rich.progress import track
 
-from recon.cli.json_lines import reported_over, wants_lines
+from recon.cli.json_lines import report_facts, reported_over, wants_lines
 from recon.record.mcap.mcap_read import Opener
 
 Item = TypeVar("Item")
@@ -29,6 +29,9 @@ def opener(title: str) -> Opener:
     """Return what opens a file for one pass, showing how much of it is read."""
 
     def open_shown(path: Path) -> AbstractContextManager[BinaryIO]:
+        if wants_lines():
+            report_facts(doing=title, share=None)
+            return path.open("rb")
         console = Console(stderr=True)
         return rich.progress.open(
             path, "rb", description=title, console=console, disable=not console.is_terminal

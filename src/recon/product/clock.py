@@ -193,7 +193,10 @@ def _why_none(shots: Shots, tracks: Mapping[str, RecordedTrack]) -> str:
         for e, n in zip(shots.east_m[:50].tolist(), shots.north_m[:50].tolist(), strict=True)
     )
     if nearest_m > 500.0:
-        return f"the photos are of another field: the nearest is {nearest_m / 1000.0:.1f} km away"
+        return (
+            f"the photos are of another field: the nearest is {nearest_m / 1000.0:.1f} km away; "
+            "choose the record of their flight"
+        )
     begins = min(int(t.at_ns[0]) for t in tracks.values())
     ends = max(int(t.at_ns[-1]) for t in tracks.values())
     early_s = (begins - int(shots.clock_ns.max())) / NS_PER_S
@@ -203,8 +206,12 @@ def _why_none(shots: Shots, tracks: Mapping[str, RecordedTrack]) -> str:
         hours = max(early_s, late_s) / 3600.0
         return (
             f"the photos are of another day: by the camera's clock {hours:.0f} h {side} the flight"
+            "; choose the record of theirs, or state the offset with --clock-offset"
         )
-    return "no clock offset puts the photos on a recorded track: they are of another flight"
+    return (
+        "no clock offset puts the photos on a recorded track: they are of another flight; choose "
+        "the record of theirs"
+    )
 
 
 def offset_text(seconds: float) -> str:

@@ -38,10 +38,8 @@ export function mosaicText(mosaic: NonNullable<PhotoJobView["mosaic"]>): string 
 
 /** What a step does, or how it ended. */
 export function stepState(step: PhotoStepView, job: PhotoJobView): string {
-  const isCounted = step.state === "running" && job.share !== null && job.doing !== "";
-  return isCounted
-    ? text.photos.doing(job.doing, formatFraction(job.share))
-    : text.photos.states[step.state];
+  if (step.state !== "running" || job.doing === "") return text.photos.states[step.state];
+  return job.share === null ? job.doing : text.photos.doing(job.doing, formatFraction(job.share));
 }
 
 /** A sentence of a command, whose options are fields of the panel. */

@@ -36,7 +36,7 @@ export function PhotoSteps(props: { job: PhotoJobView }) {
         </For>
       </ol>
       <Show when={props.job.warnings.length > 0}>
-        <details>
+        <details class="photo-notes">
           <summary>{text.photos.warnings(props.job.warnings.length)}</summary>
           <ul class="list">
             <For each={props.job.warnings}>{(line) => <li class="wire-text">{line}</li>}</For>
