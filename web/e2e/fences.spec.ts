@@ -1,5 +1,6 @@
 import { expect, type Locator, type Page, test } from "@playwright/test";
 import { area } from "../src/testing/fakeState";
+import { axeFaults } from "./axe";
 import { CHECKLIST, fencedState } from "./fake/fencedState";
 import { FakeStation } from "./fake/station";
 import { cornerFaults, overlaps } from "./layoutFaults";
@@ -118,6 +119,25 @@ test("flies a vehicle to a target on the map only if the gate allows it", async 
   expect(order?.owner).toMatch(/^[0-9a-f]{32}$/);
   await page.locator("body").press("Escape");
   await expect(page.locator(".fly")).toBeHidden();
+
+  await test.step("and draws a mission, whose points are dragged", async () => {
+    await page.keyboard.press("m");
+    const map = page.locator(".map-canvas");
+    for (const y of [440, 330]) await map.click({ position: { x: 560, y } });
+    const point = page.getByRole("button", { name: /^Point 2, / });
+    const before = await point.boundingBox();
+    await point.dragTo(map, { targetPosition: { x: 560, y: 410 }, steps: 4 });
+    await expect
+      .poll(async () => (await point.boundingBox())?.y)
+      .toBeGreaterThan((before?.y ?? 0) + 50);
+    expect(await axeFaults(page)).toEqual([]);
+    const fly = page.getByRole("button", { name: "Fly the mission, hold 1.5 s: 1 Alder" });
+    await expect(fly).toHaveAttribute("aria-disabled", "false");
+    await hold(page, fly, () => expect.poll(() => fake.orders.length).toBe(2));
+    const waypoints = [{}, {}];
+    const sent = { serials: ["SN-001"], takeoff: false, order: { kind: "mission", waypoints } };
+    expect(fake.orders[1]).toMatchObject(sent);
+  });
 });
 
 test("returns the fleet in layers and shows waiting and excluded vehicles", async ({ page }) => {

@@ -15,6 +15,7 @@ import { CommandList } from "./panels/commands/CommandList";
 import { VehicleDetail } from "./panels/detail/VehicleDetail";
 import { FlightsPanel } from "./panels/flights/FlightsPanel";
 import { FlyHereCard } from "./panels/fly/FlyHereCard";
+import { MissionCard } from "./panels/fly/MissionCard";
 import { HelpDialog } from "./panels/help/HelpDialog";
 import { LinkList } from "./panels/links/LinkList";
 import { LoginDialog } from "./panels/login/LoginDialog";
@@ -63,7 +64,7 @@ const PANELS: readonly (readonly [PanelName, () => ReturnType<typeof AlarmList>]
 export function App() {
   const { source, fleet, selection, orderApi, theme, fit, flyHere, zoneDraft, panels } =
     useConsole();
-  const { siteDraft, isReplay, largeCamera, clock, behindS } = useConsole();
+  const { siteDraft, missionDraft, isReplay, largeCamera, clock, behindS } = useConsole();
   const [isHelpOpen, setHelpOpen] = createSignal(false);
   const keys = () => fleet.vehicles.map(vehicleKey);
   const select = (key: number, action: (key: number) => void) => {
@@ -83,8 +84,10 @@ export function App() {
 
   const clear = () => {
     if (isHelpOpen()) setHelpOpen(false);
-    else if (!siteDraft.clear() && !zoneDraft.clear() && !flyHere.clear() && !largeCamera.clear())
-      selection.clear();
+    else {
+      const modes = [siteDraft, zoneDraft, missionDraft, flyHere, largeCamera];
+      if (!modes.some((mode) => mode.clear())) selection.clear();
+    }
   };
 
   onMount(() => {
@@ -103,6 +106,7 @@ export function App() {
         selectAll: () => selection.all(keys()),
         clear,
         flyHere: () => !isReplay() && flyHere.toggle(),
+        drawMission: () => !isReplay() && missionDraft.toggle(),
         details: () => panels.toggle("vehicle"),
         drawZone: () => !isReplay() && zoneDraft.toggle(),
         undo: () => siteDraft.isOn() && siteDraft.undo(),
@@ -154,6 +158,7 @@ export function App() {
         <VehicleList />
         <Show when={!isReplay()}>
           <FlyHereCard />
+          <MissionCard />
           <OrderBar />
         </Show>
       </aside>

@@ -14,6 +14,7 @@ import { type BaseMaps, createBaseMaps, type Kept } from "./map/baseMaps";
 import type { LonLat } from "./map/localGrid";
 import { createOverlay, type Overlay } from "./map/overlays";
 import { createFlyHere, type FlyHere } from "./orders/flyHere";
+import { createMissionDraft, type MissionDraft } from "./orders/missionDraft";
 import { createOrderApi, type OrderApi } from "./orders/orderApi";
 import { type Targets, targetsOf } from "./orders/targets";
 import { createZoneDraft, type ZoneDraft } from "./orders/zoneDraft";
@@ -58,6 +59,7 @@ export interface Console {
   readonly targets: Accessor<Targets>;
   readonly orderApi: OrderApi;
   readonly flyHere: FlyHere;
+  readonly missionDraft: MissionDraft;
   readonly zoneDraft: ZoneDraft;
   readonly siteDraft: SiteDraft;
   readonly vehicleTable: VehicleTable;
@@ -82,7 +84,7 @@ export interface Console {
   readonly fitRequests: Accessor<number>;
   /** Zooms the map to show everything. */
   fit(): void;
-  /** A press on the map: a place for the zone being drawn, or the fly-here target. */
+  /** A press on the map: a place for the zone or mission being drawn, or the fly-here target. */
   aim(at: LonLat): void;
   /** The same at the map centre, for operators using the keyboard. */
   aimAtCentre(): void;
@@ -122,6 +124,7 @@ export function createConsole(
     return only === undefined || only.serial === null || others.length > 0 ? null : only;
   });
   const flyHere = createFlyHere(single, source.orders, orderApi, clock);
+  const missionDraft = createMissionDraft(single, source.orders, orderApi, clock);
   const zoneDraft = createZoneDraft();
   const siteDraft = createSiteDraft(
     source.site,
@@ -139,6 +142,7 @@ export function createConsole(
   // A press on the map means one thing at a time.
   const modes = [
     { isOn: flyHere.isOn, leave: () => flyHere.isOn() && flyHere.toggle() },
+    missionDraft,
     zoneDraft,
     siteDraft,
     calibration,
@@ -154,7 +158,8 @@ export function createConsole(
   const isReplay = createMemo(() => replay() !== null);
   const aim = (at: LonLat) => {
     if (calibration.isOn()) calibration.aim(at);
-    else if (!siteDraft.isOn()) (zoneDraft.isOn() ? zoneDraft : flyHere).aim(at);
+    else if (!siteDraft.isOn())
+      ([zoneDraft, missionDraft].find(({ isOn }) => isOn()) ?? flyHere).aim(at);
   };
   // A draft may be saved when the last vehicle has landed, and no more when one takes off.
   const inTheAir = createMemo(
@@ -170,6 +175,7 @@ export function createConsole(
     targets,
     orderApi,
     flyHere,
+    missionDraft,
     zoneDraft,
     siteDraft,
     vehicleTable,

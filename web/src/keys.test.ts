@@ -9,6 +9,7 @@ function press(init: KeyboardEventInit, target?: HTMLElement) {
     clear: vi.fn(),
     fit: vi.fn(),
     flyHere: vi.fn(),
+    drawMission: vi.fn(),
     details: vi.fn(),
     drawZone: vi.fn(),
     undo: vi.fn(),
@@ -42,6 +43,7 @@ describe("keyboard shortcuts", () => {
     [{ key: "#", code: "Digit3", shiftKey: true }, ["toggle", 3]],
     [{ key: "7", code: "Numpad7" }, ["selectOnly", 7]],
     [{ key: "f", code: "KeyF" }, ["fit"]],
+    [{ key: "m", code: "KeyM" }, ["drawMission"]],
     [{ key: "T", code: "KeyT" }, ["toggleTheme"]],
   ])("%j runs %j", (init, expected) => expect(press(init).called).toEqual([expected]));
 

@@ -8,6 +8,7 @@ export interface KeyActions {
   clear(): void;
   fit(): void;
   flyHere(): void;
+  drawMission(): void;
   details(): void;
   drawZone(): void;
   undo(): void;
@@ -70,6 +71,8 @@ function plainAction(event: KeyboardEvent, actions: KeyActions): (() => void) | 
       return actions.fit;
     case "g":
       return actions.flyHere;
+    case "m":
+      return actions.drawMission;
     case "d":
       return actions.details;
     case "z":

@@ -6,6 +6,7 @@ import "maplibre-gl/dist/maplibre-gl.css";
 import "./map.css";
 import { useConsole } from "../console";
 import { courseText } from "../orders/course";
+import type { VehicleView } from "../protocol";
 import { listNames, vehicleLabel } from "../text/names";
 import { AreaLabelLayer } from "./areaLabelLayer";
 import { BoundaryLayer, HeightZoneLayer, KeepOutLayer, SurveyLayer } from "./areaLayer";
@@ -16,7 +17,8 @@ import { GroundImageNote } from "./GroundImageNote";
 import { GraticuleLayer } from "./graticuleLayer";
 import { createDisplayedGround, GroundImageLayer } from "./groundImageLayer";
 import { LayersButton } from "./LayersButton";
-import type { Box } from "./localGrid";
+import type { Box, LonLat } from "./localGrid";
+import { MissionDraftLayer, type MissionShape } from "./missionDraftLayer";
 import { MovingLayer } from "./movingLayer";
 import { ForecastLayer, ShadeLayer, SurveyCellsLayer } from "./overlays";
 import { PadLayer } from "./padLayer";
@@ -45,7 +47,7 @@ const AGE_STEP_S = 0.2;
 export function MapView() {
   const { source, selection, theme, behindS, fitRequests, flyHere, zoneDraft, overlay } =
     useConsole();
-  const { aim, setMapCentre, siteDraft, calibration, baseMaps } = useConsole();
+  const { aim, setMapCentre, siteDraft, missionDraft, calibration, baseMaps } = useConsole();
   const [map, setMap] = createSignal<MapLibre | null>(null);
   const [isBanding, setBanding] = createSignal(false);
   const ground = createDisplayedGround(source);
@@ -78,6 +80,7 @@ export function MapView() {
       new AreaLabelLayer(),
       new PadLayer(),
       new SiteDraftLayer(),
+      new MissionDraftLayer(missionDraft),
       new MovingLayer(),
       new TargetLayer(),
       new VehicleLayer({ select: selection.only, toggle: selection.toggle }),
@@ -131,6 +134,18 @@ export function MapView() {
       selectedId: selected()?.id ?? null,
     };
   });
+  const missionFrom = createMemo(() => nearlyAt(missionDraft.vehicle()), null, { equals: isSame });
+  const missionShape = createMemo<MissionShape | null>(() => {
+    if (!missionDraft.isOn()) return null;
+    const points = missionDraft.points().map(({ id, at, height }, index) => ({
+      id,
+      at,
+      height_m: height.metres(),
+      isSelected: missionDraft.selected() === id,
+      isRefused: missionDraft.refusedPoint() === index + 1,
+    }));
+    return { from: missionFrom(), points };
+  });
   createEffect(() => {
     const state = source.state();
     if (map() === null || state === null) return;
@@ -139,6 +154,7 @@ export function MapView() {
       behindS: agedBehindS(),
       selected: selection.keys(),
       plannedTarget: plannedTarget(),
+      missionDraft: missionShape(),
       zoneDraft: zoneDraft.isOn()
         ? { points: zoneDraft.points(), radius_m: zoneDraft.radius_m() }
         : null,
@@ -173,8 +189,9 @@ export function MapView() {
     const state = source.state();
     return state === null ? null : wholeView(state, draftShapes());
   });
-  const isAiming = () =>
-    flyHere.isOn() || zoneDraft.isOn() || calibration.isOn() || siteDraft.isOn();
+  const isPlacing = () =>
+    [flyHere, missionDraft, zoneDraft, calibration].some((mode) => mode.isOn());
+  const isAiming = () => isPlacing() || siteDraft.isOn();
   const fit = (isFirst: boolean) => {
     const [box, shown] = [whole(), map()];
     if (box === null || shown === null) return;
@@ -218,8 +235,7 @@ export function MapView() {
       <section
         class="map"
         classList={{
-          "is-aiming":
-            flyHere.isOn() || zoneDraft.isOn() || calibration.isOn() || siteDraft.tool() !== null,
+          "is-aiming": isPlacing() || siteDraft.tool() !== null,
         }}
         aria-label={text.map.name}
       >
@@ -342,6 +358,19 @@ function createMap(
   map.touchZoomRotate.disableRotation();
   map.keyboard.disableRotation();
   return map;
+}
+
+/** Where a vehicle is to some metres, so that a line from there is not drawn anew for each state. */
+function nearlyAt(vehicle: VehicleView | null): LonLat | null {
+  const at = vehicle === null ? null : positionOf(vehicle);
+  const rounded = (degrees: number) => Number(degrees.toFixed(NEARLY_DECIMALS));
+  return at && { lon: rounded(at.lon), lat: rounded(at.lat) };
+}
+
+const NEARLY_DECIMALS = 4;
+
+function isSame(a: LonLat | null, b: LonLat | null): boolean {
+  return a?.lon === b?.lon && a?.lat === b?.lat;
 }
 
 function view(isFirst: boolean) {

@@ -56,6 +56,7 @@ function setUp() {
       behindS: 0,
       selected: [],
       plannedTarget: null,
+      missionDraft: null,
       zoneDraft: null,
       siteDraft: null,
     });

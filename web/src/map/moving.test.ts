@@ -32,6 +32,7 @@ function scene(east_m: number, changes: Partial<VehicleView> = {}, behindS = 0):
     behindS,
     selected: [],
     plannedTarget: null,
+    missionDraft: null,
     zoneDraft: null,
     siteDraft: null,
   };

@@ -44,7 +44,15 @@ function scene(second: number, number: number) {
     forecast: line.forecast === null ? null : { ...line.forecast, number },
   };
   const state = station([], { time_ns: second * 1e9, shade, surveys: [survey(7)] });
-  return { state, behindS: 0, selected: [], plannedTarget: null, zoneDraft: null, siteDraft: null };
+  return {
+    state,
+    behindS: 0,
+    selected: [],
+    plannedTarget: null,
+    missionDraft: null,
+    zoneDraft: null,
+    siteDraft: null,
+  };
 }
 
 beforeEach(() => {

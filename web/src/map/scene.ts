@@ -4,6 +4,7 @@ import type { ImportChoice } from "../site/siteDraft";
 import type { DraftFeature } from "../site/siteFeatures";
 import type { Colours } from "./colours";
 import { type Box, boxAround, type LonLat } from "./localGrid";
+import type { MissionShape } from "./missionDraftLayer";
 
 /** One layer of the map. `add` is called once per layer, from bottom to top. */
 export interface Layer {
@@ -21,6 +22,8 @@ export interface Scene {
   readonly selected: readonly number[];
   /** The fly-here target that has not been confirmed yet. */
   readonly plannedTarget: PlannedTarget | null;
+  /** The mission being drawn; null while none is. */
+  readonly missionDraft: MissionShape | null;
   /** The temporary zone being drawn. */
   readonly zoneDraft: ZoneOutline | null;
   /** The site being edited; null while it is not. */

@@ -120,10 +120,10 @@ export function createFlyHere(
 const USUAL_HEIGHT_M = 30;
 const LEAST_HEIGHT_M = 5;
 
-/** The present height in flight; a usual one for a vehicle on the ground. */
-function currentHeight_m(vehicle: VehicleView): number | null {
-  const { value } = vehicle.height_above_takeoff_m;
-  if (value === null) return null;
+/** The present height in flight; a usual one for a vehicle on the ground; null while unknown. */
+export function currentHeight_m(vehicle: VehicleView | null): number | null {
+  const value = vehicle?.height_above_takeoff_m.value ?? null;
+  if (vehicle === null || value === null) return null;
   const isLow = vehicle.is_flying.value === false || value < LEAST_HEIGHT_M;
   return isLow ? USUAL_HEIGHT_M : value;
 }

@@ -1,11 +1,11 @@
-import { Match, Show, Switch } from "solid-js";
+import { Show } from "solid-js";
 import { useConsole } from "../../console";
 import { courseText } from "../../orders/course";
 import { text } from "../../text/catalogue";
 import { vehicleLabel } from "../../text/names";
 import { lengthUnit } from "../../text/units";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
-import { SeverityMark } from "../SeverityMark";
+import { CheckResult } from "./CheckResult";
 import { NudgePad } from "./NudgePad";
 import "./fly.css";
 
@@ -64,7 +64,10 @@ export function FlyHereCard() {
             />
           </label>
         </div>
-        <CheckResult />
+        <CheckResult
+          check={flyHere.check()}
+          lack={flyHere.target() === null ? null : text.fly.notNumbers}
+        />
         <GuardButton
           label={text.fly.go}
           of={name()}
@@ -87,45 +90,6 @@ function Aim() {
       <button type="button" class="button" onClick={() => aimAtCentre()}>
         {text.fly.useCentre}
       </button>
-    </div>
-  );
-}
-
-/** The safety gate's result before the order is confirmed. */
-function CheckResult() {
-  const { flyHere } = useConsole();
-  const refusal = () => {
-    const check = flyHere.check();
-    return check.kind === "refused" ? check.text : null;
-  };
-  return (
-    <div class="fly-check wire-text" role="status">
-      <Switch>
-        <Match when={refusal()}>
-          {(why) => (
-            <p class="check">
-              <span class="tone-error">
-                <SeverityMark severity="error" />
-              </span>
-              <span>{why()}</span>
-            </p>
-          )}
-        </Match>
-        <Match when={flyHere.check().kind === "allowed"}>
-          <p class="check">
-            <span class="tone-good">
-              <SeverityMark severity={null} />
-            </span>
-            <span>{text.fly.allowed}</span>
-          </p>
-        </Match>
-        <Match when={flyHere.check().kind === "pending"}>
-          <p class="muted">{text.fly.checking}</p>
-        </Match>
-        <Match when={flyHere.target() !== null}>
-          <p class="muted">{text.fly.notNumbers}</p>
-        </Match>
-      </Switch>
     </div>
   );
 }

@@ -19,7 +19,7 @@ interface HeldOrder {
 
 /** Hover, return and land for the selected vehicles, with their names shown before and during a hold. */
 export function OrderBar() {
-  const { targets, orderApi, clock, flyHere, panels } = useConsole();
+  const { targets, orderApi, clock, flyHere, missionDraft, panels } = useConsole();
   const held: HeldOrder[] = ORDER_KINDS.map((order) => ({
     order,
     timer: createHoldTimer(
@@ -56,7 +56,9 @@ export function OrderBar() {
             <OrderButton order={order} timer={timer} labels={targets().labels} />
           )}
         </For>
-        <TakeOff />
+        <Show when={!missionDraft.isOn()}>
+          <TakeOff />
+        </Show>
         <button
           type="button"
           class="button orders-goto"
@@ -67,6 +69,17 @@ export function OrderBar() {
           onClick={() => flyHere.toggle()}
         >
           {text.orders.flyHere}
+        </button>
+        <button
+          type="button"
+          class="button button-quiet orders-mission"
+          aria-pressed={missionDraft.isOn()}
+          aria-disabled={missionDraft.lack() !== null}
+          title={missionDraft.lack() ?? text.mission.hint}
+          aria-description={missionDraft.lack() ?? text.mission.hint}
+          onClick={() => missionDraft.toggle()}
+        >
+          {text.mission.button}
         </button>
         <button
           type="button"

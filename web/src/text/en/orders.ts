@@ -182,6 +182,34 @@ export const fly = {
   },
 };
 
+/** A mission drawn on the map. */
+export const mission = {
+  button: "Mission",
+  hint: "Draw a mission on the map for the selected vehicle (M)",
+  selectOne: "Select one vehicle to draw a mission for it",
+  fliesNone: (vehicle: string) =>
+    `${vehicle} flies no missions: its model is steered. Use Fly here`,
+  name: (vehicle: string) => `Mission: ${vehicle}`,
+  leave: "Leave the mission",
+  first: "Press the points on the map, in the order in which they are flown.",
+  next: "Press for the next point; drag to move one.",
+  atCentre: "At map centre",
+  more: "A mission has at least two points.",
+  notNumbers: "Heights and speed must be numbers; speed above 0.",
+  point: (number: number) => `Point ${number}`,
+  pointHint: "The next point is added behind the selected one",
+  pointOnMap: (number: number, height: string) =>
+    `Point ${number}, ${height}. Drag it, or move it by arrow keys; Delete removes it`,
+  heightOf: (number: number, unit: string) => `Point ${number}: above takeoff, ${unit}`,
+  remove: (number: number) => `Remove point ${number}`,
+  removeShort: "Remove",
+  discard: "Clear points",
+  figures: (distance: string, time: string) => `${distance}, about ${time}`,
+  land: "Land at the end",
+  go: "Fly the mission",
+  takeOffAndFly: "Take off and fly",
+};
+
 /** Return in layers. */
 export const fleetReturn = {
   how: "Each vehicle holds first, then flies home at its own height and lands; one vehicle at a time per pad.",

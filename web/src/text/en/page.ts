@@ -116,6 +116,7 @@ export const help = {
     { keys: "Ctrl + A", action: "Select all vehicles" },
     { keys: "Shift + drag", action: "Add the vehicles in a box on the map to the selection" },
     { keys: "G", action: "Fly here: set a target on the map for the selected vehicle" },
+    { keys: "M", action: "Draw a mission on the map for the selected vehicle" },
     { keys: "D", action: "Details of the selected vehicle" },
     {
       keys: "Z",
