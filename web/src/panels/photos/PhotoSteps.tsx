@@ -25,7 +25,9 @@ export function PhotoSteps(props: { job: PhotoJobView }) {
               <p class="photo-step">
                 <StepMark step={step} />
                 <strong>{text.photos.steps[step.name]}</strong>
-                <span class="muted push">{stepState(step, props.job)}</span>
+                <Show when={step.state !== "done"}>
+                  <span class="muted push">{stepState(step, props.job)}</span>
+                </Show>
               </p>
               <StepResult step={step.name} job={props.job} />
               <Show when={step.problem}>

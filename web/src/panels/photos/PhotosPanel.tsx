@@ -37,6 +37,7 @@ export function PhotosPanel() {
       <Show when={!isRunning()}>
         <PhotoForm
           isFirst={job() === null}
+          isOpen={job()?.state !== "done"}
           onStart={(request) => ask(source.photos.start(request))}
         />
       </Show>
@@ -63,7 +64,11 @@ export function PhotosPanel() {
 }
 
 /** Asks for a flight and the folders of its photos. */
-function PhotoForm(props: { isFirst: boolean; onStart: (request: PhotoRequest) => Promise<void> }) {
+function PhotoForm(props: {
+  isFirst: boolean;
+  isOpen: boolean;
+  onStart: (request: PhotoRequest) => Promise<void>;
+}) {
   const { source, kept, lacks } = useConsole();
   const [folders, setFolders] = createSignal(kept.getItem(STORED_AS) ?? "");
   const [dropped, setDropped] = createSignal<string | null>(null);
@@ -111,59 +116,71 @@ function PhotoForm(props: { isFirst: boolean; onStart: (request: PhotoRequest) =
         void start();
       }}
     >
-      <p class="muted">{text.photos.where}</p>
-      <Show
-        when={flights.loading || inTheAir().length > 0}
-        fallback={<p>{text.photos.noFlights}</p>}
-      >
-        <label>
-          {text.photos.flight}
-          <select class="field" name="flight">
-            <For each={inTheAir()}>
-              {({ name }) => <option value={name}>{flightTime(name)}</option>}
-            </For>
-          </select>
-        </label>
-        <label>
-          {text.photos.folders}
-          <textarea
-            class="field"
-            rows={2}
-            spellcheck={false}
-            placeholder={text.photos.example}
-            value={folders()}
-            onInput={(event) => setFolders(event.currentTarget.value)}
-          />
-        </label>
-        <Show when={dropped()}>
-          {(name) => (
-            <p class="wire-text" role="status">
-              {text.photos.dropped(name())}
-            </p>
-          )}
-        </Show>
-        <details>
-          <summary>{text.photos.camera}</summary>
-          <div class="photo-camera">
-            <label title={text.photos.clockHint}>
-              {text.photos.clockOffset}
-              <input class="field" name="clock_offset_s" type="number" step="any" />
+      <details open={props.isOpen}>
+        <summary>{text.photos.title}</summary>
+        <div class="photo-fields">
+          <p class="muted">{text.photos.where}</p>
+          <Show
+            when={flights.loading || inTheAir().length > 0}
+            fallback={<p>{text.photos.noFlights}</p>}
+          >
+            <label>
+              {text.photos.flight}
+              <select class="field" name="flight">
+                <For each={inTheAir()}>
+                  {({ name }) => <option value={name}>{flightTime(name)}</option>}
+                </For>
+              </select>
             </label>
-            <label title={text.photos.fieldHint}>
-              {text.photos.field}
-              <input class="field" name="field_deg" type="number" min="10" max="120" step="any" />
+            <label>
+              {text.photos.folders}
+              <textarea
+                class="field"
+                rows={2}
+                spellcheck={false}
+                placeholder={text.photos.example}
+                value={folders()}
+                onInput={(event) => setFolders(event.currentTarget.value)}
+              />
             </label>
-          </div>
-        </details>
-        <button
-          type="submit"
-          class="button"
-          disabled={isStarting() || lines().length === 0 || lacks("operator") !== null}
-          title={lacks("operator") ?? undefined}
-        >
-          {props.isFirst ? text.photos.start : text.photos.again}
-        </button>
-      </Show>
+            <Show when={dropped()}>
+              {(name) => (
+                <p class="wire-text" role="status">
+                  {text.photos.dropped(name())}
+                </p>
+              )}
+            </Show>
+            <details>
+              <summary>{text.photos.camera}</summary>
+              <div class="photo-camera">
+                <label title={text.photos.clockHint}>
+                  {text.photos.clockOffset}
+                  <input class="field" name="clock_offset_s" type="number" step="any" />
+                </label>
+                <label title={text.photos.fieldHint}>
+                  {text.photos.field}
+                  <input
+                    class="field"
+                    name="field_deg"
+                    type="number"
+                    min="10"
+                    max="120"
+                    step="any"
+                  />
+                </label>
+              </div>
+            </details>
+            <button
+              type="submit"
+              class="button"
+              disabled={isStarting() || lines().length === 0 || lacks("operator") !== null}
+              title={lacks("operator") ?? undefined}
+            >
+              {props.isFirst ? text.photos.start : text.photos.again}
+            </button>
+          </Show>
+        </div>
+      </details>
     </form>
   );
 }

@@ -5,6 +5,7 @@ import { plural } from "./grammar";
 export const photos = {
   where:
     "The station's computer reads the photos itself: put the card into it, and type or paste the folder's path.",
+  title: "Flight and folders",
   flight: "Flight",
   noFlights: "No flight record of this station: photos are tagged by one.",
   folders: "Folders, one in each line",
@@ -51,7 +52,8 @@ export const photos = {
   flyGapsOf: (region: string) => `Fly the gaps of ${region}`,
   flyHint: "On the rows of the survey. Nothing flies before you start it in Survey.",
   planned: "Planned: start it in the panel Survey.",
-  noRegion: "They lie in no region that this station has surveyed: plan them by Gaps GeoJSON.",
+  noRegion:
+    "They lie in no region that this station has surveyed: import Gaps GeoJSON in Edit site, and survey it.",
   mosaicShare: (share: string, area: string, pixel: string) =>
     `${share} of ${area} in sun, ${pixel} a pixel`,
   mosaicPicture: "Mosaic of the photos in sun",
