@@ -13,7 +13,7 @@ from tests.api.client import Client
 from tests.api.fake_station import FakeStation
 from tests.product.made_flight import ONE, flight, write_card, write_record
 
-from recon.api.photo_routes import PhotoBusyError
+from recon.api.photo_routes import PhotoBusyError, PhotoRequestError
 from recon.api.schema import PhotoJobView, PhotoRequest
 from recon.api.security import Access, AccessCheck
 from recon.cli import json_lines
@@ -230,6 +230,24 @@ def test_only_folders_that_can_be_read_are_taken(photos: Made, tmp_path: Path) -
     got = client.post("/api/photos", json={"flight": "other", "folders": [str(tmp_path)]})
     assert "No flight record 'other'" in got.json()["error"]
     assert client.get("/api/photos").json() == {"job": None}
+
+
+def test_a_folder_that_does_not_answer_is_refused(
+    photos: Made, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    hangs = Event()
+    monkeypatch.setattr(photo_job, "ANSWERS_WITHIN_S", 0.01)
+    monkeypatch.setattr(photo_job, "_folder", lambda *_words: str(hangs.wait(60.0)))
+    job = photos(command=python(""))
+    asked = PhotoRequest(flight=NAME, folders=[str(tmp_path / "card")])
+    with pytest.raises(PhotoRequestError, match="does not answer: pull the card out"):
+        asyncio.run(job.start(asked))
+    with pytest.raises(PhotoBusyError):
+        asyncio.run(job.start(asked))
+    hangs.set()
+    assert job._thread is not None
+    job._thread.join(60.0)
+    assert job.view().job is None
 
 
 def test_a_station_without_records_has_no_photos() -> None:

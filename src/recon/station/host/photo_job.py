@@ -87,21 +87,29 @@ class PhotoJob:
     async def start(self, asked: schema.PhotoRequest) -> schema.PhotosView:
         """Begin a job; raises `PhotoBusyError` and `PhotoRequestError`."""
         if self._is_busy:
-            raise PhotoBusyError("A job on photos is running: wait for it, or cancel it")
-        self._is_busy = True
-        try:
-            checking = asyncio.to_thread(self._checked, asked)
-            record, folders = await asyncio.wait_for(checking, ANSWERS_WITHIN_S)
-        except BaseException as problem:
-            self._is_busy = False
-            if isinstance(problem, TimeoutError):
-                text = "The folder does not answer: pull the card out, put it in and try again"
-                raise PhotoRequestError(text) from problem
-            raise
-        self._is_cancelled = False
-        self._job = _begun(asked.flight, folders, self._out(asked.flight))
-        self._thread = Thread(target=self._work, args=(asked, record, folders), daemon=True)
+            raise PhotoBusyError("The station works on photos: wait for it, or cancel it")
+        self._is_busy, self._is_cancelled = True, False
+        loop = asyncio.get_running_loop()
+        begun: asyncio.Future[str] = loop.create_future()
+
+        def settle(problem: str) -> None:
+            if not begun.done():
+                begun.set_result(problem)
+
+        def answer(problem: str) -> None:
+            with contextlib.suppress(RuntimeError):
+                loop.call_soon_threadsafe(settle, problem)
+
+        # Not one of the loop's own threads: a disk that hangs would keep the station from ending.
+        self._thread = Thread(target=self._begin, args=(asked, answer), daemon=True)
         self._thread.start()
+        try:
+            problem = await asyncio.wait_for(begun, ANSWERS_WITHIN_S)
+        except TimeoutError:
+            self._is_cancelled = True
+            problem = "The folder does not answer: pull the card out, put it in and try again"
+        if problem:
+            raise PhotoRequestError(problem)
         return self.view()
 
     def cancel(self) -> schema.PhotosView:
@@ -133,6 +141,19 @@ class PhotoJob:
             raise PhotoRequestError(text) from problem
         return record, folders
 
+    def _begin(self, asked: schema.PhotoRequest, answer: Callable[[str], None]) -> None:
+        """Answer why there is no job, or with an empty text, and do the work."""
+        try:
+            record, folders = self._checked(asked)
+            if not self._is_cancelled:
+                self._job = _begun(asked.flight, folders, self._out(asked.flight))
+                answer("")
+                self._work(asked, record, folders)
+        except PhotoRequestError as problem:
+            answer(str(problem))
+        finally:
+            self._is_busy = False
+
     def _work(self, asked: schema.PhotoRequest, record: Path, folders: list[str]) -> None:
         out = self._out(asked.flight)
         camera = [
@@ -160,7 +181,6 @@ class PhotoJob:
         self._change(state=state, doing="", share=None)
         with contextlib.suppress(OSError):
             replace_file(out / KEPT, self._now.model_dump_json().encode())
-        self._is_busy = False
 
     def _has_done(self, first: schema.PhotoStepName, words: Sequence[str]) -> bool:
         """Run a command, whose steps begin with `first`; return whether it succeeded."""

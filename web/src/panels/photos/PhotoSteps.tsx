@@ -82,8 +82,9 @@ function StepResult(props: { step: Step["name"]; job: PhotoJobView }) {
       <Show when={is("tags") && props.job.counts}>
         {(counts) => (
           <p>
-            {text.photos.inSun(counts().sunlit, counts().photos)}{" "}
+            {text.photos.inSun(counts().sunlit, counts().photos)}
             <span class="muted">
+              {" · "}
               {text.photos.otherLight(counts().mixed, counts().shaded, counts().unknown)}
             </span>
           </p>
@@ -196,7 +197,7 @@ function SavedFiles(props: { flight: string; files: readonly (typeof FILES)[numb
   };
   return (
     <>
-      <div class="section-buttons">
+      <div class="section-buttons photo-files">
         <For each={props.files}>
           {(file) => (
             <button

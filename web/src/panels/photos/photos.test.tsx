@@ -89,7 +89,7 @@ describe("a job", () => {
     page.showPhotos(photoJob());
     page.clock.advance(1_000);
     await settled();
-    expect(words("tags")).toContain("12 of 48 photos in sun 4 mixed, 30 shaded, 2 unknown");
+    expect(words("tags")).toContain("12 of 48 photos in sun · 4 mixed, 30 shaded, 2 unknown");
     expect(words("mosaic")).toContain("25\u00a0% of 4.0\u00a0ha in sun, 50\u00a0cm a pixel");
     expect(find<HTMLImageElement>(page.root, "img").src).toMatch(/^blob:/);
     expect(page.clock.pending).toBe(0);

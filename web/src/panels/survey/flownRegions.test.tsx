@@ -2,7 +2,7 @@ import { afterEach, describe, expect, it } from "vitest";
 import type { FlownRegionView, SurveyView } from "../../protocol";
 import { flownRegion, survey } from "../../testing/fakeField";
 import { area, station, vehicle } from "../../testing/fakeState";
-import { find, type RenderedPage, renderPage, settled } from "../../testing/renderPage";
+import { find, findButton, type RenderedPage, renderPage, settled } from "../../testing/renderPage";
 import { left_m2, leftText } from "../../text/flown";
 import { SurveyPanel } from "./SurveyPanel";
 
@@ -19,6 +19,15 @@ async function show(regions: FlownRegionView[], ...surveys: SurveyView[]) {
 }
 
 const entry = () => page.root.querySelector<HTMLElement>("[data-testid^=flown-]");
+
+it("a survey that is over leads to its photos", async () => {
+  await show([], survey(7, { phase: "done" }));
+  findButton(page.root, "Photos of this flight").click();
+  expect(page.shared.panels.isOpen("photos")).toBe(true);
+  page.dispose();
+  await show([], survey(7));
+  expect(page.root.textContent).not.toContain("Photos of this flight");
+});
 
 describe("a region that was flown", () => {
   it("is resumed by one button that says how much is left and when it was flown", async () => {
