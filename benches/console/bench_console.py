@@ -179,7 +179,7 @@ def videos(program: str, seconds: float) -> Row:
 
 def stream_kb_s(http_port: int) -> float:
     """Return what one reader receives as the console does, kB a second."""
-    address = f"ws://127.0.0.1:{http_port}/api/stream?changes=1"
+    address = f"ws://127.0.0.1:{http_port}/api/stream?changes=2"
     with suppress(ConnectionClosed), connect(address, max_size=None) as stream:
         stream.recv(PATIENCE_S)
         before, began_s = received_bytes(stream.socket), time.monotonic()

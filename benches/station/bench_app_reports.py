@@ -11,14 +11,13 @@ the least processor times of a block, and the same with plain apps in both.
 
 import argparse
 import json
-import os
-import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
 from time import process_time
 
-ROOT = Path(__file__).parents[2]
+from benches.station.two_checkouts import ROOT, Side
+
 APPS, CORE_HZ, TICK_HZ, STATE_HZ = 64, 10, 20, 10
 FACTS_S = 10
 BLOCK_S = 2
@@ -112,44 +111,20 @@ FACTS = {
 }
 
 
-class Side:
-    """One checkout's process, which does a block of work when it is asked to."""
-
-    def __init__(self, folder: Path, reports: bool) -> None:
-        words = [sys.executable, str(Path(__file__)), "--work", *(["--reports"] if reports else [])]
-        paths = os.pathsep.join((str(folder / "src"), str(ROOT)))
-        environment = {**os.environ, "PYTHONPATH": paths, "OPENBLAS_NUM_THREADS": "1"}
-        self._process = subprocess.Popen(
-            words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=environment
-        )
-
-    def block_s(self) -> float:
-        """Return the processor time of one more block."""
-        assert self._process.stdin is not None
-        assert self._process.stdout is not None
-        self._process.stdin.write("\n")
-        self._process.stdin.flush()
-        return float(self._process.stdout.readline())
-
-    def end(self) -> None:
-        """End the process."""
-        self._process.kill()
-        self._process.wait()
-
-
 def compared(before: Path, reports: bool, rounds: int) -> float:
     """Return the ratio of this checkout's time to the other's, with plain apps there.
 
     Other programs on the machine only add to a block's time: the least of each side counts.
     """
-    sides = Side(ROOT, reports), Side(before, False)
+    words = (__file__, "--work")
+    sides = Side(ROOT, *words, *(["--reports"] if reports else [])), Side(before, *words)
     try:
         for side in sides:
-            side.block_s()  # warm
+            side.block()  # warm
         took_s: dict[Side, list[float]] = {side: [] for side in sides}
         for number in range(rounds):
             for side in sides if number % 2 else sides[::-1]:
-                took_s[side].append(side.block_s())
+                took_s[side].append(side.block())
         return min(took_s[sides[0]]) / min(took_s[sides[1]])
     finally:
         for side in sides:

@@ -27,6 +27,7 @@ MEASURED_BY_HAND = {
     "product.bench_mosaic",
     "score.bench_flights",
     "station.bench_app_reports",
+    "station.bench_state_reader",
 }
 """Minutes of Chromium, of a peer that is fetched, or of two checkouts; that their imports exist is
 tested with all others."""

@@ -7,8 +7,9 @@ bounded too, so a slow reader is sent little that is old; one that reads nothing
 rest as it reads; one that falls behind what the station keeps in memory sees a gap in the numbers
 (`first_n`).
 
-A reader that asks for it (`changes=1`) gets the first state whole, and then what has changed since
-the last one it was sent (`api/state_changes.py`).
+A reader that asks for it (`changes=2`) gets the first state whole, and then what has changed since
+the last one it was sent (`api/state_changes.py`). A page of an older console, which asks for
+another format of changes, gets whole states.
 
 An owner is an open state stream that steered orders depend on (`/api/stream?owner=NAME`). It sends
 a keepalive, any text, at least twice a second. When its connection closes, or no message arrives
@@ -42,6 +43,9 @@ from recon.model.event import (
     PersonDisconnected,
 )
 from recon.model.person import Role
+
+CHANGES = "2"
+"""The format of changes."""
 
 INTERVAL_S = 0.1
 MAX_STATE_READERS = 32
@@ -120,7 +124,9 @@ class StateStream:
         self._readers += 1
         try:
             await accept_stream(socket)
-            await self._send_until_gone(socket, owner, socket.query_params.get("changes") == "1")
+            await self._send_until_gone(
+                socket, owner, socket.query_params.get("changes") == CHANGES
+            )
             if owner is not None:
                 await socket.close(OWNER_SILENT, f"owner: no message for {SILENT_S:g} s")
         except (WebSocketDisconnect, RuntimeError):

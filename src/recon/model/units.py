@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 NS_PER_S = 1_000_000_000
+NS_PER_MS = 1_000_000
 HECTARE_M2 = 10_000.0
 M_PER_FT = 0.3048
 M_PER_DEG = 111_195.0

@@ -89,7 +89,7 @@ export class FakeStation {
   /** Replaces the station for `page`; call before opening it. */
   static async behind(page: Page, state: StationState): Promise<FakeStation> {
     const fake = new FakeStation(state);
-    await page.routeWebSocket(/\/api\/stream\?owner=[0-9a-f]{32}&changes=1$/, (socket) =>
+    await page.routeWebSocket(/\/api\/stream\?owner=[0-9a-f]{32}&changes=2$/, (socket) =>
       fake.accept(socket),
     );
     await page.route("**/api/**", (route) => {

@@ -78,7 +78,7 @@ describe("the live source", () => {
   it("opens the stream at the page's origin", () => {
     const { sockets } = setUp(() => json({}));
     expect(sockets[0]?.url).toBe(
-      `ws://127.0.0.1:8080/api/stream?owner=${"01".repeat(16)}&changes=1`,
+      `ws://127.0.0.1:8080/api/stream?owner=${"01".repeat(16)}&changes=2`,
     );
     expect(sockets[0]?.protocols).toEqual(["recon.v1"]);
   });

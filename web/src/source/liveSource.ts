@@ -91,7 +91,7 @@ export class LiveSource implements StationSource {
     const open = () => {
       // A new owner: orders held by an earlier connection stay stopped.
       this.owner = newStreamOwner((bytes) => options.random(bytes));
-      return options.openSocket(`${url}?owner=${this.owner}&changes=1`, streamProtocols(token));
+      return options.openSocket(`${url}?owner=${this.owner}&changes=2`, streamProtocols(token));
     };
     // Ages count from the state that is shown.
     const show = ({ newest, receivedAt }: Received) => {

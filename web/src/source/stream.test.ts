@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import type { Connection, StationState } from "../protocol";
 import { FakeClock } from "../testing/fakeClock";
 import { FakeSocket } from "../testing/fakeSocket";
-import { appFacts, station, vehicle } from "../testing/fakeState";
+import { station, vehicle } from "../testing/fakeState";
 import { OPENING_MS, RECONNECT_DELAYS_MS, readState, SILENCE_MS, Stream } from "./stream";
 
 function setUp() {
@@ -43,24 +43,14 @@ describe("the stream", () => {
 
   it("puts changes on the state before, and reconnects at one of another state", () => {
     const { stream, newest, states, connections } = setUp();
-    const facts = appFacts({ rtk: "fixed" });
-    const first = station([vehicle(1, { app_facts: facts }), vehicle(2)], { time_ns: 1 });
     stream.open();
     newest().accept();
-    newest().deliver(first);
-    const { site: _site, ...rest } = station([vehicle(1), vehicle(2)], { time_ns: 2 });
-    const [one, two] = rest.vehicles;
-    const vehicles = [{ ...one, track: [[9, 9]] }, two];
-    const change = { since: 1, kept: { "SN-001": 3 }, same_facts: ["SN-001"] };
-    newest().deliver({ ...rest, vehicles, ...change } as never);
-    const { state } = states[1] ?? {};
-    expect(state?.site).toEqual(first.site);
-    expect(state?.vehicles[0]?.track).toEqual([...vehicle(1).track.slice(-3), [9, 9]]);
-    expect(state?.vehicles[1]?.track).toEqual(vehicle(2).track);
-    expect(state?.vehicles.map(({ app_facts }) => app_facts)).toEqual([facts, null]);
-    expect(state).not.toHaveProperty("since");
-    expect(state).not.toHaveProperty("same_facts");
-    newest().deliver({ ...rest, time_ns: 9, since: 8, kept: {} } as never);
+    newest().deliver(station([vehicle(1), vehicle(2)], { time_ns: 1 }));
+    const named = { vehicles: { "#": { "1": { name: "Bee" } } } };
+    newest().deliver({ since: 1, time_ns: 2, state: named } as never);
+    expect(states[1]?.state.vehicles.map(({ name }) => name)).toEqual([vehicle(1).name, "Bee"]);
+    expect(states[1]?.state.time_ns).toBe(2);
+    newest().deliver({ since: 8, time_ns: 9, state: {} } as never);
     expect(states).toHaveLength(2);
     expect(connections.at(-1)?.kind).toBe("lost");
   });
@@ -71,7 +61,7 @@ describe("the stream", () => {
     newest().deliver(station([], { time_ns: 1 }));
     newest().fail();
     clock.advance(RECONNECT_DELAYS_MS[0]);
-    newest().deliver({ ...station([], { time_ns: 2 }), since: 1, kept: {} } as never);
+    newest().deliver({ since: 1, time_ns: 2, state: {} } as never);
     expect(states).toHaveLength(1);
     expect(connections.at(-1)?.kind).toBe("lost");
   });

@@ -1,7 +1,8 @@
-import type { Connection, StationState, VehicleView } from "../protocol";
+import type { Connection, StationState } from "../protocol";
 import { text } from "../text/catalogue";
 import { capitalised } from "../text/names";
 import type { Clock } from "./clock";
+import { changedState, isStateChange } from "./stateChange";
 
 /** Length of an owner name; random, so that no page can guess another's. */
 const OWNER_BYTES = 16;
@@ -182,11 +183,7 @@ function closingReason(code: number, reason: string): string {
 
 const LISTS = ["vehicles", "links", "commands", "alarms"] as const;
 
-/**
- * The state in a message, whole or as a change of the one before; null when it is neither. A part that is absent in
- * a change is as before; of the vehicles in `kept`, a track holds the new points only, and those in `same_facts` have
- * the facts of before.
- */
+/** The state in a message, whole or as a change of the one before; null when it is neither. */
 export function readState(data: unknown, base: StationState | null = null): StationState | null {
   if (typeof data !== "string") return null;
   let value: unknown;
@@ -196,40 +193,14 @@ export function readState(data: unknown, base: StationState | null = null): Stat
     return null;
   }
   if (typeof value !== "object" || value === null) return null;
-  const record = "since" in value ? withBase(value as Change, base) : (value as Fields);
-  if (record === null) return null;
+  if (!isStateChange(value)) return isState(value) ? value : null;
+  const state = base === null ? null : changedState(base, value);
+  return isState(state) ? state : null;
+}
+
+function isState(value: unknown): value is StationState {
+  if (typeof value !== "object" || value === null) return false;
+  const record = value as Record<string, unknown>;
   const hasLists = LISTS.every((name) => Array.isArray(record[name]));
-  const isState = hasLists && typeof record["time_ns"] === "number" && "station" in record;
-  return isState ? (record as unknown as StationState) : null;
-}
-
-type Fields = Record<string, unknown>;
-
-interface Change extends Fields {
-  readonly since: unknown;
-  readonly kept: unknown;
-  readonly same_facts?: unknown;
-}
-
-/** A change put on its base; null when it is a change of another state. */
-function withBase(
-  { since, kept, same_facts, ...changed }: Change,
-  base: StationState | null,
-): Fields | null {
-  if (base === null || since !== base.time_ns || typeof kept !== "object") return null;
-  const points = new Map(Object.entries((kept ?? {}) as Record<string, number>));
-  const sameFacts = new Set(Array.isArray(same_facts) ? (same_facts as string[]) : []);
-  const before = new Map(base.vehicles.map((vehicle) => [vehicle.serial, vehicle]));
-  const vehicles = Array.isArray(changed["vehicles"])
-    ? (changed["vehicles"] as VehicleView[])
-    : base.vehicles;
-  const whole = vehicles.map((vehicle) => {
-    const was = before.get(vehicle.serial);
-    if (vehicle.serial === null || was === undefined) return vehicle;
-    const count = points.get(vehicle.serial) ?? 0;
-    const track = count > 0 ? [...was.track.slice(-count), ...vehicle.track] : vehicle.track;
-    const app_facts = sameFacts.has(vehicle.serial) ? was.app_facts : vehicle.app_facts;
-    return { ...vehicle, track, app_facts };
-  });
-  return { ...base, ...changed, vehicles: whole };
+  return hasLists && typeof record["time_ns"] === "number" && "station" in record;
 }

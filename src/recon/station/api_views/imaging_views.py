@@ -13,8 +13,8 @@ from recon.guidance.upwind_place import UpwindPlace
 from recon.guidance.upwind_proposal import SPEED_MPS, UpwindProposal
 from recon.model.geo import GeoPoint, GroundGrid
 from recon.model.shade import MaskMap, ShadeMap, SunForecast
-from recon.model.units import ns_to_seconds
 from recon.site import Site
+from recon.station.api_views.ages import since_s
 from recon.station.imaging.mosaic import alignment_of, newest_images
 from recon.station.imaging.upwind import proposed
 from recon.station.state.imaging import ImagerFrames, ShadePipeline
@@ -32,7 +32,7 @@ def ground_image_view(station: Station, now_ns: int) -> schema.GroundImageView |
     return schema.GroundImageView(
         frame_id=images[0].frame_id,
         serials=serials,
-        captured_age_s=ns_to_seconds(now_ns - image.captured_at_ns),
+        captured_age_s=since_s(image.captured_at_ns, now_ns),
         captured_sigma_s=max(0.25 if p is None else p.video_latency_sigma_s for p in profiles),
         registration=image.registration.value,
         registration_residual_m=image.registration_residual_m,
@@ -86,7 +86,7 @@ def _map(shade: ShadeMap, seen: MaskMap | None, number: int, now_ns: int) -> sch
     known = int(shade.valid.sum())
     return schema.ShadeMapView(
         number=number,
-        captured_age_s=ns_to_seconds(now_ns - shade.captured_at_ns),
+        captured_age_s=since_s(shade.captured_at_ns, now_ns),
         known_share=known / shade.valid.size,
         sunlit_share=float(shade.is_sunlit.sum() / known) if known else None,
         in_view=_light_shares(shade, shade.valid if seen is None else seen | shade.valid),
@@ -120,7 +120,7 @@ def _forecast(sun: SunForecast, line: ShadePipeline, now_ns: int) -> schema.Fore
     predicted, sunlit = _shares(sun)
     return schema.ForecastView(
         number=line.number,
-        issued_age_s=ns_to_seconds(now_ns - sun.issued_at_ns),
+        issued_age_s=since_s(sun.issued_at_ns, now_ns),
         method=sun.method,
         lead_s=sun.lead_s.tolist(),
         predicted_share=predicted,
@@ -156,7 +156,7 @@ def sun_at_view(
     if is_on and shade.valid[row, col]:
         light = "sun" if shade.is_sunlit[row, col] else "shade"
     change = next_change(shade, sun, np.array([(row, col)]), station.settings.forecast)
-    age_s = ns_to_seconds(now_ns - shade.captured_at_ns)
+    age_s = since_s(shade.captured_at_ns, now_ns)
     after_s, early_s, late_s = (
         max(0.0, float(each[0]) - age_s) if change.is_predicted[0] else None
         for each in (change.after_s, change.early_s, change.late_s)

@@ -10,7 +10,8 @@ from recon.api import schema
 from recon.geo import geo_from_enu
 from recon.guidance.survey import SurveyState, figures
 from recon.model.geo import LocalFrame
-from recon.model.units import ns_to_seconds, seconds_to_ns
+from recon.model.units import seconds_to_ns
+from recon.station.api_views.ages import since_s
 from recon.station.api_views.imaging_views import corners_lon_lat, upwind_place_view
 from recon.station.api_views.relief_views import light_view
 from recon.station.operations.fleet_return.conditions import in_turn
@@ -48,7 +49,7 @@ def survey_view(station: Station, record: SurveyRecord, now_ns: int) -> schema.S
         phase=phase,
         reason=reason,
         asked_by=record.by,
-        age_s=ns_to_seconds(now_ns - record.asked_at_ns),
+        age_s=since_s(record.asked_at_ns, now_ns),
         started_by=record.started_by or None,
         planner=survey.planner,
         when_done=survey.when_done.value,
@@ -200,7 +201,7 @@ def _fleet_return(station: Station, now_ns: int) -> schema.FleetReturnView | Non
         return None
     return schema.FleetReturnView(
         called_by=running.by,
-        age_s=ns_to_seconds(now_ns - running.called_at_ns),
+        age_s=since_s(running.called_at_ns, now_ns),
         is_over=running.is_over,
         vehicles=[_returning(member, now_ns) for member in in_turn(running)],
     )
@@ -242,9 +243,9 @@ def _motion(newest: ImagerMotion, now_ns: int) -> dict[str, Any]:
         "serial": newest.serial,
         "vehicle_name": newest.name,
         "stage": newest.stage.value,
-        "since_age_s": ns_to_seconds(now_ns - newest.since_ns),
+        "since_age_s": since_s(newest.since_ns, now_ns),
         "begun_by": newest.by,
-        "begun_age_s": ns_to_seconds(now_ns - newest.begun_at_ns),
+        "begun_age_s": since_s(newest.begun_at_ns, now_ns),
         "reason": newest.reason or None,
         "survey_id": newest.survey_id,
     }
@@ -256,7 +257,7 @@ def _returning(member: ReturningVehicle, now_ns: int) -> schema.ReturningView:
         serial=member.serial,
         vehicle_name=member.name,
         stage=member.stage.value,
-        since_age_s=ns_to_seconds(now_ns - member.since_ns),
+        since_age_s=since_s(member.since_ns, now_ns),
         reason=member.reason or None,
         wave=None if flight is None else flight.wave,
         layer_height_m=None if flight is None else flight.layer_up_m,

@@ -6,6 +6,7 @@ from recon.api import schema
 from recon.guidance.imager_relief import RELIEF_SETTINGS
 from recon.guidance.survey import figures
 from recon.model.units import ns_to_seconds
+from recon.station.api_views.ages import since_s
 from recon.station.imaging.at_work import imagers_at_work, is_in_the_air
 from recon.station.state.imager_relief import SurveyOutlook
 from recon.station.state.station import Station
@@ -55,7 +56,7 @@ def _absent(station: Station, now_ns: int) -> list[schema.AbsentImagerView]:
         schema.AbsentImagerView(
             serial=serial,
             vehicle_name=_name(station, serial),
-            gone_age_s=ns_to_seconds(now_ns - place.until_ns),
+            gone_age_s=since_s(place.until_ns, now_ns),
             is_on_ground=not is_in_the_air(station, serial),
         )
         for serial, place in station.reliefs.places.items()
@@ -86,7 +87,7 @@ def _without(
     if without is None or record.state is None:
         return None, None
     grown_m2 = figures(record.state).sun_unknown_m2 - without.sun_unknown_m2
-    return ns_to_seconds(now_ns - without.since_ns), max(0.0, grown_m2)
+    return since_s(without.since_ns, now_ns), max(0.0, grown_m2)
 
 
 def _name(station: Station, serial: str) -> str:

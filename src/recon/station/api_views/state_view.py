@@ -13,8 +13,9 @@ from recon.fleet.state import Fleet, LinkRecord, staleness
 from recon.link.session import Session
 from recon.model.control import StopLatch
 from recon.model.imagery import Frame
-from recon.model.units import Stamped, ns_to_seconds
+from recon.model.units import Stamped
 from recon.model.vehicle import AltitudeReference, VehicleState
+from recon.station.api_views.ages import known_since_s, since_s
 from recon.station.api_views.app_facts_view import app_facts_view, photo_tally_view
 from recon.station.api_views.imaging_views import ground_image_view, shade_view
 from recon.station.api_views.operation_views import operation_fields
@@ -76,7 +77,7 @@ def _stop_latch(latch: StopLatch | None, now_ns: int) -> schema.StopLatchView | 
     if latch is None:
         return None
     # After a restart the clock may be behind that of the last run.
-    age_s = max(0.0, ns_to_seconds(now_ns - latch.at_ns))
+    age_s = max(0.0, since_s(latch.at_ns, now_ns))
     return schema.StopLatchView(by=latch.by, age_s=age_s, released=sorted(latch.released))
 
 
@@ -119,7 +120,7 @@ def _vehicle(
         preflight_override=override_view(station, vehicle.serial, now_ns),
         steering=steering_view(station, vehicle.serial),
         staleness=staleness(vehicle, now_ns).value,
-        telemetry_age_s=_age_s(vehicle.core_received_at_ns, now_ns),
+        telemetry_age_s=known_since_s(vehicle.core_received_at_ns, now_ns),
         is_flying=aged.flag(vehicle.is_flying),
         reported_is_flying=aged.flag(vehicle.reported_is_flying),
         doubts=doubt_views(vehicle, now_ns),
@@ -151,7 +152,7 @@ def _vehicle(
         app_facts=_facts(vehicle),
         app_facts_age_s=aged.age_s(vehicle.app_facts),
         photos=None if tally is None else photo_tally_view(tally),
-        newest_photo_age_s=None if tally is None else _age_s(tally.newest_at_ns, now_ns),
+        newest_photo_age_s=None if tally is None else known_since_s(tally.newest_at_ns, now_ns),
         track=[
             (round(p.longitude_deg, TRACK_DIGITS), round(p.latitude_deg, TRACK_DIGITS))
             for p in vehicle.track[-TRACK_POINTS_SHOWN:]
@@ -173,7 +174,7 @@ class _Aging:
     now_ns: int
 
     def age_s(self, stamped: Stamped[Any]) -> float | None:
-        return _rounded(stamped.age_s(self.now_ns), DIGITS)
+        return known_since_s(stamped.received_at_ns, self.now_ns)
 
     def number(self, stamped: Stamped[Any]) -> schema.AgedNumber:
         value = _rounded(stamped.value, DIGITS)
@@ -207,8 +208,8 @@ def _frame(frame: Frame | None, now_ns: int) -> schema.FrameView | None:
         return None
     return schema.FrameView(
         id=frame.id,
-        received_age_s=ns_to_seconds(now_ns - frame.received_at_ns),
-        captured_age_s=ns_to_seconds(now_ns - frame.captured_at_ns),
+        received_age_s=since_s(frame.received_at_ns, now_ns),
+        captured_age_s=since_s(frame.captured_at_ns, now_ns),
         captured_sigma_s=frame.captured_sigma_s,
     )
 
@@ -222,8 +223,8 @@ def _link(fleet: Fleet, record: LinkRecord, around: DriverState, now_ns: int) ->
         status=_link_status(fleet, record),
         claimed_serial=record.claimed_serial,
         waiting=_waiting(fleet, record, now_ns),
-        opened_age_s=_since_s(record.opened_at_ns, now_ns),
-        last_packet_age_s=_age_s(record.last_packet_at_ns, now_ns),
+        opened_age_s=since_s(record.opened_at_ns, now_ns),
+        last_packet_age_s=known_since_s(record.last_packet_at_ns, now_ns),
         closed_reason=record.closed_reason,
         bytes_received=0 if session is None else session.bytes_received,
         packets_received=record.packets,
@@ -263,7 +264,7 @@ def _waiting(fleet: Fleet, record: LinkRecord, now_ns: int) -> schema.WaitingApp
         return None
     return schema.WaitingAppView(
         serial=record.waiting_serial,
-        age_s=ns_to_seconds(now_ns - record.waits_since_ns),
+        age_s=since_s(record.waits_since_ns, now_ns),
         reason=pairing.objection(fleet, record),
         is_flying=record.own_state.is_flying.value,
     )
@@ -304,7 +305,7 @@ def _command(record: OrderRecord, times_sent: int, now_ns: int) -> schema.Comman
         link_id=command.link_id,
         vehicle_name=record.vehicle_name,
         issued_by=command.issued_by,
-        age_s=ns_to_seconds(now_ns - command.issued_at_ns),
+        age_s=since_s(command.issued_at_ns, now_ns),
         phase=record.phase.value,
         is_final=record.phase.is_final,
         note=record.note,
@@ -318,7 +319,7 @@ def _command(record: OrderRecord, times_sent: int, now_ns: int) -> schema.Comman
         history=[
             schema.PhaseView(
                 phase=change.phase.value,
-                age_s=ns_to_seconds(now_ns - change.at_ns),
+                age_s=since_s(change.at_ns, now_ns),
                 note=change.note,
             )
             for change in record.history
@@ -336,15 +337,7 @@ def _alarm(alarm: Alarm, now_ns: int) -> schema.AlarmView:
         link_id=condition.link_id,
         vehicle_name=condition.vehicle_name,
         text=condition.text,
-        raised_age_s=_since_s(alarm.raised_at_ns, now_ns),
+        raised_age_s=since_s(alarm.raised_at_ns, now_ns),
         is_active=alarm.is_active,
         is_acknowledged=alarm.acknowledged_by is not None,
     )
-
-
-def _age_s(at_ns: int | None, now_ns: int) -> float | None:
-    return None if at_ns is None else _since_s(at_ns, now_ns)
-
-
-def _since_s(at_ns: int, now_ns: int) -> float:
-    return round(ns_to_seconds(now_ns - at_ns), DIGITS)

@@ -2,13 +2,13 @@
 
 from recon.api import schema
 from recon.model.geo import LatLon
-from recon.model.units import ns_to_seconds
 from recon.model.vehicle import VehicleState
 from recon.safety import Situation
 from recon.safety.check import Check
 from recon.safety.checks import checklist
 from recon.safety.datum import home
 from recon.safety.prediction.motion import last_place
+from recon.station.api_views.ages import since_s
 from recon.station.api_views.failsafe_view import failsafe_view
 from recon.station.control import operator_lease
 from recon.station.control.preflight import facts
@@ -20,7 +20,7 @@ def authority_view(station: Station, serial: str | None, now_ns: int) -> schema.
     """Return the authority over a vehicle; the default for a link without a serial."""
     control = station.control(serial)
     authority = control.authority
-    age_s = ns_to_seconds(now_ns - authority.since_ns) if control.is_taken else None
+    age_s = since_s(authority.since_ns, now_ns) if control.is_taken else None
     return schema.AuthorityView(
         holder=authority.holder.value,
         holder_name=authority.holder_name,
@@ -37,8 +37,8 @@ def lease_view(station: Station, serial: str | None, now_ns: int) -> schema.Leas
     since_ns = operator_lease.absent_since_ns(station, lease)
     return schema.LeaseView(
         person=lease.person,
-        age_s=ns_to_seconds(now_ns - lease.since_ns),
-        absent_s=None if since_ns is None else ns_to_seconds(now_ns - since_ns),
+        age_s=since_s(lease.since_ns, now_ns),
+        absent_s=None if since_ns is None else since_s(since_ns, now_ns),
     )
 
 
@@ -48,7 +48,7 @@ def doubt_views(vehicle: VehicleState, now_ns: int) -> list[schema.DoubtView]:
         schema.DoubtView(
             kind=doubt.kind.value,
             text=doubt.text,
-            age_s=ns_to_seconds(now_ns - doubt.since_ns),
+            age_s=since_s(doubt.since_ns, now_ns),
             packets=doubt.count,
         )
         for doubt in vehicle.trust.doubts
@@ -61,7 +61,7 @@ def override_view(station: Station, serial: str | None, now_ns: int) -> schema.O
     given = station.control(serial).preflight_override
     if given is None:
         return None
-    age_s = ns_to_seconds(now_ns - given.at_ns)
+    age_s = since_s(given.at_ns, now_ns)
     return schema.OverrideView(by=given.by, reason=given.reason, age_s=age_s)
 
 

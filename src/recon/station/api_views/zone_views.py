@@ -7,6 +7,7 @@ from recon.model.geo import LocalFrame
 from recon.model.temporary_zone import Circle, DrawnZone, TemporaryZone
 from recon.model.units import ns_to_seconds
 from recon.safety.temporary_zones import MOST_ZONES, drawn_region
+from recon.station.api_views.ages import since_s
 from recon.station.api_views.site_view import lon_lat_ring
 from recon.station.state.station import Station
 
@@ -31,7 +32,7 @@ def zone_view(zone: TemporaryZone, frame: LocalFrame, now_ns: int) -> schema.Tem
         reason=drawn.reason,
         by=zone.by,
         # After a restart the clock may be behind that of the last run.
-        age_s=max(0.0, ns_to_seconds(now_ns - zone.drawn_at_ns)),
+        age_s=max(0.0, since_s(zone.drawn_at_ns, now_ns)),
         ends_in_s=None if ends_at_ns is None else max(0.0, ns_to_seconds(ends_at_ns - now_ns)),
     )
 
