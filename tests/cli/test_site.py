@@ -7,16 +7,19 @@ import pytest
 from typer.testing import CliRunner
 
 from recon.cli.commands import app
-from recon.cli.demo import demo_command
+from recon.cli.demo import DemoOptions, demo_command, rehearsed
 from recon.cli.site import site_app
 from recon.model.airspace import SiteLayer
 from recon.model.errors import ReconError, SiteError
 from recon.model.event import SiteRedrawn
+from recon.model.geo import GeoPoint
 from recon.record.files import file_set
 from recon.record.mcap.codec import Codec
 from recon.site import load_site
 from recon.site.drawing import MOST_STAGED_FILES, read_drawing, stage_drawing
+from recon.site.new_site import NewSiteFields, make_site
 from recon.site.reading import HISTORY_FOLDER, MAPS_FOLDER, site_digest
+from recon.site.schema import RehearsalTable
 
 PLACE = ("--at", "41.9012,-93.6034", "--ground-altitude-m", "275")
 
@@ -231,6 +234,55 @@ def test_earlier_versions_are_no_part_of_what_a_flight_used(folder: Path, tmp_pa
     digest = site_digest(folder)
     (folder / HISTORY_FOLDER / "0001" / "manifest.json").unlink()
     assert site_digest(folder) == digest
+
+
+def test_an_older_site_gets_an_imaging_drone(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "old"
+    make_site(
+        folder, GeoPoint(41.9, -93.6, 245.0), NewSiteFields(name="old", drones=2, has_imager=False)
+    )
+    assert "--no-imager" in simulator_words(folder)
+    told = capfd.readouterr().out
+    assert "no ground image, sun or forecast" in told
+    assert told.endswith(f"recon site imager {folder}\n")
+    before = (folder / "site.toml").read_text()
+    recon_site("imager", str(folder))
+    assert list(load_site(folder).imagers) == ["SIM-IMAGER"]
+    assert (folder / "site.toml").read_text().startswith(before.rstrip())
+    words = simulator_words(folder)
+    assert "--imager" in words
+    assert words[words.index("--vehicles") + 1] == "3"
+    assert "no imaging drone" not in capfd.readouterr().out
+    with pytest.raises(SiteError, match="imager"):
+        recon_site("imager", str(folder))
+
+
+def test_a_rehearsals_sky_is_the_sites_unless_the_command_names_another(tmp_path: Path) -> None:
+    folder = tmp_path / "new"
+    sky = RehearsalTable(cloud_cover_percent=65.0, wind_mps=6.0, wind_from_deg=10.0)
+    fields = NewSiteFields(name="new", drones=1, regions={}, rehearsal=sky)
+    make_site(folder, GeoPoint(41.9, -93.6, 245.0), fields)
+    words = simulator_words(folder)
+    assert [words[words.index(key) + 1] for key in ("--cover", "--wind-mps", "--wind-to-deg")] == [
+        "65",
+        "6",
+        "190",
+    ]
+    assert "--grounded" not in words
+    words = simulator_words(folder, cover=20.0)
+    assert words[words.index("--cover") + 1] == "20"
+
+
+def test_without_a_field_all_wait_on_the_ground_so_that_it_can_be_drawn(folder: Path) -> None:
+    assert "--grounded" in simulator_words(folder)
+
+
+def simulator_words(folder: Path, cover: float | None = None) -> tuple[str, ...]:
+    """What `recon demo --site` starts the simulator with."""
+    asked = DemoOptions(site=folder, http_port=0, link_port=0, no_record=True, cover=cover)
+    return rehearsed(folder, asked).simulator_words
 
 
 def test_a_rehearsal_needs_simulated_drones(tmp_path: Path) -> None:

@@ -5,11 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from recon.geo import enu_from_point
+from recon.camera import TelemetryReference, load_camera, mounted_pose
+from recon.geo import enu_from_point, point_from_enu
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.sim.app.app import SimulatedApp
 from recon.sim.app.faults import parse_fault
 from recon.sim.camera.frames import StillFrame
+from recon.sim.camera.rig import CameraRig
 from recon.sim.errors import FaultError
 from recon.sim.fleet import (
     IMAGER_SERIAL,
@@ -19,6 +21,7 @@ from recon.sim.fleet import (
     build_fleet,
     fleet_serials,
 )
+from recon.site import demo_site_folder
 
 HOME = GeoPoint(41.9, -93.6, 275.0)
 IMAGER = ImagerSetup(StillFrame(np.zeros((9, 16, 3), dtype=np.uint8)))
@@ -50,12 +53,35 @@ def test_only_the_imaging_drone_starts_in_the_air_by_default() -> None:
     assert len(set(in_air)) == 4
 
 
+def test_one_without_a_marked_frame_hovers_over_the_origin_and_lands_on_its_pad() -> None:
+    frame = LocalFrame(HOME)
+    pose = mounted_pose(
+        TelemetryReference(HOME.latitude_deg, HOME.longitude_deg, 0, 0), np.zeros(3)
+    )
+    rig = CameraRig(
+        load_camera(demo_site_folder() / "camera-model.txt"),
+        frame,
+        pose,
+        TelemetryReference(HOME.latitude_deg, HOME.longitude_deg, 0.0, 0.0),
+    )
+    pad = point_from_enu(frame, (80.0, -60.0, 0.0))
+    setup = replace(IMAGER, rig=rig, hover_m=110.0)
+    config = replace(CONFIG, imagers={IMAGER_SERIAL: setup}, pads={IMAGER_SERIAL: pad})
+    app = build_fleet(config, 0)[0]
+    motion = app.aircraft.motion
+    assert app.settings.home == pad
+    assert (motion.north_m, motion.east_m) == pytest.approx((60.0, -80.0), abs=0.1)
+    assert motion.height_m == 110.0
+    grounded = build_fleet(replace(config, airborne=Airborne.NONE), 0)[0].aircraft.motion
+    assert (grounded.north_m, grounded.east_m, grounded.height_m) == (0.0, 0.0, 0.0)
+
+
 def test_vehicles_start_apart_from_each_other() -> None:
     frame = LocalFrame(HOME)
     places = [enu_from_point(frame, app.settings.home)[:2] for app in build_fleet(CONFIG, 0)]
     for i, a in enumerate(places):
         for b in places[:i]:
-            assert np.hypot(*(a - b)) > 10.0
+            assert np.hypot(*(a - b)) > 24.9
 
 
 def test_pads_are_kept() -> None:

@@ -88,8 +88,8 @@ test("an empty folder and a KML become a rehearsal with sun and forecast, in fou
       await openPanel(page, "Edit site");
       const panel = page.getByRole("region", { name: "Edit site", exact: true });
       await panel.getByRole("button", { name: "Edit", exact: true }).click();
-      await panel.getByRole("combobox", { name: "Add" }).selectOption("Keep-out zone");
-      await panel.getByRole("button", { name: "At map centre" }).click();
+      await panel.getByRole("button", { name: /^Drone 3 Landing pad/ }).click();
+      await panel.getByRole("button", { name: "Remove Drone 3" }).click();
       await panel.getByRole("button", { name: /^Save/ }).click();
       await expect(
         panel.getByText(/^Not saved: Boundary, zones and pads change only/),

@@ -154,11 +154,11 @@ def demo_command(options: DemoOptions) -> None:
 
     It runs until Ctrl+C.
     """
-    demo = _played(options) if options.site is None else _rehearsed(options.site, options)
+    demo = _played(options) if options.site is None else rehearsed(options.site, options)
     run_in_loop(demo.run())
 
 
-def _played(options: DemoOptions) -> "_Demo":
+def _played(options: DemoOptions) -> "Demo":
     """Return the demonstration of a scenario; raises `ReconError`."""
     path = demo_scenario_file() if options.scenario is None else options.scenario
     played, seed = load_scenario(path), options.seed
@@ -174,10 +174,10 @@ def _played(options: DemoOptions) -> "_Demo":
     )
     words = ("scenario", str(path), *FEED, "--seed", str(seed))
     flies = played if options.survey else None
-    return _Demo(config, (*words, "--start-ns", str(start_ns)), flies)
+    return Demo(config, (*words, "--start-ns", str(start_ns)), flies)
 
 
-def _rehearsed(folder: Path, options: DemoOptions) -> "_Demo":
+def rehearsed(folder: Path, options: DemoOptions) -> "Demo":
     """Return a station with simulated drones on a site of one's own; raises `ReconError`."""
     if options.scenario is not None:
         raise ScenarioError("expected --site or --scenario, got both: a scenario has a site")
@@ -218,7 +218,7 @@ def _rehearsed(folder: Path, options: DemoOptions) -> "_Demo":
     imager = ("--imager", *FEED) if own.imagers else ("--no-imager",)
     # Fences change on the ground only: while there is no field to rehearse over, they are drawn.
     start = () if own.layers.survey_regions else ("--grounded",)
-    return _Demo(config, (*words, *sky, *wind, *BATTERIES, *imager, *start), None)
+    return Demo(config, (*words, *sky, *wind, *BATTERIES, *imager, *start), None)
 
 
 def _made_in_browser(folder: Path, http_port: int) -> int:
@@ -252,14 +252,14 @@ def demo_scenario_file() -> Path:
     raise ScenarioError(f"{DEMO_SCENARIO} not found beside the package; use --scenario")
 
 
-class _Demo:
+class Demo:
     """A running demonstration: the simulator's process and the tasks beside the station."""
 
     def __init__(
         self, config: RunConfig, simulator_words: Sequence[str], flown: Scenario | None
     ) -> None:
         """Take what the simulator is started with, and the scenario whose surveys are flown."""
-        self._config, self._words, self._flown = config, tuple(simulator_words), flown
+        self._config, self.simulator_words, self._flown = config, tuple(simulator_words), flown
         self._simulator: asyncio.subprocess.Process | None = None
         self._beside: list[asyncio.Task[None]] = []
 
@@ -290,7 +290,7 @@ class _Demo:
 
     async def _start_simulator(self, port: int) -> asyncio.subprocess.Process:
         """Start the simulator as a process of its own; it connects over TCP as any app does."""
-        words = ("-m", "recon", "sim", *self._words, "--station", f"127.0.0.1:{port}")
+        words = ("-m", "recon", "sim", *self.simulator_words, "--station", f"127.0.0.1:{port}")
         return await asyncio.create_subprocess_exec(sys.executable, *words)
 
     async def _report_end(self, simulator: asyncio.subprocess.Process) -> None:

@@ -11,14 +11,18 @@ from tests.station.surveyed_world import (
     surveyed_world,
 )
 
+from recon.api import schema
 from recon.geo import geo_from_enu
 from recon.guidance.survey import AssignedMission
 from recon.model.command import FlyMission
 from recon.model.mission import Mission, Waypoint
 from recon.model.survey import MissionAssignment, SurveyPhase
+from recon.station.api_views.operation_views import survey_views
 from recon.station.operations.survey import execution
 from recon.station.operations.survey.mission_dispatch import NO_ROOM, Dispatch, dispatch
 from recon.station.operations.survey.planning import SurveyStepped
+from recon.station.state.station import Station
+from recon.station.state.steps import Stepped
 from recon.station.state.survey_record import PendingStep
 
 
@@ -116,16 +120,34 @@ class TestInTheWay:
         given = replace(rows(world, (0.0, -40.0)), number=7, stands_by=True)
         held = Dispatch(dispatched(world, given).order, in_the_way=NO_ROOM)
         monkeypatch.setattr(execution, "dispatch", lambda *_: held)
-        state = world.state()
-        standing = AssignedMission(given.number, (), ((0.0, -40.0),), 0.0)
-        state = replace(state, flights={"SIM-1": standing})
-        pending = PendingStep(99, SURVEY_ID, 0, 0, 0)
-        station = world.driver.station
-        station = replace(station, surveys=replace(station.surveys, pending=pending))
-        step = SurveyStepped(state, (given,))
-        after, sent = execution.STEP_SURVEY.done(station, 99, step, world.driver.now_ns)
+        after, sent = stepped(world, given)
         kept = after.surveys.records[SURVEY_ID].state
         assert sent == ()
         assert kept is not None
         assert (kept.phase, kept.barred) == (SurveyPhase.RUNNING, frozenset())
         assert kept.refusals["SIM-1"].reason.startswith("there is no other height")
+        assert shown(after, world).waits_for is None
+
+    def test_one_that_waits_for_another_is_shown_with_its_name(self) -> None:
+        world = started(2)
+        after, sent = stepped(world, replace(rows(world, *PAST_THE_OTHER), number=7))
+        view = shown(after, world)
+        assert sent == ()
+        assert view.waits_for == world.driver.station.fleet.vehicles["SIM-2"].display_name
+        assert "it must keep" in str(view.refused)
+
+
+def stepped(world: SurveyedWorld, given: MissionAssignment) -> Stepped:
+    """A step of the survey that asks for one mission."""
+    standing = AssignedMission(given.number, (), ((0.0, -40.0),), 0.0)
+    state = replace(world.state(), flights={"SIM-1": standing})
+    pending = PendingStep(99, SURVEY_ID, 0, 0, 0)
+    station = world.driver.station
+    station = replace(station, surveys=replace(station.surveys, pending=pending))
+    step = SurveyStepped(state, (given,))
+    return execution.STEP_SURVEY.done(station, 99, step, world.driver.now_ns)
+
+
+def shown(station: Station, world: SurveyedWorld) -> schema.SurveyingView:
+    (view,) = survey_views(station, world.driver.now_ns)
+    return view.vehicles[0]

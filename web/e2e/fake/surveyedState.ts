@@ -26,6 +26,7 @@ export function surveyedState(elapsed_s: number): StationState {
   const waits = {
     is_flying_rows: false,
     refused: null,
+    waits_for: null,
     has_come_home: false,
     takes_off_automatically: false,
     mission_command_id: null,
@@ -71,6 +72,7 @@ export function surveyedState(elapsed_s: number): StationState {
             not_flying_reason: null,
             decision: null,
             refused: null,
+            waits_for: null,
             has_come_home: false,
             takes_off_automatically: false,
             mission_command_id: -3,

@@ -209,6 +209,9 @@ class SurveyingView(Message):
     refused: str | None = Field(
         description="why its newest mission was refused; null if it was not"
     )
+    waits_for: str | None = Field(
+        description="the vehicle in the way of its newest mission; null if none is"
+    )
     has_come_home: bool = Field(description="landed after the survey returned it home")
     takes_off_automatically: bool = Field(
         description="on the ground: it takes off as soon as there are rows for it"

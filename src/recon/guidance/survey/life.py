@@ -123,10 +123,12 @@ def refused(
     *,
     may_end: bool = False,
     in_the_way: bool = False,
+    waits_for: str = "",
 ) -> SurveyState:
     """Return the survey after the gate refused a mission; its rows stay with the vehicle.
 
-    `may_end`: the reason may end without a command. `in_the_way`: another vehicle is in its way.
+    `may_end`: the reason may end without a command. `in_the_way`: another vehicle is in its way, of
+    the name `waits_for` where that is known.
 
     - A mission that was to replace another one: the other one is flown on.
     - `may_end`: the next one is requested after `retry_soon_s`.
@@ -145,6 +147,7 @@ def refused(
     is_barred = not (state.flights or may_end or finds_others)
     route = (*flight.route, *state.waiting.get(serial, ()))
     refusal = _refusal(state, flight, reason, now_ns, may_end=may_end, finds_others=finds_others)
+    refusal = replace(refusal, waits_for=waits_for)
     decisions = {key: each for key, each in state.decisions.items() if key != serial}
     others = {key: each for key, each in state.waiting.items() if key != serial}
     waiting = {**others, serial: route} if route else others

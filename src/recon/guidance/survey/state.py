@@ -94,6 +94,8 @@ class Refused:
     again_ns: int
     rows_most: int | None = None
     """Most rows of the next one, after a mission that would have met another vehicle on its way."""
+    waits_for: str = ""
+    """Name of the vehicle in its way, if one is."""
 
 
 @dataclass(frozen=True, slots=True)

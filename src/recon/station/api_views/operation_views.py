@@ -9,6 +9,7 @@ import numpy as np
 from recon.api import schema
 from recon.geo import geo_from_enu
 from recon.guidance.survey import SurveyState, figures
+from recon.guidance.survey.state import Refused
 from recon.model.geo import LocalFrame
 from recon.model.units import seconds_to_ns
 from recon.station.api_views.ages import since_s
@@ -96,13 +97,13 @@ def survey_paths(record: SurveyRecord) -> schema.SurveyPaths | None:
     )
 
 
-def _refused(state: SurveyState, serial: str, now_ns: int) -> str | None:
+def _refused(state: SurveyState, serial: str, now_ns: int) -> Refused | None:
     """The refusal that a vehicle waits for now, not one of a mission that was flown since."""
     found = state.refusals.get(serial)
     if found is None:
         return None
     until_ns = found.again_ns + seconds_to_ns(SURVEY_TIMES.asked_again_within_s)
-    return found.reason if serial in state.barred or now_ns < until_ns else None
+    return found if serial in state.barred or now_ns < until_ns else None
 
 
 def _member(
@@ -122,7 +123,8 @@ def _member(
         is_flying_rows=flies,
         not_flying_reason=waits,
         decision=None if decision is None else decision.text,
-        refused=refused,
+        refused=None if refused is None else refused.reason,
+        waits_for=None if refused is None else refused.waits_for or None,
         takes_off_automatically=takes_off_automatically(station, record, member),
         has_come_home=member.return_reason is not None and is_on_ground(station, member),
         mission_command_id=member.command_id,

@@ -18,7 +18,7 @@ import { FlownRegions } from "./FlownRegions";
 import { NewSurvey } from "./NewSurvey";
 import { SurveyLight } from "./SurveyLight";
 import { SurveyPreview } from "./SurveyPreview";
-import { Coverage, Decisions } from "./SurveySummary";
+import { Coverage, type DecisionLine, Decisions } from "./SurveySummary";
 import "./survey.css";
 
 /** Surveys: plan, start with the selected vehicles, pause, abort; and their coverage. */
@@ -147,11 +147,9 @@ function notShown({ figures }: SurveyView): string | null {
 }
 
 /** A drone and what it does for the survey, with the reason; `person` reads it. */
-function lineOf(
-  vehicle: SurveyingView,
-  isDone: boolean,
-  person: string | null,
-): readonly [string, string] {
+function lineOf(vehicle: SurveyingView, isDone: boolean, person: string | null): DecisionLine {
+  if (vehicle.waits_for !== null && vehicle.not_flying_reason === null)
+    return [vehicle.vehicle_name, text.surveys.waitsFor(vehicle.waits_for), vehicle.refused];
   const idle = isDone ? text.surveys.returnsHome : text.surveys.noRows;
   const activity = vehicle.is_flying_rows ? text.surveys.fliesRows : idle;
   const why = vehicle.not_flying_reason ?? vehicle.refused ?? vehicle.decision;

@@ -1,4 +1,4 @@
-import { createSignal, For, Show } from "solid-js";
+import { createSignal, Index, Show } from "solid-js";
 import { useConsole } from "../../console";
 import type { SurveyView } from "../../protocol";
 import { text } from "../../text/catalogue";
@@ -66,20 +66,32 @@ export function Coverage(props: { survey: SurveyView }) {
   );
 }
 
+/** A drone, what it does, and a long reason for it that is shown on demand. */
+export type DecisionLine = readonly [name: string, what: string, why?: string | null];
+
 /** Why each drone does what it does; the first few, the others on demand. */
-export function Decisions(props: { lines: readonly (readonly [string, string])[] }) {
+export function Decisions(props: { lines: readonly DecisionLine[] }) {
   const [isOpen, setOpen] = createSignal(false);
   const shown = () => (isOpen() ? props.lines : props.lines.slice(0, DECISIONS_SHOWN));
   return (
     <Show when={props.lines.length > 0}>
       <ul class="survey-decisions wire-text">
-        <For each={shown()}>
-          {([name, why]) => (
+        {/* By place, so that an opened reason stays open while figures in it change. */}
+        <Index each={shown()}>
+          {(line) => (
             <li>
-              <strong>{name}</strong> <span class="muted">{withLengthUnit(why)}</span>
+              <strong>{line()[0]}</strong> <span class="muted">{withLengthUnit(line()[1])}</span>
+              <Show when={line()[2]}>
+                {(why) => (
+                  <details class="survey-why">
+                    <summary>{text.surveys.why}</summary>
+                    {withLengthUnit(why())}
+                  </details>
+                )}
+              </Show>
             </li>
           )}
-        </For>
+        </Index>
       </ul>
       <Show when={props.lines.length > DECISIONS_SHOWN}>
         <button type="button" class="button button-quiet" onClick={() => setOpen(!isOpen())}>

@@ -199,6 +199,19 @@ describe("a survey in the list", () => {
     expect(page.requests[1]).toEqual({ stoppedSurvey: 7, word: "abort" });
   });
 
+  it("says for whom a drone waits, and keeps the gate's sentence behind Why", () => {
+    const sentence = "Birch: on its way to the first waypoint it must keep 18 m from Alder";
+    const waiting = survey(7);
+    const [first, second] = waiting.vehicles;
+    if (first === undefined || second === undefined) throw new Error("a survey of two drones");
+    const birch = { ...second, not_flying_reason: null, refused: sentence, waits_for: "Alder" };
+    show({ ...waiting, vehicles: [first, birch] });
+    const line = [...page.root.querySelectorAll(".survey-decisions li")].at(-1);
+    expect(line?.querySelector("details")?.open).toBe(false);
+    expect(line?.querySelector("details")?.textContent).toBe(`Why${sentence}`);
+    expect(line?.textContent).toBe(`Birch waits for Alder to clear its wayWhy${sentence}`);
+  });
+
   it("shows why a request was refused", async () => {
     show(survey(7));
     page.answerRequestsWith({ accepted: false, rule: "survey", reason: "survey 7 has ended" });

@@ -128,6 +128,8 @@ export const surveys = {
   returnsHome: "returns home",
   fliesRows: "flies rows",
   noRows: "does not fly rows",
+  waitsFor: (vehicle: string) => `waits for ${vehicle} to clear its way`,
+  why: "Why",
   start: "Start with selected",
   /** After the drone's name; the order is the station's words: `hover was ordered by `. */
   stoppedBy: (order: string, by: string) => `does not fly rows: ${order}${by}. Select it to resume`,

@@ -22,7 +22,7 @@ from math import dist
 from types import MappingProxyType
 
 from recon.guidance.survey import NO_BATTERY, PositionSample, SurveyState, refused
-from recon.model.command import Phase, issued_by_station
+from recon.model.command import Phase, Refusal, issued_by_station
 from recon.model.replacing import replace
 from recon.model.shade import ShadeMap
 from recon.model.survey import MissionAssignment, SurveyPhase
@@ -253,7 +253,14 @@ def _order_mission(
         # Without a place to wait at a vehicle waits where it is; that must not bar it from rows.
         waits = given.stands_by
         state = refused(
-            state, given.serial, given.number, why, now_ns, may_end=waits, in_the_way=True
+            state,
+            given.serial,
+            given.number,
+            why,
+            now_ns,
+            may_end=waits,
+            in_the_way=True,
+            waits_for=_in_its_way(ready.in_the_way),
         )
         return replace(station, surveys=station.surveys.put(replace(record, state=state))), ()
     station, number = take_id(station)
@@ -273,7 +280,14 @@ def _order_mission(
     takes_fewer = refusal.rule == BATTERY and _may_take_fewer(state, given.serial)
     in_the_way = refusal.rule == SEPARATION or takes_fewer
     state = refused(
-        state, given.serial, given.number, why, now_ns, may_end=waits, in_the_way=in_the_way
+        state,
+        given.serial,
+        given.number,
+        why,
+        now_ns,
+        may_end=waits,
+        in_the_way=in_the_way,
+        waits_for=_in_its_way(refusal),
     )
     record = replace(record, state=state)
     station = replace(station, surveys=station.surveys.put(record))
@@ -281,6 +295,11 @@ def _order_mission(
     if returns_home(record) and refusal.rule == BATTERY and not flies_on:
         return send_home(station, survey_id, given.serial, NO_BATTERY, now_ns)
     return station, sent
+
+
+def _in_its_way(refusal: Refusal) -> str:
+    """Return the name of the vehicle that a refusal is about; empty if it is about none."""
+    return str(refusal.parameters.get("other", "")) if refusal.rule == SEPARATION else ""
 
 
 def _ordered(
