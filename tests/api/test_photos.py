@@ -139,9 +139,9 @@ def test_photos_of_a_made_flight_are_tagged_by_the_commands(
 def test_a_failed_mosaic_leaves_the_tags_and_a_report_without_it(
     photos: Made, tmp_path: Path
 ) -> None:
-    fails = "if words[0] == 'mosaic': sys.exit('recon: x.JPG: cannot be decoded')"
+    fails = "if '/site' in words: sys.exit('recon: x.JPG: cannot be decoded')"
     log = "print('warning: turned by 90 degrees', file=sys.stderr)"
-    job = photos(command=python(f"{WORKS}\n{fails}\n{log}"))
+    job = photos(command=python(f"{WORKS}\n{fails}\n{log}"), site=lambda: Path("/site"))
     view = finished(job, tmp_path / "card", clock_offset_s=-5.0)
     assert states(view) == "done done done failed done"
     assert (view.state, problems(view)) == ("failed", ["x.JPG: cannot be decoded"])
@@ -237,7 +237,7 @@ def test_a_folder_that_does_not_answer_is_refused(
 ) -> None:
     hangs = Event()
     monkeypatch.setattr(photo_job, "ANSWERS_WITHIN_S", 0.01)
-    monkeypatch.setattr(photo_job, "_folder", lambda *_words: str(hangs.wait(60.0)))
+    monkeypatch.setattr(photo_job, "photo_folder", lambda *_words: str(hangs.wait(60.0)))
     job = photos(command=python(""))
     asked = PhotoRequest(flight=NAME, folders=[str(tmp_path / "card")])
     with pytest.raises(PhotoRequestError, match="does not answer: pull the card out"):

@@ -9,13 +9,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
+import numpy as np
 import typer
 
 from recon.cli.json_lines import report_facts
 from recon.cli.opened_flight import opened_flight
-from recon.cli.opened_site import opened_site
 from recon.cli.options import with_options
-from recon.cli.output import print_line, printable
+from recon.cli.output import print_line, print_warning, printable
 from recon.cli.photo_cards import (
     CameraOptions,
     main_reason,
@@ -24,7 +24,9 @@ from recon.cli.photo_cards import (
     reasons_of,
 )
 from recon.cli.progress import progress_over, usable_cores
+from recon.geo import enu_from_points
 from recon.model.errors import RecordError
+from recon.model.geo import LocalFrame
 from recon.model.units import HECTARE_M2
 from recon.product.flight import FlightData
 from recon.product.footprint import PhotoView
@@ -52,12 +54,15 @@ from recon.product.photos.shots import CameraShot
 from recon.product.sun_at import SunHistory
 from recon.product.tag import sun_history
 from recon.product.timing import TimedPhoto
+from recon.site import load_site
 
 MOST_THREADS = 2
 """More would decode more photos at once, 100 MB each."""
 NO_PHOTO_USED = 1
 M_MMAP_THRESHOLD, M_ARENA_MAX = -3, -8
 """Of glibc's malloc.h."""
+SAME_ORIGIN_M = 0.1
+"""Largest distance between the origins of a flight and of its site."""
 COLOURS = ("red", "green", "blue")
 
 
@@ -153,7 +158,7 @@ def _geometry(
     shots: Sequence[CameraShot],
 ) -> Iterator[_Geometry]:
     if options.odm is None:
-        ground, name = _site_ground(options.site)
+        ground, name = site_ground(options.site, flight.frame)
         cameras = preview_cameras(flight, photos, _registered(photos), ground)
         bands = [*_colours(photos), *band_rasters(shots, photos, cameras)]
         source = f"photos registered to each other over {name}"
@@ -173,13 +178,18 @@ def _geometry(
         yield _Geometry(placed, cameras, run.surface, _colours(placed), source, 1.0)
 
 
-def _site_ground(site: Path | None) -> tuple[MosaicGround, str]:
-    """Return the ground, and what it is in words."""
+def site_ground(site: Path | None, frame: LocalFrame) -> tuple[MosaicGround, str]:
+    """Return the ground of a flight with this frame, and what it is in words."""
     if site is None:
         return LevelGround(), "level ground"
-    model = opened_site(site).elevation
+    # Only read: a change that the station is making meanwhile is not for this command to undo.
+    model = load_site(site).elevation
     if model is None:
         raise RecordError(f"{site}: expected a site with an [elevation], got none in its site.toml")
+    place_m = enu_from_points(frame, [model.grid.frame.origin])
+    if float(np.hypot(*place_m[0, :2])) > SAME_ORIGIN_M:
+        print_warning(f"the flight is of another site than {site.name}: over level ground instead")
+        return LevelGround(), "level ground"
     return SiteGround(model), "the site's elevation"
 
 

@@ -1,15 +1,17 @@
 """The ground's heights, and cameras over it."""
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from tests.product.made_flight import FRAME, HEIGHT_M, ONE, track
 from tests.product.mosaic.made_mosaic import MadeMosaic
 
+from recon.cli import mosaic
 from recon.model.airspace import ElevationModel
 from recon.model.errors import RecordError
-from recon.model.geo import GroundGrid
+from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.product.mosaic import LevelGround, SiteGround, preview_cameras
 
 
@@ -57,3 +59,15 @@ def test_a_takeoff_beyond_the_model_is_refused(tmp_path: Path) -> None:
     views = [each.view for each in made.photos]
     with pytest.raises(RecordError, match="to where Drone 1 took off"):
         preview_cameras(made.flight, made.photos, views, site_ground(50.0))
+
+
+def test_the_ground_of_another_site_is_not_taken(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    site = SimpleNamespace(elevation=site_ground().model)
+    monkeypatch.setattr(mosaic, "load_site", lambda _folder: site)
+    own, _words = mosaic.site_ground(tmp_path, FRAME)
+    assert isinstance(own, SiteGround)
+    other, words = mosaic.site_ground(tmp_path, LocalFrame(GeoPoint(41.91, -93.6, 290.0)))
+    assert (other, words) == (LevelGround(), "level ground")
+    assert "the flight is of another site" in capsys.readouterr().err

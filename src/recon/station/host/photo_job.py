@@ -25,6 +25,7 @@ from recon.api import schema
 from recon.api.photo_routes import PhotoBusyError, PhotoRequestError
 from recon.record.files.atomic_file import replace_file
 from recon.station.host.background_process import background_process, lines_of
+from recon.station.host.photo_folder import photo_folder
 
 RECON = (sys.executable, "-m", "recon")
 FOLDER_END = "-photos"
@@ -65,11 +66,14 @@ class PhotoJob:
         records: Path,
         record: Callable[[str], Path | None],
         command: Sequence[str] = RECON,
+        site: Callable[[], Path | None] = lambda: None,
     ) -> None:
-        """Take the records' folder; `record` returns the file of a flight's name."""
+        """Take the records' folder; `record` returns the file of a flight's name, and `site` the
+        folder of a site with an elevation model."""
         self._records = records
         self._record = record
         self._command = command
+        self._site = site
         self._job = _last_job(records)
         self._is_busy = self._is_cancelled = False
         self._thread: Thread | None = None
@@ -133,7 +137,7 @@ class PhotoJob:
         record = self._record(asked.flight)
         if record is None:
             raise PhotoRequestError(f"No flight record {asked.flight!r} in the station's folder")
-        folders = [_folder(text, self._records) for text in asked.folders]
+        folders = [photo_folder(text, self._records) for text in asked.folders]
         try:
             self._out(asked.flight).mkdir(mode=0o700, exist_ok=True)
         except OSError as problem:
@@ -168,7 +172,9 @@ class PhotoJob:
         flight = ("--flight", str(record), "--out", tagged, "--no-odm")
         try:
             if self._has_done("clock", ("tag", *folders, *flight, *camera)):
-                words = ("mosaic", str(record), *folders, "--out", mosaic, *camera)
+                site = self._site()
+                ground = () if site is None else ("--site", str(site))
+                words = ("mosaic", str(record), *folders, "--out", mosaic, *ground, *camera)
                 shown = ("--mosaic", mosaic) if self._has_done("mosaic", words) else ()
                 page = ("--out", str(out / "report.html"), "--tagged", tagged, *shown)
                 self._has_done("report", ("report", str(record), *page))
@@ -282,38 +288,6 @@ def _begun(flight: str, folders: list[str], out: Path) -> schema.PhotoJobView:
         files=[],
         warnings=[],
     )
-
-
-def _folder(text: str, records: Path) -> str:
-    """Return a folder that can be read; raises `PhotoRequestError`."""
-    path = Path(text.strip().strip("\"'")).expanduser()
-    if not path.is_absolute():
-        raise PhotoRequestError(
-            f"Give the folder's whole path on the station's computer, such as /media/card/DCIM; "
-            f"got {text!r}"
-        )
-    try:
-        if not path.exists():
-            raise PhotoRequestError(
-                f"No folder {path} on the station's computer: is the card in it, and is the path "
-                "right?"
-            )
-        if not path.is_dir():
-            raise PhotoRequestError(f"{path} is a file: give the folder that holds it")
-        with os.scandir(path) as entries:
-            next(entries, None)
-        whole = path.resolve()
-        if records.resolve().is_relative_to(whole):
-            raise PhotoRequestError(
-                f"{path} holds the station's flight records: give the folder of the photos alone"
-            )
-    except (OSError, ValueError) as problem:
-        reason = getattr(problem, "strerror", None) or problem
-        raise PhotoRequestError(
-            f"{path} cannot be read by the station: {reason}. Copy the photos into a folder of the "
-            "station's user"
-        ) from problem
-    return str(path)
 
 
 def _sentence(code: int, last: str) -> str:

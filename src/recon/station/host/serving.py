@@ -5,6 +5,8 @@ import socket
 from collections.abc import Awaitable, Callable
 from contextlib import AsyncExitStack
 from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
 
 from recon import version
 from recon.api.addresses import SharedAddress
@@ -79,6 +81,11 @@ async def serve(
         task.result()
 
 
+def _elevated_site(config: RunConfig, service: Service) -> Path | None:
+    """Return the site's folder, if the heights of its ground are known."""
+    return None if service.site.elevation is None else config.site_folder
+
+
 def _servers(
     config: RunConfig,
     driver: AsyncioDriver,
@@ -96,7 +103,8 @@ def _servers(
     if config.record_folder is not None:
         flights = RecordedFlights(config.record_folder, service.recording)
         stack.callback(flights.close)
-        photos = PhotoJob(config.record_folder, flights.record)
+        site = partial(_elevated_site, config, service)
+        photos = PhotoJob(config.record_folder, flights.record, site=site)
         stack.callback(photos.close)
         service.gaps_file = lambda: photos.file("fly-again.geojson")
     maps = maps_of(config.site_folder, lambda: service.site)
