@@ -48,6 +48,8 @@ export default defineConfig({
     // Set by the global setup, before the workers read this file.
     baseURL: process.env["RECON_E2E_PAGE"],
     viewport: { width: 1440, height: 900 },
+    // Each page would keep all files anew; one test has it.
+    serviceWorkers: "block",
     launchOptions: { args, executablePath },
   },
 });

@@ -57,3 +57,20 @@ def test_pictures_ranges_and_absent_files_are_left_alone(client: Client) -> None
     part = client.get("/assets/index-Cc8pS0IZ.js", headers={"Range": "bytes=0-9"})
     assert (part.status_code, part.text) == (206, SCRIPT[:10])
     assert client.get("/absent.js").status_code == 404
+
+
+def test_what_makes_it_installable_has_its_type_and_is_asked_for_again(
+    client: Client, tmp_path: Path
+) -> None:
+    (tmp_path / "manifest.webmanifest").write_text("{}")
+    (tmp_path / "sw.js").write_text("self.skipWaiting()")
+    (tmp_path / "icon-192.png").write_bytes(b"\x89PNG")
+    kinds = {
+        "manifest.webmanifest": "application/manifest+json",
+        "sw.js": "text/javascript",
+        "icon-192.png": "image/png",
+    }
+    for name, kind in kinds.items():
+        answer = client.get(f"/{name}")
+        assert answer.headers["content-type"].partition(";")[0] == kind
+        assert answer.headers["cache-control"] == ASK_AGAIN

@@ -435,6 +435,7 @@ def test_the_cameras_are_listed_with_their_sources() -> None:
         ((), 2, "give either --gsd"),
         (("--gsd", "2cm", "--height", "60"), 2, "give either --gsd"),
         (("--gsd", "two"), 2, "--gsd: expected 0.5 mm to 5 m"),
+        (("--gsd", "2"), 2, "with its unit, such as 2cm"),
         (("--height", "60", "--camera", "mavic9"), 2, "Camera 'mavic9' not found"),
         (("--height", "60", "--exposure", "1/0"), 2, "--exposure: expected"),
         (("--height", "60", "--cameras", "missing.toml"), 2, "missing.toml: expected a file"),

@@ -2,6 +2,7 @@ import { expect, type Page, test } from "@playwright/test";
 import { station, vehicle } from "../src/testing/fakeState";
 import { CHECKLIST, fencedState } from "./fake/fencedState";
 import { FakeStation } from "./fake/station";
+import { lock, unlock } from "./views";
 
 /** Everything on the page that can have the focus, with what it is. */
 function focusable(
@@ -49,6 +50,15 @@ test("all stop works with every element of the page in focus", async ({ page }) 
   const kinds = new Set((await focusable(page)).map(({ what }) => what.split(" ")[0]));
   for (const kind of ["button", "input", "canvas", "summary"]) expect(kinds).toContain(kind);
   expect(await deaf(page, fake)).toEqual([]);
+  await lock(page);
+  expect(await deaf(page, fake)).toEqual([]);
+  const orders = fake.orders.length;
+  await page.keyboard.press("Shift+H");
+  await page.locator(".page").click({ position: { x: 600, y: 420 } });
+  await page.keyboard.press("2");
+  await unlock(page);
+  await expect(page.locator(".vehicle.is-selected")).toHaveText(/Alder/);
+  expect(fake.orders).toHaveLength(orders);
   // Inside the help, and with a form of every kind of field.
   await page.keyboard.press("?");
   await page.evaluate(() => {

@@ -128,6 +128,9 @@ export async function visitViews(
   await page.keyboard.press("?");
   await visit("Help");
   await page.keyboard.press("Escape");
+  await lock(page);
+  await visit("Locked");
+  await unlock(page);
   show({ stop_latch: { by: "anna", age_s: 2, released: [] } });
   await expect(page.getByRole("button", { name: /^Release all/ })).toBeVisible();
   await visit("All stop in force");
@@ -141,6 +144,23 @@ export async function visitViews(
   await visit("Connection lost");
 }
 
+/** Locks the page by its menu, which a phone has too. */
+export async function lock(page: Page): Promise<void> {
+  await page.getByRole("button", { name: "Menu", exact: true }).click();
+  const menu = page.getByRole("region", { name: "Menu", exact: true });
+  await menu.getByRole("button", { name: "Lock the page" }).click();
+  await expect(page.getByRole("button", { name: /^Unlock/ })).toBeFocused();
+}
+
+/** Unlocks it by a held key. */
+export async function unlock(page: Page): Promise<void> {
+  const button = page.getByRole("button", { name: /^Unlock/ });
+  await button.focus();
+  await page.keyboard.down("Enter");
+  await expect(button).toHaveCount(0);
+  await page.keyboard.up("Enter");
+}
+
 async function flyViews(page: Page, visit: (view: string) => Promise<void>): Promise<void> {
   await page.keyboard.press("1");
   await page.keyboard.press("d");
@@ -151,6 +171,11 @@ async function flyViews(page: Page, visit: (view: string) => Promise<void>): Pro
   await page.getByText("Nudge in small steps").click();
   await visit("Fly here");
   await page.keyboard.press("g");
+  await page.keyboard.press("m");
+  await page.getByRole("button", { name: "At map centre" }).press("Enter");
+  await visit("Mission");
+  await page.getByRole("button", { name: "Clear points" }).press("Enter");
+  await page.getByRole("button", { name: "Leave the mission" }).press("Enter");
 }
 
 async function panelViews(

@@ -18,6 +18,7 @@ import { FlyHereCard } from "./panels/fly/FlyHereCard";
 import { MissionCard } from "./panels/fly/MissionCard";
 import { HelpDialog } from "./panels/help/HelpDialog";
 import { LinkList } from "./panels/links/LinkList";
+import { LockScreen } from "./panels/lock/LockScreen";
 import { LoginDialog } from "./panels/login/LoginDialog";
 import type { PanelName } from "./panels/openPanels";
 import { AnswerNotice } from "./panels/orders/AnswerNotice";
@@ -64,7 +65,7 @@ const PANELS: readonly (readonly [PanelName, () => ReturnType<typeof AlarmList>]
 export function App() {
   const { source, fleet, selection, orderApi, theme, fit, flyHere, zoneDraft, panels } =
     useConsole();
-  const { siteDraft, missionDraft, isReplay, largeCamera, clock, behindS } = useConsole();
+  const { siteDraft, missionDraft, lock, isReplay, largeCamera, clock, behindS } = useConsole();
   const [isHelpOpen, setHelpOpen] = createSignal(false);
   const keys = () => fleet.vehicles.map(vehicleKey);
   const select = (key: number, action: (key: number) => void) => {
@@ -94,12 +95,14 @@ export function App() {
     // Before any button: Enter behind a number presses none.
     const onFirst = (event: KeyboardEvent) => {
       const isStop = isAllStop(event);
-      if (!numberEntry.take(event) && !isStop) return;
+      const isTaken = !lock.isOn() && numberEntry.take(event);
+      if (!isTaken && !isStop) return;
       event.preventDefault();
       event.stopPropagation();
       if (isStop) void orderApi.allStop();
     };
     const onKeyDown = (event: KeyboardEvent) => {
+      if (lock.isOn()) return;
       actOnKey(event, {
         selectOnly: (number) => select(number, selection.only),
         toggle: (number) => select(number, selection.toggle),
@@ -135,6 +138,7 @@ export function App() {
       classList={{
         "is-lost": source.connection().kind === "lost",
         "is-replay": isReplay(),
+        "is-locked": lock.isOn(),
       }}
     >
       <MapView />
@@ -156,7 +160,7 @@ export function App() {
       </div>
       <aside class="dock dock-left" aria-label={text.page.vehicles}>
         <VehicleList />
-        <Show when={!isReplay()}>
+        <Show when={!isReplay() && !lock.isOn()}>
           <FlyHereCard />
           <MissionCard />
           <OrderBar />
@@ -170,13 +174,14 @@ export function App() {
             </Show>
           )}
         </For>
-        <Show when={panels.names().length === 0}>
+        <Show when={panels.names().length === 0 && !lock.isOn()}>
           <SurveySummary />
         </Show>
       </aside>
       <LargeCamera />
       <TimeScale />
       <ReplayBar />
+      <LockScreen />
       <LoginDialog />
       <HelpDialog isOpen={isHelpOpen()} onClose={() => setHelpOpen(false)} />
     </div>

@@ -79,6 +79,8 @@ export interface Console {
   readonly isReplay: Accessor<boolean>;
   /** Why this person cannot do what needs a role; null when nothing is in the way. */
   lacks(needed: Role): string | null;
+  /** Whether the page is locked against stray touches. */
+  readonly lock: { readonly isOn: Accessor<boolean>; set(isOn: boolean): void };
   /** Seconds to add to every age in the newest state; grows until the next state. */
   readonly behindS: Accessor<number>;
   readonly fitRequests: Accessor<number>;
@@ -113,6 +115,7 @@ export function createConsole(
   const fleet = createFleetView(source);
   const selection = createSelection();
   const [fitRequests, setFitRequests] = createSignal(0);
+  const [isLocked, setLocked] = createSignal(false);
   const behindS = createMemo(() => {
     source.state();
     return source.behindS(now()) ?? 0;
@@ -191,6 +194,8 @@ export function createConsole(
     replay,
     isReplay,
     lacks: (needed) => (isReplay() ? text.page.noOrdersInReplay : lacking(source.person(), needed)),
+    // A replay has no orders to guard.
+    lock: { isOn: () => isLocked() && !isReplay(), set: setLocked },
     behindS,
     fitRequests,
     fit: () => setFitRequests((count) => count + 1),

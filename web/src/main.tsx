@@ -4,6 +4,7 @@ import "./theme/theme.css";
 import "./theme/page.css";
 import { App } from "./App";
 import { ConsoleProvider, createConsole } from "./console";
+import { keepShell } from "./offline/keepShell";
 import { createOpenPanels, NARROW } from "./panels/openPanels";
 import { createNotifier, keepScreenOn } from "./sound/attention";
 import { createMutes } from "./sound/mutes";
@@ -71,6 +72,7 @@ function Page() {
   );
 }
 
+if (import.meta.env.PROD) keepShell(navigator.serviceWorker);
 document.documentElement.lang = language;
 const root = document.getElementById("app");
 if (root === null) throw new Error("index.html has no element with id app.");

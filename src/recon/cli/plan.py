@@ -307,14 +307,14 @@ def _height_m(model: CameraModel, gsd: str | None, height_m: float | None) -> fl
     return round(found, 1)
 
 
-UNITS_M = {"mm": 0.001, "cm": 0.01, "": 0.01, "m": 1.0}
+UNITS_M = {"mm": 0.001, "cm": 0.01, "m": 1.0}
 
 
 def _gsd_m(text: str) -> float:
-    found = re.fullmatch(r"(\d{1,6}(?:\.\d{1,6})?) ?(mm|cm|m|)", text.strip())
+    found = re.fullmatch(r"(\d{1,6}(?:\.\d{1,6})?) ?(mm|cm|m)", text.strip())
     gsd_m = float(found[1]) * UNITS_M[found[2]] if found else 0.0
     if not 0.0005 <= gsd_m <= 5.0:
-        raise PlanError(f"--gsd: expected 0.5 mm to 5 m, such as 2cm, got {text!a}")
+        raise PlanError(f"--gsd: expected 0.5 mm to 5 m with its unit, such as 2cm, got {text!a}")
     return gsd_m
 
 

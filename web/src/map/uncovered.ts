@@ -38,14 +38,23 @@ export function isInSight(
   return isInside && !covers.some((cover) => meets(frame, cover));
 }
 
-/** Space around what is fitted: the covered edges of the map, and a rim. */
-export function paddingOf(map: HTMLElement, free: HTMLElement) {
+/** A notice of one or two lines comes and goes over the top of the free part. */
+const NOTICE_PX = 64;
+/** Where the free part is lower, no room is kept for notices. */
+const LEAST_HEIGHT_PX = 480;
+
+/** Space around what is fitted: the covered edges of the map, a rim, and room for a notice. */
+export function paddingOf(
+  map: Pick<HTMLElement, "getBoundingClientRect">,
+  free: Pick<HTMLElement, "getBoundingClientRect">,
+) {
   const frame = map.getBoundingClientRect();
   const { left, top, right, bottom } = free.getBoundingClientRect();
   const rim = 24;
+  const notice = bottom - top >= LEAST_HEIGHT_PX ? NOTICE_PX : 0;
   return {
     left: Math.max(0, left - frame.left) + rim,
-    top: Math.max(0, top - frame.top) + rim,
+    top: Math.max(0, top - frame.top) + rim + notice,
     right: Math.max(0, frame.right - right) + rim,
     bottom: Math.max(0, frame.bottom - bottom) + rim,
   };

@@ -20,6 +20,7 @@ export function AlarmList() {
     <Panel
       title={text.panels.titles.alarms}
       name="alarms"
+      class="alarms"
       count={fleet.alarms.filter(isAlarmNow).length}
     >
       <SoundControls />

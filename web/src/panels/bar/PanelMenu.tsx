@@ -1,4 +1,4 @@
-import { For } from "solid-js";
+import { For, Show } from "solid-js";
 import { useConsole } from "../../console";
 import { text } from "../../text/catalogue";
 import { chooseLengthUnit, LENGTH_UNITS, type LengthUnit, lengthUnit } from "../../text/units";
@@ -11,7 +11,7 @@ const LISTED = PANEL_NAMES.filter((name) => name !== "vehicle");
 
 /** Opens and closes panels; also the colours, the help and the person, for screens without room in the bar. */
 export function PanelMenu(props: { onHelp: () => void }) {
-  const { panels } = useConsole();
+  const { panels, lock, isReplay } = useConsole();
   return (
     <Popover class="menu" label={text.menu.name} title={text.menu.hint} button="☰">
       {(close) => (
@@ -43,6 +43,18 @@ export function PanelMenu(props: { onHelp: () => void }) {
           >
             {text.menu.help}
           </button>
+          <Show when={!isReplay()}>
+            <button
+              type="button"
+              class="button button-quiet menu-item"
+              onClick={() => {
+                close();
+                lock.set(true);
+              }}
+            >
+              {text.lock.lock}
+            </button>
+          </Show>
           <PersonTag />
         </section>
       )}

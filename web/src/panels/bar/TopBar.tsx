@@ -5,6 +5,7 @@ import { text } from "../../text/catalogue";
 import { formatAge, formatHeading, formatQuantity } from "../../text/quantities";
 import type { Theme } from "../../theme/theme";
 import { buttonName } from "../guard/GuardButton";
+import { LockButton } from "../lock/LockScreen";
 import { ReplayMark } from "../replay/ReplayBar";
 import { AlarmsButton } from "./AlarmsButton";
 import { PanelMenu } from "./PanelMenu";
@@ -32,6 +33,7 @@ export function TopBar(props: { onHelp: () => void }) {
       <Shadows />
       <AlarmsButton />
       <PanelMenu onHelp={() => props.onHelp()} />
+      <LockButton />
       <ThemeButton />
       <button
         type="button"

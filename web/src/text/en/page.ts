@@ -45,6 +45,14 @@ export const panels = {
   noData: "No data from the station yet.",
 };
 
+export const lock = {
+  name: "Locked",
+  how: "Touches and keys do nothing but all stop and alarms.",
+  lock: "Lock the page",
+  hint: "Guard the page against stray touches; all stop and alarms stay usable",
+  unlock: "Unlock",
+};
+
 export const severity = {
   ok: "OK",
   names: {
