@@ -149,12 +149,16 @@ class PhotoJob:
         """Answer why there is no job, or with an empty text, and do the work."""
         try:
             record, folders = self._checked(asked)
+        except PhotoRequestError as problem:
+            # Before the answer: what is asked next must not find the station busy.
+            self._is_busy = False
+            answer(str(problem))
+            return
+        try:
             if not self._is_cancelled:
                 self._job = _begun(asked.flight, folders, self._out(asked.flight))
                 answer("")
                 self._work(asked, record, folders)
-        except PhotoRequestError as problem:
-            answer(str(problem))
         finally:
             self._is_busy = False
 
