@@ -214,7 +214,7 @@ async def resume_command(
         str | None,
         typer.Option(
             "--since",
-            help="Leave out what was imaged from this day on: 2026-05-01, or today. Default: since "
+            help="Skip what was imaged from this day on: 2026-05-01, or today. Default: since "
             "the survey was begun.",
         ),
     ] = None,

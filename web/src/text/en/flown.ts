@@ -9,7 +9,7 @@ export const flown = {
   today: "today",
   older: (count: number) => `${count} earlier days`,
   simulated: "by simulated drones",
-  leaveOut: "Leave out what was imaged",
+  leaveOut: "Skip what was imaged",
   sinceBegun: (day: string) => `since it began, ${day}`,
   sinceToday: "today",
   sinceDay: (day: string) => `since ${day}`,

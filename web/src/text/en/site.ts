@@ -103,7 +103,7 @@ export const imports = {
   excluded: "Excluded",
   closePaths: "Take paths as areas",
   noFences: "Survey regions only: where these shapes are is not known well enough for a fence.",
-  choose: "Choose what each becomes. A press on its shape takes it or leaves it out.",
+  choose: "Choose what each becomes. A press on its shape includes or excludes it.",
   list: "Imported features",
   add: (count: number) => `Add ${plural(count, "feature")}`,
   leaveAll: "Exclude all",
