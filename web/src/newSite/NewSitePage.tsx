@@ -96,7 +96,7 @@ export function NewSitePage(props: { newSite: NewSite }) {
           </Show>
         </div>
         <div class="new-site-column">
-          <div class="new-site-row">
+          <div class="new-site-row new-site-height">
             <TextField
               newSite={props.newSite}
               name="groundHeight"

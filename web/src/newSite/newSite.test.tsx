@@ -214,7 +214,7 @@ describe("the page that makes a site", () => {
     browser.layers = [{ layer: "boundary", geometry: KML, properties: {} }];
     await choose(new File(["kml"], "north field.kml"));
     expect(browser.asked.map(({ path }) => path)).toContain(
-      "api/site/import?name=north%20field.kml",
+      "api/site/import?name=north%20field.kml&close_paths=false",
     );
     expect(document.activeElement).toBe(input("Height above"));
     expect(root.querySelector("svg .field-picture-boundary")).not.toBeNull();
@@ -253,6 +253,19 @@ describe("the page that makes a site", () => {
     for (let turn = 0; turn < 4; turn += 1) await settled();
     expect(root.querySelector("progress")).toBeNull();
     expect(notice()).toContain("slow.kml has no field");
+  });
+
+  it("joins the ends of a path where a file has nothing else, and says so", async () => {
+    browser.answers["api/site/import"] = [
+      () => json({ reason: "only paths", has_open_paths: true, features: [] }),
+      () => json({ reason: null, features: [shape("edge", KML)] }),
+    ];
+    await choose(new File(["gpx"], "edge.gpx"));
+    expect(browser.asked.map(({ path }) => path)).toContain(
+      "api/site/import?name=edge.gpx&close_paths=true",
+    );
+    expect(input("edge").checked).toBe(true);
+    expect(notice()).toContain("its ends are joined");
   });
 
   it("shows why a file is not read", async () => {

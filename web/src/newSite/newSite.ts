@@ -135,10 +135,16 @@ export function createNewSite(browser: Browser) {
 
   const readFile = (file: File) =>
     working(text.newSite.reading(file.name), async () => {
-      const read = await answer<ImportedView>(
-        `api/site/import?name=${encodeURIComponent(file.name.slice(-100))}`,
-        { method: "POST", body: file },
-      );
+      const name = encodeURIComponent(file.name.slice(-100));
+      const ask = (closes: boolean) =>
+        answer<ImportedView>(`api/site/import?name=${name}&close_paths=${closes}`, {
+          method: "POST",
+          body: file,
+        });
+      const first = await ask(false);
+      // A track along the edge, with nothing else: its ends are joined.
+      const isPath = first.reason !== null && first.has_open_paths;
+      const read = isPath ? await ask(true) : first;
       if (read.reason !== null) throw new Error(read.reason);
       const polygons = read.features.filter(
         ({ geometry, layer }) =>
@@ -146,6 +152,7 @@ export function createNewSite(browser: Browser) {
       );
       if (polygons.length === 0) throw new Error(text.newSite.noPolygon(file.name));
       take(polygons.map(({ name, geometry }, at) => ({ name, geometry, isChosen: at === 0 })));
+      if (isPath) setNotice({ kind: "done", text: text.newSite.closed(file.name) });
     });
 
   const locate = () =>

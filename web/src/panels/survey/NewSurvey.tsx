@@ -28,7 +28,7 @@ export function NewSurvey(props: {
   flown: readonly string[];
   onResult: (outcome: Outcome<SurveyResponse>) => void;
 }) {
-  const { fleet } = useConsole();
+  const { fleet, panels } = useConsole();
   // What is to be pressed first stands alone.
   const isFirstForm = () => props.isFirst && !isRehearsal(fleet);
   const [isOpen, setOpen] = createSignal(isFirstForm());
@@ -36,7 +36,14 @@ export function NewSurvey(props: {
   return (
     <Show
       when={regions().length > 0}
-      fallback={<p class="panel-empty">{text.newSurvey.noRegions}</p>}
+      fallback={
+        <>
+          <p class="panel-empty">{text.newSurvey.noRegions}</p>
+          <button type="button" class="button" onClick={() => panels.open("site")}>
+            {text.newSurvey.draw}
+          </button>
+        </>
+      }
     >
       <Show when={props.isFirst && isRehearsal(fleet)}>
         <Rehearse region={regions()[0]?.name ?? ""} onResult={props.onResult} />

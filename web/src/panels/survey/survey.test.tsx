@@ -557,6 +557,8 @@ describe("a new survey", () => {
   it("is not available without survey regions", () => {
     show();
     expect(page.root.textContent).toContain("The site has no survey regions");
+    button("Draw or import your field").click();
+    expect(page.shared.panels.isOpen("site")).toBe(true);
   });
 });
 

@@ -187,6 +187,7 @@ export const estimate = {
 
 export const newSurvey = {
   noRegions: "The site has no survey regions.",
+  draw: "Draw or import your field",
   title: "New survey",
   region: "Region",
   pixel: "Pixel size, cm",

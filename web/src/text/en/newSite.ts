@@ -35,6 +35,7 @@ export const newSite = {
   making: "Making the site",
   noAnswer: "The station does not answer: start it again, and reload this page.",
   noPolygon: (file: string) => `${file} has no field: expected a polygon, got points or zones.`,
+  closed: (file: string) => `${file} has a path only: its ends are joined by a straight line.`,
   noneChosen: "Choose a field of the file.",
   unknownPlace: "This device does not know its place: type it, or read it from a file.",
   made: "The site is made; the station is starting.",
