@@ -24,6 +24,7 @@ test("plans a survey of a site region, flies it with two vehicles, pauses and ab
     const panel = page.getByRole("region", { name: "Survey", exact: true });
 
     await test.step("planned, nothing moves", async () => {
+      await panel.getByText("New survey").click();
       await panel.getByLabel("Region").selectOption("south-east field");
       await panel.getByLabel("Height, m").fill("40");
       await panel.getByLabel("Rows").selectOption("lawnmower_once");
