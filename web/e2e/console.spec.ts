@@ -33,6 +33,10 @@ test("is legible at every width in each theme", async ({ page }) => {
         () => document.documentElement.scrollWidth - document.documentElement.clientWidth,
       );
       expect(overflow, where).toBeLessThanOrEqual(0);
+      const cut = await page
+        .locator(".vehicle-doing")
+        .evaluateAll((all) => all.filter((one) => one.scrollWidth > one.clientWidth).length);
+      expect(cut, where).toBe(0);
     }
   });
 });
