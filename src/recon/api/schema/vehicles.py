@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from pydantic import Field
+from pydantic import Field, SkipValidation
 
 from recon.api.schema.message import Message
 
@@ -225,6 +225,8 @@ class VehicleView(Message):
     app_facts_age_s: float | None
     photos: PhotoTallyView | None = Field(description="null: its app reports none")
     newest_photo_age_s: float | None
-    track: list[tuple[float, float]] = Field(description="longitude, latitude; oldest first")
+    track: SkipValidation[list[tuple[float, float]]] = Field(
+        description="longitude, latitude; oldest first"
+    )
     frame: FrameView | None
     hazard: HazardView | None

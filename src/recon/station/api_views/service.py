@@ -20,7 +20,7 @@ from recon.station.api_views.order_service import OrderService
 from recon.station.api_views.site_service import SiteService
 from recon.station.api_views.site_vehicles import SiteVehiclesService
 from recon.station.api_views.site_view import site_view
-from recon.station.api_views.state_view import DriverState, state_view
+from recon.station.api_views.state_view import DriverState, TrackViews, state_view
 from recon.station.api_views.survey_service import SurveyService
 from recon.station.api_views.vehicle_numbers import VehicleNumbers
 from recon.station.imaging.mosaic import mosaic, newest_images
@@ -52,6 +52,7 @@ class Service:
     flown: FlownRegions = field(default_factory=FlownRegions)
     gaps_file: Callable[[], Path | None] = lambda: None
     """The gaps that the newest photos show."""
+    _tracks: TrackViews = field(default_factory=TrackViews)
     drawing: SiteService = field(init=False)
     """The layers in the site's folder."""
     site_vehicles: SiteVehiclesService = field(init=False)
@@ -130,7 +131,12 @@ class Service:
         sessions = {} if links is None else links.sessions()
         numbers = self.numbers.of(self.driver.station.fleet)
         return DriverState(
-            sessions, self._station_view(now_ns), site_view(self.site), numbers, self.replay()
+            sessions,
+            self._station_view(now_ns),
+            site_view(self.site),
+            numbers,
+            self._tracks,
+            self.replay(),
         )
 
     def _station_view(self, now_ns: int) -> schema.StationView:

@@ -38,8 +38,27 @@ TRACK_DIGITS = 6
 """A tenth of a metre, finer than GNSS: the tracks are most of a state's bytes."""
 PLACE_DIGITS = 8
 """A millimetre; further digits cannot be compressed."""
+TrackView = list[tuple[float, float]]
 DIGITS = 3
 """Decimals of seconds, metres, metres per second and degrees of angle."""
+
+
+class TrackViews:
+    """The tracks as they are sent, each made again only when it has changed."""
+
+    def __init__(self) -> None:
+        self._made: dict[str | None, tuple[object, TrackView]] = {}
+
+    def of(self, vehicle: VehicleState) -> TrackView:
+        """Return the newest points of a vehicle's track."""
+        track, (made_of, view) = vehicle.track, self._made.get(vehicle.serial, (None, []))
+        if made_of is not track:
+            view = [
+                (round(p.longitude_deg, TRACK_DIGITS), round(p.latitude_deg, TRACK_DIGITS))
+                for p in track[-TRACK_POINTS_SHOWN:]
+            ]
+            self._made[vehicle.serial] = track, view
+        return view
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +70,7 @@ class DriverState:
     site: schema.SiteView | None
     numbers: Mapping[str, int]
     """The number of each serial."""
+    tracks: TrackViews
     replay: schema.ReplayView | None = None
 
 
@@ -60,7 +80,7 @@ def state_view(station: Station, around: DriverState, now_ns: int) -> schema.Sta
         time_ns=now_ns,
         station=around.station,
         site=around.site,
-        vehicles=_vehicles(station, around.numbers, now_ns),
+        vehicles=_vehicles(station, around.numbers, around.tracks, now_ns),
         links=[_link(station.fleet, r, around, now_ns) for r in station.fleet.links.values()],
         commands=_commands(station, now_ns),
         alarms=[_alarm(alarm, now_ns) for alarm in station.alarms.alarms.values()],
@@ -82,25 +102,28 @@ def _stop_latch(latch: StopLatch | None, now_ns: int) -> schema.StopLatchView | 
 
 
 def _vehicles(
-    station: Station, numbers: Mapping[str, int], now_ns: int
+    station: Station, numbers: Mapping[str, int], tracks: TrackViews, now_ns: int
 ) -> list[schema.VehicleView]:
     known = [
-        _vehicle(station, vehicle, numbers[serial], now_ns)
+        _vehicle(station, vehicle, numbers[serial], tracks, now_ns)
         for serial, vehicle in sorted(
             station.fleet.vehicles.items(), key=lambda item: numbers[item[0]]
         )
     ]
     unidentified = [
-        _vehicle(station, link.own_state, 0, now_ns)
+        _vehicle(station, link.own_state, 0, tracks, now_ns)
         for link in station.fleet.unbound_links()
         if link.claimed_serial is None and link.own_state.core_received_at_ns is not None
     ]
-    lost = [_vehicle(station, state, 0, now_ns) for state in station.watchdog_state.lost.values()]
+    lost = [
+        _vehicle(station, state, 0, tracks, now_ns)
+        for state in station.watchdog_state.lost.values()
+    ]
     return known + unidentified + lost
 
 
 def _vehicle(
-    station: Station, vehicle: VehicleState, number: int, now_ns: int
+    station: Station, vehicle: VehicleState, number: int, tracks: TrackViews, now_ns: int
 ) -> schema.VehicleView:
     profile = vehicle.profile
     reference = AltitudeReference.UNSET if profile is None else profile.waypoint_altitude
@@ -153,10 +176,7 @@ def _vehicle(
         app_facts_age_s=aged.age_s(vehicle.app_facts),
         photos=None if tally is None else photo_tally_view(tally),
         newest_photo_age_s=None if tally is None else known_since_s(tally.newest_at_ns, now_ns),
-        track=[
-            (round(p.longitude_deg, TRACK_DIGITS), round(p.latitude_deg, TRACK_DIGITS))
-            for p in vehicle.track[-TRACK_POINTS_SHOWN:]
-        ],
+        track=tracks.of(vehicle),
         frame=_frame(station.frames.get(vehicle.serial or ""), now_ns),
         hazard=hazard_view(station, vehicle, now_ns),
     )
@@ -177,16 +197,14 @@ class _Aging:
         return known_since_s(stamped.received_at_ns, self.now_ns)
 
     def number(self, stamped: Stamped[Any]) -> schema.AgedNumber:
-        value = _rounded(stamped.value, DIGITS)
-        return schema.AgedNumber(value=value, age_s=self.age_s(stamped))
+        return _aged_number(_rounded(stamped.value, DIGITS), self.age_s(stamped))
 
     def flag(self, stamped: Stamped[bool]) -> schema.AgedFlag:
-        return schema.AgedFlag(value=stamped.value, age_s=self.age_s(stamped))
+        return _aged_flag(stamped.value, self.age_s(stamped))
 
     def word(self, stamped: Stamped[Any]) -> schema.AgedText:
         value: Enum | None = stamped.value
-        text = None if value is None else value.name.lower()
-        return schema.AgedText(value=text, age_s=self.age_s(stamped))
+        return _aged_text(None if value is None else value.name.lower(), self.age_s(stamped))
 
     def parts(
         self,
@@ -197,6 +215,22 @@ class _Aging:
     ) -> Any:
         values = {name: _rounded(getattr(stamped.value, name, None), digits) for name in names}
         return view(**values, age_s=self.age_s(stamped))
+
+
+# Levels, modes and flags are few, and so are ages in milliseconds: most views have been made before.
+@lru_cache(maxsize=8192)
+def _aged_number(value: float | None, age_s: float | None) -> schema.AgedNumber:
+    return schema.AgedNumber(value=value, age_s=age_s)
+
+
+@lru_cache(maxsize=8192)
+def _aged_flag(value: bool | None, age_s: float | None) -> schema.AgedFlag:
+    return schema.AgedFlag(value=value, age_s=age_s)
+
+
+@lru_cache(maxsize=8192)
+def _aged_text(value: str | None, age_s: float | None) -> schema.AgedText:
+    return schema.AgedText(value=value, age_s=age_s)
 
 
 def _rounded(value: float | None, digits: int) -> float | None:
