@@ -15,6 +15,7 @@ from recon.station.state.steps import JobDone
 SECONDS = 20.0
 
 
+@pytest.mark.flight
 def test_eight_vehicles_with_commands_faults_and_pictures_in_two_processes() -> None:
     """The processes hash strings by different seeds: no order of a set decides anything."""
     first, second = (in_another_process(3, SECONDS, each) for each in HASH_SEEDS)
