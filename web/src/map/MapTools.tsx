@@ -15,7 +15,7 @@ export function MapTools(props: {
       <LayersButton />
       <button
         type="button"
-        class="button"
+        class="button map-band"
         aria-pressed={props.isBanding}
         onClick={() => props.setBanding(!props.isBanding)}
         title={text.map.bandHint}
