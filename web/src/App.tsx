@@ -1,6 +1,6 @@
 import { createEffect, createMemo, createSignal, For, onCleanup, onMount, Show } from "solid-js";
 import { Dynamic } from "solid-js/web";
-import { useConsole } from "./console";
+import { useMapModes, useOrders, usePage, useSiteEditing, useStation } from "./console";
 import { happening } from "./fleet/happening";
 import { vehicleKey } from "./fleet/vehicleStatus";
 import { actOnKey, isAllStop } from "./keys";
@@ -63,9 +63,14 @@ const PANELS: readonly (readonly [PanelName, () => ReturnType<typeof AlarmList>]
 
 /** The whole page: the map fills it, and everything else floats over it. */
 export function App() {
-  const { source, fleet, selection, orderApi, theme, fit, flyHere, zoneDraft, panels } =
-    useConsole();
-  const { siteDraft, missionDraft, lock, isReplay, largeCamera, clock, behindS } = useConsole();
+  const { source, fleet } = useStation();
+  const { selection, orderApi } = useOrders();
+  const { fit, flyHere, zoneDraft } = useMapModes();
+  const { theme, panels } = usePage();
+  const { isReplay, clock, behindS } = useStation();
+  const { missionDraft } = useMapModes();
+  const { siteDraft } = useSiteEditing();
+  const { lock, largeCamera } = usePage();
   const [isHelpOpen, setHelpOpen] = createSignal(false);
   const keys = () => fleet.vehicles.map(vehicleKey);
   const select = (key: number, action: (key: number) => void) => {

@@ -43,25 +43,20 @@ function Page() {
     openSocket: (url, protocols) => new WebSocket(url, protocols),
     fetch: (request) => fetch(request),
   });
-  const shared = createConsole(
-    source,
-    createThemeSwitch(document, localStorage),
-    browserClock,
-    now,
-    createOpenPanels(localStorage, () => matchMedia(NARROW).matches),
-    {
-      mutes: createMutes(localStorage),
-      speaker: createSpeaker(window),
-      notifier: createNotifier(window),
-    },
-    {
+  const shared = createConsole(source, browserClock, now, {
+    theme: createThemeSwitch(document, localStorage),
+    panels: createOpenPanels(localStorage, () => matchMedia(NARROW).matches),
+    mutes: createMutes(localStorage),
+    speaker: createSpeaker(window),
+    notifier: createNotifier(window),
+    login: {
       hasToken: given.token !== null,
       fingerprint: given.fingerprint,
       logIn: reloadWith,
       logOut: () => reloadWith(null),
     },
-    localStorage,
-  );
+    kept: localStorage,
+  });
   keepScreenOn(document, navigator.wakeLock, () =>
     shared.fleet.vehicles.some(({ is_flying }) => is_flying.value === true),
   );

@@ -1,5 +1,5 @@
 import { Match, Show, Switch } from "solid-js";
-import { useConsole } from "../console";
+import { useStation } from "../console";
 import { frameCaption, isSuperseded } from "../fleet/displayedFrame";
 import { text } from "../text/catalogue";
 import { formatLength } from "../text/units";
@@ -10,7 +10,7 @@ const OLD_AFTER_S = 5;
 
 /** Number, age and alignment of the displayed ground image, which may not be the newest. */
 export function GroundImageNote(props: { shown: GroundImageInfo | null }) {
-  const { fleet } = useConsole();
+  const { fleet } = useStation();
   return (
     <Switch fallback={<p class="map-note">{text.groundImage.none}</p>}>
       <Match when={props.shown}>{(shown) => <ShownNote shown={shown()} />}</Match>
@@ -30,7 +30,7 @@ function alignment({ registration, registration_residual_m: residualM }: GroundI
 }
 
 function ShownNote(props: { shown: GroundImageInfo }) {
-  const { behindS } = useConsole();
+  const { behindS } = useStation();
   const isOld = () => {
     const { capture } = props.shown;
     return capture === null || capture.age_s + behindS() > OLD_AFTER_S;

@@ -1,5 +1,5 @@
 import { For, onMount, Show } from "solid-js";
-import { useConsole } from "../console";
+import { useMapModes } from "../console";
 import { Popover } from "../panels/Popover";
 import type { BaseMapView } from "../protocol";
 import { coverageText, isIncomplete } from "../text/baseMaps";
@@ -49,7 +49,7 @@ export function LayersButton() {
 }
 
 function OverlayChoice() {
-  const { overlay } = useConsole();
+  const { overlay } = useMapModes();
   return (
     <fieldset>
       <legend class="hidden-but-read">{text.layers.overlay}</legend>
@@ -73,7 +73,7 @@ function OverlayChoice() {
 
 /** The maps of the site's folder; read again whenever the list is opened. */
 function BaseMapChoice() {
-  const { baseMaps } = useConsole();
+  const { baseMaps } = useMapModes();
   onMount(() => void baseMaps.refresh());
   return (
     <fieldset class="base-maps">
@@ -99,7 +99,7 @@ function BaseMapChoice() {
 }
 
 function BaseMapLine(props: { base: BaseMapView }) {
-  const { baseMaps } = useConsole();
+  const { baseMaps } = useMapModes();
   return (
     <label classList={{ "is-unusable": props.base.problem !== null }}>
       <input

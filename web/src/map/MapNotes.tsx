@@ -1,12 +1,12 @@
 import { Show } from "solid-js";
-import { useConsole } from "../console";
+import { useMapModes, useStation } from "../console";
 import { text } from "../text/catalogue";
 import { listNames, vehicleLabel } from "../text/names";
 import { positionOf } from "./scene";
 
 /** The name and source of the base map, as its licence asks. */
 export function BaseMapNote() {
-  const { baseMaps } = useConsole();
+  const { baseMaps } = useMapModes();
   return (
     <Show when={baseMaps.shown()}>
       {(base) => (
@@ -22,7 +22,7 @@ export function BaseMapNote() {
 
 /** Lists vehicles that cannot be drawn on the map. */
 export function UnplacedNote() {
-  const { source } = useConsole();
+  const { source } = useStation();
   const unplaced = () =>
     (source.state()?.vehicles ?? []).filter((vehicle) => positionOf(vehicle) === null);
   return (

@@ -3,7 +3,7 @@ import { createSignal, onCleanup, onMount } from "solid-js";
 import { text } from "../text/catalogue";
 import "maplibre-gl/dist/maplibre-gl.css";
 import "./map.css";
-import { useConsole } from "../console";
+import { useMapModes, useOrders, usePage, useSiteEditing, useStation } from "../console";
 import { readColours } from "./colours";
 import { createDraftShapes, createScene } from "./drawnScene";
 import { GroundImageNote } from "./GroundImageNote";
@@ -19,8 +19,11 @@ import { createSiteEditing } from "./siteEditing";
 
 /** The map with everything that has a position. */
 export function MapView() {
-  const { source, theme, aim, setMapCentre, overlay } = useConsole();
-  const { flyHere, missionDraft, zoneDraft, siteDraft, calibration } = useConsole();
+  const { source } = useStation();
+  const { aim, setMapCentre, overlay } = useMapModes();
+  const { theme } = usePage();
+  const { flyHere, missionDraft, zoneDraft } = useMapModes();
+  const { siteDraft, calibration } = useSiteEditing();
   const [made, setMade] = createSignal<MapLibre | null>(null);
   const [isBanding, setBanding] = createSignal(false);
   let holder!: HTMLDivElement;
@@ -75,7 +78,8 @@ export function MapView() {
 
 /** Selects the vehicles inside a box that is drawn over the map, beside those selected. */
 function createBand(map: MapLibre, isBanding: () => boolean, end: () => void): void {
-  const { source, selection } = useConsole();
+  const { source } = useStation();
+  const { selection } = useOrders();
   const remove = createSelectionBand(map, isBanding, (band) => {
     end();
     const found = keysIn(band, source.state()?.vehicles ?? [], map);

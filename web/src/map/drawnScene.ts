@@ -1,5 +1,5 @@
 import { type Accessor, createMemo } from "solid-js";
-import { useConsole } from "../console";
+import { useMapModes, useOrders, useSiteEditing, useStation } from "../console";
 import { courseText } from "../orders/course";
 import type { VehicleView } from "../protocol";
 import { vehicleLabel } from "../text/names";
@@ -14,7 +14,9 @@ const NEARLY_DECIMALS = 4;
 
 /** What the layers draw: the newest state, and what a person draws; null before the first state. */
 export function createScene(draft: Accessor<DraftShapes | null>): Accessor<Scene | null> {
-  const { source, selection, behindS, zoneDraft } = useConsole();
+  const { source, behindS } = useStation();
+  const { selection } = useOrders();
+  const { zoneDraft } = useMapModes();
   // New states update the map; between them it is redrawn only as the state ages.
   const agedBehindS = createMemo(() => Math.floor(behindS() / AGE_STEP_S) * AGE_STEP_S);
   const plannedTarget = createPlannedTarget();
@@ -38,7 +40,7 @@ export function createScene(draft: Accessor<DraftShapes | null>): Accessor<Scene
 
 /** The shapes of the site being edited; null while it is not. */
 export function createDraftShapes(): Accessor<DraftShapes | null> {
-  const { isOn, features, imported, selected } = useConsole().siteDraft;
+  const { isOn, features, imported, selected } = useSiteEditing().siteDraft;
   return createMemo(() => {
     if (!isOn()) return null;
     return { features: features(), imported: imported(), selectedId: selected()?.id ?? null };
@@ -46,7 +48,7 @@ export function createDraftShapes(): Accessor<DraftShapes | null> {
 }
 
 function createPlannedTarget(): Accessor<PlannedTarget | null> {
-  const { flyHere } = useConsole();
+  const { flyHere } = useMapModes();
   return createMemo(() => {
     const [vehicle, at, course] = [flyHere.vehicle(), flyHere.target(), flyHere.course()];
     if (vehicle === null || at === null) return null;
@@ -56,7 +58,7 @@ function createPlannedTarget(): Accessor<PlannedTarget | null> {
 }
 
 function createMissionShape(): Accessor<MissionShape | null> {
-  const { missionDraft } = useConsole();
+  const { missionDraft } = useMapModes();
   const from = createMemo(() => nearlyAt(missionDraft.vehicle()), null, { equals: isSame });
   return createMemo(() => {
     if (!missionDraft.isOn()) return null;

@@ -1,5 +1,5 @@
 import { afterEach, describe, expect, it } from "vitest";
-import { useConsole } from "../console";
+import { useStation } from "../console";
 import type { StationState } from "../protocol";
 import { groundImage } from "../testing/fakeField";
 import { station, vehicle } from "../testing/fakeState";
@@ -20,7 +20,7 @@ const text = () => note().textContent;
 const isOld = () => note().classList.contains("is-old");
 
 function Note() {
-  ground = createDisplayedGround(useConsole().source);
+  ground = createDisplayedGround(useStation().source);
   return <GroundImageNote shown={ground.shown()} />;
 }
 

@@ -1,6 +1,6 @@
 import type { Map as MapLibre } from "maplibre-gl";
 import { type Accessor, createEffect, createMemo, on, onCleanup, onMount } from "solid-js";
-import { useConsole } from "../console";
+import { useMapModes, useSiteEditing, useStation } from "../console";
 import type { Box } from "./localGrid";
 import { type DraftShapes, wholeView } from "./scene";
 import { middleOf, paddingOf } from "./uncovered";
@@ -32,7 +32,9 @@ export function createMapCamera(
   draft: Accessor<DraftShapes | null>,
   isAiming: Accessor<boolean>,
 ): MapCamera {
-  const { source, fitRequests, siteDraft } = useConsole();
+  const { source } = useStation();
+  const { fitRequests } = useMapModes();
+  const { siteDraft } = useSiteEditing();
   const whole = createMemo<Box | null>(() => {
     const state = source.state();
     return state === null ? null : wholeView(state, draft());

@@ -1,6 +1,6 @@
 import type { Map as MapLibre } from "maplibre-gl";
 import { type Accessor, createEffect, createSignal, onMount } from "solid-js";
-import { useConsole } from "../console";
+import { useMapModes, useOrders, usePage, useSiteEditing, useStation } from "../console";
 import { AreaLabelLayer } from "./areaLabelLayer";
 import { BoundaryLayer, HeightZoneLayer, KeepOutLayer, SurveyLayer } from "./areaLayer";
 import { BaseMapLayer } from "./baseMapLayer";
@@ -27,7 +27,10 @@ export function createMapLayers(
   ground: DisplayedGround,
   scene: Accessor<Scene | null>,
 ): Accessor<MapLibre | null> {
-  const { source, selection, overlay, missionDraft, theme, baseMaps } = useConsole();
+  const { source } = useStation();
+  const { selection } = useOrders();
+  const { overlay, missionDraft, baseMaps } = useMapModes();
+  const { theme } = usePage();
   const [drawn, setDrawn] = createSignal<MapLibre | null>(null);
   const baseMap = new BaseMapLayer(source.maps);
   let layers: readonly Layer[] = [];
@@ -82,7 +85,7 @@ export function createMapLayers(
 
 /** The points by which a camera is calibrated. */
 function createControlPoints(drawn: Accessor<MapLibre | null>): void {
-  const { calibration } = useConsole();
+  const { calibration } = useSiteEditing();
   const markers = new TargetMarkers("target-planned");
   createEffect(() => {
     const shown = drawn();

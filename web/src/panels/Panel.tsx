@@ -1,7 +1,7 @@
 import { createUniqueId, type JSX, Show } from "solid-js";
 import { text } from "../text/catalogue";
 import "./panel.css";
-import { useConsole } from "../console";
+import { usePage, useStation } from "../console";
 import type { PanelName } from "./openPanels";
 import { SeverityMark } from "./SeverityMark";
 
@@ -16,7 +16,7 @@ export function Panel(props: {
   class?: string;
   children: JSX.Element;
 }) {
-  const { panels } = useConsole();
+  const { panels } = usePage();
   const title = createUniqueId();
   return (
     <section class={`card panel ${props.class ?? ""}`} aria-labelledby={title}>
@@ -47,7 +47,7 @@ export function Panel(props: {
 
 /** Text of an empty list; before the first state the list is unknown, not empty. */
 export function Empty(props: { children: JSX.Element }) {
-  const { fleet } = useConsole();
+  const { fleet } = useStation();
   return (
     <p class="panel-empty">
       <Show when={fleet.hasState} fallback={text.panels.noData}>

@@ -93,7 +93,13 @@ const PLAIN_THEME: ThemeSwitch = {
   toggleSun: () => {},
 };
 
-const PANELS = createOpenPanels({ getItem: () => null, setItem: () => {} }, () => false);
+const NOTHING_KEPT = { getItem: () => null, setItem: () => {} };
+const BROWSER = {
+  theme: PLAIN_THEME,
+  panels: createOpenPanels(NOTHING_KEPT, () => false),
+  login: { hasToken: false, fingerprint: null, logIn: () => {}, logOut: () => {} },
+  kept: NOTHING_KEPT,
+};
 
 /** Renders a component over a source whose state is `first`. */
 export function renderPage(component: () => JSX.Element, first: StationState | null): RenderedPage {
@@ -106,7 +112,7 @@ export function renderPage(component: () => JSX.Element, first: StationState | n
   };
   const sound = createFakeSound();
   const { shared, disposeShared } = createRoot((disposeShared) => ({
-    shared: createConsole(fakeSource(station), PLAIN_THEME, clock, now, PANELS, sound),
+    shared: createConsole(fakeSource(station), clock, now, { ...BROWSER, ...sound }),
     disposeShared,
   }));
   const root = document.createElement("div");

@@ -35,7 +35,10 @@ const NOT_TRANSLATED: readonly (readonly [why: string, RegExp])[] = [
     /^(?:Recon|recon user add(?: NAME .*)?)$/,
   ],
   ["keys", /^(?:Escape|Enter|Delete|Space|Shift(?:\+.)?|Arrow(?:Left|Right|Up|Down)|Key.)$/],
-  ["errors that no operator meets", /no element with id app\.$|^useConsole was|^A map colour must/],
+  [
+    "errors that no operator meets",
+    /no element with id app\.$|^A shared part was|^A map colour must/,
+  ],
   ["types of GeoJSON", /^(?:Feature|FeatureCollection|Point|LineString|Polygon)$/],
   ["HTTP and the DOM", /^(?:Bearer …|Content-Type|TimeoutError)$/],
   [

@@ -1,5 +1,5 @@
 import { createMemo, createSignal, For, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useStation } from "../../console";
 import { type AlarmGroup, groupAlarms, isAlarmNow } from "../../fleet/alarmGroups";
 import type { AlarmView } from "../../protocol";
 import { kindOf } from "../../sound/alarmSound";
@@ -13,7 +13,7 @@ import "./alarms.css";
 
 /** The alarms of station and vehicles by cause: active ones worst first, ended ones collapsed. */
 export function AlarmList() {
-  const { fleet } = useConsole();
+  const { fleet } = useStation();
   const groups = createMemo(() => groupAlarms(fleet.alarms));
   const ended = () => groups().filter(({ isActive }) => !isActive);
   return (
@@ -60,7 +60,7 @@ function sameKeys(a: readonly string[], b: readonly string[]): boolean {
 }
 
 function GroupRow(props: { group: AlarmGroup }) {
-  const { source, lacks } = useConsole();
+  const { source, lacks } = useStation();
   const [problem, setProblem] = createSignal<string | null>(null);
   const acknowledge = async () => {
     const open = props.group.alarms.filter((alarm) => !alarm.is_acknowledged);
@@ -112,7 +112,7 @@ function GroupRow(props: { group: AlarmGroup }) {
 }
 
 function Since(props: { group: AlarmGroup }) {
-  const { behindS } = useConsole();
+  const { behindS } = useStation();
   const newest = () => (props.group.alarms[0]?.raised_age_s ?? 0) + behindS();
   return (
     <p class="muted" aria-live="off">

@@ -1,5 +1,5 @@
 import { createSignal, For, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { usePage, useStation } from "../../console";
 import { causeName } from "../../fleet/alarmGroups";
 import { kindOf } from "../../sound/alarmSound";
 import { text } from "../../text/catalogue";
@@ -19,7 +19,8 @@ export function SpeakerIcon(props: { isMuted: boolean }) {
 
 /** All sound on or off, a test of it, and the kinds that are muted of their own. */
 export function SoundControls() {
-  const { alarmSound, isReplay } = useConsole();
+  const { isReplay } = useStation();
+  const { alarmSound } = usePage();
   const { mutes, notifier } = alarmSound;
   const [permission, setPermission] = createSignal(notifier.permission());
   const askForNotes = async () => {
@@ -68,7 +69,7 @@ export function SoundControls() {
 
 /** Mutes one kind of alarm, or makes it sound again. */
 export function MuteButton(props: { kind: string }) {
-  const { mutes } = useConsole().alarmSound;
+  const { mutes } = usePage().alarmSound;
   const isMuted = () => mutes.kinds().includes(props.kind);
   return (
     <button
@@ -86,7 +87,7 @@ export function MuteButton(props: { kind: string }) {
 
 /** Shown while a grave alarm makes no sound: silence must not pass for safety. */
 export function SilenceBanner() {
-  const { alarmSound } = useConsole();
+  const { alarmSound } = usePage();
   const { mutes } = alarmSound;
   const titles = () => alarmSound.silenced().map(({ title }) => title.replace(/\.$/, ""));
   const kinds = () => [...new Set(alarmSound.silenced().map(kindOf))];

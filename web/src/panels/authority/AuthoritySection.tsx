@@ -1,5 +1,5 @@
 import { createSignal, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useStation } from "../../console";
 import { anothersLease } from "../../fleet/operatorLease";
 import type { AuthorityHolder, AuthorityView, LeaseView } from "../../protocol";
 import { text } from "../../text/catalogue";
@@ -17,7 +17,7 @@ export function AuthoritySection(props: {
   authority: AuthorityView;
   lease: LeaseView | null;
 }) {
-  const { source } = useConsole();
+  const { source } = useStation();
   const [problem, setProblem] = createSignal<string | null>(null);
   const transfer = async (holder: AuthorityHolder, takeOver = false) => {
     setProblem(responseProblem(await source.vehicles.setAuthority(props.serial, holder, takeOver)));
@@ -67,7 +67,7 @@ export function AuthoritySection(props: {
 }
 
 function AuthorityText(props: { authority: AuthorityView }) {
-  const { behindS } = useConsole();
+  const { behindS } = useStation();
   const since = () => {
     const { age_s } = props.authority;
     return age_s === null

@@ -1,5 +1,5 @@
 import { Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useStation } from "../../console";
 import { anothersLease } from "../../fleet/operatorLease";
 import type { LeaseView } from "../../protocol";
 import { text } from "../../text/catalogue";
@@ -7,7 +7,7 @@ import { formatAge } from "../../text/quantities";
 
 /** The person who operates a vehicle, since when, and whether that person is there. */
 export function OperatorLease(props: { lease: LeaseView }) {
-  const { source, behindS } = useConsole();
+  const { source, behindS } = useStation();
   const isOwn = () => anothersLease(props.lease, source.person()) === null;
   const since = () => {
     const age = formatAge(props.lease.age_s + behindS());

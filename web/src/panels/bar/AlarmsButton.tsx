@@ -1,5 +1,5 @@
 import { createMemo, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { usePage, useStation } from "../../console";
 import { causeName, isAlarmNow } from "../../fleet/alarmGroups";
 import { worstSeverity } from "../../fleet/severity";
 import { text } from "../../text/catalogue";
@@ -8,7 +8,8 @@ import { SpeakerIcon } from "../alarms/SoundControls";
 
 /** The number of active alarms, coloured by the worst not acknowledged yet; a press opens the list. */
 export function AlarmsButton() {
-  const { fleet, panels, alarmSound } = useConsole();
+  const { fleet } = useStation();
+  const { panels, alarmSound } = usePage();
   const { mutes } = alarmSound;
   const isMuted = () => mutes.isAllMuted() || mutes.kinds().length > 0;
   const open = createMemo(() => fleet.alarms.filter(isAlarmNow));

@@ -1,11 +1,11 @@
 import { Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useStation } from "../../console";
 import { text } from "../../text/catalogue";
 import { formatAge } from "../../text/quantities";
 
 /** Shown while the connection is lost, with the age of the displayed data. */
 export function ConnectionBanner() {
-  const { source, fleet, behindS, isReplay } = useConsole();
+  const { source, fleet, behindS, isReplay } = useStation();
   const lost = () => {
     const connection = source.connection();
     return connection.kind === "lost" ? connection : null;

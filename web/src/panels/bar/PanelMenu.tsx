@@ -1,5 +1,5 @@
 import { For, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { usePage, useStation } from "../../console";
 import { text } from "../../text/catalogue";
 import { chooseLengthUnit, LENGTH_UNITS, type LengthUnit, lengthUnit } from "../../text/units";
 import type { Theme } from "../../theme/theme";
@@ -11,7 +11,8 @@ const LISTED = PANEL_NAMES.filter((name) => name !== "vehicle");
 
 /** Opens and closes panels; also the colours, the help and the person, for screens without room in the bar. */
 export function PanelMenu(props: { onHelp: () => void }) {
-  const { panels, lock, isReplay } = useConsole();
+  const { isReplay } = useStation();
+  const { panels, lock } = usePage();
   return (
     <Popover class="menu" label={text.menu.name} title={text.menu.hint} button="☰">
       {(close) => (
@@ -80,7 +81,7 @@ function Units() {
 }
 
 function Colours() {
-  const { theme } = useConsole();
+  const { theme } = usePage();
   return (
     <label class="menu-colours">
       {text.menu.colours}

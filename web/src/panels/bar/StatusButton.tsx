@@ -1,5 +1,5 @@
 import { createMemo, For, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useStation } from "../../console";
 import { type Readiness, readiness } from "../../fleet/readiness";
 import { simulation } from "../../fleet/vehicleStatus";
 import { text } from "../../text/catalogue";
@@ -8,7 +8,7 @@ import { SeverityMark } from "../SeverityMark";
 
 /** Readiness of station and fleet in a word with its count; a press shows all reasons. */
 export function StatusButton() {
-  const { source, fleet, behindS } = useConsole();
+  const { source, fleet, behindS } = useStation();
   const now = createMemo(() => readiness(source.state(), source.connection(), behindS()));
   return (
     <Popover

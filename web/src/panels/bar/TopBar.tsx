@@ -1,5 +1,5 @@
 import { createMemo, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useOrders, usePage, useStation } from "../../console";
 import { simulation } from "../../fleet/vehicleStatus";
 import { text } from "../../text/catalogue";
 import { formatAge, formatHeading, formatQuantity } from "../../text/quantities";
@@ -14,7 +14,7 @@ import "./bar.css";
 
 /** The top bar: readiness, site, shadows, alarms, and all stop alone in the right corner. */
 export function TopBar(props: { onHelp: () => void }) {
-  const { fleet, isReplay } = useConsole();
+  const { fleet, isReplay } = useStation();
   const kind = createMemo(() => simulation(fleet.vehicles));
   return (
     <header class="card bar" classList={{ "is-simulation": kind() === "all" }}>
@@ -53,7 +53,7 @@ export function TopBar(props: { onHelp: () => void }) {
 
 /** How the shadows move, by the newest forecast. */
 function Shadows() {
-  const { fleet } = useConsole();
+  const { fleet } = useStation();
   const shown = () => {
     const { shadows_east_mps: east, shadows_north_mps: north } = fleet.shade?.forecast ?? {};
     if (typeof east !== "number" || typeof north !== "number") return null;
@@ -73,7 +73,7 @@ const SIGNS: Readonly<Record<Theme, string>> = { auto: "◐", light: "☼", dark
 
 /** The next theme at each press; the menu has them by name. */
 function ThemeButton() {
-  const { theme } = useConsole();
+  const { theme } = usePage();
   const name = () => text.menu.themes[theme.theme()];
   return (
     <button
@@ -93,7 +93,8 @@ function ThemeButton() {
  * an all stop is in force; a further press stops again.
  */
 export function AllStop() {
-  const { orderApi, fleet, behindS } = useConsole();
+  const { fleet, behindS } = useStation();
+  const { orderApi } = useOrders();
   const inForce = () => {
     const latch = fleet.stopLatch;
     return latch === null ? null : text.stop.inForceFor(formatAge(latch.age_s + behindS()));

@@ -1,5 +1,5 @@
 import { For, type JSX, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { usePage, useStation } from "../../console";
 import type { VehicleView } from "../../protocol";
 import { text } from "../../text/catalogue";
 import { vehicleLabel } from "../../text/names";
@@ -9,7 +9,8 @@ import "./cameras.css";
 
 /** All cameras that send pictures, live; one of them can be large. */
 export function CamerasPanel() {
-  const { fleet, largeCamera } = useConsole();
+  const { fleet } = useStation();
+  const { largeCamera } = usePage();
   const sending = () => fleet.vehicles.filter(isSending);
   return (
     <Panel title={text.panels.titles.cameras} name="cameras" count={sending().length}>
@@ -43,7 +44,8 @@ export function CamerasPanel() {
 
 /** The large picture, over the free middle of the map; nothing without one. */
 export function LargeCamera() {
-  const { fleet, largeCamera } = useConsole();
+  const { fleet } = useStation();
+  const { largeCamera } = usePage();
   const shown = () =>
     fleet.vehicles.find((vehicle) => isSending(vehicle) && vehicle.serial === largeCamera.serial());
   return (

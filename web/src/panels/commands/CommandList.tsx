@@ -1,5 +1,5 @@
 import { For, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useStation } from "../../console";
 import type { CommandView } from "../../protocol";
 import { text } from "../../text/catalogue";
 import {
@@ -19,7 +19,7 @@ import "./commands.css";
  * station's own commands have negative ids.
  */
 export function CommandList() {
-  const { fleet } = useConsole();
+  const { fleet } = useStation();
   return (
     <Panel title={text.panels.titles.orders} name="orders" count={fleet.commands.length}>
       <Show when={fleet.commands.length > 0} fallback={<Empty>{text.commands.none}</Empty>}>
@@ -32,7 +32,7 @@ export function CommandList() {
 }
 
 function CommandRow(props: { command: CommandView }) {
-  const { behindS } = useConsole();
+  const { behindS } = useStation();
   return (
     <li class="row command" data-testid={`command-${props.command.id}`}>
       <div class="row-line">

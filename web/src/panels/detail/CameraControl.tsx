@@ -1,5 +1,5 @@
 import { createSignal, For, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useOrders, useStation } from "../../console";
 import type { OrderApi } from "../../orders/orderApi";
 import { text } from "../../text/catalogue";
 import { Answer } from "../orders/AnswerNotice";
@@ -17,7 +17,8 @@ const RATES_HZ = [1, 2, 5] as const;
  * vehicle. Answers go to `orderApi`, which outlives this component.
  */
 export function CameraControl(props: { orderApi: OrderApi }) {
-  const { fleet, targets, selection, lacks } = useConsole();
+  const { fleet, lacks } = useStation();
+  const { targets, selection } = useOrders();
   const [fps_hz, setFps_hz] = createSignal<number>(RATES_HZ[0]);
   const isOne = () => selection.keys().length === 1 && targets().serials.length === 1;
   /** The facts of the vehicle's app, if it takes orders to lock exposure. */
@@ -103,7 +104,7 @@ function disabledReason(selected: number): string {
 
 /** The station's answer and the command's current phase. */
 function CameraAnswer(props: { orderApi: OrderApi }) {
-  const { fleet } = useConsole();
+  const { fleet } = useStation();
   const phase = () => {
     const outcome = props.orderApi.lastAnswer()?.outcome;
     const id = outcome?.kind === "answered" ? outcome.value[0]?.command_id : null;

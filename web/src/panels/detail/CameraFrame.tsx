@@ -1,5 +1,5 @@
 import { createEffect, createSignal, on, onCleanup, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useStation } from "../../console";
 import { createDisplayedFrame, frameCaption, isSuperseded } from "../../fleet/displayedFrame";
 import type { VehicleView } from "../../protocol";
 import { text } from "../../text/catalogue";
@@ -11,7 +11,7 @@ const RETRY_MS = 2_000;
 
 /** The newest camera picture of one vehicle that has loaded, with its own caption. */
 export function CameraFrame(props: { serial: string; vehicle: VehicleView }) {
-  const { source, clock } = useConsole();
+  const { source, clock } = useStation();
   const [shown, setShown] = createSignal<ShownPicture | null>(null);
   const displayed = createDisplayedFrame(
     source,
@@ -47,7 +47,7 @@ export function CameraFrame(props: { serial: string; vehicle: VehicleView }) {
 }
 
 function Caption(props: { of: ReturnType<ReturnType<typeof createDisplayedFrame>["info"]> }) {
-  const { behindS } = useConsole();
+  const { behindS } = useStation();
   return (
     <Show when={props.of}>
       {(frame) => (

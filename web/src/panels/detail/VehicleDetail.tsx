@@ -1,5 +1,5 @@
 import { For, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useOrders, useStation } from "../../console";
 import { badgeText, vehicleKey } from "../../fleet/vehicleStatus";
 import { createOrderApi } from "../../orders/orderApi";
 import type { VehicleView } from "../../protocol";
@@ -21,7 +21,8 @@ import "./detail.css";
 
 /** Telemetry of the vehicle selected last, each value with its age. */
 export function VehicleDetail() {
-  const { fleet, selection, source, clock } = useConsole();
+  const { fleet, source, clock } = useStation();
+  const { selection } = useOrders();
   const cameraOrders = createOrderApi(source.orders, clock);
   const shown = () => {
     const key = selection.keys().at(-1);
@@ -123,7 +124,7 @@ function Identity(props: { vehicle: VehicleView }) {
 }
 
 function FactRow(props: { fact: Fact }) {
-  const { behindS } = useConsole();
+  const { behindS } = useStation();
   const isUnknown = () => props.fact.why !== null;
   return (
     <div class="fact">

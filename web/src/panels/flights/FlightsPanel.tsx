@@ -1,5 +1,5 @@
 import { createMemo, createResource, createSignal, For, onCleanup, onMount, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useStation } from "../../console";
 import type { FlightFiguresView, FlightView, Outcome, Picture } from "../../protocol";
 import { valuesOf } from "../../protocol/values";
 import { saveAs } from "../../source/saveAs";
@@ -17,7 +17,7 @@ const LARGEST_RECORD_BYTES = 500e6;
 
 /** The flight records in the station's folder: coverage of each, and its files. */
 export function FlightsPanel() {
-  const { source } = useConsole();
+  const { source } = useStation();
   /** Null before the first answer. */
   const [flights, setFlights] = createSignal<readonly FlightView[] | null>(null);
   const [problem, setProblem] = createSignal<string | null>(null);
@@ -91,7 +91,7 @@ function whyNoRecord(flight: FlightView | undefined): string | null {
 
 /** Figures and coverage of one flight, and what can be downloaded. */
 function Flight(props: { name: string; whyNoRecord: string | null }) {
-  const { source } = useConsole();
+  const { source } = useStation();
   const [found] = createResource(() => source.flights.figures(props.name));
   const figures = () => answerOf(found());
   const [picture] = createResource(

@@ -1,5 +1,5 @@
 import { Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useMapModes } from "../../console";
 import { courseText } from "../../orders/course";
 import { text } from "../../text/catalogue";
 import { vehicleLabel } from "../../text/names";
@@ -11,7 +11,7 @@ import "./fly.css";
 
 /** Fly here: target, height, speed, the safety gate's result, and the button to confirm. */
 export function FlyHereCard() {
-  const { flyHere } = useConsole();
+  const { flyHere } = useMapModes();
   const name = () => {
     const vehicle = flyHere.vehicle();
     return vehicle === null ? "" : vehicleLabel(vehicle);
@@ -83,7 +83,7 @@ export function FlyHereCard() {
 }
 
 function Aim() {
-  const { aimAtCentre } = useConsole();
+  const { aimAtCentre } = useMapModes();
   return (
     <div class="fly-aim">
       <p>{text.fly.aim}</p>

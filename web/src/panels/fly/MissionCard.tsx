@@ -1,5 +1,5 @@
 import { For, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useMapModes } from "../../console";
 import { LEAST_POINTS } from "../../orders/missionDraft";
 import { text } from "../../text/catalogue";
 import { vehicleLabel } from "../../text/names";
@@ -12,7 +12,7 @@ import "./mission.css";
 
 /** A mission drawn on the map: its points and heights, the safety gate's result, and the button to confirm. */
 export function MissionCard() {
-  const { missionDraft: mission } = useConsole();
+  const { missionDraft: mission } = useMapModes();
   const name = () => {
     const vehicle = mission.vehicle();
     return vehicle === null ? "" : vehicleLabel(vehicle);
@@ -61,7 +61,7 @@ export function MissionCard() {
 
 /** What is of the whole mission: its length, speed and end. */
 function Whole() {
-  const { missionDraft: mission } = useConsole();
+  const { missionDraft: mission } = useMapModes();
   return (
     <>
       <Show when={mission.figures()}>
@@ -101,7 +101,7 @@ function Whole() {
 }
 
 function Points() {
-  const { missionDraft: mission, aimAtCentre } = useConsole();
+  const { missionDraft: mission, aimAtCentre } = useMapModes();
   const ids = () => mission.points().map(({ id }) => id);
   return (
     <>
@@ -131,7 +131,7 @@ function Points() {
 }
 
 function PointButton(props: { id: number; number: number }) {
-  const { missionDraft: mission } = useConsole();
+  const { missionDraft: mission } = useMapModes();
   const isSelected = () => mission.selected() === props.id;
   return (
     <li>
@@ -151,7 +151,7 @@ function PointButton(props: { id: number; number: number }) {
 }
 
 function SelectedPoint(props: { id: number; number: number }) {
-  const { missionDraft: mission } = useConsole();
+  const { missionDraft: mission } = useMapModes();
   const height = () => mission.points().find(({ id }) => id === props.id)?.height;
   return (
     <div class="fly-fields">

@@ -1,5 +1,5 @@
 import { createSignal, For } from "solid-js";
-import { useConsole } from "../../console";
+import { useMapModes } from "../../console";
 import type { NudgeBy } from "../../orders/flyHere";
 import { text } from "../../text/catalogue";
 import { type LengthUnit, lengthUnit, metresOf } from "../../text/units";
@@ -29,7 +29,7 @@ const NUDGES: readonly Nudge[] = [
 
 /** Small steps from the current position; each button must be held briefly. */
 export function NudgePad(props: { name: string }) {
-  const { flyHere } = useConsole();
+  const { flyHere } = useMapModes();
   const [size, setSize] = createSignal(0);
   const steps = () => STEPS[lengthUnit()];
   const step_m = () => metresOf(steps()[size()] ?? 1);

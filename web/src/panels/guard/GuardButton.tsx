@@ -1,5 +1,5 @@
 import { createEffect } from "solid-js";
-import { useConsole } from "../../console";
+import { useStation } from "../../console";
 import { createHoldTimer, type HoldTimer } from "../../orders/holdToConfirm";
 import type { Role } from "../../protocol";
 import { text } from "../../text/catalogue";
@@ -23,7 +23,7 @@ export function GuardButton(props: {
   needs?: Role;
   onConfirm: () => void;
 }) {
-  const { clock, lacks, isReplay } = useConsole();
+  const { clock, lacks, isReplay } = useStation();
   const lack = () => lacks(props.needs ?? "operator");
   const timer = createHoldTimer(
     clock,

@@ -1,5 +1,5 @@
 import { createSignal } from "solid-js";
-import { useConsole } from "../../console";
+import { useStation } from "../../console";
 import type { HazardView } from "../../protocol";
 import { text } from "../../text/catalogue";
 import { responseProblem } from "../../text/names";
@@ -10,7 +10,7 @@ import { Problem } from "../Panel";
 
 /** A lost vehicle's hazard area, and the button to clear it. */
 export function HazardSection(props: { hazard: HazardView; name: string }) {
-  const { source, behindS } = useConsole();
+  const { source, behindS } = useStation();
   const [problem, setProblem] = createSignal<string | null>(null);
   const clear = async () => {
     setProblem(responseProblem(await source.vehicles.dismissHazard(props.hazard.dismissal_name)));

@@ -1,11 +1,11 @@
 import { For, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useStation } from "../../console";
 import { text } from "../../text/catalogue";
 import { QrCode } from "../QrCode";
 
 /** How a companion app on a phone finds this station: its addresses, the first as a QR code too. */
 export function AppAddress() {
-  const { fleet, source } = useConsole();
+  const { fleet, source } = useStation();
   return (
     <Show when={fleet.station?.app_url ? fleet.station.link_addresses : null}>
       {(addresses) => (

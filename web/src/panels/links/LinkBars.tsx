@@ -1,5 +1,5 @@
 import { createMemo, For, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useStation } from "../../console";
 import { text } from "../../text/catalogue";
 import "./links.css";
 
@@ -7,7 +7,7 @@ const BARS = [1, 2, 3, 4] as const;
 
 /** How regularly a vehicle's telemetry arrives, as bars; nothing without a link. */
 export function LinkBars(props: { linkId: number | null }) {
-  const { fleet } = useConsole();
+  const { fleet } = useStation();
   const figures = createMemo(
     () => fleet.links.find((link) => link.id === props.linkId)?.figures ?? null,
   );

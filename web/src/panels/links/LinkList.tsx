@@ -1,5 +1,5 @@
 import { createMemo, For, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useStation } from "../../console";
 import type { LinkView, Severity } from "../../protocol";
 import { text } from "../../text/catalogue";
 import { agedBy, formatAge, formatBytes } from "../../text/quantities";
@@ -18,7 +18,7 @@ const STATUS: Readonly<Record<LinkView["status"], { severity: Severity | null; r
 
 /** Connections of companion apps; those that wait, conflicts and unidentified ones first. */
 export function LinkList() {
-  const { fleet } = useConsole();
+  const { fleet } = useStation();
   const sorted = createMemo(() =>
     [...fleet.links].sort((a, b) => STATUS[a.status].rank - STATUS[b.status].rank || b.id - a.id),
   );
@@ -35,7 +35,7 @@ export function LinkList() {
 
 /** One line per link, with expandable details. */
 function LinkRow(props: { link: LinkView }) {
-  const { behindS } = useConsole();
+  const { behindS } = useStation();
   const status = () => STATUS[props.link.status];
   const serial = () =>
     props.link.claimed_serial ?? props.link.waiting?.serial ?? text.links.noSerial;

@@ -1,5 +1,5 @@
 import { createSignal, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useStation } from "../../console";
 import type { WaitingAppView } from "../../protocol";
 import { text } from "../../text/catalogue";
 import { responseProblem } from "../../text/names";
@@ -9,7 +9,7 @@ import { Problem } from "../Panel";
 
 /** An app that the station's list does not admit: why, since when, and what to decide. */
 export function WaitingApp(props: { linkId: number; address: string; waiting: WaitingAppView }) {
-  const { source, behindS } = useConsole();
+  const { source, behindS } = useStation();
   const [problem, setProblem] = createSignal<string | null>(null);
   const admit = async (lasting: "always" | "session") => {
     const { serial } = props.waiting;

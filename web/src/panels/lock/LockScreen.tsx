@@ -1,5 +1,5 @@
 import { createEffect, onCleanup, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { usePage, useStation } from "../../console";
 import { text } from "../../text/catalogue";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
 import "./lock.css";
@@ -10,7 +10,7 @@ const GUARDED =
 
 /** A locked page: dimmed, and guarded against stray touches. All stop, alarms and notices stay as they are. */
 export function LockScreen() {
-  const { lock } = useConsole();
+  const { lock } = usePage();
   return (
     <Show when={lock.isOn()}>
       <Locked />
@@ -19,7 +19,7 @@ export function LockScreen() {
 }
 
 function Locked() {
-  const { lock } = useConsole();
+  const { lock } = usePage();
   let card!: HTMLElement;
   createEffect(() => {
     const guarded = [...document.querySelectorAll<HTMLElement>(GUARDED)];
@@ -50,7 +50,8 @@ function Locked() {
 
 /** Locks the page. */
 export function LockButton() {
-  const { lock, isReplay } = useConsole();
+  const { isReplay } = useStation();
+  const { lock } = usePage();
   return (
     <Show when={!isReplay()}>
       <button

@@ -1,5 +1,5 @@
 import { createSignal, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { usePage, useStation } from "../../console";
 import { inPairs, pastedToken } from "../../source/login";
 import { text } from "../../text/catalogue";
 import "./login.css";
@@ -10,7 +10,7 @@ const ADD_A_USER = "recon user add NAME --role ROLE";
 
 /** Asks for a token while the station refuses this page for want of one. */
 export function LoginDialog() {
-  const { source } = useConsole();
+  const { source } = useStation();
   const refused = () => {
     const connection = source.connection();
     return connection.kind === "lost" && connection.needsLogin === true ? connection : null;
@@ -32,7 +32,7 @@ export function LoginDialog() {
 }
 
 function LoginForm() {
-  const { login } = useConsole();
+  const { login } = usePage();
   const [typed, setTyped] = createSignal("");
   const [isWrong, setWrong] = createSignal(false);
   const submit = (event: Event) => {
@@ -74,7 +74,7 @@ function LoginForm() {
 
 /** The certificate's fingerprint that came with the QR code, to compare with the browser's. */
 function Fingerprint() {
-  const { login } = useConsole();
+  const { login } = usePage();
   return (
     <Show when={login.fingerprint}>
       {(digits) => (

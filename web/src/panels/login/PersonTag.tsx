@@ -1,10 +1,11 @@
 import { Show } from "solid-js";
-import { useConsole } from "../../console";
+import { usePage, useStation } from "../../console";
 import { text } from "../../text/catalogue";
 
 /** The person that the station takes this page's requests for, and log out. */
 export function PersonTag() {
-  const { source, login } = useConsole();
+  const { source } = useStation();
+  const { login } = usePage();
   return (
     <Show when={source.person()}>
       {(person) => (

@@ -1,12 +1,12 @@
 import { For, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useStation } from "../../console";
 import { text } from "../../text/catalogue";
 import { QrCode } from "../QrCode";
 import "./login.css";
 
 /** How other computers open this console: addresses, the certificate's fingerprint, a QR code. */
 export function SharedAddress() {
-  const { source } = useConsole();
+  const { source } = useStation();
   const shared = () => {
     const person = source.person();
     return person !== null && person.fingerprint !== null ? person : null;

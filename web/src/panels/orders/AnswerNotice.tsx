@@ -1,5 +1,5 @@
 import { createEffect, createMemo, createSignal, For, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useOrders, useStation } from "../../console";
 import { summarise } from "../../orders/answers";
 import type { OrderAnswer } from "../../orders/orderApi";
 import { text } from "../../text/catalogue";
@@ -8,7 +8,7 @@ import { SeverityMark } from "../SeverityMark";
 
 /** The answer to the last order in one line over the map; the names on demand. */
 export function AnswerNotice() {
-  const { orderApi } = useConsole();
+  const { orderApi } = useOrders();
   return (
     <Show when={orderApi.lastAnswer()}>
       {(answer) => (
@@ -30,7 +30,7 @@ export function AnswerNotice() {
 
 /** An answer in one line, with the names behind its counts. */
 export function Answer(props: { answer: OrderAnswer }) {
-  const { fleet } = useConsole();
+  const { fleet } = useStation();
   const [isOpen, setOpen] = createSignal(false);
   const summary = createMemo(() => summarise(props.answer, fleet.commands, fleet.vehicles));
   const isWaiting = () => props.answer.outcome.kind === "waiting";

@@ -1,5 +1,5 @@
 import { createMemo, For, Match, onCleanup, onMount, Show, Switch } from "solid-js";
-import { useConsole } from "../../console";
+import { useMapModes, useOrders, usePage, useStation } from "../../console";
 import { selectedVehicles } from "../../fleet/selection";
 import { createHoldTimer, type HoldTimer } from "../../orders/holdToConfirm";
 import { TAKEOFF_HEIGHT_M, takeoffOrder } from "../../orders/takeOff";
@@ -19,7 +19,10 @@ interface HeldOrder {
 
 /** Hover, return and land for the selected vehicles, with their names shown before and during a hold. */
 export function OrderBar() {
-  const { targets, orderApi, clock, flyHere, missionDraft, panels } = useConsole();
+  const { clock } = useStation();
+  const { targets, orderApi } = useOrders();
+  const { flyHere, missionDraft } = useMapModes();
+  const { panels } = usePage();
   const held: HeldOrder[] = ORDER_KINDS.map((order) => ({
     order,
     timer: createHoldTimer(
@@ -97,7 +100,8 @@ export function OrderBar() {
 
 /** For the selected vehicles that stand on the ground; the button is there only for those. */
 function TakeOff() {
-  const { fleet, selection, orderApi } = useConsole();
+  const { fleet } = useStation();
+  const { selection, orderApi } = useOrders();
   const standing = createMemo(() =>
     selectedVehicles(fleet.vehicles, selection).flatMap((vehicle) => {
       const order = takeoffOrder(vehicle);
@@ -130,7 +134,7 @@ function TakeOff() {
 const NAMES_SHOWN = 3;
 
 function Recipients(props: { holding: OrderKind | null }) {
-  const { targets } = useConsole();
+  const { targets } = useOrders();
   const names = () => listSome(targets().labels, NAMES_SHOWN);
   return (
     <>

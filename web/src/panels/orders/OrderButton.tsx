@@ -1,5 +1,5 @@
 import { createEffect, Match, Show, Switch } from "solid-js";
-import { useConsole } from "../../console";
+import { useStation } from "../../console";
 import type { HoldTimer } from "../../orders/holdToConfirm";
 import type { OrderKind } from "../../orders/targets";
 import { text } from "../../text/catalogue";
@@ -12,7 +12,7 @@ export function OrderButton(props: {
   timer: HoldTimer;
   labels: readonly string[];
 }) {
-  const { lacks } = useConsole();
+  const { lacks } = useStation();
   const lack = () => lacks("pilot");
   const label = () => text.orders.labels[props.order.kind];
   const isDisabled = () => props.labels.length === 0 || lack() !== null;

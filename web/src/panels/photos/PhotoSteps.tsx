@@ -1,5 +1,5 @@
 import { createMemo, createResource, createSignal, For, onCleanup, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { usePage, useStation } from "../../console";
 import type { FlownRegionView, Outcome, PhotoFile, PhotoJobView, Picture } from "../../protocol";
 import { valuesOf } from "../../protocol/values";
 import { saveAs } from "../../source/saveAs";
@@ -112,7 +112,8 @@ function StepResult(props: { step: Step["name"]; job: PhotoJobView }) {
 
 /** A button for each surveyed region with gaps: plans them on its rows, and opens the panel to start it in. */
 function FlyGaps() {
-  const { source, panels, lacks } = useConsole();
+  const { source, lacks } = useStation();
+  const { panels } = usePage();
   const [flown] = createResource(() => source.surveys.flownRegions());
   const [answer, setAnswer] = createSignal<{ problem: string | null } | null>(null);
   const [isPlanning, setPlanning] = createSignal(false);
@@ -166,7 +167,7 @@ function FlyGaps() {
 }
 
 function MosaicPicture() {
-  const { source } = useConsole();
+  const { source } = useStation();
   const [picture] = createResource(() => source.photos.file("mosaic.png"));
   const url = createMemo(() => {
     const outcome = picture();
@@ -184,7 +185,7 @@ function MosaicPicture() {
 
 /** Buttons that save what the job has made. */
 function SavedFiles(props: { flight: string; files: readonly (typeof FILES)[number][] }) {
-  const { source } = useConsole();
+  const { source } = useStation();
   const [saved, setSaved] = createSignal<Outcome<Picture> | null>(null);
   const save = async (file: PhotoFile) => {
     const outcome = await source.photos.file(file);

@@ -1,5 +1,5 @@
 import { createResource, createSignal, For, onCleanup, onMount, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { usePage, useStation } from "../../console";
 import type { Outcome, PhotoJobView, PhotoRequest, PhotosView } from "../../protocol";
 import { text } from "../../text/catalogue";
 import { flightTime } from "../../text/flights";
@@ -13,7 +13,7 @@ const STORED_AS = "recon.photoFolders";
 
 /** The photos of a flight: tags, gaps, mosaic and report, made by the station of a folder on its computer. */
 export function PhotosPanel() {
-  const { source, clock } = useConsole();
+  const { source, clock } = useStation();
   const [job, setJob] = createSignal<PhotoJobView | null>(null);
   const [problem, setProblem] = createSignal<string | null>(null);
   let stopAsking = () => {};
@@ -69,7 +69,8 @@ function PhotoForm(props: {
   isOpen: boolean;
   onStart: (request: PhotoRequest) => Promise<void>;
 }) {
-  const { source, kept, lacks } = useConsole();
+  const { source, lacks } = useStation();
+  const { kept } = usePage();
   const [folders, setFolders] = createSignal(kept.getItem(STORED_AS) ?? "");
   const [dropped, setDropped] = createSignal<string | null>(null);
   const [isOver, setOver] = createSignal(false);

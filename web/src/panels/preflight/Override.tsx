@@ -1,5 +1,5 @@
 import { createSignal, createUniqueId, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useStation } from "../../console";
 import { text } from "../../text/catalogue";
 import { responseProblem } from "../../text/names";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
@@ -10,7 +10,7 @@ const MIN_REASON_LENGTH = 8;
 
 /** Overrides a failed checklist, with a typed reason and a held button. */
 export function Override(props: { serial: string; name: string; onAccepted: () => void }) {
-  const { source } = useConsole();
+  const { source } = useStation();
   const [reason, setReason] = createSignal("");
   const [problem, setProblem] = createSignal<string | null>(null);
   const field = createUniqueId();

@@ -8,7 +8,7 @@ import {
   Show,
   Switch,
 } from "solid-js";
-import { useConsole } from "../../console";
+import { useStation } from "../../console";
 import type { CheckView, Outcome, PreflightView, Severity } from "../../protocol";
 import { text } from "../../text/catalogue";
 import { personName } from "../../text/names";
@@ -23,7 +23,7 @@ import type { VehicleRequests } from "../../source/vehicleRequests";
 
 /** The preflight checklist of a vehicle, with instructions for failed items. */
 export function PreflightSection(props: { serial: string; name: string }) {
-  const { source, clock } = useConsole();
+  const { source, clock } = useStation();
   // The section is recreated per vehicle (`keyed`), so the serial never changes.
   const preflight = createPreflight(source.vehicles, clock, (() => props.serial)());
   const shown = createMemo<PreflightView | null>((before) => {

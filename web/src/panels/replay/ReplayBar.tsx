@@ -1,5 +1,5 @@
 import { createEffect, createMemo, createSignal, For, onCleanup, onMount, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useStation } from "../../console";
 import { isAlarmNow } from "../../fleet/alarmGroups";
 import type { ReplayMark as Mark, ReplayTransport, ReplayView } from "../../protocol";
 import { titleOf } from "../../sound/attention";
@@ -26,7 +26,7 @@ export function ReplayMark() {
 
 /** The transport of a replay; nothing on a live station. */
 export function ReplayBar() {
-  const { isReplay, replay, fleet } = useConsole();
+  const { isReplay, replay, fleet } = useStation();
   const fresh = () =>
     fleet.alarms.filter((alarm) => isAlarmNow(alarm) && !alarm.is_acknowledged).length;
   createEffect(() => {
@@ -56,7 +56,7 @@ function StepButton(props: {
 }
 
 function Transport(props: { view: ReplayView }) {
-  const { source, clock } = useConsole();
+  const { source, clock } = useStation();
   const [problem, setProblem] = createSignal<string | null>(null);
   const [sought, setSought] = createSignal<number | null>(null);
   const marks = createMarks();
@@ -202,7 +202,7 @@ export function markAt(marks: readonly Mark[], at_s: number): Mark | null {
 
 /** The record's marks; asked for again until the whole record was read. */
 function createMarks() {
-  const { source, clock } = useConsole();
+  const { source, clock } = useStation();
   const [marks, setMarks] = createSignal<readonly Mark[]>([]);
   let isGone = false;
   const read = async () => {

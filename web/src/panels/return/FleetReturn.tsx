@@ -1,5 +1,5 @@
 import { For, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useOrders, useStation } from "../../console";
 import { targetsKey } from "../../orders/targets";
 import type { FleetReturnView, ReturningView } from "../../protocol";
 import { text } from "../../text/catalogue";
@@ -13,7 +13,8 @@ import "./return.css";
 
 /** Return in layers: starts the fleet's return at separate heights and shows its progress. */
 export function FleetReturn() {
-  const { fleet, orderApi, targets } = useConsole();
+  const { fleet } = useStation();
+  const { orderApi, targets } = useOrders();
   const hasTargets = () => targets().serials.length > 0;
   const all = () => (fleet.vehicles.some(({ serial }) => serial !== null) ? "all" : "");
   return (
@@ -45,7 +46,7 @@ export function FleetReturn() {
 }
 
 function Progress(props: { view: FleetReturnView }) {
-  const { behindS } = useConsole();
+  const { behindS } = useStation();
   const count = () => props.view.vehicles.length;
   return (
     <section class="section" aria-label={text.fleetReturn.progress}>
@@ -83,7 +84,7 @@ function Progress(props: { view: FleetReturnView }) {
 }
 
 function Returning(props: { vehicle: ReturningView }) {
-  const { behindS } = useConsole();
+  const { behindS } = useStation();
   const height = () => {
     const height_m = props.vehicle.layer_height_above_takeoff_m;
     return height_m === null ? null : formatLength(height_m);

@@ -1,5 +1,5 @@
 import { createSignal, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useStation } from "../../console";
 import { text } from "../../text/catalogue";
 import { GUARD_MS, GuardButton } from "../guard/GuardButton";
 import { Problem } from "../Panel";
@@ -7,7 +7,7 @@ import { SeverityMark } from "../SeverityMark";
 
 /** Shown while the separation hold is off and close vehicles only raise an alarm. */
 export function SeparationBanner() {
-  const { fleet } = useConsole();
+  const { fleet } = useStation();
   return (
     <Show when={fleet.station?.separation_hold_on === false}>
       <div class="card notice separation-off" role="alert">
@@ -23,7 +23,7 @@ export function SeparationBanner() {
 
 /** On with one press, off only with a held button. */
 export function SeparationSwitch() {
-  const { source, fleet, lacks } = useConsole();
+  const { source, fleet, lacks } = useStation();
   const [problem, setProblem] = createSignal<string | null>(null);
   const isOn = () => fleet.station?.separation_hold_on ?? true;
   const turn = async (on: boolean) => {

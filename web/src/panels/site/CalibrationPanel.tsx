@@ -1,5 +1,5 @@
 import { createMemo, createSignal, For, onCleanup, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useMapModes, useSiteEditing, useStation } from "../../console";
 import { type FrozenFrame, isComplete, type MarkedPoint } from "../../site/calibration";
 import { cornerOf, cornerText } from "../../site/siteFeatures";
 import { text } from "../../text/catalogue";
@@ -20,7 +20,8 @@ const STEPS: Readonly<Record<string, readonly [col: number, row: number]>> = {
 
 /** Places an imaging drone's camera: points marked on one of its frames and on the map, with their residuals. */
 export function CalibrationPanel() {
-  const { calibration, fleet, lacks } = useConsole();
+  const { fleet, lacks } = useStation();
+  const { calibration } = useSiteEditing();
   // Without its panel a press on the map would still place points.
   onCleanup(() => calibration.leave());
   const imagers = () => fleet.site?.imager_serials ?? [];
@@ -69,7 +70,7 @@ function freezeLabel(isOn: boolean, serial: string | null): string {
 
 /** The frozen frame: a press marks the selected point, arrow keys move a point by a pixel. */
 function Frame(props: { frame: FrozenFrame }) {
-  const { calibration } = useConsole();
+  const { calibration } = useSiteEditing();
   const [zoom, setZoom] = createSignal(0);
   const url = URL.createObjectURL(props.frame.picture);
   onCleanup(() => URL.revokeObjectURL(url));
@@ -150,7 +151,8 @@ function Frame(props: { frame: FrozenFrame }) {
 }
 
 function MapCentreButton() {
-  const { calibration, mapCentre } = useConsole();
+  const { mapCentre } = useMapModes();
+  const { calibration } = useSiteEditing();
   const place = () => {
     const centre = mapCentre();
     if (centre !== null) calibration.aim({ lon: centre.lon, lat: centre.lat });
@@ -171,7 +173,7 @@ function hint(point: MarkedPoint | null): string {
 
 /** From each marked point towards where the solved camera sees it. */
 function Residuals(props: { frame: FrozenFrame }) {
-  const { calibration } = useConsole();
+  const { calibration } = useSiteEditing();
   const lines = createMemo(() =>
     (calibration.fit()?.residuals ?? []).flatMap(({ name, col_px, row_px }) => {
       const pixel = calibration.points().find((one) => one.name === name)?.pixel;
@@ -193,7 +195,7 @@ function Residuals(props: { frame: FrozenFrame }) {
 }
 
 function Points(props: { surveyed: number }) {
-  const { calibration } = useConsole();
+  const { calibration } = useSiteEditing();
   return (
     <section class="section" aria-label={text.calibration.points}>
       <Show when={props.surveyed > 0}>
@@ -212,7 +214,7 @@ function Points(props: { surveyed: number }) {
 }
 
 function PointRow(props: { point: MarkedPoint }) {
-  const { calibration } = useConsole();
+  const { calibration } = useSiteEditing();
   const residual = () =>
     calibration.fit()?.residuals.find(({ name }) => name === props.point.name) ?? null;
   const state = () => {
@@ -248,7 +250,7 @@ function PointRow(props: { point: MarkedPoint }) {
 
 /** The selected point's values, for exact ones and for the keyboard. */
 function PointForm(props: { point: MarkedPoint }) {
-  const { calibration } = useConsole();
+  const { calibration } = useSiteEditing();
   const set = (change: Parameters<typeof calibration.change>[1]) =>
     calibration.change(props.point.id, change);
   return (
@@ -284,7 +286,8 @@ function PointForm(props: { point: MarkedPoint }) {
 }
 
 function Result() {
-  const { calibration, lacks } = useConsole();
+  const { lacks } = useStation();
+  const { calibration } = useSiteEditing();
   const missing = () => calibration.points().filter((point) => !isComplete(point));
   const reason = () => calibration.fit()?.reason ?? null;
   const why = () => {
@@ -312,7 +315,7 @@ function Result() {
   );
 }
 
-function summary(fit: ReturnType<ReturnType<typeof useConsole>["calibration"]["fit"]>): string {
+function summary(fit: ReturnType<ReturnType<typeof useSiteEditing>["calibration"]["fit"]>): string {
   if (fit === null || fit.rms_px === null) return "";
   const height = formatQuantity(fit.height_above_ground_m ?? 0, "m", 1);
   const tilt = formatQuantity(fit.tilt_deg ?? 0, "°", 1);

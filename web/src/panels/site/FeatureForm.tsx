@@ -1,5 +1,5 @@
 import { createEffect, createMemo, createSignal, For, Index, on, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useSiteEditing } from "../../console";
 import type { LonLat } from "../../map/localGrid";
 import { valuesOf } from "../../protocol/values";
 import { LEAST_CORNERS } from "../../site/siteDraft";
@@ -22,7 +22,7 @@ const LISTED = 20;
 
 /** The selected feature: name, heights, and its corners as coordinates, for the keyboard or exact values. */
 export function FeatureForm(props: { feature: DraftFeature }) {
-  const { siteDraft } = useConsole();
+  const { siteDraft } = useSiteEditing();
   const kind = () => LAYERS[props.feature.layer];
   const set = (key: string, value: Attribute) =>
     siteDraft.setProperty(props.feature.id, key, value);
@@ -105,7 +105,7 @@ function TextField(props: { label: string; value: Attribute; onChange: (text: st
 
 /** A length in the chosen unit or, empty, nothing. The draft has metres. */
 function LengthInput(props: { feature: DraftFeature; name: string; label: string }) {
-  const { siteDraft } = useConsole();
+  const { siteDraft } = useSiteEditing();
   const shown = () => {
     const length_m = props.feature.properties[props.name] ?? "";
     return typeof length_m === "number" ? lengthText(length_m) : String(length_m);
@@ -150,7 +150,7 @@ function CheckedField(props: {
 
 /** The corners of one ring, a page at a time; each is a field with latitude and longitude. */
 function Corners(props: { feature: DraftFeature; ring: Ring; index: number }) {
-  const { siteDraft } = useConsole();
+  const { siteDraft } = useSiteEditing();
   const [first, setFirst] = createSignal(0);
   const isPoint = () => LAYERS[props.feature.layer].isPoint;
   const title = () => {

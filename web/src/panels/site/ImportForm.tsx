@@ -1,5 +1,5 @@
 import { createSignal, For, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useSiteEditing } from "../../console";
 import type { LayerName } from "../../protocol";
 import type { ImportChoice } from "../../site/siteDraft";
 import { areaHa, LAYER_NAMES, LAYERS } from "../../site/siteFeatures";
@@ -15,7 +15,7 @@ const FEW = 5;
 
 /** A file of another program: read by the station, shown dotted on the map, and added as it is chosen here. */
 export function ImportForm() {
-  const { siteDraft } = useConsole();
+  const { siteDraft } = useSiteEditing();
   const [isOver, setOver] = createSignal(false);
   const [search, setSearch] = createSignal("");
   const { imported, isBusy, notice } = siteDraft;
@@ -93,7 +93,7 @@ export function ImportForm() {
 
 /** What is left out of the file that was read, and what is said about the rest. */
 function Reading() {
-  const { siteDraft } = useConsole();
+  const { siteDraft } = useSiteEditing();
   return (
     <Show when={siteDraft.reading()}>
       {(reading) => (
@@ -129,7 +129,7 @@ function Reading() {
 }
 
 function Choice(props: { choice: ImportChoice; index: number }) {
-  const { siteDraft } = useConsole();
+  const { siteDraft } = useSiteEditing();
   const fitting = () =>
     LAYER_NAMES.filter(
       (layer) =>

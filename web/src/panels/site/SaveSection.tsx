@@ -1,5 +1,5 @@
 import { Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useStation } from "../../console";
 import type { Role, SiteVehiclesView } from "../../protocol";
 import type { SavedDraft } from "../../site/savedDraft";
 import type { SiteDraft } from "../../site/siteDraft";
@@ -20,7 +20,7 @@ export function SaveSection(props: {
   /** Undo and redo of single edits, where there are such. */
   edits?: Pick<SiteDraft, "canUndo" | "canRedo" | "undo" | "redo">;
 }) {
-  const { lacks } = useConsole();
+  const { lacks } = useStation();
   const { saved, isBusy, isChanged, verdict, notice } = props.draft;
   const locked = () => saved()?.locked_reason ?? lacks(props.needs);
   const general = () => {

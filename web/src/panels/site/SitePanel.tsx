@@ -1,5 +1,5 @@
 import { createEffect, createSignal, For, onCleanup, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useMapModes, useSiteEditing } from "../../console";
 import type { LayerName } from "../../protocol";
 import {
   areaHa,
@@ -21,7 +21,8 @@ const SQUARE_SHARE = 0.4;
 
 /** The site's boundary, zones, regions and pads: drawn, checked, saved, and in force without a restart. */
 export function SitePanel() {
-  const { siteDraft, fit } = useConsole();
+  const { fit } = useMapModes();
+  const { siteDraft } = useSiteEditing();
   // Without its panel the draft would lie over the fences in force; edits are kept.
   onCleanup(() => siteDraft.leave());
   const toggle = async () => {
@@ -50,7 +51,7 @@ export function SitePanel() {
 }
 
 function Editor() {
-  const { siteDraft } = useConsole();
+  const { siteDraft } = useSiteEditing();
   const { saved, features, selected } = siteDraft;
   warnBeforeUnload(siteDraft.isChanged);
   return (
@@ -92,7 +93,8 @@ function Editor() {
 
 /** Draws on the map, or adds a shape at its centre for those who use no pointer. */
 function AddForm() {
-  const { siteDraft, mapCentre } = useConsole();
+  const { mapCentre } = useMapModes();
+  const { siteDraft } = useSiteEditing();
   const [layer, setLayer] = createSignal<LayerName>("boundary");
   const tool = siteDraft.tool;
   const isDrawing = () => tool()?.hole === false;
@@ -144,7 +146,7 @@ function hint({ layer, hole }: { layer: LayerName; hole: boolean }): string {
 }
 
 function FeatureRow(props: { feature: DraftFeature }) {
-  const { siteDraft } = useConsole();
+  const { siteDraft } = useSiteEditing();
   const isSelected = () => siteDraft.selected()?.id === props.feature.id;
   const problem = () => {
     const verdict = siteDraft.verdict();
@@ -184,7 +186,7 @@ function facts(feature: DraftFeature): string {
 }
 
 function Save() {
-  const { siteDraft } = useConsole();
+  const { siteDraft } = useSiteEditing();
   const isElsewhere = () => {
     const verdict = siteDraft.verdict();
     return verdict.kind === "refused" && verdict.featureId !== null;

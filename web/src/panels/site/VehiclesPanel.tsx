@@ -8,7 +8,7 @@ import {
   onMount,
   Show,
 } from "solid-js";
-import { useConsole } from "../../console";
+import { useSiteEditing, useStation } from "../../console";
 import type { SiteVehicleView } from "../../protocol";
 import { valuesOf } from "../../protocol/values";
 import { text } from "../../text/catalogue";
@@ -23,7 +23,8 @@ const REFERENCES = valuesOf(text.siteVehicles.references);
 
 /** The site's vehicles as a table: connected or not, edited, checked, saved, and in force without a restart. */
 export function VehiclesPanel() {
-  const { vehicleTable: table, fleet } = useConsole();
+  const { fleet } = useStation();
+  const { vehicleTable: table } = useSiteEditing();
   onMount(() => void table.open());
   // What may change depends on what flies.
   createEffect(
@@ -65,7 +66,8 @@ export function VehiclesPanel() {
 }
 
 function Rows() {
-  const { vehicleTable: table, source } = useConsole();
+  const { source } = useStation();
+  const { vehicleTable: table } = useSiteEditing();
   const [cameras] = createResource(async () => {
     const outcome = await source.surveys.cameras();
     return outcome.kind === "answered" ? outcome.value : [];
@@ -104,7 +106,8 @@ function Row(props: {
   index: number;
   cameras: readonly { readonly name: string; readonly title: string }[];
 }) {
-  const { vehicleTable: table, fleet } = useConsole();
+  const { fleet } = useStation();
+  const { vehicleTable: table } = useSiteEditing();
   const serial = () => props.row.serial;
   const set = (change: Partial<SiteVehicleView>) => table.edit(props.index, change);
   const state = () => {
@@ -213,7 +216,8 @@ function Row(props: {
 
 /** A row by serial, and one for each connected vehicle that the site does not list. */
 function AddVehicle() {
-  const { vehicleTable: table, fleet } = useConsole();
+  const { fleet } = useStation();
+  const { vehicleTable: table } = useSiteEditing();
   const [serial, setSerial] = createSignal("");
   const listed = () => new Set(table.rows().map((row) => row.serial));
   const unlisted = () =>
@@ -264,7 +268,7 @@ function AddVehicle() {
 }
 
 function Save() {
-  const { vehicleTable: table } = useConsole();
+  const { vehicleTable: table } = useSiteEditing();
   const isElsewhere = () => {
     const verdict = table.verdict();
     return verdict.kind === "refused" && verdict.row !== null;

@@ -1,5 +1,5 @@
 import { createSignal, For, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useStation } from "../../console";
 import type { SiteView, StationView } from "../../protocol";
 import { saveAs } from "../../source/saveAs";
 import { text } from "../../text/catalogue";
@@ -12,7 +12,7 @@ import { SeparationSwitch } from "../separation/SeparationHold";
 
 /** The station and its site. */
 export function StationPanel() {
-  const { fleet } = useConsole();
+  const { fleet } = useStation();
   return (
     <Panel title={text.station.title} name="station">
       <Show when={fleet.station} fallback={<p class="panel-empty">{text.station.noData}</p>}>
@@ -58,7 +58,7 @@ function Facts(props: { facts: readonly (readonly [string, string])[] }) {
 }
 
 function StationFacts(props: { station: StationView }) {
-  const { behindS } = useConsole();
+  const { behindS } = useStation();
   return (
     <Facts
       facts={[
@@ -107,7 +107,7 @@ function SiteFacts(props: { site: SiteView }) {
 
 /** Saves the ground image as GeoTIFF. */
 function Download() {
-  const { source } = useConsole();
+  const { source } = useStation();
   const [problem, setProblem] = createSignal<string | null>(null);
   const save = async () => {
     const outcome = await source.light.groundImageFile();

@@ -1,5 +1,5 @@
 import { createSignal, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useStation } from "../../console";
 import type { StopLatchView } from "../../protocol";
 import { text } from "../../text/catalogue";
 import { listNames, personName, responseProblem, vehicleLabel } from "../../text/names";
@@ -11,12 +11,12 @@ import "./stop.css";
 
 /** Shown while an all stop is in force: who stopped when, which vehicles it holds, and the release. */
 export function StopBanner() {
-  const { fleet } = useConsole();
+  const { fleet } = useStation();
   return <Show when={fleet.stopLatch}>{(latch) => <StopInForce latch={latch()} />}</Show>;
 }
 
 function StopInForce(props: { latch: StopLatchView }) {
-  const { fleet, source, behindS } = useConsole();
+  const { fleet, source, behindS } = useStation();
   const [problem, setProblem] = createSignal<string | null>(null);
   const held = () => fleet.vehicles.filter((vehicle) => vehicle.is_stopped).map(vehicleLabel);
   const names = () => (held().length > 0 ? listNames(held()) : text.stop.later);
@@ -47,7 +47,7 @@ function StopInForce(props: { latch: StopLatchView }) {
 
 /** The release of one vehicle from the all stop. */
 export function StopSection(props: { serial: string; name: string }) {
-  const { source } = useConsole();
+  const { source } = useStation();
   const [problem, setProblem] = createSignal<string | null>(null);
   const release = async () =>
     setProblem(responseProblem(await source.orders.releaseStop([props.serial])));

@@ -1,5 +1,5 @@
 import { type JSX, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useStation } from "../../console";
 import type { ImagerMotionView } from "../../protocol";
 import { text } from "../../text/catalogue";
 import { personName } from "../../text/names";
@@ -13,7 +13,7 @@ export function MotionProgress(props: {
   testId: string;
   children?: JSX.Element;
 }) {
-  const { behindS } = useConsole();
+  const { behindS } = useStation();
   return (
     <p class="wire-text" data-testid={props.testId}>
       <strong>{props.view.vehicle_name}</strong> {props.stage}

@@ -1,5 +1,5 @@
 import { createSignal, For, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useStation } from "../../console";
 import type { SideStepView } from "../../protocol";
 import { text } from "../../text/catalogue";
 import { responseProblem, vehicleLabel } from "../../text/names";
@@ -14,7 +14,7 @@ const ASIDE_M = 25;
 
 /** Has an imaging drone fly aside and back, to tell whether a uniform scene is all sun or all shade; and its progress. */
 export function SideStep() {
-  const { fleet, source } = useConsole();
+  const { fleet, source } = useStation();
   const [problem, setProblem] = createSignal<string | null>(null);
   const imagers = () => fleet.vehicles.filter(({ is_imager: isImager }) => isImager);
   const isUnderWay = () =>

@@ -1,5 +1,5 @@
 import { Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useStation } from "../../console";
 import type { ForecastView, GroundImageView, ShadeLineView } from "../../protocol";
 import { text } from "../../text/catalogue";
 import { formatAge, formatHeading, formatQuantity } from "../../text/quantities";
@@ -11,7 +11,7 @@ import "./sun.css";
 
 /** What the imaging drone sees of sun and shade, and where it would see more. */
 export function SunPanel() {
-  const { fleet } = useConsole();
+  const { fleet } = useStation();
   return (
     <Panel title={text.panels.titles.sun} name="sun">
       <Show when={fleet.shade} fallback={<p class="panel-empty">{text.sun.none}</p>}>
@@ -28,7 +28,7 @@ export function SunPanel() {
 }
 
 function ShadeStatus(props: { line: ShadeLineView }) {
-  const { behindS, fleet } = useConsole();
+  const { behindS, fleet } = useStation();
   const problem = () => props.line.rejected ?? props.line.error;
   return (
     <div class="section">

@@ -1,5 +1,5 @@
 import { createSignal, For, onCleanup, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useOrders, useStation } from "../../console";
 import type {
   MoveUpwindView,
   Order,
@@ -19,7 +19,7 @@ const ASK_EVERY_MS = 10_000;
 
 /** Where each imaging drone would see more of the shade to come, with a button to send it there. */
 export function UpwindPlace() {
-  const { fleet } = useConsole();
+  const { fleet } = useStation();
   const imagers = () => fleet.vehicles.filter(({ is_imager: isImager }) => isImager);
   return (
     <section class="section" aria-label={text.upwind.name}>
@@ -32,7 +32,8 @@ export function UpwindPlace() {
 }
 
 function Place(props: { vehicle: VehicleView }) {
-  const { clock, orderApi, source } = useConsole();
+  const { clock, source } = useStation();
+  const { orderApi } = useOrders();
   const [answer, setAnswer] = createSignal<Outcome<UpwindView> | null>(null);
   const serial = () => props.vehicle.serial ?? "";
   let cancel = () => {};

@@ -1,5 +1,5 @@
 import { createEffect, createMemo, createSignal, For, on, onCleanup, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useOrders, useStation } from "../../console";
 import { targetsKey } from "../../orders/targets";
 import type { NewSurvey, Outcome, SurveyEstimateView } from "../../protocol";
 import { draftFacts } from "../../text/survey";
@@ -10,7 +10,8 @@ const PAUSE_MS = 400;
 
 /** What the survey of the form would take with the selected drones; null: nothing to ask. */
 export function DraftEstimate(props: { survey: NewSurvey | null }) {
-  const { source, targets, clock } = useConsole();
+  const { source, clock } = useStation();
+  const { targets } = useOrders();
   const [outcome, setOutcome] = createSignal<Outcome<SurveyEstimateView> | null>(null);
   const key = createMemo(() => `${JSON.stringify(props.survey)} ${targetsKey(targets())}`);
   createEffect(

@@ -1,5 +1,5 @@
 import { createSignal, For, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useStation } from "../../console";
 import type { FlownRegionsView, FlownRegionView, Outcome, SurveyResponse } from "../../protocol";
 import { text } from "../../text/catalogue";
 import {
@@ -19,7 +19,7 @@ export function FlownRegions(props: {
   known: FlownRegionsView;
   onResult: (outcome: Outcome<SurveyResponse>) => void;
 }) {
-  const { fleet } = useConsole();
+  const { fleet } = useStation();
   /** A region whose survey is not over is resumed there. */
   const alive = () =>
     fleet.surveys.filter(({ phase }) => ["created", "running", "paused"].includes(phase));
@@ -47,7 +47,7 @@ function Region(props: {
   today: string;
   onResult: (outcome: Outcome<SurveyResponse>) => void;
 }) {
-  const { source, lacks } = useConsole();
+  const { source, lacks } = useStation();
   const [leftOut, setLeftOut] = createSignal<LeftOut>(
     isUnfinished(props.region) ? "begun" : "none",
   );

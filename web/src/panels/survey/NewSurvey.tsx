@@ -1,5 +1,5 @@
 import { createMemo, createResource, createSignal, For, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { usePage, useStation } from "../../console";
 import type { NewSurvey as NewSurveyRequest, Outcome, SurveyResponse } from "../../protocol";
 import { valuesOf } from "../../protocol/values";
 import { text } from "../../text/catalogue";
@@ -28,7 +28,8 @@ export function NewSurvey(props: {
   flown: readonly string[];
   onResult: (outcome: Outcome<SurveyResponse>) => void;
 }) {
-  const { fleet, panels } = useConsole();
+  const { fleet } = useStation();
+  const { panels } = usePage();
   // What is to be pressed first stands alone.
   const isFirstForm = () => props.isFirst && !isRehearsal(fleet);
   const [isOpen, setOpen] = createSignal(isFirstForm());
@@ -71,7 +72,8 @@ function Form(props: {
   isOpen: boolean;
   onResult: (outcome: Outcome<SurveyResponse>) => void;
 }) {
-  const { source, fleet, lacks, kept } = useConsole();
+  const { source, fleet, lacks } = useStation();
+  const { kept } = usePage();
   const [isPlanning, setPlanning] = createSignal(false);
   const [changes, setChanges] = createSignal(0);
   let form!: HTMLFormElement;
@@ -152,7 +154,7 @@ function Form(props: {
 
 /** Pixel and overlap first; what follows from them below, where it can be changed too. */
 function Numbers(props: { figures: SurveyFigures }) {
-  const { fleet } = useConsole();
+  const { fleet } = useStation();
   const figures = props.figures;
   const isGroundKnown = () => fleet.site?.terrain === "model";
   return (
@@ -293,7 +295,7 @@ function Choice<Name extends string>(props: {
 
 /** What else a survey does; what the site cannot do is not offered. */
 function Choices(props: { isAnyFlown: boolean }) {
-  const { fleet } = useConsole();
+  const { fleet } = useStation();
   const imagers = () => fleet.vehicles.filter(({ is_imager }) => is_imager);
   return (
     <>

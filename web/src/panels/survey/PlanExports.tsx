@@ -1,5 +1,5 @@
 import { createResource, createSignal, For, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useOrders, useStation } from "../../console";
 import { targetsKey } from "../../orders/targets";
 import type { PlanAircraftView, PlanFormatView, SurveyView } from "../../protocol";
 import { saveAs } from "../../source/saveAs";
@@ -28,7 +28,8 @@ export function PlanExports(props: { survey: SurveyView }) {
 }
 
 function Formats(props: { survey: SurveyView }) {
-  const { source, targets } = useConsole();
+  const { source } = useStation();
+  const { targets } = useOrders();
   const [chosen, setChosen] = createSignal<NamedAircraft | null>(null);
   const [problem, setProblem] = createSignal<string | null>(null);
   const serials = () => targets().serials;

@@ -1,4 +1,4 @@
-import { useConsole } from "../../console";
+import { useStation } from "../../console";
 import type { FleetView } from "../../fleet/fleetView";
 import { simulation } from "../../fleet/vehicleStatus";
 import type { Outcome, SurveyResponse } from "../../protocol";
@@ -18,7 +18,7 @@ export function Rehearse(props: {
   region: string;
   onResult: (outcome: Outcome<SurveyResponse>) => void;
 }) {
-  const { fleet, source } = useConsole();
+  const { fleet, source } = useStation();
   const serials = () =>
     fleet.vehicles.flatMap(({ serial, is_imager }) =>
       serial === null || is_imager ? [] : [serial],

@@ -1,5 +1,5 @@
 import { createSignal, For, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useStation } from "../../console";
 import type { ImagerReliefView, SurveyLightView } from "../../protocol";
 import { text } from "../../text/catalogue";
 import { responseProblem, vehicleLabel } from "../../text/names";
@@ -12,7 +12,7 @@ import { isOver, MotionProgress } from "../sun/MotionProgress";
 
 /** Until when a running survey has light, what it flies without, and the orders that bring light. */
 export function SurveyLight(props: { light: SurveyLightView }) {
-  const { behindS, fleet, source } = useConsole();
+  const { behindS, fleet, source } = useStation();
   const [problem, setProblem] = createSignal<string | null>(null);
   /** The local time in some seconds, by the station's clock. */
   const timeIn = (seconds: number) =>

@@ -1,5 +1,5 @@
 import { createResource, createSignal, For, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useOrders, usePage, useStation } from "../../console";
 import { targetsKey } from "../../orders/targets";
 import type { Outcome, SurveyingView, SurveyResponse, SurveyView } from "../../protocol";
 import { text } from "../../text/catalogue";
@@ -23,7 +23,7 @@ import "./survey.css";
 
 /** Surveys: plan, start with the selected vehicles, pause, abort; and their coverage. */
 export function SurveyPanel() {
-  const { fleet, source, isReplay } = useConsole();
+  const { fleet, source, isReplay } = useStation();
   const [problem, setProblem] = createSignal<string | null>(null);
   /** What flies, or may go on, comes before what is planned or over. */
   const surveys = () => {
@@ -75,7 +75,7 @@ interface SurveyProps {
 }
 
 function SurveySection(props: SurveyProps) {
-  const { panels } = useConsole();
+  const { panels } = usePage();
   const is = (...phases: SurveyView["phase"][]) => phases.includes(props.survey.phase);
   /** Vehicles to list; of a finished survey only those still returning home. */
   const active = () =>
@@ -89,7 +89,7 @@ function SurveySection(props: SurveyProps) {
     const isRepeated = is("created") || shown.toLowerCase() === status.toLowerCase();
     return isRepeated || /^round \d+$/.test(shown) ? "" : shown;
   };
-  const { source } = useConsole();
+  const { source } = useStation();
   const line = (vehicle: SurveyingView) =>
     lineOf(vehicle, is("done"), source.person()?.name ?? null);
   return (
@@ -167,7 +167,8 @@ const START_LABELS: Partial<Record<SurveyView["phase"], string>> = {
 
 /** Starts a survey with the selected vehicles, or adds them to it. */
 function Start(props: SurveyProps) {
-  const { source, targets } = useConsole();
+  const { source } = useStation();
+  const { targets } = useOrders();
   const [allowTakeoff, setAllowTakeoff] = createSignal(false);
   const label = () => START_LABELS[props.survey.phase] ?? text.surveys.start;
   const start = async () => {
@@ -200,7 +201,7 @@ function Start(props: SurveyProps) {
 
 /** Pauses or aborts; aborting a finished survey holds its vehicles returning home. */
 function Stop(props: SurveyProps & { word: keyof typeof text.surveys.stops }) {
-  const { source } = useConsole();
+  const { source } = useStation();
   const word = () => (props.word === "hold" ? "abort" : props.word);
   const stop = async () => props.onResult(await source.surveys.stop(props.survey.id, word()));
   const label = () => text.surveys.stops[props.word];

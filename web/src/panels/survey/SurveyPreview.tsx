@@ -1,5 +1,5 @@
 import { createResource, For, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useOrders, useStation } from "../../console";
 import { targetsKey } from "../../orders/targets";
 import type { SurveyEstimateView, SurveyView } from "../../protocol";
 import { text } from "../../text/catalogue";
@@ -9,7 +9,8 @@ import { PlanExports } from "./PlanExports";
 
 /** What a planned survey will take with the selected drones, before its start. */
 export function SurveyPreview(props: { survey: SurveyView }) {
-  const { source, targets } = useConsole();
+  const { source } = useStation();
+  const { targets } = useOrders();
   const asked = () => ({
     id: props.survey.id,
     serials: targets().serials,

@@ -1,5 +1,5 @@
 import { createSignal, Index, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { usePage, useStation } from "../../console";
 import type { SurveyView } from "../../protocol";
 import { text } from "../../text/catalogue";
 import { formatArea, sharePercent, shownSurvey, surveyStatus, timeLeft } from "../../text/survey";
@@ -8,7 +8,8 @@ import "./survey.css";
 
 /** The shown survey in three lines, for a screen without room for its panel; a press opens the panel. */
 export function SurveySummary() {
-  const { fleet, panels } = useConsole();
+  const { fleet } = useStation();
+  const { panels } = usePage();
   return (
     <Show when={shownSurvey(fleet.surveys)}>
       {(survey) => (

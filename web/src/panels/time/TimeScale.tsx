@@ -1,5 +1,5 @@
 import { createEffect, createMemo, createSignal, For, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useMapModes, useStation } from "../../console";
 import { Legend } from "../../map/LayersButton";
 import type { ForecastView } from "../../protocol";
 import { text } from "../../text/catalogue";
@@ -8,7 +8,7 @@ import "./time.css";
 
 /** The light on the field over the next minutes, as a scale: a press shows the forecast for that time. */
 export function TimeScale() {
-  const { fleet } = useConsole();
+  const { fleet } = useStation();
   const known = () => {
     const forecast = fleet.shade?.forecast;
     return forecast ? knownPart(forecast) : null;
@@ -17,7 +17,7 @@ export function TimeScale() {
 }
 
 function Scale(props: { forecast: ForecastView }) {
-  const { overlay } = useConsole();
+  const { overlay } = useMapModes();
   const [isFolded, setFolded] = createSignal(false);
   const leads = () => props.forecast.lead_s;
   // What is shown stays on the scale when less is known than before.

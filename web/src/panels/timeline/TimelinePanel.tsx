@@ -1,5 +1,5 @@
 import { createEffect, createSignal, For, on, onCleanup, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useStation } from "../../console";
 import type { TimelineEntryView, TimelineSubject } from "../../protocol";
 import { valuesOf } from "../../protocol/values";
 import { text } from "../../text/catalogue";
@@ -17,7 +17,7 @@ const SUBJECTS = valuesOf(text.timeline.subjects);
 
 /** What happened in this run, the newest first: of all drones or one, by subject. */
 export function TimelinePanel() {
-  const { source, clock, fleet } = useConsole();
+  const { source, clock, fleet } = useStation();
   const [serial, setSerial] = createSignal<string | null>(null);
   const [about, setAbout] = createSignal<TimelineSubject | null>(null);
   /** Null before the first answer. */

@@ -1,5 +1,5 @@
 import { createMemo, createSignal, For, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useOrders, useStation } from "../../console";
 import {
   createListChoice,
   firstFound,
@@ -19,7 +19,8 @@ const MANY = 9;
 
 /** All vehicles that have connected; they can be searched, sorted, filtered and grouped. */
 export function VehicleList() {
-  const { fleet, selection, behindS } = useConsole();
+  const { fleet, behindS } = useStation();
+  const { selection } = useOrders();
   const [choice, choose] = createListChoice();
   const [tools, setTools] = createSignal<boolean | null>(null);
   const [isFolded, setFolded] = createSignal(false);
@@ -173,7 +174,7 @@ function Choice<T extends string>(props: {
 }
 
 function NoVehicles() {
-  const { fleet } = useConsole();
+  const { fleet } = useStation();
   // Beyond loopback the section below has the address.
   const addresses = () => (fleet.station?.app_url ? [] : (fleet.station?.link_addresses ?? []));
   return (

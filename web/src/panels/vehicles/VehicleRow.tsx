@@ -1,5 +1,5 @@
 import { createMemo, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useOrders, useStation } from "../../console";
 import { doing, surveyPart } from "../../fleet/activity";
 import { anothersLease } from "../../fleet/operatorLease";
 import { hasBatteryWarning } from "../../fleet/readiness";
@@ -19,7 +19,8 @@ import { LinkBars } from "../links/LinkBars";
 
 /** One vehicle in two lines: its badge adds it to the selection, the rest selects only it. */
 export function VehicleRow(props: { vehicle: VehicleView }) {
-  const { selection, fleet, behindS } = useConsole();
+  const { fleet, behindS } = useStation();
+  const { selection } = useOrders();
   const vehicle = () => props.vehicle;
   const key = () => vehicleKey(vehicle());
   const status = createMemo(() => vehicleStatus(vehicle(), behindS()));
@@ -97,7 +98,7 @@ function Battery(props: { vehicle: VehicleView }) {
 
 /** Another person who operates it: orders to move it are refused. */
 function Operator(props: { vehicle: VehicleView }) {
-  const { source } = useConsole();
+  const { source } = useStation();
   return (
     <Show when={anothersLease(props.vehicle.lease, source.person())}>
       {(lease) => (

@@ -1,5 +1,5 @@
 import { createSignal, For, Show } from "solid-js";
-import { useConsole } from "../../console";
+import { useMapModes, useStation } from "../../console";
 import type { ZoneShape } from "../../orders/zoneDraft";
 import type { TemporaryZoneView, ZoneKind } from "../../protocol";
 import { text } from "../../text/catalogue";
@@ -13,7 +13,8 @@ import "./zones.css";
 
 /** Temporary zones: those in force with their end, and the form to draw one. */
 export function ZonesPanel() {
-  const { fleet, zoneDraft } = useConsole();
+  const { fleet } = useStation();
+  const { zoneDraft } = useMapModes();
   return (
     <Panel
       title={text.panels.titles.zones}
@@ -50,7 +51,7 @@ export function ZonesPanel() {
 }
 
 function ZoneRow(props: { zone: TemporaryZoneView }) {
-  const { source, behindS } = useConsole();
+  const { source, behindS } = useStation();
   const [problem, setProblem] = createSignal<string | null>(null);
   const end = async () => setProblem(responseProblem(await source.station.endZone(props.zone.id)));
   return (
@@ -82,7 +83,8 @@ function ZoneRow(props: { zone: TemporaryZoneView }) {
 
 /** One press draws the zone: it only brings vehicles to rest, and seconds count. */
 function DrawForm() {
-  const { source, zoneDraft, aimAtCentre, lacks } = useConsole();
+  const { source, lacks } = useStation();
+  const { zoneDraft, aimAtCentre } = useMapModes();
   const [problem, setProblem] = createSignal<string | null>(null);
   const draw = async () => {
     const zone = zoneDraft.zone();
