@@ -217,7 +217,8 @@ class _Aging:
         return view(**values, age_s=self.age_s(stamped))
 
 
-# Levels, modes and flags are few, and so are ages in milliseconds: most views have been made before.
+# Levels, modes and flags are few, and so are ages in milliseconds: most views have been made
+# before.
 @lru_cache(maxsize=8192)
 def _aged_number(value: float | None, age_s: float | None) -> schema.AgedNumber:
     return schema.AgedNumber(value=value, age_s=age_s)
