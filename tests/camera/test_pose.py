@@ -101,6 +101,7 @@ def test_the_standard_deviations_are_those_of_the_errors() -> None:
     assert abs(heights.var() / height_variance - 1.0) < 0.48
 
 
+@pytest.mark.flight
 def test_the_rms_is_the_root_of_the_mean_squared_two_dimensional_error() -> None:
     solution = noisy_solution(1)
     squared = [r.col_px**2 + r.row_px**2 for r in solution.residuals]

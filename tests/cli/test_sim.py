@@ -105,6 +105,7 @@ async def _listen_until_spoken_to(options: list[str]) -> tuple[list[wire.Packet]
     return packets, output.decode(), process.returncode
 
 
+@pytest.mark.flight
 def test_a_run_with_made_up_land_ends_politely() -> None:
     options = ["--fps", "5", "--latency-s", "0.05", "--airborne", "--wander"]
     packets, output, code = asyncio.run(_listen_until_spoken_to(options))
@@ -117,6 +118,7 @@ def test_a_run_with_made_up_land_ends_politely() -> None:
     assert all(p.is_flying for p in packets if isinstance(p, wire.CoreTelemetry))
 
 
+@pytest.mark.flight
 def test_a_run_with_a_folder_of_frames(tmp_path: Path) -> None:
     picture = np.full((36, 64, 3), 77, dtype=np.uint8)
     assert cv2.imwrite(str(tmp_path / "one.png"), picture)

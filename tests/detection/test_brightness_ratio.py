@@ -40,6 +40,7 @@ class TestAgainstOtsu:
 
 
 class TestExposure:
+    @pytest.mark.flight
     def test_a_camera_that_halves_its_exposure_casts_no_shade(self) -> None:
         steady, followed, locked = [], [], []
         for seed in SEEDS:

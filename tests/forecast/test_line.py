@@ -27,6 +27,7 @@ def line(seed: int, velocity: tuple[float, float]) -> tuple[DriftingShade, dict[
     return shade, latest
 
 
+@pytest.mark.flight
 def test_the_motion_is_found_in_detected_maps_and_helps() -> None:
     scores: dict[str, list[float]] = {method: [] for method in FORECASTERS}
     for seed, velocity in ((800, (4.0, -2.0)), (801, (-3.0, -4.0)), (802, (0.5, 5.0))):

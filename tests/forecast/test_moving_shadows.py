@@ -71,6 +71,7 @@ class TestUnknownCells:
 
 
 class TestAgainstPersistence:
+    @pytest.mark.flight
     def test_a_minute_ahead_its_brier_score_is_half_within_the_horizon_and_no_worse_beyond(
         self,
     ) -> None:

@@ -189,6 +189,7 @@ def test_regions_to_fly_again_are_surveys_that_recon_plans(tmp_path: Path, recor
     assert plan.pieces
 
 
+@pytest.mark.flight
 def test_a_second_run_goes_on_where_the_first_was_ended(tagged, record: Path) -> None:
     _result, out, card, _truth = tagged
     before = (out / "tags.csv").read_text()

@@ -45,6 +45,7 @@ def test_photos_are_at_the_surveys_height_only() -> None:
         shots_of(on_ground, TRUTH)
 
 
+@pytest.mark.flight
 def test_the_folder_holds_the_photos_and_a_table_of_their_truth(tmp_path) -> None:
     count = write_photos(tmp_path, SIMULATED, TRUTH, CardSettings(cols=400), every=70)
     head, *rows = (tmp_path / TRUTH_FILE).read_text(encoding="utf-8").splitlines()

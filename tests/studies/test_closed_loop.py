@@ -59,6 +59,7 @@ def test_a_gate_without_rules_and_no_watchdogs_are_found(monkeypatch: Patch) -> 
     assert "alarm missing" in kinds
 
 
+@pytest.mark.flight
 def test_a_station_that_sends_no_holds_is_found(monkeypatch: Patch) -> None:
     def refuse(command: Command, _situation: Situation) -> Refusal | None:
         return Refusal("test", "no holds") if isinstance(command.body, Hover) else None

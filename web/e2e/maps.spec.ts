@@ -10,6 +10,8 @@ import { runRecon, startReplay, startStation } from "./stationProcess";
 import { applyTheme, THEMES } from "./themes";
 
 const CONNECT_WITHIN_MS = 180_000;
+/** Two drones and the imaging drone. */
+const VEHICLES = 3;
 const RING = [
   [-93.6054, 41.9],
   [-93.6014, 41.9],
@@ -66,7 +68,7 @@ test("a map that was fetched before leaving is below everything, without its ser
   page.on("pageerror", (error) => errors.push(error.message));
   try {
     await page.goto(station.url);
-    await expect(page.locator("button.craft")).toHaveCount(2, { timeout: CONNECT_WITHIN_MS });
+    await expect(page.locator("button.craft")).toHaveCount(VEHICLES, { timeout: CONNECT_WITHIN_MS });
     await expect(mapNote(page)).toBeVisible();
     await expect.poll(() => drawnShare(page)).toBeGreaterThan(MOSTLY_DRAWN);
 
@@ -92,7 +94,7 @@ test("a map that was fetched before leaving is below everything, without its ser
       await expect(mapNote(page)).toHaveCount(0);
       await expect.poll(() => drawnShare(page)).toBeLessThan(MOSTLY_DRAWN);
       await page.reload();
-      await expect(page.locator("button.craft")).toHaveCount(2);
+      await expect(page.locator("button.craft")).toHaveCount(VEHICLES);
       await layersButton(page).click();
       await expect(page.getByRole("radio", { name: "None", exact: true })).toBeChecked();
       await page.getByRole("radio", { name: /^farm covers/ }).check();

@@ -31,6 +31,7 @@ class Killed(BaseException):
     """What no code catches."""
 
 
+@pytest.mark.flight
 def test_a_killed_run_goes_on_where_it_was(made: MadeMosaic, tmp_path: Path) -> None:
     whole = tmp_path / "whole"
     made.build(whole, resolution_m=FOUR_WINDOWS_M).run()

@@ -61,6 +61,7 @@ def test_a_short_run_is_near_what_was_measured(name: str) -> None:
     assert found.figures == pytest.approx(MEASURED, rel=0.45)
 
 
+@pytest.mark.flight
 def test_a_stress_scenario_is_far_from_it() -> None:
     scenario, found = (
         load_scenario(ROOT / "scenarios" / "stress" / "cumulus-40.toml"),

@@ -24,6 +24,7 @@ def test_the_mean_wind_grows_by_its_power_and_turns_right() -> None:
     assert wind.mean_mps(5_000.0)[0] == pytest.approx(wind.mean_mps(600.0)[0])
 
 
+@pytest.mark.flight
 def test_gusts_have_the_configured_strength_and_mean_0() -> None:
     wind = Wind(BREEZE)
     found = np.array([wind.at(0.0, 0.0, 10.0, t) for t in np.arange(0.0, 40_000.0, 7.3)])

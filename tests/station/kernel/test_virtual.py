@@ -51,6 +51,7 @@ class TestSameAgain:
         assert repr(first.driver.station) == repr(second.driver.station)
         assert len(first.driver.log) > 2000
 
+    @pytest.mark.flight
     def test_another_seed_gives_another_run(self) -> None:
         assert written(lived(3).driver.log) != written(lived(4).driver.log)
 

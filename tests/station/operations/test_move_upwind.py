@@ -184,6 +184,7 @@ class TestFlown:
         assert kinds == ["move_upwind.upwind", "move_upwind.done"]
         assert all("ann" in by for _, by in flown[1])
 
+    @pytest.mark.flight
     def test_it_stays_while_the_wind_does_and_moves_when_it_turns(self, flown: Flown) -> None:
         world = flown[0]
         first = newest(world)

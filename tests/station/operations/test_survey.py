@@ -295,6 +295,7 @@ class TestFailures:
         )
         assert world.phase() is SurveyPhase.PAUSED
 
+    @pytest.mark.flight
     def test_the_same_run_again_is_the_same(self) -> None:
         def flown() -> list[object]:
             world = two_ends()

@@ -1,11 +1,13 @@
 """A survey of which one vehicle falls: the others image its rows once its place is known."""
 
+import pytest
 from tests.station.surveyed_world import asked, surveyed_world
 
 from recon.model.event import HazardDismissed
 from recon.model.survey import SurveyPhase, WhenDone
 
 
+@pytest.mark.flight
 def test_the_other_flies_the_rows_of_a_fallen_vehicle() -> None:
     w = surveyed_world(2, faults=("falls-silent:SIM-2:30",))
     w.asks(asked(when_done=WhenDone.HOVER))

@@ -198,6 +198,7 @@ class TestZones:
 
 
 class TestShown:
+    @pytest.mark.flight
     def test_the_view_says_which_height_it_is(self, flown: Flown) -> None:
         driver = flown.world.driver
         view = survey_view(driver.station, flown.world.record(), driver.now_ns)

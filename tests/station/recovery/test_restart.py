@@ -228,7 +228,7 @@ class TestAnotherFlight:
             ({"altitude_offset_m": 0.0}, "another takeoff point"),
             ({"height_above_takeoff_m": 400.0}, "height changed from 400 m"),
             ({"height_above_takeoff_m": None}, "height unknown"),
-            ({"position": {"latitude_deg": 41.95, "longitude_deg": -93.6}}, "moved 55"),
+            ({"position": {"latitude_deg": 41.95, "longitude_deg": -93.6}}, "moved 5603 m"),
             ({"position": None}, "position unknown"),
         ],
     )
