@@ -68,7 +68,9 @@ test("a map that was fetched before leaving is below everything, without its ser
   page.on("pageerror", (error) => errors.push(error.message));
   try {
     await page.goto(station.url);
-    await expect(page.locator("button.craft")).toHaveCount(VEHICLES, { timeout: CONNECT_WITHIN_MS });
+    await expect(page.locator("button.craft")).toHaveCount(VEHICLES, {
+      timeout: CONNECT_WITHIN_MS,
+    });
     await expect(mapNote(page)).toBeVisible();
     await expect.poll(() => drawnShare(page)).toBeGreaterThan(MOSTLY_DRAWN);
 
