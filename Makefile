@@ -82,8 +82,8 @@ test-rust: setup ## Tests of the wire crate
 
 CORES := $(shell nproc 2>/dev/null || getconf _NPROCESSORS_ONLN)
 # A file stays in one process, which makes what its tests share once. Files that fly come first, as tests/conftest.py
-# sorts them, so that no process ends long after the others. One more process than cores: some tests wait.
-PYTEST := nice -n 5 $(RUN) python -m pytest -n $$(($(CORES) + 1)) --dist loadfile --no-loadscope-reorder
+# sorts them, so that no process ends long after the others.
+PYTEST := nice -n 5 $(RUN) python -m pytest -n $(CORES) --dist loadfile --no-loadscope-reorder
 CHOSEN := -m "not flight"
 
 test-python: setup ## Tests in Python, one of each family that flies
