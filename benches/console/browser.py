@@ -7,6 +7,7 @@ the machine as what is measured.
 import json
 import os
 import shutil
+import signal
 import subprocess
 import tempfile
 import time
@@ -17,7 +18,7 @@ from typing import Any
 
 from websockets.sync.client import ClientConnection, connect
 
-NAMES = ("chromium", "chromium-browser", "google-chrome")
+NAMES = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
 PATIENCE_S = 120.0
 ARGUMENTS = (
     "--headless=new",
@@ -126,13 +127,15 @@ def running_browser(program: str) -> Iterator[Browser]:
             [program, *ARGUMENTS, f"--user-data-dir={folder}", "about:blank"],
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
+            # Where the program is a script, the browser is its child: both are ended.
+            start_new_session=True,
         )
         try:
             address = _address(Path(folder) / "DevToolsActivePort", process)
             with connect(address, max_size=None, compression=None) as connection:
                 yield Browser(connection)
         finally:
-            process.terminate()
+            os.killpg(process.pid, signal.SIGTERM)
             process.wait(PATIENCE_S)
 
 
