@@ -69,7 +69,8 @@ export interface MissionDraft {
   discard(): void;
   setSpeed(text: string): void;
   setLandsAtEnd(lands: boolean): void;
-  confirm(): void;
+  /** Sends the mission; once it is accepted its points are removed. */
+  confirm(): Promise<void>;
 }
 
 export function createMissionDraft(
@@ -129,10 +130,11 @@ export function createMissionDraft(
     discard: points.discard,
     setSpeed,
     setLandsAtEnd,
-    confirm: () => {
+    confirm: async () => {
       const [ready, addressed] = [named(), vehicle()];
       if (ready === null || addressed === null) return;
-      void orderApi.order(ready, [vehicleLabel(addressed)]);
+      // What the station refuses stays on the map, to be changed.
+      if (!(await orderApi.order(ready, [vehicleLabel(addressed)]))) return;
       points.discard();
       leave();
     },

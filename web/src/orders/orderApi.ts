@@ -16,12 +16,13 @@ export interface OrderAnswer {
 /** Sends orders through the source and keeps the last answer for display. */
 export interface OrderApi {
   readonly lastAnswer: Accessor<OrderAnswer | null>;
-  order(order: NamedOrder, labels: readonly string[]): Promise<void>;
+  /** Sends an order; returns whether the station has accepted it for all its vehicles. */
+  order(order: NamedOrder, labels: readonly string[]): Promise<boolean>;
   /** Sends takeoffs, one for each vehicle, and keeps their results as one answer. */
-  takeOff(orders: readonly NamedOrder[], labels: readonly string[]): Promise<void>;
-  allStop(): Promise<void>;
+  takeOff(orders: readonly NamedOrder[], labels: readonly string[]): Promise<boolean>;
+  allStop(): Promise<boolean>;
   /** Starts a return in layers; null means every vehicle in reach. */
-  fleetReturn(serials: readonly string[] | null, labels: readonly string[]): Promise<void>;
+  fleetReturn(serials: readonly string[] | null, labels: readonly string[]): Promise<boolean>;
   dismiss(): void;
 }
 
@@ -38,26 +39,28 @@ export function createOrderApi(orders: Orders, clock: Clock): OrderApi {
     order: string,
     labels: readonly string[],
     send: () => Promise<Outcome<readonly OrderResult[]>>,
-  ): Promise<void> {
+  ): Promise<boolean> {
     newest += 1;
     const ownNumber = newest;
     setLastAnswer({ order, labels, outcome: { kind: "waiting" } });
     const outcome = await send();
+    const isAccepted = isAllAccepted(outcome);
     // A late answer must not replace the answer to a newer order.
-    if (ownNumber !== newest) return;
+    if (ownNumber !== newest) return isAccepted;
     setLastAnswer({ order, labels, outcome });
-    if (isAllAccepted(outcome)) {
+    if (isAccepted) {
       clock.after(ACCEPTED_SHOWN_MS, () => {
         if (ownNumber === newest) setLastAnswer(null);
       });
     }
+    return isAccepted;
   }
 
   return {
     lastAnswer,
     order: async (order, labels) => {
-      if (order.serials.length === 0) return;
-      await run(commandName(order.order.kind), labels, () => orders.send(order));
+      if (order.serials.length === 0) return false;
+      return run(commandName(order.order.kind), labels, () => orders.send(order));
     },
     takeOff: (takeoffs, labels) =>
       run(text.orders.takeOff, labels, async () =>

@@ -1,5 +1,6 @@
 import type { SurveyEstimateView, SurveyView } from "../protocol";
 import { text } from "./catalogue";
+import { personName } from "./names";
 import { formatQuantity, UNKNOWN } from "./quantities";
 import { formatLength, withLengthUnit } from "./units";
 
@@ -50,7 +51,8 @@ export function shownSurvey(surveys: readonly SurveyView[]): SurveyView | null {
 export function stoppedText(reason: string, person: string | null): string | null {
   const [, order, by] = /^mission stopped: (.*\bby )?(.*)$/.exec(withLengthUnit(reason)) ?? [];
   if (by === undefined) return null;
-  return text.surveys.stoppedBy(order ?? "", by === person ? text.surveys.you : by);
+  const name = personName(by);
+  return text.surveys.stoppedBy(order ?? "", name === person ? text.surveys.you : name);
 }
 
 const HECTARE_M2 = 10_000;

@@ -115,6 +115,16 @@ describe("a mission drawn on the map", () => {
     expect(page.orders).toEqual([]);
   });
 
+  it("keeps its points when it is refused as it is sent, and removes them once accepted", async () => {
+    await draw(1, [0, 0], [40, 0]);
+    page.answerWith([orderResult({ accepted: false, rule: "battery", reason: "too low" })]);
+    await mission().confirm();
+    expect([mission().isOn(), mission().points().length]).toEqual([true, 2]);
+    page.answerWith([orderResult({ accepted: true })]);
+    await mission().confirm();
+    expect([mission().isOn(), mission().points()]).toEqual([false, []]);
+  });
+
   it("is not offered for a model that flies none, with the reason", async () => {
     await draw(4, [0, 0]);
     expect(mission().isOn()).toBe(false);

@@ -140,14 +140,14 @@ describe("a survey in the list", () => {
 
   it("says who stopped a drone, and how it resumes", () => {
     const stopped = (by: string) => {
-      const why = `mission stopped: hover was ordered by ${by}`;
+      const why = `mission stopped: hover, ordered by ${by} (10.0.0.7)`;
       const [one] = survey(7).vehicles;
       if (one === undefined) throw new Error("no vehicle");
       show(survey(7, { vehicles: [{ ...one, is_flying_rows: false, not_flying_reason: why }] }));
       page.nameAs({ name: "bob", role: "pilot", is_logged_in: true, urls: [], fingerprint: null });
       return find(page.root, "[data-testid=survey-7]").textContent;
     };
-    const line = "does not fly rows: hover was ordered by";
+    const line = "does not fly rows: hover, ordered by";
     expect(stopped("anna")).toContain(`${line} anna. Select it to resume`);
     page.dispose();
     expect(stopped("bob")).toContain(`${line} you. Select it to resume`);

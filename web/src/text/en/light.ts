@@ -131,7 +131,7 @@ export const surveys = {
   waitsFor: (vehicle: string) => `waits for ${vehicle} to clear its way`,
   why: "Why",
   start: "Start with selected",
-  /** After the drone's name; the order is the station's words: `hover was ordered by `. */
+  /** After the drone's name; the order is the station's words: `hover, ordered by `. */
   stoppedBy: (order: string, by: string) => `does not fly rows: ${order}${by}. Select it to resume`,
   you: "you",
   add: "Resume or add selected",
