@@ -136,8 +136,11 @@ def test_a_place_alone_is_a_square_field_with_an_imaging_drone(
             "expected at most 35 vehicles, got 61: the field's edge has no room for more pads "
             "25 m apart",
         ),
-        ({"cloud_cover_percent": 101.0}, "expected a cover of 0 to 100 %, got 101"),
-        ({"wind_mps": -1.0}, "expected a wind of 0 to 15 m/s, got -1"),
+        (
+            {"cloud_cover_percent": 101.0},
+            "rehearsal: cloud_cover_percent: expected a number of 0 to 100, got 101.0",
+        ),
+        ({"wind_mps": -1.0}, "rehearsal: wind_mps: expected a number of 0 to 15, got -1.0"),
         ({"name": ""}, "expected a name of 1 to 64 printable letters, got ''"),
         ({"name": "a\nb"}, "expected a name of 1 to 64 printable letters, got 'a\\nb'"),
     ],

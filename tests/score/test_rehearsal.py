@@ -4,8 +4,8 @@ import pytest
 
 from recon.geo import sun_position
 from recon.model.geo import LatLon
-from recon.score.rehearsal import rehearsal_sky, rehearsal_wind, sun_over
-from recon.site.schema import RehearsalTable
+from recon.score.rehearsal import rehearsal_sky, sun_over
+from recon.sim.world import WindSettings
 
 
 @pytest.mark.parametrize(
@@ -23,12 +23,7 @@ def test_the_sun_is_that_of_a_midsummer_morning(latitude_deg: float, elevation_d
 
 def test_clouds_move_with_the_wind_and_none_is_a_clear_sky() -> None:
     place = LatLon(41.9, -93.6)
-    asked = RehearsalTable(cloud_cover_percent=70.0, wind_mps=4.0, wind_from_deg=270.0)
-    (clouds,) = rehearsal_sky(place, asked, 1).settings.layers
+    wind = WindSettings(1, speed_10m_mps=4.0, heading_deg=90.0)
+    (clouds,) = rehearsal_sky(place, 0.7, wind, 1).settings.layers
     assert (clouds.cover, clouds.speed_mps, clouds.heading_deg) == (0.7, 8.0, 110.0)
-    wind = rehearsal_wind(asked, 1)
-    assert wind is not None
-    assert (wind.speed_10m_mps, wind.heading_deg) == (4.0, 90.0)
-    calm = RehearsalTable(cloud_cover_percent=0.0, wind_mps=0.0)
-    assert rehearsal_sky(place, calm, 1).settings.layers == ()
-    assert rehearsal_wind(calm, 1) is None
+    assert rehearsal_sky(place, 0.0, None, 1).settings.layers == ()

@@ -23,7 +23,7 @@ from recon.cli.sim_proxy import proxy_command
 from recon.model.geo import GeoPoint, LatLon
 from recon.model.vehicle import AltitudeReference
 from recon.score import load_scenario
-from recon.score.rehearsal import rehearsal_sky, rehearsal_wind
+from recon.score.rehearsal import rehearsal_sky
 from recon.score.simulation import go_home_heights_of, pads_of, rig_of, simulation_of
 from recon.sim.app.fault_file import FaultScript, load_faults
 from recon.sim.app.faults import parse_fault
@@ -36,9 +36,8 @@ from recon.sim.errors import SimulationError
 from recon.sim.fleet import IMAGER_SERIAL, Airborne, ImagerSetup, SimulationConfig
 from recon.sim.flight.estimate import FIELD_DRIFT
 from recon.sim.run import run_fleet
+from recon.sim.world import WindSettings
 from recon.site import Imager, Site, SiteError, demo_site_folder, load_site
-from recon.site.new_site import rehearsal_of
-from recon.site.schema import RehearsalTable
 
 MAX_FPS_HZ = 30.0
 
@@ -94,7 +93,7 @@ def _config(fleet: FleetOptions, running: RunningOptions) -> SimulationConfig:
         battery_swap_s=None if fleet.battery_swap_min is None else 60.0 * fleet.battery_swap_min,
         seed=running.seed,
         drift=FIELD_DRIFT,
-        wind=rehearsal_wind(_air(fleet), abs(running.seed)),
+        wind=_wind(fleet, running.seed),
         reports_mission_id=fleet.mission_ids,
         photo_interval_s=fleet.photo_interval_s,
         faults=(*(parse_fault(text) for text in fleet.fault or ()), *script.faults),
@@ -134,10 +133,11 @@ sim_app.command("proxy")(proxy_command)
 sim_app.command("photos")(photos_command)
 
 
-def _air(fleet: FleetOptions) -> RehearsalTable:
-    """Return clouds and wind as a site's folder states them."""
-    from_deg = (fleet.wind_to_deg + 180.0) % 360.0
-    return rehearsal_of(fleet.cover, fleet.wind_mps, from_deg)
+def _wind(fleet: FleetOptions, seed: int) -> WindSettings | None:
+    if fleet.wind_mps == 0.0:
+        return None
+    speed_mps, heading_deg = fleet.wind_mps, fleet.wind_to_deg
+    return WindSettings(seed=abs(seed), speed_10m_mps=speed_mps, heading_deg=heading_deg)
 
 
 def _load_site(folder: Path | None) -> Site:
@@ -180,7 +180,8 @@ def _imager_worlds(place: Site, fleet: FleetOptions, seed: int) -> dict[str, Ima
         )
     assert place.frame is not None, "a site with an imaging drone has an origin"
     origin, camera = place.frame.origin, CameraSettings(seed)
-    sky = rehearsal_sky(LatLon(origin.latitude_deg, origin.longitude_deg), _air(fleet), abs(seed))
+    middle = LatLon(origin.latitude_deg, origin.longitude_deg)
+    sky = rehearsal_sky(middle, fleet.cover / 100.0, _wind(fleet, seed), abs(seed))
     worlds = {}
     for serial, rig in rigs.items():
         circle = place.imagers[serial].image_circle

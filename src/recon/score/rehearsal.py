@@ -3,14 +3,11 @@
 The sun stands as on a midsummer morning: a rehearsal in winter, or in the evening, has light.
 """
 
-from dataclasses import replace
-
 from recon.geo import utc_at_elevation
 from recon.model.geo import LatLon
 from recon.model.units import wrap_degrees
 from recon.sim.world import LayerSettings, Sky, SkySettings, SunSettings, WindSettings
 from recon.sim.world.settings import LOW_SPEED_MPS
-from recon.site.schema import RehearsalTable
 
 MIDSUMMER_UTC_S = {True: 1_750_464_000.0, False: 1_766_318_400.0}
 """2025-06-21 and 2025-12-21, by whether the place is north of the equator."""
@@ -36,22 +33,15 @@ def sun_over(place: LatLon) -> SunSettings:
     return SunSettings(place, start_utc_s)
 
 
-def rehearsal_sky(place: LatLon, asked: RehearsalTable, seed: int) -> Sky:
-    """Return a sky of low clouds that move with the wind; without cover it is clear."""
+def rehearsal_sky(place: LatLon, cover: float, wind: WindSettings | None, seed: int) -> Sky:
+    """Return a sky of low clouds that move with the wind; without cover (0 to 1) it is clear."""
+    speed_mps = 0.0 if wind is None else HIGHER_WIND * wind.speed_10m_mps
+    heading_deg = 0.0 if wind is None else wind.heading_deg
     cloud = LayerSettings(
-        cover=asked.cloud_cover_percent / 100.0,
-        speed_mps=min(max(HIGHER_WIND * asked.wind_mps, LOW_SPEED_MPS[0]), LOW_SPEED_MPS[1]),
-        heading_deg=wrap_degrees(asked.wind_from_deg + 180.0 + CLOUD_VEER_DEG),
+        cover=cover,
+        speed_mps=min(max(speed_mps, LOW_SPEED_MPS[0]), LOW_SPEED_MPS[1]),
+        heading_deg=wrap_degrees(heading_deg + CLOUD_VEER_DEG),
         outer_scale_m=SMALL_CLOUDS_M,
         softness=SHARP_EDGES,
     )
-    layers = (cloud,) if asked.cloud_cover_percent > 0.0 else ()
-    return Sky(SkySettings(seed, sun_over(place), layers))
-
-
-def rehearsal_wind(asked: RehearsalTable, seed: int) -> WindSettings | None:
-    """Return the wind near the ground; None: calm."""
-    if asked.wind_mps == 0.0:
-        return None
-    heading_deg = wrap_degrees(asked.wind_from_deg + 180.0)
-    return replace(WindSettings(seed), speed_10m_mps=asked.wind_mps, heading_deg=heading_deg)
+    return Sky(SkySettings(seed, sun_over(place), (cloud,) if cover > 0.0 else ()))

@@ -110,16 +110,6 @@ def point_above_sea_level(latitude_deg: float, longitude_deg: float, height_m: f
     return GeoPoint(latitude_deg, longitude_deg, round(height_m + sea_level_m, 2))
 
 
-def rehearsal_of(
-    cloud_cover_percent: float, wind_mps: float, wind_from_deg: float
-) -> RehearsalTable:
-    """Return sky and wind of a rehearsal. Raises `SiteError` out of the ranges."""
-    _require(0.0 <= cloud_cover_percent <= 100.0, "a cover of 0 to 100 %", cloud_cover_percent)
-    _require(0.0 <= wind_mps <= 15.0, "a wind of 0 to 15 m/s", wind_mps)
-    _require(0.0 <= wind_from_deg <= 360.0, "a wind from 0 to 360 degrees", wind_from_deg)
-    return RehearsalTable(cloud_cover_percent, wind_mps, wind_from_deg)
-
-
 def _require(is_met: bool, expected: str, got: float) -> None:
     if not is_met:
         raise SiteError(f"expected {expected}, got {got:g}")

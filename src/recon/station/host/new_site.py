@@ -19,8 +19,9 @@ from recon.site.new_site import (
     layers_of,
     make_site,
     point_above_sea_level,
-    rehearsal_of,
 )
+from recon.site.reading import convert
+from recon.site.schema import RehearsalTable
 from recon.station.api_views import outcome_of
 from recon.station.api_views.edited_site import site_refusal
 from recon.station.api_views.site_service import FileImports, feature_view
@@ -75,13 +76,18 @@ def _asked(asked: schema.NewSiteRequest) -> tuple[GeoPoint, NewSiteFields]:
     origin = point_above_sea_level(
         asked.latitude_deg, asked.longitude_deg, asked.ground_above_sea_level_m
     )
+    air = {
+        "cloud_cover_percent": asked.cloud_cover_percent,
+        "wind_mps": asked.wind_mps,
+        "wind_from_deg": asked.wind_from_deg,
+    }
     fields = NewSiteFields(
         name=asked.name,
         drones=asked.simulated_drones,
         has_imager=asked.simulated_drones > 0,
         regions=_by_name(asked.regions, asked.name),
         margin_m=asked.margin_m,
-        rehearsal=rehearsal_of(asked.cloud_cover_percent, asked.wind_mps, asked.wind_from_deg),
+        rehearsal=convert("rehearsal", air, RehearsalTable, ""),
     )
     return origin, fields
 
