@@ -255,7 +255,7 @@ def test_an_older_site_gets_an_imaging_drone(
     assert "--imager" in words
     assert words[words.index("--vehicles") + 1] == "3"
     assert "no imaging drone" not in capfd.readouterr().out
-    with pytest.raises(SiteError, match="imager"):
+    with pytest.raises(SiteError, match="has an imaging drone already: SIM-IMAGER"):
         recon_site("imager", str(folder))
 
 

@@ -85,7 +85,9 @@ def imager_command(folder: FolderArgument) -> None:
     from recon.site.drawing import stage_files
     from recon.site.new_site import imager_files
 
-    opened_site(folder)
+    imagers = opened_site(folder).imagers
+    if imagers:
+        raise SiteError(f"{folder} has an imaging drone already: {', '.join(sorted(imagers))}")
     save_staged(folder, stage_files(folder, imager_files(folder)), "imaging drone")
     print_line(f"{folder} has a simulated imaging drone; rehearse: recon demo --site {folder}")
 
