@@ -6,11 +6,10 @@ import time
 from collections.abc import Iterable, Iterator
 from typing import Any, TypeVar
 
+from recon.station.host.json_lines import LINE_MARK, LINES_WANTED
+
 Item = TypeVar("Item")
 
-LINES_WANTED, LINE_MARK = "RECON_JSON_LINES", "\x1e"
-"""The environment's variable that asks for lines, and what each begins with; no text of a photo
-does, for it is printed escaped."""
 EVERY_S = 0.25
 
 

@@ -3,12 +3,11 @@
 Each command is a process in the background: a hostile photo, a card that is pulled out or a full
 disk ends that process, and its step says so. What earlier steps have made stays, in a folder beside
 the flight records; the cards are only read. The commands report progress and results as lines of
-JSON (`cli/json_lines.py`). One job at a time.
+JSON (`photo_progress.py`). One job at a time.
 """
 
 import asyncio
 import contextlib
-import json
 import os
 import shutil
 import signal
@@ -25,7 +24,17 @@ from recon.api import schema
 from recon.api.photo_routes import PhotoBusyError, PhotoRequestError
 from recon.record.files.atomic_file import replace_file
 from recon.station.host.background_process import background_process, lines_of
+from recon.station.host.json_lines import LINE_MARK, LINES_WANTED
 from recon.station.host.photo_folder import photo_folder
+from recon.station.host.photo_progress import (
+    LONGEST_SENTENCE,
+    MADE,
+    WARNING,
+    after_line,
+    begun,
+    marked,
+    running,
+)
 
 RECON = (sys.executable, "-m", "recon")
 FOLDER_END = "-photos"
@@ -36,22 +45,7 @@ LEAST_FREE_BYTES = 1_000_000_000
 WITHIN_S = 6 * 3600.0
 ANSWERS_WITHIN_S = 5.0
 """A card or a network's disk that does not answer for so long is refused."""
-LINES_WANTED, LINE_MARK = "RECON_JSON_LINES", "\x1e"
-FACTS = frozenset(("doing", "share", "clocks", "counts", "gaps", "mosaic"))
-MOST_WARNINGS, LONGEST_SENTENCE = 20, 500
 AGAIN = "start again, and it continues from there"
-STEPS: tuple[schema.PhotoStepName, ...] = ("clock", "tags", "gaps", "mosaic", "report")
-FOUND_BY: tuple[tuple[str, schema.PhotoStepName, schema.PhotoStepName], ...] = (
-    ("clocks", "clock", "tags"),
-    ("counts", "tags", "gaps"),
-)
-"""What is reported when a step is done, the step, and the one after it."""
-MADE: dict[schema.PhotoFileName, tuple[schema.PhotoStepName, str]] = {
-    "tags.csv": ("gaps", "tagged/tags.csv"),
-    "fly-again.geojson": ("gaps", "tagged/fly-again.geojson"),
-    "mosaic.png": ("mosaic", "mosaic/preview.png"),
-    "report.html": ("report", "report.html"),
-}
 
 
 class _EndedError(Exception):
@@ -156,7 +150,7 @@ class PhotoJob:
             return
         try:
             if not self._is_cancelled:
-                self._job = _begun(asked.flight, folders, self._out(asked.flight))
+                self._job = begun(asked.flight, folders, str(self._out(asked.flight)))
                 answer("")
                 self._work(asked, record, folders)
         finally:
@@ -196,15 +190,15 @@ class PhotoJob:
         """Run a command, whose steps begin with `first`; return whether it succeeded."""
         if self._is_cancelled:
             return False
-        self._mark(first, "running")
+        self._job = marked(self._now, first, "running")
         try:
             problem = self._run(words)
         except _EndedError as ended:
             problem = str(ended)
         except OSError as failed:
             problem = f"It could not be started: {failed.strerror}"
-        running = next(step.name for step in self._now.steps if step.state == "running")
-        self._mark(running, "failed" if problem else "done", problem)
+        state = "failed" if problem else "done"
+        self._job = marked(self._now, running(self._now) or first, state, problem)
         self._change(doing="", share=None)
         return not problem
 
@@ -214,11 +208,8 @@ class PhotoJob:
         last, begun = "", time.monotonic()
         with background_process((*self._command, *words), environment, merged=True) as process:
             for line in lines_of(process):
-                if line.startswith(LINE_MARK):
-                    self._take(line[len(LINE_MARK) :])
-                elif line.startswith("warning: "):
-                    self._warn(line.removeprefix("warning: "))
-                elif line.strip():
+                self._job = after_line(self._now, line)
+                if line.strip() and not line.startswith((LINE_MARK, WARNING)):
                     last = line
                 self._require_room(begun)
             code = process.wait()
@@ -245,53 +236,6 @@ class PhotoJob:
 
     def _change(self, **changes: Any) -> None:
         self._job = self._now.model_copy(update=changes)
-
-    def _mark(self, name: schema.PhotoStepName, state: str, problem: str = "") -> None:
-        """Set a step's state; what is done has its files."""
-        steps = [
-            each.model_copy(update={"state": state, "problem": problem})
-            if each.name == name
-            else each
-            for each in self._now.steps
-        ]
-        done = {step.name for step in steps if step.state == "done"}
-        self._change(steps=steps, files=[each for each, (step, _) in MADE.items() if step in done])
-
-    def _take(self, line: str) -> None:
-        """Take what a command reports; a line that is no such thing is left out."""
-        with contextlib.suppress(ValueError, ValidationError):
-            facts = json.loads(line)
-            if not isinstance(facts, dict) or not facts.keys() <= FACTS:
-                return
-            self._job = schema.PhotoJobView.model_validate(self._now.model_dump() | facts)
-            states = {step.name: step.state for step in self._now.steps}
-            for fact, step, following in FOUND_BY:
-                if facts.get(fact) and states[step] == "running":
-                    self._mark(step, "done")
-                    self._mark(following, "running")
-
-    def _warn(self, text: str) -> None:
-        known = dict.fromkeys((*self._now.warnings, text[:LONGEST_SENTENCE]))
-        self._change(warnings=list(known)[:MOST_WARNINGS])
-
-
-def _begun(flight: str, folders: list[str], out: Path) -> schema.PhotoJobView:
-    """Return a job that has found nothing yet."""
-    return schema.PhotoJobView(
-        flight=flight,
-        folders=folders,
-        out=str(out),
-        state="running",
-        steps=[schema.PhotoStepView(name=name, state="waiting", problem="") for name in STEPS],
-        doing="",
-        share=None,
-        clocks=[],
-        counts=None,
-        gaps=None,
-        mosaic=None,
-        files=[],
-        warnings=[],
-    )
 
 
 def _sentence(code: int, last: str) -> str:
