@@ -197,6 +197,11 @@ class Command:
         return self.body.name
 
     @property
+    def words(self) -> str:
+        """What was ordered, and by whom."""
+        return f"{self.name.replace('_', ' ')}, ordered by {self.issued_by}"
+
+    @property
     def is_own(self) -> bool:
         """Whether the station gave it automatically, not a person nor what a person has started."""
         return self.issued_by.startswith(issued_by_station(""))

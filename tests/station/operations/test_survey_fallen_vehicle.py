@@ -16,7 +16,7 @@ def test_the_other_flies_the_rows_of_a_fallen_vehicle() -> None:
     # The fallen vehicle may be anywhere near: the other is held out of its hazard area.
     assert ("separation", "SIM-1") in w.fleet.alarms()
     stopped = w.record().members["SIM-1"].stop_reason or ""
-    assert stopped.startswith("mission stopped: hover was ordered by station, ")
+    assert stopped.startswith("mission stopped: hover, ordered by station: ")
     imaged_m2 = w.figures().region_m2 - w.figures().not_yet_m2
     w.driver.handle(HazardDismissed("SIM-2", "ann"))
     w.runs(60.0)

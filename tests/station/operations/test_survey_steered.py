@@ -66,7 +66,7 @@ def test_a_hold_stops_it_and_nothing_flies_it_on(on_its_rows: SurveyedWorld) -> 
     world.runs(10.0)
     assert newest_path(world).phase is Phase.SUPERSEDED
     assert world.fleet.place_m("SIM-1") == pytest.approx(here, abs=1.0)
-    why = "mission stopped: hover was ordered by bob"
+    why = "mission stopped: hover, ordered by bob"
     assert world.record().members["SIM-1"].stop_reason == why
 
 

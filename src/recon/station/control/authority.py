@@ -70,8 +70,7 @@ def after_stop(station: Station, command: Command, now_ns: int) -> Station:
         return station
     if station.control(serial).authority.holder is not AuthorityHolder.GUIDANCE:
         return station
-    reason = f"{command.name.replace('_', ' ')}, ordered by {command.issued_by}"
-    authority = ControlAuthority(AuthorityHolder.OPERATOR, command.issued_by, now_ns, reason)
+    authority = ControlAuthority(AuthorityHolder.OPERATOR, command.issued_by, now_ns, command.words)
     return _with_authority(station, serial, authority)
 
 

@@ -97,7 +97,7 @@ def replace_older_orders(station: Station, command: Command, now_ns: int) -> Sta
     for record in station.orders.tracked:
         older = record.command
         if (lane_of(older) is Lane.CAMERA) is is_camera and target_of(station, older) is target:
-            note = orders.replaced_note(command)
+            note = f"Replaced by order {command.id}"
             station = put(station, orders.ended(record, Phase.SUPERSEDED, now_ns, note))
     return station
 

@@ -157,31 +157,6 @@ def interrupted_mission(book: OrderBook, serial: str) -> OrderRecord | None:
     return None
 
 
-def mission_end_text(book: OrderBook, record: OrderRecord) -> str:
-    """Return how a mission ended that was not flown to its end, and why."""
-    if record.phase is Phase.SUPERSEDED:
-        newer = _replaced_by(book, record)
-        return f"mission stopped: {record.note if newer is None else _order_text(newer)}"
-    return f"mission {record.phase.value.replace('_', ' ')}: {record.note}"
-
-
-def _replaced_by(book: OrderBook, record: OrderRecord) -> Command | None:
-    """Return the order that replaced one; None where its note names something else."""
-    commands = (each.command for each in book.records.values())
-    return next((each for each in commands if record.note == replaced_note(each)), None)
-
-
-def _order_text(command: Command) -> str:
-    """Return who ordered what; the address of a person is for the audit."""
-    who, _, _ = command.issued_by.partition(" (")
-    return f"{command.name.replace('_', ' ')} was ordered by {who.replace(': ', ', ')}"
-
-
-def replaced_note(newer: Command) -> str:
-    """Return the note of an order that another one has replaced."""
-    return f"Replaced by order {newer.id}"
-
-
 def changed(record: OrderRecord, phase: Phase, at_ns: int, note: str = "") -> OrderRecord:
     """Return the record after a change of phase. A final phase stays: then it is a note only."""
     kept = record.phase if record.phase.is_final else phase

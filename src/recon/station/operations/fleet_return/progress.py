@@ -2,15 +2,13 @@
 
 from dataclasses import replace
 
-from recon.link.outbox import Lane, lane_of
 from recon.model.command import FollowPath, Hover, Phase
 from recon.model.units import seconds_to_ns
 from recon.model.vehicle import FlightMode, VehicleState
+from recon.station.operations.motion_orders import mission_end_text, newest_motion
 from recon.station.operations.settings import ReturnSettings
 from recon.station.state.fleet_return_record import ENDED, UNDER_WAY, ReturningVehicle, Stage
-from recon.station.state.orders import OrderRecord, mission_end_text
 from recon.station.state.station import Station
-from recon.station.steering import neutral_setpoint
 
 STANDING_MPS = 0.5
 FRESH_S = 1.0
@@ -49,22 +47,6 @@ def updated(
     return _stopping(member, vehicle, settings, now_ns)
 
 
-def newest_motion(station: Station, serial: str, *, own: bool = True) -> OrderRecord | None:
-    """Return the newest accepted order to move or stop of a vehicle.
-
-    The station's own neutral setpoint does not count; without `own` no order of its own does.
-    """
-    for record in reversed(tuple(station.orders.records.values())):
-        command = record.command
-        if command.serial != serial or record.phase is Phase.REFUSED_BY_STATION:
-            continue
-        if command.is_own and not own:
-            continue
-        if lane_of(command) is not Lane.CAMERA and command.issued_by != neutral_setpoint.ISSUER:
-            return record
-    return None
-
-
 def is_still_left(station: Station, member: ReturningVehicle) -> bool:
     """Return whether a vehicle excluded still flies, without any order since."""
     vehicle = station.fleet.vehicles.get(member.serial)
@@ -86,7 +68,7 @@ def _taken(station: Station, member: ReturningVehicle, now_ns: int) -> Returning
     if newest is None or newest.command.id in (member.hold_id, member.mission_id):
         return None
     command = newest.command
-    words = f"replaced by {command.name.replace('_', ' ')}, ordered by {command.issued_by}"
+    words = f"replaced by {command.words}"
     if not command.is_own:
         return member.at(Stage.RELEASED, now_ns, words)
     if isinstance(command.body, Hover) and member.stage not in UNDER_WAY:
@@ -139,7 +121,7 @@ def _under_way(
     if vehicle.is_flying.value is False and (vehicle.core_received_at_ns or 0) > member.since_ns:
         return member.at(Stage.LANDED, now_ns)
     if record is not None and record.phase in _NOT_FLOWN:
-        return member.at(Stage.EXCLUDED, now_ns, f"its {mission_end_text(station.orders, record)}")
+        return member.at(Stage.EXCLUDED, now_ns, f"its {mission_end_text(station, record)}")
     if member.stage is not Stage.ORDERED:
         is_steered = record is not None and isinstance(record.command.body, FollowPath)
         if is_steered and vehicle.flight_mode.value is FlightMode.JOYSTICK:

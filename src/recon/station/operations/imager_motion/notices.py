@@ -7,7 +7,7 @@ from recon.model.command import Refusal
 from recon.model.control import AuthorityHolder
 from recon.model.event import Event
 from recon.record.audit.audit import AuditEntry
-from recon.station.operations.fleet_return.progress import newest_motion
+from recon.station.operations.motion_orders import newest_motion
 from recon.station.state.alarm_book import Condition, Severity
 from recon.station.state.imager_motion import AnyMotion, MotionStage, MotionT
 from recon.station.state.station import Station

@@ -14,7 +14,8 @@ from recon.safety.datum import frame_for, home_enu_m, takeoff_up_m, vehicle_enu_
 from recon.safety.energy import consumption, fraction_to_get_home
 from recon.safety.separation_minima import gate_minima
 from recon.safety.settings import EnergySettings
-from recon.station.state.orders import OrderRecord, mission_end_text
+from recon.station.operations.motion_orders import mission_end_text
+from recon.station.state.orders import OrderRecord
 from recon.station.state.station import Station
 from recon.station.state.survey_record import SurveyMember, SurveyRecord
 from recon.station.traffic.known_traffic import hazard
@@ -139,7 +140,7 @@ def after_mission(
         return member, None
     if order.phase is Phase.DONE:
         return member, None
-    return replace(member, stop_reason=mission_end_text(station.orders, order)), order
+    return replace(member, stop_reason=mission_end_text(station, order)), order
 
 
 def time_left_s(

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from recon.guidance.survey import PAUSED_BY_COMMAND
 from recon.model.survey import SurveyPhase
-from recon.station.operations.fleet_return.progress import newest_motion
+from recon.station.operations.motion_orders import newest_motion
 from recon.station.operations.settings import SURVEY_TIMES
 from recon.station.operations.survey.availability import (
     is_on_ground,

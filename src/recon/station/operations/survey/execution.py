@@ -249,20 +249,10 @@ def _order_mission(
         return station, ()
     ready = dispatch(station, record, given, vehicle, now_ns)
     if ready.in_the_way is not None:
-        why = f"{ready.in_the_way.reason}{ready.tried}"
         # Without a place to wait at a vehicle waits where it is; that must not bar it from rows.
-        waits = given.stands_by
-        state = refused(
-            state,
-            given.serial,
-            given.number,
-            why,
-            now_ns,
-            may_end=waits,
-            in_the_way=True,
-            waits_for=_in_its_way(ready.in_the_way),
-        )
-        return replace(station, surveys=station.surveys.put(replace(record, state=state))), ()
+        waits, why = given.stands_by, f"{ready.in_the_way.reason}{ready.tried}"
+        record = _refused(record, given, ready.in_the_way, why, now_ns, may_end=waits)
+        return replace(station, surveys=station.surveys.put(record)), ()
     station, number = take_id(station)
     station, sent = order_gateway.submit(station, replace(ready.order, command_id=number), now_ns)
     refusal = station.orders.records[number].refusal
@@ -278,28 +268,39 @@ def _order_mission(
     waits = given.stands_by or refusal.rule == AUTHORITY
     # Fewer rows may last for what is in the battery, as they may keep clear of another vehicle.
     takes_fewer = refusal.rule == BATTERY and _may_take_fewer(state, given.serial)
-    in_the_way = refusal.rule == SEPARATION or takes_fewer
-    state = refused(
-        state,
-        given.serial,
-        given.number,
-        why,
-        now_ns,
-        may_end=waits,
-        in_the_way=in_the_way,
-        waits_for=_in_its_way(refusal),
-    )
-    record = replace(record, state=state)
+    record = _refused(record, given, refusal, why, now_ns, may_end=waits, takes_fewer=takes_fewer)
     station = replace(station, surveys=station.surveys.put(record))
-    flies_on = given.serial in state.flights or takes_fewer
+    flies_on = takes_fewer or (record.state is not None and given.serial in record.state.flights)
     if returns_home(record) and refusal.rule == BATTERY and not flies_on:
         return send_home(station, survey_id, given.serial, NO_BATTERY, now_ns)
     return station, sent
 
 
-def _in_its_way(refusal: Refusal) -> str:
-    """Return the name of the vehicle that a refusal is about; empty if it is about none."""
-    return str(refusal.parameters.get("other", "")) if refusal.rule == SEPARATION else ""
+def _refused(
+    record: SurveyRecord,
+    given: MissionAssignment,
+    refusal: Refusal,
+    why: str,
+    now_ns: int,
+    *,
+    may_end: bool,
+    takes_fewer: bool = False,
+) -> SurveyRecord:
+    """Return the survey after the gate refused a mission, for another vehicle in its way or not."""
+    if record.state is None:
+        return record
+    is_separation = refusal.rule == SEPARATION
+    state = refused(
+        record.state,
+        given.serial,
+        given.number,
+        why,
+        now_ns,
+        may_end=may_end,
+        in_the_way=is_separation or takes_fewer,
+        waits_for=str(refusal.parameters.get("other", "")) if is_separation else "",
+    )
+    return replace(record, state=state)
 
 
 def _ordered(
