@@ -23,7 +23,7 @@ from recon.model.vehicle import Attitude
 from recon.product.flight import FULL, FlightData, FlownSurvey, KeptMap, RecordedTrack
 from recon.record.mcap import foxglove
 from recon.record.mcap.flight_messages import MSGPACK
-from recon.record.mcap.mcap_file import ABOUT_NAME, STEPS_TOPIC, McapFile
+from recon.record.mcap.mcap_file import ABOUT_NAME, KEYFRAMES_TOPIC, STEPS_TOPIC, McapFile
 from recon.record.mcap.record_writer import Topics
 from recon.record.mcap.tracks import utc_text
 from recon.station.recording.recorded_values import values_codec
@@ -136,11 +136,13 @@ def write_record(
     forecast: Probability | None = None,
     refused_start_of: int | None = None,
     events: Sequence[tuple[int, Mapping[str, Any]]] = (),
+    keyframes: Sequence[tuple[float, Mapping[str, Any]]] = (),
+    has_clock: bool = True,
 ) -> Path:
     """Write a made flight as the station records one, by the station's own codec.
 
     `entries` are of the audit, each with its time since the flight's start; `events` are written
-    as they are, each with its station time.
+    as they are, each with its station time; so are keyframes, by seconds since the flight's start.
     """
     file = McapFile(path, "test")
     about = {
@@ -162,7 +164,8 @@ def write_record(
         value = {"event": codec.to_builtins(event, Event), "outputs": [], "audit": audit}
         topics.add(STEPS_TOPIC, MSGPACK, msgspec.msgpack.encode(value), at_ns)
 
-    step(ClockRead(UTC_AHEAD_NS + START_NS), START_NS)
+    if has_clock:
+        step(ClockRead(UTC_AHEAD_NS + START_NS), START_NS)
     for number, each in enumerate(made.surveys, start=1):
         survey = Survey(
             number,
@@ -183,6 +186,9 @@ def write_record(
     for at_s, entry in entries:
         at_ns = START_NS + round(at_s * NS_PER_S)
         step(ClockRead(UTC_AHEAD_NS + at_ns), at_ns, entry)
+    for at_s, keyframe in keyframes:
+        data = msgspec.msgpack.encode(keyframe)
+        topics.add(KEYFRAMES_TOPIC, MSGPACK, data, START_NS + round(at_s * NS_PER_S))
     for at_ns, event in events:
         topics.add(STEPS_TOPIC, MSGPACK, msgspec.msgpack.encode({"event": event}), at_ns)
     for link, each in enumerate(made.tracks.values(), start=1):

@@ -35,11 +35,12 @@ from recon.model.errors import RecordError
 from recon.model.units import NS_PER_S
 from recon.product.exports import figures as figures_of
 from recon.product.flight import RecordedTrack
-from recon.product.flight_log import FORECAST_TOPIC, FlightLog, LogReader, read_log
+from recon.product.flight_log import FlightLog, LogReader, read_log
 from recon.product.flight_reader import read_flight
 from recon.product.report import AlarmSpan, FlightReport, flight_report
 from recon.product.report_page import report_html
 from recon.product.tagged import tagged_photos
+from recon.record.mcap.foxglove import SUN_TOPIC
 from recon.record.mcap.mcap_read import RecordMessage
 
 HOSTILE = "\"><script>alert(1)</script><img src=//x.example onerror=alert(2)>{{ 7*7 }}' &<b>"
@@ -392,7 +393,7 @@ def test_no_forecast_breaks_the_reader(
     grid.fields.extend(PackedElementField(name=name) for name in names)
     grid.cell_size.x = grid.pose.position.x = place
     for message in (data, grid.SerializeToString(), on_the_grid(names)):
-        item = RecordMessage(FORECAST_TOPIC, "protobuf", "foxglove.Grid", 1, 0, message)
+        item = RecordMessage(SUN_TOPIC, "protobuf", "foxglove.Grid", 1, 0, message)
         reader = LogReader(Path("a.mcap"), MADE)
         with contextlib.suppress(RecordError):
             reader.take(item)

@@ -24,10 +24,11 @@ from recon.model.geo import GroundGrid
 from recon.model.units import NS_PER_S
 from recon.product.flight import UNKNOWN, FlightData, KeptMap
 from recon.product.shadow_record import SUNLIT
+from recon.record.mcap.foxglove import SUN_TOPIC
 from recon.record.mcap.mcap_file import ABOUT_NAME, STEPS_TOPIC
 from recon.record.mcap.mcap_read import McapReading, Opener, RecordAttachment, RecordMessage, opened
 
-FORECAST_TOPIC, LEAD_PREFIX = "/forecast", "sun_in_"
+LEAD_PREFIX = "sun_in_"
 MOST_LINES = 100_000
 MOST_TEXT = 2_000
 """Characters of one text: a reason is a sentence."""
@@ -141,7 +142,7 @@ class LogReader:
                     self.log.about = json.loads(item.data)
             elif item.topic == STEPS_TOPIC:
                 self._step(self._decoder.decode(item.data), item.log_ns)
-            elif item.topic == FORECAST_TOPIC:
+            elif item.topic == SUN_TOPIC:
                 self._forecast(Grid.FromString(item.data))
         except (msgspec.MsgspecError, DecodeError, ValueError, TypeError, KeyError) as problem:
             raise RecordError(f"{self.path}: the log is damaged: {problem}") from problem
@@ -179,9 +180,9 @@ class LogReader:
 
     def _forecast(self, message: Grid) -> None:
         flight, issued_ns = self.flight, message.timestamp.ToNanoseconds()
-        if flight.grid is None or not _is_on(message, flight.grid):
+        if flight.grid is None or not is_on(message, flight.grid):
             return
-        by_lead = _leads(message, flight.grid)
+        by_lead = forecast_leads(message, flight.grid)
         now = self._map_near(issued_ns)
         if now is None:
             return
@@ -206,8 +207,8 @@ class LogReader:
         return nearest
 
 
-def _is_on(message: Grid, grid: GroundGrid) -> bool:
-    """Return whether a forecast is on the cells of the shade maps; others are not compared."""
+def is_on(message: Grid, grid: GroundGrid) -> bool:
+    """Return whether a forecast is on the cells of the shade maps; others are not read."""
     south_m = grid.north_m - grid.rows * grid.cell_m
     place = message.pose.position
     return (
@@ -220,8 +221,11 @@ def _is_on(message: Grid, grid: GroundGrid) -> bool:
     )
 
 
-def _leads(message: Grid, grid: GroundGrid) -> dict[float, npt.NDArray[np.float64]]:
-    """Return the probability of sun (R, C), row 0 north, by lead."""
+def forecast_leads(message: Grid, grid: GroundGrid) -> dict[float, npt.NDArray[np.uint8]]:
+    """Return the probability of sun in 255ths (R, C), row 0 north, by lead in seconds.
+
+    Raises `ValueError` for a message without leads, or with one that is not in its cells.
+    """
     values = np.frombuffer(message.data, np.uint8).reshape(grid.rows, grid.cols, -1)[::-1]
     found = {}
     for each in message.fields:
@@ -230,21 +234,21 @@ def _leads(message: Grid, grid: GroundGrid) -> dict[float, npt.NDArray[np.float6
         lead_s = float(each.name.removeprefix(LEAD_PREFIX).removesuffix("_s"))
         if not 0.0 <= lead_s <= LONGEST_S or each.offset >= message.cell_stride:
             raise ValueError(f"a forecast {lead_s:g} s ahead at byte {each.offset} of a cell")
-        found[lead_s] = values[..., each.offset] / 255.0
+        found[lead_s] = values[..., each.offset]
     if not found:
         raise ValueError("a forecast without leads")
     return found
 
 
 def _between(
-    by_lead: Mapping[float, npt.NDArray[np.float64]], lead_s: float
+    by_lead: Mapping[float, npt.NDArray[np.uint8]], lead_s: float
 ) -> npt.NDArray[np.float64]:
     """Return the probability at a lead, between the two nearest."""
     before = max(each for each in by_lead if each <= lead_s)
     after = min(each for each in by_lead if each >= lead_s)
     share = (lead_s - before) / (after - before) if after > before else 0.0
     mixed: npt.NDArray[np.float64] = by_lead[before] * (1.0 - share) + by_lead[after] * share
-    return mixed
+    return mixed / 255.0
 
 
 MOST_DEPTH = 12
