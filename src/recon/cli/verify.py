@@ -1,4 +1,4 @@
-"""`recon verify`: forecast methods on recorded maps, each compared with what came."""
+"""`recon verify`: forecast methods on recorded maps or light sensors, compared with what came."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -8,7 +8,6 @@ import typer
 
 from recon.cli.output import print_line
 from recon.cli.recorded_maps import (
-    FolderArgument,
     RecordedMaps,
     ShadeOption,
     StepOption,
@@ -16,6 +15,7 @@ from recon.cli.recorded_maps import (
     recorded_maps,
 )
 from recon.cli.reliability import reliability_png
+from recon.cli.verified_points import ENDINGS, verify_points
 from recon.forecast import FORECASTERS
 from recon.model.errors import RecordError
 from recon.score.forecast_figures import Calibration, LeadScore, SeenCells
@@ -26,19 +26,53 @@ from recon.score.verification import NEAR_S, verified
 
 
 def verify_command(
-    folder: FolderArgument,
+    recorded_path: Annotated[
+        Path,
+        typer.Argument(
+            metavar="MAPS_OR_SENSORS",
+            help="A folder of rasters, in the order of the times in them, else of their names; "
+            "or a file of light sensors (CSV, NetCDF, NPZ).",
+        ),
+    ],
     step_s: StepOption = None,
     sun: SunOption = 1.0,
     shade: ShadeOption = 0.0,
     plot: Annotated[Path | None, typer.Option(help="PNG of reliability to write.")] = None,
+    places: Annotated[
+        Path | None, typer.Option(help="CSV of the sensors' places, if their file has none.")
+    ] = None,
+    maps: Annotated[
+        Path | None,
+        typer.Option(help="Shade maps to hold against the sensors: a folder or a flight record."),
+    ] = None,
 ) -> None:
-    """Run all forecast methods over recorded maps and compare them with what came."""
-    recorded = recorded_maps(folder, step_s, sun, shade)
+    """Run all forecast methods over recorded maps or light sensors, against what came."""
+    if recorded_path.suffix.lower() in ENDINGS:
+        if step_s is not None or (sun, shade) != (1.0, 0.0):
+            raise RecordError("expected --step-s, --sun and --shade for a folder of rasters only")
+        title, curves = verify_points(recorded_path, places, maps)
+    elif places is not None or maps is not None:
+        raise RecordError(
+            f"expected --places and --maps with a file of light sensors ({', '.join(ENDINGS)}), "
+            f"got {recorded_path}"
+        )
+    else:
+        title, curves = _verify_maps(recorded_maps(recorded_path, step_s, sun, shade))
+    if plot is not None:
+        _draw(plot, title, curves)
+
+
+def _verify_maps(recorded: RecordedMaps) -> tuple[str, dict[str, Calibration]]:
+    """Print the scores on recorded maps; return a title and the curves of reliability."""
     sums = verified(recorded.maps(), tuple(FORECASTERS))
     for line in _tables(sums, recorded).splitlines():
         print_line(line)
-    if plot is not None:
-        _draw(plot, sums, recorded.time_scale)
+    lead_s = SCORE.lead_s[1]
+    curves = {
+        method: sums.get((method, lead_s, SeenCells.ALL), LeadScore()).calibration
+        for method in FORECASTERS
+    }
+    return f"{lead_s * recorded.time_scale:g} s ahead", curves
 
 
 def _tables(sums: Mapping[ForecastKey, LeadScore], recorded: RecordedMaps) -> str:
@@ -55,14 +89,9 @@ def _tables(sums: Mapping[ForecastKey, LeadScore], recorded: RecordedMaps) -> st
     )
 
 
-def _draw(path: Path, sums: Mapping[ForecastKey, LeadScore], scale: float) -> None:
-    lead_s = SCORE.lead_s[1]
-    of = ((method, (method, lead_s, SeenCells.ALL)) for method in FORECASTERS)
-    curves: dict[str, Calibration] = {
-        method: sums.get(key, LeadScore()).calibration for method, key in of
-    }
+def _draw(path: Path, title: str, curves: Mapping[str, Calibration]) -> None:
     try:
-        path.write_bytes(reliability_png(f"{lead_s * scale:g} s ahead", curves))
+        path.write_bytes(reliability_png(title, curves))
     except OSError as problem:
         raise RecordError(
             f"{path}: expected to write a picture, got: {problem.strerror or problem}"

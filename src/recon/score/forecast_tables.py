@@ -149,7 +149,7 @@ def leads_table(
     `scale` is how many seconds of the maps a second of the methods stands for.
     """
     reached = {lead_s for method, lead_s, _cells in sums if method in methods}
-    leads = [lead_s for lead_s in SCORE.lead_s if lead_s in reached]
+    leads = sorted(reached)
     if not leads:
         return None
     head = tuple(f"{lead_s * scale:g} s" for lead_s in leads)

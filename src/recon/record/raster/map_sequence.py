@@ -15,7 +15,9 @@ import numpy as np
 import rasterio
 from rasterio import DatasetReader
 from rasterio.errors import NotGeoreferencedWarning, RasterioError
+from rasterio.warp import transform
 
+from recon.model.arrays import FloatArray, IntArray
 from recon.model.errors import RecordError
 from recon.model.shade import FloatMap, MaskMap
 from recon.record.raster.geotiff import CAPTURED_UTC_TAG
@@ -79,6 +81,24 @@ def captured_utc(path: Path) -> datetime | None:
         raise RecordError(
             f"{path}: expected an ISO 8601 time in {CAPTURED_UTC_TAG}, got {text!a}"
         ) from problem
+
+
+def cells_at(path: Path, places: FloatArray, *, is_geographic: bool) -> tuple[IntArray, IntArray]:
+    """Return row and column (N,) of places (N, 2) in a map; some may be off it.
+
+    Places are latitude and longitude, or metres east and north in the map's own projection. Raises
+    `RecordError` for a map without a place.
+    """
+    with _opened(path) as dataset:
+        if dataset.crs is None or dataset.transform.is_identity:
+            raise RecordError(f"{path}: expected a map with a place on the ground, got none")
+        first, second = (places[:, 1], places[:, 0]) if is_geographic else places.T
+        if is_geographic:
+            first, second = map(np.array, transform("EPSG:4326", dataset.crs, first, second))
+        to_cell = ~dataset.transform
+    cols = to_cell.a * first + to_cell.b * second + to_cell.c
+    rows = to_cell.d * first + to_cell.e * second + to_cell.f
+    return np.floor(rows).astype(np.int64), np.floor(cols).astype(np.int64)
 
 
 @contextmanager

@@ -1,0 +1,133 @@
+"""Light sensors on the ground (pyranometers, inverters, PAR loggers) as truth, and maps of them.
+
+A sensor's index of light is its value over its own 98th percentile; a quarter of full light is
+diffuse, so the direct share is (index - 0.25) / 0.75. Between the places a map is linear over the
+triangles of a Delaunay triangulation, and unknown beyond them and beside sensors without a value.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import ceil
+
+import numpy as np
+
+from recon.model.arrays import FloatArray, IntArray
+from recon.model.errors import RecordError
+from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
+from recon.model.shade import SUNLIT_TRANSMITTANCE, FloatMap, MaskMap, ShadeMap
+from recon.model.units import NS_PER_S
+
+NOWHERE = LocalFrame(GeoPoint(0.0, 0.0, 0.0))
+FULL_PERCENTILE = 98.0
+DIFFUSE_SHARE = 0.25
+LEAST_CELL_M = 4.0
+MOST_CELLS_ACROSS = 96
+"""Maps of more cells cost time and show nothing more: places are some tenths of them apart."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LightPoints:
+    """Values of N sensors at T times, all on one clock; times rise strictly."""
+
+    names: tuple[str, ...]
+    times_ns: IntArray
+    """(T,) Unix time."""
+    light: FloatArray
+    """(T, N) in the sensors' own unit; NaN where unknown."""
+    east_m: FloatArray
+    north_m: FloatArray
+    """(N,) from the origin of `frame`."""
+    frame: LocalFrame | None
+    """None where only metres are known."""
+    notes: tuple[str, ...] = ()
+    """What was skipped, and how often."""
+
+    @property
+    def direct(self) -> FloatMap:
+        """Return (T, N): the share of the clear sky's direct beam, in [0, 1]; NaN if unknown."""
+        index = self.light / np.nanpercentile(self.light, FULL_PERCENTILE, axis=0)
+        share = (index - DIFFUSE_SHARE) / (1.0 - DIFFUSE_SHARE)
+        return np.clip(share, 0.0, 1.0).astype(np.float32)
+
+    @property
+    def step_s(self) -> float:
+        """Usual seconds between two times: their median."""
+        return float(np.median(np.diff(self.times_ns))) / NS_PER_S
+
+
+@dataclass(frozen=True)
+class PointMaps:
+    """Maps of the light between the places of sensors."""
+
+    points: LightPoints
+
+    @cached_property
+    def grid(self) -> GroundGrid:
+        """The grid around all places."""
+        east_m, north_m = self.points.east_m, self.points.north_m
+        wide_m, high_m = float(np.ptp(east_m)), float(np.ptp(north_m))
+        cell_m = LEAST_CELL_M * max(1, ceil(max(wide_m, high_m) / MOST_CELLS_ACROSS / LEAST_CELL_M))
+        rows, cols = (ceil(each / cell_m) + 1 for each in (high_m, wide_m))
+        west_m, top_m = float(east_m.min()) - cell_m / 2.0, float(north_m.max()) + cell_m / 2.0
+        return GroundGrid(self.points.frame or NOWHERE, west_m, top_m, cell_m, rows, cols)
+
+    @cached_property
+    def direct(self) -> FloatMap:
+        """(T, N): the sensors' share of the direct beam."""
+        return self.points.direct
+
+    @cached_property
+    def cells(self) -> tuple[IntArray, IntArray]:
+        """Row and column of the cell that each sensor is in."""
+        return cells_of(self.grid, self.points.east_m, self.points.north_m)
+
+    def each(self, chosen: Sequence[int] | None = None) -> Iterator[ShadeMap]:
+        """Yield the map of each time, or of the chosen ones; raises `RecordError` for places on
+        one line."""
+        corners, weights = self._triangles
+        direct = self.direct
+        for number in range(len(direct)) if chosen is None else chosen:
+            values = (direct[number][corners] * weights).sum(axis=2).astype(np.float32)
+            valid = np.isfinite(values)
+            known = valid.astype(np.float32)
+            at_ns = int(self.points.times_ns[number])
+            yield ShadeMap(self.grid, at_ns, (), values, valid, known, known)
+
+    @cached_property
+    def _triangles(self) -> tuple[IntArray, FloatMap]:
+        """(R, C, 3): the sensors around each cell, and their weights; NaN outside all triangles."""
+        from scipy.spatial import Delaunay, QhullError
+
+        places = np.column_stack([self.points.east_m, self.points.north_m])
+        try:
+            found = Delaunay(places)
+        except (QhullError, ValueError) as problem:
+            raise RecordError(
+                f"expected 3 places or more that are not on one line, got {len(places)}"
+            ) from problem
+        grid = self.grid
+        east_m = grid.west_m + (np.arange(grid.cols) + 0.5) * grid.cell_m
+        north_m = grid.north_m - (np.arange(grid.rows) + 0.5) * grid.cell_m
+        centres = np.stack(np.meshgrid(east_m, north_m), axis=-1)
+        triangle = found.find_simplex(centres)
+        turned, third = found.transform[triangle, :2], found.transform[triangle, 2]
+        two = np.einsum("...ij,...j->...i", turned, centres - third)
+        weights = np.concatenate([two, 1.0 - two.sum(axis=-1, keepdims=True)], axis=-1)
+        weights[triangle < 0] = np.nan
+        return found.simplices[triangle].astype(np.int64), weights.astype(np.float32)
+
+
+def cells_of(
+    grid: GroundGrid, east_m: FloatArray, north_m: FloatArray
+) -> tuple[IntArray, IntArray]:
+    """Return row and column (N,) of the cells that places are in; some may be off the grid."""
+    rows = np.floor((grid.north_m - north_m) / grid.cell_m).astype(np.int64)
+    cols = np.floor((east_m - grid.west_m) / grid.cell_m).astype(np.int64)
+    return rows, cols
+
+
+def is_sunlit(direct: FloatMap) -> MaskMap:
+    """Return which known values are in sun."""
+    with np.errstate(invalid="ignore"):
+        return direct >= SUNLIT_TRANSMITTANCE

@@ -1,0 +1,96 @@
+"""Shade maps against light sensors: was this sensor in sun when the map said so?
+
+Each map is compared with the row of values nearest to its time, at most half the sensors' step or
+`NEAR_S` from it. A sensor off the map or in a cell that it does not know counts as unknown; one
+without a value then is not counted.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from recon.model.arrays import IntArray
+from recon.model.shade import SUNLIT_TRANSMITTANCE, FloatMap
+from recon.model.units import NS_PER_S
+from recon.score.forecast_figures import LeadScore, SeenCells, score_cells
+from recon.score.light_points import LightPoints, is_sunlit
+
+NEAR_S = 2.5
+SOFT_EDGE, SUREST = 0.2, 0.97
+"""As a forecast reads a map at its own moment: half the width of the transition from shade to sun,
+and the largest probability."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MapAtPlaces:
+    """One map's transmittance at N sensors, NaN where it knows nothing."""
+
+    at_ns: int
+    """UTC."""
+    transmittance: FloatMap
+
+
+@dataclass(slots=True)
+class MapScore:
+    """Sums over maps and sensors."""
+
+    score: LeadScore = field(default_factory=LeadScore)
+    hits: dict[tuple[str, str], int] = field(default_factory=dict)
+    """Count by what the map says (sun, shade, unknown) and what the sensor shows."""
+    maps: int = 0
+    alone: int = 0
+    """Maps without a value near their time."""
+
+    @property
+    def counted(self) -> int:
+        """Sensors compared, of all maps."""
+        return sum(self.hits.values())
+
+    @property
+    def unknown_share(self) -> float:
+        """Share of them that the maps do not know."""
+        unknown = sum(count for (said, _shown), count in self.hits.items() if said == "unknown")
+        return unknown / self.counted if self.counted else 0.0
+
+    @property
+    def sunlit_share(self) -> float:
+        """Share of them in sun."""
+        lit = sum(count for (_said, shown), count in self.hits.items() if shown == "sun")
+        return lit / self.counted if self.counted else 0.0
+
+
+def score_maps(points: LightPoints, maps: Iterable[MapAtPlaces]) -> MapScore:
+    """Return how right maps are at the sensors."""
+    found, direct = MapScore(), points.direct
+    near_ns = max(points.step_s / 2.0, NEAR_S) * NS_PER_S
+    for each in maps:
+        found.maps += 1
+        row = int(np.argmin(np.abs(points.times_ns - each.at_ns)))
+        if abs(int(points.times_ns[row]) - each.at_ns) > near_ns:
+            found.alone += 1
+        else:
+            _add(found, each.transmittance, direct[row])
+    return found
+
+
+def _add(found: MapScore, transmittance: FloatMap, direct: FloatMap) -> None:
+    has_value, known = np.isfinite(direct), np.isfinite(transmittance)
+    truth = is_sunlit(direct)
+    soft = (transmittance - SUNLIT_TRANSMITTANCE) / (2.0 * SOFT_EDGE) + 0.5
+    chances = np.clip(np.where(known, soft, 0.5), 1.0 - SUREST, SUREST)
+    everywhere = np.ones_like(known)
+    found.score += score_cells(chances, truth, everywhere, has_value & known)[SeenCells.ALL]
+    said = np.where(known, np.where(is_sunlit(transmittance), "sun", "shade"), "unknown")
+    for one in ("sun", "shade", "unknown"):
+        for shown, is_so in (("sun", truth), ("shade", ~truth)):
+            count = int((has_value & is_so & (said == one)).sum())
+            found.hits[one, shown] = found.hits.get((one, shown), 0) + count
+
+
+def read_at(values: FloatMap, cells: tuple[IntArray, IntArray]) -> FloatMap:
+    """Return a map's values (N,) in cells; NaN off it."""
+    rows, cols = cells
+    is_on = (rows >= 0) & (rows < values.shape[0]) & (cols >= 0) & (cols < values.shape[1])
+    found = values[rows * is_on, cols * is_on]
+    return np.where(is_on, found, np.nan).astype(np.float32)
