@@ -5,9 +5,9 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import cv2
+import netCDF4
 import numpy as np
 import pytest
-from scipy.io import netcdf_file
 from tests.cli.test_verify import rows, verify
 from tests.detection.shaded_field import FIELD, FRAME, DriftingShade
 from tests.product import made_flight
@@ -79,16 +79,16 @@ def npz(folder: Path) -> list[object]:
 
 def netcdf(folder: Path) -> list[object]:
     east_m, north_m = places()
-    with netcdf_file(str(folder / "points.nc"), "w") as file:
+    with netCDF4.Dataset(folder / "points.nc", "w") as file:
         file.createDimension("time", COUNT)
         file.createDimension("station", SENSORS)
-        for name, kinds, values in (
+        for name, over, values in (
             ("time", ("time",), TIMES_S - BEGIN_S),
             ("east_m", ("station",), east_m),
             ("north_m", ("station",), north_m),
             ("ghi", ("time", "station"), light()),
         ):
-            file.createVariable(name, "f8", kinds)[:] = values
+            file.createVariable(name, "f8", over)[:] = values
         file.variables["time"].units = f"seconds since {iso(BEGIN_S)}"
     return [folder / "points.nc"]
 

@@ -46,7 +46,7 @@ def verify_points(
         for line in _hits(found).splitlines():
             print_line(line)
         return "maps at the sensors", {"maps": found.score.calibration}
-    scores = verified_at_points(points, tuple(FORECASTERS))
+    scores = verified_at_points(points, FORECASTERS)
     for line in forecast_lines(scores).splitlines():
         print_line(line)
     lead_s = scores.leads_s[1]

@@ -1,4 +1,4 @@
-"""Files of light sensors as tables: CSV in wide and in long form, NumPy's .npz, classic NetCDF.
+"""Files of light sensors as tables: CSV in wide and in long form, NumPy's .npz, NetCDF.
 
 Names of columns and arrays are those of `NAMES`, in any case. In wide form each other column is a
 sensor, and rows named lat, lon, east_m or north_m in the place of a time state where it is; in long
@@ -172,36 +172,24 @@ def _npz_table(path: Path) -> LightTable:
 
 
 def _netcdf_table(path: Path) -> LightTable:
-    """Return the table of a classic NetCDF file: a variable (time, sensor), its time and places."""
-    from scipy.io import netcdf_file
+    """Return the table of a NetCDF file: one variable by time and sensor, its times and places."""
+    import netCDF4
 
-    try:
-        with netcdf_file(str(path), "r", mmap=False, maskandscale=True) as found:
-            arrays = {
-                name: np.ma.filled(np.ma.asarray(variable[:], np.float64), np.nan)
-                for name, variable in found.variables.items()
-                if variable.data.dtype.kind in "fiu" and variable.shape
-            }
-            units = next(
-                (
-                    bytes(getattr(variable, "units", b"")).decode("utf-8", "replace")
-                    for name, variable in found.variables.items()
-                    if _key(name) == "time"
-                ),
-                "",
-            )
-    except (TypeError, ValueError) as problem:
-        raise RecordError(
-            f"{path}: expected classic NetCDF, got: {problem}; nccopy -k classic converts others"
-        ) from problem
+    with netCDF4.Dataset(path) as file:
+        found = {name: each for name, each in file.variables.items() if each.dtype.kind in "fiu"}
+        arrays = {
+            name: np.ma.filled(np.ma.asarray(each[...], np.float64), np.nan)
+            for name, each in found.items()
+        }
+        units = next((each.units for name, each in found.items() if _key(name) == "time"), "")
     match = re.fullmatch(r"(second|minute|hour|day)s? since (.+)", units.strip())
     if match is None:
         raise RecordError(f"{path}: expected time in units 'seconds since ...', got {units!a}")
     try:
-        since = _datetime_s(match[2])
+        since_s = _datetime_s(match[2])
     except ValueError as problem:
-        raise RecordError(f"{path}: expected an ISO time, got {units!a}") from problem
-    return _of_arrays(path, arrays, SECONDS_OF[match[1]], since)
+        raise RecordError(f"{path}: expected an ISO 8601 time, got {units!a}") from problem
+    return _of_arrays(path, arrays, SECONDS_OF[match[1]], since_s)
 
 
 def _of_arrays(
@@ -287,7 +275,7 @@ def _time_ns(path: Path, line: int, text: str) -> int:
 
 
 def _datetime_s(text: str) -> float:
-    found = datetime.fromisoformat(text.strip().removesuffix(" UTC"))
+    found = datetime.fromisoformat(text.strip().removesuffix("UTC").strip())
     return (found if found.tzinfo else found.replace(tzinfo=UTC)).timestamp()
 
 

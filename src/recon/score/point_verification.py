@@ -11,7 +11,7 @@ from math import ceil
 
 import numpy as np
 
-from recon.forecast import FORECASTERS, ForecastSettings, ForecastState
+from recon.forecast import Forecaster, ForecastSettings, ForecastState
 from recon.model.arrays import IntArray
 from recon.model.errors import RecordError
 from recon.model.shade import SURE, SunForecast
@@ -40,7 +40,7 @@ class PointScores:
 
 
 def verified_at_points(
-    points: LightPoints, methods: Sequence[str], every_s: float = EVERY_S
+    points: LightPoints, methods: Mapping[str, Forecaster], every_s: float = EVERY_S
 ) -> PointScores:
     """Return the scores of all methods at the places; raises `RecordError` for slow sensors."""
     step_s = points.step_s
@@ -60,10 +60,10 @@ def verified_at_points(
     for shade in maps.each(chosen):
         is_due = shade.captured_at_ns >= due_ns
         due_ns += round(is_due * every_s * NS_PER_S)
-        for name in methods:
-            states[name] = FORECASTERS[name].observed(states[name], shade, settings)
+        for name, method in methods.items():
+            states[name] = method.observed(states[name], shade, settings)
             if is_due:
-                sun = FORECASTERS[name].forecast(states[name], settings)
+                sun = method.forecast(states[name], settings)
                 velocities[name].append(sun.velocity_mps)
                 for key, found in _scores(maps, name, sun):
                     sums[key] = sums.get(key, LeadScore()) + found

@@ -1,0 +1,36 @@
+"""Forecasts on real shade at 221 places of a plant and at 50 pyranometers, by RECON_DATA."""
+
+from dataclasses import replace
+
+import pytest
+from studies.real_shade import hours
+from tests.conftest import real_data
+
+from recon.forecast import FORECASTERS
+from recon.score.forecast_figures import SeenCells
+from recon.score.light_points import LightPoints
+from recon.score.point_verification import verified_at_points
+
+METHODS = {name: FORECASTERS[name] for name in ("advection", "persistence")}
+
+
+@pytest.fixture(scope="module")
+def real_hours() -> dict[str, LightPoints]:
+    return dict(hours(real_data("real-shade", "pv-plant.npz")))
+
+
+def part(points: LightPoints, begin_s: float, end_s: float) -> LightPoints:
+    """A part of an hour; each sensor keeps the scale of the whole."""
+    rows = slice(round(begin_s / points.step_s), round(end_s / points.step_s))
+    return replace(points, times_ns=points.times_ns[rows], light=points.light[rows])
+
+
+@pytest.mark.parametrize("hour", ["plant-a"])
+def test_it_is_better_than_persistence_on_real_shade(
+    real_hours: dict[str, LightPoints], hour: str
+) -> None:
+    found = verified_at_points(part(real_hours[hour], 0.0, 1_500.0), METHODS)
+    ours, still = (found.sums[name, 30.0, SeenCells.ALL].brier for name in METHODS)
+    assert ours is not None
+    assert still is not None
+    assert ours < 0.88 * still
