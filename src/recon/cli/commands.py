@@ -121,6 +121,10 @@ COMMANDS = {
         "demo:demo_command", "Run the station with simulated drones that survey a field."
     ),
     "sim": CommandSource("sim:sim_app", "Run simulated companion apps that connect to a station."),
+    "methods": CommandSource(
+        "methods:methods_command",
+        "List the methods of detection, forecast and planning, with those of installed packages.",
+    ),
     "score": CommandSource(
         "score:score_command",
         "Fly a scenario by the whole station in virtual time and score its methods.",
@@ -147,7 +151,7 @@ COMMANDS = {
     ),
     "export": CommandSource(
         "export:export_command",
-        "Write a flight's tracks, surveys, sun or figures for other programs.",
+        "Write a flight's tracks, surveys, maps or figures for other programs.",
     ),
     "tag": CommandSource(
         "tag:tag_command",

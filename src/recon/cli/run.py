@@ -11,10 +11,13 @@ import typer
 
 import recon
 from recon.cli.foreground import print_now, run_in_loop
+from recon.cli.methods import check_methods
 from recon.cli.opened_site import opened_site
 from recon.cli.options import with_options
 from recon.cli.qr import qr_lines
 from recon.cli.users import UsersOption
+from recon.detection import DetectionSettings
+from recon.forecast import ForecastSettings
 from recon.link.settings import LinkSettings
 from recon.record.audit.audit import shown
 from recon.record.files.users_file import state_folder
@@ -102,6 +105,12 @@ class RunOptions:
             help="List of admitted apps; default: apps.toml in the site's folder, if any."
         ),
     ] = None
+    detection: Annotated[str, typer.Option(help="Method that finds shade, of `recon methods`.")] = (
+        DetectionSettings().method
+    )
+    forecast: Annotated[
+        str, typer.Option(help="Method of the sun forecast, of `recon methods`.")
+    ] = ForecastSettings().method
     garbage_limit: Annotated[
         int, typer.Option(min=1024, help="Close a link after this many bytes without a packet.")
     ] = LinkSettings().garbage_limit_bytes
@@ -111,6 +120,7 @@ class RunOptions:
         apps_file = self.apps or apps_file_of(self.site)
         site = default_site() if self.site is None else opened_site(self.site)
         wind = expected_wind(site, time())
+        check_methods(self.detection, self.forecast)
         return RunConfig(
             site=site,
             link_host=self.link_host,
@@ -132,6 +142,8 @@ class RunOptions:
             link=LinkSettings(garbage_limit_bytes=self.garbage_limit),
             apps_file=apps_file,
             apps=None if apps_file is None else read_app_list(apps_file),
+            detection=self.detection,
+            forecast=self.forecast,
             wind_aloft_mps=None if wind is None else (wind.east_mps, wind.north_mps),
         )
 

@@ -10,6 +10,7 @@ from typing import Annotated
 
 import typer
 
+from recon.cli.methods import warn_of_methods
 from recon.cli.progress import usable_cores
 from recon.forecast import FORECASTERS
 from recon.record.files.users_file import state_folder
@@ -78,6 +79,7 @@ def score_command(
 ) -> None:
     """Fly a scenario by the whole station in virtual time and score its methods."""
     _check_numbers(seeds, first_seed, jobs)
+    warn_of_methods()
     chosen = Chosen(planner, detection, forecast, exposure, surveys_only)
     loaded, other = chosen.scenario(scenario), chosen.other(scenario, against)
     if against is not None and other is None:

@@ -1,6 +1,7 @@
 """The root of Recon's error tree.
 
     ReconError              text: what was expected, what was found, what to do
+    |- MethodError          recon.model.methods: methods of installed packages
     |- WireError            recon.wire: bytes or values that do not form a packet
     |- CameraError          recon.camera: calibration, control points, pose, frames
     |- SiteError            recon.site: a site's folder

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from recon.model.arrays import BoolArray
 from recon.model.flown_before import FlownCells, KeptLattice, StateArray
 from recon.model.geo import GroundGrid
-from recon.model.survey import PLANNER_GOALS, CellState, Survey
+from recon.model.survey import CellState, Survey, planner_goal
 
 SecondsArray = npt.NDArray[np.uint32]
 NEVER_S = 0
@@ -47,7 +47,7 @@ class FlownRegion:
 
     def done_s(self) -> SecondsArray:
         """Return (R, C): when a cell was last imaged as the survey's planner wants it."""
-        is_sun_wanted = PLANNER_GOALS[self.survey.planner] == CellState.IN_SUN
+        is_sun_wanted = planner_goal(self.survey.planner) == CellState.IN_SUN
         return self.in_sun_s if is_sun_wanted else self.imaged_s
 
     def is_left(self, since_s: int) -> BoolArray:

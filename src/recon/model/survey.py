@@ -191,7 +191,12 @@ PLANNER_GOALS: Mapping[str, CellState] = MappingProxyType(
         "nearest_sunlit": CellState.IN_SUN,
     }
 )
-"""The state up to which each planner, by name, images every cell."""
+"""The state up to which each of our own planners, by name, images every cell."""
+
+
+def planner_goal(planner: str) -> CellState:
+    """Return the state up to which a planner images every cell; in sun for a package's own."""
+    return PLANNER_GOALS.get(planner, CellState.IN_SUN)
 
 
 @dataclass(frozen=True, slots=True)

@@ -77,13 +77,13 @@ class _Progress(msgspec.Struct, frozen=True):
     state: _Array
 
 
-class _Survey(msgspec.Struct, frozen=True):
+class _SurveyCells(msgspec.Struct, frozen=True):
     plan: _Plan
     progress: _Progress
 
 
 class _Record(msgspec.Struct, frozen=True):
-    state: _Survey | None = None
+    state: _SurveyCells | None = None
     survey: dict[str, Any] = {}
 
 
@@ -146,7 +146,7 @@ def _state(keyframe: _Keyframe, at_ns: int, grid: GroundGrid) -> RecordedState:
     return RecordedState(at_ns, velocity_mps, surveys)
 
 
-def _cells(survey: _Survey, grid: GroundGrid) -> ByteMap:
+def _cells(survey: _SurveyCells, grid: GroundGrid) -> ByteMap:
     """Return the state of each of the grid's cells, by the survey's cell at its centre."""
     place, shape = (
         survey.plan.cells.grid,

@@ -5,15 +5,20 @@ files, the methods, the rooms of Recon that fly it and the libraries that comput
 these changes, older runs are no longer found.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from hashlib import sha256
 from importlib.metadata import version
+from importlib.util import find_spec
 from pathlib import Path
 
 import msgspec
 
 import recon
+from recon.detection import DETECTORS
+from recon.forecast import FORECASTERS
+from recon.guidance.survey import PLANNERS
 from recon.score.run_score import RunScore
 from recon.score.scenario import Scenario
 from recon.score.scenario_schema import ScenarioError
@@ -45,6 +50,7 @@ def runs_digest(file: Path, scenario: Scenario, code: str) -> str:
 
     Raises `ScenarioError` for a file that cannot be read.
     """
+    code += " ".join(_outside_code(scenario))
     methods, conditions = scenario.methods, scenario.conditions
     chosen = (methods, scenario.survey.planner, conditions.exposure_locked)
     total = sha256(f"{code} {chosen!r}".encode())
@@ -55,6 +61,27 @@ def runs_digest(file: Path, scenario: Scenario, code: str) -> str:
     except OSError as problem:
         why = problem.strerror or str(problem)
         raise ScenarioError(f"{problem.filename}: cannot read scenario file: {why}") from problem
+    return total.hexdigest()
+
+
+def _outside_code(scenario: Scenario) -> Iterator[str]:
+    """Yield the digests of the methods of installed packages that a scenario names."""
+    methods = scenario.methods
+    forecasts = methods.forecast, *methods.compared
+    used = [(PLANNERS.outside, scenario.survey.planner), (DETECTORS.outside, methods.detection)]
+    for outside, name in (*used, *((FORECASTERS.outside, each) for each in forecasts)):
+        if name in outside:
+            spec = find_spec(outside[name].module.partition(".")[0])
+            yield name if spec is None or spec.origin is None else _digest_of(Path(spec.origin))
+
+
+def _digest_of(module: Path) -> str:
+    """Return SHA-256 over a module's code, or that of its whole package."""
+    is_package = module.stem == "__init__"
+    paths = [path for path in module.parent.rglob("*") if path.suffix in CODE] if is_package else ()
+    total = sha256()
+    for path in sorted(paths) or [module]:
+        total.update(path.name.encode() + path.read_bytes())
     return total.hexdigest()
 
 

@@ -119,7 +119,7 @@ def test_a_folder_has_one_file_a_region_and_way(tmp_path: Path) -> None:
         (changed(rows=1, cols=1), "got another length"),
         (changed(lattice__spacing_m=1e-9), "0.1"),
         (changed(survey__cell_m=0.0), "0.5"),
-        (changed(survey__planner="mine"), "expected one of lawnmower_once"),
+        (changed(survey__planner="<b>"), "expected the name of a planner"),
         (changed(survey__outline_m=[[0, 0]] * 2), "length >= 3"),
         (changed(latitude_deg=1e308), "90"),
         (changed(survey__region_name="other"), "its name is not that of its content"),

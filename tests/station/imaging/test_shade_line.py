@@ -1,5 +1,6 @@
 """Ground images become shade maps and forecasts, in order, each frame once."""
 
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -12,12 +13,15 @@ from recon.model.event import Event
 from recon.model.geo import GroundGrid, LocalFrame
 from recon.model.imagery import CameraPose, GroundImage
 from recon.model.units import NS_PER_S
+from recon.record.mcap.digest import digest
 from recon.site import Site
 from recon.station.alarms.conditions import conditions
 from recon.station.api_views.imaging_views import shade_view
+from recon.station.imaging import shade as shade_room
 from recon.station.imaging.frames import PROJECT_FRAME
 from recon.station.imaging.projection import ProjectedFrame
-from recon.station.imaging.shade import READ_SHADE, ReadShade, seen_cells
+from recon.station.imaging.shade import READ_SHADE, ReadShade, read_shade, seen_cells
+from recon.station.kernel.method_process import packed
 from recon.station.kernel.step import step
 from recon.station.kernel.worker import AnyJob, JobRunner
 from recon.station.state.imaging import TOGETHER_WITHIN_S, WAITING_KEPT
@@ -97,6 +101,25 @@ def test_every_frame_is_read_once_and_in_order(line: Line) -> None:
         pass
     assert line.read == [1, 2, 3, 4, 5]
     assert line.station.shade.number == 5
+
+
+def test_memories_travel_to_another_process_and_back(line: Line) -> None:
+    """Where a method of an installed package runs."""
+    for second in range(1, 8):
+        line.happens(projected(ground_image(second)))
+        work = line.given[0].input
+        there = pickle.loads(packed(read_shade(pickle.loads(packed(work)))))
+        assert digest(there) == digest(read_shade(work))
+        line.works()
+
+
+def test_a_result_of_another_kind_is_refused(line: Line, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A package's method may return anything."""
+    line.happens(projected(ground_image(1)))
+    work = line.given[0].input
+    monkeypatch.setattr(shade_room, "DETECTORS", {"brightness_ratio": lambda *_: (None, "sunny")})
+    with pytest.raises(ValueError, match="expected a DetectionState and a ShadeMap, got 'sunny'"):
+        read_shade(work)
 
 
 def test_shade_is_mapped_where_it_fell(line: Line) -> None:

@@ -252,6 +252,7 @@ export function station(
       areas: [],
       areas_excluded: 0,
       areas_drawn_within_m: 0,
+      outside_planners: [],
       pads: [],
     },
     vehicles,

@@ -92,6 +92,9 @@ class SiteView(Message):
         description="largest error of the simplified outlines; 0 when not simplified"
     )
     pads: list[PadView]
+    outside_planners: list[str] = Field(
+        default=[], description="planners of surveys that installed packages offer, by name"
+    )
 
 
 class LightSharesView(Message):

@@ -55,7 +55,7 @@ from recon.guidance.survey.state import (
 from recon.guidance.survey.vehicle_choice import named
 from recon.model.command import Refusal
 from recon.model.shade import ShadeMap
-from recon.model.survey import PLANNER_GOALS, SurveyPhase
+from recon.model.survey import SurveyPhase, planner_goal
 from recon.model.units import seconds_to_ns
 
 NOTHING_LEFT = (
@@ -71,10 +71,10 @@ def create(plan: SurveyPlan) -> SurveyState | Refusal:
     """Return a survey ready to start, or a refusal."""
     name = plan.survey.planner
     if name not in PLANNERS:
-        known = " or ".join(PLANNERS)
+        known = " or ".join(PLANNERS.names)
         return Refusal(RULE, f"Unknown planner {name}: choose {known}")
     state = SurveyState(plan, first_progress(plan))
-    if plan.survey.flown is not None and is_enough(state, PLANNER_GOALS[name]):
+    if plan.survey.flown is not None and is_enough(state, planner_goal(name)):
         return Refusal(RULE, NOTHING_LEFT)
     return state
 

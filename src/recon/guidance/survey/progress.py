@@ -32,7 +32,7 @@ from recon.guidance.survey.view import Crossing, Window, crossing, nearest_map, 
 from recon.model.arrays import BoolArray, IntArray
 from recon.model.flown_before import StateArray
 from recon.model.shade import ShadeMap
-from recon.model.survey import PLANNER_GOALS, CellState, Survey
+from recon.model.survey import CellState, Survey, planner_goal
 from recon.model.units import ns_to_seconds, seconds_to_ns
 
 ShareArray = npt.NDArray[np.float32]
@@ -144,7 +144,7 @@ def first_pieces(plan: SurveyPlan) -> tuple[Piece, ...]:
     """Return what of the rows is flown first: all of them, or what an earlier survey has left."""
     if plan.survey.flown is None:
         return plan.pieces
-    wanted = PLANNER_GOALS[plan.survey.planner]
+    wanted = planner_goal(plan.survey.planner)
     return plan.pieces_over(missing_cells(first_progress(plan), plan, wanted))
 
 

@@ -43,7 +43,7 @@ from recon.guidance.survey.state import (
     spent_budget,
 )
 from recon.model.arrays import FloatArray
-from recon.model.survey import PLANNER_GOALS, CellState, MissionAssignment, SurveyPhase
+from recon.model.survey import CellState, MissionAssignment, SurveyPhase, planner_goal
 
 Step = tuple[SurveyState, tuple[MissionAssignment, ...]]
 
@@ -266,7 +266,7 @@ def lawnmower_once(
     state: SurveyState, vehicles: Sequence[Surveyor], _sun: NewestForecast, now_ns: int
 ) -> Step:
     """Fly all rows once, in whatever light; again only what was not imaged, as by a dropout."""
-    return fly_rounds(state, vehicles, now_ns, PLANNER_GOALS["lawnmower_once"])
+    return fly_rounds(state, vehicles, now_ns, planner_goal("lawnmower_once"))
 
 
 def lawnmower_again(
@@ -276,4 +276,4 @@ def lawnmower_again(
 
     It does not wait for sun: the survey's budget ends it under a closed sky.
     """
-    return fly_rounds(state, vehicles, now_ns, PLANNER_GOALS["lawnmower_again"])
+    return fly_rounds(state, vehicles, now_ns, planner_goal("lawnmower_again"))

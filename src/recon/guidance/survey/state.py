@@ -11,7 +11,7 @@ from recon.guidance.survey.progress import CoverageProgress, missing_cells, not_
 from recon.guidance.survey.route import Route
 from recon.guidance.survey.settings import SurveySettings
 from recon.model.arrays import BoolArray
-from recon.model.survey import PLANNER_GOALS, CellState, SurveyPhase
+from recon.model.survey import CellState, SurveyPhase, planner_goal
 from recon.model.units import HECTARE_M2, ns_to_seconds, seconds_to_ns
 
 Routes = Mapping[str, Route]
@@ -160,7 +160,7 @@ class SurveyState:
     def missing(self, wanted: CellState | None = None) -> BoolArray:
         """Return (R, C): the reached cells that are to be imaged yet, up to the `wanted` state, or
         the one that the survey's planner wants."""
-        goal = PLANNER_GOALS[self.plan.survey.planner] if wanted is None else wanted
+        goal = planner_goal(self.plan.survey.planner) if wanted is None else wanted
         return missing_cells(self.progress, self.plan, goal)
 
     def with_flight(self, serial: str, flight: AssignedMission) -> "SurveyState":

@@ -19,7 +19,8 @@ from recon.model.arrays import BoolArray, FloatArray
 from recon.model.flown_before import KeptLattice
 from recon.model.flown_region import FlownRegion, SecondsArray
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
-from recon.model.survey import PLANNER_GOALS, Survey, SurveyBudget, SurveyCamera, WhenDone
+from recon.model.methods import NAME
+from recon.model.survey import Survey, SurveyBudget, SurveyCamera, WhenDone
 from recon.record.files.atomic_file import replace_file
 from recon.record.files.checked_file import CheckedFormat
 
@@ -144,8 +145,8 @@ def decode_region(payload: bytes) -> FlownRegion:
         raise ValueError(str(problem)) from problem
     if read.rows * read.cols > MOST_CELLS:
         raise ValueError(f"expected up to {MOST_CELLS} cells, got {read.rows} x {read.cols}")
-    if read.survey.planner not in PLANNER_GOALS:
-        raise ValueError(f"expected one of {', '.join(PLANNER_GOALS)}, got {read.survey.planner!a}")
+    if not NAME.fullmatch(read.survey.planner):
+        raise ValueError(f"expected the name of a planner, got {read.survey.planner!a:.80}")
     shape = read.rows, read.cols
     origin = GeoPoint(read.latitude_deg, read.longitude_deg, read.ellipsoid_height_m)
     kept = read.lattice

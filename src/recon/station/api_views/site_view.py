@@ -14,6 +14,7 @@ import numpy as np
 
 from recon.api import schema
 from recon.geo import geo_from_enu, thinned_ring
+from recon.guidance.survey import PLANNERS
 from recon.model.airspace import LandingPad, Region, Zone
 from recon.model.arrays import FloatArray
 from recon.model.geo import LocalFrame
@@ -66,6 +67,7 @@ def site_view(site: Site) -> schema.SiteView:
         areas=[] if site.frame is None else [_area(a, site.frame) for a in drawn],
         areas_excluded=len(areas) - len(drawn),
         areas_drawn_within_m=within_m,
+        outside_planners=list(PLANNERS.outside),
         pads=[_pad(pad) for pad in site.airspace.landing_pads],
     )
 

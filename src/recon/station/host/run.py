@@ -7,6 +7,7 @@ from pathlib import Path
 from tempfile import TemporaryFile
 
 from recon.api.addresses import app_hosts, app_url, in_url
+from recon.detection import DetectionSettings
 from recon.forecast import ForecastSettings
 from recon.link.server import LinkServer
 from recon.model.errors import RecordError
@@ -160,7 +161,7 @@ async def _start_links_and_worker(
     recorder: Recorder | None,
     stack: AsyncExitStack,
 ) -> LinkServer:
-    runner = JobRunner(config.site)
+    runner = JobRunner(config.site, isolates=True)
     runner.digests_inputs = recorder is not None
     driver.worker = worker = ThreadWorker(runner, driver.handle_from_thread)
     tap = None if recorder is None else recorder.tap
@@ -270,7 +271,8 @@ def first_station(config: RunConfig) -> Station:
 def _settings(config: RunConfig) -> StationSettings:
     return StationSettings(
         failsafe_matrix=config.site.failsafe,
-        forecast=ForecastSettings(wind_aloft_mps=config.wind_aloft_mps),
+        detection=DetectionSettings(method=config.detection),
+        forecast=ForecastSettings(config.forecast, wind_aloft_mps=config.wind_aloft_mps),
         sun_time_ahead_s=config.sun_time_ahead_s,
     )
 

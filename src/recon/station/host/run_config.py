@@ -5,7 +5,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from recon.api.addresses import SharedAddress
+from recon.detection import DetectionSettings
 from recon.fleet.admission import AllowedApp
+from recon.forecast import ForecastSettings
 from recon.link.settings import LinkSettings
 from recon.record.files.users_file import default_users_file
 from recon.site import Site
@@ -52,6 +54,8 @@ class RunConfig:
     """The entries of that file."""
     wind_aloft_mps: tuple[float, float] | None = None
     """Wind at the clouds' height, east and north, by a forecast fetched before; None: unknown."""
+    detection: str = DetectionSettings().method
+    forecast: str = ForecastSettings().method
     sun_time_ahead_s: float = 0.0
     """How far the time of day of simulated drones is ahead of the computer's clock."""
     repeats_surveys: bool = False

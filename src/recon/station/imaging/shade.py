@@ -4,7 +4,7 @@ Each image is read by what is known of its own camera. The maps of several imagi
 map of the newest one's time, the older moved on with the shadows; the forecast is made from it.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
@@ -19,6 +19,7 @@ from recon.forecast import FORECASTERS, ForecastSettings, ForecastState, moved_o
 from recon.geo import nearest_cells
 from recon.model.geo import GroundGrid
 from recon.model.imagery import GroundImage
+from recon.model.methods import MethodRegistry
 from recon.model.shade import MaskMap, ShadeMap, SunForecast
 from recon.model.units import ns_to_seconds
 from recon.station.imaging import references
@@ -91,6 +92,8 @@ def read_shade(work: ReadShade, *, shows_sun: bool = True) -> ShadeRead:
     detection, shade = detect(work.detection, work.image, work.detection_settings)
     if isinstance(shade, RejectedFrame):
         return ShadeRead(work.image.serial, detection, work.forecast, shade)
+    if not (isinstance(detection, DetectionState) and isinstance(shade, ShadeMap)):
+        raise ValueError(f"expected a DetectionState and a ShadeMap, got {shade!r:.80}")
     return with_forecast(work, detection, shade, seen_cells(work.image, shade.grid), shows_sun)
 
 
@@ -108,6 +111,8 @@ def with_forecast(
     together = _together(own, work.others, work.velocity_mps)
     observe = forecaster.after if shows_sun else forecaster.without_forecast
     forecast, sun = observe(work.forecast, together.shade, work.forecast_settings, together.seen)
+    if not (isinstance(forecast, ForecastState) and isinstance(sun, SunForecast | None)):
+        raise ValueError(f"expected a ForecastState and a SunForecast, got {sun!r:.80}")
     return ShadeRead(serial, detection, forecast, own, (together, sun))
 
 
@@ -205,8 +210,15 @@ def _dropped(station: Station, job_id: int, _now_ns: int) -> Stepped:
     return _next(station, replace(pipeline, job_id=None, frames_dropped=dropped))
 
 
+def _outside(work: ReadShade) -> str:
+    detection, forecast = work.detection_settings.method, work.forecast_settings.method
+    if detection in DETECTORS.outside:
+        return detection
+    return forecast if forecast in FORECASTERS.outside else ""
+
+
 READ_SHADE: JobKind[ReadShade, ShadeRead] = JobKind(
-    "read_shade", lambda _site: read_shade, _read, _not_read, _dropped
+    "read_shade", lambda _site: read_shade, _read, _not_read, _dropped, outside=_outside
 )
 """Reads one ground image for shade and forecasts the sun."""
 
@@ -232,7 +244,7 @@ def _next(station: Station, pipeline: ShadePipeline) -> Stepped:
     return replace(station, shade=pipeline), (Job(number, READ_SHADE, work),)
 
 
-def _method(methods: Mapping[str, Method], name: str, what: str) -> Method:
+def _method(methods: MethodRegistry[Method], name: str, what: str) -> Method:
     if name not in methods:
-        raise ValueError(f"{what}: expected the method {' or '.join(methods)}, got {name}")
+        raise ValueError(f"{what}: expected the method {' or '.join(methods.names)}, got {name}")
     return methods[name]

@@ -16,6 +16,7 @@ from recon.model.errors import ReconError
 from recon.model.event import Event
 from recon.record.mcap.digest import digest
 from recon.site import Site
+from recon.station.kernel.method_process import MethodProcess
 from recon.station.state.steps import (
     InputT,
     Job,
@@ -47,12 +48,16 @@ class Worker(Protocol):
 class JobRunner:
     """Runs jobs for one site, one at a time."""
 
-    def __init__(self, site: Site) -> None:
+    def __init__(self, site: Site, *, isolates: bool = False) -> None:
+        """`isolates`: methods of installed packages run in processes that end when they are late.
+        A run in virtual time has no clock to be late by."""
         cv2.setNumThreads(1)
         self.digests_inputs = False
         """Whether the end of a job has a digest of its input: a record asks for it."""
         self._site = site
         self._prepared: dict[JobKind[Any, Any], Callable[[Any], Any]] = {}
+        self._isolates = isolates
+        self._processes: dict[JobKind[Any, Any], MethodProcess] = {}
 
     def replace(self, kind: JobKind[InputT, ResultT], run: Callable[[InputT], ResultT]) -> None:
         """Run jobs of a kind by another function: scores put the simulator's truth here."""
@@ -65,13 +70,24 @@ class JobRunner:
             prepared = self._prepared.get(job.kind)
             if prepared is None:
                 prepared = self._prepared[job.kind] = job.kind.prepare(self._site)
-            return JobDone(job.id, job.kind, prepared(job.input), input_digest=found)
+            method = job.kind.outside(job.input) if self._isolates else ""
+            if method:
+                process = self._processes.setdefault(job.kind, MethodProcess())
+                result = process.run(prepared, job.input, method)
+            else:
+                result = prepared(job.input)
+            return JobDone(job.id, job.kind, result, input_digest=found)
         except (ReconError, ValueError) as problem:
             return JobFailed(job.id, job.kind, str(problem), input_digest=found)
         except Exception as problem:
             # A fault in one frame's job must not end the thread that runs all the others.
             error = f"{type(problem).__name__}: {problem}"
             return JobFailed(job.id, job.kind, error, input_digest=found)
+
+    def stop(self) -> None:
+        """End the processes of methods."""
+        for process in self._processes.values():
+            process.stop()
 
 
 class ThreadWorker:
@@ -90,12 +106,13 @@ class ThreadWorker:
         self._thread.start()
 
     def stop(self) -> None:
-        """Finish the job that is running and end the thread."""
+        """Finish the job that is running and end the thread, and the runner's processes."""
         with self._changed:
             self._is_stopping = True
             self._changed.notify()
         if self._thread.is_alive():
             self._thread.join()
+        self._runner.stop()
 
     def submit(self, job: AnyJob) -> None:
         """Queue a job; an older one of its kind that has not begun is dropped."""

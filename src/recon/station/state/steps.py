@@ -39,6 +39,8 @@ class JobKind(Generic[InputT, ResultT]):
     acts: bool = False
     """Whether the work does more than return a result, as writing a file does: a replay takes its
     end as recorded and does not do it again. Its result is None."""
+    outside: Callable[[InputT], str] = field(default=lambda _input: "", repr=False)
+    """Which method of an installed package the work runs, by name; empty for none."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

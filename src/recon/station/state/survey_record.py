@@ -106,6 +106,8 @@ class SurveyRecord:
     step_due_ns: int = 0
     trouble: str | None = None
     """Why the newest step failed."""
+    failed_steps: int = 0
+    """How many steps have failed in a row."""
     positions: NumberedBuffer[tuple[str, PositionSample | PhotoSample]] = field(
         default_factory=NumberedBuffer
     )

@@ -11,7 +11,9 @@ import { createSurveyFigures, HIGHEST_M, LOWEST_M, type SurveyFigures } from "./
 import { FASTEST_MPS } from "./surveyNumbers";
 
 /** The station's own planners, each under the name that a request has. */
-const PLANNERS = valuesOf(text.newSurvey.planners);
+const PLANNERS: readonly string[] = valuesOf(text.newSurvey.planners);
+/** Their labels; planners of installed packages have their name alone. */
+const PLANNER_LABELS: Readonly<Record<string, string>> = text.newSurvey.planners;
 /** The planner of a site without an imaging drone: no shade is known there. */
 const ANY_LIGHT = "lawnmower_once";
 /** Where the rows of a region lie that was flown before. */
@@ -286,7 +288,7 @@ function Choice<Name extends string>(props: {
       {props.label}
       <select name={props.name}>
         <For each={props.values}>
-          {(value) => <option value={value}>{props.shown[value]}</option>}
+          {(value) => <option value={value}>{props.shown[value] ?? value}</option>}
         </For>
       </select>
     </label>
@@ -303,8 +305,8 @@ function Choices(props: { isAnyFlown: boolean }) {
         <Choice
           label={text.newSurvey.rows}
           name="planner"
-          values={PLANNERS}
-          shown={text.newSurvey.planners}
+          values={[...PLANNERS, ...(fleet.site?.outside_planners ?? [])]}
+          shown={PLANNER_LABELS}
         />
       </Show>
       <Show when={props.isAnyFlown}>

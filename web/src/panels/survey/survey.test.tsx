@@ -471,6 +471,22 @@ describe("a new survey", () => {
     ]);
   });
 
+  it("offers planners of installed packages by their name", () => {
+    const areas = [area("survey", [0, 0], 50, { name: "south field" })];
+    const base = station([vehicle(1), vehicle(3, { is_imager: true })]);
+    const site =
+      base.site === null ? null : { ...base.site, areas, outside_planners: ["by_hedge"] };
+    page = renderPage(SurveyPanel, { ...base, site });
+    const offered = [...page.root.querySelectorAll<HTMLOptionElement>("[name=planner] option")];
+    expect(offered.map(({ value }) => value)).toEqual([
+      "sunlit_first",
+      "lawnmower_again",
+      "lawnmower_once",
+      "by_hedge",
+    ]);
+    expect(offered.at(-1)?.textContent).toBe("by_hedge");
+  });
+
   it("offers nothing that needs an imaging drone to a site without one", () => {
     showForm(vehicle(1));
     for (const name of ["planner", "side_step", "upwind", "battery"])

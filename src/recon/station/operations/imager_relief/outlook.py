@@ -15,7 +15,7 @@ from recon.guidance.imager_relief import (
 )
 from recon.guidance.survey import SurveyState, figures
 from recon.guidance.survey.settings import DEFAULT as SURVEY_DEFAULT
-from recon.model.survey import PLANNER_GOALS, CellState
+from recon.model.survey import CellState, planner_goal
 from recon.model.units import ns_to_seconds, seconds_to_ns
 from recon.model.vehicle import BatteryWarning, VehicleState
 from recon.safety.datum import takeoff_up_m
@@ -141,7 +141,7 @@ def _without_light(
 ) -> WithoutLight | None:
     """Return since when it has had no shade map; None if it never had one."""
     newest = station.shade.shade
-    goal = PLANNER_GOALS[state.plan.survey.planner]
+    goal = planner_goal(state.plan.survey.planner)
     if newest is None or goal is not CellState.IN_SUN:
         return None
     if now_ns - newest.captured_at_ns <= seconds_to_ns(SURVEY_DEFAULT.forecast_age_s):

@@ -23,6 +23,7 @@ from types import MappingProxyType
 
 from recon.guidance.survey import NO_BATTERY, PositionSample, SurveyState, refused
 from recon.model.command import Phase, Refusal, issued_by_station
+from recon.model.event import SurveyStopped
 from recon.model.replacing import replace
 from recon.model.shade import ShadeMap
 from recon.model.survey import MissionAssignment, SurveyPhase
@@ -42,11 +43,13 @@ from recon.station.operations.survey.availability import (
     hindrance,
     is_flown,
 )
+from recon.station.operations.survey.commands import stop_survey
 from recon.station.operations.survey.mission_dispatch import dispatch
 from recon.station.operations.survey.photos import reports_photos, watch_timer
 from recon.station.operations.survey.planning import (
     StepSurvey,
     SurveyStepped,
+    outside_planner,
     step_ended,
     step_survey,
 )
@@ -67,6 +70,9 @@ from recon.station.state.station import Station, take_id
 from recon.station.state.steps import Job, JobKind, Output, Stepped
 from recon.station.state.survey_record import EastNorth, PendingStep, SurveyMember, SurveyRecord
 
+FAILED_STEPS_MOST = 10
+"""Failed steps in a row, one a second, after which a survey is paused: the process of a planner
+that was late once needs some seconds to start again."""
 TAKES_OFF = "takes off first: its aircraft takes no missions, and is steered along its rows"
 
 
@@ -153,7 +159,7 @@ def _stepped(station: Station, job_id: int, result: SurveyStepped, now_ns: int) 
     if record is None:
         return station, ()
     survey_id, was_running = record.survey.id, record.is_running
-    record = replace(record, state=result.state, trouble=None)
+    record = replace(record, state=result.state, trouble=None, failed_steps=0)
     station = replace(station, surveys=station.surveys.put(record))
     outputs: tuple[Output, ...] = ()
     for mission in result.missions:
@@ -169,11 +175,31 @@ def _stepped(station: Station, job_id: int, result: SurveyStepped, now_ns: int) 
     return station, outputs
 
 
-def _not_stepped(station: Station, job_id: int, error: str, _now_ns: int) -> Stepped:
+def _not_stepped(station: Station, job_id: int, error: str, now_ns: int) -> Stepped:
     station, record = step_ended(station, job_id)
     if record is None:
         return station, ()
-    return replace(station, surveys=station.surveys.put(replace(record, trouble=error))), ()
+    record = replace(record, trouble=error, failed_steps=record.failed_steps + 1)
+    station = replace(station, surveys=station.surveys.put(record))
+    if record.failed_steps < FAILED_STEPS_MOST or not record.is_running:
+        return station, ()
+    return _paused(station, record, now_ns)
+
+
+def _paused(station: Station, record: SurveyRecord, now_ns: int) -> Stepped:
+    """Pause a survey whose steps fail, and hold its vehicles: nothing would follow their missions.
+
+    A failure may pass, as one of a single observation does: only several in a row count.
+    """
+    name, planner = record.survey.id, record.survey.planner
+    paused = SurveyStopped(name, record.started_by, is_aborted=False)
+    station, held = stop_survey(station, paused, now_ns)
+    record = station.surveys.records[name]
+    if record.state is None or record.is_running:
+        return station, held
+    reason = f"its planner {planner} failed {record.failed_steps} times in a row: {record.trouble}"
+    record = replace(record, state=replace(record.state, reason=reason), failed_steps=0)
+    return replace(station, surveys=station.surveys.put(record)), held
 
 
 def _dropped(station: Station, job_id: int, _now_ns: int) -> Stepped:
@@ -185,7 +211,12 @@ def _dropped(station: Station, job_id: int, _now_ns: int) -> Stepped:
 
 
 STEP_SURVEY: JobKind[StepSurvey, SurveyStepped] = JobKind(
-    "step_survey", lambda _site: step_survey, _stepped, _not_stepped, _dropped
+    "step_survey",
+    lambda _site: step_survey,
+    _stepped,
+    _not_stepped,
+    _dropped,
+    outside=outside_planner,
 )
 """Counts observations and decides which vehicle flies what next."""
 

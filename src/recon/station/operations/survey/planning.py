@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from recon.guidance.survey import (
+    PLANNERS,
     ClosedArea,
     PhotoSample,
     PositionSample,
@@ -84,7 +85,15 @@ def step_survey(work: StepSurvey) -> SurveyStepped:
     for serial, samples in _by_vehicle(work.positions).items():
         state = observe(state, serial, samples)
     state, missions = step(state, work.vehicles, work.now_ns, lambda: made(work.sun), work.closed)
-    return SurveyStepped(state, missions, returning(state, work.vehicles))
+    if not isinstance(state, SurveyState):
+        raise ValueError(f"expected a SurveyState of the planner, got {state!r:.80}")
+    return SurveyStepped(state, tuple(missions), returning(state, work.vehicles))
+
+
+def outside_planner(work: StepSurvey) -> str:
+    """Return the name of the survey's planner if an installed package offers it; else nothing."""
+    name = work.state.plan.survey.planner
+    return name if name in PLANNERS.outside else ""
 
 
 def request_survey(station: Station, event: SurveyRequested, now_ns: int) -> Stepped:
