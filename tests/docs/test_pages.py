@@ -128,6 +128,11 @@ def test_examples_run(
         "04": "landing: confirmed",
         "05": "arrived",
         "06": "SIM-6: wave 2, 40 m, landed",
+        "07": "intersection over union: 0.8",
+        "08": "Brier score 0.0",
+        "09": "SIM-2: 1 flights",
+        "10": "half_persistence ",
+        "11": "Imager: 44 positions",
     }
     assert expected[example.name[:2]] in printed
 
