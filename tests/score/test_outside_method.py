@@ -15,7 +15,7 @@ from tests.outside_package import install, install_example
 from tests.score.scenes import BRIEF, small, written
 
 from recon.score import Scenario, kept_runs
-from recon.score.kept_runs import runs_digest
+from recon.score.kept_runs import flown_code, runs_digest
 
 ROOT = Path(__file__).parents[2]
 PROGRAM = """
@@ -74,7 +74,7 @@ def test_a_changed_method_is_flown_again(tmp_path: Path, monkeypatch: pytest.Mon
     own = replace(scenario, methods=replace(scenario.methods, forecast="half_persistence"))
 
     def digest(of: Scenario) -> str:
-        return runs_digest(tmp_path / "small.toml", of, "code")
+        return runs_digest(tmp_path / "small.toml", of, flown_code(of))
 
     before, usual = digest(own), digest(scenario)
     with (tmp_path / "own_method.py").open("a") as module:

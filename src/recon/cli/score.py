@@ -16,7 +16,7 @@ from recon.forecast import FORECASTERS
 from recon.record.files.users_file import state_folder
 from recon.score import RunScore, Scenario, ScenarioError, load_scenario, tables
 from recon.score.kept_runs import KeptRuns
-from recon.score.many_runs import on_cores, one_by_one
+from recon.score.many_runs import on_cluster, on_cores, one_by_one
 from recon.score.scenario import NO_FORECAST, TRUE_MOTION
 from recon.score.scenario_conditions import with_exposure
 from recon.score.scenario_schema import METHOD_NAMES
@@ -39,6 +39,10 @@ AgainstOption = Annotated[
 ]
 JobsOption = Annotated[
     int | None, typer.Option(help="Runs flown at once; default: one for each core.")
+]
+ClusterOption = Annotated[
+    str | None,
+    typer.Option(help="Fly the runs on the workers of a Dask scheduler, host:port."),
 ]
 SurveysOption = Annotated[
     bool,
@@ -74,6 +78,7 @@ def score_command(
     exposure: ExposureOption = None,
     against: AgainstOption = None,
     jobs: JobsOption = None,
+    cluster: ClusterOption = None,
     fresh: FreshOption = False,
     surveys_only: SurveysOption = False,
 ) -> None:
@@ -84,7 +89,7 @@ def score_command(
     loaded, other = chosen.scenario(scenario), chosen.other(scenario, against)
     if against is not None and other is None:
         loaded = _compared(loaded, against)
-    flying = Flying(range(first_seed, first_seed + seeds), jobs, fresh)
+    flying = Flying(range(first_seed, first_seed + seeds), jobs, fresh, cluster)
     runs = flying.runs_of(scenario, loaded)
     others = [] if other is None else flying.runs_of(*other)
     print(tables(loaded, runs, against if other is None else None))
@@ -133,11 +138,12 @@ def runs_folder() -> Path:
 
 @dataclass(frozen=True, slots=True)
 class Flying:
-    """Which runs of scenarios are wanted, and how many are flown at once."""
+    """Which runs of scenarios are wanted, and where they are flown."""
 
     seeds: range
     jobs: int | None
     fresh: bool
+    cluster: str | None = None
 
     def runs_of(self, path: Path, scenario: Scenario) -> list[RunScore]:
         """Return the runs of a file's scenario: those flown before, and the others, now kept."""
@@ -147,11 +153,19 @@ class Flying:
             count = f"{len(runs)} of {len(self.seeds)}"
             _report(f"{count} runs were flown before (--fresh flies them again)")
         missing = sorted(set(self.seeds) - {run.seed for run in runs})
-        flown = _flown(scenario, missing, self.jobs)
+        flown = self._flown(scenario, missing)
         for done in _with_progress(flown, len(missing)):
             kept.keep(done)
             runs.append(done)
         return runs
+
+    def _flown(self, scenario: Scenario, seeds: list[int]) -> Iterator[RunScore]:
+        if self.cluster is not None and seeds:
+            return on_cluster(scenario, seeds, self.cluster)
+        at_once = min(self.jobs or usable_cores(), len(seeds))
+        if at_once > 1:
+            return on_cores(scenario, seeds, at_once, _report_minutes)
+        return one_by_one(scenario, seeds, _report_minutes)
 
 
 def _check_numbers(seeds: int, first_seed: int, jobs: int | None) -> None:
@@ -162,13 +176,6 @@ def _check_numbers(seeds: int, first_seed: int, jobs: int | None) -> None:
         )
     if jobs is not None and jobs < 1:
         raise ScenarioError(f"--jobs: expected 1 or more, got {jobs}")
-
-
-def _flown(scenario: Scenario, seeds: list[int], jobs: int | None) -> Iterator[RunScore]:
-    at_once = min(jobs or usable_cores(), len(seeds))
-    if at_once > 1:
-        return on_cores(scenario, seeds, at_once, _report_minutes)
-    return one_by_one(scenario, seeds, _report_minutes)
 
 
 def _with_progress(flown: Iterator[RunScore], count: int) -> Iterator[RunScore]:

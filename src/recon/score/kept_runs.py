@@ -50,7 +50,6 @@ def runs_digest(file: Path, scenario: Scenario, code: str) -> str:
 
     Raises `ScenarioError` for a file that cannot be read.
     """
-    code += " ".join(_outside_code(scenario))
     methods, conditions = scenario.methods, scenario.conditions
     chosen = (methods, scenario.survey.planner, conditions.exposure_locked)
     total = sha256(f"{code} {chosen!r}".encode())
@@ -62,6 +61,11 @@ def runs_digest(file: Path, scenario: Scenario, code: str) -> str:
         why = problem.strerror or str(problem)
         raise ScenarioError(f"{problem.filename}: cannot read scenario file: {why}") from problem
     return total.hexdigest()
+
+
+def flown_code(scenario: Scenario) -> str:
+    """Return the digest of all code that flies a scenario: Recon's, and that of other packages."""
+    return " ".join((code_digest(), *_outside_code(scenario)))
 
 
 def _outside_code(scenario: Scenario) -> Iterator[str]:
@@ -94,7 +98,7 @@ class KeptRuns:
     @classmethod
     def of(cls, folder: Path, file: Path, scenario: Scenario) -> "KeptRuns":
         """Return those of a scenario's file, below a folder. Raises `ScenarioError`."""
-        digest = runs_digest(file, scenario, code_digest())[:DIGEST_LETTERS]
+        digest = runs_digest(file, scenario, flown_code(scenario))[:DIGEST_LETTERS]
         return cls(folder / f"{scenario.name}-{digest}")
 
     def found(self, seed: int) -> RunScore | None:

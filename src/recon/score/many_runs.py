@@ -1,4 +1,4 @@
-"""Runs of many seeds: one after the other, or on this machine's cores.
+"""Runs of many seeds: one after the other, on this machine's cores, or on a Dask cluster.
 
 Each run is a pure function of scenario and seed, so it does not matter where it is flown; runs come
 back in the order in which they end.
@@ -6,15 +6,22 @@ back in the order in which they end.
 
 import multiprocessing
 import os
+import socket
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from threading import Thread
+from typing import Any
 
+from recon.model.errors import ReconError
+from recon.score.kept_runs import flown_code
 from recon.score.run import Report, run
 from recon.score.run_score import RunScore
 from recon.score.scenario import Scenario
 from recon.score.scenario_schema import ScenarioError
+
+CONNECT_WITHIN_S, WORKERS_WITHIN_S = 10.0, 600.0
+"""A batch system may let the first worker wait for minutes."""
 
 
 def one_by_one(
@@ -62,3 +69,65 @@ def _end_with_parent() -> None:
         os._exit(1)
 
     Thread(target=watch, daemon=True).start()
+
+
+def on_cluster(scenario: Scenario, seeds: Sequence[int], address: str) -> Iterator[RunScore]:
+    """Yield the runs, flown by the workers of a Dask scheduler.
+
+    Runs of a worker that is lost are flown by another one. Raises `ScenarioError` without Dask,
+    without scheduler or workers at the address, and for workers that have other code.
+    """
+    try:
+        import distributed
+    except ImportError:
+        raise ScenarioError(
+            "--cluster: expected the package distributed, which is not installed;"
+            " install it here and on every worker: pip install 'recon-gcs[cluster]'"
+        ) from None
+    try:
+        client = distributed.Client(address, timeout=CONNECT_WITHIN_S)
+    except (OSError, ValueError) as problem:
+        why = str(problem) or type(problem).__name__
+        raise ScenarioError(
+            f"--cluster: expected a Dask scheduler at {address}, got: {why}"
+        ) from None
+    with client:
+        _wait_for_worker(client)
+        # Part of each task: data on one worker would be lost with it.
+        code = flown_code(scenario)
+        waiting = [client.submit(_run_of, scenario, seed, code, pure=False) for seed in seeds]
+        for done in distributed.as_completed(waiting):
+            yield _result(done)
+
+
+def _wait_for_worker(client: Any) -> None:
+    try:
+        client.wait_for_workers(1, timeout=WORKERS_WITHIN_S)
+    except TimeoutError:
+        raise ScenarioError(
+            "--cluster: expected workers at the scheduler, got none: start some"
+        ) from None
+
+
+def _run_of(scenario: Scenario, seed: int, code: str) -> RunScore:
+    """Return a run; on a worker, whose code must be that of the one who asks."""
+    if flown_code(scenario) != code:
+        raise ScenarioError(
+            "--cluster: expected workers with this version of Recon, of its libraries and methods,"
+            f" got another on {socket.gethostname()}: install the same there"
+        )
+    return run(scenario, seed)
+
+
+def _result(done: Any) -> RunScore:
+    try:
+        found: RunScore = done.result()
+    except ReconError:
+        raise
+    except Exception as problem:
+        # Whatever a foreign machine lacks ends up here: Recon, memory, power.
+        why = f"{type(problem).__name__}: {problem}"
+        raise ScenarioError(
+            f"--cluster: expected a run, got {why}; finished runs are kept"
+        ) from problem
+    return found
