@@ -47,7 +47,8 @@ export default defineConfig({
   use: {
     // Set by the global setup, before the workers read this file.
     baseURL: process.env["RECON_E2E_PAGE"],
-    viewport: { width: 1440, height: 900 },
+    // A small laptop's window: without a GPU each pixel of the map costs the processor.
+    viewport: { width: 1200, height: 720 },
     // Each page would keep all files anew; one test has it.
     serviceWorkers: "block",
     launchOptions: { args, executablePath },

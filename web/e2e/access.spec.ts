@@ -10,10 +10,10 @@ const SIZES = [
   { width: 390, height: 844 },
 ] as const;
 
-/** All rules in the first theme; in the others only the colours differ. */
-async function faults(page: Page): Promise<string[]> {
+/** All rules in the first theme; in the others only the colours differ, and those in no width. */
+async function faults(page: Page, themes: readonly { name: string }[]): Promise<string[]> {
   const found: string[] = [...(await smallTargets(page))];
-  for (const { name } of THEMES) {
+  for (const { name } of themes) {
     await page.evaluate((theme) => {
       document.documentElement.dataset["theme"] = theme;
     }, name);
@@ -26,9 +26,11 @@ async function faults(page: Page): Promise<string[]> {
 for (const size of SIZES) {
   test(`every view meets WCAG 2.2 AA in each theme: ${size.width} px`, async ({ page }) => {
     await page.setViewportSize(size);
+    // Nothing glides while it is measured.
+    await page.emulateMedia({ reducedMotion: "reduce" });
     const wrong: Record<string, string[]> = {};
     await visitViews(page, async (view) => {
-      const found = await faults(page);
+      const found = await faults(page, size === SIZES[0] ? THEMES : THEMES.slice(0, 1));
       if (found.length > 0) wrong[view] = found;
     });
     expect(wrong).toEqual({});
@@ -47,6 +49,6 @@ test("the login meets WCAG 2.2 AA in each theme", async ({ page }) => {
   await page.getByRole("button", { name: "Log in" }).focus();
   for (const size of SIZES) {
     await page.setViewportSize(size);
-    expect(await faults(page), `${size.width} px`).toEqual([]);
+    expect(await faults(page, THEMES), `${size.width} px`).toEqual([]);
   }
 });

@@ -14,6 +14,8 @@ const SIZES = [
   [1440, 900],
 ] as const;
 
+test.use({ viewport: { width: 1440, height: 900 } });
+
 /** Opens the page with a station that keeps sending states. */
 async function open(page: Page): Promise<FakeStation> {
   const fake = await FakeStation.behind(page, fencedState(0));

@@ -139,13 +139,14 @@ test("a site is drawn and imported in the browser, in force at once", async ({ p
     await test.step("the boundary is drawn, a corner dragged, and in force when saved", async () => {
       await panel.getByRole("button", { name: "Draw on map" }).click();
       await expect(panel.getByText(/Press the corners of the boundary/)).toBeVisible();
-      await pressMap(page, [0.25, 0.2], [0.7, 0.2], [0.7, 0.8], [0.25, 0.8], [0.25, 0.2]);
+      await pressMap(page, [0.33, 0.2], [0.63, 0.2], [0.63, 0.8], [0.33, 0.8], [0.33, 0.2]);
       await expect(panel.getByText("Outline: 4 corners")).toBeVisible();
       const size = panel.getByRole("button", { name: /^boundary .* ha$/ });
       const before = await size.textContent();
-      await page.mouse.move(0.7 * 1440, 0.2 * 900);
+      const { width, height } = page.viewportSize() ?? { width: 0, height: 0 };
+      await page.mouse.move(0.63 * width, 0.2 * height);
       await page.mouse.down();
-      await page.mouse.move(0.72 * 1440, 0.17 * 900, { steps: 4 });
+      await page.mouse.move(0.65 * width, 0.17 * height, { steps: 4 });
       await page.mouse.up();
       await expect(size).not.toHaveText(before ?? "");
       await expect(panel.getByText("Ready to save. Changes: boundary.")).toBeVisible();

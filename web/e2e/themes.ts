@@ -13,8 +13,10 @@ export type PageTheme = (typeof THEMES)[number];
 export async function inEachTheme(
   page: Page,
   look: (theme: PageTheme) => Promise<void>,
+  names: readonly string[] = THEMES.map(({ name }) => name),
 ): Promise<void> {
   for (const theme of THEMES) {
+    if (!names.includes(theme.name)) continue;
     await test.step(theme.name, async () => {
       await page.emulateMedia({ colorScheme: theme.colorScheme });
       await applyTheme(page, theme);

@@ -1,3 +1,4 @@
+import type { Map as MapLibre } from "maplibre-gl";
 import { type Frame, meets } from "./labels";
 
 /** What stands over the map: panels, notes and buttons. */
@@ -25,6 +26,14 @@ export function uncoveredOf(map: HTMLElement): Uncovered {
   }) as [Frame, Frame, Frame];
   const covers = [...document.querySelectorAll(OVER_THE_MAP)].map(frameOf);
   return { window, covers, room: { ...free, right: tools.left, bottom: notes.top } };
+}
+
+/** Calls when a panel, a tool or a note takes room from the map, or gives it back. */
+export function onCoversChange(map: Pick<MapLibre, "once">, changed: () => void): void {
+  const observer = new ResizeObserver(changed);
+  for (const part of document.querySelectorAll(".map-free, .map-tools, .map-notes"))
+    observer.observe(part);
+  map.once("remove", () => observer.disconnect());
 }
 
 /** Whether all of a frame is inside the map's window, and nothing stands over it. */

@@ -18,7 +18,7 @@ import type { LonLat } from "./localGrid";
 import { type Layer, positionOf, type Scene } from "./scene";
 import { targetOf } from "./targetLayer";
 import type { Target } from "./targetMarkers";
-import { isInSight, uncoveredOf } from "./uncovered";
+import { isInSight, onCoversChange, uncoveredOf } from "./uncovered";
 import { type MarkerPress, VehicleMarker } from "./vehicleMarker";
 
 /** Below this zoom heights are excluded, except of the selected vehicles. */
@@ -60,6 +60,7 @@ export class VehicleLayer implements Layer {
     this.map = map;
     this.edges = new EdgeMarkers(map);
     map.on("move", () => this.arrange());
+    onCoversChange(map, () => this.arrange());
   }
 
   update(scene: Scene): void {
