@@ -117,7 +117,11 @@ def test_long_reading_shows_its_progress(
     record: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("rich.console.Console.is_terminal", True)
-    for name, words in (("a.csv", "reading tracks"), ("a.png", "reading the flight")):
+    for name, words in (
+        ("a.csv", "reading tracks"),
+        ("a.png", "reading the flight"),
+        ("a.nc", "writing NetCDF"),
+    ):
         result = export(record, tmp_path / name)
         assert words in result.stderr
         assert words not in result.stdout
