@@ -71,6 +71,7 @@ def test_names_that_are_taken_or_strange_are_refused(folder: Path) -> None:
     found = methods()
     assert dict(found) == OWN
     assert "twice" not in found
+    assert found.refusals == found.problems
     problems = " ".join(found.problems)
     assert "'usual' of made-taken: expected another name" in problems
     assert "'a b' of made-taken: expected a name of letters" in problems

@@ -36,7 +36,13 @@ def warn_of_methods() -> None:
 
 
 def check_methods(detection: str, forecast: str) -> None:
-    """Raise `RecordError` for a name of no method, and `MethodError` for one of no use."""
+    """Raise `RecordError` for a name of no method, and `MethodError` for one of no use.
+
+    Prints which names of installed packages are not taken; of theirs only these two are imported.
+    """
+    for each in KINDS.values():
+        for refusal in each.refusals:
+            print_warning(printable(refusal))
     for option, methods, name in (
         ("--detection", DETECTORS, detection),
         ("--forecast", FORECASTERS, forecast),

@@ -73,11 +73,16 @@ class MethodRegistry(Mapping[str, MethodT], Generic[MethodT]):
         return *self._own, *self.outside
 
     @property
+    def refusals(self) -> tuple[str, ...]:
+        """Why names of packages are not taken, a sentence each: nothing is imported."""
+        return self._offered[1]
+
+    @property
     def problems(self) -> tuple[str, ...]:
         """Why methods of packages are left out, a sentence each; imports all of them."""
         found = (self._load(name) for name in self.outside)
         failed = (str(each) for each in found if isinstance(each, MethodError))
-        return *self._offered[1], *failed
+        return *self.refusals, *failed
 
     def __getitem__(self, name: str) -> MethodT:
         """Return a method; raises KeyError, or `MethodError` for one that cannot be used."""
