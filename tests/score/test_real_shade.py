@@ -1,6 +1,7 @@
 """Forecasts on real shade at 221 places of a plant and at 50 pyranometers, by RECON_DATA."""
 
 from dataclasses import replace
+from math import hypot
 
 import pytest
 from studies.real_shade import hours
@@ -25,12 +26,21 @@ def part(points: LightPoints, begin_s: float, end_s: float) -> LightPoints:
     return replace(points, times_ns=points.times_ns[rows], light=points.light[rows])
 
 
-@pytest.mark.parametrize("hour", ["plant-a"])
+@pytest.mark.parametrize(("hour", "most"), [("plant-a", 0.8), ("plant-c", 0.75)])
 def test_it_is_better_than_persistence_on_real_shade(
-    real_hours: dict[str, LightPoints], hour: str
+    real_hours: dict[str, LightPoints], hour: str, most: float
 ) -> None:
-    found = verified_at_points(part(real_hours[hour], 0.0, 1_500.0), METHODS)
+    found = verified_at_points(part(real_hours[hour], 0.0, 900.0), METHODS)
     ours, still = (found.sums[name, 30.0, SeenCells.ALL].brier for name in METHODS)
     assert ours is not None
     assert still is not None
-    assert ours < 0.88 * still
+    assert ours < most * still
+
+
+def test_where_shadows_are_fast_and_sensors_few_the_velocity_is_right_or_none(
+    real_hours: dict[str, LightPoints],
+) -> None:
+    found = verified_at_points(part(real_hours["hope"], 0.0, 600.0), METHODS)
+    claimed = [each for each in found.velocities_mps["advection"] if each is not None]
+    assert len(claimed) >= 12
+    assert max(hypot(east, north - 20.0) for east, north in claimed) < 3.0

@@ -109,4 +109,5 @@ def between(line: FloatMap, best: int) -> float:
         return 0.0
     before, at, after = (float(line[best + i]) for i in (-1, 0, 1))
     bend = before - 2.0 * at + after
-    return 0.5 * (before - after) / bend if bend < 0.0 else 0.0
+    # Beside a peak that was taken out the highest value need be no peak itself.
+    return min(max(0.5 * (before - after) / bend, -0.5), 0.5) if bend < 0.0 else 0.0

@@ -5,6 +5,11 @@ velocity makes in the pair's time. True motion agrees in all pairs, chance in no
 its peak at the motion also where each pair alone is unclear: a field seen by half, or nearly clear.
 Older pairs fade out. The peak counts if it stands out from all that is farther from it than a peak
 is wide. A peak at rest is the ground's pattern in the maps, no motion: the next one may be it.
+
+A velocity must also explain what came (`matching`): maps of the last minute, moved by it, must
+match later ones better than they do at rest, and at least half as much better as at the velocity
+that explains most. Where none agrees so, that one counts, if over minutes it leaves clearly less
+than rest does; so shadows are followed over sparse maps. Otherwise no motion is known.
 """
 
 from dataclasses import replace
@@ -13,6 +18,7 @@ from math import hypot
 import cv2
 import numpy as np
 
+from recon.forecast.matching import Explained, Mismatch, matched_map, mismatch_by_velocity
 from recon.forecast.motion import ShadowMotion
 from recon.forecast.phase_correlation import (
     ShadeSpectrum,
@@ -34,21 +40,46 @@ def with_agreement(
     if state.kept and at_ns // every_ns == state.kept[-1].at_ns // every_ns:
         return state
     now = spectrum_of(shade, settings, settings.least_pooled_contrast)
+    here = matched_map(shade)
     oldest_ns = at_ns - seconds_to_ns(settings.longest_pair_s)
     kept = tuple(one for one in state.kept if one.at_ns >= oldest_ns)
+    matched = tuple(one for one in state.matched if one.at_ns >= oldest_ns)
     pooled = _faded(state.agreement, at_ns, settings)
-    for before in kept:
+    for before, there in zip(kept, matched, strict=True):
         found = _by_velocity(before, now, settings)
         if found is not None:
-            pooled += found
-    return replace(state, kept=(*kept, now), agreement=Agreement(at_ns, pooled))
+            mismatch = mismatch_by_velocity(there, here, settings)
+            pooled = Agreement(
+                at_ns,
+                pooled.began_ns,
+                pooled.by_velocity + found,
+                _added(pooled.recent, mismatch),
+                _added(pooled.long, mismatch),
+            )
+    return replace(state, kept=(*kept, now), matched=(*matched, here), agreement=pooled)
 
 
 def pooled_motion(state: ForecastState, settings: ForecastSettings) -> ShadowMotion | None:
-    """Return the velocity at the peak; None without one that stands out, or if it stands still."""
-    if state.agreement is None:
+    """Return the velocity that most agree in, if it explains the maps; else the one that explains
+    them best, if that is clear; None without one."""
+    pooled = state.agreement
+    if pooled is None:
         return None
-    surface, step = state.agreement.by_velocity, settings.velocity_step_mps
+    recent = Explained.of(pooled.recent, settings)
+    motion = _highest_agreement(pooled.by_velocity, settings)
+    if motion is not None and recent.has(motion, settings.least_of_best):
+        return motion
+    if ns_to_seconds(pooled.at_ns - pooled.began_ns) < settings.least_match_s:
+        return None
+    best = Explained.of(pooled.long, settings).best
+    if best is not None and recent.has(best, settings.least_of_best):
+        return best
+    return None
+
+
+def _highest_agreement(surface: FloatMap, settings: ForecastSettings) -> ShadowMotion | None:
+    """Return the velocity at the peak; None without one that stands out, or if it stands still."""
+    step = settings.velocity_step_mps
     middle, near = surface.shape[0] // 2, round(settings.peak_mps / step)
     row, col = _highest(surface)
     left = surface
@@ -75,15 +106,32 @@ def _without(surface: FloatMap, row: int, col: int, near: int) -> FloatMap:
     return others
 
 
-def _faded(agreement: Agreement | None, at_ns: int, settings: ForecastSettings) -> FloatMap:
-    size = 2 * round(settings.fastest_mps / settings.velocity_step_mps) + 1
+def _added(sums: Mismatch, pair: Mismatch) -> Mismatch:
+    return Mismatch(sums.difference + pair.difference, sums.variance + pair.variance)
+
+
+def _faded(agreement: Agreement | None, at_ns: int, settings: ForecastSettings) -> Agreement:
     if agreement is None:
-        return np.zeros((size, size), dtype=np.float32)
+        fine, coarse = (
+            np.zeros((2 * round(settings.fastest_mps / step) + 1,) * 2, dtype=np.float32)
+            for step in (settings.velocity_step_mps, settings.match_step_mps)
+        )
+        nothing = Mismatch(coarse, coarse)
+        return Agreement(at_ns, at_ns, fine, nothing, nothing)
     passed_s = ns_to_seconds(at_ns - agreement.at_ns)
-    faded: FloatMap = agreement.by_velocity * np.float32(
-        np.exp(-passed_s / settings.agreement_memory_s)
+    short, long = (
+        np.float32(np.exp(-passed_s / memory_s))
+        for memory_s in (settings.agreement_memory_s, settings.match_memory_s)
     )
-    return faded
+    return Agreement(
+        at_ns,
+        agreement.began_ns,
+        agreement.by_velocity * short,
+        *(
+            Mismatch(one.difference * left, one.variance * left)
+            for one, left in ((agreement.recent, short), (agreement.long, long))
+        ),
+    )
 
 
 def _by_velocity(

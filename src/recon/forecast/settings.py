@@ -46,6 +46,19 @@ class ForecastSettings:
     """Time constant of fading of older pairs: wind changes over minutes."""
     velocity_step_mps: float = 0.5
     """Step of the agreement by velocity: a cell in 8 s."""
+    match_step_mps: float = 1.0
+    """Step of the mismatch by velocity, which is smooth."""
+    match_memory_s: float = 300.0
+    """Time constant of fading of the mismatch: over sparse maps a minute of it is chance."""
+    least_match_s: float = 75.0
+    """Time of maps before such a velocity counts: in the first minute, chance may explain most."""
+    least_match_share: float = 0.1
+    """Share of the weight of all pairs that a velocity must have, for fast ones leave the view."""
+    least_explained: float = 0.3
+    """Share of the changes that the best velocity must explain, to count without an agreement."""
+    least_of_best: float = 0.5
+    """Share of what the best velocity of the last minute explains that one must explain to be no
+    false one: a slow velocity of a pattern that stands still explains little of fast shadows."""
     peak_mps: float = 3.0
     """Half width of the area around the best velocity without rivals."""
     slowest_pooled_mps: float = 1.0

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import numpy.typing as npt
 
+from recon.forecast.matching import MatchedMap, Mismatch
 from recon.forecast.phase_correlation import ShadeSpectrum
 from recon.forecast.settings import ForecastSettings
 from recon.model.geo import GroundGrid
@@ -18,8 +19,14 @@ class Agreement:
     """The faded sum of all pairs' agreement by velocity, and when it was faded last."""
 
     at_ns: int
+    began_ns: int
+    """Time of the first map."""
     by_velocity: FloatMap
     """(N, N): rows from north to south, columns from west to east."""
+    recent: Mismatch
+    """Faded as the agreement is."""
+    long: Mismatch
+    """Faded over minutes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +84,8 @@ class ForecastState:
     """Time that mean covers, at most `cover_memory_s`."""
     kept: tuple[ShadeSpectrum, ...] = ()
     """Spectra of earlier maps to compare with, oldest first."""
+    matched: tuple[MatchedMap, ...] = ()
+    """Coarse spectra of the same maps."""
     agreement: Agreement | None = None
     """Agreement of all recent pairs of maps."""
     correlation: SpatialCorrelation | None = None
@@ -117,7 +126,7 @@ def with_map(state: ForecastState, shade: ShadeMap, settings: ForecastSettings) 
                 f"expected a newer shade map than the last one, got one {-passed_s:.1f} s older"
             )
     if state.kept and state.kept[-1].grid != shade.grid:
-        state = replace(state, kept=(), agreement=None)
+        state = replace(state, kept=(), matched=(), agreement=None)
     state = replace(state, shade=shade, followed=None)
     return _with_share(state, shade, passed_s, settings.cover_memory_s)
 

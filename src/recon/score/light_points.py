@@ -12,6 +12,7 @@ from math import ceil
 
 import numpy as np
 
+from recon.geo import cell_centres_m
 from recon.model.arrays import FloatArray, IntArray
 from recon.model.errors import RecordError
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
@@ -22,6 +23,8 @@ NOWHERE = LocalFrame(GeoPoint(0.0, 0.0, 0.0))
 FULL_PERCENTILE = 98.0
 DIFFUSE_SHARE = 0.25
 LEAST_CELL_M = 4.0
+SHARPEST_SHARE = 0.15
+"""Of the usual distance between two sensors: how fine a map is at a sensor itself."""
 MOST_CELLS_ACROSS = 96
 """Maps of more cells cost time and show nothing more: places are some tenths of them apart."""
 
@@ -91,8 +94,22 @@ class PointMaps:
             values = (direct[number][corners] * weights).sum(axis=2).astype(np.float32)
             valid = np.isfinite(values)
             known = valid.astype(np.float32)
+            far_m = np.where(valid, self._far_m, np.float32(np.nan))
             at_ns = int(self.points.times_ns[number])
-            yield ShadeMap(self.grid, at_ns, (), values, valid, known, known)
+            yield ShadeMap(self.grid, at_ns, (), values, valid, known, far_m)
+
+    @cached_property
+    def _far_m(self) -> FloatMap:
+        """(R, C): how fine the map is, as a picture's ground size of a pixel: the distance to the
+        nearest sensor, and at a sensor itself a part of the usual distance between two."""
+        from scipy.spatial import cKDTree
+
+        places = np.column_stack([self.points.east_m, self.points.north_m])
+        centres = np.stack(np.meshgrid(*cell_centres_m(self.grid)), axis=-1)
+        far_m, _number = cKDTree(places).query(centres)
+        usual_m = np.sqrt(np.ptp(places, axis=0).prod() / len(places))
+        found: FloatMap = np.hypot(far_m, SHARPEST_SHARE * usual_m).astype(np.float32)
+        return found
 
     @cached_property
     def _triangles(self) -> tuple[IntArray, FloatMap]:
@@ -107,8 +124,7 @@ class PointMaps:
                 f"expected 3 places or more that are not on one line, got {len(places)}"
             ) from problem
         grid = self.grid
-        east_m = grid.west_m + (np.arange(grid.cols) + 0.5) * grid.cell_m
-        north_m = grid.north_m - (np.arange(grid.rows) + 0.5) * grid.cell_m
+        east_m, north_m = cell_centres_m(grid)
         centres = np.stack(np.meshgrid(east_m, north_m), axis=-1)
         triangle = found.find_simplex(centres)
         turned, third = found.transform[triangle, :2], found.transform[triangle, 2]
