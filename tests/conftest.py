@@ -1,5 +1,6 @@
 """Real frames by $RECON_DATA: without it tests skip, with RECON_DATA_REQUIRED=1 they fail."""
 
+import gc
 import os
 from pathlib import Path
 
@@ -19,8 +20,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Count every test's processor time; `-p no:processor_time` turns it off."""
+    """Count every test's processor time; `-p no:processor_time` turns it off.
+
+    A search for cycles goes through all that thousands of collected tests hold: it is made seldom.
+    """
     config.pluginmanager.register(ProcessorTime(), "processor_time")
+    gc.set_threshold(100_000, 20, 100)
 
 
 settings.register_profile(

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.camera.constructions import FRAME, seen_pixels, solved, tilted_pose
-from tests.examples import examples
+from tests.examples import examples, family
 from tools.demo_site import demo_camera
 
 from recon.camera import (
@@ -103,8 +103,9 @@ def frame_of_painted_ground(camera: OmnidirectionalCamera, pose: CameraPose) -> 
     return np.rint(painted).astype(np.uint8).reshape(camera.rows, camera.cols, 3)
 
 
-@pytest.mark.parametrize(("rows", "cols"), [(720, 1280), (1440, 2560), (540, 960)])
-def test_the_ground_gets_its_own_colours_back(rows: int, cols: int) -> None:
+@pytest.mark.parametrize("size", family((540, 960), (720, 1280), (1440, 2560)))
+def test_the_ground_gets_its_own_colours_back(size: tuple[int, int]) -> None:
+    rows, cols = size
     frame = frame_of_painted_ground(DEMO.scaled_to(rows, cols), POSE)
     projected, valid = GroundProjector(GRID, DEMO).project_pixels(frame, POSE)
     centres = cell_centres(GRID)

@@ -16,6 +16,7 @@ from tests.detection.shaded_field import (
     centres,
     shade_iou,
 )
+from tests.examples import family
 
 from recon.detection import DETECTORS, DetectionSettings, DetectionState
 from recon.detection.sunlit.belief import Belief, diffused, near, smoothed
@@ -125,8 +126,8 @@ SEED = 9_200
 class TestDriftingShade:
     @pytest.mark.parametrize(
         "changes",
-        [{}, {"gains": (1.0, 0.6, 1.3)}, {"balance": 0.1}],
-        ids=["still", "gain", "white"],
+        family({"gains": (1.0, 0.6, 1.3)}, {}, {"balance": 0.1}),
+        ids=["gain", "still", "white"],
     )
     def test_shade_is_found_whatever_the_camera_does(self, changes: dict[str, object]) -> None:
         assert mean_iou(found_in(Flight(SEED, **changes).moments())[12:]) > 0.85

@@ -19,6 +19,7 @@ import pytest
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 from tests.detection.shaded_field import FIELD
+from tests.examples import family
 from tests.forecast.moving_shade import shade_map
 from tests.record.mcap.test_record_writer import until
 from tests.replay.flights import FOLDER, pictures_in_two, survey_in_two
@@ -566,7 +567,7 @@ def test_a_flights_file_ends_after_the_landing(
         assert (found.differences, found.trouble) == ([], "")
 
 
-@pytest.mark.parametrize("flight", [pictures_in_two, survey_in_two])
+@pytest.mark.parametrize("flight", family(survey_in_two, pictures_in_two))
 def test_a_file_that_begins_in_flight_gives_the_same(flight: Any, tmp_path: Path) -> None:
     """Everything that the station remembers stands at its beginning."""
     flight(tmp_path)

@@ -4,6 +4,7 @@ import pytest
 from studies.closed_loop.marks import ViolationClass
 from studies.closed_loop.run import ClosedLoopRun
 from studies.closed_loop.violations import RunResult
+from tests.examples import family
 
 from recon.model.command import Command, Hover, Nudge, Refusal
 from recon.model.event import PacketReceived
@@ -31,7 +32,7 @@ def own_kinds(result: RunResult) -> set[str]:
     return {each.breach.kind for each in found if each.kind is ViolationClass.STATION}
 
 
-@pytest.mark.parametrize("seed", [3, 11, 90, 117])
+@pytest.mark.parametrize("seed", family(3, 11, 90, 117))
 def test_a_run_has_no_violation_of_the_stations_own(seed: int) -> None:
     result = flown(seed, 50.0)
     assert own_kinds(result) == set()

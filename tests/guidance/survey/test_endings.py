@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.examples import family
 from tests.guidance.survey.fields import FRAME, rectangle, region, survey_of
 from tests.guidance.survey.flyers import BoolArray, Flights, FloatArray, clear, fleet
 from tests.guidance.survey.test_flown import begun
@@ -127,7 +128,7 @@ def test_flat_light_does_not_make_known_shade_unknown() -> None:
     assert flights.time_s > 700.0
 
 
-@pytest.mark.parametrize("rounds", [1, 2])
+@pytest.mark.parametrize("rounds", family(1, 2))
 def test_losing_the_light_uses_up_no_round_of_a_planner_that_has_none(rounds: int) -> None:
     def away_each_second_400_s(flights: Flights) -> None:
         flights.tells_shade = (flights.time_s // 400.0) % 2 == 0

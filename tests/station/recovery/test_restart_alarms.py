@@ -1,6 +1,7 @@
 """A restart with many vehicles in flight: one alarm for all, and no vehicle is held."""
 
 import pytest
+from tests.examples import family
 from tests.station.recovery.restarts import restart, saved
 from tests.station.station_world import World, world
 
@@ -37,7 +38,7 @@ def alarms(here: World) -> list[Alarm]:
     return list(here.driver.station.alarms.alarms.values())
 
 
-@pytest.mark.parametrize("count", [8, 64])
+@pytest.mark.parametrize("count", family(8, 64))
 def test_all_come_back_to_one_alarm_that_ends_by_itself_and_no_order(count: int) -> None:
     here = restarted(count)
     here.run_for(4.0)

@@ -3,6 +3,7 @@
 from random import Random
 
 import pytest
+from tests.examples import family
 from tests.station.returning_world import ReturningWorld, returning_world
 
 from recon.model.command import Body, Hover, LandNow, ReturnHome
@@ -69,7 +70,7 @@ def test_one_that_makes_no_way_is_an_alarm() -> None:
     assert ("go_home", "SIM-1") in made.alarms()
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", family(*range(6)))
 def test_returns_in_wind_and_gusts_are_no_alarm(seed: int) -> None:
     rng = Random(seed)
     places = [(rng.uniform(-250.0, 250.0), rng.uniform(-250.0, 250.0), h) for h in (30.0, 90.0)]
