@@ -10,7 +10,8 @@ Theory of operation, per forecast:
    at most `most_scale_of_shade_m`.
 3. From shade to sun the probability rises over an edge that is the softer, the later and the
    farther off; under thin even cloud, which changes little with distance, it stays sharp.
-4. Followed shadows change their shape: deviations fade with `shade_memory_s`.
+4. Followed shadows change their shape: deviations fade with `shade_memory_s`, and chances are
+   spread over places as far off as edges were in this flight (`edge_errors`).
 5. Without a velocity the wind at the clouds' height is, if a weather forecast states it, as far off
    as it may be wrong; else the shade above each cell, as far off as shadows usually move.
 """
@@ -21,6 +22,7 @@ from math import exp
 import cv2
 import numpy as np
 
+from recon.forecast.edge_errors import edge_error_m, spread, with_edge_errors
 from recon.forecast.followed import with_followed, with_recent
 from recon.forecast.forecaster import Forecaster
 from recon.forecast.motion import ShadowMotion
@@ -41,8 +43,10 @@ from recon.model.shade import (
 
 def _observed(state: ForecastState, shade: ShadeMap, settings: ForecastSettings) -> ForecastState:
     state = with_correlation(with_map(state, shade, settings), shade, settings)
-    state = with_recent(with_agreement(state, shade, settings), shade, settings)
-    return with_followed(state, pooled_motion(state, settings), settings)
+    state = with_agreement(state, shade, settings)
+    motion = pooled_motion(state, settings)
+    state = with_recent(with_edge_errors(state, motion, settings), shade, settings)
+    return with_followed(state, motion, settings)
 
 
 def _forecast(state: ForecastState, settings: ForecastSettings) -> SunForecast:
@@ -62,7 +66,8 @@ def _forecast(state: ForecastState, settings: ForecastSettings) -> SunForecast:
             soft_edge_per_m=edges * settings.soft_edge_per_m,
         )
         for number, lead in enumerate(settings.lead_s):
-            probability[number] = seen.sun_after(lead, motion, prior, scaled)
+            error_m = 0.0 if motion is None else edge_error_m(state, lead, settings)
+            probability[number] = seen.sun_after(lead, motion, prior, error_m, scaled)
         if motion is not None:
             closed = without_single_gaps(shade.valid)
             horizon_s = visible_upwind_s(closed, shade.grid, motion, settings)
@@ -88,9 +93,15 @@ class _Seen:
         return cls(shade.grid, shade.transmittance[at], shade.confidence[at], nearest)
 
     def sun_after(
-        self, lead_s: float, motion: ShadowMotion | None, prior: float, settings: ForecastSettings
+        self,
+        lead_s: float,
+        motion: ShadowMotion | None,
+        prior: float,
+        error_m: float,
+        settings: ForecastSettings,
     ) -> FloatMap:
-        """Return each cell's probability of sun (R, C) a time after the map."""
+        """Return each cell's probability of sun (R, C) a time after the map, whose edges may then
+        be as far off as `error_m`."""
         rows, cols, off_m = self._upwind(lead_s, motion, settings)
         direct, confidence = (
             cv2.remap(each, cols, rows, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
@@ -99,7 +110,8 @@ class _Seen:
         edge = settings.least_soft_edge + settings.soft_edge_per_s * lead_s
         soft = np.minimum(edge + settings.soft_edge_per_m * off_m, settings.most_soft_edge)
         sun = (direct - SUNLIT_TRANSMITTANCE) / (2.0 * soft) + 0.5
-        sun = np.clip(sun, 1.0 - settings.surest, settings.surest)
+        sun = np.clip(sun, 1.0 - settings.surest, settings.surest).astype(np.float32, copy=False)
+        sun = spread(sun, error_m, self.grid.cell_m)
         weight = confidence * exp(-lead_s / settings.shade_memory_s)
         of_shade_m = min(settings.shade_scale_m, settings.most_scale_of_shade_m)
         scale_m = np.where(sun < prior, of_shade_m, settings.shade_scale_m).astype(np.float32)

@@ -64,8 +64,8 @@ def matched_map(shade: ShadeMap) -> MatchedMap:
     grid = shade.grid
     factor = max(1, round(max(grid.rows, grid.cols) / MOST_CELLS_ACROSS))
     size = max(1, grid.cols // factor), max(1, grid.rows // factor)
-    pixels = shade.confidence / shade.metres_per_pixel**2
-    known = np.where(shade.valid, pixels, np.float32(0.0))
+    far_m = np.where(shade.valid, shade.metres_per_pixel, np.float32(1.0))
+    known = np.where(shade.valid, shade.confidence / far_m**2, np.float32(0.0))
     known /= max(1e-9, float(known.max()))
     direct = np.where(shade.valid, shade.transmittance, np.float32(0.0)) * known
     weighted, seen = (
@@ -128,15 +128,14 @@ class Explained:
 
     left: FloatMap
     """(M, M): 1 where moved maps have nothing in common with later ones; infinite if not known."""
-    step_mps: float
-    least_share: float
+    settings: ForecastSettings
 
     @staticmethod
     def of(sums: Mismatch, settings: ForecastSettings) -> "Explained":
         """Return it of sums; velocities that move most of the view out of it are not known."""
         is_known = sums.variance > settings.least_match_share * sums.variance.max()
         left = np.where(is_known, sums.difference / np.where(is_known, sums.variance, 1.0), np.inf)
-        return Explained(left.astype(np.float32), settings.match_step_mps, settings.least_explained)
+        return Explained(left.astype(np.float32), settings)
 
     @property
     def at_rest(self) -> float:
@@ -146,13 +145,14 @@ class Explained:
 
     @property
     def best(self) -> ShadowMotion | None:
-        """The velocity that leaves least; None if that is not clearly less than rest does."""
+        """The velocity that leaves least; None if that is not clearly less than rest does, or if it
+        is hardly a motion."""
         row, col = (
             int(each) for each in np.unravel_index(int(self.left.argmin()), self.left.shape)
         )
         least, last = float(self.left[row, col]), self.left.shape[0] - 1
         if (
-            not least < (1.0 - self.least_share) * self.at_rest
+            not least < (1.0 - self.settings.least_explained) * self.at_rest
             or not 0 < min(row, col) <= max(row, col) < last
         ):
             return None
@@ -161,13 +161,15 @@ class Explained:
             return None
         right = col - last // 2 + between(-around[1], 1)
         down = row - last // 2 + between(-around[:, 1], 1)
-        return ShadowMotion(right * self.step_mps, -down * self.step_mps)
+        step_mps = self.settings.match_step_mps
+        found = ShadowMotion(right * step_mps, -down * step_mps)
+        return found if found.speed_mps >= self.settings.slowest_match_mps else None
 
     def has(self, motion: ShadowMotion, of_best: float) -> bool:
         """Return whether a velocity explains this share of what the best one does, and enough."""
         middle = self.left.shape[0] // 2
-        col = middle + motion.east_mps / self.step_mps
-        row = middle - motion.north_mps / self.step_mps
+        col = middle + motion.east_mps / self.settings.match_step_mps
+        row = middle - motion.north_mps / self.settings.match_step_mps
         if not (0 <= round(row) <= 2 * middle and 0 <= round(col) <= 2 * middle):
             return False
         found = self.at_rest - float(self.left[round(row), round(col)])

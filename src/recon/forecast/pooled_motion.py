@@ -8,8 +8,9 @@ is wide. A peak at rest is the ground's pattern in the maps, no motion: the next
 
 A velocity must also explain what came (`matching`): maps of the last minute, moved by it, must
 match later ones better than they do at rest, and at least half as much better as at the velocity
-that explains most. Where none agrees so, that one counts, if over minutes it leaves clearly less
-than rest does; so shadows are followed over sparse maps. Otherwise no motion is known.
+that explains most; or nothing explains them, and its peak is clear. Where no velocity agrees so,
+the one that explains most counts, if over minutes it leaves clearly less than rest does; so shadows
+are followed over sparse maps. Otherwise no motion is known.
 """
 
 from dataclasses import replace
@@ -66,9 +67,12 @@ def pooled_motion(state: ForecastState, settings: ForecastSettings) -> ShadowMot
     if pooled is None:
         return None
     recent = Explained.of(pooled.recent, settings)
-    motion = _highest_agreement(pooled.by_velocity, settings)
+    motion, over_rival = _highest_agreement(pooled.by_velocity, settings)
     if motion is not None and recent.has(motion, settings.least_of_best):
         return motion
+    if motion is not None and recent.best is None and over_rival >= settings.clear_over_rival:
+        # What stands still is most of the maps, so that nothing explains them.
+        return motion if motion.speed_mps >= settings.slowest_match_mps else None
     if ns_to_seconds(pooled.at_ns - pooled.began_ns) < settings.least_match_s:
         return None
     best = Explained.of(pooled.long, settings).best
@@ -77,8 +81,11 @@ def pooled_motion(state: ForecastState, settings: ForecastSettings) -> ShadowMot
     return None
 
 
-def _highest_agreement(surface: FloatMap, settings: ForecastSettings) -> ShadowMotion | None:
-    """Return the velocity at the peak; None without one that stands out, or if it stands still."""
+def _highest_agreement(
+    surface: FloatMap, settings: ForecastSettings
+) -> tuple[ShadowMotion | None, float]:
+    """Return the velocity at the peak, and the peak over the next one; None without one that stands
+    out, or if it stands still."""
     step = settings.velocity_step_mps
     middle, near = surface.shape[0] // 2, round(settings.peak_mps / step)
     row, col = _highest(surface)
@@ -88,10 +95,10 @@ def _highest_agreement(surface: FloatMap, settings: ForecastSettings) -> ShadowM
         row, col = _highest(left)
     peak, rival = float(left[row, col]), float(_without(left, row, col, near).max())
     if peak <= settings.least_over_rival * rival or peak <= 0.0:
-        return None
+        return None, 0.0
     right = col - middle + between(surface[row], col)
     down = row - middle + between(surface[:, col], row)
-    return ShadowMotion(right * step, -down * step)
+    return ShadowMotion(right * step, -down * step), peak / max(rival, 1e-9)
 
 
 def _highest(surface: FloatMap) -> tuple[int, int]:

@@ -56,6 +56,10 @@ class ForecastSettings:
     """Share of the weight of all pairs that a velocity must have, for fast ones leave the view."""
     least_explained: float = 0.3
     """Share of the changes that the best velocity must explain, to count without an agreement."""
+    slowest_match_mps: float = 1.5
+    """Slower, it is a pattern that stands still, as in `slowest_pooled_mps`: a coarse step."""
+    clear_over_rival: float = 1.5
+    """As `least_over_rival`, for a velocity that explains little."""
     least_of_best: float = 0.5
     """Share of what the best velocity of the last minute explains that one must explain to be no
     false one: a slow velocity of a pattern that stands still explains little of fast shadows."""
@@ -72,6 +76,12 @@ class ForecastSettings:
     most_soft_edge: float = 0.4
     """Soft edge, as `soft_edge`, of shadows that are followed: they keep their edges, less so with
     the lead, and least where another place must stand for the one upwind."""
+    edge_memory_s: float = 300.0
+    """Time constant of fading of what was measured of the errors of followed edges."""
+    usual_edge_weight: float = 0.005
+    """Weight of the usual error, as edges per metre: that of one pair of maps."""
+    most_edge_m: float = 400.0
+    """Largest such error: beyond it shade is not followed any more."""
     followed_for_s: float = 60.0
     """Time for which shade out of view is followed: one seen cell in twelve is wrong then
     by its motion alone."""

@@ -46,6 +46,20 @@ class SpatialCorrelation:
 
 
 @dataclass(frozen=True, slots=True)
+class EdgeErrors:
+    """Faded sums over pairs of maps, one moved on to the other."""
+
+    at_ns: int
+    sums: tuple[float, ...] = (0.0,) * 5
+    """Of the share of cells that change over a metre, the same times the pair's seconds, times
+    their square; of the share that differs in the pair, the same times its seconds."""
+
+    def faded(self, share: float) -> npt.NDArray[np.float64]:
+        """Return the sums, of which this share is left."""
+        return np.array(self.sums) * share
+
+
+@dataclass(frozen=True, slots=True)
 class Comparison:
     """Faded sums over forecasts of one lead: cells that were right, and cells compared."""
 
@@ -89,6 +103,7 @@ class ForecastState:
     agreement: Agreement | None = None
     """Agreement of all recent pairs of maps."""
     correlation: SpatialCorrelation | None = None
+    edge_errors: EdgeErrors | None = None
     recent: tuple[ShadeMap, ...] = ()
     """Whole maps, oldest first."""
     in_view: MaskMap | None = None
