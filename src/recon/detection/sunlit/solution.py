@@ -18,8 +18,10 @@ LEAST = 4
 """Keyframes for a median over time."""
 KNOWN_SHARE = 0.5
 """Share of the keyframes that must show a cell."""
-DOUBT = 1e-3
-"""A frame is unknown when another level is likelier than this, against the best."""
+DOUBT = 2e-2
+"""A frame is unknown when another level is likelier than this, against the best: an edge of shade
+that passes through the view shows within a minute which side is sun. With a twentieth of it such
+views stayed unknown for a minute more, and hardly a decision was better."""
 LAND_WEIGHT, EARLIER_WEIGHT = 0.5, 6.0
 """Weights of the land found from differences, and of an earlier flight's, in samples, against each
 cell's own samples."""
