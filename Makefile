@@ -81,9 +81,11 @@ test-rust: setup ## Tests of the wire crate
 	cargo test --workspace --quiet
 
 CORES := $(shell nproc 2>/dev/null || getconf _NPROCESSORS_ONLN)
+# One more than cores: some of them always wait for stations and commands that they have started.
+PROCESSES := $(shell expr $(CORES) + 1)
 # A file stays in one process, which makes what its tests share once. Files that fly come first, as tests/conftest.py
 # sorts them, so that no process ends long after the others.
-PYTEST := nice -n 5 $(RUN) python -m pytest -n $(CORES) --dist loadfile --no-loadscope-reorder
+PYTEST := nice -n 5 $(RUN) python -m pytest -n $(PROCESSES) --dist loadfile --no-loadscope-reorder
 CHOSEN := -m "not flight"
 
 # Tests of the gate and the watchdogs run once, with their branches counted where that is asked for.

@@ -186,10 +186,10 @@ test("draws a plain map, and the ground image if available", async ({ page }) =>
   await page.goto("/");
   await expect(page.getByText("No ground image yet")).toBeVisible();
   await expect.poll(() => drawnShare(page)).toBeGreaterThan(0.001);
-  expect(await drawnShare(page)).toBeLessThan(0.2);
+  expect(await drawnShare(page)).toBeLessThan(0.1);
   fake.showPicture(await fieldPicture(page));
   fake.send(busyState(0.1));
-  await expect.poll(() => drawnShare(page)).toBeGreaterThan(0.2);
+  await expect.poll(() => drawnShare(page)).toBeGreaterThan(0.1);
 });
 
 test("shows a lost connection while it lasts, and recovers", async ({ page }) => {

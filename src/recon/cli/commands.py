@@ -143,7 +143,7 @@ COMMANDS = {
     ),
     "verify": CommandSource(
         "verify:verify_command",
-        "Run all forecast methods over recorded maps and compare them with what came.",
+        "Run all forecast methods over recorded maps or light sensors, against what came.",
     ),
     "replay": CommandSource(
         "replay:replay_command",
