@@ -1,7 +1,6 @@
 """`recon verify` on light sensors: forecasts at their places, and maps against them."""
 
 from collections.abc import Iterator
-from datetime import datetime
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +12,7 @@ from recon.forecast import FORECASTERS
 from recon.geo import enu_from_geo, geo_from_enu
 from recon.model.arrays import FloatArray
 from recon.model.errors import RecordError
-from recon.model.units import NS_PER_S
+from recon.model.units import unix_ns
 from recon.product.flight import FlightData
 from recon.product.sun_at import shade_map
 from recon.record.raster.map_sequence import captured_utc, cells_at, map_files, read_map
@@ -25,7 +24,6 @@ from recon.score.map_verification import MapAtPlaces, MapScore, read_at, score_m
 from recon.score.point_verification import PointScores, verified_at_points
 from recon.score.table_rows import finest, percent, plain, table
 
-ENDINGS = (".csv", ".txt", ".npz", ".nc")
 BASELINES = ("persistence", "climatology")
 """Forecasts are held against both in the same run."""
 
@@ -130,7 +128,7 @@ def _of_folder(points: LightPoints, folder: Path) -> Iterator[MapAtPlaces]:
             raise RecordError(f"{file}: expected a map that states its time, as Recon's do")
         found = read_map(file, 1.0, 0.0)
         cells = cells_at(file, places, is_geographic=is_geographic)
-        yield MapAtPlaces(_utc_ns(utc), read_at(found.transmittance, cells))
+        yield MapAtPlaces(unix_ns(utc.timestamp()), read_at(found.transmittance, cells))
 
 
 def _of_flight(points: LightPoints, flight: FlightData) -> Iterator[MapAtPlaces]:
@@ -154,7 +152,3 @@ def _geographic(points: LightPoints) -> FloatArray:
     level = np.column_stack([points.east_m, points.north_m, np.zeros(len(points.names))])
     latitude_deg, longitude_deg, _height = geo_from_enu(points.frame, level)
     return np.column_stack([latitude_deg, longitude_deg])
-
-
-def _utc_ns(utc: datetime) -> int:
-    return round(utc.timestamp() * 1e6) * (NS_PER_S // 1_000_000)

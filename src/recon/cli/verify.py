@@ -15,12 +15,13 @@ from recon.cli.recorded_maps import (
     recorded_maps,
 )
 from recon.cli.reliability import reliability_png
-from recon.cli.verified_points import ENDINGS, verify_points
+from recon.cli.verified_points import verify_points
 from recon.forecast import FORECASTERS
 from recon.model.errors import RecordError
 from recon.score.forecast_figures import Calibration, LeadScore, SeenCells
 from recon.score.forecast_scoring import ForecastKey
 from recon.score.forecast_tables import leads_table
+from recon.score.light_tables import READERS
 from recon.score.settings import SCORE
 from recon.score.verification import NEAR_S, verified
 
@@ -47,13 +48,13 @@ def verify_command(
     ] = None,
 ) -> None:
     """Run all forecast methods over recorded maps or light sensors, against what came."""
-    if recorded_path.suffix.lower() in ENDINGS:
+    if recorded_path.suffix.lower() in READERS:
         if step_s is not None or (sun, shade) != (1.0, 0.0):
             raise RecordError("expected --step-s, --sun and --shade for a folder of rasters only")
         title, curves = verify_points(recorded_path, places, maps)
     elif places is not None or maps is not None:
         raise RecordError(
-            f"expected --places and --maps with a file of light sensors ({', '.join(ENDINGS)}), "
+            f"expected --places and --maps with a file of light sensors ({', '.join(READERS)}), "
             f"got {recorded_path}"
         )
     else:

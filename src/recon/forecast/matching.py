@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from recon.forecast.motion import ShadowMotion
-from recon.forecast.phase_correlation import between
+from recon.forecast.phase_correlation import between, by_velocity
 from recon.forecast.settings import ForecastSettings
 from recon.model.shade import FloatMap, ShadeMap
 from recon.model.units import ns_to_seconds
@@ -107,13 +107,10 @@ def mismatch_by_velocity(
         ]
     )
     sums = fft.fftshift(fft.irfft2(both, shape), axes=(1, 2))
-    half = round(settings.fastest_mps / settings.match_step_mps)
-    speeds_mps = np.arange(-half, half + 1, dtype=np.float32) * np.float32(settings.match_step_mps)
     gap_s = ns_to_seconds(now.at_ns - before.at_ns)
-    cells = speeds_mps * np.float32(gap_s / now.cell_m)
-    cols, rows = np.meshgrid(shape[1] // 2 + cells, shape[0] // 2 + cells)
+    fastest_mps, step_mps = settings.fastest_mps, settings.match_step_mps
     difference, variance, overlap = (
-        cv2.remap(each.astype(np.float32), cols, rows, cv2.INTER_LINEAR, borderValue=0.0)
+        by_velocity(each.astype(np.float32), gap_s, now.cell_m, fastest_mps, step_mps)
         for each in sums
     )
     is_enough = overlap >= LEAST_OVERLAP * min(before.cells, now.cells)

@@ -103,6 +103,19 @@ def _agreement(
     return shares
 
 
+def by_velocity(
+    surface: FloatMap, gap_s: float, cell_m: float, fastest_mps: float, step_mps: float
+) -> FloatMap:
+    """Return (N, N): a surface by shift, 0 in its middle, read at the shift that each velocity
+    makes in a time; rows from north to south, columns from west to east; 0 off the surface."""
+    half = round(fastest_mps / step_mps)
+    speeds_mps = np.arange(-half, half + 1, dtype=np.float32) * np.float32(step_mps)
+    cells = speeds_mps * np.float32(gap_s / cell_m)
+    cols, rows = np.meshgrid(surface.shape[1] // 2 + cells, surface.shape[0] // 2 + cells)
+    found = cv2.remap(surface, cols, rows, cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT)
+    return found.astype(np.float32, copy=False)
+
+
 def between(line: FloatMap, best: int) -> float:
     """Return the sub-cell peak of a parabola through three neighbours, in [-0.5, 0.5]."""
     if best in (0, len(line) - 1):

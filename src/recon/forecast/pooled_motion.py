@@ -16,7 +16,6 @@ are followed over sparse maps. Otherwise no motion is known.
 from dataclasses import replace
 from math import hypot
 
-import cv2
 import numpy as np
 
 from recon.forecast.matching import Explained, Mismatch, matched_map, mismatch_by_velocity
@@ -25,6 +24,7 @@ from recon.forecast.phase_correlation import (
     ShadeSpectrum,
     agreement_between,
     between,
+    by_velocity,
     spectrum_of,
 )
 from recon.forecast.settings import ForecastSettings
@@ -148,16 +148,8 @@ def _by_velocity(
     agreement = agreement_between(before, now, settings)
     if agreement is None:
         return None
-    half = round(settings.fastest_mps / settings.velocity_step_mps)
-    speeds_mps = np.arange(-half, half + 1, dtype=np.float32) * np.float32(
-        settings.velocity_step_mps
-    )
-    cells_per_mps = np.float32(ns_to_seconds(now.at_ns - before.at_ns) / now.grid.cell_m)
-    middle_row, middle_col = agreement.shape[0] // 2, agreement.shape[1] // 2
-    cols, rows = np.meshgrid(
-        middle_col + speeds_mps * cells_per_mps, middle_row + speeds_mps * cells_per_mps
-    )
     # Shifts of almost a grid overlap little: what agrees there is chance.
-    found = cv2.remap(agreement, cols, rows, cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT)
-    by_velocity: FloatMap = found.astype(np.float32, copy=False)
-    return by_velocity
+    gap_s = ns_to_seconds(now.at_ns - before.at_ns)
+    return by_velocity(
+        agreement, gap_s, now.grid.cell_m, settings.fastest_mps, settings.velocity_step_mps
+    )

@@ -155,13 +155,19 @@ def prior_sunlit(state: ForecastState, settings: ForecastSettings) -> float:
     return (views * state.sunlit_share + NO_KNOWLEDGE) / (views + 1.0)
 
 
+def sun_chance(transmittance: FloatMap, settings: ForecastSettings) -> FloatMap:
+    """Return the probability of sun where a map says this transmittance, of the same shape."""
+    probability = (transmittance - SUNLIT_TRANSMITTANCE) / (2.0 * settings.soft_edge) + 0.5
+    found: FloatMap = np.clip(probability, 1.0 - settings.surest, settings.surest)
+    return found
+
+
 def sunlit_now(shade: ShadeMap, prior: float, settings: ForecastSettings) -> FloatMap:
     """Return (R, C): each cell's probability of sun at the map's capture time.
 
     `prior` where the map is invalid; the lower the detection's confidence, the nearer to `prior`.
     """
-    probability = (shade.transmittance - SUNLIT_TRANSMITTANCE) / (2.0 * settings.soft_edge) + 0.5
-    probability = np.clip(probability, 1.0 - settings.surest, settings.surest)
+    probability = sun_chance(shade.transmittance, settings)
     mixed = np.where(shade.valid, prior + shade.confidence * (probability - prior), prior)
     return mixed.astype(np.float32)
 

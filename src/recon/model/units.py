@@ -17,6 +17,11 @@ def seconds_to_ns(seconds: float) -> int:
     return round(seconds * NS_PER_S)
 
 
+def unix_ns(unix_s: float) -> int:
+    """Return Unix seconds in nanoseconds, to the microsecond: a float holds no more of today."""
+    return round(unix_s * 1e6) * (NS_PER_S // 1_000_000)
+
+
 def ns_to_seconds(nanoseconds: int) -> float:
     """Return a duration in seconds."""
     return nanoseconds / NS_PER_S

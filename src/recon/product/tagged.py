@@ -14,7 +14,7 @@ import shapely  # type: ignore[import-untyped, unused-ignore]
 
 from recon.geo import enu_from_geo
 from recon.model.errors import RecordError
-from recon.model.units import NS_PER_S
+from recon.model.units import unix_ns
 from recon.product.flight import FlightData
 
 TABLE = "tags.csv"
@@ -71,7 +71,7 @@ def _photo(row: Mapping[str, str], flight: FlightData) -> TaggedPhoto:
     moment = datetime.fromisoformat(row["utc"])
     if moment.tzinfo is None:
         raise ValueError(f"expected a time in UTC, got {row['utc']!a:.40}")
-    at_ns = round(moment.timestamp() * 1e6) * (NS_PER_S // 1_000_000) - flight.utc_ahead_ns
+    at_ns = unix_ns(moment.timestamp()) - flight.utc_ahead_ns
     shape = shapely.from_wkt(row["footprint_wkt"])
     if shape.geom_type != "Polygon" or not 4 <= len(shape.exterior.coords) <= MOST_CORNERS:
         raise ValueError("expected a footprint of a few corners")

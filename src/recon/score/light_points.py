@@ -15,11 +15,11 @@ import numpy as np
 from recon.geo import cell_centres_m
 from recon.model.arrays import FloatArray, IntArray
 from recon.model.errors import RecordError
-from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
+from recon.model.geo import GroundGrid, LocalFrame
 from recon.model.shade import SUNLIT_TRANSMITTANCE, FloatMap, MaskMap, ShadeMap
 from recon.model.units import NS_PER_S
+from recon.score.verification import NOWHERE
 
-NOWHERE = LocalFrame(GeoPoint(0.0, 0.0, 0.0))
 FULL_PERCENTILE = 98.0
 DIFFUSE_SHARE = 0.25
 LEAST_CELL_M = 4.0

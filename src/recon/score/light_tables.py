@@ -6,7 +6,6 @@ form a row is one sensor's value. Times are ISO 8601 (UTC where no zone is state
 """
 
 import csv
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -17,7 +16,7 @@ import numpy as np
 
 from recon.model.arrays import FloatArray, IntArray
 from recon.model.errors import RecordError
-from recon.model.units import NS_PER_S
+from recon.model.units import NS_PER_S, unix_ns
 
 NAMES = {
     "time": ("time", "utc", "time_utc", "time_unix_s", "timestamp", "datetime", "unix"),
@@ -32,7 +31,7 @@ UNKNOWN = frozenset({"", "nan", "na", "n/a", "null", "none", "-"})
 MOST_BYTES = 500_000_000
 EARLIEST_S, LATEST_S = 1e8, 1e10
 """Unix seconds from 1973 to 2286: milliseconds are larger."""
-SECONDS_OF = {"second": 1.0, "minute": 60.0, "hour": 3600.0, "day": 86400.0}
+UNIX_TIME = "seconds since 1970-01-01"
 
 Places = Mapping[str, tuple[float, float]]
 
@@ -55,11 +54,10 @@ class LightTable:
 
 def read_table(path: Path) -> LightTable:
     """Return a file's table; raises `RecordError`."""
-    readers = {".csv": _csv_table, ".txt": _csv_table, ".npz": _npz_table, ".nc": _netcdf_table}
     try:
         if path.stat().st_size > MOST_BYTES:
             raise RecordError(f"{path}: expected at most {MOST_BYTES // 1_000_000} MB of values")
-        return readers[path.suffix.lower()](path)
+        return READERS[path.suffix.lower()](path)
     except OSError as problem:
         reason = problem.strerror or problem
         raise RecordError(f"{path}: expected a file of light sensors, got: {reason}") from problem
@@ -73,12 +71,8 @@ def read_places(path: Path) -> tuple[Places, bool]:
     except OSError as problem:
         raise RecordError(f"{path}: expected a CSV of places: {problem.strerror}") from problem
     at = _columns(head)
-    stated = {
-        key: [_number(path, line, row[at[key]]) for line, row in enumerate(rows, start=2)]
-        for key in _PLACE_KEYS & at.keys()
-    }
     if "sensor" in at:
-        places, is_geographic = _places([row[at["sensor"]].strip() for row in rows], stated)
+        places, is_geographic = _places_of_rows(path, rows, at)
         if places:
             return places, is_geographic
     raise RecordError(
@@ -123,6 +117,17 @@ def _places(names: Sequence[str], stated: Mapping[str, Sequence[float]]) -> tupl
 _PLACE_KEYS = frozenset(chain(*PLACE_PAIRS))
 
 
+def _places_of_rows(
+    path: Path, rows: Sequence[Sequence[str]], at: Mapping[str, int]
+) -> tuple[Places, bool]:
+    """Return the places that rows state of the sensor in them."""
+    stated = {
+        key: [_number(path, line, row[at[key]]) for line, row in enumerate(rows, start=2)]
+        for key in _PLACE_KEYS & at.keys()
+    }
+    return _places([row[at["sensor"]].strip() for row in rows], stated)
+
+
 def _long_form(
     path: Path, head: Sequence[str], rows: Sequence[Sequence[str]], at: Mapping[str, int]
 ) -> LightTable:
@@ -146,11 +151,7 @@ def _long_form(
     found = np.full((len(steps), len(names)), np.nan)
     found[row_of, sensors] = light
     repeated = len(rows) - len(np.unique(row_of * len(names) + sensors))
-    stated = {
-        key: [_number(path, line, row[at[key]]) for line, row in enumerate(rows, start=2)]
-        for key in _PLACE_KEYS & at.keys()
-    }
-    places, is_geographic = _places([row[at["sensor"]].strip() for row in rows], stated)
+    places, is_geographic = _places_of_rows(path, rows, at)
     at_ns = first_ns + (steps * step_ns).astype(np.int64)
     return LightTable(names, at_ns, found, places, is_geographic, repeated)
 
@@ -168,7 +169,7 @@ def _npz_table(path: Path) -> LightTable:
             arrays = {name: np.asarray(found[name]) for name in found}
     except (ValueError, KeyError) as problem:
         raise RecordError(f"{path}: expected an .npz of arrays, got: {problem}") from problem
-    return _of_arrays(path, arrays, 1.0, 0.0)
+    return _of_arrays(path, arrays)
 
 
 def _netcdf_table(path: Path) -> LightTable:
@@ -181,20 +182,21 @@ def _netcdf_table(path: Path) -> LightTable:
             name: np.ma.filled(np.ma.asarray(each[...], np.float64), np.nan)
             for name, each in found.items()
         }
-        units = next((each.units for name, each in found.items() if _key(name) == "time"), "")
-    match = re.fullmatch(r"(second|minute|hour|day)s? since (.+)", units.strip())
-    if match is None:
-        raise RecordError(f"{path}: expected time in units 'seconds since ...', got {units!a}")
-    try:
-        since_s = _datetime_s(match[2])
-    except ValueError as problem:
-        raise RecordError(f"{path}: expected an ISO 8601 time, got {units!a}") from problem
-    return _of_arrays(path, arrays, SECONDS_OF[match[1]], since_s)
+        named = next((name for name in found if _key(name) == "time"), None)
+        if named is not None:
+            about = found[named]
+            units, calendar = (getattr(about, what, "") for what in ("units", "calendar"))
+            try:
+                at = netCDF4.num2date(arrays[named], units, calendar or "standard")
+                arrays[named] = np.asarray(netCDF4.date2num(at, UNIX_TIME), np.float64)
+            except (ValueError, TypeError, AttributeError, OverflowError) as problem:
+                raise RecordError(
+                    f"{path}: expected time in units 'seconds since ...', got {units!a:.80}"
+                ) from problem
+    return _of_arrays(path, arrays)
 
 
-def _of_arrays(
-    path: Path, arrays: Mapping[str, np.ndarray], seconds: float, since_s: float
-) -> LightTable:
+def _of_arrays(path: Path, arrays: Mapping[str, np.ndarray]) -> LightTable:
     at = {_key(name): each for name, each in arrays.items()}
     values = [name for name, each in arrays.items() if each.ndim == 2]
     if "time" not in at or at["time"].ndim != 1 or len(values) != 1:
@@ -214,7 +216,7 @@ def _of_arrays(
     if len(names) != count:
         raise RecordError(f"{path}: expected {count} names of sensors, got {len(names)}")
     places, is_geographic = _places(names, stated)
-    times_s = at["time"].astype(np.float64) * seconds + since_s
+    times_s = at["time"].astype(np.float64)
     _expect_seconds(path, 0, times_s)
     times_ns = np.rint(times_s * 1e3).astype(np.int64) * (NS_PER_S // 1_000)
     return LightTable(names, times_ns, light, places, is_geographic)
@@ -265,13 +267,13 @@ def _time_ns(path: Path, line: int, text: str) -> int:
         at_s = float(text)
     except ValueError:
         try:
-            return round(_datetime_s(text) * 1e6) * (NS_PER_S // 1_000_000)
+            return unix_ns(_datetime_s(text))
         except ValueError:
             raise RecordError(
                 f"{path}, row {line}: expected a time in ISO 8601 or Unix seconds, got {text!a}"
             ) from None
     _expect_seconds(path, line, np.array([at_s]))
-    return round(at_s * 1e6) * (NS_PER_S // 1_000_000)
+    return unix_ns(at_s)
 
 
 def _datetime_s(text: str) -> float:
@@ -287,3 +289,7 @@ def _expect_seconds(path: Path, line: int, times_s: FloatArray) -> None:
             f"{path}{where}: expected Unix seconds, got {times_s[wrong][0]:g}"
             f"{' (milliseconds?)' if times_s[wrong][0] > LATEST_S else ''}"
         )
+
+
+READERS = {".csv": _csv_table, ".txt": _csv_table, ".npz": _npz_table, ".nc": _netcdf_table}
+"""By the ending of a file."""

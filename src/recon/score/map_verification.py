@@ -10,6 +10,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from recon.forecast import ForecastSettings
+from recon.forecast.state import sun_chance
 from recon.model.arrays import IntArray
 from recon.model.shade import SUNLIT_TRANSMITTANCE, FloatMap
 from recon.model.units import NS_PER_S
@@ -17,9 +19,7 @@ from recon.score.forecast_figures import LeadScore, SeenCells, score_cells
 from recon.score.light_points import LightPoints, is_sunlit
 
 NEAR_S = 2.5
-SOFT_EDGE, SUREST = 0.2, 0.97
-"""As a forecast reads a map at its own moment: half the width of the transition from shade to sun,
-and the largest probability."""
+SETTINGS = ForecastSettings()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -77,8 +77,9 @@ def score_maps(points: LightPoints, maps: Iterable[MapAtPlaces]) -> MapScore:
 def _add(found: MapScore, transmittance: FloatMap, direct: FloatMap) -> None:
     has_value, known = np.isfinite(direct), np.isfinite(transmittance)
     truth = is_sunlit(direct)
-    soft = (transmittance - SUNLIT_TRANSMITTANCE) / (2.0 * SOFT_EDGE) + 0.5
-    chances = np.clip(np.where(known, soft, 0.5), 1.0 - SUREST, SUREST)
+    # As a forecast reads a map at its own moment.
+    read = np.where(known, transmittance, SUNLIT_TRANSMITTANCE)
+    chances = sun_chance(read, SETTINGS).astype(np.float64)
     everywhere = np.ones_like(known)
     found.score += score_cells(chances, truth, everywhere, has_value & known)[SeenCells.ALL]
     said = np.where(known, np.where(is_sunlit(transmittance), "sun", "shade"), "unknown")
