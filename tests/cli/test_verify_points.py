@@ -77,23 +77,31 @@ def npz(folder: Path) -> list[object]:
     return [path]
 
 
-def netcdf(folder: Path) -> list[object]:
+def netcdf(folder: Path, unit: str = "seconds", unit_s: float = 1.0) -> list[object]:
     east_m, north_m = places()
     with netCDF4.Dataset(folder / "points.nc", "w") as file:
         file.createDimension("time", COUNT)
         file.createDimension("station", SENSORS)
         for name, over, values in (
-            ("time", ("time",), TIMES_S - BEGIN_S),
+            ("time", ("time",), (TIMES_S - BEGIN_S) / unit_s),
             ("east_m", ("station",), east_m),
             ("north_m", ("station",), north_m),
             ("ghi", ("time", "station"), light()),
         ):
             file.createVariable(name, "f8", over)[:] = values
-        file.variables["time"].units = f"seconds since {iso(BEGIN_S)}"
+        file.variables["time"].units = f"{unit} since {iso(BEGIN_S)}"
     return [folder / "points.nc"]
 
 
-@pytest.mark.parametrize("made", [long, npz, netcdf])
+def netcdf_of_days(folder: Path) -> list[object]:
+    return netcdf(folder, "days", 86_400.0)
+
+
+def netcdf_of_milliseconds(folder: Path) -> list[object]:
+    return netcdf(folder, "milliseconds", 1e-3)
+
+
+@pytest.mark.parametrize("made", [long, npz, netcdf, netcdf_of_days, netcdf_of_milliseconds])
 def test_every_form_of_a_file_states_the_same(tmp_path: Path, made) -> None:
     path, *beside = made(tmp_path)
     found, truth = read_points(path, beside[1] if beside else None), read_points(*wide(tmp_path))
