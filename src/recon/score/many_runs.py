@@ -5,12 +5,10 @@ back in the order in which they end.
 """
 
 import multiprocessing
-import os
 import socket
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from threading import Thread
 from typing import Any
 
 from recon.model.errors import ReconError
@@ -19,6 +17,7 @@ from recon.score.run import Report, run
 from recon.score.run_score import RunScore
 from recon.score.scenario import Scenario
 from recon.score.scenario_schema import ScenarioError
+from recon.station.kernel.method_process import end_with_parent
 
 CONNECT_WITHIN_S, WORKERS_WITHIN_S = 10.0, 600.0
 """A batch system may let the first worker wait for minutes."""
@@ -41,7 +40,7 @@ def on_cores(
     """
     # Forked processes would inherit threads of the linear algebra in any state.
     context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(jobs, context, initializer=_end_with_parent) as pool:
+    with ProcessPoolExecutor(jobs, context, initializer=end_with_parent) as pool:
         waiting = [pool.submit(run, scenario, seed, report) for seed in seeds]
         try:
             for done in as_completed(waiting):
@@ -54,21 +53,6 @@ def on_cores(
         finally:
             for each in waiting:
                 each.cancel()
-
-
-def _end_with_parent() -> None:
-    """End a process of the pool as soon as the command ends, even when killed.
-
-    Otherwise it would fly its run to the end, and then wait for the next one indefinitely.
-    """
-    parent = multiprocessing.parent_process()
-    assert parent is not None
-
-    def watch() -> None:
-        parent.join()
-        os._exit(1)
-
-    Thread(target=watch, daemon=True).start()
 
 
 def on_cluster(scenario: Scenario, seeds: Sequence[int], address: str) -> Iterator[RunScore]:

@@ -117,7 +117,7 @@ def packed(value: Any) -> bytes:
 def _serve(connection: Connection) -> None:
     """Answer jobs until the station ends: the process's own function."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the station stops it
-    Thread(target=_end_with_parent, daemon=True).start()
+    end_with_parent()
     # What jobs import: the first one is not to count as late for it.
     import_module("recon.station.imaging.shade")
     import_module("recon.station.operations.survey.planning")
@@ -139,9 +139,16 @@ def _answer(work: Callable[[Any], Any], given: Any) -> bytes:
         return packed((False, describe_fault(problem)))
 
 
-def _end_with_parent() -> None:
-    """End the process as soon as the station ends, even when it is killed during a job."""
+def end_with_parent() -> None:
+    """End this process as soon as the one that started it ends, even when that is killed.
+
+    Otherwise it would finish its work, and then wait for the next piece indefinitely.
+    """
     parent = multiprocessing.parent_process()
     assert parent is not None
-    parent.join()
-    os._exit(1)
+
+    def watch() -> None:
+        parent.join()
+        os._exit(1)
+
+    Thread(target=watch, daemon=True).start()
