@@ -24,6 +24,8 @@ test("plans a survey of a site region, flies it with two vehicles, pauses and ab
     const panel = page.getByRole("region", { name: "Survey", exact: true });
 
     await test.step("planned, nothing moves", async () => {
+      // Which drones are simulated is known shortly after where they are; the form folds then.
+      await expect(panel.getByRole("region", { name: "Rehearsal" })).toBeVisible();
       await panel.getByText("New survey").click();
       await panel.getByLabel("Region").selectOption("south-east field");
       await panel.getByLabel("Height, m").fill("40");

@@ -34,7 +34,9 @@ export function NewSurvey(props: {
   const { panels } = usePage();
   // What is to be pressed first stands alone.
   const isFirstForm = () => props.isFirst && !isRehearsal(fleet);
-  const [isOpen, setOpen] = createSignal(isFirstForm());
+  // A form that a person has opened or closed stays so: drones that come and go fold nothing away.
+  const [chosen, choose] = createSignal<boolean | null>(null);
+  const isOpen = () => chosen() ?? isFirstForm();
   const regions = () => (fleet.site?.areas ?? []).filter(({ kind }) => kind === "survey");
   return (
     <Show
@@ -53,8 +55,8 @@ export function NewSurvey(props: {
       </Show>
       <details
         class="section survey-new"
-        open={isFirstForm()}
-        onToggle={(event) => setOpen(event.currentTarget.open)}
+        open={isOpen()}
+        onToggle={({ currentTarget: { open } }) => open !== isOpen() && choose(open)}
       >
         <summary>{text.newSurvey.title}</summary>
         <Form

@@ -352,10 +352,14 @@ function type(label: string, value: string) {
   field(label).dispatchEvent(new FocusEvent("blur"));
 }
 
-function showForm(...vehicles: VehicleView[]) {
+function withRegion(...vehicles: VehicleView[]) {
   const areas = [area("survey", [0, 0], 50, { name: "south field" })];
   const base = station(vehicles);
-  page = renderPage(SurveyPanel, { ...base, site: base.site && { ...base.site, areas } });
+  return { ...base, site: base.site && { ...base.site, areas } };
+}
+
+function showForm(...vehicles: VehicleView[]) {
+  page = renderPage(SurveyPanel, withRegion(...vehicles));
 }
 
 describe("a new survey", () => {
@@ -568,6 +572,20 @@ describe("a new survey", () => {
     showForm(vehicle(1, { is_simulated: true }), vehicle(2));
     expect(page.root.textContent).not.toContain("Rehearse");
     expect(find<HTMLDetailsElement>(page.root, "details.survey-new").open).toBe(true);
+  });
+
+  it("stays open when a person has opened it, whatever drones come and go", async () => {
+    const simulated = [1, 2].map((number) => vehicle(number, { is_simulated: true }));
+    showForm(...simulated);
+    const form = find<HTMLDetailsElement>(page.root, "details.survey-new");
+    expect(form.open).toBe(false);
+    form.open = true;
+    form.dispatchEvent(new Event("toggle"));
+    for (const drones of [[...simulated, vehicle(3)], simulated]) {
+      page.receive(withRegion(...drones));
+      await settled();
+      expect(form.isConnected && form.open).toBe(true);
+    }
   });
 
   it("is not available without survey regions", () => {
