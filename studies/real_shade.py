@@ -34,7 +34,7 @@ from recon.model.arrays import FloatArray
 from recon.model.shade import SURE, ShadeMap, SunForecast
 from recon.model.units import NS_PER_S
 from recon.score.forecast_figures import LeadScore, SeenCells
-from recon.score.light_points import LightPoints
+from recon.light.points import LightPoints
 from recon.score.point_verification import PointScores, verified_at_points
 from recon.score.table_rows import NOTHING, fine, plain, table
 

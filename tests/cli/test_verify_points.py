@@ -14,8 +14,8 @@ from tests.product import made_flight
 
 from recon.cli.shadow_record import shadow_record_command
 from recon.geo import geo_from_enu
-from recon.score.light_files import read_points
-from recon.score.light_points import cells_of
+from recon.light.files import read_points
+from recon.light.points import cells_of
 
 BEGIN_S = 1_750_000_000
 COUNT, EVERY_S = 30, 10

@@ -9,8 +9,9 @@ from tests.detection.shaded_field import FRAME, DriftingShade
 from recon.forecast import FORECASTERS, ForecastSettings, ForecastState
 from recon.forecast.matching import Explained, matched_map, mismatch_by_velocity
 from recon.forecast.phase_correlation import between
+from recon.light.points import LightPoints
 from recon.model.geo import GroundGrid
-from recon.score.light_points import LightPoints, PointMaps
+from recon.score.point_maps import PointMaps
 
 WIDE = GroundGrid(FRAME, -1_000.0, 1_000.0, 8.0, 250, 250)
 SETTINGS = ForecastSettings()

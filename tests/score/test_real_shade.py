@@ -8,8 +8,8 @@ from studies.real_shade import hours
 from tests.conftest import real_data
 
 from recon.forecast import FORECASTERS
+from recon.light.points import LightPoints
 from recon.score.forecast_figures import SeenCells
-from recon.score.light_points import LightPoints
 from recon.score.point_verification import verified_at_points
 
 METHODS = {name: FORECASTERS[name] for name in ("advection", "persistence")}

@@ -10,6 +10,9 @@ from recon.cli.output import print_line
 from recon.cli.progress import progress_over
 from recon.forecast import FORECASTERS
 from recon.geo import enu_from_geo, geo_from_enu
+from recon.light.agreement import SAYS, SHOWN
+from recon.light.files import read_points
+from recon.light.points import LightPoints, cells_of
 from recon.model.arrays import FloatArray
 from recon.model.errors import RecordError
 from recon.model.units import unix_ns
@@ -18,8 +21,6 @@ from recon.product.sun_at import shade_map
 from recon.record.raster.map_sequence import captured_utc, cells_at, map_files, read_map
 from recon.score.forecast_figures import Calibration, LeadScore, SeenCells
 from recon.score.forecast_tables import leads_table
-from recon.score.light_files import read_points
-from recon.score.light_points import LightPoints, cells_of
 from recon.score.map_verification import MapAtPlaces, MapScore, read_at, score_maps
 from recon.score.point_verification import PointScores, verified_at_points
 from recon.score.table_rows import finest, percent, plain, table
@@ -85,25 +86,22 @@ def _ratio(scores: PointScores, name: str, base: str, lead_s: float) -> str:
 
 
 def _hits(found: MapScore) -> str:
-    rows = [
-        (said, *(str(found.hits.get((said, shown), 0)) for shown in ("sun", "shade")))
-        for said in ("sun", "shade", "unknown")
-    ]
-    brier, lit = found.score.brier, found.sunlit_share
+    counted = found.agreement
+    rows = [(said, *(str(counted.count(said, shown)) for shown in SHOWN)) for said in SAYS]
+    brier, lit = found.score.brier, counted.sunlit_share
     if brier is None:
         raise RecordError(
             f"expected maps that show the sensors at times they have values, got {found.maps} "
             f"maps: {found.alone} at other times, the rest of other places"
         )
-    right = sum(found.hits[one, one] for one in ("sun", "shade")) / found.score.cells
     return "\n".join(
         (
             "",
             table(("map says", "sensor in sun", "sensor in shade"), rows),
             "",
             f"{found.maps} maps, {found.alone} of them without values near their time",
-            f"right in {percent(right)} % of what the maps know; "
-            f"unknown {percent(found.unknown_share)} %",
+            f"right in {percent(counted.right / counted.known)} % of what the maps know; "
+            f"unknown {percent(counted.unknown_share)} %",
             f"Brier {finest(brier)}; {finest(lit * (1.0 - lit))} by the share in sun alone",
         )
     )

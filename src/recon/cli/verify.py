@@ -17,11 +17,11 @@ from recon.cli.recorded_maps import (
 from recon.cli.reliability import reliability_png
 from recon.cli.verified_points import verify_points
 from recon.forecast import FORECASTERS
+from recon.light.tables import READERS
 from recon.model.errors import RecordError
 from recon.score.forecast_figures import Calibration, LeadScore, SeenCells
 from recon.score.forecast_scoring import ForecastKey
 from recon.score.forecast_tables import leads_table
-from recon.score.light_tables import READERS
 from recon.score.settings import SCORE
 from recon.score.verification import NEAR_S, verified
 

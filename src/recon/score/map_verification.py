@@ -12,11 +12,12 @@ import numpy as np
 
 from recon.forecast import ForecastSettings
 from recon.forecast.state import sun_chance
+from recon.light.agreement import Agreement, compared
+from recon.light.points import LightPoints, is_sunlit
 from recon.model.arrays import IntArray
 from recon.model.shade import SUNLIT_TRANSMITTANCE, FloatMap
 from recon.model.units import NS_PER_S
 from recon.score.forecast_figures import LeadScore, SeenCells, score_cells
-from recon.score.light_points import LightPoints, is_sunlit
 
 NEAR_S = 2.5
 SETTINGS = ForecastSettings()
@@ -36,28 +37,10 @@ class MapScore:
     """Sums over maps and sensors."""
 
     score: LeadScore = field(default_factory=LeadScore)
-    hits: dict[tuple[str, str], int] = field(default_factory=dict)
-    """Count by what the map says (sun, shade, unknown) and what the sensor shows."""
+    agreement: Agreement = field(default_factory=Agreement)
     maps: int = 0
     alone: int = 0
     """Maps without a value near their time."""
-
-    @property
-    def counted(self) -> int:
-        """Sensors compared, of all maps."""
-        return sum(self.hits.values())
-
-    @property
-    def unknown_share(self) -> float:
-        """Share of them that the maps do not know."""
-        unknown = sum(count for (said, _shown), count in self.hits.items() if said == "unknown")
-        return unknown / self.counted if self.counted else 0.0
-
-    @property
-    def sunlit_share(self) -> float:
-        """Share of them in sun."""
-        lit = sum(count for (_said, shown), count in self.hits.items() if shown == "sun")
-        return lit / self.counted if self.counted else 0.0
 
 
 def score_maps(points: LightPoints, maps: Iterable[MapAtPlaces]) -> MapScore:
@@ -82,11 +65,7 @@ def _add(found: MapScore, transmittance: FloatMap, direct: FloatMap) -> None:
     chances = sun_chance(read, SETTINGS).astype(np.float64)
     everywhere = np.ones_like(known)
     found.score += score_cells(chances, truth, everywhere, has_value & known)[SeenCells.ALL]
-    said = np.where(known, np.where(is_sunlit(transmittance), "sun", "shade"), "unknown")
-    for one in ("sun", "shade", "unknown"):
-        for shown, is_so in (("sun", truth), ("shade", ~truth)):
-            count = int((has_value & is_so & (said == one)).sum())
-            found.hits[one, shown] = found.hits.get((one, shown), 0) + count
+    found.agreement += compared(transmittance, direct)
 
 
 def read_at(values: FloatMap, cells: tuple[IntArray, IntArray]) -> FloatMap:

@@ -12,13 +12,14 @@ from math import ceil
 import numpy as np
 
 from recon.forecast import Forecaster, ForecastSettings, ForecastState
+from recon.light.points import LightPoints, is_sunlit
 from recon.model.arrays import IntArray
 from recon.model.errors import RecordError
 from recon.model.shade import SURE, SunForecast
 from recon.model.units import NS_PER_S
 from recon.score.forecast_figures import LeadScore, score_cells
 from recon.score.forecast_scoring import ForecastKey
-from recon.score.light_points import LightPoints, PointMaps, is_sunlit
+from recon.score.point_maps import PointMaps
 
 LEADS_S = (15.0, 30.0, 60.0, 120.0, 300.0)
 EVERY_S = 30.0

@@ -1,8 +1,7 @@
-"""Light sensors on the ground (pyranometers, inverters, PAR loggers) as truth, and maps of them.
+"""Maps of the light between sensors on the ground.
 
-A sensor's index of light is its value over its own 98th percentile; a quarter of full light is
-diffuse, so the direct share is (index - 0.25) / 0.75. Between the places a map is linear over the
-triangles of a Delaunay triangulation, and unknown beyond them and beside sensors without a value.
+Between the places a map is linear over the triangles of a Delaunay triangulation, and unknown
+beyond them and beside sensors without a value.
 """
 
 from collections.abc import Iterator, Sequence
@@ -13,50 +12,18 @@ from math import ceil
 import numpy as np
 
 from recon.geo import cell_centres_m
-from recon.model.arrays import FloatArray, IntArray
+from recon.light.points import LightPoints, cells_of
+from recon.model.arrays import IntArray
 from recon.model.errors import RecordError
-from recon.model.geo import GroundGrid, LocalFrame
-from recon.model.shade import SUNLIT_TRANSMITTANCE, FloatMap, MaskMap, ShadeMap
-from recon.model.units import NS_PER_S
+from recon.model.geo import GroundGrid
+from recon.model.shade import FloatMap, ShadeMap
 from recon.score.verification import NOWHERE
 
-FULL_PERCENTILE = 98.0
-DIFFUSE_SHARE = 0.25
 LEAST_CELL_M = 4.0
 SHARPEST_SHARE = 0.15
 """Of the usual distance between two sensors: how fine a map is at a sensor itself."""
 MOST_CELLS_ACROSS = 96
 """Maps of more cells cost time and show nothing more: places are some tenths of them apart."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class LightPoints:
-    """Values of N sensors at T times, all on one clock; times rise strictly."""
-
-    names: tuple[str, ...]
-    times_ns: IntArray
-    """(T,) Unix time."""
-    light: FloatArray
-    """(T, N) in the sensors' own unit; NaN where unknown."""
-    east_m: FloatArray
-    north_m: FloatArray
-    """(N,) from the origin of `frame`."""
-    frame: LocalFrame | None
-    """None where only metres are known."""
-    notes: tuple[str, ...] = ()
-    """What was skipped, and how often."""
-
-    @property
-    def direct(self) -> FloatMap:
-        """Return (T, N): the share of the clear sky's direct beam, in [0, 1]; NaN if unknown."""
-        index = self.light / np.nanpercentile(self.light, FULL_PERCENTILE, axis=0)
-        share = (index - DIFFUSE_SHARE) / (1.0 - DIFFUSE_SHARE)
-        return np.clip(share, 0.0, 1.0).astype(np.float32)
-
-    @property
-    def step_s(self) -> float:
-        """Usual seconds between two times: their median."""
-        return float(np.median(np.diff(self.times_ns))) / NS_PER_S
 
 
 @dataclass(frozen=True)
@@ -132,18 +99,3 @@ class PointMaps:
         weights = np.concatenate([two, 1.0 - two.sum(axis=-1, keepdims=True)], axis=-1)
         weights[triangle < 0] = np.nan
         return found.simplices[triangle].astype(np.int64), weights.astype(np.float32)
-
-
-def cells_of(
-    grid: GroundGrid, east_m: FloatArray, north_m: FloatArray
-) -> tuple[IntArray, IntArray]:
-    """Return row and column (N,) of the cells that places are in; some may be off the grid."""
-    rows = np.floor((grid.north_m - north_m) / grid.cell_m).astype(np.int64)
-    cols = np.floor((east_m - grid.west_m) / grid.cell_m).astype(np.int64)
-    return rows, cols
-
-
-def is_sunlit(direct: FloatMap) -> MaskMap:
-    """Return which known values are in sun."""
-    with np.errstate(invalid="ignore"):
-        return direct >= SUNLIT_TRANSMITTANCE

@@ -5,12 +5,13 @@ from pathlib import Path
 import numpy as np
 
 from recon.geo import enu_from_geo
+from recon.light.points import FULL_PERCENTILE, LightPoints
+from recon.light.rows import Places
+from recon.light.tables import LightTable, read_places, read_table
 from recon.model.arrays import FloatArray
 from recon.model.errors import RecordError
 from recon.model.geo import GeoPoint, LocalFrame
 from recon.model.units import NS_PER_S
-from recon.score.light_points import FULL_PERCENTILE, LightPoints
-from recon.score.light_tables import LightTable, Places, read_places, read_table
 
 FEWEST_SENSORS, FEWEST_TIMES = 3, 3
 WIDEST_M = 20_000.0

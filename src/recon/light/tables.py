@@ -1,0 +1,237 @@
+"""Files of light sensors as tables: CSV in wide and in long form, NumPy's .npz, NetCDF.
+
+Names of columns and arrays are those of `rows.NAMES`, in any case; `rows` states what lines are.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+
+from recon.light.rows import (
+    PLACE_KEYS,
+    Places,
+    cells_of_lines,
+    columns,
+    expect_cells,
+    expect_once,
+    expect_seconds,
+    key_of,
+    number,
+    placed,
+    read_head,
+    read_row,
+)
+from recon.model.arrays import FloatArray, IntArray
+from recon.model.errors import RecordError
+from recon.model.units import NS_PER_S
+
+Read = TypeVar("Read")
+MOST_BYTES = 500_000_000
+UNIX_TIME = "seconds since 1970-01-01"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LightTable:
+    """Values of sensors as a file states them: times may be repeated and in any order."""
+
+    names: tuple[str, ...]
+    times_ns: IntArray
+    """(T,)"""
+    light: FloatArray
+    """(T, N); NaN where unknown."""
+    places: Places
+    """By name: east and north in metres, or latitude and longitude in degrees."""
+    is_geographic: bool
+    repeated: int = 0
+    """Values of one sensor at a time that another one has; the last counts."""
+
+
+def read_table(path: Path) -> LightTable:
+    """Return a file's table; raises `RecordError`."""
+    try:
+        if path.stat().st_size > MOST_BYTES:
+            raise RecordError(f"{path}: expected at most {MOST_BYTES // 1_000_000} MB of values")
+        return READERS[path.suffix.lower()](path)
+    except OSError as problem:
+        reason = problem.strerror or problem
+        raise RecordError(f"{path}: expected a file of light sensors, got: {reason}") from problem
+
+
+def read_places(path: Path) -> tuple[Places, bool]:
+    """Return the places in a CSV of sensors, and whether they are geographic; raises
+    `RecordError`."""
+    try:
+        head, rows = _rows(path)
+    except OSError as problem:
+        raise RecordError(f"{path}: expected a CSV of places: {problem.strerror}") from problem
+    at = columns(head)
+    if "sensor" in at:
+        places, is_geographic = _places_of_rows(path, rows, at)
+        if places:
+            return places, is_geographic
+    raise RecordError(
+        f"{path}: expected columns sensor and lat, lon or sensor and east_m, north_m, "
+        f"got {', '.join(head)}"
+    )
+
+
+def long_table(
+    names: Sequence[str],
+    times_ns: IntArray,
+    light: FloatArray,
+    places: Places,
+    is_geographic: bool,
+) -> LightTable:
+    """Return a table of values of one sensor and one time each, at the sensors' usual step."""
+    columns = tuple(dict.fromkeys(names))
+    number_of = {name: number for number, name in enumerate(columns)}
+    sensors = np.array([number_of[name] for name in names], dtype=np.int64)
+    step_ns = _usual_step_ns(times_ns, sensors)
+    # Loggers do not write at one moment: each value counts for the step that it is nearest to.
+    first_ns = int(times_ns.min())
+    steps, row_of = np.unique(np.rint((times_ns - first_ns) / step_ns), return_inverse=True)
+    found = np.full((len(steps), len(columns)), np.nan)
+    found[row_of, sensors] = light
+    repeated = len(names) - len(np.unique(row_of * len(columns) + sensors))
+    at_ns = first_ns + (steps * step_ns).astype(np.int64)
+    return LightTable(columns, at_ns, found, places, is_geographic, repeated)
+
+
+def _csv_table(path: Path) -> LightTable:
+    cells, lines = _rows(path)
+    try:
+        head = read_head(cells)
+    except RecordError as problem:
+        raise RecordError(f"{path}: {problem}") from problem
+    rows = [_at_line(path, n, read_row, head, cells) for n, cells in enumerate(lines, start=2)]
+    if head.is_long:
+        names = [row.names[0] for row in rows]
+        stated = [row.place or {} for row in rows]
+        places = placed(names, {key: [each[key] for each in stated] for key in stated[0]})
+        light = np.array([row.values[0] for row in rows], dtype=np.float64)
+        times_ns = np.array([row.time_ns for row in rows], dtype=np.int64)
+        return long_table(names, times_ns, light, *places)
+    timed = [row for row in rows if row.time_ns is not None]
+    light = np.array([row.values for row in timed], dtype=np.float64)
+    times_ns = np.array([row.time_ns for row in timed], dtype=np.int64)
+    places = placed(head.names, {row.place_key: row.values for row in rows if row.place_key})
+    return LightTable(head.names, times_ns, light.reshape(len(timed), len(head.names)), *places)
+
+
+def _at_line(path: Path, line: int, read: Callable[..., Read], *given: Any) -> Read:
+    """Return what is read of a line; raises `RecordError` that names it."""
+    try:
+        return read(*given)
+    except RecordError as problem:
+        raise RecordError(f"{path}, row {line}: {problem}") from problem
+
+
+def _places_of_rows(
+    path: Path, rows: Sequence[Sequence[str]], at: Mapping[str, int]
+) -> tuple[Places, bool]:
+    """Return the places that rows state of the sensor in them."""
+    stated = {
+        key: [_at_line(path, n, number, row[at[key]]) for n, row in enumerate(rows, start=2)]
+        for key in PLACE_KEYS & at.keys()
+    }
+    return placed([row[at["sensor"]].strip() for row in rows], stated)
+
+
+def _usual_step_ns(times_ns: IntArray, sensors: IntArray) -> int:
+    """Return the median time between two values of one sensor."""
+    gaps = [np.diff(np.unique(times_ns[sensors == number])) for number in np.unique(sensors)]
+    together = np.concatenate([*gaps, np.array([], dtype=np.int64)])
+    return max(1, int(np.median(together))) if len(together) else NS_PER_S
+
+
+def _npz_table(path: Path) -> LightTable:
+    try:
+        with np.load(path, allow_pickle=False) as found:
+            arrays = {name: np.asarray(found[name]) for name in found}
+    except (ValueError, KeyError) as problem:
+        raise RecordError(f"{path}: expected an .npz of arrays, got: {problem}") from problem
+    return _of_arrays(path, arrays)
+
+
+def _netcdf_table(path: Path) -> LightTable:
+    """Return the table of a NetCDF file: one variable by time and sensor, its times and places."""
+    import netCDF4
+
+    with netCDF4.Dataset(path) as file:
+        found = {name: each for name, each in file.variables.items() if each.dtype.kind in "fiu"}
+        arrays = {
+            name: np.ma.filled(np.ma.asarray(each[...], np.float64), np.nan)
+            for name, each in found.items()
+        }
+        named = next((name for name in found if key_of(name) == "time"), None)
+        if named is not None:
+            about = found[named]
+            units, calendar = (getattr(about, what, "") for what in ("units", "calendar"))
+            try:
+                at = netCDF4.num2date(arrays[named], units, calendar or "standard")
+                arrays[named] = np.asarray(netCDF4.date2num(at, UNIX_TIME), np.float64)
+            except (ValueError, TypeError, AttributeError, OverflowError) as problem:
+                raise RecordError(
+                    f"{path}: expected time in units 'seconds since ...', got {units!a:.80}"
+                ) from problem
+    return _of_arrays(path, arrays)
+
+
+def _of_arrays(path: Path, arrays: Mapping[str, np.ndarray]) -> LightTable:
+    at = {key_of(name): each for name, each in arrays.items()}
+    values = [name for name, each in arrays.items() if each.ndim == 2]
+    if "time" not in at or at["time"].ndim != 1 or len(values) != 1:
+        raise RecordError(
+            f"{path}: expected an array time and one of values by time and sensor, "
+            f"got {', '.join(f'{name} {each.shape}' for name, each in arrays.items())}"
+        )
+    light = arrays[values[0]].astype(np.float64)
+    count = light.shape[1]
+    if len(light) != len(at["time"]):
+        raise RecordError(
+            f"{path}: expected {len(at['time'])} rows in {values[0]}, as times, got {len(light)}"
+        )
+    given = at.get("sensor")
+    names = tuple(map(str, range(count) if given is None else given.tolist()))
+    stated = {key: at[key].tolist() for key in PLACE_KEYS & at.keys() if at[key].shape == (count,)}
+    if len(names) != count:
+        raise RecordError(f"{path}: expected {count} names of sensors, got {len(names)}")
+    places, is_geographic = placed(names, stated)
+    times_s = at["time"].astype(np.float64)
+    for at_s in (times_s.min(), times_s.max()) if len(times_s) else ():
+        _expect_seconds(path, at_s)
+    times_ns = np.rint(times_s * 1e3).astype(np.int64) * (NS_PER_S // 1_000)
+    return LightTable(names, times_ns, light, places, is_geographic)
+
+
+def _rows(path: Path) -> tuple[list[str], list[list[str]]]:
+    """Return head and rows of a CSV, by the separator that its first line has most of."""
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError as problem:
+        raise RecordError(f"{path}: expected a CSV in UTF-8, got other bytes") from problem
+    rows = cells_of_lines(text.splitlines(), text.partition("\n")[0])
+    if len(rows) < 2:
+        raise RecordError(f"{path}: expected a head and rows of values, got {len(rows)} lines")
+    head = [each.strip() for each in rows[0]]
+    try:
+        expect_once(head)
+    except RecordError as problem:
+        raise RecordError(f"{path}: {problem}") from problem
+    for line, row in enumerate(rows[1:], start=2):
+        _at_line(path, line, expect_cells, head, row)
+    return head, rows[1:]
+
+
+def _expect_seconds(path: Path, at_s: float) -> None:
+    try:
+        expect_seconds(at_s)
+    except RecordError as problem:
+        raise RecordError(f"{path}: {problem}") from problem
+
+
+READERS = {".csv": _csv_table, ".txt": _csv_table, ".npz": _npz_table, ".nc": _netcdf_table}
+"""By the ending of a file."""
