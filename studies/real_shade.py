@@ -30,11 +30,11 @@ from tests.forecast.moving_shade import noisy_map
 from recon.forecast import FORECASTERS, Forecaster, ForecastSettings, ForecastState
 from recon.forecast.followed import with_recent
 from recon.forecast.state import forecast_of, prior_sunlit, sunlit_now, with_map
+from recon.light.points import LightPoints
 from recon.model.arrays import FloatArray
 from recon.model.shade import SURE, ShadeMap, SunForecast
 from recon.model.units import NS_PER_S
 from recon.score.forecast_figures import LeadScore, SeenCells
-from recon.light.points import LightPoints
 from recon.score.point_verification import PointScores, verified_at_points
 from recon.score.table_rows import NOTHING, fine, plain, table
 
