@@ -21,7 +21,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from recon.cli.demo import DEMO_SEED, demo_scenario_file
+from recon.cli.demo import DEMO_SCENARIO, DEMO_SEED
+from recon.cli.own_files import scenario_file
 from recon.cli.scripted_operator import fly_surveys
 from recon.record.mcap.mcap_file import compressor
 from recon.record.mcap.mcap_read import McapReading, RecordMessage
@@ -70,7 +71,7 @@ class Costs:
 async def fly(config: RunConfig, costs: Costs, seconds: float, image_format: str) -> list[Any]:
     """Run the station with the demo's drones; return the costs at the beginning and the end."""
     moments: list[Any] = []
-    path = demo_scenario_file()
+    path = scenario_file(DEMO_SCENARIO)
     tasks: list[asyncio.Task[None]] = []
     processes: list[asyncio.subprocess.Process] = []
 
@@ -112,7 +113,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as text:
         folder = Path(text)
         watch(costs)
-        scenario = load_scenario(demo_scenario_file())
+        scenario = load_scenario(scenario_file(DEMO_SCENARIO))
         config = RunConfig(
             site=scenario.site,
             link_port=0,

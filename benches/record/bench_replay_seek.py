@@ -23,7 +23,8 @@ import msgspec
 from benches.record.bench_record import Costs, fly, watch
 from foxglove_schemas_protobuf.Grid_pb2 import Grid
 
-from recon.cli.demo import demo_scenario_file
+from recon.cli.demo import DEMO_SCENARIO
+from recon.cli.own_files import scenario_file
 from recon.record.mcap.foxglove import SHADE_TOPIC, SUN_TOPIC
 from recon.record.mcap.mcap_file import KEYFRAMES_TOPIC, STEPS_TOPIC, McapFile
 from recon.record.mcap.mcap_read import McapReading, RecordAttachment, RecordMessage
@@ -47,7 +48,7 @@ def recorded(folder: Path, image_format: str) -> Path:
     costs = Costs()
     watch(costs)
     config = RunConfig(
-        site=load_scenario(demo_scenario_file()).site,
+        site=load_scenario(scenario_file(DEMO_SCENARIO)).site,
         link_port=0,
         http_port=0,
         audit=AuditPlace(folder / "audit"),

@@ -11,13 +11,13 @@ from typing import Annotated, Any
 import msgspec
 import typer
 
-import recon
 from recon.cli.demo_ports import free_port
 from recon.cli.demo_records import ABOUT_RECORDS, DEMO_DETAIL, demos_folder, keep_records_small
 from recon.cli.foreground import print_now, run_in_loop
 from recon.cli.opened_site import opened_site
 from recon.cli.options import with_options
-from recon.cli.run import HAS_GUARD, console_folder, guard_port, print_started
+from recon.cli.own_files import console_folder, scenario_file
+from recon.cli.run import HAS_GUARD, guard_port, print_started
 from recon.cli.scripted_operator import fly_surveys
 from recon.model.geo import LatLon
 from recon.score import Scenario, ScenarioError, load_scenario
@@ -41,7 +41,7 @@ BATTERIES = ("--imager-endurance-min", "600", "--battery-swap-min", "3")
 """As in a scenario: the imaging drone stays up, others fly again three minutes after landing."""
 SIMULATED = "SIM-"
 """The serials of simulated drones begin with it."""
-DEMO_SCENARIO = "cumulus-40.toml"
+DEMO_SCENARIO = "cumulus-40"
 DEMO_PLANNER = "sunlit_first"
 """The demo's planner; the usual scenario's file names the one to compare others with, and this one
 states what it does and why."""
@@ -54,7 +54,12 @@ class DemoOptions:
     """What is demonstrated, and where the station listens."""
 
     scenario: Annotated[
-        Path | None, typer.Option(help="Scenario file; default: fair-weather cumulus.")
+        Path | None,
+        typer.Option(
+            parser=scenario_file,
+            metavar="SCENARIO",
+            help="File, or name of one of Recon's own; default: fair-weather cumulus.",
+        ),
     ] = None
     site: Annotated[
         Path | None,
@@ -160,7 +165,7 @@ def demo_command(options: DemoOptions) -> None:
 
 def _played(options: DemoOptions) -> "Demo":
     """Return the demonstration of a scenario; raises `ReconError`."""
-    path = demo_scenario_file() if options.scenario is None else options.scenario
+    path = scenario_file(DEMO_SCENARIO) if options.scenario is None else options.scenario
     played, seed = load_scenario(path), options.seed
     if options.scenario is None:
         played = replace(played, survey=replace(played.survey, planner=DEMO_PLANNER))
@@ -238,18 +243,6 @@ def _made_in_browser(folder: Path, http_port: int) -> int:
 def _print_page(url: str) -> None:
     print_now(f"console: {url}")
     print_now("Open it in a browser: it asks where the field is. Ctrl+C ends the demo.")
-
-
-def demo_scenario_file() -> Path:
-    """Return the demonstration's scenario: inside the package, or in a checkout.
-
-    Raises `ScenarioError` where there is neither.
-    """
-    package = Path(recon.__file__).parent
-    for folder in (package / "scenarios", package.parent.parent / "scenarios"):
-        if (folder / DEMO_SCENARIO).is_file():
-            return folder / DEMO_SCENARIO
-    raise ScenarioError(f"{DEMO_SCENARIO} not found beside the package; use --scenario")
 
 
 class Demo:

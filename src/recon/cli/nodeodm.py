@@ -21,6 +21,7 @@ from rich.progress import Progress
 
 from recon.cli.output import printable
 from recon.model.errors import RecordError
+from recon.model.extras import from_extra
 from recon.product.linked_folder import put_in_place
 from recon.product.odm import GEO
 from recon.product.write import write_text
@@ -38,7 +39,8 @@ START_ONE = "docker run -p 3000:3000 opendronemap/nodeodm"
 
 def opened_node(url: str) -> "Node":
     """Return a NodeODM that answers; raises `RecordError` with what to do."""
-    from pyodm import Node
+    with from_extra("nodeodm", "--nodeodm"):
+        from pyodm import Node
 
     place = _place(url)
     node = Node.from_url(url)

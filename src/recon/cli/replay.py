@@ -81,7 +81,7 @@ def _show(file: Path, http_port: int, site: Path | None) -> None:
     By default on any free port: the usual address stays a live station's, where stops go.
     """
     from recon.cli.foreground import print_now, run_in_loop
-    from recon.cli.run import console_folder
+    from recon.cli.own_files import console_folder
     from recon.station.host.replay_run import ReplayStation, run_replay
 
     async def started(url: str, station: ReplayStation) -> None:
@@ -120,14 +120,14 @@ def _file_and_methods(words: list[str], asks: bool) -> tuple[Path, dict[str, str
 
 def _asked(file: Path, methods: dict[str, str], scenario: Path | None) -> Checked:
     """Run a flight again, and print what other methods find in its images."""
-    from recon.cli.demo import demo_scenario_file
+    from recon.cli.own_files import scenarios_folder
     from recon.score.truth import truth_of
     from recon.score.what_if import WhatIf
 
     other = WhatIf(methods.get("detection"), methods.get("forecast"))
 
     def begin(start: FlightStart) -> None:
-        other.truth = truth_of(start.scenario, scenario, demo_scenario_file().parent)
+        other.truth = truth_of(start.scenario, scenario, scenarios_folder())
 
     found = check(file, _report, begin, other.take)
     for line in other.report().splitlines():

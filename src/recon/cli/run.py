@@ -14,6 +14,7 @@ from recon.cli.foreground import print_now, run_in_loop
 from recon.cli.methods import check_methods
 from recon.cli.opened_site import opened_site
 from recon.cli.options import with_options
+from recon.cli.own_files import console_folder
 from recon.cli.qr import qr_lines
 from recon.cli.users import UsersOption
 from recon.detection import DetectionSettings
@@ -209,15 +210,6 @@ def print_started(started: Started) -> None:
         print_now(f"certificate SHA-256: {started.network.fingerprint}")
         for line in qr_lines(started.network.login_url):
             print_now(line)
-
-
-def console_folder() -> Path | None:
-    """Return the folder of the built console: inside the package, or web/dist of a checkout."""
-    package = Path(recon.__file__).parent
-    for folder in (package / "console", package.parent.parent / "web" / "dist"):
-        if (folder / "index.html").is_file():
-            return folder
-    return None
 
 
 def openapi_command() -> None:

@@ -11,6 +11,7 @@ from typing import Annotated
 import typer
 
 from recon.cli.methods import warn_of_methods
+from recon.cli.own_files import SCENARIO_SUFFIX, ScenarioArgument, scenario_file
 from recon.cli.progress import usable_cores
 from recon.forecast import FORECASTERS
 from recon.record.files.users_file import state_folder
@@ -23,9 +24,7 @@ from recon.score.scenario_schema import METHOD_NAMES
 from recon.score.survey_table import survey_table
 
 MOST_SEEDS = 10_000
-SCENARIO_SUFFIX = ".toml"
 
-ScenarioArgument = Annotated[Path, typer.Argument(help="Scenario file, as in scenarios/.")]
 SeedsOption = Annotated[int, typer.Option(help="Number of runs, each with another sky.")]
 FirstOption = Annotated[int, typer.Option(help="Seed of the first run; counts up.")]
 MethodOption = Annotated[str | None, typer.Option(help="Overrides the scenario's method.")]
@@ -127,7 +126,7 @@ class Chosen:
         if against in METHOD_NAMES["detection"]:
             return path, self.scenario(path, detection=against)
         if against is not None and against.endswith(SCENARIO_SUFFIX):
-            return Path(against), self.scenario(Path(against))
+            return scenario_file(against), self.scenario(scenario_file(against))
         return None
 
 

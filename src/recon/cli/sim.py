@@ -11,6 +11,7 @@ import typer
 from recon.cli.commands import App
 from recon.cli.foreground import print_now, until_stopped
 from recon.cli.options import with_options
+from recon.cli.own_files import ScenarioArgument
 from recon.cli.sim_options import (
     FleetOptions,
     RunningOptions,
@@ -110,7 +111,7 @@ _AIRBORNE = {None: Airborne.IMAGER, True: Airborne.ALL, False: Airborne.NONE}
 @with_options
 def scenario_command(
     running: RunningOptions,
-    scenario: Annotated[Path, typer.Argument(help="A scenario file, as in scenarios/.")],
+    scenario: ScenarioArgument,
     start_ns: Annotated[
         int | None, typer.Option(hidden=True, help="Zero of the world's time (monotonic clock).")
     ] = None,

@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
-from recon.cli.demo import demo_scenario_file
 from recon.cli.opened_flight import opened_flight
+from recon.cli.own_files import scenarios_folder
 from recon.cli.progress import progress_over
 from recon.model.errors import RecordError
 from recon.product.flight import FlightData
@@ -72,7 +72,7 @@ def photos_command(
 
 def simulated_truth(flight: FlightData, scenario: Path | None) -> Truth:
     """Return a flight's simulated world; raises `RecordError` for one of real drones."""
-    truth = truth_of(flight.scenario, scenario, demo_scenario_file().parent)
+    truth = truth_of(flight.scenario, scenario, scenarios_folder())
     if truth is None:
         raise RecordError(
             f"{flight.path}: expected a simulated flight, as recon demo records one, got one that "

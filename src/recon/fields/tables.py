@@ -6,6 +6,7 @@ from typing import Any
 from recon.fields.names import name_column
 from recon.fields.projection import to_globe
 from recon.fields.shape import FieldFileError, Found
+from recon.model.extras import from_extra
 
 DRIVERS = frozenset({"ESRI Shapefile", "GPKG"})
 """GDAL has many more, of which some read other files or the network when a file asks for it."""
@@ -14,7 +15,8 @@ MOST_LAYERS = 200
 
 def read_tables(path: str, most_features: int) -> Found:
     """Return the shapes of all layers. Raises `FieldFileError`."""
-    import pyogrio
+    with from_extra("imports", "a Shapefile or GeoPackage", FieldFileError):
+        import pyogrio
 
     _leave_out_other_drivers()
     try:

@@ -26,6 +26,7 @@ from recon.light.rows import (
 )
 from recon.model.arrays import FloatArray, IntArray
 from recon.model.errors import RecordError
+from recon.model.extras import from_extra
 from recon.model.units import NS_PER_S
 
 Read = TypeVar("Read")
@@ -158,7 +159,8 @@ def _npz_table(path: Path) -> LightTable:
 
 def _netcdf_table(path: Path) -> LightTable:
     """Return the table of a NetCDF file: one variable by time and sensor, its times and places."""
-    import netCDF4
+    with from_extra("netcdf", "NetCDF"):
+        import netCDF4
 
     with netCDF4.Dataset(path) as file:
         found = {name: each for name, each in file.variables.items() if each.dtype.kind in "fiu"}

@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from recon.geo import cell_centres_m, sun_position
 from recon.model.errors import RecordError
+from recon.model.extras import from_extra
 from recon.model.geo import GroundGrid, LatLon
 from recon.model.units import NS_PER_S
 from recon.product.flight import FULL, UNKNOWN, FlightData
@@ -42,7 +43,8 @@ def write_netcdf(flight: FlightData, out: Path, open_record: Opener = opened) ->
 
     Raises `RecordError` without shade maps or for a damaged record, and OSError.
     """
-    import netCDF4
+    with from_extra("netcdf", "NetCDF"):
+        import netCDF4
 
     if flight.grid is None or not flight.maps:
         raise RecordError(

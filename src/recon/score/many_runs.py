@@ -12,6 +12,7 @@ from concurrent.futures.process import BrokenProcessPool
 from typing import Any
 
 from recon.model.errors import ReconError
+from recon.model.extras import from_extra
 from recon.score.kept_runs import flown_code
 from recon.score.run import Report, run
 from recon.score.run_score import RunScore
@@ -61,13 +62,9 @@ def on_cluster(scenario: Scenario, seeds: Sequence[int], address: str) -> Iterat
     Runs of a worker that is lost are flown by another one. Raises `ScenarioError` without Dask,
     without scheduler or workers at the address, and for workers that have other code.
     """
-    try:
+    with from_extra("cluster", "--cluster, here and on every worker,", ScenarioError):
         import distributed
-    except ImportError:
-        raise ScenarioError(
-            "--cluster: expected the package distributed, which is not installed;"
-            " install it here and on every worker: pip install 'recon-gcs[cluster]'"
-        ) from None
+
     try:
         client = distributed.Client(address, timeout=CONNECT_WITHIN_S)
     except (OSError, ValueError) as problem:
