@@ -1,6 +1,7 @@
 """Single decisions of the planner, from forecasts that are sure."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from tests.guidance.survey.fields import FRAME, planned, rectangle, survey_of
@@ -43,6 +44,11 @@ def forecast(sunlit: object, now_s: float = 0.0) -> SunForecast:
         method="made",
         velocity_mps=(1.0, 0.0),
     )
+
+
+def still(sunlit: object, now_s: float = 0.0) -> SunForecast:
+    """The same, where the shadows' motion is not known."""
+    return replace(forecast(sunlit, now_s), velocity_mps=None)
 
 
 def decided(

@@ -1,6 +1,5 @@
 """The planner that flies what is in sun first: whole surveys, and single decisions."""
 
-import math
 from dataclasses import replace
 from itertools import combinations, pairwise
 
@@ -17,6 +16,7 @@ from tests.guidance.survey.decisions import (
     decided,
     flown_rows,
     forecast,
+    still,
 )
 from tests.guidance.survey.fields import planned
 from tests.guidance.survey.flyers import (
@@ -230,39 +230,38 @@ class TestSurveys:
         state, _missions = after(state, 410.0, missions[0].number)
         assert rows <= set(flown_rows(state, "S-1"))
 
-    def test_the_first_missions_wait_until_the_shadows_motion_is_known(self) -> None:
-        def half(east_m: float, _north_m: float, _lead_s: float) -> bool:
+    def test_before_motion_is_known_sunlit_rows_are_begun_and_decided_on_again(self) -> None:
+        """The climb loses no time; where it goes is decided when the motion is known, at the latest
+        after 9 s."""
+
+        def west(east_m: np.ndarray, _north_m: np.ndarray, _lead_s: float) -> np.ndarray:
             return east_m < 180.0
 
+        def moved(east_m: np.ndarray, _north_m: np.ndarray, lead_s: float) -> np.ndarray:
+            return (east_m < 180.0) == (lead_s < 10.0)
+
+        here = Surveyor("S-1", (-100.0, 60.0)), Surveyor("S-2", (-100.0, 180.0))
+        state, missions = decided(still(west), *here, now_s=1.0)
+        assert [each.serial for each in missions] == ["S-1", "S-2"]
+        assert decided(still(west, 3.0), *here, state=state, now_s=3.0)[1] == ()
+        known = decided(forecast(moved, 3.0), *here, state=state, now_s=3.0)
+        assert {each.text for each in known[0].decisions.values()} != {
+            each.text for each in state.decisions.values()
+        }
+        assert decided(forecast(moved, 4.0), *here, state=known[0], now_s=4.0)[1] == ()
+        late, _missions = decided(still(moved, 16.0), *here, state=state, now_s=16.0)
+        assert not any(flight.is_in_any_light for flight in late.flights.values())
+
+    def test_where_shade_is_flown_first_the_first_missions_wait_for_the_motion(self) -> None:
+        def far(east_m: np.ndarray, _north_m: np.ndarray, _lead_s: float) -> np.ndarray:
+            return east_m > 1_000.0
+
         here = Surveyor("S-1", (0.0, 60.0)), Surveyor("S-2", (0.0, 180.0))
-        still = replace(forecast(half), velocity_mps=None)
-        state, missions = decided(still, *here, now_s=1.0)
+        state, missions = decided(still(far), *here, now_s=1.0)
         assert (missions, state.reason) == ((), "waiting: how shadows move is not known yet")
-        assert len(decided(forecast(half, 3.0), *here, state=state, now_s=3.0)[1]) == 2
         # Where no motion is found it does not wait for ever.
-        late = replace(forecast(half, 16.0), velocity_mps=None)
-        assert len(decided(late, *here, state=state, now_s=16.0)[1]) == 2
-        # Once a vehicle has flown, no other waits.
-        state, _missions = decided(forecast(half, 3.0), *here, state=state, now_s=3.0)
-        done = replace(here[0], ended_mission=1), here[1]
-        later = replace(forecast(half, 9.0), velocity_mps=None)
-        assert len(decided(later, *done, state=state, now_s=9.0)[1]) == 1
-
-    @pytest.mark.parametrize(("shaded_m", "waits"), [(-math.inf, False), (60.0, True)])
-    def test_a_view_without_an_edge_of_shade_shows_no_motion_to_wait_for(
-        self, shaded_m: float, waits: bool
-    ) -> None:
-        """All lies in sun now, and most of it in shade when a round would pass: nothing in view
-        says from where that comes, unless an edge of it does."""
-
-        def fading(east_m: np.ndarray, _north_m: np.ndarray, lead_s: float) -> np.ndarray:
-            return (east_m >= shaded_m) & (lead_s < 60.0)
-
-        here = Surveyor("S-1", (0.0, 60.0)), Surveyor("S-2", (0.0, 180.0))
-        still = replace(forecast(fading), velocity_mps=None)
-        state, missions = decided(still, *here, now_s=1.0)
-        assert (state.reason == "waiting: how shadows move is not known yet") is waits
-        assert bool(missions) is not waits
+        state, _missions = decided(still(far, 16.0), *here, state=state, now_s=16.0)
+        assert state.reason == "under way"
 
     def test_a_forecast_that_sees_nothing_now_shows_no_motion_to_wait_for(self) -> None:
         """What a shade map showed before still counts."""
@@ -337,8 +336,8 @@ class TestSurveys:
 
     def test_where_all_is_in_sun_none_waits_for_its_motion(self) -> None:
         here = Surveyor("S-1", (0.0, 60.0)), Surveyor("S-2", (0.0, 180.0))
-        still = replace(forecast(lambda _east, _north, _lead: True), velocity_mps=None)
-        assert len(decided(still, *here, now_s=1.0)[1]) == 2
+        clear = still(lambda _east, _north, _lead: True)
+        assert len(decided(clear, *here, now_s=1.0)[1]) == 2
 
     def test_another_vehicle_in_the_way_bars_none(self) -> None:
         sun = forecast(lambda _east, _north, _lead: True)

@@ -1,7 +1,7 @@
 """Time at which a vehicle passes a route's missing ground, and how much is in sun by then."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import dist, exp, inf
 from typing import NamedTuple
 
@@ -33,15 +33,18 @@ class Passing:
         """The missing ground that is passed."""
         return sum(each.missing_m2 for each in self.passes)
 
-    def lit_m2(self, expected: ExpectedSun, later_s: float = 0.0, patience_s: float = inf) -> float:
-        """Return the ground expected in sun when it is passed, with a start later by `later_s`.
+    def until(self, until_s: float) -> "Passing":
+        """Return what of it is passed by then, and its first part always."""
+        later = (each for each in self.passes[1:] if each.at_s <= until_s)
+        return replace(self, passes=(*self.passes[:1], *later))
+
+    def lit_m2(self, expected: ExpectedSun, patience_s: float = inf) -> float:
+        """Return the ground expected in sun when it is passed.
 
         With a patience, ground passed after that long counts for a third, as in a search.
         """
         return sum(
-            each.missing_m2
-            * expected.at(each.segment, each.at_s + later_s)
-            * exp(-each.at_s / patience_s)
+            each.missing_m2 * expected.at(each.segment, each.at_s) * exp(-each.at_s / patience_s)
             for each in self.passes
         )
 

@@ -220,10 +220,6 @@ class SurveySettings:
     """Share of a round's missing ground expected in sun when it passes, from which on it is flown:
     choosing takes longer than it gains."""
 
-    round_without_motion_sun_share: float = 0.8
-    """A round of which this much is expected in sun is flown before the shadows' motion is known:
-    what is in sun without any shade near stays so."""
-
     clear_view: float = 0.99
     """Share of the view in sun from which on no edge of shade can show a motion: the planner does
     not wait for one. It is so under thin uniform cloud."""

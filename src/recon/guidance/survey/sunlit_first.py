@@ -7,9 +7,10 @@ once. One call of `sunlit_first`:
    photos have counted.
 2. Without known light it is `lawnmower_once`: rows are flown in whatever light, until it is known.
    A vehicle that is still on its way to its first row by then is decided on as at the end of a row.
-3. Before the first mission it waits some seconds until a forecast knows how the shadows move:
-   without that, what lies in sun now seems to stay there. Where most will be in sun, or nothing in
-   view is in shade, it does not wait.
+3. In the first seconds no forecast knows how the shadows move, and what lies in sun now seems to
+   stay there. Where some ground lies in sun, a round of the lawnmower begins at once, so that the
+   climb loses no time; a vehicle before its first row is decided on when the motion is known, as
+   at the end of a row. Elsewhere the vehicles wait on the ground until then.
 4. The survey is done when enough is imaged in sun, or its budget is spent, and all have ended.
 5. For each vehicle without a mission: its **share** of the missing ground is what it would fly if
    all finished at the same time, in rows side by side, so that vehicles keep apart. Over its share
@@ -25,8 +26,8 @@ once. One call of `sunlit_first`:
    refuse them. They are flown once it is in contact again, or dismissed by an operator.
 9. Missions may be replaced under way, mostly at the end of a row (`mission_changes`).
 10. If no vehicle is busy and a round of the lawnmower would image most of what is missing in
-   sun, by the forecast at the moments at which it would pass, that round is flown: choosing takes
-   longer.
+   sun, by the forecast at the moments at which it would pass, that round is flown, also where more
+   would be in sun after some seconds: choosing takes longer.
 
 Each decision leaves a sentence. What a forecast does not know is its prior, so flights over ground
 whose light is unknown are worth something, and rows in shade are flown when nothing else is left:
@@ -48,6 +49,7 @@ from recon.guidance.survey.mission_changes import (
     on_closed_ground,
     with_ends_passed,
 )
+from recon.guidance.survey.passing import Passing
 from recon.guidance.survey.rounds import (
     Step,
     ended,
@@ -183,6 +185,8 @@ def _replace_missions(
 ) -> Step:
     """Replace missions under way, where that is worth it."""
     missions: tuple[MissionAssignment, ...] = ()
+    if _lacks_motion(state, moment.sun, moment.now_ns):
+        in_any_light = ()
     for serial in dict.fromkeys((*closed, *at_end, *in_any_light)):
         choice = moment.choice(state, serial)
         if serial in closed:
@@ -201,16 +205,26 @@ def _decide_idle(state: SurveyState, moment: PlanningMoment) -> Step:
     if not choices:
         return state, ()
     whole = _round(choices) if len(choices) == len(moment.able) else None
-    if _awaits_motion(state, whole, moment.sun, moment.now_ns):
-        return replace(state, reason="waiting: how shadows move is not known yet"), ()
     rows = whole.rows if whole is not None and whole.is_worth else NO_ROUTES
+    is_unsure = not state.missions and _lacks_motion(state, moment.sun, moment.now_ns)
+    if is_unsure:
+        if whole is None or not whole.begins_in_sun:
+            return replace(state, reason="waiting: how shadows move is not known yet"), ()
+        rows = whole.rows
     missions: tuple[MissionAssignment, ...] = ()
     for each in choices:
         choice = replace(each, state=state)
         own = rows.get(choice.surveyor.serial)
         state, mission = choice.decide() if own is None else choice.fly_all(own)
         missions += mission
-    return state, missions
+    return _decided_again(state) if is_unsure else state, missions
+
+
+def _decided_again(state: SurveyState) -> SurveyState:
+    """Have all missions with rows decided on once more before their first rows."""
+    for serial, flight in state.flights.items():
+        state = state.with_flight(serial, replace(flight, is_in_any_light=bool(flight.route)))
+    return state
 
 
 @dataclass(frozen=True, slots=True)
@@ -218,10 +232,11 @@ class _Round:
     """A round of the lawnmower over all that is missing, with each vehicle's rows."""
 
     rows: Routes
-    lit_share: float
-    """Share of its ground that is expected in sun when they pass."""
+    begins_in_sun: bool
+    """What is flown first has enough sun to take off for."""
     is_worth: bool
-    """Most of it is, and waiting does not bring more into sun than is flown meanwhile."""
+    """It begins in sun, and most of it is in sun when they pass. That more would be after some
+    seconds is no reason not to fly it: then each vehicle chooses by itself, which takes longer."""
 
 
 def _round(choices: Sequence[VehicleChoice]) -> _Round | None:
@@ -233,26 +248,23 @@ def _round(choices: Sequence[VehicleChoice]) -> _Round | None:
     settings, surveyors = state.plan.settings, [each.surveyor for each in choices]
     rows = shares(state.plan, missing_pieces(state, segments, is_free), surveyors)
     passed = [each.passing(rows.get(each.surveyor.serial, ())) for each in choices]
-    lit_m2 = sum(each.lit_m2(expected) for each in passed)
-    missing_m2 = float(expected.missing_m2[is_free].sum())
-    flown_m2ps = settings.expected_rate * missing_m2 / max(each.ends_s for each in passed)
-    gained_by_waiting = any(
-        sum(each.lit_m2(expected, wait_s) for each in passed) - lit_m2 > wait_s * flown_m2ps
-        for wait_s in expected.moments_s.tolist()
-    )
-    is_worth = lit_m2 >= settings.round_sun_share * missing_m2 and not gained_by_waiting
-    return _Round(rows, lit_m2 / missing_m2, is_worth)
+    first = [each.until(settings.committed_s) for each in passed]
+    lit_share, lit_first = _lit_share(passed, expected), _lit_share(first, expected)
+    begins_in_sun = lit_first >= settings.takeoff_probability
+    return _Round(rows, begins_in_sun, begins_in_sun and lit_share >= settings.round_sun_share)
 
 
-def _awaits_motion(
-    state: SurveyState, whole: _Round | None, sun: SunForecast | None, now_ns: int
-) -> bool:
-    """Whether to wait some seconds for the shadows' motion, before any vehicle flies."""
-    if state.missions > 0 or sun is None or sun.velocity_mps is not None:
+def _lit_share(passed: Sequence[Passing], expected: ExpectedSun) -> float:
+    """Return the share of the ground passed that is expected in sun by then."""
+    passed_m2 = sum(each.missing_m2 for each in passed)
+    return sum(each.lit_m2(expected) for each in passed) / max(passed_m2, 1.0)
+
+
+def _lacks_motion(state: SurveyState, sun: SunForecast | None, now_ns: int) -> bool:
+    """Whether the shadows' motion is not known yet and may be in some seconds."""
+    if sun is None or sun.velocity_mps is not None:
         return False
     settings = state.plan.settings
-    if whole is not None and whole.lit_share >= settings.round_without_motion_sun_share:
-        return False
     in_view = np.isfinite(sun.horizon_s)
     is_lit = in_view & (sun.sun_probability[0] > SURE / 2)
     if is_lit.sum() >= settings.clear_view * in_view.sum():
