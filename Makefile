@@ -20,7 +20,7 @@ RUN := $(UV) run --locked --quiet
 FUZZ_SECONDS ?= 60
 WEB_SOURCES := $(shell find web/src web/public -type f ! -name schema.d.ts 2>/dev/null) web/index.html web/package.json web/vite.config.ts
 
-.PHONY: help setup demo run test test-all test-rust test-python flights test-web test-e2e android-core android test-android study-android fuzz-android coverage coverage-safety check check-rust check-python check-web format bench fuzz study mutants docs web clean
+.PHONY: help setup demo run wheel test test-all test-rust test-python flights test-web test-e2e android-core android test-android study-android fuzz-android coverage coverage-safety check check-rust check-python check-web format bench fuzz study mutants docs web clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -76,6 +76,9 @@ web/node_modules/.stamp: web/package.json web/package-lock.json
 	@tools/require.sh node npm
 	npm --prefix web ci --silent --no-audit --no-fund
 	@touch $@
+
+wheel: setup web ## Build the wheel for other computers (Linux, x86-64): with the console, nothing to compile
+	$(RUN) --group wheel python -m tools.wheel
 
 test-rust: setup ## Tests of the wire crate
 	cargo test --workspace --quiet
@@ -187,4 +190,4 @@ format: setup web/node_modules/.stamp ## Format all sources
 	$(RUN) ruff check --fix .
 
 clean: ## Remove build output
-	rm -rf .venv target android/target android/*/target web/dist web/node_modules .tools
+	rm -rf .venv build target android/target android/*/target web/dist web/node_modules .tools
