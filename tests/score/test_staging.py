@@ -13,6 +13,7 @@ from recon.score.simulation import simulation_of
 from recon.sim.app.faults import FaultKind
 from recon.sim.camera.field import FieldRenderer
 from recon.sim.fleet import IMAGER_SERIAL, build_fleet
+from recon.site import demo_site_folder
 
 FOLDER = Path(__file__).parents[2] / "scenarios"
 ON_DEMO = SMALL.replace(
@@ -28,6 +29,14 @@ def every_scenario() -> list[Scenario]:
 @pytest.fixture(scope="module")
 def scenarios() -> list[Scenario]:
     return every_scenario()
+
+
+def test_a_scenario_of_the_demonstrations_site_loads_wherever_it_is(tmp_path: Path) -> None:
+    copy = tmp_path / "mine.toml"
+    copy.write_bytes((FOLDER / "cumulus-40.toml").read_bytes())
+    scenario = load_scenario(copy)
+    assert scenario.site.name == "demo field"
+    assert scenario.files == (demo_site_folder(),)
 
 
 def test_region_and_pads_lie_inside_the_fence_by_its_margin(scenarios: list[Scenario]) -> None:

@@ -24,7 +24,7 @@ from recon.score.scenario_schema import (
     key_lines,
 )
 from recon.score.scenario_sky import clouds_of
-from recon.score.staging import staged
+from recon.score.staging import site_folder, staged
 from recon.sim.app.fault_file import FaultScript, load_faults
 from recon.sim.app.faults import InjectedFault, RandomFault, parse_fault
 from recon.sim.world import SunSettings, WindSettings
@@ -56,6 +56,13 @@ def load_scenario(path: Path) -> Scenario:
     except msgspec.ValidationError as problem:
         raise errors.error(validation_error(problem, data, ScenarioFile, "")) from problem
     return _scenario(path, file, errors)
+
+
+def _files(path: Path, file: ScenarioFile) -> tuple[Path, ...]:
+    """Return what a scenario is read from besides its own file."""
+    folder, faults = file.site.folder, file.fault_file
+    site = () if folder is None else (site_folder(path, folder),)
+    return site if faults is None else (*site, path.parent / faults)
 
 
 def _nans(value: object, key: str) -> Iterator[str]:
@@ -109,7 +116,7 @@ def _scenario(path: Path, file: ScenarioFile, errors: ScenarioErrors) -> Scenari
         survey=survey,
         methods=methods,
         limit_s=60.0 * file.task.limit_min,
-        files=tuple(path.parent / name for name in (file.site.folder, file.fault_file) if name),
+        files=_files(path, file),
     )
     plan = plan_survey(survey, scenario.frame)
     if not isinstance(plan, SurveyPlan):

@@ -18,7 +18,7 @@ from recon.score.scenario_schema import (
     ScenarioImagerTable,
 )
 from recon.sim.fleet import IMAGER_SERIAL
-from recon.site import Site, SiteError, load_site
+from recon.site import Site, SiteError, demo_site_folder, load_site
 
 PADS_APART_M = 25.0
 PADS_OFF_M = 30.0
@@ -43,7 +43,7 @@ def staged(path: Path, file: ScenarioFile, survey: Survey, errors: ScenarioError
     """
     table = file.site
     if table.folder is not None:
-        return _on_folder(path.parent / table.folder, file, errors)
+        return _on_folder(site_folder(path, table.folder), file, errors)
     latitude, longitude, altitude = (
         table.latitude_deg,
         table.longitude_deg,
@@ -65,6 +65,16 @@ def staged(path: Path, file: ScenarioFile, survey: Survey, errors: ScenarioError
         moves_upwind=imager.is_upwind or survey.upwind_allowed,
     )
     return Staged(_with_abilities(site, fleet), frame, fleet, imager)
+
+
+def site_folder(path: Path, named: str) -> Path:
+    """Return the site's folder that a scenario file names, from its own place.
+
+    The demonstration's site is part of the package: wherever that is installed, and wherever a
+    copy of the scenario is, `recon/site/demo` is it.
+    """
+    demo = demo_site_folder()
+    return demo if Path(named).parts[-3:] == demo.parts[-3:] else path.parent / named
 
 
 def _on_folder(folder: Path, file: ScenarioFile, errors: ScenarioErrors) -> Staged:
