@@ -2,14 +2,17 @@
 
 import json
 import time
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from tests.fetching.file_server import file_server, send
 from tests.site.weather_answer import FIRST, OFFSET_S, answer
 from typer.testing import CliRunner, Result
 
 from recon.cli.commands import app
+from recon.model.airspace import Region
 from recon.site import load_site
 from recon.site.expected_wind import wind_report
 
@@ -65,11 +68,16 @@ def test_hours_follow_from_fetched_weather(folder: Path, monkeypatch: pytest.Mon
     ]
     checked = run("site", "check", str(folder)).output
     assert "weather of 127.0.0.1, fetched 3 days ago, until 2026-06-22 23:00 there\n" in checked
-    (line,) = wind_report(load_site(folder), time.time())
+    site = load_site(folder)
+    (line,) = wind_report(site, time.time())
     assert line == (
         "until maps show the shadows' motion, 10.0 m/s towards 45 degrees is expected: the wind at "
         "850 hPa by the weather, fetched 3 days ago"
     )
+    field = Region(np.array([[0.0, 0.0], [300.0, 0.0], [300.0, 300.0], [0.0, 300.0]]))
+    bounded = replace(site, layers=replace(site.layers, boundary=field))
+    _, crossed = wind_report(bounded, time.time())
+    assert crossed.startswith("shade crosses the site in 42 s then")  # its diagonal at 10 m/s
     at(60 * 3600.0, monkeypatch)
     assert "there: it is over, and is not used" in run("site", "check", str(folder)).output
     assert wind_report(load_site(folder), time.time()) == ()

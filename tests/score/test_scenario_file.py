@@ -39,6 +39,8 @@ EXPECTED = {
     "auto-exposure-hard",
     "cumulus-40-wide",
     "cumulus-60-wide",
+    "fast-cumulus",
+    "fast-cumulus-wide",
     "cumulus-40-upwind",
     "cumulus-40-tilted",
     "two-layers-wide",
