@@ -164,6 +164,7 @@ fuzz: ## Fuzz the deframer and the packet decoder for a minute each (needs a nig
 study: setup ## Long runs: the sky against measurements, random fences, fleets and closed loops, 100,000 simulated seconds, mutants (an hour)
 	$(RUN) python -m studies.sky_statistics
 	$(RUN) --group study python -m studies.real_shade
+	$(RUN) --group study python -m studies.real_sky
 	$(RUN) python -m studies.registration
 	$(RUN) python -m studies.tagging
 	$(RUN) python -m studies.mosaic
