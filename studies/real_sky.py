@@ -87,7 +87,7 @@ def _later(direct: FloatArray, steps: int) -> float:
 
 def _apart(direct: FloatArray, points: LightPoints) -> float:
     """Return the mean correlation of pairs of places about `FAR_M` apart."""
-    together = np.corrcoef(direct.T)
+    together = np.atleast_2d(np.corrcoef(direct.T))
     far_m = np.hypot(
         points.east_m[:, np.newaxis] - points.east_m, points.north_m[:, np.newaxis] - points.north_m
     )
