@@ -12,6 +12,7 @@ from tests.patient_loop import run_patiently
 
 from recon.api import streams
 from recon.api.security import LOCAL_PERSON, Access
+from recon.client import Station as RemoteStation
 from recon.model.person import Role
 
 NAME = "a-name-of-a-owner-01"
@@ -168,3 +169,21 @@ class TestOrders:
         client = Client(application(FakeStation()))
         asked = {"serials": ["A"], "order": {"kind": "hover"}}
         assert client.post("/api/orders", json=asked).status_code == 200
+
+
+def test_a_client_is_an_operator_only_while_it_says_so() -> None:
+    """A gateway that nobody sits at must not keep *operator gone* from acting."""
+
+    async def main() -> None:
+        station = FakeStation()
+        async with asyncio.timeout(PATIENCE_S), streaming(station) as address:
+            async with RemoteStation(address.replace("ws", "http", 1), is_operator=False) as client:
+                assert held(station) == frozenset()
+                await client.act_as_operator(True)
+                while not client.takes_steered_orders or not held(station):
+                    await asyncio.sleep(0.01)
+                await client.act_as_operator(False)
+                await until_held(station, set())
+                assert not client.takes_steered_orders
+
+    run_patiently(main())

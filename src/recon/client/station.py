@@ -14,13 +14,14 @@ from recon.client.messages import (
     MoveUpwindStatus,
     OrderMessage,
     OrderStatus,
+    ReceivedState,
     ResultMessage,
     SideStepStatus,
     StateMessage,
     StopLatchStatus,
     VehicleReturn,
 )
-from recon.client.order import OrderApi, VehicleAnswer
+from recon.client.order import Order, OrderApi, VehicleAnswer
 from recon.client.site import SiteCommands
 from recon.client.surveys import SurveyCommands
 from recon.client.telemetry import Telemetry
@@ -44,8 +45,12 @@ class Station:
         *,
         fingerprint: str | None = None,
         answer_within_s: float = 5.0,
+        is_operator: bool = True,
     ) -> None:
         """Parse a station's address; raises `AddressError`. Opens nothing yet.
+
+        A program that nobody sits at is no operator (`is_operator`): its connection does not count
+        as somebody present, and it can give no steered orders.
 
         `fingerprint` is the SHA-256 of the certificate of an `https` address, as the station
         prints it; without one the certificate must be of an authority that this computer trusts.
@@ -57,7 +62,7 @@ class Station:
 
         self.address = parse_address(url, token, fingerprint)
         trust = CertificateTrust(self.address)
-        self._stream = Stream(self.address, trust=trust)
+        self._stream = Stream(self.address, trust=trust, is_operator=is_operator)
         self._http = Http(self.address, answer_within_s, trust)
         self._order_api = OrderApi(self._http, self._stream)
         self.fleet = FleetCommands(self._order_api)
@@ -90,6 +95,20 @@ class Station:
     ) -> None:
         await self.close()
 
+    async def act_as_operator(self, is_operator: bool) -> None:
+        """Count as an operator from now on, or no longer: steered orders of before end."""
+        await self._stream.act_as_operator(is_operator)
+
+    async def next_state(self, number: int, timeout_s: float) -> tuple[ReceivedState, float] | None:
+        """Return the first whole state after a number, and its age in seconds; None on timeout."""
+        state = await self._stream.after(number, timeout_s)
+        return None if state is None else (state, self._stream.age_s(state))
+
+    @property
+    def takes_steered_orders(self) -> bool:
+        """Whether the stream that steered orders depend on is open."""
+        return self._stream.owner is not None
+
     async def vehicle(self, serial: str, timeout_s: float = 30.0) -> Vehicle:
         """Return a vehicle once it is connected with live telemetry.
 
@@ -111,6 +130,10 @@ class Station:
             f"expected {serial} to be connected within {timeout_s:g} s; the station knows {known}: "
             "check the serial number, and that its app is connected"
         )
+
+    async def order(self, serial: str, body: Body, *, takeoff: bool = False) -> Order | Refusal:
+        """Send one order to one vehicle, as the methods of `Vehicle` do; raises as they do."""
+        return await self._order_api.send_one(serial, body, takeoff)
 
     def known(self, serial: str) -> Vehicle:
         """Return a vehicle by its serial number without waiting for a connection."""

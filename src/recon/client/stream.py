@@ -83,7 +83,12 @@ class Stream:
         address: Address,
         now_ns: Callable[[], int] | None = None,
         trust: CertificateTrust | None = None,
+        *,
+        is_operator: bool = True,
     ) -> None:
+        """`is_operator`: steered orders may depend on it, and it counts as somebody present."""
+        self._is_operator = is_operator
+        self._connection: ClientConnection | None = None
         self.now_ns = now_ns or time.monotonic_ns
         self.newest: ReceivedState | None = None
         self.owner: str | None = None
@@ -108,6 +113,13 @@ class Stream:
             await asyncio.wait((self._reading,))
             if not self._reading.cancelled():
                 self._reading.result()
+
+    async def act_as_operator(self, is_operator: bool) -> None:
+        """Open the stream anew as an operator's, or as one that only reads; steered orders end."""
+        if is_operator != self._is_operator:
+            self._is_operator = is_operator
+            if self._connection is not None:
+                await self._connection.close()
 
     async def after(self, number: int, timeout_s: float) -> ReceivedState | None:
         """Return the newest state once its number is larger than `number`; None on timeout.
@@ -147,14 +159,14 @@ class Stream:
             await asyncio.sleep(min(pause_s, LONGEST_PAUSE_S))
 
     async def _read_connection(self) -> None:
-        owner = token_urlsafe(24)
+        owner = token_urlsafe(24) if self._is_operator else None
         await self._trust.prepare()
         try:
             async with (
                 _open(self._address, self._trust, owner) as connection,
                 _keepalives(connection),
             ):
-                self.owner = owner
+                self.owner, self._connection = owner, connection
                 await self._read(connection)
         except InvalidStatus as problem:
             status = problem.response.status_code
@@ -177,7 +189,7 @@ class Stream:
                 ) from problem
             raise
         finally:
-            self.owner = None
+            self.owner = self._connection = None
 
     async def _read(self, connection: ClientConnection) -> None:
         while True:
@@ -232,9 +244,9 @@ async def _keepalives(connection: ClientConnection) -> AsyncIterator[None]:
         task.cancel()
 
 
-def _open(address: Address, trust: CertificateTrust, owner: str) -> connect:
+def _open(address: Address, trust: CertificateTrust, owner: str | None) -> connect:
     return _ConnectWithoutRedirect(
-        f"{address.stream}?owner={owner}",
+        address.stream if owner is None else f"{address.stream}?owner={owner}",
         additional_headers=address.headers,
         ssl=trust.context if address.is_secure else None,
         compression=None,

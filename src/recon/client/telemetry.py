@@ -84,6 +84,8 @@ class Telemetry(msgspec.Struct, frozen=True, kw_only=True):
     `staleness` classifies the age of the core telemetry; act only on live values.
     """
 
+    number: int = 0
+    """Constant while the station runs; 0: not identified."""
     serial: str | None
     link_id: int | None
     name: str
