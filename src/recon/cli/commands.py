@@ -121,6 +121,7 @@ COMMANDS = {
         "demo:demo_command", "Run the station with simulated drones that survey a field."
     ),
     "sim": CommandSource("sim:sim_app", "Run simulated companion apps that connect to a station."),
+    "gateway": CommandSource("gateway:gateway_app", "Show the vehicles to other ground stations."),
     "methods": CommandSource(
         "methods:methods_command",
         "List the methods of detection, forecast and planning, with those of installed packages.",

@@ -85,10 +85,11 @@ def run_at_station(at: StationOptions, work: Work) -> None:
     raise typer.Exit(asyncio.run(_connected(station_at(at), work)))
 
 
-def station_at(at: StationOptions) -> Station:
+def station_at(at: StationOptions, *, is_operator: bool = True) -> Station:
     """Return the station of a command's options, not yet connected; raises `AddressError`."""
     fingerprint = os.environ.get(FINGERPRINT_VARIABLE)
-    return Station(at.address, read_token(at.token_file), fingerprint=fingerprint)
+    token = read_token(at.token_file)
+    return Station(at.address, token, fingerprint=fingerprint, is_operator=is_operator)
 
 
 async def _connected(unopened: Station, work: Work) -> int:

@@ -10,6 +10,7 @@
     |- RecordError          recon.record: files of a flight
     |- SimulationError      recon.sim: options and inputs of the simulator
     |- ClientError          recon.client: connecting to a station
+    |- GatewayError         recon.gateway: a gateway that cannot start
     |- AnnouncementError    recon.link: the station cannot announce itself by mDNS
     |- StartError           recon.station: the station cannot start
 

@@ -1,0 +1,135 @@
+"""`recon gateway`: a station's vehicles in the protocols of other programs."""
+
+from dataclasses import dataclass
+from importlib.util import find_spec
+from ipaddress import ip_address
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from recon.cli.commands import App
+from recon.cli.connection import StationOptions, station_at
+from recon.cli.foreground import print_now, run_in_loop, until_stopped
+from recon.cli.options import with_options
+from recon.gateway.errors import GatewayError
+
+if TYPE_CHECKING:
+    from recon.gateway.mavlink.run import Endpoints
+    from recon.gateway.mavlink.values import GatewaySettings
+
+gateway_app = App(help="Show the vehicles to other ground stations.", no_args_is_help=True)
+"""One command today, each protocol its own."""
+
+
+@gateway_app.callback()
+def _group() -> None:
+    """Show the vehicles to other ground stations."""
+
+
+DEFAULT_TCP = "127.0.0.1:5760"
+MAX_PLACES = 8
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MavlinkOptions:
+    """Where clients are, what they may do, and how heights are told."""
+
+    tcp: Annotated[
+        list[str] | None,
+        typer.Option(metavar="HOST:PORT", help=f"Listen for TCP clients; default: {DEFAULT_TCP}."),
+    ] = None
+    udp: Annotated[
+        list[str] | None, typer.Option(metavar="HOST:PORT", help="Listen for UDP clients.")
+    ] = None
+    udp_to: Annotated[
+        list[str] | None,
+        typer.Option(metavar="HOST:PORT", help="Send to a UDP client, such as 127.0.0.1:14550."),
+    ] = None
+    signing_key: Annotated[
+        Path | None,
+        typer.Option(help="File with the key: 64 hexadecimal digits, or a passphrase."),
+    ] = None
+    allow_orders: Annotated[
+        bool,
+        typer.Option("--allow-orders", help="Let clients order, as the person of the login."),
+    ] = False
+    ground_above_sea_level_m: Annotated[
+        float,
+        typer.Option(
+            "--ground-above-sea-level",
+            min=-500.0,
+            max=9000.0,
+            help="Altitude of the takeoff points that clients are told, metres.",
+        ),
+    ] = 0.0
+
+
+@gateway_app.command("mavlink")
+@with_options
+def mavlink_command(options: MavlinkOptions, at: StationOptions) -> None:
+    """Show every identified vehicle as a MAVLink 2 vehicle, until Ctrl+C.
+
+    Read-only unless --allow-orders.
+    """
+    if find_spec("pymavlink") is None:
+        raise GatewayError(
+            "expected the package pymavlink, which speaks MAVLink, got none: install "
+            "recon-gcs[gateway], or pymavlink beside recon"
+        )
+    from recon.gateway.mavlink.run import Endpoints
+    from recon.gateway.mavlink.values import GatewaySettings
+
+    udp, udp_to = _places(options.udp), _places(options.udp_to)
+    tcp = _places(options.tcp or ([] if udp or udp_to else [DEFAULT_TCP]))
+    _check_reach(options, (*tcp, *udp, *udp_to))
+    settings = GatewaySettings(options.allow_orders, options.ground_above_sea_level_m)
+    run_in_loop(until_stopped(_run(options, at, settings, Endpoints(tcp, udp, udp_to)), "stopped"))
+
+
+async def _run(
+    options: MavlinkOptions, at: StationOptions, settings: "GatewaySettings", places: "Endpoints"
+) -> None:
+    from recon.gateway.mavlink.run import MavlinkGateway
+    from recon.gateway.mavlink.signing import Signer, read_key
+
+    signer = None if options.signing_key is None else Signer(read_key(options.signing_key))
+    async with station_at(at, is_operator=False) as station:
+        gateway = MavlinkGateway(station, settings, signer)
+        async with gateway.listening(places):
+            for host, port in gateway.places:
+                print_now(f"MAVLink clients: {host}:{port}")
+            for host, port in places.udp_to:
+                print_now(f"MAVLink to: {host}:{port}")
+            print_now("orders: allowed" if settings.allow_orders else "orders: none, read-only")
+            await gateway.run()
+
+
+def _places(texts: list[str] | None) -> list[tuple[str, int]]:
+    if texts is not None and len(texts) > MAX_PLACES:
+        raise GatewayError(f"expected up to {MAX_PLACES} addresses of a kind, got {len(texts)}")
+    return [_place(text) for text in texts or ()]
+
+
+def _place(text: str) -> tuple[str, int]:
+    host, _, port = text.rpartition(":")
+    if not host or not port.isdecimal() or int(port) > 65535:
+        raise GatewayError(f"expected HOST:PORT such as {DEFAULT_TCP}, got {text[:80]!r}")
+    return host.strip("[]"), int(port)
+
+
+def _check_reach(options: MavlinkOptions, places: tuple[tuple[str, int], ...]) -> None:
+    """Refuse orders from other computers without signatures: MAVLink has no other login."""
+    outside = next((host for host, _ in places if not _is_loopback(host)), None)
+    if outside is not None and options.allow_orders and options.signing_key is None:
+        raise GatewayError(
+            f"{outside} can be reached from other computers: expected --signing-key with "
+            "--allow-orders, as MAVLink has no other login; without orders none is needed"
+        )
+
+
+def _is_loopback(host: str) -> bool:
+    try:
+        return ip_address(host).is_loopback
+    except ValueError:
+        return host == "localhost"
