@@ -176,14 +176,17 @@ def test_a_client_is_an_operator_only_while_it_says_so() -> None:
 
     async def main() -> None:
         station = FakeStation()
-        async with asyncio.timeout(PATIENCE_S), streaming(station) as address:
-            async with RemoteStation(address.replace("ws", "http", 1), is_operator=False) as client:
-                assert held(station) == frozenset()
-                await client.act_as_operator(True)
-                while not client.takes_steered_orders or not held(station):
-                    await asyncio.sleep(0.01)
-                await client.act_as_operator(False)
-                await until_held(station, set())
-                assert not client.takes_steered_orders
+        async with (
+            asyncio.timeout(PATIENCE_S),
+            streaming(station) as address,
+            RemoteStation(address.replace("ws", "http", 1), is_operator=False) as client,
+        ):
+            assert held(station) == frozenset()
+            await client.act_as_operator(True)
+            while not client.takes_steered_orders or not held(station):
+                await asyncio.sleep(0.01)
+            await client.act_as_operator(False)
+            await until_held(station, set())
+            assert not client.takes_steered_orders
 
     run_patiently(main())
