@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, make_dataclass
 from enum import Enum
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import msgspec
 import numpy as np
@@ -14,6 +14,7 @@ import numpy.typing as npt
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from typing_extensions import TypeAliasType
 
 from recon.model.event import CommandAnswered, LinkOpened
 from recon.model.units import Stamped
@@ -112,6 +113,17 @@ def test_the_order_of_an_arrays_memory_comes_back() -> None:
     back = there_and_back(picture(weights=strided)).weights
     assert back is not None
     assert (back == strided).all()
+
+
+def test_an_alias_is_what_it_names() -> None:
+    """As `NDArray` is one where Python and NumPy have such."""
+    scalar = TypeVar("scalar", bound=np.generic)
+    array = TypeAliasType("array", np.ndarray[Any, np.dtype[scalar]], type_params=(scalar,))  # type: ignore[misc]
+    numbers, codec = np.array([1.5, 2.5]), Codec()
+    for hint in (array[np.float64], array[np.float64] | int):  # type: ignore[misc]
+        assert codec.decode(codec.encode(numbers, hint), hint).tolist() == [1.5, 2.5]
+        with pytest.raises(CodecError, match="array of float64"):
+            codec.decode(codec.encode(np.array([1]), array[np.int64]), array[np.float64])
 
 
 def test_numpys_numbers_in_fields_become_pythons() -> None:

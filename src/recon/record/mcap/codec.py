@@ -101,6 +101,7 @@ class Codec:
         return made
 
     def _make(self, hint: Any) -> _Both:
+        hint = _unaliased(hint)
         origin = get_origin(hint)
         custom = self._customs.get(hint) or self._customs.get(origin)
         if custom is not None:
@@ -226,7 +227,7 @@ class Codec:
                 yield _Field(each.name, is_required, codec, plain)
 
     def _union(self, hints: tuple[Any, ...]) -> _Both:
-        others = [hint for hint in hints if hint is not type(None)]
+        others = [_unaliased(hint) for hint in hints if hint is not type(None)]
         if len(others) == 1:
             return self._optional(others[0])
         return self._tagged(others, is_optional=len(others) < len(hints))
@@ -380,6 +381,15 @@ def decode_array(dtype: str, shape: list[Any], data: bytes, wanted: Any) -> Any:
     if count * kind.itemsize != len(data):
         raise CodecError(f"expected {count} values of {dtype}, got {len(data)} bytes")
     return np.frombuffer(data, kind).astype(kind.newbyteorder("="), copy=True).reshape(shape)
+
+
+def _unaliased(hint: Any) -> Any:
+    """Return the type that an alias names: `NDArray` is an alias since NumPy 2.5."""
+    alias = get_origin(hint) or hint
+    if isinstance(alias, type) or not hasattr(alias, "__value__"):
+        return hint
+    args = get_args(hint)
+    return alias.__value__[args] if args else alias.__value__
 
 
 def _substituted(hint: Any, variables: Mapping[Any, Any]) -> Any:
