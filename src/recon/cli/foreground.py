@@ -2,11 +2,12 @@
 
 import asyncio
 import contextlib
-import signal
 from collections.abc import Coroutine
 from importlib import import_module
 from importlib.util import find_spec
 from typing import Any, TypeVar
+
+from recon.api.stop_signals import on_stop
 
 T = TypeVar("T")
 
@@ -22,9 +23,7 @@ def run_in_loop(work: Coroutine[Any, Any, T]) -> T:
 async def until_stopped(work: Coroutine[Any, Any, None], last_line: str) -> None:
     """Run `work` until it ends or a signal cancels it, then print the last line."""
     working = asyncio.ensure_future(work)
-    loop = asyncio.get_running_loop()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        loop.add_signal_handler(number, working.cancel)
+    on_stop(working.cancel)
     with contextlib.suppress(asyncio.CancelledError):
         await working
     print_now(last_line)

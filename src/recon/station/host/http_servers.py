@@ -5,10 +5,8 @@ operator at the station's computer must be able to stop vehicles whatever is wro
 or users.
 """
 
-import asyncio
 import errno
 import getpass
-import signal
 import socket
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -24,6 +22,7 @@ from recon.api.connections import PING_S, HttpConnection, StreamConnection
 from recon.api.login import Login
 from recon.api.security import LOCAL_PERSON, Access, AccessCheck
 from recon.api.servers import HttpServer, HttpsServer
+from recon.api.stop_signals import on_stop
 from recon.model.errors import ReconError, RecordError
 from recon.model.person import THIS_COMPUTER, Person, Role, is_name
 from recon.record.files.users_file import read_users, state_folder
@@ -152,15 +151,13 @@ def stop_on_signals(servers: Sequence[uvicorn.Server]) -> None:
     It holds until the process ends: a signal repeated meanwhile would interrupt the end of links
     and record.
     """
-    loop = asyncio.get_running_loop()
 
     def stop() -> None:
         for server in servers:
             server.force_exit = server.should_exit
             server.should_exit = True
 
-    for number in (signal.SIGINT, signal.SIGTERM):
-        loop.add_signal_handler(number, stop)
+    on_stop(stop)
 
 
 def _users(path: Path) -> bool:
