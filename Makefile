@@ -20,7 +20,7 @@ RUN := $(UV) run --locked --quiet
 FUZZ_SECONDS ?= 60
 WEB_SOURCES := $(shell find web/src web/public -type f ! -name schema.d.ts 2>/dev/null) web/index.html web/package.json web/vite.config.ts
 
-.PHONY: help setup demo run wheel test test-all test-rust test-python flights test-web test-e2e android-core android test-android study-android fuzz-android coverage coverage-safety check check-rust check-python check-web format bench fuzz study mutants docs web clean
+.PHONY: help setup demo run wheel test-install test-install-short test test-all test-rust test-python flights test-web test-e2e android-core android test-android study-android fuzz-android coverage coverage-safety check check-rust check-python check-web format bench fuzz study mutants docs web clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -79,6 +79,15 @@ web/node_modules/.stamp: web/package.json web/package-lock.json
 
 wheel: setup web ## Build the wheel for other computers (Linux, x86-64): with the console, nothing to compile
 	$(RUN) --group wheel python -m tools.wheel
+
+# The scripts call uv by its name.
+WITH_UV := PATH="$(abspath $(dir $(UV))):$$PATH"
+
+test-install: wheel .tools/bin/uv ## Install the wheel in a fresh Debian, fly there, remove it (10 minutes, as root; SUITE=bookworm, sid)
+	$(WITH_UV) tools/test_install.sh $(SUITE)
+
+test-install-short: setup web ## The same in an environment outside the checkout, to the first page
+	@$(WITH_UV) tools/test_install_short.sh
 
 test-rust: setup ## Tests of the wire crate
 	cargo test --workspace --quiet

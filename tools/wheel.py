@@ -106,6 +106,8 @@ def main() -> None:
     (info,) = {each.split("/")[0] for each in files if ".dist-info/" in each}
     out = ROOT / "build" / name
     out.parent.mkdir(exist_ok=True)
+    for earlier in out.parent.glob(f"recon_gcs-*-{name.rpartition('-')[2]}"):
+        earlier.unlink()
     write_wheel(out, files | added(info))
     size = out.stat().st_size
     print(f"{out.relative_to(ROOT)}: {size / 1e6:.1f} MB")
