@@ -8,8 +8,9 @@ Theory of operation, per forecast:
    less it shows: its deviation from the prior counts by 1 / (1 + distance / scale), where the scale
    follows from its spatial correlation in this flight (`spatial_correlation`). Of seen shade it is
    at most `most_scale_of_shade_m`.
-3. From shade to sun the probability rises over an edge that is the softer, the later and the
-   farther off; under thin even cloud, which changes little with distance, it stays sharp.
+3. From shade to sun the probability rises over an edge that is the softer, the farther off the
+   place is that stands for the one upwind; under thin even cloud, which changes little with
+   distance, it stays sharp.
 4. Followed shadows change their shape: deviations fade with `shade_memory_s`, and chances are
    spread over places as far off as edges were in this flight (`edge_errors`).
 5. Without a velocity the wind at the clouds' height is, if a weather forecast states it, as far off
@@ -58,12 +59,10 @@ def _forecast(state: ForecastState, settings: ForecastSettings) -> SunForecast:
     horizon_s: FloatMap | float = 0.0
     if shade.valid.any():
         seen = _Seen.of(shade)
-        edges = soft_edge_share(state, settings)
         scaled = replace(
             settings,
             shade_scale_m=shade_scale_m(state, settings),
-            soft_edge_per_s=edges * settings.soft_edge_per_s,
-            soft_edge_per_m=edges * settings.soft_edge_per_m,
+            soft_edge_per_m=soft_edge_share(state, settings) * settings.soft_edge_per_m,
         )
         for number, lead in enumerate(settings.lead_s):
             error_m = 0.0 if motion is None else edge_error_m(state, lead, settings)
@@ -107,8 +106,8 @@ class _Seen:
             cv2.remap(each, cols, rows, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
             for each in (self.transmittance, self.confidence)
         )
-        edge = settings.least_soft_edge + settings.soft_edge_per_s * lead_s
-        soft = np.minimum(edge + settings.soft_edge_per_m * off_m, settings.most_soft_edge)
+        soft = settings.least_soft_edge + settings.soft_edge_per_m * off_m
+        soft = np.minimum(soft, settings.most_soft_edge)
         sun = (direct - SUNLIT_TRANSMITTANCE) / (2.0 * soft) + 0.5
         sun = np.clip(sun, 1.0 - settings.surest, settings.surest).astype(np.float32, copy=False)
         sun = spread(sun, error_m, self.grid.cell_m)

@@ -1,11 +1,11 @@
 """Next change of the light of a cell: its time to shade, or its time to sun.
 
 Theory of operation: members follow the shadows upwind, each with a velocity of its own around the
-measured one, and with an error of its own in what it reads there, as wide as the forecast's own
-transition from shade to sun. A member's change is the first lead at which what it reads is on the
-other side of one half than the cell is now. Leads count within the cell's horizon: beyond it
-nothing that will be over the cell is seen. The members' share is the chance of a change, and their
-times are its median and spread: what a forecast of one moment cannot say.
+measured one, and with an error of its own in what it reads there, as wide as the transition from
+shade to sun of shade that is followed. A member's change is the first lead at which what it reads
+is on the other side of one half than the cell is now. Leads count within the cell's horizon: beyond
+it nothing that will be over the cell is seen. The members' share is the chance of a change, and
+their times are its median and spread: what a forecast of one moment cannot say.
 """
 
 from dataclasses import dataclass
@@ -125,6 +125,7 @@ class _Members:
         """Return each member's time of change (M, N); NaN where it sees none."""
         times_s = np.full((len(self.error), len(rows)), np.nan)
         at_row, at_col = rows.astype(np.float32), cols.astype(np.float32)
+        error = self.error * np.float32(self.settings.least_soft_edge)
         steps = np.arange(STEP_S, float(horizon_s.max(initial=0.0)) + 0.5 * STEP_S, STEP_S)
         for lead_s in steps.tolist():
             there = cv2.remap(
@@ -134,8 +135,7 @@ class _Members:
                 cv2.INTER_LINEAR,
                 borderMode=cv2.BORDER_REPLICATE,
             )
-            edge = self.settings.least_soft_edge + self.settings.soft_edge_per_s * lead_s
-            is_lit = there + self.error * np.float32(edge) >= SUNLIT_TRANSMITTANCE
+            is_lit = there + error >= SUNLIT_TRANSMITTANCE
             is_new = np.isnan(times_s) & (is_lit != is_sunlit) & (lead_s <= horizon_s)
             times_s[is_new] = lead_s
         return times_s

@@ -71,11 +71,10 @@ class ForecastSettings:
     least_over_rival: float = 1.25
     """The best velocity's agreement over the next best one's, to count."""
     least_soft_edge: float = 0.04
-    soft_edge_per_s: float = 0.0007
     soft_edge_per_m: float = 0.0008
     most_soft_edge: float = 0.4
-    """Soft edge, as `soft_edge`, of shadows that are followed: they keep their edges, less so with
-    the lead, and least where another place must stand for the one upwind."""
+    """Soft edge, as `soft_edge`, of shadows that are followed: they keep their edges, less so where
+    another place must stand for the one upwind. How far off edges are later is measured."""
     edge_memory_s: float = 300.0
     """Time constant of fading of what was measured of the errors of followed edges."""
     usual_edge_weight: float = 0.005
