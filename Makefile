@@ -20,7 +20,7 @@ RUN := $(UV) run --locked --quiet
 FUZZ_SECONDS ?= 60
 WEB_SOURCES := $(shell find web/src web/public -type f ! -name schema.d.ts 2>/dev/null) web/index.html web/package.json web/vite.config.ts
 
-.PHONY: help setup demo run wheel test-install test-install-short test test-all test-rust test-python flights test-web test-e2e android-core android test-android study-android fuzz-android coverage coverage-safety check check-rust check-python check-web format bench fuzz study mutants docs web clean
+.PHONY: help setup demo run wheel test-install test-install-short image test test-all test-rust test-python flights test-web test-e2e android-core android test-android study-android fuzz-android coverage coverage-safety check check-rust check-python check-web format bench fuzz study mutants docs web clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -88,6 +88,14 @@ test-install: wheel .tools/bin/uv ## Install the wheel in a fresh Debian, fly th
 
 test-install-short: setup web ## The same in an environment outside the checkout, to the first page
 	@$(WITH_UV) tools/test_install_short.sh
+
+CONTAINER := $(shell command -v podman || command -v docker || echo podman)
+# Only this format of podman's has health checks.
+FORMAT := $(if $(findstring podman,$(CONTAINER)),--format docker)
+
+image: wheel .tools/bin/uv ## Build a container image of the station, `recon`, by podman or docker
+	$(WITH_UV) $(RUN) python -m tools.packages_at_hand 3.13 build/packages-3.13
+	$(CONTAINER) build $(FORMAT) --tag recon --file Containerfile .
 
 test-rust: setup ## Tests of the wire crate
 	cargo test --workspace --quiet
