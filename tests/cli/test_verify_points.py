@@ -15,7 +15,10 @@ from tests.product import made_flight
 from recon.cli.shadow_record import shadow_record_command
 from recon.geo import geo_from_enu
 from recon.light.files import read_points
+from recon.light.lines import LightLines
 from recon.light.points import cells_of
+from recon.model.event import Event
+from recon.station.recording.recorded_values import values_codec
 
 BEGIN_S = 1_750_000_000
 COUNT, EVERY_S = 30, 10
@@ -228,3 +231,37 @@ def test_maps_of_a_flight_and_its_folder_are_held_against_sensors(tmp_path: Path
         assert min(hits["sun"][0], hits["shade"][1]) > 20
         assert "unknown" in hits
     assert texts[0] == texts[1]
+
+
+def test_the_sensors_of_a_flight_record_are_read_without_a_file(tmp_path: Path) -> None:
+    """What loggers sent in the flight gives the figures of a file with the same values."""
+    sensors = sensors_of_a_flight(tmp_path)
+    lines, loggers = LightLines(made_flight.FRAME), []
+    for line in sensors.read_bytes().splitlines(keepends=True):
+        lines.push(line, 0)
+        read, problems = lines.taken("mast")
+        assert problems == []
+        if read is not None:
+            loggers.append(values_codec().to_builtins(read, Event))
+    made = made_flight.flight(maps_every_s=20.0)
+    events = [(made_flight.START_NS, each) for each in loggers]
+    record = made_flight.write_record(made, tmp_path / "flight.mcap", events=events)
+    by_file = verify(sensors, "--maps", record)
+    assert verify(record) == by_file
+    assert "right in 100 %" in by_file[1]
+
+
+def test_a_flight_without_sensors_is_one_sentence(tmp_path: Path) -> None:
+    record = made_flight.write_record(made_flight.flight(), tmp_path / "flight.mcap")
+    code, _out, problems = verify(record)
+    assert code == 2
+    assert "expected a flight with light sensors (recon run --light-sensors), got none" in problems
+
+
+def test_one_sensor_is_enough_to_hold_maps_against(tmp_path: Path) -> None:
+    lines = sensors_of_a_flight(tmp_path).read_text().splitlines()
+    one = tmp_path / "one.csv"
+    one.write_text("".join(",".join(line.split(",")[:2]) + "\n" for line in lines))
+    record = made_flight.write_record(made_flight.flight(), tmp_path / "flight.mcap")
+    assert verify(one, "--maps", record)[0] == 0
+    assert "expected 3 sensors" in verify(one)[2]

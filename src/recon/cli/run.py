@@ -106,6 +106,14 @@ class RunOptions:
             help="List of admitted apps; default: apps.toml in the site's folder, if any."
         ),
     ] = None
+    light_sensors: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE_OR_TCP",
+            help="Loggers of light sensors, shown beside the shade map and recorded: a CSV file "
+            "that one appends to, or the address they connect to, as tcp://0.0.0.0:4002.",
+        ),
+    ] = None
     detection: Annotated[str, typer.Option(help="Method that finds shade, of `recon methods`.")] = (
         DetectionSettings().method
     )
@@ -143,6 +151,7 @@ class RunOptions:
             link=LinkSettings(garbage_limit_bytes=self.garbage_limit),
             apps_file=apps_file,
             apps=None if apps_file is None else read_app_list(apps_file),
+            light_sensors=self.light_sensors,
             detection=self.detection,
             forecast=self.forecast,
             wind_aloft_mps=None if wind is None else (wind.east_mps, wind.north_mps),
@@ -199,6 +208,8 @@ def print_started(started: Started) -> None:
     print_now(f"audit: {started.audit_folder}")
     if started.record_folder:
         print_now(f"records: {started.record_folder}")
+    if started.light_sensors:
+        print_now(f"light sensors: {started.light_sensors}")
     if started.resumed:
         print_now(f"from the last run: {shown(started.resumed)}; nothing is ordered")
     if started.stop_url is not None:

@@ -11,8 +11,9 @@ from recon.cli.progress import progress_over
 from recon.forecast import FORECASTERS
 from recon.geo import enu_from_geo, geo_from_enu
 from recon.light.agreement import SAYS, SHOWN
-from recon.light.files import read_points
-from recon.light.points import LightPoints, cells_of
+from recon.light.files import FEWEST_SENSORS, points_of, read_points
+from recon.light.points import LightPoints, cells_of, read_at
+from recon.light.tables import long_table
 from recon.model.arrays import FloatArray
 from recon.model.errors import RecordError
 from recon.model.units import unix_ns
@@ -21,7 +22,7 @@ from recon.product.sun_at import shade_map
 from recon.record.raster.map_sequence import captured_utc, cells_at, map_files, read_map
 from recon.score.forecast_figures import Calibration, LeadScore, SeenCells
 from recon.score.forecast_tables import leads_table
-from recon.score.map_verification import MapAtPlaces, MapScore, read_at, score_maps
+from recon.score.map_verification import MapAtPlaces, MapScore, score_maps
 from recon.score.point_verification import PointScores, verified_at_points
 from recon.score.table_rows import finest, percent, plain, table
 
@@ -34,17 +35,10 @@ def verify_points(
 ) -> tuple[str, dict[str, Calibration]]:
     """Print how right forecasts, and maps if given, are at sensors; return a title and the curves
     of reliability. Raises `RecordError`."""
-    points = read_points(path, places)
-    print_line(
-        f"{len(points.names)} sensors, {len(points.times_ns)} times, {points.step_s:g} s apart"
-    )
-    for note in points.notes:
-        print_line(f"  {note}")
+    points = read_points(path, places, FEWEST_SENSORS if maps is None else 1)
     if maps is not None:
-        found = score_maps(points, _maps_at(points, maps))
-        for line in _hits(found).splitlines():
-            print_line(line)
-        return "maps at the sensors", {"maps": found.score.calibration}
+        return _verify_maps_at(points, _maps_at(points, maps))
+    _print_points(points)
     scores = verified_at_points(points, FORECASTERS)
     for line in forecast_lines(scores).splitlines():
         print_line(line)
@@ -54,6 +48,45 @@ def verify_points(
         for name in FORECASTERS
     }
     return f"{lead_s:g} s ahead", curves
+
+
+def verify_flight(path: Path) -> tuple[str, dict[str, Calibration]]:
+    """Print how right a flight's maps were at the sensors that it recorded; raises
+    `RecordError`."""
+    flight = opened_flight(path)
+    if not flight.light:
+        raise RecordError(
+            f"{path}: expected a flight with light sensors (recon run --light-sensors), got none; "
+            f"with a file of them: recon verify sensors.csv --maps {path}"
+        )
+    places = {
+        each.sensor: (each.place.latitude_deg, each.place.longitude_deg)
+        for each in flight.light
+        if each.place is not None
+    }
+    names = [each.sensor for each in flight.light]
+    times_ns = np.array([each.at_ns for each in flight.light], dtype=np.int64)
+    light = np.array([each.value for each in flight.light])
+    points = points_of(path, long_table(names, times_ns, light, places, True), fewest=1)
+    return _verify_maps_at(points, _of_flight(points, flight))
+
+
+def _verify_maps_at(
+    points: LightPoints, maps: Iterator[MapAtPlaces]
+) -> tuple[str, dict[str, Calibration]]:
+    _print_points(points)
+    found = score_maps(points, maps)
+    for line in _hits(found).splitlines():
+        print_line(line)
+    return "maps at the sensors", {"maps": found.score.calibration}
+
+
+def _print_points(points: LightPoints) -> None:
+    print_line(
+        f"{len(points.names)} sensors, {len(points.times_ns)} times, {points.step_s:g} s apart"
+    )
+    for note in points.notes:
+        print_line(f"  {note}")
 
 
 def forecast_lines(scores: PointScores) -> str:

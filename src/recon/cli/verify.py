@@ -15,7 +15,7 @@ from recon.cli.recorded_maps import (
     recorded_maps,
 )
 from recon.cli.reliability import reliability_png
-from recon.cli.verified_points import verify_points
+from recon.cli.verified_points import verify_flight, verify_points
 from recon.forecast import FORECASTERS
 from recon.light.tables import READERS
 from recon.model.errors import RecordError
@@ -32,7 +32,7 @@ def verify_command(
         typer.Argument(
             metavar="MAPS_OR_SENSORS",
             help="A folder of rasters, in the order of the times in them, else of their names; "
-            "or a file of light sensors (CSV, NetCDF, NPZ).",
+            "a file of light sensors (CSV, NetCDF, NPZ); or a flight record with sensors.",
         ),
     ],
     step_s: StepOption = None,
@@ -52,6 +52,8 @@ def verify_command(
         if step_s is not None or (sun, shade) != (1.0, 0.0):
             raise RecordError("expected --step-s, --sun and --shade for a folder of rasters only")
         title, curves = verify_points(recorded_path, places, maps)
+    elif recorded_path.suffix == ".mcap" and places is maps is None:
+        title, curves = verify_flight(recorded_path)
     elif places is not None or maps is not None:
         raise RecordError(
             f"expected --places and --maps with a file of light sensors ({', '.join(READERS)}), "

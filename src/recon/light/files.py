@@ -1,5 +1,6 @@
 """Files of light sensors, checked: what cannot be used is counted and named, or refused."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -22,12 +23,21 @@ LONGEST_S = 3.0 * 3600.0
 MOST_NAMES = 5
 
 
-def read_points(path: Path, places_path: Path | None = None) -> LightPoints:
+def read_points(
+    path: Path, places_path: Path | None = None, fewest: int = FEWEST_SENSORS
+) -> LightPoints:
     """Return the sensors of a file, in the order of time; raises `RecordError`."""
     table = read_table(path)
-    places, is_geographic = table.places, table.is_geographic
     if places_path is not None:
         places, is_geographic = read_places(places_path)
+        table = replace(table, places=places, is_geographic=is_geographic)
+    return points_of(path, table, fewest)
+
+
+def points_of(path: Path, table: LightTable, fewest: int = FEWEST_SENSORS) -> LightPoints:
+    """Return the sensors of a table in the order of time: `fewest` or more, three for maps between
+    them; raises `RecordError`."""
+    places = table.places
     if not places:
         raise RecordError(
             f"{path}: expected places of the sensors (rows or columns lat and lon, or east_m and "
@@ -36,15 +46,15 @@ def read_points(path: Path, places_path: Path | None = None) -> LightPoints:
     notes: list[str] = []
     order = _order(table, notes)
     light, columns = table.light[order], _usable(table, places, notes)
-    if len(columns) < FEWEST_SENSORS or len(order) < FEWEST_TIMES:
+    if len(columns) < fewest or len(order) < FEWEST_TIMES:
         raise RecordError(
-            f"{path}: expected {FEWEST_SENSORS} sensors with light and a place and "
+            f"{path}: expected {fewest} sensors with light and a place and "
             f"{FEWEST_TIMES} times or more, got {len(columns)} and {len(order)}"
             + "".join(f"; {note}" for note in notes)
         )
     names = tuple(table.names[column] for column in columns)
     at = np.array([places[name] for name in names], dtype=np.float64)
-    frame, east_m, north_m = _placed(path, at, is_geographic)
+    frame, east_m, north_m = _placed(path, at, table.is_geographic)
     times_ns, light = table.times_ns[order], light[:, columns]
     points = LightPoints(names, times_ns, light, east_m, north_m, frame)
     notes += _facts(points)
@@ -98,7 +108,7 @@ def _placed(
         raise RecordError(
             f"{path}: expected places within {WIDEST_M / 1e3:g} km, got {wide_m / 1e3:.0f} km"
         )
-    if wide_m < 1.0:
+    if wide_m < 1.0 and len(at) >= FEWEST_SENSORS:
         raise RecordError(
             f"{path}: expected places in metres or degrees apart, got {wide_m:.3f} m "
             "(degrees named east and north?)"

@@ -60,6 +60,14 @@ def cells_of(
     return rows, cols
 
 
+def read_at(values: FloatMap, cells: tuple[IntArray, IntArray]) -> FloatMap:
+    """Return a map's values (N,) in cells; NaN off it."""
+    rows, cols = cells
+    is_on = (rows >= 0) & (rows < values.shape[0]) & (cols >= 0) & (cols < values.shape[1])
+    found = values[rows * is_on, cols * is_on]
+    return np.where(is_on, found, np.nan).astype(np.float32)
+
+
 def is_sunlit(direct: FloatMap) -> MaskMap:
     """Return which known values are in sun."""
     with np.errstate(invalid="ignore"):

@@ -25,8 +25,8 @@ NAMES = {
 PLACE_PAIRS = (("lat", "lon"), ("east_m", "north_m"))
 PLACE_KEYS = frozenset(chain(*PLACE_PAIRS))
 UNKNOWN = frozenset({"", "nan", "na", "n/a", "null", "none", "-"})
-EARLIEST_S, LATEST_S = 1e8, 1e10
-"""Unix seconds from 1973 to 2286: milliseconds are larger."""
+EARLIEST_S, LATEST_S = 1e8, 9.2e9
+"""Unix seconds from 1973 to 2261: milliseconds are larger, and later nanoseconds need 65 bits."""
 
 Places = Mapping[str, tuple[float, float]]
 
@@ -163,7 +163,7 @@ def _time_ns(text: str, now_ns: int | None) -> int:
         at_s = float(text)
     except ValueError:
         try:
-            return unix_ns(_datetime_s(text))
+            at_s = _datetime_s(text)
         except (ValueError, OverflowError):
             raise RecordError(
                 f"expected a time in ISO 8601 or Unix seconds, got {text!a:.80}"

@@ -7,6 +7,7 @@ from recon.model.airspace import ElevationModel, LandingPad, Region, SiteLayer, 
 from recon.model.command import Body, Phase, Refusal
 from recon.model.control import AuthorityHolder
 from recon.model.imagery import CameraPose, Outlook, TelemetryReference
+from recon.model.light import LightRead
 from recon.model.report import Report
 from recon.model.survey import Survey
 from recon.model.temporary_zone import DrawnZone
@@ -508,5 +509,6 @@ Event = (
     | LinkLimitReached
     | StationFaulted
     | GuardActed
+    | LightRead
     | JobEnded
 )

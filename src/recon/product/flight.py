@@ -15,6 +15,7 @@ from recon.geo import geo_from_enu
 from recon.model.airspace import Region
 from recon.model.arrays import FloatArray, IntArray
 from recon.model.geo import GroundGrid, LocalFrame
+from recon.model.light import LightReading
 from recon.model.survey import Survey, SurveyCamera
 from recon.product.reported_shots import ReportedShots
 from recon.record.mcap.tracks import utc_text
@@ -111,6 +112,8 @@ class FlightData:
     """What the record states of its simulated world; empty for a flight of real aircraft."""
     reported: Sequence[ReportedShots] = ()
     """Photos that apps have reported one by one, by vehicle and series."""
+    light: Sequence[LightReading] = ()
+    """Readings of light sensors on the ground, as their loggers sent them."""
 
     def utc(self, at_ns: int) -> str:
         """Return a station time as ISO 8601 in UTC."""

@@ -19,7 +19,8 @@ from google.protobuf.message import DecodeError
 
 from recon.geo import enu_from_geo
 from recon.model.errors import RecordError
-from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
+from recon.model.geo import GeoPoint, GroundGrid, LatLon, LocalFrame
+from recon.model.light import LightReading
 from recon.model.survey import SurveyCamera
 from recon.model.units import NS_PER_S
 from recon.product.flight import (
@@ -46,6 +47,8 @@ FARTHEST_M = 1e7
 """Largest distance from the site's origin: a quarter of the way round the earth."""
 MOST_PHOTOS = 200_000
 """Most reported photos: a day of several vehicles at two a second."""
+MOST_READINGS = 2_000_000
+"""Most values of light sensors: eight hours of as many as a logger may send."""
 MOST_INDEX = 2**32
 LONGEST_AGE_S = 3_600.0
 MOST_STARTS = 1_000
@@ -105,6 +108,7 @@ class _Reader:
     )
     """Reported photos by serial and series, then index: time, east, north."""
     _photos: int = 0
+    _light: list[LightReading] = field(default_factory=list)
     _decoder: msgspec.msgpack.Decoder[_Step] = field(
         default_factory=lambda: msgspec.msgpack.Decoder(_Step)
     )
@@ -148,6 +152,7 @@ class _Reader:
             trouble,
             self._scenario,
             shots_of_reports(self._reported),
+            self._light,
         )
 
     def _about(self, data: bytes) -> None:
@@ -189,6 +194,10 @@ class _Reader:
                 if not 0 <= wall_ns <= LATEST_NS:
                     raise ValueError(f"expected a clock after 1970, got {wall_ns} ns")
                 self._utc_ahead_ns = wall_ns - at_ns
+            case "LightRead":
+                self._light += map(_reading, event["readings"])
+                if len(self._light) > MOST_READINGS:
+                    raise ValueError(f"expected at most {MOST_READINGS} values of light, got more")
             case "SurveyRequested":
                 self._surveys[int(event["survey"]["id"])] = _survey(event["survey"])
             case "SurveyStarted":
@@ -320,6 +329,15 @@ def _whole(value: Any) -> int:
     if type(value) is not int:
         raise ValueError(f"expected a whole number, got {value!a:.40}")
     return value
+
+
+def _reading(value: Mapping[str, Any]) -> LightReading:
+    place, at_ns = value["place"], _whole(value["at_ns"])
+    if place is not None:
+        place = LatLon(float(place["latitude_deg"]), float(place["longitude_deg"]))
+    if not 0 <= at_ns < 2 * LATEST_NS or (place is not None and not place.is_valid()):
+        raise ValueError(f"expected a value of light on earth after 1970, got {value!a:.80}")
+    return LightReading(str(value["sensor"]), at_ns, float(value["value"]), place)
 
 
 def _survey(value: Mapping[str, Any]) -> FlownSurvey:

@@ -1,8 +1,8 @@
 """Shade maps against light sensors: was this sensor in sun when the map said so?
 
-Each map is compared with the row of values nearest to its time, at most half the sensors' step or
-`NEAR_S` from it. A sensor off the map or in a cell that it does not know counts as unknown; one
-without a value then is not counted.
+Each map is compared with the row of values nearest to its time, at most `near_enough_s` from it. A
+sensor off the map or in a cell that it does not know counts as unknown; one without a value then is
+not counted.
 """
 
 from collections.abc import Iterable
@@ -12,14 +12,12 @@ import numpy as np
 
 from recon.forecast import ForecastSettings
 from recon.forecast.state import sun_chance
-from recon.light.agreement import Agreement, compared
+from recon.light.agreement import MapAgreement, compared, near_enough_s
 from recon.light.points import LightPoints, is_sunlit
-from recon.model.arrays import IntArray
 from recon.model.shade import SUNLIT_TRANSMITTANCE, FloatMap
 from recon.model.units import NS_PER_S
 from recon.score.forecast_figures import LeadScore, SeenCells, score_cells
 
-NEAR_S = 2.5
 SETTINGS = ForecastSettings()
 
 
@@ -37,7 +35,7 @@ class MapScore:
     """Sums over maps and sensors."""
 
     score: LeadScore = field(default_factory=LeadScore)
-    agreement: Agreement = field(default_factory=Agreement)
+    agreement: MapAgreement = field(default_factory=MapAgreement)
     maps: int = 0
     alone: int = 0
     """Maps without a value near their time."""
@@ -46,11 +44,11 @@ class MapScore:
 def score_maps(points: LightPoints, maps: Iterable[MapAtPlaces]) -> MapScore:
     """Return how right maps are at the sensors."""
     found, direct = MapScore(), points.direct
-    near_ns = max(points.step_s / 2.0, NEAR_S) * NS_PER_S
+    near_s = near_enough_s(points.step_s)
     for each in maps:
         found.maps += 1
         row = int(np.argmin(np.abs(points.times_ns - each.at_ns)))
-        if abs(int(points.times_ns[row]) - each.at_ns) > near_ns:
+        if abs(int(points.times_ns[row]) - each.at_ns) > near_s * NS_PER_S:
             found.alone += 1
         else:
             _add(found, each.transmittance, direct[row])
@@ -66,11 +64,3 @@ def _add(found: MapScore, transmittance: FloatMap, direct: FloatMap) -> None:
     everywhere = np.ones_like(known)
     found.score += score_cells(chances, truth, everywhere, has_value & known)[SeenCells.ALL]
     found.agreement += compared(transmittance, direct)
-
-
-def read_at(values: FloatMap, cells: tuple[IntArray, IntArray]) -> FloatMap:
-    """Return a map's values (N,) in cells; NaN off it."""
-    rows, cols = cells
-    is_on = (rows >= 0) & (rows < values.shape[0]) & (cols >= 0) & (cols < values.shape[1])
-    found = values[rows * is_on, cols * is_on]
-    return np.where(is_on, found, np.nan).astype(np.float32)

@@ -267,6 +267,7 @@ export function station(
     move_upwind: null,
     imager_relief: null,
     shade: null,
+    light_sensors: null,
     surveys: [],
     replay: null,
     ...changes,

@@ -152,6 +152,33 @@ class ImagerReliefView(ImagerMotionView):
     maps: int = Field(description="shade maps in a row at the place")
 
 
+Light = Literal["sun", "shade", "unknown"]
+
+
+class LightSensorView(Message):
+    """A light sensor on the ground, beside what the shade map says where it is."""
+
+    name: str
+    source: str = Field(description="its logger: an address, or a file")
+    latitude_deg: float | None = Field(description="null: its logger has not stated a place")
+    longitude_deg: float | None
+    value: float = Field(description="the newest, in the sensor's own unit")
+    age_s: float
+    is_live: bool = Field(description="false: silent for too long, or its clock is wrong")
+    shows: Light = Field(description="unknown: not live, or it has not seen sun and shade yet")
+    map_says: Light = Field(description="unknown too where the newest map is over 10 s old")
+    right: int = Field(description="shade maps that said what it showed")
+    compared: int = Field(description="shade maps that knew its place, while it showed either")
+
+
+class LightSensorsView(Message):
+    """Loggers at the field: for people and the record; nothing is ordered or refused by them."""
+
+    sensors: list[LightSensorView]
+    refused_lines: int
+    problem: str = Field(description="why the newest of them was refused; empty: none was")
+
+
 class StationState(Message):
     """Everything a console shows; the stream pushes one of these at up to 10 Hz."""
 
@@ -170,5 +197,6 @@ class StationState(Message):
     move_upwind: MoveUpwindView | None
     imager_relief: ImagerReliefView | None
     shade: ShadeLineView | None
+    light_sensors: LightSensorsView | None = Field(description="null: no logger has sent a line")
     surveys: list[SurveyView]
     replay: ReplayView | None = Field(description="null: a live station")

@@ -18,6 +18,7 @@ from recon.model.vehicle import AltitudeReference, VehicleState
 from recon.station.api_views.ages import known_since_s, since_s
 from recon.station.api_views.app_facts_view import app_facts_view, photo_tally_view
 from recon.station.api_views.imaging_views import ground_image_view, shade_view
+from recon.station.api_views.light_sensor_views import light_sensors_view
 from recon.station.api_views.operation_views import operation_fields
 from recon.station.api_views.vehicle_views import (
     authority_view,
@@ -88,6 +89,7 @@ def state_view(station: Station, around: DriverState, now_ns: int) -> schema.Sta
         temporary_zones=zone_views(station, now_ns),
         ground_image=ground_image_view(station, now_ns),
         shade=shade_view(station, now_ns),
+        light_sensors=light_sensors_view(station, now_ns),
         replay=around.replay,
         **operation_fields(station, now_ns),
     )

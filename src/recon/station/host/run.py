@@ -38,6 +38,7 @@ from recon.station.host.http_servers import (
     listen,
     require_startable,
 )
+from recon.station.host.light_input import start_light_input
 from recon.station.host.rewritten_file import RewrittenFile
 from recon.station.host.run_config import OnStart, RunConfig, Started
 from recon.station.host.serving import Doors, open_doors, serve
@@ -100,6 +101,9 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
         if config.is_announced:
             name = "Recon" if config.site_folder is None else config.site.name
             announce(name, links.hosts, links.port, last)
+        lights = config.light_sensors and await start_light_input(
+            config.light_sensors, config.site.frame, driver.handle, stack
+        )
         started = Started(
             link_addresses=service.link_addresses,
             link_port=links.port,
@@ -109,6 +113,7 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
             stop_url=None if line is None else line.stop_url,
             audit_folder=str(begun.log.folder),
             record_folder=folder or "",
+            light_sensors=lights or "",
             apps_listed=None if config.apps is None else len(config.apps),
             resumed=_resumed_state(station, (*begun.troubles, *last_run.troubles)),
         )

@@ -58,6 +58,8 @@ class RunConfig:
     forecast: str = ForecastSettings().method
     sun_time_ahead_s: float = 0.0
     """How far the time of day of simulated drones is ahead of the computer's clock."""
+    light_sensors: str | None = None
+    """Where loggers of light sensors are read: `tcp://HOST:PORT` or a CSV file; None: nowhere."""
     repeats_surveys: bool = False
     """Whether this is a demonstration, which begins one survey after another."""
     scenario: str = ""
@@ -81,6 +83,8 @@ class Started:
     """Where a person stops all vehicles when the station does not answer; None without a guard."""
     audit_folder: str = ""
     record_folder: str = ""
+    light_sensors: str = ""
+    """Where loggers of light sensors are read; empty: nowhere."""
     apps_listed: int | None = None
     """Entries of the list of apps; None without a list."""
     network: SharedAddress | None = None

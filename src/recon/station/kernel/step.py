@@ -51,6 +51,7 @@ from recon.model.event import (
     ZoneDrawn,
     ZoneEnded,
 )
+from recon.model.light import LightRead
 from recon.model.replacing import replace
 from recon.model.report import CoreReport, ImageReport, MessageReport, Report
 from recon.model.vehicle import VehicleState
@@ -66,7 +67,7 @@ from recon.station.control import (
     stop_latch,
     temporary_zones,
 )
-from recon.station.imaging import frames, marking
+from recon.station.imaging import frames, light_sensors, marking
 from recon.station.kernel import fault_isolation
 from recon.station.kernel.failsafe_orders import run_failsafes, run_failsafes_isolated
 from recon.station.kernel.fault_isolation import TickPart
@@ -263,6 +264,7 @@ TICK_PARTS: tuple[TickPart, ...] = (
         "following the orders", order_gateway.update_orders, fault_isolation.follow_orders_isolated
     ),
     *(TickPart(f"advancing the {each.name}", each.tick) for each in OPERATIONS),
+    TickPart("comparing light sensors", light_sensors.compare),
     TickPart("running the watchdogs", run_watchdogs, fault_isolation.run_watchdogs_isolated),
     TickPart("running the failsafe matrix", run_failsafes, run_failsafes_isolated),
     TickPart("raising alarms", raise_alarms, fault_isolation.raise_alarms_isolated),
@@ -307,6 +309,7 @@ HANDLERS: Mapping[type[Any], Handler] = dict(
         changing(AuditFailed, _audit_failed),
         changing(RecordFailed, _record_failed),
         changing(LinkLimitReached, _link_limit),
+        changing(LightRead, light_sensors.on_light_read),
         changing(AlarmAcknowledged, _acknowledged),
         changing(LoginAccepted, _audited_only),
         changing(LoginRefused, event_alarms.note_refused_login),

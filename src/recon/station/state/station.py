@@ -17,6 +17,7 @@ from recon.station.state.fleet_return_record import FleetReturn
 from recon.station.state.imager_motion import ImagerMotions
 from recon.station.state.imager_relief import Reliefs
 from recon.station.state.imaging import Imaging, ShadePipeline
+from recon.station.state.light_sensors import LightSensors
 from recon.station.state.orders import OrderBook
 from recon.station.state.setpoint_stream import SetpointStream
 from recon.station.state.settings import StationSettings
@@ -115,6 +116,8 @@ class Station:
     """Findings, holds and switches of the watchdogs."""
     failsafe_state: FailsafeState = field(default_factory=FailsafeState)
     """Occurrences of the failsafe matrix's conditions. Writer: `failsafe/runner.py`."""
+    light_sensors: LightSensors = field(default_factory=LightSensors)
+    """Light sensors on the ground. Writer: `imaging/light_sensors.py`."""
     faults: Mapping[str, Fault] = field(default_factory=dict)
     """Recent faults in the station's own code, by where they arose."""
 
