@@ -98,7 +98,7 @@ image: wheel .tools/bin/uv ## Build a container image of the station, `recon`, b
 	$(CONTAINER) build $(FORMAT) --tag recon --file Containerfile .
 
 test-rust: setup ## Tests of the wire crate
-	cargo test --workspace --quiet
+	cargo test -p recon-wire --quiet
 
 CORES := $(shell nproc 2>/dev/null || getconf _NPROCESSORS_ONLN)
 # One more than cores: some of them always wait for stations and commands that they have started.
@@ -154,7 +154,7 @@ fuzz-android: ## A million hostile inputs for the companion app's codec, as many
 	$(MAVEN) test -pl core,msdk5 -Dtest='*FuzzTest,SchedulesTest' -Dsurefire.failIfNoSpecifiedTests=false -Dfuzz.inputs=1000000 -Dfuzz.schedules=5000
 
 bench: setup web ## Measurements, each beside a baseline of the same run
-	cargo bench -p recon-wire
+	cargo bench -p recon-wire-bench
 	$(RUN) python -m pytest benches -p no:cacheprovider
 	$(RUN) python -m benches.safety.bench_watchdogs
 	$(RUN) python -m benches.fleet.bench_trust
