@@ -29,7 +29,10 @@ from recon.product.shot_files import ShotFiles
 from recon.product.sun_at import SunHistory
 from recon.product.sun_sensor import (
     agreement,
+    agreement_lines,
+    agreement_of,
     lit_by_sensor,
+    map_and_sensor,
     shaded_place_m,
     shown_by_sensor,
     sun_by_sensor,
@@ -123,6 +126,29 @@ def test_a_sensor_that_shows_another_sky_does_not_agree() -> None:
     assert how.share_right < 0.8
 
 
+def test_how_often_the_maps_were_right_is_stated_for_sun_and_for_shade() -> None:
+    """Every fourth photo's sensor shows the opposite of the truth: the maps seem wrong there."""
+    found, truth = files()
+    told = sun_by_sensor(found)
+    turned = {n: 1.0 - s if k % 4 == 0 else s for k, (n, s) in enumerate(told.items())}
+    both = map_and_sensor(FLIGHT, leads(found), turned, HISTORY)
+    in_sun = [name for name, share in turned.items() if share >= 0.5]
+    right = 100.0 * np.mean([truth[name] >= 0.5 for name in in_sun])
+    first, second = agreement_lines(agreement_of(both.values()))
+    assert first.startswith(f"Of {len(in_sun)} photos in sun by their own sun sensor, the maps")
+    assert float(first.split(" sun in ")[-1].split()[0]) == pytest.approx(right, abs=5.0)
+    assert second.startswith(f"Of {len(turned) - len(in_sun)} photos in shade by their own")
+
+
+def test_photos_where_the_maps_know_nothing_are_counted_apart() -> None:
+    pairs = [(1.0, 0.9), (0.2, 0.9), (float("nan"), 0.9)]
+    assert [*agreement_lines(agreement_of(pairs))] == [
+        "Of 2 photos in sun by their own sun sensor, the maps said sun in 50 %; 1 more were where "
+        "the maps know nothing"
+    ]
+    assert [*agreement_lines(agreement_of([]))] == []
+
+
 def test_maps_that_know_nothing_are_not_compared() -> None:
     found, _truth = files()
     nothing = SunHistory(FLIGHT.grid, ())
@@ -171,6 +197,12 @@ def test_the_command_takes_the_sensor_where_there_are_no_maps(
         assert "expected a flight with shade maps" in plain.stderr
     else:
         assert " unknown" in plain.output
+        stated = [line for line in plain.output.splitlines() if "by their own sun sensor" in line]
+        page = tmp_path / "report.html"
+        words_of_report = ["report", str(record), "--tagged", str(tmp_path / "out")]
+        assert CliRunner().invoke(app, [*words_of_report, "--out", str(page)]).exit_code == 0
+        assert len(stated) == 2
+        assert all(f"<p>{line}.</p>" in page.read_text(encoding="utf-8") for line in stated)
         assert "right at half sun, lag" in plain.output
     helped = CliRunner().invoke(app, [*words, "--sun-sensor"])
     assert helped.exit_code == 0, helped.output

@@ -35,7 +35,13 @@ from recon.product.quality import quality_of
 from recon.product.registration import read_grey, with_headings
 from recon.product.shot_files import MAIN, ShotFiles, files_of
 from recon.product.sun_at import SunHistory
-from recon.product.sun_sensor import agreement, sun_by_sensor
+from recon.product.sun_sensor import (
+    agreement,
+    agreement_lines,
+    agreement_of,
+    map_and_sensor,
+    sun_by_sensor,
+)
 from recon.product.tag import (
     SUNLIT_SHARE,
     PhotoTag,
@@ -95,11 +101,11 @@ def tag_command(options: TagOptions, camera: CameraOptions) -> None:
         read.print_left_out(refused)
         print(printable(f"no photo was tagged: {main_reason(refused)}"), file=sys.stderr)
         raise typer.Exit(NO_PHOTO_TAGGED)
-    light = _light(options, flight, files)
+    light, both = _light(options, flight, files)
     tags, selection = _written(options, light, files, panels)
     quality = quality_of(flight, files)
     names = [each.photo.name for each in files.of(selection.chosen)]
-    rows = table(flight, files, tags, names, refused, quality, options.sunlit)
+    rows = table(flight, files, tags, names, refused, quality, options.sunlit, both)
     write_text(options.out / "tags.csv", rows)
     write_text(options.out / "chosen.txt", "".join(f"{name}\n" for name in names))
     write_text(options.out / "fly-again.geojson", fly_again(flight, selection))
@@ -125,15 +131,21 @@ def _files(
     return files, panels, {**read.refused, **timed.refused, **files.refused, **kept_apart}
 
 
-def _light(options: TagOptions, flight: FlightData, files: ShotFiles) -> FlightLight:
-    """Return what is known of the sun; print how shade maps and sun sensor agree."""
+def _light(
+    options: TagOptions, flight: FlightData, files: ShotFiles
+) -> tuple[FlightLight, dict[str, tuple[float, float]]]:
+    """Return what is known of the sun, and the direct sun by shade maps and by sensor of each photo
+    that has one, by name; print how both agree."""
     history = sun_history(flight, may_be_empty=options.sun_sensor)
     sensor = _sensor(flight, files, history)
+    both = map_and_sensor(flight, files.leading, sensor, history)
+    for line in agreement_lines(agreement_of(both.values())):
+        print(line)
     if options.sun_sensor and not sensor:
         print_warning("--sun-sensor: no photo's sun sensor tells sun from shade")
     ground = ground_of_flight(flight, files.leading)
     counted = sensor if options.sun_sensor else {}
-    return FlightLight(flight, history, ground, options.sunlit, counted)
+    return FlightLight(flight, history, ground, options.sunlit, counted), both
 
 
 def _written(

@@ -23,6 +23,7 @@ from recon.guidance.survey import SurveySettings
 from recon.guidance.survey.lattice import axes
 from recon.guidance.survey.plan import row_bearing_deg, survey_fault
 from recon.guidance.survey.progress import is_flown_as_planned
+from recon.light.agreement import MapAgreement
 from recon.model.arrays import IntArray
 from recon.model.errors import RecordError
 from recon.model.severity import Severity
@@ -41,6 +42,7 @@ from recon.product.shadow_record import (
     sun_by_cell,
 )
 from recon.product.sun_at import SunHistory
+from recon.product.sun_sensor import agreement_of
 from recon.product.tagged import TaggedPhoto
 
 BoolMap = npt.NDArray[np.bool_]
@@ -109,6 +111,8 @@ class FlightReport:
     cover: tuple[tuple[int, float], ...] = ()
     """Time, and the share of the region in sun, for each shade map that shows any of it."""
     photo_states: Mapping[str, int] = field(default_factory=dict)
+    by_sensors: MapAgreement = field(default_factory=MapAgreement)
+    """How often the shade maps said what the photos' own sun sensors show."""
     airborne: Mapping[str, Sequence[tuple[int, int]]] = field(default_factory=dict)
     """Times in the air by vehicle's name."""
     alarms: Sequence[AlarmSpan] = ()
@@ -147,6 +151,11 @@ def flight_report(
         area,
         () if covered is None else tuple(_cover(flight, covered)),
         Counter(each.state for each in photos or ()),
+        agreement_of(
+            each.sun_by_maps_and_sensor
+            for each in photos or ()
+            if each.sun_by_maps_and_sensor is not None
+        ),
         _airborne(log.lines, end_ns),
         _alarms(log.lines),
         [each for each in log.lines if _is_decision(each.kind)],

@@ -21,6 +21,7 @@ from recon.product.local_time import LocalTime
 from recon.product.mosaic.choice import Light
 from recon.product.mosaic.finished import FinishedMosaic
 from recon.product.report import FlightReport
+from recon.product.sun_sensor import agreement_lines
 
 MOST_DECISIONS, MOST_ALARMS = 300, 100
 LEVELS = frozenset(each.value for each in Severity)
@@ -67,6 +68,7 @@ def _context(report: FlightReport, zone: tzinfo | None) -> dict[str, Any]:
         "batteries": [_battery(report, serial) for serial in sorted(report.log.batteries)],
         "battery_chart": charts.batteries(report),
         "leads": [_lead(report, lead_s) for lead_s in sorted(report.log.leads)],
+        "by_sensors": list(agreement_lines(report.by_sensors)),
         "shortest_lead": f"{LEADS_S[0]:g} s",
         "alarms": [_alarm(report, local, each) for each in alarms[:MOST_ALARMS]],
         "more_alarms": max(0, len(alarms) - MOST_ALARMS),

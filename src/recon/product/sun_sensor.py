@@ -7,13 +7,14 @@ flight. A flight that saw only one of the two tells nothing, for nobody knows wh
 """
 
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import floor
 
 import numpy as np
 
 from recon.geo.sun import sun_position
+from recon.light.agreement import SHOWN, MapAgreement, compared
 from recon.model.arrays import BoolArray, FloatArray
 from recon.model.geo import LatLon
 from recon.model.shade import SUNLIT_TRANSMITTANCE
@@ -134,6 +135,44 @@ def _lag_s(correlations: Sequence[float]) -> float:
     before, top, after = correlations[best - 1 : best + 2]
     bend = before - 2.0 * top + after
     return float(LAGS_S[best]) + (LAG_STEP_S * 0.5 * (before - after) / bend if bend < 0.0 else 0.0)
+
+
+def map_and_sensor(
+    flight: FlightData,
+    leads: Sequence[TimedPhoto],
+    sensor: Mapping[str, float],
+    history: SunHistory,
+) -> dict[str, tuple[float, float]]:
+    """Return the direct sun by the shade maps, NaN where they know nothing, and by the sensor of
+    each photo that has one, by name: both where the aircraft's own shadow falls."""
+    return {
+        each.photo.name: (
+            _on_map(history, each.at_ns, shaded_place_m(flight, each)),
+            sensor[each.photo.name],
+        )
+        for each in leads
+        if each.photo.name in sensor
+    }
+
+
+def agreement_of(both: Iterable[tuple[float, float]]) -> MapAgreement:
+    """Return how often the maps said what photos' own sun sensors show."""
+    pairs = np.array([*both], dtype=np.float32).reshape(-1, 2)
+    return compared(pairs[:, 0], pairs[:, 1])
+
+
+def agreement_lines(counted: MapAgreement) -> Iterator[str]:
+    """Yield how right the maps were, by the sun sensors of photos in sun and of those in shade."""
+    for shown in SHOWN:
+        known = sum(counted.count(says, shown) for says in SHOWN)
+        unknown = counted.count("unknown", shown)
+        if known + unknown:
+            right = f"{100.0 * counted.count(shown, shown) / known:.0f} %" if known else "none"
+            beside = f"; {unknown} more were where the maps know nothing" if unknown else ""
+            yield (
+                f"Of {known} photos in {shown} by their own sun sensor, the maps said {shown} in "
+                f"{right}{beside}"
+            )
 
 
 def shaded_place_m(flight: FlightData, timed: TimedPhoto) -> FloatArray:

@@ -31,6 +31,8 @@ class TaggedPhoto:
     """Station time."""
     state: str
     footprint: shapely.Polygon
+    sun_by_maps_and_sensor: tuple[float, float] | None = None
+    """Direct sun by the shade maps, NaN where unknown, and by its own sensor, if that states it."""
 
 
 def tagged_photos(folder: Path, flight: FlightData) -> list[TaggedPhoto]:
@@ -81,4 +83,6 @@ def _photo(row: Mapping[str, str], flight: FlightData) -> TaggedPhoto:
     if not np.isfinite(enu_m).all():
         raise ValueError("expected a footprint on earth")
     footprint = shapely.Polygon(enu_m[:, :2]).buffer(0.0)
-    return TaggedPhoto(row["name"], at_ns, row["state"], footprint)
+    sensor, there = row.get("sun_by_sensor") or "", row.get("sun_by_maps_there") or "nan"
+    both = (float(there), float(sensor)) if sensor else None
+    return TaggedPhoto(row["name"], at_ns, row["state"], footprint, both)

@@ -30,6 +30,7 @@ COLUMNS = (
     *("name", "file", "vehicle", "utc", "sigma_s", "latitude_deg", "longitude_deg"),
     *("height_above_takeoff_m", "yaw_deg", "pitch_deg", "sunlit", "confidence", "known", "state"),
     *("chosen", "footprint_wkt", "shot", "shows", "light_by", "quality", "note"),
+    *("sun_by_sensor", "sun_by_maps_there"),
 )
 
 
@@ -130,8 +131,12 @@ def table(
     refused: Mapping[str, str],
     quality: Mapping[str, str],
     share: float,
+    both: Mapping[str, tuple[float, float]],
 ) -> str:
-    """Return the CSV: a row for each file, those without a tag with the reason last."""
+    """Return the CSV: a row for each file, those without a tag with the reason last.
+
+    `both` is the direct sun by the shade maps and by the photo's own sensor, by name.
+    """
     out = io.StringIO()
     rows = csv.writer(out, lineterminator="\n")
     rows.writerow(COLUMNS)
@@ -155,10 +160,11 @@ def table(
                     quality.get(name, ""),
                     "",
                 ),
+                *(_share(each) for each in reversed(both.get(name, (np.nan, np.nan)))),
             )
         )
     for name, reason in sorted(refused.items()):
-        rows.writerow((cell(name), *[""] * (len(COLUMNS) - 8), "no", *[""] * 5, cell(reason)))
+        rows.writerow((cell(name), *[""] * 13, "no", *[""] * 5, cell(reason), "", ""))
     return out.getvalue()
 
 
