@@ -13,6 +13,7 @@ from types import ModuleType
 import pytest
 
 SHORT: dict[str, object] = {
+    "ADDED_LIMIT_MS": 1e6,
     "FLOWN_S": 30.0,
     "HALTED_REPEATS": 1,
     "LAST_NS": 20_000_000_000,
@@ -22,6 +23,7 @@ SHORT: dict[str, object] = {
     "RECORDED_S": 3.0,
     "ROUNDS": 1,
     "SETTLED_S": 1.0,
+    "SHARE_LIMIT": 1e6,
     "SETTLING_S": 1.0,
     "SINK_SECONDS": 1.0,
 }

@@ -183,6 +183,7 @@ def test_a_hostile_client_disturbs_no_other() -> None:
             connected(running) as client,
             connected(running) as noise,
         ):
+            await client.until("HEARTBEAT")
             noise.write(bytes((0xFE, 9, 0, 1, 1, 0)) * 2000)
             noise.write(bytes(range(256)) * 50)
             assert await client.command(SET_MODE, 1, 4, 3) == (ACCEPTED, "")

@@ -61,7 +61,8 @@ def test_every_digit_is_that_of_the_telemetry() -> None:
 
 def test_a_sample_is_sent_once() -> None:
     gateway = Stepping()
-    again = seen(5.1)
+    gateway.give(seen(5.1), after_s=1.0)
+    again = seen(5.2)
     assert types(gateway.give(again)) == FAST
     assert types(gateway.give(again)) == []
 
@@ -125,3 +126,9 @@ def test_beats_come_from_the_autopilot_component_alone() -> None:
     (beat, *_) = sent(Stepping().give(seen(7.0), 2.0))
     frame = Encoder().encode(1, [beat], 0.0)[0]
     assert (frame[5], frame[6]) == (1, 1)
+
+
+def test_what_is_slow_is_spread_over_the_states_of_a_second() -> None:
+    stepping = {number: Stepping(number=number) for number in (1, 5, 9)}
+    waits_ns = [g.state.vehicles[n].slow_due_ns - g.now_ns for n, g in stepping.items()]
+    assert waits_ns == [95_000_000, 475_000_000, 855_000_000]

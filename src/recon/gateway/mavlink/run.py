@@ -37,6 +37,7 @@ from recon.model.command import GoTo, Refusal
 Endpoint = tuple[str, int]
 STATE_WITHIN_S = 0.25
 OPENS_WITHIN_S = 2.0
+VEHICLES_AT_ONCE = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,10 +104,18 @@ class MavlinkGateway:
             else:
                 state, age_s = seen
                 number = state.number
-                self.handle(StationSeen(state.message, age_s))
+                await self._show(StationSeen(state.message, age_s))
             for socket in self._sockets:
                 socket.drop_silent(time.monotonic())
             await self._count_as_operator()
+
+    async def _show(self, seen: StationSeen) -> None:
+        """Step, and send a few vehicles at a time: a client's order waits for no fleet."""
+        self._state, outputs = step(self._state, seen, time.monotonic_ns())
+        for number, output in enumerate(outputs, start=1):
+            self._carry_out(output)
+            if number % VEHICLES_AT_ONCE == 0:
+                await asyncio.sleep(0)
 
     def handle(self, given: Input) -> None:
         """Step, and carry out what comes of it."""

@@ -41,7 +41,9 @@ def station_seen(state: GatewayState, seen: StationSeen, now_ns: int) -> Stepped
             continue
         known = state.vehicles.get(each.number)
         if known is None or known.serial != each.serial:
-            known = GatewayVehicle(each.number, each)
+            # Not all at once: what is sent once a second is spread over ten states.
+            due_ns = now_ns + each.number % 10 * SLOW_NS // 10
+            known = GatewayVehicle(each.number, each, slow_due_ns=due_ns)
         vehicle, messages = _shown(
             known, each, seen, state.settings.ground_above_sea_level_m, now_ns
         )
