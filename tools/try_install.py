@@ -120,8 +120,8 @@ def survey(recon: Path, url: str) -> None:
 
 
 def has_row(recon: Path, url: str, number: int) -> bool:
-    """Whether a survey has imaged as much ground as one row has."""
-    surveys = json.loads(run(recon, "survey", "status", "--json", station=url))
+    """Whether a survey has imaged as much ground as one row has; a busy computer is asked again."""
+    surveys = json.loads(run(recon, "survey", "status", "--json", station=url, otherwise="[]"))
     of_number: dict[str, Any] = next((s for s in surveys if s["id"] == number), {})
     figures = of_number.get("figures")
     if figures is None:
@@ -139,12 +139,14 @@ def extras_are_named(recon: Path) -> None:
     require(READS_NO_GEOPACKAGE in said, f"expected {READS_NO_GEOPACKAGE}, got {said}")
 
 
-def run(recon: Path, *words: str, station: str = "") -> str:
-    """Return what a command prints; one that fails ends everything."""
+def run(recon: Path, *words: str, station: str = "", otherwise: str | None = None) -> str:
+    """Return what a command prints, or `otherwise`; without it one that fails ends everything."""
     environment = {**os.environ, "RECON_STATION": station} if station else None
     ended = subprocess.run(
         (recon, *words), env=environment, capture_output=True, text=True, check=False
     )
+    if ended.returncode != 0 and otherwise is not None:
+        return otherwise
     said = (ended.stderr or ended.stdout)[-500:]
     require(ended.returncode == 0, f"recon {' '.join(words)}: exit code {ended.returncode}: {said}")
     return ended.stdout
