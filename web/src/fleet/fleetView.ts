@@ -6,6 +6,7 @@ import type {
   FleetReturnView,
   GroundImageView,
   ImagerReliefView,
+  LightSensorsView,
   LinkView,
   MoveUpwindView,
   ShadeLineView,
@@ -41,6 +42,7 @@ interface FleetData {
   moveUpwind: MoveUpwindView | null;
   imagerRelief: ImagerReliefView | null;
   shade: ShadeLineView | null;
+  lightSensors: LightSensorsView | null;
   surveys: SurveyView[];
   temporaryZones: TemporaryZoneView[];
 }
@@ -60,6 +62,7 @@ const NO_DATA: FleetData = {
   moveUpwind: null,
   imagerRelief: null,
   shade: null,
+  lightSensors: null,
   surveys: [],
   temporaryZones: [],
 };
@@ -92,6 +95,7 @@ export function createFleetView(source: Pick<StationSource, "state">): FleetView
     setView("moveUpwind", reconcile(state.move_upwind));
     setView("imagerRelief", reconcile(state.imager_relief));
     setView("shade", reconcile(state.shade));
+    setView("lightSensors", reconcile(state.light_sensors, { key: "name" }));
     setView("surveys", reconcile([...state.surveys], { key: "id" }));
     setView("groundImage", reconcile(state.ground_image));
   });

@@ -8,6 +8,7 @@ import { readColours } from "./colours";
 import { hideLayers } from "./features";
 import { GraticuleLayer } from "./graticuleLayer";
 import { type DisplayedGround, GroundImageLayer } from "./groundImageLayer";
+import { LightSensorLayer } from "./lightSensorLayer";
 import { MissionDraftLayer } from "./missionDraftLayer";
 import { MovingLayer } from "./movingLayer";
 import { ForecastLayer, ShadeLayer, SurveyCellsLayer } from "./overlays";
@@ -50,6 +51,7 @@ export function createMapLayers(
       new TemporaryZoneLayer(),
       new AreaLabelLayer(),
       new PadLayer(),
+      new LightSensorLayer(),
       new SiteDraftLayer(),
       new MissionDraftLayer(missionDraft),
       new MovingLayer(),

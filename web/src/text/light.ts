@@ -1,4 +1,12 @@
-import type { LightSharesView } from "../protocol";
+import type { LightSensorView, LightSharesView } from "../protocol";
+
+/** Without a state of the station for so long nothing is shown as live. */
+const LIVE_S = 10;
+
+/** Whether a light sensor's value is of now, also while no new state arrives. */
+export function isSensorLive(sensor: LightSensorView, behindS: number): boolean {
+  return sensor.is_live && behindS < LIVE_S;
+}
 
 /** Shares of the ground in view in whole per cent; they add up to 100. */
 export interface LightPercents {

@@ -4,6 +4,7 @@ import type { ForecastView, GroundImageView, ShadeLineView } from "../../protoco
 import { text } from "../../text/catalogue";
 import { formatAge, formatHeading, formatQuantity } from "../../text/quantities";
 import { Panel, Warning } from "../Panel";
+import { LightSensors } from "./LightSensors";
 import { LightShares } from "./LightShares";
 import { SideStep } from "./SideStep";
 import { UpwindPlace } from "./UpwindPlace";
@@ -23,6 +24,7 @@ export function SunPanel() {
           </>
         )}
       </Show>
+      <LightSensors />
     </Panel>
   );
 }

@@ -1,5 +1,5 @@
 import { afterEach, describe, expect, it } from "vitest";
-import type { SideStepView, UpwindPlaceView } from "../../protocol";
+import type { LightSensorView, SideStepView, UpwindPlaceView } from "../../protocol";
 import { groundImage, shadeLine } from "../../testing/fakeField";
 import { station, vehicle } from "../../testing/fakeState";
 import { find, type RenderedPage, renderPage, settled } from "../../testing/renderPage";
@@ -14,6 +14,53 @@ afterEach(() => page.dispose());
 function show(changes: Parameters<typeof shadeLine>[0] = {}) {
   page = renderPage(SunPanel, station([vehicle(1)], { shade: shadeLine(changes) }));
 }
+
+const GATE: LightSensorView = {
+  name: "gate",
+  source: "10.0.0.9",
+  latitude_deg: 41.9,
+  longitude_deg: -93.6,
+  value: 1480,
+  age_s: 0.5,
+  is_live: true,
+  shows: "sun",
+  map_says: "shade",
+  right: 3,
+  compared: 4,
+};
+
+function showSensors(...sensors: LightSensorView[]) {
+  const light_sensors = { sensors, refused_lines: 1, problem: "10.0.0.9: line 4: no number" };
+  page = renderPage(SunPanel, station([vehicle(1)], { shade: shadeLine(), light_sensors }));
+}
+
+describe("light sensors", () => {
+  it("shows each one's value and light beside the map's, and how often the map was right", () => {
+    showSensors(GATE);
+    expect(find(page.root, ".light-sensors").textContent).toBe(
+      "gate1480In sun. Map: shade. Right in 75\u00a0% of 4 maps.",
+    );
+    expect(page.root.textContent).toContain("10.0.0.9: line 4: no number");
+  });
+
+  it("shows a silent one as stale and never its light", () => {
+    showSensors({ ...GATE, is_live: false, shows: "unknown", age_s: 61, compared: 0, right: 0 });
+    expect(find(page.root, ".light-sensors").textContent).toContain("stale, 1 min 1 s ago");
+    expect(page.root.textContent).not.toContain("1480");
+  });
+
+  it("shows none as live while the station is silent", () => {
+    showSensors(GATE);
+    page.age(11);
+    expect(find(page.root, ".light-sensors").textContent).not.toContain("In sun");
+    expect(find(page.root, ".light-sensors .is-unknown")).toBeTruthy();
+  });
+
+  it("is absent without a logger", () => {
+    show();
+    expect(page.root.textContent).not.toContain("Light sensors");
+  });
+});
 
 describe("sun and shade", () => {
   it("shows the shares of the ground in view in sun, in shade and unknown, and their age", () => {

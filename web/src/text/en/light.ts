@@ -1,5 +1,6 @@
 import type {
   ImagerReliefView,
+  LightSensorView,
   MoveUpwindView,
   SideStepView,
   SunAtView,
@@ -29,6 +30,31 @@ export const sun = {
   motionUnknown: "Motion of the shadows unknown.",
   motion: (speed: string, bearing: string) => `Shadows move at ${speed}, bearing ${bearing}.`,
   ordered: (age: string, person: string) => `since ${age}, ordered by ${person}`,
+};
+
+/** Light sensors at the field, beside the shade map. */
+export const lightSensors = {
+  title: "Light sensors",
+  shows: {
+    sun: "In sun.",
+    shade: "In shade.",
+    unknown: "Has not seen sun and shade yet.",
+  } satisfies Record<LightSensorView["shows"], string>,
+  map: {
+    sun: "Map: sun.",
+    shade: "Map: shade.",
+    unknown: "Map: unknown.",
+    nowhere: "No place stated.",
+  },
+  right: (share: string, maps: number) => `Right in ${share} of ${plural(maps, "map")}.`,
+  stale: (age: string) => `stale, ${age} ago`,
+  /** On the map. */
+  mark: {
+    sun: (name: string) => `Light sensor ${name}: in sun`,
+    shade: (name: string) => `Light sensor ${name}: in shade`,
+    unknown: (name: string) => `Light sensor ${name}: sun or shade not known yet`,
+    stale: (name: string) => `Light sensor ${name}: stale`,
+  },
 };
 
 /** What an imaging drone does, after its name, with a bearing or a distance. */
