@@ -5,20 +5,19 @@ a group of their own, a ragged array of trajectories: a file's feature type cove
 and a group's covers the group alone.
 """
 
-from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from recon.geo import cell_centres_m, sun_position
 from recon.model.errors import RecordError
 from recon.model.extras import from_extra
 from recon.model.geo import GroundGrid, LatLon
 from recon.model.units import NS_PER_S
+from recon.product.cf_file import CRS, CfFile, characters
 from recon.product.flight import FULL, UNKNOWN, FlightData
 from recon.product.recorded_states import RecordedForecast, RecordedState, recorded_states
 from recon.record.mcap.mcap_read import Opener, opened
@@ -27,15 +26,8 @@ from recon.record.raster.geotiff import projected_crs
 if TYPE_CHECKING:
     import netCDF4
 
-Array = npt.NDArray[Any]
-
-PACKED: Mapping[str, Any] = {"compression": "zlib", "complevel": 4, "shuffle": False}
-"""Bytes, which are not shuffled; higher levels take twice the time for two per cent."""
 FORECAST_EVERY_NS = 2 * NS_PER_S
 """Least time between two forecasts, which are most of a file: shadows move two cells in it."""
-CRS = "crs"
-GRID = ("y", "x")
-LONGEST_NAME = 64
 
 
 def write_netcdf(flight: FlightData, out: Path, open_record: Opener = opened) -> None:
@@ -69,7 +61,9 @@ class _FlightFile:
 
     def __init__(self, file: "netCDF4.Dataset", flight: FlightData, grid: GroundGrid) -> None:
         self._file, self._flight, self._grid = file, flight, grid
-        self._epoch_ns = flight.span_ns[0] // NS_PER_S * NS_PER_S
+        epoch_ns = flight.span_ns[0] // NS_PER_S * NS_PER_S
+        epoch_utc = flight.utc(epoch_ns).removesuffix("Z").replace("T", " ")
+        self._cf = CfFile(file, grid, epoch_ns, epoch_utc)
         self._surveys: list[str] = []
         self._forecasts = self._states = 0
         self._forecast_due_ns = -(2**62)
@@ -108,12 +102,12 @@ class _FlightFile:
         crs = self._file.createVariable(CRS, "i4")
         crs.setncatts(pyproj.CRS.from_wkt(projected_crs(self._grid.frame)).to_cf())
         for name, values in zip(("x", "y"), cell_centres_m(self._grid), strict=True):
-            self._axis(name, values, "m", f"projection_{name}_coordinate", axis=name.upper())
+            self._cf.axis(name, values, "m", f"projection_{name}_coordinate", axis=name.upper())
 
     def _maps(self) -> None:
         maps = self._flight.maps
-        self._times("time", [each.at_ns for each in maps])
-        sun = self._cells(
+        self._cf.times("time", [each.at_ns for each in maps])
+        sun = self._cf.cells(
             "transmittance",
             ("time",),
             "share of direct sunlight that reaches the ground past clouds",
@@ -121,7 +115,7 @@ class _FlightFile:
             scale_factor=np.float32(1.0 / FULL),
             ancillary_variables="confidence",
         )
-        sure = self._cells(
+        sure = self._cf.cells(
             "confidence",
             ("time",),
             "confidence of transmittance",
@@ -140,7 +134,7 @@ class _FlightFile:
             found = np.array([(each.azimuth_deg, each.elevation_deg) for each in suns])
         for values, what in zip(found.T, ("azimuth", "elevation"), strict=True):
             name = f"solar_{what}_angle"
-            self._numbers(name, ("time",), "degree", standard_name=name)[:] = values
+            self._cf.numbers(name, ("time",), "degree", standard_name=name)[:] = values
 
     def _tracks(self, group: "netCDF4.Group") -> None:
         flight = self._flight
@@ -149,41 +143,43 @@ class _FlightFile:
         group.createDimension("vehicle", len(tracks))
         group.createDimension("sample", sum(len(each.at_ns) for each in tracks))
         serials = [each.serial for each in tracks]
-        self._texts(group, "serial", "vehicle", "serial number")[:] = _chars(serials)
+        self._cf.texts("serial", "vehicle", "serial number", group)[:] = characters(serials)
         group["serial"].cf_role = "trajectory_id"
         names = [flight.names.get(each, each) for each in serials]
-        self._texts(group, "vehicle_name", "vehicle", "name of the vehicle")[:] = _chars(names)
+        self._cf.texts("vehicle_name", "vehicle", "name of the vehicle", group)[:] = characters(
+            names
+        )
         count = group.createVariable("sample_count", "i4", ("vehicle",))
         count.setncatts({"long_name": "samples of each vehicle", "sample_dimension": "sample"})
         count[:] = [len(each.at_ns) for each in tracks]
         points_m = np.concatenate([np.column_stack([t.east_m, t.north_m]) for t in tracks])
         place = np.array(flight.lon_lat(points_m)).reshape(-1, 2)
-        self._times("sample_time", np.concatenate([t.at_ns for t in tracks]), group, "sample")
+        self._cf.times("sample_time", np.concatenate([t.at_ns for t in tracks]), group, "sample")
         for values, about in (
             (place[:, 0], ("longitude", "degrees_east", {"standard_name": "longitude"})),
             (place[:, 1], ("latitude", "degrees_north", {"standard_name": "latitude"})),
             (points_m[:, 0], ("sample_x", "m", {"standard_name": "projection_x_coordinate"})),
             (points_m[:, 1], ("sample_y", "m", {"standard_name": "projection_y_coordinate"})),
         ):
-            self._numbers(about[0], ("sample",), about[1], group, **about[2])[:] = values
+            self._cf.numbers(about[0], ("sample",), about[1], group, **about[2])[:] = values
         at = {"coordinates": "sample_time latitude longitude sample_x sample_y"}
         height = {"long_name": "height above takeoff", **at, "grid_mapping": CRS}
         yaw = {"standard_name": "platform_orientation", **at, "grid_mapping": CRS}
-        self._numbers("height", ("sample",), "m", group, **height)[:] = np.concatenate(
+        self._cf.numbers("height", ("sample",), "m", group, **height)[:] = np.concatenate(
             [each.height_m for each in tracks]
         )
-        self._numbers("heading", ("sample",), "degree", group, **yaw)[:] = np.concatenate(
+        self._cf.numbers("heading", ("sample",), "degree", group, **yaw)[:] = np.concatenate(
             [each.yaw_deg for each in tracks]
         )
 
     def _declare_states(self) -> None:
-        self._times("state_time", None)
+        self._cf.times("state_time", None)
         for axis in ("east", "north"):
             what = f"velocity of the clouds' shadows, {axis}ward, as estimated in flight"
-            self._numbers(f"shadow_velocity_{axis}", ("state_time",), "m s-1", long_name=what)
+            self._cf.numbers(f"shadow_velocity_{axis}", ("state_time",), "m s-1", long_name=what)
         self._file.createDimension("survey", None)
-        self._texts(self._file, "survey_name", "survey", "name of the survey and its number")
-        self._cells(
+        self._cf.texts("survey_name", "survey", "name of the survey and its number")
+        self._cf.cells(
             "survey_state",
             ("survey", "state_time"),
             "ground photographed by the survey",
@@ -195,13 +191,13 @@ class _FlightFile:
 
     def _add_state(self, state: RecordedState) -> None:
         number, self._states = self._states, self._states + 1
-        self._file["state_time"][number] = self._seconds(state.at_ns)
+        self._file["state_time"][number] = self._cf.seconds(state.at_ns)
         east_north = state.velocity_mps or (np.nan, np.nan)
         for axis, value in zip(("east", "north"), east_north, strict=True):
             self._file[f"shadow_velocity_{axis}"][number] = value
         for name, cells in state.surveys.items():
             if name not in self._surveys:
-                self._file["survey_name"][len(self._surveys)] = _chars([name])[0]
+                self._file["survey_name"][len(self._surveys)] = characters([name])[0]
                 self._surveys.append(name)
             self._file["survey_state"][self._surveys.index(name), number] = cells
 
@@ -212,11 +208,11 @@ class _FlightFile:
         if forecast.issued_at_ns < self._forecast_due_ns:
             return
         if not self._forecasts:
-            self._times(issued, None, standard_name=issued)
-            self._axis("lead", forecast.lead_s, "s", "forecast_period")
+            self._cf.times(issued, None, standard_name=issued)
+            self._cf.axis("lead", forecast.lead_s, "s", "forecast_period")
             valid = file.createVariable("valid_time", "f8", (issued, "lead"))
-            valid.setncatts(self._time_attributes("time"))
-            self._cells(
+            valid.setncatts(self._cf.time_attributes("time"))
+            self._cf.cells(
                 "sun_probability",
                 (issued, "lead"),
                 "probability that the place is in sun at the valid time",
@@ -227,102 +223,12 @@ class _FlightFile:
             return
         self._forecast_due_ns = forecast.issued_at_ns + FORECAST_EVERY_NS
         number, self._forecasts = self._forecasts, self._forecasts + 1
-        issued_s = self._seconds(forecast.issued_at_ns)
+        issued_s = self._cf.seconds(forecast.issued_at_ns)
         file[issued][number] = issued_s
         file["valid_time"][number] = issued_s + forecast.lead_s
         file["sun_probability"][number] = forecast.probability
-
-    def _cells(
-        self,
-        name: str,
-        over: tuple[str, ...],
-        long_name: str,
-        fill: int | None = None,
-        **about: Any,
-    ) -> "netCDF4.Variable[Any]":
-        """Declare bytes on the grid; values are written packed as they are."""
-        rows, cols = self._grid.rows, self._grid.cols
-        leads = [len(self._file.dimensions[each]) if each == "lead" else 1 for each in over]
-        found = self._file.createVariable(
-            name,
-            "u1",
-            (*over, *GRID),
-            chunksizes=(*leads, rows, cols),
-            fill_value=False if fill is None else fill,
-            **PACKED,
-        )
-        found.set_auto_maskandscale(False)
-        units = {} if "flag_values" in about else {"units": "1"}
-        found.setncatts({"long_name": long_name, **units, "grid_mapping": CRS, **about})
-        return found
-
-    def _axis(self, name: str, values: Array, units: str, standard: str, **about: str) -> None:
-        self._file.createDimension(name, len(values))
-        found = self._file.createVariable(name, "f8", (name,))
-        found.setncatts({"standard_name": standard, "units": units, **about})
-        found[:] = values
-
-    def _times(
-        self,
-        name: str,
-        at_ns: Sequence[int] | Array | None,
-        group: Any = None,
-        over: str | None = None,
-        standard_name: str = "time",
-    ) -> None:
-        """Declare times, with a dimension of their own unless they are over another; without
-        values it grows."""
-        where = self._file if group is None else group
-        if over is None:
-            where.createDimension(name, None if at_ns is None else len(at_ns))
-        found = where.createVariable(name, "f8", (over or name,), **PACKED)
-        found.setncatts(self._time_attributes(standard_name))
-        if over is None and standard_name == "time":
-            found.axis = "T"
-        if at_ns is not None:
-            found[:] = self._seconds(np.asarray(at_ns))
-
-    def _time_attributes(self, standard_name: str) -> dict[str, str]:
-        since = self._flight.utc(self._epoch_ns).removesuffix("Z").replace("T", " ")
-        units = f"seconds since {since}"
-        return {
-            "standard_name": standard_name,
-            "units": units,
-            "calendar": "standard",
-            "units_metadata": "leap_seconds: none",
-        }
-
-    def _seconds(self, at_ns: Any) -> Any:
-        return (at_ns - self._epoch_ns) / NS_PER_S
-
-    def _numbers(
-        self, name: str, over: tuple[str, ...], units: str, group: Any = None, **about: str
-    ) -> "netCDF4.Variable[Any]":
-        where = self._file if group is None else group
-        found: netCDF4.Variable[Any] = where.createVariable(
-            name, "f8", over, compression="zlib", fill_value=np.nan
-        )
-        found.setncatts({"units": units, **about})
-        return found
-
-    def _texts(self, where: Any, name: str, over: str, long_name: str) -> "netCDF4.Variable[Any]":
-        """Declare texts as characters: not every program reads strings."""
-        if "name_length" not in where.dimensions:
-            where.createDimension("name_length", LONGEST_NAME)
-        found: netCDF4.Variable[Any] = where.createVariable(name, "S1", (over, "name_length"))
-        found.setncatts({"long_name": long_name, "_Encoding": "utf-8"})
-        found.set_auto_chartostring(False)
-        return found
 
 
 def _place_of(flight: FlightData) -> LatLon:
     origin = flight.frame.origin
     return LatLon(origin.latitude_deg, origin.longitude_deg)
-
-
-def _chars(texts: Sequence[str]) -> Array:
-    """Return texts as characters (N, LONGEST_NAME), in UTF-8."""
-    cut = [
-        each.encode("utf-8", "replace")[:LONGEST_NAME].ljust(LONGEST_NAME, b"\0") for each in texts
-    ]
-    return np.frombuffer(b"".join(cut), "S1").reshape(len(texts), LONGEST_NAME)
