@@ -12,7 +12,14 @@ from tests.station.commanded import CommandedStation
 
 from recon.model.command import Hover
 from recon.model.control import AuthorityHolder
-from recon.model.event import AuthorityTaken, Event, HazardDismissed, Tick
+from recon.model.event import (
+    AllStopped,
+    AuthorityTaken,
+    Event,
+    HazardDismissed,
+    StopReleased,
+    Tick,
+)
 from recon.model.geo import LatLon
 from recon.record.files.snapshot_file import CURRENT, read_snapshot
 from recon.station.recovery import snapshot_writer
@@ -79,6 +86,11 @@ class TestUrgent:
             "HazardDismissed",
             "HazardDismissed",
         ]
+
+    def test_an_all_stop_and_its_release_are_also_with_nothing_in_flight(self) -> None:
+        scene = Scene()
+        scene.happens(AllStopped("Ann")).happens(StopReleased(None, "Ann"))
+        assert scene.urgent == ["AllStopped", "StopReleased"]
 
 
 class TestWriting:

@@ -1,9 +1,9 @@
 """Writes the recovery snapshot outside the event loop, on a thread of its own.
 
 The event loop only hands over the newest station, which is an immutable value. The thread writes
-it every half second, and at once when an order begins or ends, authority changes, a temporary zone
-is drawn or ended, or a lost vehicle appears or is dismissed: what a restart restores is at most one
-second old. Of states that arrive during a write only the newest is written next. A disk that is
+it every half second, and at once when an order begins or ends, an all stop is pressed or released,
+authority changes, a temporary zone is drawn or ended, or a lost vehicle appears or is dismissed:
+what a restart restores is at most one second old. Of states that arrive during a write only the newest is written next. A disk that is
 full or gone is a `problem`, which the auditor turns into an alarm, and the write is tried again.
 """
 
@@ -120,6 +120,8 @@ def is_urgent(before: Station, after: Station) -> bool:
     for serial, control in after.controls_changed_since(before):
         if control.authority is not before.control(serial).authority:
             return True
+    if after.stop_latch is not before.stop_latch:
+        return True
     if after.temporary_zones is not before.temporary_zones:
         return True
     watchdogs, watchdogs_before = after.watchdog_state, before.watchdog_state
