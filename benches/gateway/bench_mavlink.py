@@ -18,15 +18,23 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
+import msgspec
 import numpy as np
+from benches.gateway.quick_station import INTERVAL_S, QuickStation
 from pymavlink.dialects.v20 import common as mavlink
 from tests.cli.processes import started
 from tests.gateway.running_gateway import Client
 
 from recon import wire
 from recon.client import Station
+from recon.client.messages import StateMessage
+from recon.gateway.mavlink.encoder import Encoder
+from recon.gateway.mavlink.run import VEHICLES_AT_ONCE
+from recon.gateway.mavlink.step import step
+from recon.gateway.mavlink.values import GatewayState, Send, StationSeen
 
 LOOP = 100_000
+STATES = 50
 ROUNDS = 5
 SHARE_LIMIT, ADDED_LIMIT_MS, CODEC_LIMIT = 0.15, 5.0, 5.0
 READ_BYTES = 2**20
@@ -76,6 +84,28 @@ async def order_ms(port: int, station: Station, serial: str, orders: int) -> np.
         times[number // 2, number % 2] = time.perf_counter() - begun_s
     writer.close()
     return 1e3 * times
+
+
+def longest_work_ms(vehicles: int) -> float:
+    """Return the longest piece of the gateway's loop that an order may wait for.
+
+    In processor time: it is the same on a busy machine, where the times of orders are not.
+    """
+    station, state, encoder = QuickStation(vehicles), GatewayState(), Encoder()
+    longest_s = 0.0
+    for _ in range(STATES):
+        text, begun_s = station.text(), time.thread_time()
+        message = msgspec.json.decode(text, type=StateMessage)
+        decoded_s = time.thread_time()
+        state, outputs = step(state, StationSeen(message), time.monotonic_ns())
+        stepped_s = time.thread_time()
+        for output in outputs[:VEHICLES_AT_ONCE]:
+            assert isinstance(output, Send)
+            encoder.encode(output.system_id, output.messages, 0.0)
+        sent_s = time.thread_time()
+        longest_s = max(longest_s, decoded_s - begun_s, stepped_s - decoded_s, sent_s - stepped_s)
+        time.sleep(INTERVAL_S)
+    return 1e3 * longest_s
 
 
 def codec_rates() -> tuple[float, float]:
@@ -142,6 +172,8 @@ def main() -> int:
     print(
         f"packets/s, encode and decode: {ours:.0f}, pymavlink {theirs:.0f}: {ours / theirs:.1f} x"
     )
+    work_ms = longest_work_ms(asked.vehicles)
+    print(f"the longest work that an order waits for: {work_ms:.2f} ms of processor")
     program = (sys.executable, "-m", "benches.gateway.quick_station", str(asked.vehicles))
     with subprocess.Popen(program, stdout=subprocess.PIPE, text=True) as station:
         try:

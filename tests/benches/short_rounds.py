@@ -26,6 +26,7 @@ SHORT: dict[str, object] = {
     "SHARE_LIMIT": 1e6,
     "SETTLING_S": 1.0,
     "SINK_SECONDS": 1.0,
+    "STATES": 2,
 }
 """Values of constants, wherever a bench has one of this name."""
 
