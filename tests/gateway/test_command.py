@@ -18,6 +18,8 @@ def test_it_shows_the_vehicles_and_the_sites_fence(tmp_path: Path) -> None:
         words = ("gateway", "mavlink", "--tcp", "127.0.0.1:0", "--station", station.url)
         with started(*words) as gateway:
             port = int(gateway.line_with("MAVLink clients: 127.0.0.1:").rpartition(":")[2])
+            # The demonstration's ground lies 275 m above the ellipsoid, the sea 30.1 m below that.
+            gateway.line_with("takeoff points: 305.1 m above sea level")
             gateway.line_with("orders: none, read-only")
             shown = asyncio.run(_fence(port))
             drawn = _drawn(station)

@@ -12,11 +12,12 @@ from recon.cli.commands import App
 from recon.cli.connection import StationOptions, station_at
 from recon.cli.foreground import print_now, run_in_loop, until_stopped
 from recon.cli.options import with_options
+from recon.client import Station
 from recon.gateway.errors import GatewayError
+from recon.geo.geoid import geoid_height_m
 
 if TYPE_CHECKING:
     from recon.gateway.mavlink.run import Endpoints
-    from recon.gateway.mavlink.values import GatewaySettings
 
 gateway_app = App(help="Show the vehicles to other ground stations.", no_args_is_help=True)
 """One command today, each protocol its own."""
@@ -55,14 +56,15 @@ class MavlinkOptions:
         typer.Option("--allow-orders", help="Let clients order, as the person of the login."),
     ] = False
     ground_above_sea_level_m: Annotated[
-        float,
+        float | None,
         typer.Option(
             "--ground-above-sea-level",
             min=-500.0,
             max=9000.0,
-            help="Altitude of the takeoff points that clients are told, metres.",
+            help="Altitude of the takeoff points that clients are told, metres; default: the "
+            "site's ground.",
         ),
-    ] = 0.0
+    ] = None
 
 
 @gateway_app.command("mavlink")
@@ -78,31 +80,43 @@ def mavlink_command(options: MavlinkOptions, at: StationOptions) -> None:
             "recon-gcs[gateway], or pymavlink beside recon"
         )
     from recon.gateway.mavlink.run import Endpoints
-    from recon.gateway.mavlink.values import GatewaySettings
 
     udp, udp_to = _places(options.udp), _places(options.udp_to)
     tcp = _places(options.tcp or ([] if udp or udp_to else [DEFAULT_TCP]))
     _check_reach(options, (*tcp, *udp, *udp_to))
-    settings = GatewaySettings(options.allow_orders, options.ground_above_sea_level_m)
-    run_in_loop(until_stopped(_run(options, at, settings, Endpoints(tcp, udp, udp_to)), "stopped"))
+    run_in_loop(until_stopped(_run(options, at, Endpoints(tcp, udp, udp_to)), "stopped"))
 
 
-async def _run(
-    options: MavlinkOptions, at: StationOptions, settings: "GatewaySettings", places: "Endpoints"
-) -> None:
+async def _run(options: MavlinkOptions, at: StationOptions, places: "Endpoints") -> None:
     from recon.gateway.mavlink.run import MavlinkGateway
     from recon.gateway.mavlink.signing import Signer, read_key
+    from recon.gateway.mavlink.values import GatewaySettings
 
     signer = None if options.signing_key is None else Signer(read_key(options.signing_key))
     async with station_at(at, is_operator=False) as station:
+        ground_m = options.ground_above_sea_level_m
+        if ground_m is None:
+            ground_m = await _ground_above_sea_level_m(station)
+        settings = GatewaySettings(options.allow_orders, ground_m)
         gateway = MavlinkGateway(station, settings, signer)
         async with gateway.listening(places):
             for host, port in gateway.places:
                 print_now(f"MAVLink clients: {host}:{port}")
             for host, port in places.udp_to:
                 print_now(f"MAVLink to: {host}:{port}")
+            print_now(f"takeoff points: {ground_m:.1f} m above sea level")
             print_now("orders: allowed" if settings.allow_orders else "orders: none, read-only")
             await gateway.run()
+
+
+async def _ground_above_sea_level_m(station: Station) -> float:
+    """Return the altitude of the site's ground; 0 of a site without a position."""
+    origin = await station.surveys.site_origin()
+    if origin is None or origin.ground_altitude_m is None:
+        return 0.0
+    if origin.latitude_deg is None or origin.longitude_deg is None:
+        return 0.0
+    return origin.ground_altitude_m - geoid_height_m(origin.latitude_deg, origin.longitude_deg)
 
 
 def _places(texts: list[str] | None) -> list[tuple[str, int]]:
