@@ -31,7 +31,7 @@ class MethodProcess:
     """One process beside the station; it is started with the first job."""
 
     def __init__(self, limit_s: float = LIMIT_S) -> None:
-        self._limit_s = limit_s
+        self.limit_s = limit_s
         self._process: Any = None
         self._connection: Connection | None = None
         self._is_ready = False
@@ -46,9 +46,9 @@ class MethodProcess:
         connection = self._ready_connection(method)
         try:
             connection.send_bytes(packed((work, given)))
-            if not connection.poll(self._limit_s):
+            if not connection.poll(self.limit_s):
                 raise self._ended(
-                    f"the method {method} took longer than {self._limit_s:g} s, and was ended"
+                    f"the method {method} took longer than {self.limit_s:g} s, and was ended"
                 )
             is_done, result = pickle.loads(connection.recv_bytes())
         except (EOFError, OSError) as problem:
