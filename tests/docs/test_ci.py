@@ -1,4 +1,4 @@
-"""What CI decides: the step for the companion app, coverage of `safety/`, commit subjects."""
+"""What CI decides: the step for the companion app, what has changed lately, commit subjects."""
 
 import os
 import subprocess
@@ -67,8 +67,9 @@ def test_a_build_that_passes_or_fails_decides(tmp_path: Path) -> None:
 
 def test_ci_takes_the_steps() -> None:
     run = (ROOT / ".ci/run").read_text()
-    assert "\ntools/ci_android_core.sh\n" in run
-    assert "tools/safety_changed.sh && echo coverage-safety" in run
+    assert "tools/changed_lately.sh android vectors; then\n    tools/ci_android_core.sh\n" in run
+    assert "tools/changed_lately.sh src/recon/safety tests/safety && echo coverage-safety" in run
+    assert "tools/changed_lately.sh crates fuzz vectors Cargo.toml Cargo.lock && echo test-rust" in run
 
 
 def git(folder: Path, *words: str) -> str:
@@ -85,11 +86,12 @@ def git(folder: Path, *words: str) -> str:
     ).stdout
 
 
-def test_safety_has_changed_when_one_of_fifty_commits_changed_it_or_nothing_is_known(
+def test_a_folder_has_changed_when_one_of_fifty_commits_changed_it_or_nothing_is_known(
     tmp_path: Path,
 ) -> None:
     def has_changed() -> bool:
-        return not subprocess.run([ROOT / "tools/safety_changed.sh"], cwd=tmp_path).returncode
+        words = ROOT / "tools/changed_lately.sh", "src/recon/safety", "tests/safety"
+        return not subprocess.run(words, cwd=tmp_path).returncode
 
     def commits(count: int) -> None:
         for _ in range(count):
