@@ -1,10 +1,11 @@
 """Writes the recovery snapshot outside the event loop, on a thread of its own.
 
-The event loop only hands over the newest station, which is an immutable value. The thread writes
-it every half second, and at once when an order begins or ends, an all stop is pressed or released,
+The event loop only hands over the newest station, which is an immutable value. The thread writes it
+every half second, and at once when an order begins or ends, an all stop is pressed or released,
 authority changes, a temporary zone is drawn or ended, or a lost vehicle appears or is dismissed:
-what a restart restores is at most one second old. Of states that arrive during a write only the newest is written next. A disk that is
-full or gone is a `problem`, which the auditor turns into an alarm, and the write is tried again.
+what a restart restores is at most one second old. Of states that arrive during a write only the
+newest is written next. A disk that is full or gone is a `problem`, which the auditor turns into an
+alarm, and the write is tried again.
 """
 
 import threading
