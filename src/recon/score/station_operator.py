@@ -43,6 +43,7 @@ BY = "scripted operator"
 MOVES_EVERY_S = 60.0
 """Time between two moves of the imaging drone: the wind turns in minutes."""
 SURVEY_ID = 1
+"""The first survey; repeated ones count on."""
 BATTERY_RULE = "battery_home"
 DESCENDING = (FlightMode.GO_HOME, FlightMode.AUTO_LANDING, FlightMode.CONFIRM_LANDING)
 FIRST_ORDER = 101
@@ -56,6 +57,8 @@ class StationOperator:
     operator: ScriptedOperator
     moves_upwind: bool = False
     """Whether it has the imaging drone hover where it sees most of the shade to come."""
+    _survey_id: int = SURVEY_ID - 1
+    """The survey requested last, by which the next one is counted."""
     _moves_due_s: float = 0.0
     _next_order: int = FIRST_ORDER
 
@@ -63,7 +66,9 @@ class StationOperator:
         """Yield what the operator commands now."""
         if self.moves_upwind and now_ns >= self._moves_due_s * NS_PER_S:
             yield from self._move_upwind(station, now_ns)
-        for action in self.operator.decide(view_of(station, now_ns), now_ns / NS_PER_S):
+        for action in self.operator.decide(
+            view_of(station, self._survey_id, now_ns), now_ns / NS_PER_S
+        ):
             yield self._event(action)
 
     def _move_upwind(self, station: Station, now_ns: int) -> Iterator[Event]:
@@ -81,15 +86,16 @@ class StationOperator:
     def _event(self, action: OperatorAction) -> Event:
         match action:
             case RequestPlan():
-                return SurveyRequested(replace(self.survey, id=SURVEY_ID), BY)
+                self._survey_id += 1
+                return SurveyRequested(replace(self.survey, id=self._survey_id), BY)
             case StartDrones(serials):
-                return SurveyStarted(SURVEY_ID, serials, BY, takeoff=True)
+                return SurveyStarted(self._survey_id, serials, BY, takeoff=True)
             case TakeAuthority(serial):
                 return AuthorityTaken(serial, AuthorityHolder.OPERATOR, BY)
             case DismissHazard(serial):
                 return HazardDismissed(serial, BY)
             case AbortSurvey():
-                return SurveyStopped(SURVEY_ID, BY, is_aborted=True)
+                return SurveyStopped(self._survey_id, BY, is_aborted=True)
             case CallHome(serial):
                 return self._order(ReturnHome(), serial)
             case CallFleetHome(serials):
@@ -97,9 +103,9 @@ class StationOperator:
                 return FleetReturnOrdered(self._next_order - len(serials), serials, BY)
 
 
-def view_of(station: Station, now_ns: int) -> FieldView:
+def view_of(station: Station, survey_id: int, now_ns: int) -> FieldView:
     """Return what an operator sees of the station: vehicles with a serial, alarms, the survey."""
-    record = station.surveys.records.get(SURVEY_ID)
+    record = station.surveys.records.get(survey_id)
     alarms = (each for each in station.alarms.alarms.values() if each.is_active)
     at_risk = {each.condition.serial for each in alarms if each.condition.rule == BATTERY_RULE}
     views = (_drone(station, record, serial, now_ns) for serial in station.fleet.vehicles)
