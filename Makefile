@@ -22,7 +22,7 @@ FUZZ_SECONDS ?= 60
 RUST ?= test-rust
 WEB_SOURCES := $(shell find web/src web/public -type f ! -name schema.d.ts 2>/dev/null) web/index.html web/package.json web/vite.config.ts
 
-.PHONY: help setup demo run wheel test-install test-install-short image test test-all test-rust test-python flights test-web test-e2e android-core android test-android study-android fuzz-android coverage coverage-safety check check-rust check-python check-web format bench fuzz study mutants docs web clean
+.PHONY: help setup demo run wheel test-install test-install-short image test test-all test-rust test-python flights test-web test-e2e android-core android test-android study-android fuzz-android coverage coverage-safety check check-rust check-python check-web format bench fuzz study soak mutants docs web clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -197,6 +197,11 @@ study: setup ## Long runs: the sky against measurements, random fences, fleets a
 	$(RUN) python -m studies.guidance --seeds 3 --only wide
 	RECON_THOROUGH=1 $(PYTEST) -p no:processor_time -m "hypothesis or drawn"
 	@$(MAKE) mutants
+
+soak: setup ## An hour of 32 vehicles in real time, each process killed, 24 simulated hours (on a quiet machine, half a day)
+	$(RUN) python -m studies.soak --minutes 60 --vehicles 32
+	$(RUN) python -m studies.soak --kill --vehicles 8
+	$(RUN) python -m studies.soak --virtual-hours 24 --vehicles 8
 
 mutants: setup ## Mutate gate, watchdogs, trust layer and guard: a test must fail for each mutant (hours)
 	$(RUN) --group study python -m studies.mutants
