@@ -69,7 +69,9 @@ def test_ci_takes_the_steps() -> None:
     run = (ROOT / ".ci/run").read_text()
     assert "tools/changed_lately.sh android vectors; then\n    tools/ci_android_core.sh\n" in run
     assert "tools/changed_lately.sh src/recon/safety tests/safety && echo coverage-safety" in run
-    assert "tools/changed_lately.sh crates fuzz vectors Cargo.toml Cargo.lock && echo test-rust" in run
+    assert (
+        "tools/changed_lately.sh crates fuzz vectors Cargo.toml Cargo.lock && echo test-rust" in run
+    )
 
 
 def git(folder: Path, *words: str) -> str:
