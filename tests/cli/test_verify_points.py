@@ -156,9 +156,15 @@ def test_what_cannot_be_used_is_counted_and_named(tmp_path: Path) -> None:
 
 
 BAD = [
-    ("time,a,b,c\n2025-06-20T16:00:00,1,2,x\n", "row 2: expected a number, got 'x'"),
-    ("a,b,c\n1,2,3\n", "expected a column time, got a, b, c"),
-    ("time,a,b\n2025-06-20T16:00:00,1\n", "row 2: expected 3 values, got 2"),
+    (
+        "time,a,b,c\n2025-06-20T16:00:00,1,2,x\n",
+        "row 2: expected a number such as 1480 or 0.5, got 'x'",
+    ),
+    ("a,b,c\n1,2,3\n", "expected a head with a column time, got a, b, c"),
+    (
+        "time,a,b\n2025-06-20T16:00:00,1\n",
+        "row 2: expected 3 values, one for each column of the head, got 2",
+    ),
     ("time,a\nyesterday,1\n", "row 2: expected a time in ISO 8601 or Unix seconds"),
     ("time,a\n1750000000000,1\n", "expected Unix seconds, got 1.75e+12 (milliseconds?)"),
     ("time,a\n1750000000,1\n", "expected places of the sensors (rows or columns lat and lon"),

@@ -49,9 +49,23 @@ def test_a_logger_that_begins_anew_sends_its_head_again() -> None:
     assert found.refused == 0
 
 
+def test_a_byte_order_mark_alone_is_an_empty_line() -> None:
+    found = heard("\ufeff", "time,a", "\ufeff\r", ",5")
+    assert ([each.value for each in found.readings], found.refused) == ([5.0], 0)
+
+
+def test_a_value_without_a_usable_name_is_refused_and_the_others_are_used() -> None:
+    found = heard("time,a,", ",5,", ",6,7")
+    assert [(each.sensor, each.value) for each in found.readings] == [("a", 5.0), ("a", 6.0)]
+    assert found.problem == "line 3: expected a sensor's name of 1 to 40 characters, got ''"
+    found = heard("time,sensor,par", ",,5", ",\x1b\x07,5", f",{'a' * 41},5")
+    assert (found.readings, found.refused) == ((), 3)
+    assert "got 'aaa" in found.problem
+
+
 BAD = [
-    ("1750000000,x", "line 2: expected a number, got 'x'"),
-    ("1750000000", "line 2: expected 2 values, got 1"),
+    ("1750000000,x", "line 2: expected a number such as 1480 or 0.5, got 'x'"),
+    ("1750000000", "line 2: expected 2 values, one for each column of the head, got 1"),
     ("yesterday,1", "line 2: expected a time in ISO 8601 or Unix seconds, got 'yesterday'"),
     ("9999-01-01,1", "line 2: expected Unix seconds, got 2.53371e+11 (milliseconds?)"),
     ("1750000000,inf", "line 2: expected a value of light, got inf"),

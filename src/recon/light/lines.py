@@ -87,6 +87,8 @@ class LightLines:
             self._refuse(str(problem))
 
     def _read(self, line: str, now_ns: int) -> None:
+        if not line:
+            return  # a byte order mark alone
         (cells,) = cells_of_lines([line], self._first or line)
         if self._head is None:
             self._begin(line, cells)
@@ -100,12 +102,14 @@ class LightLines:
         self._head, self._first = head, line
 
     def _row(self, row: LightRow) -> None:
-        names = [one_line(name, LONGEST_NAME) for name in row.names]
+        names = [one_line(name, LONGEST_NAME + 1) for name in row.names]
         if row.time_ns is None:
             for name, value in zip(names, row.values, strict=True):
                 self._stated.setdefault(name, {})[row.place_key] = value
             return
         for name, value in zip(names, row.values, strict=True):
+            if isfinite(value):
+                _expect_name(name)
             stated = self._stated.get(name)
             if stated is None:
                 if len(self._stated) >= MOST_SENSORS:
@@ -121,6 +125,14 @@ class LightLines:
     def _refuse(self, problem: str) -> None:
         self.refused += 1
         self.problems = [*self.problems, f"line {self._line}: {problem}"][-PROBLEMS_KEPT:]
+
+
+def _expect_name(name: str) -> None:
+    """Raise `RecordError` for a name that nobody could tell from another one."""
+    if not 1 <= len(name) <= LONGEST_NAME:
+        raise RecordError(
+            f"expected a sensor's name of 1 to {LONGEST_NAME} characters, got {name!r}"
+        )
 
 
 def _place(stated: Mapping[str, float], frame: LocalFrame | None) -> LatLon | None:

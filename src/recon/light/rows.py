@@ -73,7 +73,7 @@ def read_head(cells: Sequence[str]) -> CsvHead:
     expect_once(cells)
     at = columns(cells)
     if "time" not in at:
-        raise RecordError(f"expected a column time, got {', '.join(cells)}")
+        raise RecordError(f"expected a head with a column time, got {', '.join(cells)}")
     is_long = "sensor" in at
     values = [n for n in range(len(cells)) if n not in at.values()]
     if not is_long:
@@ -136,7 +136,9 @@ def expect_once(head: Sequence[str]) -> None:
 def expect_cells(head: Sequence[str], cells: Sequence[str]) -> None:
     """Raise `RecordError` for a row that has not as many values as the head."""
     if len(cells) != len(head):
-        raise RecordError(f"expected {len(head)} values, got {len(cells)}")
+        raise RecordError(
+            f"expected {len(head)} values, one for each column of the head, got {len(cells)}"
+        )
 
 
 def number(text: str) -> float:
@@ -146,7 +148,7 @@ def number(text: str) -> float:
     try:
         return float(text)
     except ValueError:
-        raise RecordError(f"expected a number, got {text!a:.80}") from None
+        raise RecordError(f"expected a number such as 1480 or 0.5, got {text!a:.80}") from None
 
 
 def expect_seconds(at_s: float) -> None:
