@@ -98,7 +98,7 @@ def _growth(role: str, pid: int, samples: Sequence[ProcessSample]) -> Growth:
 def faults_of(soak: Soak, length_s: float) -> list[str]:
     """Return a sentence for each figure that misses its limit; none for a good run."""
     found = growths(soak.processes, SETTLING_SHARE * length_s)
-    pids = {role: {s.pid for s in soak.processes if s.role == role} for role in _roles(found)}
+    pids = {each.role: [other.pid for other in found if other.role == each.role] for each in found}
     faults = [
         f"{role} ended and was started again, {len(each) - 1} times"
         for role, each in pids.items()
@@ -113,10 +113,6 @@ def faults_of(soak: Soak, length_s: float) -> list[str]:
     if unsent:
         faults.append(f"{unsent} packets of all stops were not sent")
     return faults
-
-
-def _roles(found: Sequence[Growth]) -> list[str]:
-    return sorted({each.role for each in found})
 
 
 def _fault(growth: Growth) -> str:

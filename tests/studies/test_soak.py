@@ -72,6 +72,7 @@ def test_one_large_look_at_the_end_is_no_growth() -> None:
         (Soak(samples(0.0), [AllStop(1.0, 20.0, unsent=2)]), "2 packets"),
         (Soak(samples(0.0)[:12], stops(20.0)), "fewer than"),
         (Soak(samples(0.0) + samples(0.0, pid=8), stops(20.0)), "started again, 1 times"),
+        (Soak(samples(0.0) + samples(0.0, pid=8)[:9], stops(20.0)), None),
     ],
 )
 def test_the_verdict_names_each_figure_that_misses(soak: Soak, word: str | None) -> None:
