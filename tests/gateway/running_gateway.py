@@ -27,6 +27,7 @@ class RunningGateway:
     station: Station
     port: int
     """TCP."""
+    udp_port: int
 
 
 @asynccontextmanager
@@ -50,9 +51,10 @@ async def running_gateway(
     async with Station(url, token, is_operator=False) as client:
         signer = None if key is None else Signer(key)
         gateway = MavlinkGateway(client, settings or GatewaySettings(), signer)
-        endpoints = Endpoints(tcp=(("127.0.0.1", 0),), udp_to=udp_to)
+        endpoints = Endpoints((("127.0.0.1", 0),), (("127.0.0.1", 0),), udp_to)
         async with gateway.listening(endpoints), background(gateway.run()):
-            yield RunningGateway(gateway, client, gateway.places[0][1])
+            (_host, port), (_host, udp_port) = gateway.places
+            yield RunningGateway(gateway, client, port, udp_port)
 
 
 class Client:

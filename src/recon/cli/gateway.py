@@ -82,13 +82,15 @@ def mavlink_command(options: MavlinkOptions, at: StationOptions) -> None:
     from recon.gateway.mavlink.run import Endpoints
 
     udp, udp_to = _places(options.udp), _places(options.udp_to)
+    if any(port == 0 for _host, port in udp_to):
+        raise GatewayError("--udp-to: expected the port that the client listens at, got 0")
     tcp = _places(options.tcp or ([] if udp or udp_to else [DEFAULT_TCP]))
     _check_reach(options, (*tcp, *udp, *udp_to))
     run_in_loop(until_stopped(_run(options, at, Endpoints(tcp, udp, udp_to)), "stopped"))
 
 
 async def _run(options: MavlinkOptions, at: StationOptions, places: "Endpoints") -> None:
-    from recon.gateway.mavlink.run import MavlinkGateway
+    from recon.gateway.mavlink.run import MavlinkGateway, shown_endpoint
     from recon.gateway.mavlink.signing import Signer, read_key
     from recon.gateway.mavlink.values import GatewaySettings
 
@@ -100,10 +102,10 @@ async def _run(options: MavlinkOptions, at: StationOptions, places: "Endpoints")
         settings = GatewaySettings(options.allow_orders, ground_m)
         gateway = MavlinkGateway(station, settings, signer)
         async with gateway.listening(places):
-            for host, port in gateway.places:
-                print_now(f"MAVLink clients: {host}:{port}")
-            for host, port in places.udp_to:
-                print_now(f"MAVLink to: {host}:{port}")
+            for place in gateway.places:
+                print_now(f"MAVLink clients: {shown_endpoint(place)}")
+            for place in places.udp_to:
+                print_now(f"MAVLink to: {shown_endpoint(place)}")
             print_now(f"takeoff points: {ground_m:.1f} m above sea level")
             print_now("orders: allowed" if settings.allow_orders else "orders: none, read-only")
             await gateway.run()

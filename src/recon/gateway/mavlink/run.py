@@ -6,9 +6,10 @@ the station's *operator gone* may act.
 """
 
 import asyncio
+import errno
 import time
-from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
-from contextlib import AsyncExitStack, asynccontextmanager
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterator, Sequence
+from contextlib import AsyncExitStack, asynccontextmanager, contextmanager
 from dataclasses import dataclass
 
 from recon.client import ClientError, RequestRefusedError, Station
@@ -49,6 +50,27 @@ class Endpoints:
     udp_to: Sequence[Endpoint] = ()
 
 
+@contextmanager
+def _opening(option: str, place: Endpoint) -> Iterator[None]:
+    """Raise `GatewayError`, with what to do, where a socket cannot be opened."""
+    try:
+        yield
+    except (OSError, OverflowError) as problem:
+        reason: object = problem
+        if isinstance(problem, OSError):
+            is_taken = problem.errno == errno.EADDRINUSE
+            reason = "in use, perhaps by another gateway" if is_taken else problem.strerror
+        raise GatewayError(
+            f"cannot open {shown_endpoint(place)} ({reason}); choose another with {option}"
+        ) from problem
+
+
+def shown_endpoint(place: Endpoint) -> str:
+    """Return an address as HOST:PORT, as the options take it."""
+    host, port = place
+    return f"[{host}]:{port}" if ":" in host else f"{host}:{port}"
+
+
 class MavlinkGateway:
     """A running gateway of one station; `station` is connected and no operator yet."""
 
@@ -68,20 +90,23 @@ class MavlinkGateway:
     @asynccontextmanager
     async def listening(self, at: Endpoints) -> AsyncIterator[None]:
         """Open the sockets; raises `GatewayError`."""
-        loop = asyncio.get_running_loop()
         async with AsyncExitStack() as stack:
-            try:
-                for host, port in at.tcp:
-                    server = await loop.create_server(lambda: TcpClient(self.peers), host, port)
-                    stack.callback(server.close)
-                    self.places.append(server.sockets[0].getsockname()[:2])
-                for place in at.udp:
+            for place in at.tcp:
+                with _opening("--tcp", place):
+                    await self._open_tcp(stack, place)
+            for place in at.udp:
+                with _opening("--udp", place):
                     await self._open_udp(stack, local=place)
-                for place in at.udp_to:
+            for place in at.udp_to:
+                with _opening("--udp-to", place):
                     await self._open_udp(stack, remote=place)
-            except (OSError, OverflowError) as problem:
-                raise GatewayError(f"cannot open the gateway's sockets: {problem}") from problem
             yield
+
+    async def _open_tcp(self, stack: AsyncExitStack, place: Endpoint) -> None:
+        loop = asyncio.get_running_loop()
+        server = await loop.create_server(lambda: TcpClient(self.peers), *place)
+        stack.callback(server.close)
+        self.places.append(server.sockets[0].getsockname()[:2])
 
     async def _open_udp(
         self, stack: AsyncExitStack, local: Endpoint | None = None, remote: Endpoint | None = None
