@@ -34,6 +34,8 @@ QUIET_S = 8.0
 """Time after a restart in which nothing may be sent: nobody has ordered anything."""
 SNAPSHOT_S = 1.0
 LIVE_WITHIN_S = 10.0
+LEAST_TILE_BYTES = 2_000
+"""More than a sentence that the map is not read yet."""
 
 
 @dataclass(slots=True)
@@ -159,6 +161,8 @@ def _maps(world: World, findings: Findings) -> None:
     findings.begin("the process that reads base maps is killed")
     zoom, col, row = some_tiles(random.Random(1))[0]
     tile = f"/api/maps/{NAME}/{zoom}/{col}/{row}"
+    ask(world.http_port, "GET", "/api/maps")
+    wait_until(lambda: len(ask(world.http_port, "GET", tile)) > LEAST_TILE_BYTES, "a tile")
     before = ask(world.http_port, "GET", tile)
     _child(world, "maps").kill()
     answered = _holds(lambda: ask(world.http_port, "GET", tile) == before, 30.0)
