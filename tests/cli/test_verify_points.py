@@ -191,7 +191,7 @@ THREE = "".join(f"{BEGIN_S + n},1,2,3\n" for n in range(4))
     [
         ("1,2,3", "1,2,3", "expected 3 places or more that are not on one line"),
         ("0,0.001,0.002", "0,0.002,0", "(degrees named east and north?)"),
-        ("0,1e6,2e6", "0,2e6,0", "expected places within 20 km, got 2000 km"),
+        ("0,5,2e6", "0,6,0", "expected places within 20 km, got 2000 km: correct that of c"),
     ],
 )
 def test_places_that_cannot_be_are_one_sentence(

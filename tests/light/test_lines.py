@@ -39,6 +39,16 @@ def test_places_in_metres_are_from_the_sites_origin() -> None:
     assert "metres need a site with an origin" in heard(*lines, frame=None).problem
 
 
+@pytest.mark.parametrize("place", ["-93.6,41.9", "42.2,-93.6", "0,0"])
+def test_a_place_far_from_the_site_is_refused_as_the_record_could_not_be_verified(
+    place: str,
+) -> None:
+    found = heard("time,sensor,lat,lon,par", f",gate,{place},3", ",oak,41.9,-93.6,4")
+    assert [each.sensor for each in found.readings] == ["oak"]
+    assert "line 2: expected a place" in found.problem or "degrees" in found.problem
+    assert heard("time,sensor,lat,lon,par", ",gate,42.2,-93.6,3", frame=None).readings
+
+
 def test_a_logger_without_clock_or_place_is_read_at_its_arrival() -> None:
     assert heard("time,a", ",5").readings == (LightReading("a", NOW_NS, 5.0),)
 

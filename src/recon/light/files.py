@@ -1,5 +1,6 @@
 """Files of light sensors, checked: what cannot be used is counted and named, or refused."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -54,7 +55,7 @@ def points_of(path: Path, table: LightTable, fewest: int = FEWEST_SENSORS) -> Li
         )
     names = tuple(table.names[column] for column in columns)
     at = np.array([places[name] for name in names], dtype=np.float64)
-    frame, east_m, north_m = _placed(path, at, table.is_geographic)
+    frame, east_m, north_m = _placed(path, names, at, table.is_geographic)
     times_ns, light = table.times_ns[order], light[:, columns]
     points = LightPoints(names, times_ns, light, east_m, north_m, frame)
     notes += _facts(points)
@@ -92,8 +93,13 @@ def _name(notes: list[str], what: str, names: list[str]) -> None:
         notes.append(f"{len(names)} sensors {what}: {', '.join(names[:MOST_NAMES])}{more}")
 
 
+def _farthest(east_m: FloatArray, north_m: FloatArray) -> int:
+    """Return the sensor that is farthest from most others."""
+    return int(np.argmax(np.hypot(east_m - np.median(east_m), north_m - np.median(north_m))))
+
+
 def _placed(
-    path: Path, at: FloatArray, is_geographic: bool
+    path: Path, names: Sequence[str], at: FloatArray, is_geographic: bool
 ) -> tuple[LocalFrame | None, FloatArray, FloatArray]:
     frame, east_m, north_m = None, at[:, 0], at[:, 1]
     if is_geographic:
@@ -106,7 +112,8 @@ def _placed(
     wide_m = max(float(np.ptp(east_m)), float(np.ptp(north_m)))
     if wide_m > WIDEST_M:
         raise RecordError(
-            f"{path}: expected places within {WIDEST_M / 1e3:g} km, got {wide_m / 1e3:.0f} km"
+            f"{path}: expected places within {WIDEST_M / 1e3:g} km, got {wide_m / 1e3:.0f} km: "
+            f"correct that of {names[_farthest(east_m, north_m)]}, or leave it out"
         )
     if wide_m < 1.0 and len(at) >= FEWEST_SENSORS:
         raise RecordError(

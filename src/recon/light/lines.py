@@ -8,9 +8,9 @@ sentence why is kept to be answered.
 import csv
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import isfinite
+from math import hypot, isfinite
 
-from recon.geo import geo_from_enu
+from recon.geo import enu_from_geo, geo_from_enu
 from recon.light.rows import (
     PLACE_KEYS,
     CsvHead,
@@ -33,7 +33,8 @@ LARGEST = 1e9
 """Of a value, in any unit of light."""
 PROBLEMS_KEPT = 8
 """Enough for a person who mends a logger; the rest is counted."""
-FARTHEST_M = 20_000.0
+FARTHEST_M = 10_000.0
+"""From the site's origin: all sensors then lie within the 20 km that `recon verify` takes."""
 
 
 @dataclass(slots=True)
@@ -153,4 +154,16 @@ def _place(stated: Mapping[str, float], frame: LocalFrame | None) -> LatLon | No
         place = LatLon(float(latitude[0]), float(longitude[0]))
     if not place.is_valid():
         raise RecordError(f"expected degrees of latitude and longitude, got {first:g}, {second:g}")
+    if is_geographic and frame is not None:
+        _expect_near(place, frame)
     return place
+
+
+def _expect_near(place: LatLon, frame: LocalFrame) -> None:
+    """Raise `RecordError` for a place off the site: `recon verify` refuses records with one."""
+    at = (place.latitude_deg, place.longitude_deg, frame.origin.ellipsoid_height_m)
+    if hypot(*enu_from_geo(frame, *at)[0]) > FARTHEST_M:  # up too: the antipode lies below
+        raise RecordError(
+            f"expected a place (lat, lon) within {FARTHEST_M / 1e3:g} km of the site, got "
+            f"{at[0]:g}, {at[1]:g}"
+        )
