@@ -28,12 +28,15 @@ function LightSensor(props: { sensor: LightSensorView }) {
   const { behindS } = useStation();
   const isLive = () => isSensorLive(props.sensor, behindS());
   const value = () => formatQuantity(props.sensor.value, "", 0).trim();
-  const age = () => formatAge(props.sensor.age_s + behindS());
+  const stale = () => {
+    const ageS = props.sensor.age_s + behindS();
+    return text.lightSensors[ageS < 0 ? "ahead" : "stale"](formatAge(Math.abs(ageS)));
+  };
   return (
     <li classList={{ "is-stale": !isLive() }}>
       <span class={`light-swatch is-${isLive() ? props.sensor.shows : "unknown"}`} />
       <span class="wire-text light-sensor-name">{props.sensor.name}</span>
-      <span class="number">{isLive() ? value() : text.lightSensors.stale(age())}</span>
+      <span class="number">{isLive() ? value() : stale()}</span>
       <span class="muted light-sensor-map">
         <Show when={isLive()}>{text.lightSensors.shows[props.sensor.shows]}</Show>{" "}
         {

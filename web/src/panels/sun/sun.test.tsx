@@ -49,6 +49,11 @@ describe("light sensors", () => {
     expect(page.root.textContent).not.toContain("1480");
   });
 
+  it("says of one with a wrong clock that its clock is ahead", () => {
+    showSensors({ ...GATE, is_live: false, shows: "unknown", age_s: -7200 });
+    expect(find(page.root, ".light-sensors").textContent).toContain("stale, clock 2 h 0 min ahead");
+  });
+
   it("shows none as live while the station is silent", () => {
     showSensors(GATE);
     page.age(11);

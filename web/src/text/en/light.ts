@@ -48,6 +48,7 @@ export const lightSensors = {
   },
   right: (share: string, maps: number) => `Right in ${share} of ${plural(maps, "map")}.`,
   stale: (age: string) => `stale, ${age} ago`,
+  ahead: (time: string) => `stale, clock ${time} ahead`,
   /** On the map. */
   mark: {
     sun: (name: string) => `Light sensor ${name}: in sun`,
