@@ -132,3 +132,12 @@ def test_an_address_that_is_none_is_one_sentence(where: str) -> None:
 
     with pytest.raises(StartError, match="expected a CSV file or an address to listen on"):
         listening(where, work)
+
+
+@pytest.mark.parametrize("where", ["udp://0.0.0.0:4002", "tcp:4002", ".", "/no/such/folder/a.csv"])
+def test_what_no_logger_can_append_to_is_one_sentence_and_not_waited_for(where: str) -> None:
+    async def work(_address: str, _events: list[LightRead]) -> None:
+        raise AssertionError
+
+    with pytest.raises(StartError, match="expected a CSV file in a folder that exists, or tcp://"):
+        listening(where, work)

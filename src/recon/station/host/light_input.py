@@ -36,6 +36,7 @@ async def start_light_input(
     """Begin to listen or to follow a file; return where, in words. Raises `StartError`."""
     hand_over = _HandOver(handle)
     if not where.startswith(SCHEME):
+        _expect_file(where)
         following = asyncio.create_task(_LightFile(Path(where), frame, hand_over).follow())
         stack.callback(following.cancel)
         return where
@@ -47,6 +48,17 @@ async def start_light_input(
     stack.push_async_callback(server.close, listener)
     bound = listener.sockets[0].getsockname()
     return f"{SCHEME}{bound[0]}:{bound[1]}"
+
+
+def _expect_file(where: str) -> None:
+    """Raise `StartError` for what no logger can append to; the file itself may come later."""
+    path = Path(where)
+    is_address = "://" in where or where.startswith("tcp:")
+    if is_address or path.is_dir() or not path.parent.is_dir():
+        raise StartError(
+            f"{OPTION}: expected a CSV file in a folder that exists, or {SCHEME}HOST:PORT, got "
+            f"{where!a:.80}"
+        )
 
 
 def _address(where: str) -> tuple[str, int]:
