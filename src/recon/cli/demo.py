@@ -143,7 +143,7 @@ class DemoOptions:
             site=site,
             link_port=self.app_port,
             http_port=http_port,
-            stop_port=guard_port(None, http_port) if HAS_GUARD else None,
+            stop_port=guard_port(None, http_port, self.link_port or 0) if HAS_GUARD else None,
             # No state of an earlier run is recovered: its drones no longer exist.
             audit=default_place(link_port=0),
             record_folder=None if self.no_record else self.record or demos_folder(),

@@ -29,6 +29,7 @@ from recon.site.fetched_report import fetched_report
 from recon.station.api_views.app import create_app
 from recon.station.api_views.service import Service
 from recon.station.audit.start import AuditPlace
+from recon.station.host.http_servers import StartError
 from recon.station.host.run import run
 from recon.station.host.run_config import RunConfig, Started
 from recon.station.kernel.build import first_state
@@ -137,7 +138,9 @@ class RunOptions:
             is_announced=self.announce,
             http_host=self.http_host,
             http_port=self.http_port,
-            stop_port=guard_port(self.stop_port, self.http_port) if self.guard else None,
+            stop_port=guard_port(self.stop_port, self.http_port, self.link_port)
+            if self.guard
+            else None,
             site_folder=self.site,
             record_folder=None if self.no_record else self.record or records_of(self.site),
             is_record_required=self.record is not None,
@@ -166,11 +169,17 @@ def run_command(options: RunOptions) -> None:
     run_in_loop(run(config, _print_started))
 
 
-def guard_port(stop_port: int | None, http_port: int) -> int:
-    """Return the port of the guard: as asked, else beside the console's."""
-    if stop_port is not None:
-        return stop_port
-    return min(http_port + 1, 65535) if http_port else 0
+def guard_port(stop_port: int | None, http_port: int, link_port: int) -> int:
+    """Return the port of the guard: as asked, else beside the console's; raises `StartError`."""
+    port = stop_port
+    if port is None:
+        port = min(http_port + 1, 65535) if http_port else 0
+    if port and port == link_port:
+        raise StartError(
+            f"expected different ports for companion apps and the guard, got {port} for both; the "
+            "guard's is the console's and 1; choose another with --link-port"
+        )
+    return port
 
 
 async def _print_started(started: Started) -> None:
