@@ -43,6 +43,8 @@ BATTERY_GAIN = 0.3
 SAMPLE_EVERY_S = 60.0
 STEP_NS = 3_600 * NS_PER_S
 LONGEST_ENDURANCE_S = 1e7
+"""Of the imaging drone, which nobody starts again. Others get a full battery at each landing: one
+that stays in would fall below the operator's share on the ground, and end the surveys."""
 
 
 @dataclass(slots=True)
@@ -73,7 +75,8 @@ class Days:
             first_state(scenario.site), jobs=JobRunner(scenario.site), keeps_log=False
         )
         self.apps = ConnectedApps(self.driver)
-        self.apps.connect_all(build_fleet(replace(config, endurances_s=endurances_s), 0))
+        config = replace(config, endurances_s=endurances_s, battery_kept_share=1.0)
+        self.apps.connect_all(build_fleet(config, 0))
         fleet = scenario.fleet
         operator = ScriptedOperator(fleet.serials, fleet.kept_share, repeats=True)
         self._operator = StationOperator(scenario.survey, operator)
