@@ -2,9 +2,11 @@
 
 import asyncio
 import socket
+from collections.abc import Callable, Coroutine
 from typing import Any
 
 import pytest
+import uvloop
 from pymavlink import mavutil
 from tests.gateway.running_gateway import GCS, running_gateway
 from tests.patient_loop import run_patiently
@@ -39,10 +41,13 @@ def _talk(port: int) -> None:
         client.close()
 
 
+@pytest.mark.parametrize("run", [asyncio.run, uvloop.run])
 @pytest.mark.parametrize(
     ("option", "kind"), [("tcp", socket.SOCK_STREAM), ("udp", socket.SOCK_DGRAM)]
 )
-def test_a_taken_port_is_one_sentence(option: str, kind: socket.SocketKind) -> None:
+def test_a_taken_port_is_one_sentence(
+    option: str, kind: socket.SocketKind, run: Callable[[Coroutine[Any, Any, None]], None]
+) -> None:
     async def main() -> None:
         gateway = MavlinkGateway(Station("http://127.0.0.1:1"), GatewaySettings())
         with socket.socket(socket.AF_INET, kind) as other:
@@ -56,7 +61,7 @@ def test_a_taken_port_is_one_sentence(option: str, kind: socket.SocketKind) -> N
             f"choose another with --{option}"
         )
 
-    asyncio.run(main())
+    run(main())
 
 
 def test_an_address_is_shown_as_it_is_given() -> None:

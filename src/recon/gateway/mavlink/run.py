@@ -7,6 +7,7 @@ the station's *operator gone* may act.
 
 import asyncio
 import errno
+import socket
 import time
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterator, Sequence
 from contextlib import AsyncExitStack, asynccontextmanager, contextmanager
@@ -65,6 +66,28 @@ def _opening(option: str, place: Endpoint) -> Iterator[None]:
         ) from problem
 
 
+async def _udp_socket(local: Endpoint | None, remote: Endpoint | None) -> socket.socket:
+    """Return a socket bound to one place or sending to the other; raises `OSError`.
+
+    Opened here: uvloop's own error does not say why, and leaves its socket open.
+    """
+    place = local or remote
+    assert place is not None
+    loop, kind = asyncio.get_running_loop(), socket.SOCK_DGRAM
+    family, *_, address = (await loop.getaddrinfo(*place, type=kind))[0]
+    opened = socket.socket(family, kind)
+    opened.setblocking(False)
+    try:
+        if local is None:
+            opened.connect(address)
+        else:
+            opened.bind(address)
+    except OSError:
+        opened.close()
+        raise
+    return opened
+
+
 def shown_endpoint(place: Endpoint) -> str:
     """Return an address as HOST:PORT, as the options take it."""
     host, port = place
@@ -111,11 +134,12 @@ class MavlinkGateway:
     async def _open_udp(
         self, stack: AsyncExitStack, local: Endpoint | None = None, remote: Endpoint | None = None
     ) -> None:
-        transport, socket = await asyncio.get_running_loop().create_datagram_endpoint(
-            lambda: UdpSocket(self.peers, remote), local_addr=local, remote_addr=remote
+        opened = await _udp_socket(local, remote)
+        transport, udp = await asyncio.get_running_loop().create_datagram_endpoint(
+            lambda: UdpSocket(self.peers, remote), sock=opened
         )
         stack.callback(transport.close)
-        self._sockets.append(socket)
+        self._sockets.append(udp)
         if local is not None:
             self.places.append(transport.get_extra_info("sockname")[:2])
 
@@ -130,8 +154,8 @@ class MavlinkGateway:
                 state, age_s = seen
                 number = state.number
                 await self._show(StationSeen(state.message, age_s))
-            for socket in self._sockets:
-                socket.drop_silent(time.monotonic())
+            for udp in self._sockets:
+                udp.drop_silent(time.monotonic())
             await self._count_as_operator()
 
     async def _show(self, seen: StationSeen) -> None:
