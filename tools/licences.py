@@ -125,9 +125,10 @@ def python_packages() -> Iterator[tuple[Distribution, str]]:
 
 
 def _licence_of(metadata: Message) -> str:
-    stated = metadata["License-Expression"]
+    # By `get`: once any package has imported importlib_metadata, what is missing raises otherwise.
+    stated = metadata.get("License-Expression")
     names = [c.rpartition(" :: ")[2] for c in metadata.get_all("Classifier", [])]
-    names += (metadata["License"] or "").splitlines()[:1]
+    names += (metadata.get("License") or "").splitlines()[:1]
     known = sorted({NAMES[name] for name in names if name in NAMES})
     return stated or " AND ".join(known) or "; ".join(names) or "unknown"
 
