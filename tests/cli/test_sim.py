@@ -15,8 +15,9 @@ from typer.testing import CliRunner
 
 from recon import wire
 from recon.cli.commands import app
-from recon.cli.sim_options import parse_address, parse_home, parse_size
-from recon.sim.errors import SimulationError
+from recon.cli.endpoints import host_and_port
+from recon.cli.sim_options import parse_home, parse_size
+from recon.model.errors import ReconError
 
 LIMIT_S = 120.0
 
@@ -54,15 +55,15 @@ def test_bad_options_get_one_sentence_and_exit_code_2(options: list[str], words:
     [("127.0.0.1:3001", ("127.0.0.1", 3001)), ("[::1]:80", ("::1", 80)), ("a.b:1", ("a.b", 1))],
 )
 def test_stations(text: str, expected: tuple[str, int]) -> None:
-    assert parse_address("--station", text) == expected
+    assert host_and_port("--station", text) == expected
 
 
 @given(st.text(max_size=30))
 def test_any_text_is_read_or_refused(text: str) -> None:
-    for parse in (partial(parse_address, "--station"), parse_home, parse_size):
+    for parse in (partial(host_and_port, "--station"), parse_home, parse_size):
         try:
             values: tuple[object, ...] = parse(text)
-        except SimulationError as problem:
+        except ReconError as problem:
             values = (str(problem), "expected")
         assert len(values) == 2
 

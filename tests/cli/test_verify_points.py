@@ -13,10 +13,9 @@ from tests.detection.shaded_field import FIELD, FRAME, DriftingShade
 from tests.product import made_flight
 
 from recon.cli.shadow_record import shadow_record_command
-from recon.geo import geo_from_enu
+from recon.geo import cells_of, geo_from_enu
 from recon.light.files import read_points
 from recon.light.lines import LightLines
-from recon.light.points import cells_of
 from recon.model.event import Event
 from recon.station.recording.recorded_values import values_codec
 

@@ -58,7 +58,7 @@ def _drawn(station: StationProcess) -> list[tuple[int, int]]:
         (("--tcp", "0.0.0.0:5760", "--allow-orders"), "--signing-key"),
         (("--tcp", "nowhere"), "HOST:PORT"),
         (("--tcp", "127.0.0.1:1") * 9, "up to 8 addresses"),
-        (("--udp-to", "127.0.0.1:0"), "expected the port that the client listens at, got 0"),
+        (("--udp-to", "127.0.0.1:0"), "--udp-to: expected HOST:PORT"),
     ],
 )
 def test_what_it_does_not_start_with(words: tuple[str, ...], sentence: str) -> None:

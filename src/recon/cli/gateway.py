@@ -1,20 +1,21 @@
 """`recon gateway`: a station's vehicles in the protocols of other programs."""
 
 from dataclasses import dataclass
-from importlib.util import find_spec
-from ipaddress import ip_address
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from recon.api.addresses import is_loopback
 from recon.cli.commands import App
 from recon.cli.connection import StationOptions, station_at
+from recon.cli.endpoints import host_and_port
 from recon.cli.foreground import print_now, run_in_loop, until_stopped
 from recon.cli.options import with_options
 from recon.client import Station
 from recon.gateway.errors import GatewayError
 from recon.geo.geoid import geoid_height_m
+from recon.model.extras import from_extra
 
 if TYPE_CHECKING:
     from recon.gateway.mavlink.run import Endpoints
@@ -74,17 +75,11 @@ def mavlink_command(options: MavlinkOptions, at: StationOptions) -> None:
 
     Read-only unless --allow-orders.
     """
-    if find_spec("pymavlink") is None:
-        raise GatewayError(
-            "expected the package pymavlink, which speaks MAVLink, got none: install "
-            "recon-gcs[gateway], or pymavlink beside recon"
-        )
-    from recon.gateway.mavlink.run import Endpoints
+    with from_extra("gateway", "a gateway of MAVLink", GatewayError):
+        from recon.gateway.mavlink.run import Endpoints
 
-    udp, udp_to = _places(options.udp), _places(options.udp_to)
-    if any(port == 0 for _host, port in udp_to):
-        raise GatewayError("--udp-to: expected the port that the client listens at, got 0")
-    tcp = _places(options.tcp or ([] if udp or udp_to else [DEFAULT_TCP]))
+    udp, udp_to = _places("--udp", options.udp), _places("--udp-to", options.udp_to, lowest_port=1)
+    tcp = _places("--tcp", options.tcp or ([] if udp or udp_to else [DEFAULT_TCP]))
     _check_reach(options, (*tcp, *udp, *udp_to))
     run_in_loop(until_stopped(_run(options, at, Endpoints(tcp, udp, udp_to)), "stopped"))
 
@@ -121,31 +116,17 @@ async def _ground_above_sea_level_m(station: Station) -> float:
     return origin.ground_altitude_m - geoid_height_m(origin.latitude_deg, origin.longitude_deg)
 
 
-def _places(texts: list[str] | None) -> list[tuple[str, int]]:
+def _places(option: str, texts: list[str] | None, lowest_port: int = 0) -> list[tuple[str, int]]:
     if texts is not None and len(texts) > MAX_PLACES:
-        raise GatewayError(f"expected up to {MAX_PLACES} addresses of a kind, got {len(texts)}")
-    return [_place(text) for text in texts or ()]
-
-
-def _place(text: str) -> tuple[str, int]:
-    host, _, port = text.rpartition(":")
-    if not host or not port.isdecimal() or int(port) > 65535:
-        raise GatewayError(f"expected HOST:PORT such as {DEFAULT_TCP}, got {text[:80]!r}")
-    return host.strip("[]"), int(port)
+        raise GatewayError(f"{option}: expected up to {MAX_PLACES} addresses, got {len(texts)}")
+    return [host_and_port(option, text, lowest_port) for text in texts or ()]
 
 
 def _check_reach(options: MavlinkOptions, places: tuple[tuple[str, int], ...]) -> None:
     """Refuse orders from other computers without signatures: MAVLink has no other login."""
-    outside = next((host for host, _ in places if not _is_loopback(host)), None)
+    outside = next((host for host, _ in places if not is_loopback(host)), None)
     if outside is not None and options.allow_orders and options.signing_key is None:
         raise GatewayError(
             f"{outside} can be reached from other computers: expected --signing-key with "
             "--allow-orders, as MAVLink has no other login; without orders none is needed"
         )
-
-
-def _is_loopback(host: str) -> bool:
-    try:
-        return ip_address(host).is_loopback
-    except ValueError:
-        return host == "localhost"

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from recon.cli.endpoints import host_and_port
 from recon.sim.app.camera_feed import FeedSettings, ImageFormat
 from recon.sim.app.commands import HoverOnGround
 from recon.sim.app.faults import FaultKind
@@ -141,22 +142,12 @@ class RunningOptions:
     @property
     def address(self) -> tuple[str, int]:
         """Host and port of the station; raises `SimulationError`."""
-        return parse_address("--station", self.station)
+        return host_and_port("--station", self.station)
 
     @property
     def feed(self) -> FeedSettings:
         """The feed of each imaging drone."""
         return FeedSettings(self.fps, self.image_format, jpeg_quality=self.jpeg_quality)
-
-
-def parse_address(option: str, text: str, lowest_port: int = 1) -> tuple[str, int]:
-    """Return host and port of `HOST:PORT` ([..] around an IPv6 address); `SimulationError`."""
-    host, colon, port = text.rpartition(":")
-    host = host.removeprefix("[").removesuffix("]")
-    is_number = port.isascii() and port.isdigit()
-    if not (colon and host and is_number and lowest_port <= int(port) < 65_536):
-        raise SimulationError(f"{option}: expected HOST:PORT like 127.0.0.1:3001, got {text!r}")
-    return host, int(port)
 
 
 def parse_home(text: str) -> tuple[float, float]:

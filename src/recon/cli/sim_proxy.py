@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
+from recon.cli.endpoints import host_and_port
 from recon.cli.foreground import print_now, until_stopped
-from recon.cli.sim_options import parse_address
 from recon.sim.proxy import Damage, ProxyConfig, Towards, run_proxy
 
 MS_PER_S = 1_000.0
@@ -42,8 +42,8 @@ def proxy_command(
         corrupted_per_mb=corruption_per_mb,
     )
     config = ProxyConfig(
-        listen=parse_address("--listen", listen, lowest_port=0),
-        station=parse_address("--station", station),
+        listen=host_and_port("--listen", listen, lowest_port=0),
+        station=host_and_port("--station", station),
         damage=damage,
         towards=towards,
         seed=seed,

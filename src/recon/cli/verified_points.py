@@ -9,10 +9,10 @@ from recon.cli.opened_flight import opened_flight
 from recon.cli.output import print_line
 from recon.cli.progress import progress_over
 from recon.forecast import FORECASTERS
-from recon.geo import enu_from_geo, geo_from_enu
+from recon.geo import cells_of, enu_from_geo, geo_from_enu, read_at
 from recon.light.agreement import SAYS, SHOWN
 from recon.light.files import FEWEST_SENSORS, points_of, read_points
-from recon.light.points import LightPoints, cells_of, read_at
+from recon.light.points import LightPoints
 from recon.light.tables import long_table
 from recon.model.arrays import FloatArray
 from recon.model.errors import RecordError

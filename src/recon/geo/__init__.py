@@ -5,7 +5,7 @@ and return (N, 2) or (N, 3) float64; NaN or infinity gives the safe answer, neve
 """
 
 from recon.geo.distance import round_length_m
-from recon.geo.grid_cells import cell_at, cell_centres_m, nearest_cells
+from recon.geo.grid_cells import cell_at, cell_centres_m, cells_of, nearest_cells, read_at
 from recon.geo.local_frame import (
     OnGlobe,
     TangentPlane,

@@ -11,6 +11,7 @@ from recon.model.geo import GroundGrid
 
 IndexArray = npt.NDArray[np.intp]
 MaskArray = npt.NDArray[np.bool_]
+FloatMap = npt.NDArray[np.float32]
 
 
 def cell_centres_m(grid: GroundGrid) -> tuple[FloatArray, FloatArray]:
@@ -27,6 +28,21 @@ def cell_at(grid: GroundGrid, east_m: float, north_m: float) -> tuple[int, int]:
     )
 
 
+def cells_of(
+    grid: GroundGrid, east_m: FloatArray, north_m: FloatArray
+) -> tuple[IndexArray, IndexArray]:
+    """Return rows and columns, each of the shape of its places; some may be off the grid."""
+    rows = np.floor((grid.north_m - north_m) / grid.cell_m).astype(np.intp)
+    return rows, np.floor((east_m - grid.west_m) / grid.cell_m).astype(np.intp)
+
+
+def read_at(values: FloatMap, cells: tuple[IndexArray, IndexArray]) -> FloatMap:
+    """Return a map's values (N,) in cells; NaN off it."""
+    rows, cols = cells
+    is_on = (rows >= 0) & (rows < values.shape[0]) & (cols >= 0) & (cols < values.shape[1])
+    return np.where(is_on, values[rows * is_on, cols * is_on], np.nan).astype(np.float32)
+
+
 @lru_cache(maxsize=32)
 def nearest_cells(
     source: GroundGrid, target: GroundGrid, off_m: tuple[float, float] = (0.0, 0.0)
@@ -37,8 +53,7 @@ def nearest_cells(
     Both grids are in one local frame.
     """
     east_m, north_m = cell_centres_m(target)
-    rows = np.floor((source.north_m - north_m - off_m[1]) / source.cell_m).astype(np.intp)
-    cols = np.floor((east_m + off_m[0] - source.west_m) / source.cell_m).astype(np.intp)
+    rows, cols = cells_of(source, east_m + off_m[0], north_m + off_m[1])
     inside = np.logical_and.outer(
         (rows >= 0) & (rows < source.rows), (cols >= 0) & (cols < source.cols)
     )

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon.model.arrays import FloatArray, IntArray
-from recon.model.geo import GroundGrid, LocalFrame
+from recon.model.geo import LocalFrame
 from recon.model.shade import SUNLIT_TRANSMITTANCE, FloatMap, MaskMap
 from recon.model.units import NS_PER_S
 
@@ -49,23 +49,6 @@ def direct_share(light: FloatArray, full: FloatArray | float) -> FloatMap:
     """Return the share of the clear sky's direct beam of values of which `full` is full light."""
     share = (light / full - DIFFUSE_SHARE) / (1.0 - DIFFUSE_SHARE)
     return np.clip(share, 0.0, 1.0).astype(np.float32)
-
-
-def cells_of(
-    grid: GroundGrid, east_m: FloatArray, north_m: FloatArray
-) -> tuple[IntArray, IntArray]:
-    """Return row and column (N,) of the cells that places are in; some may be off the grid."""
-    rows = np.floor((grid.north_m - north_m) / grid.cell_m).astype(np.int64)
-    cols = np.floor((east_m - grid.west_m) / grid.cell_m).astype(np.int64)
-    return rows, cols
-
-
-def read_at(values: FloatMap, cells: tuple[IntArray, IntArray]) -> FloatMap:
-    """Return a map's values (N,) in cells; NaN off it."""
-    rows, cols = cells
-    is_on = (rows >= 0) & (rows < values.shape[0]) & (cols >= 0) & (cols < values.shape[1])
-    found = values[rows * is_on, cols * is_on]
-    return np.where(is_on, found, np.nan).astype(np.float32)
 
 
 def is_sunlit(direct: FloatMap) -> MaskMap:

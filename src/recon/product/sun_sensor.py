@@ -9,10 +9,10 @@ flight. A flight that saw only one of the two tells nothing, for nobody knows wh
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import floor
 
 import numpy as np
 
+from recon.geo import cells_of, read_at
 from recon.geo.sun import sun_position
 from recon.light.agreement import SHOWN, MapAgreement, compared
 from recon.model.arrays import BoolArray, FloatArray
@@ -42,20 +42,17 @@ an edge of shade."""
 
 @dataclass(frozen=True, slots=True)
 class SensorAgreement:
-    """How the sun sensors agree with the shade maps, over the photos that both tell about."""
+    """How the sun sensors follow the shade maps in time, over photos that both tell about."""
 
     photos: int
     correlation: float
-    share_right: float
-    """Share of photos that both have on the same side of half the direct sun."""
     lag_s: float
     """By how much the sensor is later than the maps where they agree best."""
 
     def __str__(self) -> str:
         return (
             f"sun sensor, {self.photos} photos: correlation {self.correlation:.2f} with the shade "
-            f"maps, {100.0 * self.share_right:.0f} % right at half sun, lag "
-            f"{round(self.lag_s):+d} s"
+            f"maps, lag {round(self.lag_s):+d} s"
         )
 
 
@@ -118,13 +115,7 @@ def agreement(
     if is_known.sum() < FEWEST:
         return None
     correlations = [_correlation(on_map, measured) for on_map in by_lag]
-    is_same = (now >= SUNLIT_TRANSMITTANCE) == (measured >= SUNLIT_TRANSMITTANCE)
-    return SensorAgreement(
-        int(is_known.sum()),
-        max(correlations),
-        float(is_same[is_known].mean()),
-        _lag_s(correlations),
-    )
+    return SensorAgreement(int(is_known.sum()), max(correlations), _lag_s(correlations))
 
 
 def _lag_s(correlations: Sequence[float]) -> float:
@@ -191,12 +182,9 @@ def shaded_place_m(flight: FlightData, timed: TimedPhoto) -> FloatArray:
 def _on_map(history: SunHistory, at_ns: int, place_m: FloatArray) -> float:
     """Return the transmittance at a place and time; NaN where nothing is known."""
     sun, grid = history.around(at_ns, place_m[np.newaxis])
-    row = floor((grid.north_m - place_m[1]) / grid.cell_m)
-    col = floor((place_m[0] - grid.west_m) / grid.cell_m)
-    is_on = 0 <= row < grid.rows and 0 <= col < grid.cols
-    if not is_on or sun.confidence[row, col] <= 0.0:
-        return float("nan")
-    return float(sun.transmittance[row, col])
+    cells = cells_of(grid, place_m[:1], place_m[1:])
+    is_known = read_at(sun.confidence, cells) > 0.0
+    return float(np.where(is_known, read_at(sun.transmittance, cells), np.nan)[0])
 
 
 def _correlation(on_map: FloatArray, measured: FloatArray) -> float:

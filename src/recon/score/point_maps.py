@@ -11,8 +11,8 @@ from math import ceil
 
 import numpy as np
 
-from recon.geo import cell_centres_m
-from recon.light.points import LightPoints, cells_of
+from recon.geo import cell_centres_m, cells_of
+from recon.light.points import LightPoints
 from recon.model.arrays import IntArray
 from recon.model.errors import RecordError
 from recon.model.geo import GroundGrid

@@ -57,7 +57,8 @@ class Table(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class ScenarioSiteTable(Table, frozen=True):
-    """A site's folder, relative to the scenario file; or the origin of a generated site."""
+    """A site's folder, relative to the scenario file, or `recon:demo`, the demonstration's; or the
+    origin of a generated site."""
 
     folder: Annotated[str, Meta(min_length=1, description="a folder's name")] | None = None
     latitude_deg: Annotated[float, Meta(ge=-89.0, le=89.0)] | None = None

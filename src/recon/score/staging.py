@@ -20,6 +20,8 @@ from recon.score.scenario_schema import (
 from recon.sim.fleet import IMAGER_SERIAL
 from recon.site import Site, SiteError, demo_site_folder, load_site
 
+DEMO_SITE = "recon:demo"
+"""The demonstration's site, which is inside the package."""
 PADS_APART_M = 25.0
 PADS_OFF_M = 30.0
 """South of the region."""
@@ -68,13 +70,9 @@ def staged(path: Path, file: ScenarioFile, survey: Survey, errors: ScenarioError
 
 
 def site_folder(path: Path, named: str) -> Path:
-    """Return the site's folder that a scenario file names, from its own place.
-
-    The demonstration's site is part of the package: wherever that is installed, and wherever a
-    copy of the scenario is, `recon/site/demo` is it.
-    """
-    demo = demo_site_folder()
-    return demo if Path(named).parts[-3:] == demo.parts[-3:] else path.parent / named
+    """Return the site's folder that a scenario file names: the demonstration's, or one by its path
+    from the file."""
+    return demo_site_folder() if named == DEMO_SITE else path.parent / named
 
 
 def _on_folder(folder: Path, file: ScenarioFile, errors: ScenarioErrors) -> Staged:

@@ -2,10 +2,9 @@
 
 import numpy as np
 
-from recon.geo import enu_from_geo
+from recon.geo import cells_of, enu_from_geo, read_at
 from recon.light.agreement import compared, near_enough_s
 from recon.light.lines import MOST_SENSORS
-from recon.light.points import cells_of, read_at
 from recon.model.geo import LatLon
 from recon.model.light import LightRead, LightReading
 from recon.model.replacing import replace
