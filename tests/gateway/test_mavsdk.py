@@ -17,6 +17,9 @@ from tests.gateway.running_gateway import PATIENCE_S, RunningGateway, running_ga
 
 from recon.gateway.mavlink.values import GatewaySettings
 
+# Importing mavsdk makes uvloop the event loop of the whole process, other tests' too.
+asyncio.set_event_loop_policy(None)
+
 T = TypeVar("T")
 NONE = math.nan
 # MAVSDK, gRPC and protobuf warn of themselves.
