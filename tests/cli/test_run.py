@@ -16,6 +16,7 @@ from tests.cli.processes import PATIENCE_S, started
 from recon import wire
 from recon.model.errors import RecordError
 from recon.model.geo import GeoPoint
+from recon.record.audit.audit import STOPPED_KIND
 from recon.record.mcap.link_bytes import LINKS_TOPIC, link_bytes
 from recon.record.mcap.mcap_repair import is_finished
 from recon.site.new_site import NewSiteFields, make_site
@@ -138,11 +139,13 @@ def test_a_flight_is_recorded_unless_that_is_not_wanted(
     assert len(list((tmp_path / "recon" / "records").glob("ground-*.mcap"))) == 1
 
 
-def refused(*options: str) -> str:
+def refused(*options: str, code: int = 1) -> str:
     """Run with options that cannot work; return the one sentence."""
     with started("run", *options) as recon:
-        assert recon.wait() != 0
+        assert recon.wait() == code
         assert "Traceback" not in recon.text
+        assert "station started" not in recon.text
+        assert "fault" not in recon.text
         return recon.text
 
 
@@ -177,25 +180,34 @@ def test_a_port_bound_but_not_yet_listening_is_in_use() -> None:
 
 
 @pytest.mark.parametrize(
-    ("options", "text"),
+    ("options", "text", "code"),
     [
-        (("--site", "/nowhere/at/all"), "/nowhere/at/all"),
-        (("--http-host", "0.0.0.0"), "recon user add NAME --role operator"),
-        (("--http-host", "::"), "--https-host ::"),
-        (("--https-host", "0.0.0.0", "--users", "/nowhere/users.toml"), "recon user add NAME"),
-        (("--certificate", "/nowhere.pem"), "--certificate and --key belong together"),
-        (("--link-host", "203.0.113.77"), "--link-port"),
-        (("--announce",), "add --link-host 0.0.0.0"),
-        (("--link-host", "no.such.host.invalid"), "no.such.host.invalid"),
-        (("--record", "/proc/none"), "--record"),
-        (("--link-port", "70000"), "--link-port"),
-        (("--nonsense",), "nonsense"),
+        (("--site", "/nowhere/at/all"), "/nowhere/at/all", 2),
+        (("--http-host", "0.0.0.0"), "recon user add NAME --role operator", 2),
+        (("--http-host", "::"), "--https-host ::", 2),
+        (("--https-host", "0.0.0.0", "--users", "/nowhere/users.toml"), "recon user add NAME", 2),
+        (("--certificate", "/nowhere.pem"), "--certificate and --key belong together", 2),
+        (("--link-host", "203.0.113.77"), "--link-port", 1),
+        (("--announce",), "add --link-host 0.0.0.0", 2),
+        (("--link-host", "no.such.host.invalid"), "no.such.host.invalid", 1),
+        (("--record", "/proc/none"), "--record", 2),
+        (("--link-port", "70000"), "--link-port", 2),
+        (("--nonsense",), "nonsense", 2),
     ],
 )
-def test_wrong_options_are_one_sentence(options: tuple[str, ...], text: str) -> None:
+def test_wrong_options_are_one_sentence(options: tuple[str, ...], text: str, code: int) -> None:
     given = dict.fromkeys(options)
     free = FREE if "--link-port" not in given else FREE[2:]
-    assert text in refused(*free, *options)
+    assert text in refused(*free, *options, code=code)
+
+
+def test_the_audit_of_a_refused_start_is_no_faults(tmp_path: Path) -> None:
+    sentence = refused(*FREE, "--audit", str(tmp_path), "--light-sensors", "tcp:4002", code=2)
+    assert "\nrecon run: --light-sensors: expected a CSV file" in sentence
+    (audit,) = tmp_path.glob("*.jsonl")
+    last = json.loads(audit.read_text(encoding="utf-8").splitlines()[-1])
+    assert last["kind"] == STOPPED_KIND
+    assert last["text"].startswith("station not started: --light-sensors: expected a CSV file")
 
 
 def test_a_station_shows_the_base_maps_of_its_sites_folder(tmp_path: Path) -> None:

@@ -21,6 +21,8 @@ NAMES_NO_SUCH_FILE = frozenset(
 def exit_code(problem: ReconError) -> int:
     """Return the exit code of an error."""
     cause = problem.__cause__
+    while isinstance(cause, ReconError):
+        cause = cause.__cause__
     # GDAL's own errors are of the system by their type, and without a number.
     number = cause.errno if isinstance(cause, OSError) else None
     has_failed = number is not None and number not in NAMES_NO_SUCH_FILE

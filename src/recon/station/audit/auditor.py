@@ -64,7 +64,9 @@ class Auditor:
 
     def __init__(self, log: AuditLog, printer: LogPrinter, now_ns: Callable[[], int]) -> None:
         self.log = log
-        self._printer = printer
+        self.printer = printer
+        """Started by whoever runs the station, once nothing can refuse its start any more: entries
+        wait until then."""
         self._now_ns = now_ns
         self.memory = Auditing()
         self.entries: tuple[AuditEntry, ...] = ()
@@ -93,4 +95,4 @@ class Auditor:
         """Write entries, also those of the station's start and end, which no step makes."""
         for entry in entries:
             self.log.put(entry, self._now_ns())
-            self._printer.put(entry)
+            self.printer.put(entry)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from recon import version
-from recon.model.errors import RecordError
+from recon.model.errors import ReconError, RecordError
 from recon.record.audit.audit import FAILED_KIND, STARTED_KIND, STOPPED_KIND, AuditEntry
 from recon.record.audit.audit_files import RunEnd, audit_files, read_run_end, run_number
 from recon.record.audit.audit_log import AuditLog, refuse_other_writer
@@ -99,10 +99,13 @@ def started_entry(
 
 
 def ended_entry(problem: BaseException | None) -> AuditEntry:
-    """Return the entry of a stop, or of an end by a fault in the station's own code."""
+    """Return the entry of a stop, of a refused start, or of an end by a fault in the station's own
+    code."""
     text = "vehicles in flight continue their last order"
     if problem is None:
         return AuditEntry(STOPPED_KIND, f"station stopped; {text}")
+    if isinstance(problem, ReconError):
+        return AuditEntry(STOPPED_KIND, f"station not started: {problem}")
     fault = f"{type(problem).__name__}: {problem}"
     return AuditEntry(FAILED_KIND, f"station ended by a fault ({fault}); {text}")
 

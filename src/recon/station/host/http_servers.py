@@ -34,8 +34,6 @@ SHUTDOWN_S = 2
 class StartError(ReconError):
     """The station cannot start; the text states why, and what to do."""
 
-    is_failure = True
-
 
 @dataclass(frozen=True, slots=True)
 class NetworkConfig:

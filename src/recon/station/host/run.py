@@ -117,6 +117,7 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
             apps_listed=None if config.apps is None else len(config.apps),
             resumed=_resumed_state(station, (*begun.troubles, *last_run.troubles)),
         )
+        auditor.printer.start()
         await serve(config, driver, service, doors, lambda: on_start(started), stack)
 
 
@@ -249,7 +250,6 @@ def _start_auditor(
     """Start the audit; its last entry is written after everything else has ended."""
     printer = LogPrinter()
     auditor = Auditor(begun.log, printer, clock)
-    printer.start()
     stack.callback(printer.close)
     begun.log.start()
     stack.callback(begun.log.close)
