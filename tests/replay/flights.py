@@ -16,12 +16,13 @@ import pytest
 from tests.oracles.eight_vehicles import eight_vehicles
 from tests.oracles.same_again import FAULTS, bad_link
 from tests.replay.record_flight import Recorded, recording
+from tests.replay.rounding import was_here
 from tests.station.returning_world import FRAME
 from tests.station.surveyed_world import SURVEY_ID, asked, surveyed_world
 
 from recon.site import Site
 from recon.station.kernel.virtual import VirtualDriver
-from recon.station.recording.recorded_values import FlightStart, this_machine
+from recon.station.recording.recorded_values import FlightStart
 
 FOLDER = Path(__file__).parent / "flights"
 
@@ -29,7 +30,7 @@ FOLDER = Path(__file__).parent / "flights"
 def skip_if_recorded_elsewhere(start: FlightStart) -> None:
     """Skip a test of what follows from pixels: linear algebra differs between processors in its
     last bits, and is compared with thresholds."""
-    if start.machine != this_machine():
+    if not was_here(start):
         pytest.skip("recorded on another processor: numbers differ in their last bits")
 
 

@@ -97,13 +97,18 @@ class FlightStart:
 
 @cache
 def this_machine() -> str:
-    """Return this computer's system and processor."""
-    model = platform.processor() or platform.machine()
+    """Return this computer's system and processor: its name and what it calculates with."""
+    named = {"model name": platform.processor() or platform.machine()}
     with suppress(OSError):
         lines = Path("/proc/cpuinfo").read_text().splitlines()
-        names = (line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
-        model = next(names, model)
-    return f"{platform.system()} {platform.machine()}, {model}"
+        facts = (line.partition(":")[::2] for line in reversed(lines))
+        named |= {name.strip(): value.strip() for name, value in facts}
+    # Processors of one name have different instructions.
+    details = [f"{name} {named[name]}" for name in ("cpu family", "model") if name in named]
+    vectors: Any = np.show_config(mode="dicts")
+    found = vectors["SIMD Extensions"]["found"][-1:]
+    parts = (f"{platform.system()} {platform.machine()}", named["model name"], *details, *found)
+    return ", ".join(parts)
 
 
 @dataclass(frozen=True, slots=True)
