@@ -22,7 +22,7 @@ FUZZ_SECONDS ?= 60
 RUST ?= test-rust
 WEB_SOURCES := $(shell find web/src web/public -type f ! -name schema.d.ts 2>/dev/null) web/index.html web/package.json web/vite.config.ts
 
-.PHONY: help setup demo run wheel test-install test-install-short image test test-all test-rust test-python flights test-web test-e2e android-core android test-android study-android fuzz-android coverage coverage-safety check check-rust check-python check-web format bench fuzz study soak mutants docs web clean
+.PHONY: help setup demo run wheel test-install test-install-short image test test-all test-rust test-python flights test-web test-e2e test-dissector android-core android test-android study-android fuzz-android coverage coverage-safety check check-rust check-python check-web format bench fuzz study soak mutants docs web clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -173,6 +173,10 @@ bench: setup web ## Measurements, each beside a baseline of the same run
 	$(RUN) python -m benches.cli.bench_first_page
 	$(RUN) python -m benches.console.bench_console
 
+test-dissector: setup web/node_modules/.stamp ## The descriptions of the protocol for Wireshark and Kaitai, each by its own program
+	@tools/tshark.sh
+	$(RUN) python -m pytest tests/protocol
+
 fuzz: ## Fuzz the deframer and the packet decoder for a minute each (needs a nightly Rust)
 	@cargo fuzz --version >/dev/null 2>&1 || cargo install cargo-fuzz --locked --quiet
 	for target in deframer packet; do \
@@ -206,9 +210,10 @@ soak: setup ## An hour of 32 vehicles in real time, each process killed, 24 simu
 mutants: setup ## Mutate gate, watchdogs, trust layer and guard: a test must fail for each mutant (hours)
 	$(RUN) --group study python -m studies.mutants
 
-docs: setup ## Regenerate the API's description and the table of flights
+docs: setup ## Regenerate the API's and the protocol's descriptions, and the table of flights
 	$(RUN) recon openapi > web/openapi.json
 	$(RUN) python -m tools.flight_table_page > docs/flight-table.md
+	$(RUN) python -m tools.protocol_descriptions
 
 format: setup web/node_modules/.stamp ## Format all sources
 	cargo fmt --all

@@ -1,14 +1,20 @@
 """docs/icd.md is normative: its tables and the code say the same."""
 
 import re
+import tomllib
+from enum import IntEnum
 from inspect import signature
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from recon import wire
+from recon.model.vehicle import BatteryWarning, CameraState, FlightMode
 
-PAGE = (Path(__file__).parents[2] / "docs" / "icd.md").read_text(encoding="utf-8")
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs" / "icd.md").read_text(encoding="utf-8")
+TABLE = tomllib.loads((ROOT / "protocol" / "recon-drone.toml").read_text(encoding="utf-8"))
 PACKETS = {name: getattr(wire, name) for name in dir(wire) if hasattr(getattr(wire, name), "PID")}
 BYTES = {"u8": 1, "i8": 1, "u16": 2, "f32": 4, "f64": 8, "string": 4, "image": 4, "rest": 0}
 ZEROS = {"string": b"", "rest": b"", "u8": 0, "i8": 0, "u16": 0, "f32": 0.0, "f64": 0.0}
@@ -88,3 +94,39 @@ def test_the_examples_decode() -> None:
         wire.Acknowledgment(positive=1, source_pid=253),
         wire.EmergencyCommand(action=0),
     ]
+
+
+def test_the_table_for_other_tools_has_the_pages_packets_and_limits() -> None:
+    rows = [(int(pid), name, sender) for pid, name, sender, _ in table(section("Packets"))]
+    assert rows == [(each["pid"], each["name"], each["from"]) for each in TABLE["packets"]]
+    limits = {name: int(most) for name, most in table(section("Reading a stream"))}
+    assert limits == TABLE["limits"]
+    assert f"port {TABLE['port']} unless set otherwise" in PAGE
+    assert f"{TABLE['sync']}: the bytes" in PAGE
+
+
+@pytest.mark.parametrize(
+    "packet",
+    [*TABLE["packets"], {"name": "Waypoint", **TABLE["waypoint"]}],
+    ids=lambda p: p["name"],
+)
+def test_the_table_for_other_tools_has_the_pages_fields(packet: dict[str, Any]) -> None:
+    kinds = {"waypoints": "rest"}
+    rows = {each["name"]: kinds.get(each["type"], each["type"]) for each in packet["fields"]}
+    assert list(rows.items()) == list(fields(packet["name"]).items())
+
+
+@pytest.mark.parametrize(
+    ("name", "enum"),
+    [
+        ("flight_mode", FlightMode),
+        ("camera_state", CameraState),
+        ("battery_warning", BatteryWarning),
+    ],
+)
+def test_the_table_for_other_tools_has_the_models_enumerations(
+    name: str, enum: type[IntEnum]
+) -> None:
+    labels = {int(number): label for number, label in TABLE["enums"][name].items()}
+    names = {number: label.upper().replace(" ", "_") for number, label in labels.items()}
+    assert names == {each.value: each.name for each in enum}
