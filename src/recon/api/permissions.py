@@ -36,6 +36,8 @@ LEAST_ROLE: dict[tuple[str, str], Role] = {
     ("GET", "/api/ground-image.tif"): Role.OBSERVER,
     ("GET", "/api/shade.png"): Role.OBSERVER,
     ("GET", "/api/forecast.png"): Role.OBSERVER,
+    ("GET", "/api/shade.npz"): Role.OBSERVER,
+    ("GET", "/api/forecast.npz"): Role.OBSERVER,
     ("GET", "/api/sun-at"): Role.OBSERVER,
     ("GET", "/api/upwind-place"): Role.OBSERVER,
     ("GET", "/api/surveys"): Role.OBSERVER,

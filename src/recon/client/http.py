@@ -24,6 +24,7 @@ from recon.client.trust import CertificateTrust, is_untrusted
 LONGEST_ANSWER_BYTES = 16 * 1024 * 1024
 ORDER_INVALID = 422
 ROLE_TOO_LOW = 403
+PICTURE_NUMBER, MOST_DIGITS = "X-Frame-Id", 18
 
 M = TypeVar("M")
 
@@ -54,12 +55,24 @@ class Http:
 
     async def get(self, path: str, kind: type[M], expected: str) -> M:
         """Return the decoded response to a GET request; raises `ClientError`."""
+        _response, data = await self._get(path)
+        return decode(data, kind, expected)
+
+    async def get_picture(self, path: str) -> tuple[bytes, int]:
+        """Return a picture or a map, and the number that the state shows for it."""
+        response, data = await self._get(path)
+        number = response.headers.get(PICTURE_NUMBER, "")
+        if not (number.isascii() and number.isdigit() and len(number) <= MOST_DIGITS):
+            raise BadAnswerError(f"{path}: expected a number in {PICTURE_NUMBER}, got {number!r}")
+        return data, int(number)
+
+    async def _get(self, path: str) -> tuple[httpx.Response, bytes]:
         try:
-            status, data = await self._send("GET", path, None)
+            response, data = await self._send("GET", path, None)
         except (httpx.HTTPError, httpx.InvalidURL, TimeoutError) as problem:
             raise self._unreachable(problem) from problem
-        self._check_status(status, data, path)
-        return decode(data, kind, expected)
+        self._check_status(response.status_code, data, path)
+        return response, data
 
     async def post(self, path: str, body: Any, kind: type[M], expected: str) -> M:
         """Send a POST request once and return the decoded response.
@@ -74,14 +87,14 @@ class Http:
                 "expected finite numbers, got NaN or an infinite one; nothing was sent"
             ) from problem
         try:
-            status, data = await self._send("POST", path, content)
+            response, data = await self._send("POST", path, content)
         except (httpx.ConnectError, httpx.ConnectTimeout) as problem:
             raise self._unreachable(problem) from problem
         except (httpx.HTTPError, TimeoutError, BadAnswerError) as problem:
             raise self._maybe_sent(_reason(problem, self._answer_within_s)) from problem
-        if status >= 500:
-            raise self._maybe_sent(f"HTTP {status}: {shown(data)}")
-        self._check_status(status, data, path)
+        if response.status_code >= 500:
+            raise self._maybe_sent(f"HTTP {response.status_code}: {shown(data)}")
+        self._check_status(response.status_code, data, path)
         try:
             return decode(data, kind, expected)
         except BadAnswerError as problem:
@@ -90,14 +103,16 @@ class Http:
     async def post_without_result(self, path: str) -> None:
         """Send a POST request whose response has no body; raises as `post` does."""
         try:
-            status, data = await self._send("POST", path, None)
+            response, data = await self._send("POST", path, None)
         except (httpx.ConnectError, httpx.ConnectTimeout) as problem:
             raise self._unreachable(problem) from problem
         except (httpx.HTTPError, TimeoutError, BadAnswerError) as problem:
             raise self._maybe_sent(_reason(problem, self._answer_within_s)) from problem
-        self._check_status(status, data, path)
+        self._check_status(response.status_code, data, path)
 
-    async def _send(self, method: str, path: str, content: bytes | None) -> tuple[int, bytes]:
+    async def _send(
+        self, method: str, path: str, content: bytes | None
+    ) -> tuple[httpx.Response, bytes]:
         await self._trusted()
         headers = {} if content is None else {"Content-Type": "application/json"}
         async with (
@@ -112,7 +127,7 @@ class Http:
                         f"expected an answer of up to {LONGEST_ANSWER_BYTES} bytes, got a longer "
                         "one: is this a Recon station?"
                     )
-            return response.status_code, bytes(data)
+            return response, bytes(data)
 
     async def _trusted(self) -> None:
         try:

@@ -280,6 +280,27 @@ class LinkStatus(msgspec.Struct, frozen=True):
     waiting: WaitingAppStatus | None = None
 
 
+class ShadeMapStatus(msgspec.Struct, frozen=True):
+    """The newest shade map: its number in this run, and the age of what it shows."""
+
+    number: int
+    captured_age_s: float
+
+
+class ForecastStatus(msgspec.Struct, frozen=True):
+    """The newest forecast; `number` is that of its shade map."""
+
+    number: int
+    issued_age_s: float
+
+
+class ShadeStatus(msgspec.Struct, frozen=True):
+    """What there is of shade and sun."""
+
+    map: ShadeMapStatus | None = None
+    forecast: ForecastStatus | None = None
+
+
 class StateMessage(msgspec.Struct, frozen=True):
     """The complete state at `time_ns` (station time, nanoseconds)."""
 
@@ -294,6 +315,7 @@ class StateMessage(msgspec.Struct, frozen=True):
     move_upwind: MoveUpwindStatus | None = None
     stop_latch: StopLatchStatus | None = None
     links: tuple[LinkStatus, ...] = ()
+    shade: ShadeStatus | None = None
 
     @property
     def run_started_ns(self) -> int:

@@ -22,6 +22,7 @@ from recon.client.messages import (
     VehicleReturn,
 )
 from recon.client.order import Order, OrderApi, VehicleAnswer
+from recon.client.pictures import PictureCommands
 from recon.client.site import SiteCommands
 from recon.client.surveys import SurveyCommands
 from recon.client.telemetry import Telemetry
@@ -67,6 +68,7 @@ class Station:
         self._order_api = OrderApi(self._http, self._stream)
         self.fleet = FleetCommands(self._order_api)
         self.zones = ZoneCommands(self._http)
+        self.pictures = PictureCommands(self._http)
         self.site = SiteCommands(self._http)
         self.surveys = SurveyCommands(self._http, self._order_api.station_time_ms)
 

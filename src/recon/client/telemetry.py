@@ -77,6 +77,13 @@ class PhotosReported(msgspec.Struct, frozen=True):
     missing: int
 
 
+class FrameStatus(msgspec.Struct, frozen=True):
+    """The newest camera frame: its id, and its age as of the message."""
+
+    id: int
+    received_age_s: float
+
+
 class Telemetry(msgspec.Struct, frozen=True, kw_only=True):
     """One vehicle's newest telemetry. Heights are above its takeoff point (barometric), metres.
 
@@ -105,6 +112,9 @@ class Telemetry(msgspec.Struct, frozen=True, kw_only=True):
     mission_id: Aged[float]
     camera_state: Aged[str]
     conflict_link_ids: tuple[int, ...]
+    reported_altitude_m: Aged[float] = Aged(None, None)
+    """What the app reports as altitude, whatever its reference."""
+    frame: FrameStatus | None = None
     lease: LeaseStatus | None = None
     app_facts: AppFacts | None = None
     """What the app reports of the aircraft's settings; None: it reports none."""
@@ -134,6 +144,9 @@ class Telemetry(msgspec.Struct, frozen=True, kw_only=True):
         }
         changes["app_facts_age_s"] = _older(self.app_facts_age_s, seconds)
         changes["newest_photo_age_s"] = _older(self.newest_photo_age_s, seconds)
+        if self.frame is not None:
+            received_age_s = self.frame.received_age_s + seconds
+            changes["frame"] = FrameStatus(self.frame.id, received_age_s)
         if self.lease is not None:
             changes["lease"] = self.lease.older_by(seconds)
         age_s = _older(self.telemetry_age_s, seconds)

@@ -7,9 +7,10 @@ from typing import Annotated, Literal
 from fastapi import FastAPI, Query, Response
 
 from recon.api import pictures
-from recon.api.responses import PNG, PROBLEMS, found, png
+from recon.api.responses import ARRAYS, PNG, PROBLEMS, arrays, found, png
 from recon.api.schema import SunAtView, UpwindView
 from recon.model.imagery import GroundImage
+from recon.model.map_archive import forecast_archive, shade_archive
 from recon.model.shade import MaskMap, ShadeMap
 from recon.model.units import ns_to_seconds
 from recon.record.raster.geotiff import geotiff_bytes
@@ -30,6 +31,7 @@ def add_picture_routes(app: FastAPI, service: Service) -> None:
     """Add all routes of this module."""
     _add_camera(app, service)
     _add_sun(app, service)
+    _add_arrays(app, service)
 
 
 def _add_camera(app: FastAPI, service: Service) -> None:
@@ -101,6 +103,21 @@ def _add_sun(app: FastAPI, service: Service) -> None:
         """
         station, now_ns = service.driver.station, service.driver.now_ns()
         return await asyncio.to_thread(upwind_view, station, service.site, serial, region, now_ns)
+
+
+def _add_arrays(app: FastAPI, service: Service) -> None:
+    @app.get("/api/shade.npz", response_class=Response, responses=PROBLEMS | ARRAYS)
+    async def shade_arrays() -> Response:
+        """The newest shade map as numpy arrays, each value as it is."""
+        number, newest, _seen = found(newest_shade(service.driver.station.shade), NO_SHADE)
+        return arrays(await asyncio.to_thread(shade_archive, newest), number)
+
+    @app.get("/api/forecast.npz", response_class=Response, responses=PROBLEMS | ARRAYS)
+    async def forecast_arrays() -> Response:
+        """The newest forecast as numpy arrays: every lead, in 255ths, and each cell's horizon."""
+        line = service.driver.station.shade
+        newest = found(line.sun, NO_SHADE)
+        return arrays(await asyncio.to_thread(forecast_archive, newest), line.number)
 
 
 def newest_shade(line: ShadePipeline) -> tuple[int, ShadeMap, MaskMap] | None:
