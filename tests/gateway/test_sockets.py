@@ -12,8 +12,9 @@ from tests.gateway.running_gateway import GCS, running_gateway
 from tests.patient_loop import run_patiently
 
 from recon.client import Station
+from recon.gateway.endpoints import shown_endpoint
 from recon.gateway.errors import GatewayError
-from recon.gateway.mavlink.run import Endpoints, MavlinkGateway, shown_endpoint
+from recon.gateway.mavlink.run import Endpoints, MavlinkGateway
 from recon.gateway.mavlink.values import GatewaySettings
 
 SET_MODE, DENIED = 176, 2

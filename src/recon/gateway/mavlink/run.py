@@ -14,6 +14,7 @@ from contextlib import AsyncExitStack, asynccontextmanager, contextmanager
 from dataclasses import dataclass
 
 from recon.client import ClientError, RequestRefusedError, Station
+from recon.gateway.endpoints import Endpoint, shown_endpoint
 from recon.gateway.errors import GatewayError
 from recon.gateway.mavlink.encoder import Encoder
 from recon.gateway.mavlink.fence import FenceTooLongError, fence_items
@@ -36,7 +37,6 @@ from recon.gateway.mavlink.values import (
 )
 from recon.model.command import GoTo, Refusal
 
-Endpoint = tuple[str, int]
 STATE_WITHIN_S = 0.25
 OPENS_WITHIN_S = 2.0
 VEHICLES_AT_ONCE = 8
@@ -86,12 +86,6 @@ async def _udp_socket(local: Endpoint | None, remote: Endpoint | None) -> socket
         opened.close()
         raise
     return opened
-
-
-def shown_endpoint(place: Endpoint) -> str:
-    """Return an address as HOST:PORT, as the options take it."""
-    host, port = place
-    return f"[{host}]:{port}" if ":" in host else f"{host}:{port}"
 
 
 class MavlinkGateway:

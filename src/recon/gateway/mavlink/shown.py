@@ -20,16 +20,13 @@ from recon.gateway.mavlink.values import (
     StationSeen,
     Stepped,
 )
+from recon.gateway.samples import SAME_SAMPLE_NS, is_live, taken_ns
 from recon.model.command import Phase
-from recon.model.units import NS_PER_S
-from recon.model.vehicle import LIVE_UNDER_S
 
 HIGHEST_SYSTEM = 240
 """Ids above are those of ground stations."""
 SLOW_NS = 950_000_000
 """A heartbeat a second, of states that come ten times a second."""
-SAME_SAMPLE_NS = 5_000_000
-"""Ages are in milliseconds; samples are at least 20 ms apart."""
 
 
 def station_seen(state: GatewayState, seen: StationSeen, now_ns: int) -> Stepped:
@@ -68,12 +65,6 @@ def _shown(
     return replace(known, **changes), messages
 
 
-def is_live(telemetry: Telemetry, state_age_s: float) -> bool:
-    """Return whether a vehicle's telemetry is live: it and the state that shows it are young."""
-    age_s = telemetry.telemetry_age_s
-    return telemetry.is_live and age_s is not None and age_s + state_age_s < LIVE_UNDER_S
-
-
 def _add_samples(
     changes: dict[str, Any],
     messages: list[Any],
@@ -83,25 +74,22 @@ def _add_samples(
     ground_m: float,
 ) -> None:
     """Add the position and the attitude, each if it is a new sample."""
-    taken_ns = _taken_ns(telemetry.position.age_s, seen)
-    if taken_ns is not None and taken_ns > known.position_ns + SAME_SAMPLE_NS:
-        place = shown.position(telemetry, _boot_ms(seen.message, taken_ns), ground_m)
+    at_ns = _taken_ns(telemetry.position.age_s, seen)
+    if at_ns is not None and at_ns > known.position_ns + SAME_SAMPLE_NS:
+        place = shown.position(telemetry, _boot_ms(seen.message, at_ns), ground_m)
         if place is not None:
-            changes["position_ns"] = taken_ns
+            changes["position_ns"] = at_ns
             messages.append(place)
-    taken_ns = _taken_ns(telemetry.attitude.age_s, seen)
-    if taken_ns is not None and taken_ns > known.attitude_ns + SAME_SAMPLE_NS:
-        pose = shown.attitude(telemetry, _boot_ms(seen.message, taken_ns))
+    at_ns = _taken_ns(telemetry.attitude.age_s, seen)
+    if at_ns is not None and at_ns > known.attitude_ns + SAME_SAMPLE_NS:
+        pose = shown.attitude(telemetry, _boot_ms(seen.message, at_ns))
         if pose is not None:
-            changes["attitude_ns"] = taken_ns
+            changes["attitude_ns"] = at_ns
             messages.append(pose)
 
 
 def _taken_ns(age_s: float | None, seen: StationSeen) -> int | None:
-    """Return the station's time of a live sample; None of an old one."""
-    if age_s is None or age_s + seen.age_s >= LIVE_UNDER_S:
-        return None
-    return seen.message.time_ns - round(age_s * NS_PER_S)
+    return taken_ns(age_s, seen.message.time_ns, seen.age_s)
 
 
 def _boot_ms(message: StateMessage, time_ns: int) -> int:

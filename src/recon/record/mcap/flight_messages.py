@@ -40,7 +40,6 @@ MSGPACK = "msgpack"
 
 MOST_HELD_BYTES = 256 * 1024**2
 """Limit of all links with incomplete packets: ten of the largest images."""
-_LOG_LEVELS = {"alarm.raised": "warning", "alarm.worse": "error", "order.failed": "error"}
 
 
 class FlightMessages:
@@ -126,13 +125,13 @@ class FlightMessages:
         return number
 
     def _write_frame(self, vehicle: str, frame: FrameBytes, topics: Topics) -> None:
-        place, at_ns, packet = f"/vehicles/{vehicle}", frame.at_ns, frame.packet
+        at_ns, packet = frame.at_ns, frame.packet
         if isinstance(packet, wire.CompressedImage):
             jpeg = foxglove.jpeg_image(packet.jpeg, vehicle, at_ns)
-            _add(topics, f"{place}/jpeg", jpeg, at_ns, self._frame)
+            _add(topics, foxglove.vehicle_topic(vehicle, "jpeg"), jpeg, at_ns, self._frame)
             return
         topics.add(
-            f"{place}/image",
+            foxglove.vehicle_topic(vehicle, "image"),
             foxglove.ENCODING,
             foxglove.raw_image_bytes(packet.pixels, vehicle, at_ns),
             at_ns,
@@ -183,7 +182,8 @@ class FlightMessages:
             if command is not None and command["body"].get(TAG) == "FlyMission":
                 mission = self._codec.from_builtins(command["body"]["mission"], Mission)
                 path = foxglove.mission_path(mission, command["serial"])
-                _add(topics, f"/vehicles/{command['serial']}/mission", path, at_ns)
+                topic = foxglove.vehicle_topic(command["serial"], "mission")
+                _add(topics, topic, path, at_ns)
 
     def _write_map(self, item: Item, topics: Topics) -> None:
         found = msgspec.msgpack.decode(item.content, type=TimedValue)
@@ -200,14 +200,13 @@ def _add_location(topics: Topics, core: Mapping[str, Any], vehicle: str, at_ns: 
     if place is not None:
         point = LatLon(place["latitude_deg"], place["longitude_deg"])
         fix = foxglove.location(point, core["reported_altitude_m"], vehicle, at_ns)
-        _add(topics, f"/vehicles/{vehicle}/location", fix, at_ns)
+        _add(topics, foxglove.vehicle_topic(vehicle, "location"), fix, at_ns)
 
 
 def _add_log(topics: Topics, entries: Iterable[Mapping[str, Any]], at_ns: int) -> None:
     for entry in entries:
-        level = _LOG_LEVELS.get(entry["kind"], "info")
-        name = entry["vehicle"] or "station"
-        _add(topics, "/log", foxglove.log(entry["text"], level, name, at_ns), at_ns)
+        line = foxglove.audit_log(entry["kind"], entry["text"], entry["vehicle"], at_ns)
+        _add(topics, foxglove.LOG_TOPIC, line, at_ns)
 
 
 def _add(topics: Topics, topic: str, message: Any, at_ns: int, number: int | None = None) -> None:

@@ -26,13 +26,19 @@ from recon.model.shade import ShadeMap, SunForecast
 
 ENCODING = "protobuf"
 SITE_FRAME = "site"
-SHADE_TOPIC, SUN_TOPIC = "/shade", "/forecast"
+SHADE_TOPIC, SUN_TOPIC, LOG_TOPIC = "/shade", "/forecast", "/log"
 RAW_IMAGE: Any = RawImage
 LENGTH_DELIMITED = 2
 """Protobuf's wire type of bytes."""
 
 UINT8, FLOAT32 = PackedElementField.UINT8, PackedElementField.FLOAT32
 LEVELS = {"debug": Log.DEBUG, "info": Log.INFO, "warning": Log.WARNING, "error": Log.ERROR}
+_AUDIT_LEVELS = {"alarm.raised": "warning", "alarm.worse": "error", "order.failed": "error"}
+
+
+def vehicle_topic(vehicle: str, what: str) -> str:
+    """Return a topic of a vehicle: its location, image, jpeg or mission."""
+    return f"/vehicles/{vehicle}/{what}"
 
 
 def schema_of(message: Any) -> tuple[str, bytes]:
@@ -99,6 +105,11 @@ def log(text: str, level: str, name: str, at_ns: int) -> Any:
     line = Log(level=LEVELS[level], message=text, name=name)
     line.timestamp.FromNanoseconds(at_ns)
     return line
+
+
+def audit_log(kind: str, text: str, vehicle: str, at_ns: int) -> Any:
+    """Return an audit entry as a line of the log; without a vehicle it is the station's."""
+    return log(text, _AUDIT_LEVELS.get(kind, "info"), vehicle or "station", at_ns)
 
 
 def shade_grid(shade: ShadeMap) -> Any:
