@@ -169,6 +169,7 @@ bench: setup web ## Measurements, each beside a baseline of the same run
 	$(RUN) python -m benches.product.bench_tag
 	$(RUN) python -m benches.fields.bench_import
 	$(RUN) python -m benches.gateway.bench_mavlink
+	$(RUN) python -m benches.gateway.bench_foxglove
 	$(RUN) python -m benches.cli.bench_startup
 	$(RUN) python -m benches.cli.bench_first_page
 	$(RUN) python -m benches.console.bench_console

@@ -21,7 +21,7 @@ INTERVAL_S = 0.1
 
 
 class QuickStation:
-    """An ASGI application: the stream, and every order accepted."""
+    """An ASGI application: the stream, every order accepted, and nothing to read."""
 
     def __init__(self, vehicles: int) -> None:
         views = tuple(
@@ -42,7 +42,10 @@ class QuickStation:
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
         """Serve one request or one stream."""
-        if scope["type"] == "http":
+        if scope["type"] == "http" and scope["method"] == "GET":
+            await send({"type": "http.response.start", "status": 404, "headers": []})
+            await send({"type": "http.response.body", "body": b'{"error":"none"}'})
+        elif scope["type"] == "http":
             request = json.loads((await receive())["body"])
             result = {"serial": request["serials"][0], "link_id": 1, "vehicle_name": "one"}
             result |= {"accepted": True, "command_id": 1, "rule": None, "reason": None}

@@ -13,6 +13,7 @@ from recon.cli.endpoints import host_and_port
 from recon.cli.foreground import print_now, run_in_loop, until_stopped
 from recon.cli.options import with_options
 from recon.client import Station
+from recon.gateway.endpoints import shown_endpoint
 from recon.gateway.errors import GatewayError
 from recon.geo.geoid import geoid_height_m
 from recon.model.extras import from_extra
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
     from recon.gateway.mavlink.run import Endpoints
 
 gateway_app = App(help="Show the vehicles to other ground stations.", no_args_is_help=True)
-"""One command today, each protocol its own."""
+"""A command for each protocol."""
 
 
 @gateway_app.callback()
@@ -30,6 +31,7 @@ def _group() -> None:
 
 
 DEFAULT_TCP = "127.0.0.1:5760"
+DEFAULT_FOXGLOVE = "127.0.0.1:8765"
 MAX_PLACES = 8
 
 
@@ -85,7 +87,7 @@ def mavlink_command(options: MavlinkOptions, at: StationOptions) -> None:
 
 
 async def _run(options: MavlinkOptions, at: StationOptions, places: "Endpoints") -> None:
-    from recon.gateway.mavlink.run import MavlinkGateway, shown_endpoint
+    from recon.gateway.mavlink.run import MavlinkGateway
     from recon.gateway.mavlink.signing import Signer, read_key
     from recon.gateway.mavlink.values import GatewaySettings
 
@@ -103,6 +105,48 @@ async def _run(options: MavlinkOptions, at: StationOptions, places: "Endpoints")
                 print_now(f"MAVLink to: {shown_endpoint(place)}")
             print_now(f"takeoff points: {ground_m:.1f} m above sea level")
             print_now("orders: allowed" if settings.allow_orders else "orders: none, read-only")
+            await gateway.run()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FoxgloveOptions:
+    """Where clients connect, and who may."""
+
+    listen: Annotated[
+        str, typer.Option(metavar="HOST:PORT", help="Where Foxglove or Lichtblick connects.")
+    ] = DEFAULT_FOXGLOVE
+    allow_network: Annotated[
+        bool,
+        typer.Option("--allow-network", help="Let other computers read; there is no login."),
+    ] = False
+
+
+@gateway_app.command("foxglove")
+@with_options
+def foxglove_command(options: FoxgloveOptions, at: StationOptions) -> None:
+    """Show vehicles, maps and log live in Foxglove or Lichtblick, until Ctrl+C.
+
+    Under the topics of a flight's record, and read-only.
+    """
+    with from_extra("gateway", "a gateway for Foxglove", GatewayError):
+        import recon.gateway.foxglove.run  # noqa: F401
+    place = host_and_port("--listen", options.listen, lowest_port=0)
+    if not (options.allow_network or is_loopback(place[0])):
+        raise GatewayError(
+            f"{place[0]} can be reached from other computers: expected --allow-network, as the "
+            "protocol has no login and who reads it learns where every vehicle is"
+        )
+    run_in_loop(until_stopped(_run_foxglove(place, at), "stopped"))
+
+
+async def _run_foxglove(place: tuple[str, int], at: StationOptions) -> None:
+    from recon.gateway.foxglove.run import FoxgloveGateway
+
+    async with station_at(at, is_operator=False) as station:
+        gateway = FoxgloveGateway(station, print_now)
+        async with gateway.listening(place) as bound:
+            print_now(f"Foxglove clients: ws://{shown_endpoint(bound)}")
+            print_now("read-only: clients can order and change nothing")
             await gateway.run()
 
 
