@@ -7,6 +7,7 @@ import socket
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass, field
+from typing import Any
 
 import pytest
 from foxglove_schemas_protobuf.GeoJSON_pb2 import GeoJSON
@@ -32,6 +33,7 @@ from recon.gateway.foxglove.run import FoxgloveGateway
 from recon.model.geo import LatLon
 from recon.model.temporary_zone import Circle, TemporaryZoneKind
 
+KINDS = ["boundary", "pad", "pad", "temporary_zone"]
 SENT = 3 * BACKLOG
 FIRST, SECOND = "/vehicles/SIM-1/location", "/vehicles/SIM-2/location"
 
@@ -56,10 +58,12 @@ def test_clients_come_and_go_and_may_do_nothing() -> None:
             drawn = await running.station.zones.draw(TemporaryZoneKind.PERSON, circle, "a fence")
             assert isinstance(drawn, TemporaryZoneStatus)
             async with foxglove_client(running.port, "/site") as late:
-                (message,) = (await late.until("/site"))[:1]
-                (shape,) = json.loads(GeoJSON.FromString(message.data).geojson)["features"]
-                assert shape["properties"]["layer"] == "temporary_zone"
-                assert shape["geometry"]["coordinates"] == [[list(each) for each in drawn.ring]]
+                shapes: list[Any] = []
+                while [each["properties"]["kind"] for each in shapes] != KINDS:
+                    found = await late.until("/site", len(late.received["/site"]) + 1)
+                    shapes = json.loads(GeoJSON.FromString(found[-1].data).geojson)["features"]
+                ring = [list(each) for each in drawn.ring]
+                assert shapes[-1]["geometry"] == {"type": "Polygon", "coordinates": [ring]}
             await refused(stays)
             await stays.until(FIRST, len(stays.received[FIRST]) + 2)
             assert not await running.station.commands()

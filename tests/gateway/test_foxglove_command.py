@@ -5,6 +5,7 @@ import json
 import signal
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 from foxglove_schemas_protobuf.GeoJSON_pb2 import GeoJSON
@@ -23,24 +24,23 @@ def test_it_shows_vehicles_and_site_until_it_is_stopped(tmp_path: Path) -> None:
             line = gateway.line_with("Foxglove clients: ws://127.0.0.1:")
             gateway.line_with("read-only")
             shapes = asyncio.run(_site(int(line.rpartition(":")[2])))
-            drawn = station.get("/api/site/drawing")["features"]
+            site = station.get("/api/state")["site"]
             assert gateway.end(signal.SIGINT) == 0
             assert gateway.lines[-1] == "stopped"
-    assert [each["properties"]["layer"] for each in shapes] == [each["layer"] for each in drawn]
-    assert [each["geometry"]["type"] for each in shapes] == [
-        each["geometry"]["type"] for each in drawn
-    ]
-    assert len(drawn) >= 4
+    kinds = [each["kind"] for each in site["areas"]] + ["pad"] * len(site["pads"])
+    assert [each["properties"]["kind"] for each in shapes] == kinds
+    rings = [each["rings"] for each in site["areas"]]
+    assert [each["geometry"]["coordinates"] for each in shapes][: len(rings)] == rings
+    assert {"boundary", "keep_out", "survey"} <= set(kinds)
 
 
-async def _site(port: int) -> list[dict[str, dict[str, str]]]:
+async def _site(port: int) -> list[Any]:
     async with foxglove_client(port) as client:
         await client.until("/vehicles/SIM-1/location")
         (message,) = (await client.until("/site"))[:1]
         shapes = json.loads(GeoJSON.FromString(message.data).geojson)
         assert shapes["type"] == "FeatureCollection"
-        features: list[dict[str, dict[str, str]]] = shapes["features"]
-        return features
+        return list(shapes["features"])
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,12 @@ from recon.api import schema
 from recon.client.messages import AuditRecord, StateMessage
 from recon.gateway.foxglove.audit_messages import audit_messages
 from recon.gateway.foxglove.live_message import GEOJSON, LiveMessage
-from recon.gateway.foxglove.vehicle_messages import STATE, Shown, new_samples
+from recon.gateway.foxglove.vehicle_messages import (
+    STATE,
+    Shown,
+    is_another_run,
+    new_samples,
+)
 
 NS = 1_000_000_000
 ENTRY = AuditRecord(
@@ -96,6 +101,14 @@ def test_a_link_without_a_serial_is_named_as_in_a_record() -> None:
     assert messages[0].topic == "/vehicles/link-3/location"
     _, messages = new_samples({}, state(serial=None, link_id=None), 0.0)
     assert messages == []
+
+
+def test_another_run_is_known_by_its_start() -> None:
+    restarted = msgspec.json.decode(
+        fake_state.state_text(NS, fake_state.RUN_STARTED_NS + 60 * NS), type=StateMessage
+    )
+    assert not is_another_run(state(5.0), state(5.1))
+    assert is_another_run(state(5.0), restarted)
 
 
 def test_an_alarm_is_a_line_of_the_log() -> None:

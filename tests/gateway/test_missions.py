@@ -9,8 +9,8 @@ from pymavlink.dialects.v20 import common as mavlink
 from tests.gateway.drawn import given_examples
 from tests.gateway.fleet_state import ORDERS, SENDER, Stepping, seen, sent, text, types
 
+from recon.client.messages import TemporaryZoneStatus
 from recon.client.site import SiteFeature
-from recon.client.zones import TemporaryZoneStatus
 from recon.gateway.mavlink.fence import fence_items
 from recon.gateway.mavlink.mission_items import NotUnderstood, mission_of
 from recon.gateway.mavlink.values import (

@@ -31,6 +31,7 @@ from recon.client.messages import (
     ResultMessage,
     SideStepStatus,
     StopLatchStatus,
+    TemporaryZoneStatus,
     VehicleReturn,
     WaitingAppStatus,
 )
@@ -59,7 +60,7 @@ from recon.client.telemetry import (
     Velocity,
 )
 from recon.client.vehicle import Vehicle
-from recon.client.zones import TemporaryZoneStatus, ZoneCommands
+from recon.client.zones import ZoneCommands
 from recon.model.command import Phase, Refusal, StickFrame
 from recon.model.mission import Mission, Waypoint
 from recon.model.vehicle import Staleness

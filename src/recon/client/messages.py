@@ -9,6 +9,7 @@ import msgspec
 from recon.client.errors import BadAnswerError
 from recon.client.telemetry import Telemetry
 from recon.model.command import Phase, Refusal
+from recon.model.temporary_zone import TemporaryZoneKind
 from recon.model.units import seconds_to_ns
 
 M = TypeVar("M")
@@ -301,6 +302,48 @@ class ShadeStatus(msgspec.Struct, frozen=True):
     forecast: ForecastStatus | None = None
 
 
+class TemporaryZoneStatus(msgspec.Struct, frozen=True):
+    """A temporary zone in force; heights above ground, None where open-ended."""
+
+    id: int
+    name: str
+    kind: TemporaryZoneKind
+    ring: tuple[tuple[float, float], ...]
+    """The closed outline, (longitude, latitude)."""
+    radius_m: float | None
+    """Radius of a circle; None for an outline."""
+    floor_m: float | None
+    ceiling_m: float | None
+    reason: str
+    by: str
+    age_s: float
+    ends_in_s: float | None
+    """None: until a person ends it."""
+
+
+class SiteArea(msgspec.Struct, frozen=True):
+    """An area of the site: closed rings of (longitude, latitude), the outer one first."""
+
+    kind: Literal["boundary", "keep_out", "height", "survey"]
+    name: str
+    rings: tuple[tuple[tuple[float, float], ...], ...]
+
+
+class SitePad(msgspec.Struct, frozen=True):
+    """A landing pad."""
+
+    name: str
+    longitude_deg: float
+    latitude_deg: float
+
+
+class SiteStatus(msgspec.Struct, frozen=True):
+    """The site as it is drawn: outlines of many corners are simplified."""
+
+    areas: tuple[SiteArea, ...] = ()
+    pads: tuple[SitePad, ...] = ()
+
+
 class StateMessage(msgspec.Struct, frozen=True):
     """The complete state at `time_ns` (station time, nanoseconds)."""
 
@@ -316,6 +359,8 @@ class StateMessage(msgspec.Struct, frozen=True):
     stop_latch: StopLatchStatus | None = None
     links: tuple[LinkStatus, ...] = ()
     shade: ShadeStatus | None = None
+    site: SiteStatus | None = None
+    temporary_zones: tuple[TemporaryZoneStatus, ...] = ()
 
     @property
     def run_started_ns(self) -> int:

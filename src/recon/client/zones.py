@@ -3,10 +3,8 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-import msgspec
-
 from recon.client.errors import OrderInvalidError
-from recon.client.messages import AnswerMessage
+from recon.client.messages import AnswerMessage, TemporaryZoneStatus
 from recon.client.order import not_finite
 from recon.model.command import Refusal
 from recon.model.geo import LatLon
@@ -14,25 +12,6 @@ from recon.model.temporary_zone import Circle, TemporaryZoneKind
 
 if TYPE_CHECKING:
     from recon.client.http import Http
-
-
-class TemporaryZoneStatus(msgspec.Struct, frozen=True):
-    """A temporary zone in force; heights above ground, None where open-ended."""
-
-    id: int
-    name: str
-    kind: TemporaryZoneKind
-    ring: tuple[tuple[float, float], ...]
-    """The closed outline, (longitude, latitude)."""
-    radius_m: float | None
-    """Radius of a circle; None for an outline."""
-    floor_m: float | None
-    ceiling_m: float | None
-    reason: str
-    by: str
-    age_s: float
-    ends_in_s: float | None
-    """None: until a person ends it."""
 
 
 class _ZoneMessage(AnswerMessage, frozen=True, kw_only=True):

@@ -31,8 +31,14 @@ class NewestPictures:
         """What was published last in each topic: a frame's id, or the time of a map."""
         self._maps_due_s = 0.0
 
+    def forget(self) -> None:
+        """Forget what was published: another run of the station counts anew."""
+        self._frames, self._newest = {}, {}
+
     async def show(self, message: StateMessage, state_age_s: float) -> None:
         """Read and publish what is new; raises `ClientError`."""
+        serials = {telemetry.serial for telemetry in message.vehicles}
+        self._frames = {serial: each for serial, each in self._frames.items() if serial in serials}
         for telemetry in message.vehicles:
             frame = telemetry.frame
             if telemetry.serial is None or frame is None:

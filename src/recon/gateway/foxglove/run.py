@@ -1,9 +1,8 @@
 """The shell around the messages: a station's client on one side, the SDK's server on the other.
 
-Four loops: states, pictures and maps, the audit, and what is kept. Kept is what a client that
-subscribes later could not know otherwise: the site, and each vehicle's newest mission; it is sent
-again every `KEPT_EVERY_S`. While the station's states do not come, nothing is sent but a line of
-the log.
+Four loops: states, pictures and maps, the audit, and what is sent again every `AGAIN_EVERY_S`: what
+a client that subscribes later could not know otherwise, the site and each vehicle's newest mission.
+While the station's states do not come, nothing is sent but a line of the log.
 """
 
 import asyncio
@@ -11,7 +10,7 @@ import time
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager, suppress
 
-from recon.client import ClientError, Station
+from recon.client import BadAnswerError, ClientError, Station
 from recon.client.messages import StateMessage
 from recon.gateway.endpoints import Endpoint
 from recon.gateway.foxglove.audit_messages import audit_messages, gateway_line
@@ -19,15 +18,14 @@ from recon.gateway.foxglove.live_message import GEOJSON, LOG, LiveMessage
 from recon.gateway.foxglove.live_topics import LiveTopics
 from recon.gateway.foxglove.newest_pictures import NewestPictures
 from recon.gateway.foxglove.site_message import SITE_TOPIC, site_message
-from recon.gateway.foxglove.vehicle_messages import Shown, new_samples
-from recon.model.units import NS_PER_S
+from recon.gateway.foxglove.vehicle_messages import Shown, is_another_run, new_samples
 from recon.model.vehicle import LIVE_UNDER_S
 from recon.record.mcap.foxglove import LOG_TOPIC
 
 STATE_WITHIN_S = 0.25
 AUDIT_EVERY_S = 0.5
 AUDIT_PAGE = 100
-KEPT_EVERY_S = 2.0
+AGAIN_EVERY_S = 2.0
 GONE = "no states from the station: all topics stop"
 
 
@@ -39,10 +37,13 @@ class FoxgloveGateway:
         self._topics = LiveTopics()
         self._pictures = NewestPictures(station.pictures, self._topics)
         self._shown: Shown = {}
-        self._kept: dict[str, LiveMessage] = {}
+        self._missions: dict[str, LiveMessage] = {}
+        """The newest of each topic."""
+        self._seen: StateMessage | None = None
         self._audit_n = 0
         """The newest entry of the audit that was shown."""
-        self._run_started_ns = 0
+        self._problem = ""
+        """What was said last of pictures that cannot be read."""
         self._heard_s = time.monotonic()
         """When the newest state was made, on this computer's monotonic clock."""
         self._is_heard = True
@@ -62,7 +63,7 @@ class FoxgloveGateway:
             self._on_states(self._show_state),
             self._on_states(self._show_pictures),
             self._repeat(AUDIT_EVERY_S, self._show_audit),
-            self._repeat(KEPT_EVERY_S, self._show_kept),
+            self._repeat(AGAIN_EVERY_S, self._show_again),
         )
         tasks = [asyncio.create_task(loop) for loop in loops]
         try:
@@ -94,20 +95,20 @@ class FoxgloveGateway:
 
     async def _show_state(self, message: StateMessage | None, age_s: float) -> None:
         if message is not None:
-            self._heard_s = time.monotonic() - age_s
-            self._mind_restart(message.run_started_ns)
+            if self._seen is not None and is_another_run(self._seen, message):
+                self._forget()
+            self._seen, self._heard_s = message, time.monotonic() - age_s
         self._mind_silence()
         if message is not None:
             self._shown, messages = new_samples(self._shown, message, age_s)
             for each in messages:
                 self._topics.publish(each)
 
-    def _mind_restart(self, run_started_ns: int) -> None:
-        """Forget what was shown of another run of the station; its audit begins anew."""
-        if abs(run_started_ns - self._run_started_ns) > NS_PER_S:
-            self._run_started_ns = run_started_ns
-            self._shown, self._audit_n = {}, 0
-            self._kept.clear()
+    def _forget(self) -> None:
+        """Forget what was shown; the audit begins anew."""
+        self._shown, self._audit_n = {}, 0
+        self._missions = {}
+        self._pictures.forget()
 
     def _mind_silence(self) -> None:
         """Say when the station's states stop coming, and when they come again."""
@@ -121,27 +122,38 @@ class FoxgloveGateway:
 
     async def _show_pictures(self, message: StateMessage | None, age_s: float) -> None:
         if message is not None:
-            # Read again with the next state.
-            with suppress(ClientError):
+            try:
                 await self._pictures.show(message, age_s)
+            except BadAnswerError as problem:
+                self._say_once(str(problem))
+            except ClientError:
+                # Read again with the next state.
+                return
+
+    def _say_once(self, problem: str) -> None:
+        if problem != self._problem:
+            self._problem = problem
+            self._say(problem)
 
     async def _show_audit(self) -> None:
-        page = await self._station.audit(self._audit_n, AUDIT_PAGE)
-        while page.entries:
+        while self._is_heard:
+            missions, after = self._missions, self._audit_n
+            page = await self._station.audit(after, AUDIT_PAGE)
+            if missions is not self._missions or not page.entries:
+                # Of another run of the station, or all that there is.
+                return
             for entry in page.entries:
                 for message in audit_messages(entry):
                     self._topics.publish(message)
                     if message.kind is GEOJSON:
-                        self._kept[message.topic] = message
+                        missions[message.topic] = message
             self._audit_n = page.entries[-1].n
-            page = await self._station.audit(self._audit_n, AUDIT_PAGE)
 
-    async def _show_kept(self) -> None:
+    async def _show_again(self) -> None:
         self._topics.wants(LOG_TOPIC, LOG)
+        if not self._is_heard or self._seen is None:
+            return
         if self._topics.wants(SITE_TOPIC, GEOJSON):
-            drawing = await self._station.site.drawing()
-            zones = await self._station.zones.in_force()
-            self._kept[SITE_TOPIC] = site_message(drawing.features, zones, time.time_ns())
-        if self._is_heard:
-            for message in self._kept.values():
-                self._topics.publish(message)
+            self._topics.publish(site_message(self._seen))
+        for message in self._missions.values():
+            self._topics.publish(message)

@@ -11,6 +11,7 @@ from recon.client.telemetry import Aged, EulerAngles, Telemetry, Velocity
 from recon.gateway.foxglove.live_message import LOCATION, LiveMessage, TopicKind
 from recon.gateway.samples import SAME_SAMPLE_NS, is_live, taken_ns
 from recon.model.geo import LatLon
+from recon.model.units import NS_PER_S
 from recon.model.vehicle import LATE_UNDER_S
 from recon.record.mcap import foxglove
 
@@ -67,6 +68,14 @@ def new_samples(
                 newest[topic] = at_ns
                 messages.append(message)
     return newest, messages
+
+
+def is_another_run(before: StateMessage, after: StateMessage) -> bool:
+    """Return whether two states are of different runs of the station.
+
+    The start of a run is the difference of two rounded numbers.
+    """
+    return abs(after.run_started_ns - before.run_started_ns) > NS_PER_S
 
 
 def _name(telemetry: Telemetry) -> str | None:

@@ -8,8 +8,8 @@ are not shown. What is shown is a picture of the gate's rules: the gate judges b
 from collections.abc import Iterable, Sequence
 from typing import Any
 
+from recon.client.messages import TemporaryZoneStatus
 from recon.client.site import SiteFeature
-from recon.client.zones import TemporaryZoneStatus
 from recon.gateway.mavlink.dialect import mavlink
 from recon.gateway.mavlink.telemetry import encoded_degrees
 
