@@ -1,9 +1,13 @@
 """Foxglove clients on real sockets: they come and go, are slow or hostile; the station leaves."""
 
 import asyncio
+import fcntl
 import json
 import os
 import socket
+import termios
+import time
+from array import array
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass, field
@@ -16,7 +20,6 @@ from tests.client.running_station import HOME, running_station
 from tests.gateway.foxglove_client import (
     PATIENCE_S,
     FoxgloveClient,
-    Received,
     foxglove_client,
     running_foxglove,
 )
@@ -34,7 +37,7 @@ from recon.model.geo import LatLon
 from recon.model.temporary_zone import Circle, TemporaryZoneKind
 
 KINDS = ["boundary", "pad", "pad", "temporary_zone"]
-SENT = 3 * BACKLOG
+SENT = 4 * BACKLOG
 FIRST, SECOND = "/vehicles/SIM-1/location", "/vehicles/SIM-2/location"
 
 
@@ -133,46 +136,64 @@ async def sent_until_closed(client: FoxgloveClient, message: str | bytes) -> Non
             await client.read()
 
 
-def test_a_client_that_does_not_read_costs_a_bounded_queue_and_no_stop() -> None:
-    """The queue keeps the newest messages; stopping does not wait for it."""
+@asynccontextmanager
+async def slow_client() -> AsyncIterator[tuple[LiveTopics, int, FoxgloveClient]]:
+    """Topics, their port, and a client that is subscribed to the log and no longer reads."""
+    topics = LiveTopics()
+    _host, port = topics.start(("127.0.0.1", 0))
+    topics.wants("/log", LOG)
+    async with foxglove_client(port, max_queue=1) as slow:
+        while not topics.wants("/log", LOG):
+            with suppress(TimeoutError):
+                async with asyncio.timeout(0.05):
+                    await slow.read()
+        slow.socket.transport.pause_reading()
+        yield topics, port, slow
+        slow.socket.transport.abort()
 
+
+def flood(topics: LiveTopics, count: int, size: int) -> None:
+    for number in range(count):
+        topics.publish(LiveMessage("/log", LOG, number, b"\0" * size))
+
+
+def test_the_newest_messages_wait_for_a_client_that_does_not_read() -> None:
     async def main() -> None:
-        topics = LiveTopics()
-        _host, port = topics.start(("127.0.0.1", 0))
-        topics.wants("/log", LOG)
-        async with foxglove_client(port, max_queue=1) as slow:
-            while not topics.wants("/log", LOG):
-                with suppress(TimeoutError):
-                    async with asyncio.timeout(0.05):
-                        await slow.read()
-            numbers = [each.at_ns for each in await flooded(topics, slow)]
-            assert len(numbers) < SENT
-            assert numbers[-BACKLOG:] == list(range(SENT - BACKLOG, SENT))
-            slow.socket.transport.pause_reading()
-            flood(topics)
+        async with slow_client() as (topics, _port, slow):
+            flood(topics, SENT, 50_000)
+            slow.socket.transport.resume_reading()
+            received = slow.received["/log"]
             async with asyncio.timeout(PATIENCE_S):
-                await topics.stop()
-            with pytest.raises(OSError, match="Connect call failed"):
-                await asyncio.open_connection("127.0.0.1", port)
-            slow.socket.transport.abort()
+                while not received or received[-1].at_ns < SENT - 1:
+                    await slow.read()
+            await topics.stop()
+            assert len(received) < SENT
+            newest = [each.at_ns for each in received[-BACKLOG:]]
+            assert newest == list(range(SENT - BACKLOG, SENT))
 
     asyncio.run(main())
 
 
-def flood(topics: LiveTopics) -> None:
-    for number in range(SENT):
-        topics.publish(LiveMessage("/log", LOG, number, b"\0" * 50_000))
+def test_a_client_that_does_not_read_does_not_delay_the_end() -> None:
+    async def main() -> None:
+        async with slow_client() as (topics, port, slow):
+            flood(topics, 64, 1_000_000)
+            connection = slow.socket.transport.get_extra_info("socket")
+            waiting = [-1, 0]
+            # Until its socket takes no more.
+            while waiting[-1] != waiting[-2]:
+                waiting.append(await asyncio.to_thread(_bytes_waiting, connection.fileno()))
+            async with asyncio.timeout(PATIENCE_S):
+                await topics.stop()
+            with pytest.raises(OSError, match="Connect call failed"):
+                await asyncio.open_connection("127.0.0.1", port)
+
+    asyncio.run(main())
 
 
-async def flooded(topics: LiveTopics, slow: FoxgloveClient) -> list[Received]:
-    """What a client receives of far more than its queue, once it reads again."""
-    slow.socket.transport.pause_reading()
-    flood(topics)
-    slow.socket.transport.resume_reading()
-    async with asyncio.timeout(PATIENCE_S):
-        while not slow.received["/log"] or slow.received["/log"][-1].at_ns < SENT - 1:
-            await slow.read()
-    return slow.received["/log"]
+def _bytes_waiting(descriptor: int) -> int:
+    time.sleep(0.1)
+    return int(array("i", fcntl.ioctl(descriptor, termios.FIONREAD, b"\0" * 4))[0])
 
 
 def test_a_lost_vehicles_topics_stop() -> None:
