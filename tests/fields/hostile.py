@@ -59,6 +59,11 @@ HOSTILE: Mapping[str, tuple[Callable[[], bytes], str]] = {
     "an LZMA bomb": (lambda: _packed(zipfile.ZIP_LZMA), "stored or deflated"),
     "a bzip2 bomb": (lambda: _packed(zipfile.ZIP_BZIP2), "stored or deflated"),
     "a member without a name": (lambda: zip_of({".": KML}), "names inside the archive"),
+    # Names end at a zero.
+    "a member with an empty name": (
+        lambda: zip_of({"a.kml": KML}).replace(b"a.kml", b"\0.kml"),
+        "names inside the archive",
+    ),
     "a file that names another": (lambda: VRT.encode(), "other XML"),
     "two documents": (lambda: KML.encode() + VRT.encode(), "invalid XML"),
     "more corners than are read": (lambda: _corners(9_000, 30), "at most 250000 corners"),

@@ -120,7 +120,8 @@ class _Unpacking:
 def _of_the_user(members: Sequence[zipfile.ZipInfo]) -> Iterator[tuple[str, zipfile.ZipInfo]]:
     for each in members:
         name = each.filename.replace("\\", "/")
-        if each.is_dir() or _NOT_THE_USERS.search(name):
+        # `is_dir` of Python 3.11 fails on an empty name.
+        if name.endswith("/") or _NOT_THE_USERS.search(name):
             continue
         path = PurePosixPath(name)
         if path.is_absolute() or not path.name or ".." in path.parts or ":" in path.parts[0]:

@@ -3,8 +3,11 @@
 Names of columns and arrays are those of `rows.NAMES`, in any case; `rows` states what lines are.
 """
 
+import zipfile
+import zlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from math import prod
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -32,6 +35,13 @@ from recon.model.units import NS_PER_S
 Read = TypeVar("Read")
 MOST_BYTES = 500_000_000
 UNIX_TIME = "seconds since 1970-01-01"
+NUMBERS = frozenset("fiu")
+"""Kinds of NumPy's types that are numbers."""
+_UNREADABLE = (
+    *(zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, EOFError),
+    *(ValueError, KeyError, MemoryError, OverflowError),
+)
+"""Raised for an archive of arrays that is damaged, encrypted, or claims more than it holds."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,8 +63,7 @@ class LightTable:
 def read_table(path: Path) -> LightTable:
     """Return a file's table; raises `RecordError`."""
     try:
-        if path.stat().st_size > MOST_BYTES:
-            raise RecordError(f"{path}: expected at most {MOST_BYTES // 1_000_000} MB of values")
+        _expect_bytes(path, path.stat().st_size)
         return READERS[path.suffix.lower()](path)
     except OSError as problem:
         reason = problem.strerror or problem
@@ -149,10 +158,13 @@ def _usual_step_ns(times_ns: IntArray, sensors: IntArray) -> int:
 
 
 def _npz_table(path: Path) -> LightTable:
+    # What a member states of its size is the most that is unpacked of it.
     try:
+        with zipfile.ZipFile(path) as archive:
+            _expect_bytes(path, sum(each.file_size for each in archive.infolist()))
         with np.load(path, allow_pickle=False) as found:
             arrays = {name: np.asarray(found[name]) for name in found}
-    except (ValueError, KeyError) as problem:
+    except _UNREADABLE as problem:
         raise RecordError(f"{path}: expected an .npz of arrays, got: {problem}") from problem
     return _of_arrays(path, arrays)
 
@@ -163,11 +175,20 @@ def _netcdf_table(path: Path) -> LightTable:
         import netCDF4
 
     with netCDF4.Dataset(path) as file:
-        found = {name: each for name, each in file.variables.items() if each.dtype.kind in "fiu"}
-        arrays = {
-            name: np.ma.filled(np.ma.asarray(each[...], np.float64), np.nan)
-            for name, each in found.items()
+        # Text has Python's type for one.
+        found = {
+            name: each
+            for name, each in file.variables.items()
+            if getattr(each.dtype, "kind", "") in NUMBERS
         }
+        _expect_bytes(path, 8 * sum(prod(each.shape) for each in found.values()))
+        try:
+            arrays = {
+                name: np.ma.filled(np.ma.asarray(each[...], np.float64), np.nan)
+                for name, each in found.items()
+            }
+        except RuntimeError as problem:
+            raise RecordError(f"{path}: expected whole variables, got: {problem}") from problem
         named = next((name for name in found if key_of(name) == "time"), None)
         if named is not None:
             about = found[named]
@@ -184,7 +205,10 @@ def _netcdf_table(path: Path) -> LightTable:
 
 def _of_arrays(path: Path, arrays: Mapping[str, np.ndarray]) -> LightTable:
     at = {key_of(name): each for name, each in arrays.items()}
-    values = [name for name, each in arrays.items() if each.ndim == 2]
+    for name in ({"time"} | PLACE_KEYS) & at.keys():
+        if at[name].dtype.kind not in NUMBERS:
+            raise RecordError(f"{path}: expected numbers in {name}, got {at[name].dtype}")
+    values = [n for n, each in arrays.items() if each.ndim == 2 and each.dtype.kind in NUMBERS]
     if "time" not in at or at["time"].ndim != 1 or len(values) != 1:
         raise RecordError(
             f"{path}: expected an array time and one of values by time and sensor, "
@@ -197,7 +221,7 @@ def _of_arrays(path: Path, arrays: Mapping[str, np.ndarray]) -> LightTable:
             f"{path}: expected {len(at['time'])} rows in {values[0]}, as times, got {len(light)}"
         )
     given = at.get("sensor")
-    names = tuple(map(str, range(count) if given is None else given.tolist()))
+    names = tuple(map(str, range(count) if given is None else np.ravel(given).tolist()))
     stated = {key: at[key].tolist() for key in PLACE_KEYS & at.keys() if at[key].shape == (count,)}
     if len(names) != count:
         raise RecordError(f"{path}: expected {count} names of sensors, got {len(names)}")
@@ -226,6 +250,12 @@ def _rows(path: Path) -> tuple[list[str], list[list[str]]]:
     for line, row in enumerate(rows[1:], start=2):
         _at_line(path, line, expect_cells, head, row)
     return head, rows[1:]
+
+
+def _expect_bytes(path: Path, size: int) -> None:
+    """Raise `RecordError` for more than is read of a file, as it is or unpacked."""
+    if size > MOST_BYTES:
+        raise RecordError(f"{path}: expected at most {MOST_BYTES // 1_000_000} MB of values")
 
 
 def _expect_seconds(path: Path, at_s: float) -> None:

@@ -1,0 +1,119 @@
+"""Files of light sensors that are damaged, or that claim more than they hold: one kind of error."""
+
+import io
+import zipfile
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import netCDF4
+import numpy as np
+import pytest
+
+from recon.light import tables
+from recon.light.files import read_points
+from recon.model.errors import RecordError
+
+WHOLE: Mapping[str, Any] = {
+    "time": 1_777_000_000.0 + np.arange(4.0),
+    "light": np.arange(12.0).reshape(4, 3) + 100.0,
+    "lat": np.array([41.9, 41.901, 41.902]),
+    "lon": np.array([-93.6, -93.601, -93.602]),
+}
+
+
+def arrays(save: Callable[..., None] = np.savez, **changed: Any) -> bytes:
+    data = io.BytesIO()
+    save(data, **{**WHOLE, **changed})
+    return data.getvalue()
+
+
+def changed(data: bytes, at: int, new: bytes) -> bytes:
+    return data[:at] + new + data[at + len(new) :]
+
+
+def claiming(shape: str) -> bytes:
+    """An archive whose one array claims another shape than it has."""
+    packed, array = io.BytesIO(), io.BytesIO()
+    np.save(array, np.zeros(4))
+    text = array.getvalue().replace(b"(4,), }", f"({shape},), }}".encode())
+    with zipfile.ZipFile(packed, "w") as archive:
+        archive.writestr("time.npy", text)
+    return packed.getvalue()
+
+
+def single() -> bytes:
+    data = io.BytesIO()
+    np.save(data, np.zeros(4))
+    return data.getvalue()
+
+
+DIRECTORY = arrays().rfind(b"PK\x01\x02")
+DAMAGED: Mapping[str, bytes] = {
+    "nothing": b"",
+    "another kind of file": b"\x7fELF" + bytes(100),
+    "cut off": arrays()[:-30],
+    "a wrong checksum": arrays().replace(WHOLE["lat"].tobytes(), WHOLE["lon"].tobytes()),
+    "damaged packing": changed(arrays(np.savez_compressed), 60, b"\xff" * 20),
+    "a packing that nobody has": changed(arrays(), DIRECTORY + 10, b"\x63"),
+    "a version that nobody has": changed(arrays(), DIRECTORY + 6, b"\x7a"),
+    "an encrypted file": changed(arrays(), DIRECTORY + 8, b"\x01"),
+    "one array": single(),
+    "an array of terabytes": claiming("4000000000000"),
+    "an array of more than can be counted": claiming("9" * 30),
+    "times as text": arrays(time=np.array(list("abcd"))),
+    "light as text": arrays(light=np.array([list("abc")] * 4)),
+    "places as text": arrays(lat=np.array(list("abc"))),
+    "one name": arrays(sensor=np.array("a")),
+    "objects": arrays(time=np.array([object()] * 4)),
+}
+
+
+@pytest.mark.parametrize("name", DAMAGED)
+def test_damaged_arrays_are_refused(name: str, tmp_path: Path) -> None:
+    path = tmp_path / "a.npz"
+    path.write_bytes(DAMAGED[name])
+    with pytest.raises(RecordError, match=r"a\.npz: expected"):
+        read_points(path)
+
+
+def test_packed_arrays_have_a_limit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "a.npz"
+    path.write_bytes(arrays(np.savez_compressed, other=np.zeros(100_000)))
+    assert path.stat().st_size < 10_000
+    monkeypatch.setattr(tables, "MOST_BYTES", 100_000)
+    with pytest.raises(RecordError, match="expected at most"):
+        read_points(path)
+
+
+def test_a_variable_that_was_never_written_is_not_made(tmp_path: Path) -> None:
+    path = tmp_path / "a.nc"
+    with netCDF4.Dataset(path, "w") as file:
+        for name in ("time", "sensor"):
+            file.createDimension(name, 1_000_000)
+        file.createVariable("light", "f8", ("time", "sensor"), chunksizes=(100, 100))
+    assert path.stat().st_size < 100_000
+    with pytest.raises(RecordError, match="expected at most"):
+        read_points(path)
+
+
+def test_texts_in_netcdf_are_passed_over(tmp_path: Path) -> None:
+    path = tmp_path / "a.nc"
+    with netCDF4.Dataset(path, "w") as file:
+        file.createDimension("sensor", 3)
+        names = file.createVariable("names", str, ("sensor",))
+        names[:] = np.array(["a", "b", "c"], dtype=object)
+    with pytest.raises(RecordError, match="expected an array time"):
+        read_points(path)
+
+
+def test_damaged_netcdf_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "a.nc"
+    with netCDF4.Dataset(path, "w") as file:
+        file.createDimension("time", 4_000)
+        file.createVariable("light", "f8", ("time",), zlib=True)[:] = np.arange(4_000.0)
+    data = path.read_bytes()
+    half = len(data) // 2
+    path.write_bytes(changed(data, half, b"\xff" * (half - 100)))
+    with pytest.raises(RecordError, match=r"a\.nc: expected"):
+        read_points(path)
