@@ -2,6 +2,7 @@
 
 import io
 import os
+import struct
 from pathlib import Path
 from random import Random
 
@@ -11,7 +12,7 @@ from mcap.stream_reader import StreamReader
 
 from recon.model.errors import RecordError
 from recon.record.mcap.mcap_file import McapFile
-from recon.record.mcap.mcap_read import McapReading, RecordAttachment, RecordMessage
+from recon.record.mcap.mcap_read import MAGIC, McapReading, RecordAttachment, RecordMessage
 from recon.record.mcap.mcap_repair import is_finished, repair
 
 CHUNKS, PER_CHUNK = 6, 20
@@ -149,10 +150,23 @@ def test_damage_is_no_crash(tmp_path: Path, seed: int) -> None:
 
 
 def test_a_size_that_a_file_claims_is_not_allocated() -> None:
-    magic = b"\x89MCAP0\r\n"
-    reading = McapReading(io.BytesIO(magic + b"\x06" + (2**62).to_bytes(8, "little") + b"x" * 50))
+    reading = McapReading(io.BytesIO(MAGIC + b"\x06" + (2**62).to_bytes(8, "little") + b"x" * 50))
     assert list(reading.items()) == []
     assert "limit" in reading.trouble or "up to" in reading.trouble
+
+
+def test_an_attachment_that_claims_more_than_can_be_counted_is_damage(tmp_path: Path) -> None:
+    """Its own length of its data, inside a record of a true length."""
+    texts = struct.pack("<QQI", 1, 2, 1) + b"a" + struct.pack("<I", 1) + b"b"
+    content = texts + struct.pack("<Q", 2**63) + b"data"
+    record = b"\x09" + len(content).to_bytes(8, "little") + content
+    reading = McapReading(io.BytesIO(MAGIC + record))
+    assert list(reading.items()) == []
+    assert "damaged record at byte 8" in reading.trouble
+    path = tmp_path / "cut.mcap"
+    path.write_bytes(MAGIC + record)
+    assert repair(path) is not None
+    assert is_finished(path)
 
 
 def test_a_failed_write_is_made_good(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

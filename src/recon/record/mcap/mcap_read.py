@@ -30,6 +30,8 @@ MOST_RECORD_BYTES = 512 * 1024 * 1024
 
 MESSAGE_FIELDS = struct.Struct("<HIQQ")
 MAGIC = MCAP0_MAGIC
+UNREADABLE = (McapError, struct.error, UnicodeDecodeError, IndexError, OverflowError)
+"""Raised for a record whose own lengths are wrong."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,7 +115,7 @@ class McapReading:
                 yield from self._chunk_items(unpacked_chunk(record.content, record.at))
             else:
                 yield from self._item(record.opcode, record.content)
-        except (McapError, struct.error, UnicodeDecodeError, IndexError) as problem:
+        except UNREADABLE as problem:
             raise DamagedMcapError(f"damaged record at byte {record.at}: {problem}") from problem
 
     def _chunk_items(self, data: bytes) -> Iterator[RecordMessage | RecordAttachment]:

@@ -12,14 +12,19 @@ from io import BytesIO
 from pathlib import Path
 
 from mcap.data_stream import ReadDataStream
-from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.records import Attachment, AttachmentIndex, Channel, ChunkIndex, Schema
 from mcap.writer import MCAP0_MAGIC
 
 from recon.model.errors import RecordError
 from recon.record.mcap.mcap_file import CHUNK_HEAD, RECORD_HEAD, McapIndex, message_indexes
-from recon.record.mcap.mcap_read import DamagedMcapError, RawRecord, raw_records, unpacked_chunk
+from recon.record.mcap.mcap_read import (
+    UNREADABLE,
+    DamagedMcapError,
+    RawRecord,
+    raw_records,
+    unpacked_chunk,
+)
 
 _FOOTER_BYTES = RECORD_HEAD.size + 20
 
@@ -73,7 +78,7 @@ def repair(path: Path) -> RepairedFile | None:
                 if record.opcode == Opcode.DATA_END:
                     break
                 found.take(record)
-        except (DamagedMcapError, McapError, struct.error, UnicodeDecodeError):
+        except (DamagedMcapError, *UNREADABLE):
             pass  # what came before is whole
         size = file.seek(0, os.SEEK_END)
         end = found.cut_to_intact()
