@@ -22,7 +22,7 @@ FUZZ_SECONDS ?= 60
 RUST ?= test-rust
 WEB_SOURCES := $(shell find web/src web/public -type f ! -name schema.d.ts 2>/dev/null) web/index.html web/package.json web/vite.config.ts
 
-.PHONY: help setup demo run wheel test-install test-install-short image test test-all test-rust test-python flights test-web test-e2e test-dissector android-core android test-android study-android fuzz-android coverage coverage-safety check check-rust check-python check-web format bench fuzz study soak mutants docs web clean
+.PHONY: help setup demo run wheel test-install test-install-short image test test-all test-rust test-python flights test-web test-e2e test-dissector android-core android test-android study-android fuzz-android coverage coverage-safety check check-rust check-python check-web format bench fuzz fuzz-readers study soak mutants docs web clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -178,13 +178,18 @@ test-dissector: setup web/node_modules/.stamp ## The descriptions of the protoco
 	@tools/tshark.sh
 	$(RUN) python -m pytest tests/protocol
 
-fuzz: ## Fuzz the deframer and the packet decoder for a minute each (needs a nightly Rust)
+# FUZZ_RUNS=1000000 asks for a number of inputs instead of a time.
+fuzz: ## Fuzz the deframer and the packet decoder for a minute each, FUZZ_SECONDS or FUZZ_RUNS (needs a nightly Rust)
 	@cargo fuzz --version >/dev/null 2>&1 || cargo install cargo-fuzz --locked --quiet
 	for target in deframer packet; do \
 		mkdir -p fuzz/work/$$target && \
 		cargo +nightly fuzz run $$target fuzz/work/$$target fuzz/corpus/$$target \
-			-- -max_total_time=$(FUZZ_SECONDS) -max_len=4096 || exit 1; \
+			-- $(if $(FUZZ_RUNS),-runs=$(FUZZ_RUNS),-max_total_time=$(FUZZ_SECONDS)) -max_len=4096 -print_final_stats=1 || exit 1; \
 	done
+
+READER_RUNS ?= 100000
+fuzz-readers: setup ## Fuzz what reads files and bytes of others, READER_RUNS inputs each (READERS="photo record", else all; Linux)
+	$(RUN) --group fuzz python -m studies.fuzz_readers $(READERS) --runs $(READER_RUNS)
 
 study: setup ## Long runs: the sky against measurements, random fences, fleets and closed loops, 100,000 simulated seconds, mutants (an hour)
 	$(RUN) python -m studies.sky_statistics
