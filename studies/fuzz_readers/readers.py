@@ -9,6 +9,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from pymavlink.dialects.v20 import common as mavlink
+from tests.gateway.fleet_state import Stepping
+from tests.gateway.test_hostile import HANDLED, packed
+
 from recon.basemap.map_process import OpenMaps
 from recon.basemap.web_mercator import MapArea
 from recon.camera.errors import FrameDecodeError
@@ -18,6 +22,7 @@ from recon.fields.field_file import _imported, _put_safely
 from recon.fields.process import read_documents
 from recon.fields.shape import FieldFileError
 from recon.gateway.mavlink.frames import FrameReader
+from recon.gateway.mavlink.values import Sender
 from recon.light.files import read_points
 from recon.light.lines import LightLines
 from recon.model.errors import ReconError, RecordError, SiteError
@@ -125,6 +130,21 @@ def _gateway(data: bytes, folder: Path) -> None:
         reader.read(data[at : at + 100])
 
 
+def _gateway_messages(data: bytes, folder: Path) -> None:
+    """Messages that the gateway handles, with right checksums: kind, then payload, and so on."""
+    gateway, at = Stepping(), 0
+    while at < len(data):
+        kind = mavlink.mavlink_map[HANDLED[data[at] % len(HANDLED)]]
+        size = kind.unpacker.size
+        payload = data[at + 1 : at + 1 + size].ljust(size, b"\0")
+        mav = mavlink.MAVLink(None, 255, 190)
+        for frame in FrameReader().read(packed(mav, kind, payload)):
+            sender = Sender(1 + data[at] // 128, 255, 190)
+            gateway.receive(frame.message, sender)
+        at += 1 + size
+    assert len(gateway.state.uploads) <= 2
+
+
 def _weather(data: bytes, folder: Path) -> None:
     site = LatLon(41.9012, -93.6034)
     hours_of("weather", read_answer("weather", decoded("weather", data), site))
@@ -171,4 +191,5 @@ READERS: Mapping[str, FuzzedReader] = {
     "light-npz": FuzzedReader(_light_file(".npz"), (RecordError,), seeds.light_arrays),
     "light-netcdf": FuzzedReader(_light_file(".nc"), (RecordError,), seeds.light_netcdf, 32_768),
     "gateway": FuzzedReader(_gateway, (), seeds.mavlink_frames),
+    "gateway-messages": FuzzedReader(_gateway_messages, (), seeds.mavlink_payloads, 2_048),
 }

@@ -209,3 +209,11 @@ def mavlink_frames(folder: Path) -> list[bytes]:
         )
         found.append(b"".join(message.pack(mav) for message in messages))
     return found
+
+
+def mavlink_payloads(folder: Path) -> list[bytes]:
+    """Each kind that the gateway handles, to it, with nothing in it, and all of them."""
+    from tests.gateway.test_hostile import HANDLED
+
+    each = [bytes((number,)) + b"\x01" * 64 for number in range(len(HANDLED))]
+    return [*each, b"".join(each)]

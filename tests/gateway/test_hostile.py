@@ -27,7 +27,7 @@ def frames(draw: st.DrawFn) -> bytes:
         fields[target], fields[target + 1] = 1, 1
         payload = bytearray(kind.unpacker.pack(*fields))
     mav = mavlink.MAVLink(None, draw(st.integers(0, 255)), draw(st.integers(0, 255)))
-    return _packed(mav, kind, bytes(payload))
+    return packed(mav, kind, bytes(payload))
 
 
 def _is_targeted(kind: Any) -> bool:
@@ -35,7 +35,7 @@ def _is_targeted(kind: Any) -> bool:
     return "target_system" in names and kind.array_lengths.count(0) == len(kind.array_lengths)
 
 
-def _packed(mav: Any, kind: Any, payload: bytes) -> bytes:
+def packed(mav: Any, kind: Any, payload: bytes) -> bytes:
     header = mavlink.MAVLink_header(kind.id, 0, 0, len(payload), 0, mav.srcSystem, mav.srcComponent)
     body = header.pack()[1:] + payload
     checksum = mavlink.x25crc(body + bytes((kind.crc_extra,))).crc
