@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from recon.camera import FrameDecodeError, decode_frame, decode_jpeg, jpeg_size
+from recon.camera.decode_png import decode_png, png_size
 from recon.model.imagery import Frame
 
 
@@ -123,3 +124,42 @@ def test_a_damaged_jpeg_gives_pixels_or_a_refusal(damage: list[tuple[int, int]])
         data[at] = value
     shape = outcome(bytes(data))
     assert shape is None or (len(shape) == 3 and shape[0] * shape[1] <= 10_000)
+
+
+def png_of(rgb: np.ndarray) -> bytes:
+    done, data = cv2.imencode(".png", rgb[..., ::-1])
+    assert done
+    return data.tobytes()
+
+
+PNG = png_of(picture())
+
+
+def test_a_png_has_its_pixels() -> None:
+    assert png_size(PNG) == (48, 64)
+    np.testing.assert_array_equal(decode_png(PNG, 48 * 64), picture())
+
+
+@pytest.mark.parametrize(
+    ("data", "expected"),
+    [
+        (PNG[:8], "its header first"),
+        (PNG.replace(b"IHDR", b"IHDX"), "its header first"),
+        (PNG[:16] + b"\xff" * 8 + PNG[24:], "expected 1 to 9000 pixels"),
+        (PNG[:-5], "an end mark"),
+        (PNG[: len(PNG) // 2], "an end mark"),
+        # Its first chunk of pixels claims 4 GB, which OpenCV would allocate.
+        (PNG[:33] + b"\xff\x00\x00\x51" + PNG[37:], "an end mark"),
+    ],
+)
+def test_a_damaged_png_is_refused(data: bytes, expected: str) -> None:
+    with pytest.raises(FrameDecodeError, match=expected):
+        decode_png(data, 9_000)
+
+
+def test_nothing_is_allocated_for_a_chunk_that_is_not_there(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(cv2, "imdecode", lambda *_: pytest.fail("decoded"))
+    with pytest.raises(FrameDecodeError):
+        decode_png(PNG[:33] + b"\xff\x00\x00\x51" + PNG[37:], 9_000)

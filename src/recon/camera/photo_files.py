@@ -6,10 +6,9 @@ allocate gigabytes. Orientation tags are ignored: a calibration is for the senso
 
 from pathlib import Path
 
-import cv2
-import numpy as np
-
 from recon.camera.decode import decode_jpeg, jpeg_size
+from recon.camera.decode_png import START as PNG_START
+from recon.camera.decode_png import decode_png, png_size
 from recon.camera.errors import FrameDecodeError
 from recon.model.file_kind import file_kind
 from recon.model.imagery import RgbImage
@@ -20,8 +19,6 @@ MOST_PIXELS = 64_000_000
 """The largest sensors of drones have 48 million."""
 HEADER_BYTES = 64 * 1024
 """Holds a JPEG's frame header after the usual metadata; else the whole file is read."""
-
-_PNG = b"\x89PNG\r\n\x1a\n"
 
 
 def photo_size(path: Path) -> tuple[int, int]:
@@ -42,8 +39,10 @@ def read_photo(path: Path) -> RgbImage:
     """Return a file's pixels (rows, cols, 3) uint8 RGB; raises `FrameDecodeError` naming it."""
     data = _file_bytes(path, LARGEST_FILE_BYTES)
     try:
+        if data.startswith(PNG_START):
+            return decode_png(data, MOST_PIXELS)
         _size(data)
-        return _decoded_png(data) if data.startswith(_PNG) else decode_jpeg(data, MOST_PIXELS)
+        return decode_jpeg(data, MOST_PIXELS)
     except FrameDecodeError as problem:
         raise FrameDecodeError(f"{path}: {problem}") from problem
 
@@ -66,9 +65,8 @@ def _file_bytes(path: Path, most_bytes: int) -> bytes:
 
 
 def _size(data: bytes) -> tuple[int, int]:
-    if data.startswith(_PNG) and len(data) >= 24:
-        # The first chunk is IHDR: width and height after its length and name (RFC 2083, 4.1.1).
-        rows, cols = int.from_bytes(data[20:24]), int.from_bytes(data[16:20])
+    if data.startswith(PNG_START):
+        rows, cols = png_size(data)
     elif data.startswith(b"\xff\xd8"):
         rows, cols = jpeg_size(data)
     else:
@@ -76,18 +74,3 @@ def _size(data: bytes) -> tuple[int, int]:
     if not 0 < rows * cols <= MOST_PIXELS:
         raise FrameDecodeError(f"expected 1 to {MOST_PIXELS} pixels, got {cols} x {rows}")
     return rows, cols
-
-
-def _decoded_png(data: bytes) -> RgbImage:
-    rows, cols = _size(data)
-    flags = cv2.IMREAD_COLOR_RGB | cv2.IMREAD_IGNORE_ORIENTATION
-    try:
-        pixels = cv2.imdecode(np.frombuffer(data, dtype=np.uint8), flags)
-    except cv2.error as problem:
-        raise FrameDecodeError(f"PNG: expected a readable image, got: {problem.err}") from problem
-    # A truncated file decodes to fewer rows, or to nothing.
-    if pixels is None or pixels.shape != (rows, cols, 3) or b"IEND" not in data[-16:]:
-        raise FrameDecodeError(
-            f"PNG: expected {cols} x {rows} pixels and an end mark, got a damaged or truncated file"
-        )
-    return pixels.astype(np.uint8, copy=False)

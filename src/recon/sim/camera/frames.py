@@ -9,7 +9,9 @@ import cv2
 import numpy as np
 
 from recon.camera import CameraError, decode_jpeg
+from recon.camera.decode_png import decode_png
 from recon.camera.omnidirectional import scale_between
+from recon.camera.photo_files import MOST_PIXELS
 from recon.model.imagery import CameraPose, RgbImage
 from recon.sim.errors import FrameSourceError
 
@@ -117,16 +119,12 @@ def read_frame(path: Path, rows: int, cols: int) -> RgbImage:
 
 
 def _decode(path: Path, data: bytes) -> RgbImage:
-    if path.suffix.lower() != ".png":
-        try:
-            return decode_jpeg(data)
-        except CameraError as problem:
-            raise FrameSourceError(f"{path}: {problem}") from None
-    flags = cv2.IMREAD_COLOR_RGB | cv2.IMREAD_IGNORE_ORIENTATION
-    pixels = cv2.imdecode(np.frombuffer(data, dtype=np.uint8), flags)
-    if pixels is None:
-        raise FrameSourceError(f"{path}: expected a PNG image, got an unreadable file")
-    return pixels.astype(np.uint8, copy=False)
+    try:
+        if path.suffix.lower() == ".png":
+            return decode_png(data, MOST_PIXELS)
+        return decode_jpeg(data)
+    except CameraError as problem:
+        raise FrameSourceError(f"{path}: {problem}") from None
 
 
 EXPOSURE_GAINS = (0.35, 0.6, 1.7, 2.6)
