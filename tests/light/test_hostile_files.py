@@ -1,6 +1,7 @@
 """Files of light sensors that are damaged, or that claim more than they hold: one kind of error."""
 
 import io
+import resource
 import zipfile
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -81,7 +82,7 @@ def test_packed_arrays_have_a_limit(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     path = tmp_path / "a.npz"
     path.write_bytes(arrays(np.savez_compressed, other=np.zeros(100_000)))
     assert path.stat().st_size < 10_000
-    monkeypatch.setattr(tables, "MOST_BYTES", 100_000)
+    monkeypatch.setattr(tables, "MOST_UNPACKED_BYTES", 100_000)
     with pytest.raises(RecordError, match="expected at most"):
         read_points(path)
 
@@ -117,3 +118,19 @@ def test_damaged_netcdf_is_refused(tmp_path: Path) -> None:
     path.write_bytes(changed(data, half, b"\xff" * (half - 100)))
     with pytest.raises(RecordError, match=r"a\.nc: expected"):
         read_points(path)
+
+
+def test_a_text_of_two_gigabytes_that_is_not_there_takes_no_memory(tmp_path: Path) -> None:
+    path = tmp_path / "a.nc"
+    with netCDF4.Dataset(path, "w", format="NETCDF3_CLASSIC") as file:
+        file.createDimension("time", 4)
+        file.createVariable("time", "f8", ("time",))[:] = 1.0
+        file["time"].units = "seconds"
+    data = path.read_bytes()
+    # Behind an attribute's name, to four bytes, are its type and its length.
+    length = data.index(b"units\0\0\0") + 8 + 4
+    path.write_bytes(changed(data, length, b"\x7a\x00\x00\x20"))
+    before_kb = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    with pytest.raises(RecordError, match=r"a\.nc: expected"):
+        read_points(path)
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before_kb < 2**20

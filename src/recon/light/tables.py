@@ -5,7 +5,8 @@ Names of columns and arrays are those of `rows.NAMES`, in any case; `rows` state
 
 import zipfile
 import zlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from math import prod
 from pathlib import Path
@@ -34,6 +35,10 @@ from recon.model.units import NS_PER_S
 
 Read = TypeVar("Read")
 MOST_BYTES = 500_000_000
+MOST_UNPACKED_BYTES = 128_000_000
+"""Eight hours of 500 sensors, each second."""
+MOST_MEMORY_BYTES = 1024**3
+"""The same, some times over, and what the library itself takes."""
 UNIX_TIME = "seconds since 1970-01-01"
 NUMBERS = frozenset("fiu")
 """Kinds of NumPy's types that are numbers."""
@@ -63,7 +68,7 @@ class LightTable:
 def read_table(path: Path) -> LightTable:
     """Return a file's table; raises `RecordError`."""
     try:
-        _expect_bytes(path, path.stat().st_size)
+        _expect_bytes(path, path.stat().st_size, MOST_BYTES)
         return READERS[path.suffix.lower()](path)
     except OSError as problem:
         reason = problem.strerror or problem
@@ -161,7 +166,8 @@ def _npz_table(path: Path) -> LightTable:
     # What a member states of its size is the most that is unpacked of it.
     try:
         with zipfile.ZipFile(path) as archive:
-            _expect_bytes(path, sum(each.file_size for each in archive.infolist()))
+            sizes = [each.file_size for each in archive.infolist()]
+            _expect_bytes(path, sum(sizes), MOST_UNPACKED_BYTES)
         with np.load(path, allow_pickle=False) as found:
             arrays = {name: np.asarray(found[name]) for name in found}
     except _UNREADABLE as problem:
@@ -174,14 +180,15 @@ def _netcdf_table(path: Path) -> LightTable:
     with from_extra("netcdf", "NetCDF"):
         import netCDF4
 
-    with netCDF4.Dataset(path) as file:
+    with _little_memory(path), netCDF4.Dataset(path) as file:
         # Text has Python's type for one.
         found = {
             name: each
             for name, each in file.variables.items()
             if getattr(each.dtype, "kind", "") in NUMBERS
         }
-        _expect_bytes(path, 8 * sum(prod(each.shape) for each in found.values()))
+        sizes = [prod(each.shape) for each in found.values()]
+        _expect_bytes(path, 8 * sum(sizes), MOST_UNPACKED_BYTES)
         try:
             arrays = {
                 name: np.ma.filled(np.ma.asarray(each[...], np.float64), np.nan)
@@ -252,10 +259,35 @@ def _rows(path: Path) -> tuple[list[str], list[list[str]]]:
     return head, rows[1:]
 
 
-def _expect_bytes(path: Path, size: int) -> None:
+def _expect_bytes(path: Path, size: int, most: int) -> None:
     """Raise `RecordError` for more than is read of a file, as it is or unpacked."""
-    if size > MOST_BYTES:
-        raise RecordError(f"{path}: expected at most {MOST_BYTES // 1_000_000} MB of values")
+    if size > most:
+        raise RecordError(f"{path}: expected at most {most // 1_000_000} MB of values")
+
+
+@contextmanager
+def _little_memory(path: Path) -> Iterator[None]:
+    """Limit what this process takes more: NetCDF's library allocates what a header claims.
+
+    Where a process can be limited and knows its size, as on Linux. Raises `RecordError`.
+    """
+    try:
+        import resource
+
+        pages = int(Path("/proc/self/statm").read_text().split()[0])
+    except (ImportError, OSError):
+        yield
+        return
+    before, hard = resource.getrlimit(resource.RLIMIT_AS)
+    most = pages * resource.getpagesize() + MOST_MEMORY_BYTES
+    if before == resource.RLIM_INFINITY or most < before:
+        resource.setrlimit(resource.RLIMIT_AS, (most, hard))
+    try:
+        yield
+    except MemoryError as problem:
+        raise RecordError(f"{path}: expected a file that is read in little memory") from problem
+    finally:
+        resource.setrlimit(resource.RLIMIT_AS, (before, hard))
 
 
 def _expect_seconds(path: Path, at_s: float) -> None:
