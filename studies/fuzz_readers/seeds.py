@@ -176,24 +176,6 @@ def light_arrays(folder: Path) -> list[bytes]:
     return found
 
 
-def light_netcdf(folder: Path) -> list[bytes]:
-    """NetCDF in its classic form and as HDF5."""
-    import netCDF4
-
-    found = []
-    for form in ("NETCDF3_CLASSIC", "NETCDF4"):
-        path = folder / "a.nc"
-        with netCDF4.Dataset(path, "w", format=form) as file:
-            file.createDimension("time", 4)
-            file.createDimension("sensor", 3)
-            for name, values in _arrays().items():
-                sides = ("time", "sensor")[: values.ndim] if len(values) == 4 else ("sensor",)
-                file.createVariable(name, "f8", sides)[:] = values
-            file["time"].units = "seconds since 1970-01-01"
-        found.append(path.read_bytes())
-    return found
-
-
 def mavlink_frames(folder: Path) -> list[bytes]:
     """Heartbeat, a command and an item of a mission, of both versions."""
     from pymavlink.dialects.v10 import common as first

@@ -3,12 +3,13 @@
 Names of columns and arrays are those of `rows.NAMES`, in any case; `rows` states what lines are.
 """
 
+import subprocess
+import sys
 import zipfile
 import zlib
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from math import prod
+from io import BytesIO
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -35,11 +36,8 @@ from recon.model.units import NS_PER_S
 
 Read = TypeVar("Read")
 MOST_BYTES = 500_000_000
-MOST_UNPACKED_BYTES = 128_000_000
+MOST_UNPACKED_BYTES = 130_000_000
 """Eight hours of 500 sensors, each second."""
-MOST_MEMORY_BYTES = 1024**3
-"""The same, some times over, and what the library itself takes."""
-UNIX_TIME = "seconds since 1970-01-01"
 NUMBERS = frozenset("fiu")
 """Kinds of NumPy's types that are numbers."""
 _UNREADABLE = (
@@ -163,51 +161,38 @@ def _usual_step_ns(times_ns: IntArray, sensors: IntArray) -> int:
 
 
 def _npz_table(path: Path) -> LightTable:
+    return _of_arrays(path, _arrays_of(path, path))
+
+
+def _arrays_of(path: Path, file: Path | BytesIO) -> dict[str, np.ndarray]:
     # What a member states of its size is the most that is unpacked of it.
     try:
-        with zipfile.ZipFile(path) as archive:
+        with zipfile.ZipFile(file) as archive:
             sizes = [each.file_size for each in archive.infolist()]
             _expect_bytes(path, sum(sizes), MOST_UNPACKED_BYTES)
-        with np.load(path, allow_pickle=False) as found:
-            arrays = {name: np.asarray(found[name]) for name in found}
+        with np.load(file, allow_pickle=False) as found:
+            return {name: np.asarray(found[name]) for name in found}
     except _UNREADABLE as problem:
         raise RecordError(f"{path}: expected an .npz of arrays, got: {problem}") from problem
-    return _of_arrays(path, arrays)
 
 
 def _netcdf_table(path: Path) -> LightTable:
     """Return the table of a NetCDF file: one variable by time and sensor, its times and places."""
     with from_extra("netcdf", "NetCDF"):
-        import netCDF4
-
-    with _little_memory(path), netCDF4.Dataset(path) as file:
-        # Text has Python's type for one.
-        found = {
-            name: each
-            for name, each in file.variables.items()
-            if getattr(each.dtype, "kind", "") in NUMBERS
-        }
-        sizes = [prod(each.shape) for each in found.values()]
-        _expect_bytes(path, 8 * sum(sizes), MOST_UNPACKED_BYTES)
-        try:
-            arrays = {
-                name: np.ma.filled(np.ma.asarray(each[...], np.float64), np.nan)
-                for name, each in found.items()
-            }
-        except RuntimeError as problem:
-            raise RecordError(f"{path}: expected whole variables, got: {problem}") from problem
-        named = next((name for name in found if key_of(name) == "time"), None)
-        if named is not None:
-            about = found[named]
-            units, calendar = (getattr(about, what, "") for what in ("units", "calendar"))
-            try:
-                at = netCDF4.num2date(arrays[named], units, calendar or "standard")
-                arrays[named] = np.asarray(netCDF4.date2num(at, UNIX_TIME), np.float64)
-            except (ValueError, TypeError, AttributeError, OverflowError) as problem:
-                raise RecordError(
-                    f"{path}: expected time in units 'seconds since ...', got {units!a:.80}"
-                ) from problem
-    return _of_arrays(path, arrays)
+        import netCDF4  # noqa: F401
+    with path.open("rb"):
+        pass  # An error to open it is told as of any file.
+    ended = subprocess.run(
+        (sys.executable, "-I", "-m", "recon.light.netcdf_process", str(path.resolve())),
+        capture_output=True,
+        check=False,
+    )
+    if ended.returncode != 0:
+        why = ended.stdout.decode(errors="replace").strip() if ended.returncode == 1 else ""
+        raise RecordError(f"{path}: expected a NetCDF file, got: {why or 'a damaged one'}")
+    arrays = _arrays_of(path, BytesIO(ended.stdout))
+    names = arrays.pop("names").tolist()
+    return _of_arrays(path, dict(zip(names, arrays.values(), strict=True)))
 
 
 def _of_arrays(path: Path, arrays: Mapping[str, np.ndarray]) -> LightTable:
@@ -263,31 +248,6 @@ def _expect_bytes(path: Path, size: int, most: int) -> None:
     """Raise `RecordError` for more than is read of a file, as it is or unpacked."""
     if size > most:
         raise RecordError(f"{path}: expected at most {most // 1_000_000} MB of values")
-
-
-@contextmanager
-def _little_memory(path: Path) -> Iterator[None]:
-    """Limit what this process takes more: NetCDF's library allocates what a header claims.
-
-    Where a process can be limited and knows its size, as on Linux. Raises `RecordError`.
-    """
-    try:
-        import resource
-
-        pages = int(Path("/proc/self/statm").read_text().split()[0])
-    except (ImportError, OSError):
-        yield
-        return
-    before, hard = resource.getrlimit(resource.RLIMIT_AS)
-    most = pages * resource.getpagesize() + MOST_MEMORY_BYTES
-    if before == resource.RLIM_INFINITY or most < before:
-        resource.setrlimit(resource.RLIMIT_AS, (most, hard))
-    try:
-        yield
-    except MemoryError as problem:
-        raise RecordError(f"{path}: expected a file that is read in little memory") from problem
-    finally:
-        resource.setrlimit(resource.RLIMIT_AS, (before, hard))
 
 
 def _expect_seconds(path: Path, at_s: float) -> None:
