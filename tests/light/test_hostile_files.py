@@ -45,6 +45,13 @@ def claiming(shape: str) -> bytes:
     return packed.getvalue()
 
 
+def packed_by(method: int) -> bytes:
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", method) as archive:
+        archive.writestr("time.npy", single())
+    return packed.getvalue()
+
+
 def single() -> bytes:
     data = io.BytesIO()
     np.save(data, np.zeros(4))
@@ -77,6 +84,14 @@ def test_damaged_arrays_are_refused(name: str, tmp_path: Path) -> None:
     path = tmp_path / "a.npz"
     path.write_bytes(DAMAGED[name])
     with pytest.raises(RecordError, match=r"a\.npz: expected"):
+        read_points(path)
+
+
+@pytest.mark.parametrize("method", [zipfile.ZIP_LZMA, zipfile.ZIP_BZIP2])
+def test_packings_without_a_limit_of_size_are_refused(method: int, tmp_path: Path) -> None:
+    path = tmp_path / "a.npz"
+    path.write_bytes(packed_by(method))
+    with pytest.raises(RecordError, match="stored or deflated"):
         read_points(path)
 
 

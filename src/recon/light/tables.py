@@ -40,6 +40,8 @@ MOST_UNPACKED_BYTES = 130_000_000
 """Eight hours of 500 sensors, each second."""
 NUMBERS = frozenset("fiu")
 """Kinds of NumPy's types that are numbers."""
+_PACKINGS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
+"""Python unpacks the others without a limit of size."""
 _UNREADABLE = (
     *(zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, EOFError),
     *(ValueError, KeyError, MemoryError, OverflowError),
@@ -168,8 +170,10 @@ def _arrays_of(path: Path, file: Path | BytesIO) -> dict[str, np.ndarray]:
     # What a member states of its size is the most that is unpacked of it.
     try:
         with zipfile.ZipFile(file) as archive:
-            sizes = [each.file_size for each in archive.infolist()]
-            _expect_bytes(path, sum(sizes), MOST_UNPACKED_BYTES)
+            members = archive.infolist()
+        if any(each.compress_type not in _PACKINGS for each in members):
+            raise RecordError(f"{path}: expected arrays stored or deflated, got another packing")
+        _expect_bytes(path, sum(each.file_size for each in members), MOST_UNPACKED_BYTES)
         with np.load(file, allow_pickle=False) as found:
             return {name: np.asarray(found[name]) for name in found}
     except _UNREADABLE as problem:
