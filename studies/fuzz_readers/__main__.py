@@ -12,6 +12,7 @@ the group `fuzz` (`make fuzz-readers`).
 
 import argparse
 import os
+import re
 import subprocess
 import sys
 import time
@@ -61,9 +62,11 @@ def run(name: str, runs: int) -> int:
         done = subprocess.run(words, cwd=ROOT, stderr=log, check=False)
     took_s = time.monotonic() - began_s
     inputs = len(list((folder / "inputs").glob("*")))
+    counted = re.findall(rb"^#(\d+)\t", (folder / "log").read_bytes(), re.MULTILINE)
+    read = int(counted[-1]) if counted else 0
     problems = sorted(found.glob("*.txt"))
     print(
-        f"{name:14} {runs:>10,} inputs in {took_s:6.0f} s ({runs / took_s:6.0f} a second), "
+        f"{name:16} {read:>9,} inputs in {took_s:6.0f} s ({read / took_s:6.0f} a second), "
         f"{inputs} kept, {len(problems)} problems"
         + (f", ended with {done.returncode}: see {folder / 'log'}" if done.returncode else ""),
         flush=True,
