@@ -29,9 +29,10 @@ from recon import wire
 from recon.client import Station
 from recon.client.messages import StateMessage
 from recon.gateway.mavlink.encoder import Encoder
+from recon.gateway.mavlink.inputs_outputs import Send, StationSeen
 from recon.gateway.mavlink.run import VEHICLES_AT_ONCE
 from recon.gateway.mavlink.step import step
-from recon.gateway.mavlink.values import GatewayState, Send, StationSeen
+from recon.gateway.mavlink.values import GatewayState
 
 LOOP = 100_000
 STATES = 50

@@ -291,6 +291,7 @@ def test_a_token_is_read_from_a_file_and_not_audited(tmp_path: Path) -> None:
         refused = station.recon("status")
         assert refused.code == 1
         assert "token missing" in refused.err
+        assert "--token-file FILE" in refused.err
         unpinned = station.recon("status", "--token-file", token, address=url)
         assert (unpinned.code, "RECON_FINGERPRINT" in unpinned.err) == (1, True)
         assert station.recon("status", "--token-file", token).code == 0

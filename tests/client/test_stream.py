@@ -309,8 +309,9 @@ def test_another_run_of_the_station_has_another_clock() -> None:
 def test_a_refused_stream_states_the_reason() -> None:
     async def main() -> None:
         async with running_station(vehicles=0, token="the-token-of-the-station") as url:
-            with pytest.raises(RequestRefusedError, match="token wrong"):
-                async with Station(url, "another-token-than-this"):
-                    pass
+            for token, sentence in (("another-token-than-this", "wrong"), (None, "missing")):
+                with pytest.raises(RequestRefusedError, match=f"token {sentence}.*--token-file"):
+                    async with Station(url, token):
+                        pass
 
     run_patiently(main())

@@ -6,16 +6,9 @@ import msgspec
 from tests.client import fake_state
 
 from recon.client.messages import StateMessage
+from recon.gateway.mavlink.inputs_outputs import MessageReceived, Output, Send, StationSeen
 from recon.gateway.mavlink.step import step
-from recon.gateway.mavlink.values import (
-    GatewaySettings,
-    GatewayState,
-    MessageReceived,
-    Output,
-    Send,
-    Sender,
-    StationSeen,
-)
+from recon.gateway.mavlink.values import GatewaySettings, GatewayState, Sender
 
 NS = 1_000_000_000
 SENDER = Sender(peer=1, system=255, component=190)

@@ -6,13 +6,8 @@ import pytest
 from pymavlink.dialects.v20 import common as mavlink
 from tests.gateway.fleet_state import Stepping, sent, text, types
 
-from recon.gateway.mavlink.values import (
-    GatewaySettings,
-    Output,
-    PlaceOrder,
-    Sender,
-    StationAnswered,
-)
+from recon.gateway.mavlink.inputs_outputs import Output, PlaceOrder, StationAnswered
+from recon.gateway.mavlink.values import GatewaySettings, Sender
 from recon.model.command import Body, GoTo, Hover, LandNow, Refusal, ReturnHome
 from recon.model.geo import LatLon
 

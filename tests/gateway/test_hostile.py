@@ -8,8 +8,9 @@ from tests.gateway.drawn import given_examples
 from tests.gateway.fleet_state import Stepping
 
 from recon.gateway.mavlink.frames import FrameReader
+from recon.gateway.mavlink.inputs_outputs import CheckMission, PlaceOrder, ReadFence
 from recon.gateway.mavlink.step import _HANDLERS, _TO_ALL
-from recon.gateway.mavlink.values import CheckMission, PlaceOrder, ReadFence, Sender
+from recon.gateway.mavlink.values import Sender
 
 HANDLED = sorted({*_HANDLERS, *_TO_ALL, mavlink.MAVLINK_MSG_ID_HEARTBEAT})
 

@@ -12,19 +12,18 @@ from tests.gateway.fleet_state import ORDERS, SENDER, Stepping, seen, sent, text
 from recon.client.messages import TemporaryZoneStatus
 from recon.client.site import SiteFeature
 from recon.gateway.mavlink.fence import fence_items
-from recon.gateway.mavlink.mission_items import NotUnderstood, mission_of
-from recon.gateway.mavlink.values import (
+from recon.gateway.mavlink.inputs_outputs import (
     CheckMission,
     FenceRead,
-    GatewaySettings,
     Output,
     PeerGone,
     PlaceOrder,
     ReadFence,
-    Sender,
     StationAnswered,
     TimePassed,
 )
+from recon.gateway.mavlink.mission_items import NotUnderstood, mission_of
+from recon.gateway.mavlink.values import GatewaySettings, Sender
 from recon.model.command import FlyMission, Refusal
 from recon.model.mission import Mission, Waypoint
 from recon.model.temporary_zone import TemporaryZoneKind
@@ -177,7 +176,7 @@ def test_clearing_forgets_it() -> None:
 def test_progress_is_what_telemetry_shows_of_the_order() -> None:
     from tests.client import fake_state
 
-    from recon.gateway.mavlink.values import StationSeen
+    from recon.gateway.mavlink.inputs_outputs import StationSeen
 
     gateway = with_mission()
     gateway.receive(mavlink.MAVLink_command_long_message(1, 1, 300, 0, *(0.0,) * 7))

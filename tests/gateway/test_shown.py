@@ -6,6 +6,8 @@ import pytest
 from tests.gateway.fleet_state import Stepping, seen, sent, types
 
 from recon.api import schema
+from recon.gateway.mavlink.dialect import mavlink
+from recon.gateway.mavlink.inputs_outputs import TimePassed
 from recon.gateway.mavlink.values import GatewaySettings
 
 FAST = ["GLOBAL_POSITION_INT", "ATTITUDE"]
@@ -106,6 +108,21 @@ def test_home_is_where_it_was_last_seen_on_the_ground() -> None:
     gateway.give(seen(8.0, is_flying=grounded, position=place()))
     messages = {m.get_type(): m for m in sent(gateway.give(seen(9.0), 2.0))}
     assert messages["HOME_POSITION"].latitude == 419012346
+
+
+def test_of_a_silent_station_nothing_is_told_as_if_it_were_now() -> None:
+    """A client that asks gets no place and no sign of life."""
+    gateway = Stepping()
+    gateway.give(seen(6.0, is_flying=schema.AgedFlag(value=False, age_s=0.05), position=place()))
+    asked = mavlink.MAVLink_command_long_message(1, 1, 512, 0, 242, 0, 0, 0, 0, 0, 0)
+    ping = mavlink.MAVLink_ping_message(1, 2, 0, 0)
+    assert types(gateway.receive(asked)) == ["COMMAND_ACK", "HOME_POSITION"]
+    assert types(gateway.receive(ping)) == ["PING"]
+    gateway.give(TimePassed(), after_s=1.0)
+    (answer,) = sent(gateway.receive(asked))
+    assert answer.result == mavlink.MAV_RESULT_TEMPORARILY_REJECTED
+    assert gateway.receive(ping) == ()
+    assert gateway.receive(mavlink.MAVLink_timesync_message(0, 42)) == ()
 
 
 def test_health_is_all_good_and_never_armable() -> None:

@@ -97,7 +97,7 @@ async def _run(options: MavlinkOptions, at: StationOptions, places: "Endpoints")
         if ground_m is None:
             ground_m = await _ground_above_sea_level_m(station)
         settings = GatewaySettings(options.allow_orders, ground_m)
-        gateway = MavlinkGateway(station, settings, signer)
+        gateway = MavlinkGateway(station, settings, signer, print_now)
         async with gateway.listening(places):
             for place in gateway.places:
                 print_now(f"MAVLink clients: {shown_endpoint(place)}")

@@ -39,6 +39,10 @@ class RequestRefusedError(ClientError):
     is_failure = True
 
 
+LOGIN_ADVICE = "in the shell by --token-file FILE, in Python by `token`"
+"""How a program logs in: after the station's own sentence about a missing or wrong token."""
+
+
 class OrderInvalidError(RequestRefusedError):
     """The station rejected the order's format; the client returns this as a `Refusal`."""
 

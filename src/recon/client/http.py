@@ -12,6 +12,7 @@ import httpx
 
 from recon.client.address import Address
 from recon.client.errors import (
+    LOGIN_ADVICE,
     BadAnswerError,
     MaybeSentError,
     OrderInvalidError,
@@ -23,6 +24,7 @@ from recon.client.trust import CertificateTrust, is_untrusted
 
 LONGEST_ANSWER_BYTES = 16 * 1024 * 1024
 ORDER_INVALID = 422
+LOGIN_NEEDED = 401
 ROLE_TOO_LOW = 403
 PICTURE_NUMBER, MOST_DIGITS = "X-Frame-Id", 18
 
@@ -146,6 +148,8 @@ class Http:
             raise OrderInvalidError(reason)
         if status == ROLE_TOO_LOW:
             raise RequestRefusedError(f"refused (role): {reason}")
+        if status == LOGIN_NEEDED:
+            reason = f"{reason}; {LOGIN_ADVICE}"
         raise RequestRefusedError(
             f"{self._address.http}{path}: refused (HTTP {status}): {reason}; nothing was executed"
         )

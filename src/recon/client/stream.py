@@ -23,7 +23,13 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidStatus, WebSocketException
 
 from recon.client.address import Address
-from recon.client.errors import BadAnswerError, CertificateError, ClientError, RequestRefusedError
+from recon.client.errors import (
+    LOGIN_ADVICE,
+    BadAnswerError,
+    CertificateError,
+    ClientError,
+    RequestRefusedError,
+)
 from recon.client.messages import ReceivedState, StateMessage, decode
 from recon.client.trust import CertificateTrust, is_untrusted
 from recon.model.units import NS_PER_S, ns_to_seconds
@@ -40,7 +46,8 @@ KEEPALIVE_S = 0.5
 FIRST_PAUSE_S = 0.2
 LONGEST_PAUSE_S = 2.0
 _TOO_BIG = 1009
-_REFUSED = (1008, 1013, 4401)
+_LOGIN_NEEDED = 4401
+_REFUSED = (1008, 1013, _LOGIN_NEEDED)
 """Invalid, too many readers, and login needed."""
 
 
@@ -179,8 +186,9 @@ class Stream:
             ) from problem
         except ConnectionClosed as problem:
             if problem.rcvd is not None and problem.rcvd.code in _REFUSED:
+                advice = f"; {LOGIN_ADVICE}" if problem.rcvd.code == _LOGIN_NEEDED else ""
                 raise RequestRefusedError(
-                    f"{self._address.http} refused the stream: {problem.rcvd.reason}"
+                    f"{self._address.http} refused the stream: {problem.rcvd.reason}{advice}"
                 ) from problem
             if problem.sent is not None and problem.sent.code == _TOO_BIG:
                 raise BadAnswerError(

@@ -97,6 +97,8 @@ LIVE_UNDER_S = 1.0
 LATE_UNDER_S = 3.0
 """Running video causes dropouts of a second or two in the field: until then it may just be late."""
 LOST_UNDER_S = 10.0
+ENOUGH_SATELLITES = 8
+"""With fewer a position may be off by tens of metres."""
 
 
 class Staleness(Enum):

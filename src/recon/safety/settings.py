@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 from recon.model.mission import DJI
-from recon.model.vehicle import LATE_UNDER_S, LIVE_UNDER_S
+from recon.model.vehicle import ENOUGH_SATELLITES, LATE_UNDER_S, LIVE_UNDER_S
 from recon.safety.prediction_settings import PredictionSettings, StickBounds
 
 
@@ -268,7 +268,7 @@ class SafetySettings:
     motion_extended_s: float = 3.0
     """Largest age of extended telemetry (1 to 2 Hz): older, mode, battery and GNSS may not hold."""
 
-    min_satellites: int = 8
+    min_satellites: int = ENOUGH_SATELLITES
     """Six give a position; with two more one may go behind a tree and it still holds."""
     min_gnss_level: int = 3
     """First of DJI's levels 0 to 5 at which the aircraft holds its position by GNSS."""

@@ -14,6 +14,7 @@ from typing import Any
 
 from recon.gateway.mavlink.command_orders import NoOrder, Wanted, wanted
 from recon.gateway.mavlink.dialect import mavlink
+from recon.gateway.mavlink.inputs_outputs import PlaceOrder, Send, StationAnswered, Stepped
 from recon.gateway.mavlink.requests import requested_message
 from recon.gateway.mavlink.texts import INFO, with_text
 from recon.gateway.mavlink.values import (
@@ -21,11 +22,7 @@ from recon.gateway.mavlink.values import (
     CommandAsked,
     GatewayState,
     GatewayVehicle,
-    PlaceOrder,
-    Send,
     Sender,
-    StationAnswered,
-    Stepped,
     newest,
 )
 from recon.model.command import EMERGENCY_BODIES
@@ -48,7 +45,7 @@ def command_received(
 ) -> Stepped:
     """Answer a COMMAND_LONG, COMMAND_INT or SET_MODE, or ask the station."""
     number = getattr(message, "command", mavlink.MAVLINK_MSG_ID_SET_MODE)
-    asked = requested_message(state, vehicle, number, getattr(message, "param1", 0.0))
+    asked = requested_message(state, vehicle, number, getattr(message, "param1", 0.0), now_ns)
     if asked is not None:
         return _answered(state, vehicle.system_id, sender, number, asked[0], more=asked[1])
     key = (sender.peer, vehicle.system_id, *_content(message))

@@ -13,17 +13,14 @@ from typing import Any
 
 from recon.gateway.mavlink.commands import BUSY
 from recon.gateway.mavlink.dialect import ENCODED_DEGREE, mavlink
+from recon.gateway.mavlink.inputs_outputs import FenceRead, ReadFence, Send, Stepped
 from recon.gateway.mavlink.mission_upload import FENCE, MISSION, mission_answer
 from recon.gateway.mavlink.values import (
     MAX_FENCES,
     FenceAsked,
-    FenceRead,
     GatewayState,
     GatewayVehicle,
-    ReadFence,
-    Send,
     Sender,
-    Stepped,
     newest,
 )
 

@@ -16,17 +16,14 @@ from typing import Any
 
 from recon.gateway.mavlink.commands import BUSY, MAY_PASS_LATER, READ_ONLY
 from recon.gateway.mavlink.dialect import mavlink
+from recon.gateway.mavlink.inputs_outputs import CheckMission, Send, StationAnswered, Stepped
 from recon.gateway.mavlink.mission_items import NotUnderstood, mission_of
 from recon.gateway.mavlink.texts import with_text
 from recon.gateway.mavlink.values import (
-    CheckMission,
     GatewayState,
     GatewayVehicle,
     MissionAsked,
-    Send,
     Sender,
-    StationAnswered,
-    Stepped,
     StoredMission,
     Upload,
 )

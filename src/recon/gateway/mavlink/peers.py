@@ -14,8 +14,9 @@ from itertools import count
 from typing import Any
 
 from recon.gateway.mavlink.frames import MAX_FAULTS, FrameReader, MavlinkFrame
+from recon.gateway.mavlink.inputs_outputs import Input, MessageReceived, PeerGone
 from recon.gateway.mavlink.signing import Signer
-from recon.gateway.mavlink.values import Input, MessageReceived, PeerGone, Sender
+from recon.gateway.mavlink.values import Sender
 
 MAX_PEERS = 16
 SILENT_S = 10.0

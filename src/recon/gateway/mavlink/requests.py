@@ -5,7 +5,9 @@ from typing import Any
 
 from recon.gateway.mavlink import telemetry as shown
 from recon.gateway.mavlink.dialect import COMPONENT, mavlink
-from recon.gateway.mavlink.values import GatewayState, GatewayVehicle, Send, Sender, Stepped
+from recon.gateway.mavlink.inputs_outputs import Send, Stepped
+from recon.gateway.mavlink.shown import is_live_now
+from recon.gateway.mavlink.values import GatewayState, GatewayVehicle, Sender
 
 CAPABILITIES = (
     mavlink.MAV_PROTOCOL_CAPABILITY_MAVLINK2
@@ -47,15 +49,20 @@ _OLD_REQUESTS = {
 
 
 def requested_message(
-    state: GatewayState, vehicle: GatewayVehicle, command: int, number: float
+    state: GatewayState, vehicle: GatewayVehicle, command: int, number: float, now_ns: int
 ) -> tuple[int, tuple[Any, ...]] | None:
-    """Return result and messages of a command that asks for a message; None of another command."""
+    """Return result and messages of a command that asks for a message; None of another command.
+
+    A vehicle without live telemetry has no home now: what was known of it may be old.
+    """
     if command == mavlink.MAV_CMD_REQUEST_MESSAGE:
         wanted = round(number) if 0 <= number < 2**24 else -1
     elif command in _OLD_REQUESTS:
         wanted = _OLD_REQUESTS[command]
     else:
         return None
+    if wanted == mavlink.MAVLINK_MSG_ID_HOME_POSITION and not is_live_now(state, vehicle, now_ns):
+        return mavlink.MAV_RESULT_TEMPORARILY_REJECTED, ()
     make = _ON_REQUEST.get(wanted)
     made = None if make is None else make(vehicle, state.settings.ground_above_sea_level_m)
     return (UNSUPPORTED, ()) if made is None else (ACCEPTED, (made,))

@@ -12,20 +12,17 @@ import time
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterator, Sequence
 from contextlib import AsyncExitStack, asynccontextmanager, contextmanager
 from dataclasses import dataclass
+from datetime import datetime
 
 from recon.client import ClientError, RequestRefusedError, Station
 from recon.gateway.endpoints import Endpoint, shown_endpoint
 from recon.gateway.errors import GatewayError
+from recon.gateway.mavlink.contact import StationContact
 from recon.gateway.mavlink.encoder import Encoder
 from recon.gateway.mavlink.fence import FenceTooLongError, fence_items
-from recon.gateway.mavlink.peers import Peers, TcpClient, UdpSocket
-from recon.gateway.mavlink.signing import Signer
-from recon.gateway.mavlink.step import step
-from recon.gateway.mavlink.values import (
+from recon.gateway.mavlink.inputs_outputs import (
     CheckMission,
     FenceRead,
-    GatewaySettings,
-    GatewayState,
     Input,
     Output,
     PlaceOrder,
@@ -35,6 +32,10 @@ from recon.gateway.mavlink.values import (
     StationSeen,
     TimePassed,
 )
+from recon.gateway.mavlink.peers import Peers, TcpClient, UdpSocket
+from recon.gateway.mavlink.signing import Signer
+from recon.gateway.mavlink.step import step
+from recon.gateway.mavlink.values import GatewaySettings, GatewayState
 from recon.model.command import GoTo, Refusal
 
 STATE_WITHIN_S = 0.25
@@ -88,13 +89,24 @@ async def _udp_socket(local: Endpoint | None, remote: Endpoint | None) -> socket
     return opened
 
 
+def _time_of_day(at_s: float) -> str:
+    """Return a monotonic time as a clock on the wall shows it."""
+    return f"{datetime.fromtimestamp(time.time() - time.monotonic() + at_s):%H:%M:%S}"
+
+
 class MavlinkGateway:
     """A running gateway of one station; `station` is connected and no operator yet."""
 
     def __init__(
-        self, station: Station, settings: GatewaySettings, signer: Signer | None = None
+        self,
+        station: Station,
+        settings: GatewaySettings,
+        signer: Signer | None = None,
+        say: Callable[[str], None] = lambda line: None,
     ) -> None:
+        """`say` takes a line whenever the station has become unreachable, or is back."""
         self._station = station
+        self._say = say
         self._state = GatewayState(settings)
         self._encoder = Encoder(signer)
         self.peers = Peers(self.handle, signer)
@@ -139,15 +151,18 @@ class MavlinkGateway:
 
     async def run(self) -> None:
         """Pass states on until cancelled; raises the `ClientError` that ends the stream."""
-        number = 0
+        number, contact, newest_s = 0, StationContact(), time.monotonic()
         while True:
             seen = await self._station.next_state(number, STATE_WITHIN_S)
             if seen is None:
                 self.handle(TimePassed())
             else:
                 state, age_s = seen
-                number = state.number
+                number, newest_s = state.number, time.monotonic() - age_s
                 await self._show(StationSeen(state.message, age_s))
+            line = contact.change(newest_s, time.monotonic(), _time_of_day)
+            if line is not None:
+                self._say(line)
             for udp in self._sockets:
                 udp.drop_silent(time.monotonic())
             await self._count_as_operator()

@@ -12,16 +12,11 @@ from recon.client.messages import StateMessage
 from recon.client.telemetry import Telemetry
 from recon.gateway.mavlink import telemetry as shown
 from recon.gateway.mavlink.dialect import mavlink
-from recon.gateway.mavlink.values import (
-    GatewayState,
-    GatewayVehicle,
-    Output,
-    Send,
-    StationSeen,
-    Stepped,
-)
+from recon.gateway.mavlink.inputs_outputs import Output, Send, StationSeen, Stepped
+from recon.gateway.mavlink.values import GatewayState, GatewayVehicle
 from recon.gateway.samples import SAME_SAMPLE_NS, is_live, taken_ns
 from recon.model.command import Phase
+from recon.model.units import NS_PER_S, ns_to_seconds
 
 HIGHEST_SYSTEM = 240
 """Ids above are those of ground stations."""
@@ -47,7 +42,8 @@ def station_seen(state: GatewayState, seen: StationSeen, now_ns: int) -> Stepped
         vehicles[each.number] = vehicle
         if messages:
             outputs.append(Send(each.number, tuple(messages)))
-    return replace(state, vehicles=vehicles), tuple(outputs)
+    seen_ns = now_ns - round(seen.age_s * NS_PER_S)
+    return replace(state, vehicles=vehicles, seen_ns=seen_ns), tuple(outputs)
 
 
 def _shown(
@@ -63,6 +59,11 @@ def _shown(
             messages += _slow(known, telemetry, seen, ground_m)
             messages += _progress(known, seen.message, changes)
     return replace(known, **changes), messages
+
+
+def is_live_now(state: GatewayState, vehicle: GatewayVehicle, now_ns: int) -> bool:
+    """Return whether a vehicle's telemetry is live, also while no state of the station comes."""
+    return is_live(vehicle.telemetry, ns_to_seconds(now_ns - state.seen_ns))
 
 
 def _add_samples(

@@ -7,24 +7,26 @@ from typing import Any
 from recon.gateway.mavlink import mission_download, mission_upload
 from recon.gateway.mavlink.commands import command_received, order_answered
 from recon.gateway.mavlink.dialect import mavlink
-from recon.gateway.mavlink.requests import is_for_autopilot, parameters, ping, time_sync
-from recon.gateway.mavlink.shown import station_seen
-from recon.gateway.mavlink.values import (
-    CommandAsked,
-    FenceAsked,
+from recon.gateway.mavlink.inputs_outputs import (
     FenceRead,
-    GatewayState,
-    GatewayVehicle,
     Input,
     MessageReceived,
-    MissionAsked,
     Output,
     PeerGone,
-    Sender,
     StationAnswered,
     StationSeen,
     Stepped,
     TimePassed,
+)
+from recon.gateway.mavlink.requests import is_for_autopilot, parameters, ping, time_sync
+from recon.gateway.mavlink.shown import is_live_now, station_seen
+from recon.gateway.mavlink.values import (
+    CommandAsked,
+    FenceAsked,
+    GatewayState,
+    GatewayVehicle,
+    MissionAsked,
+    Sender,
 )
 
 Handler = Callable[[GatewayState, GatewayVehicle, Sender, Any, int], Stepped]
@@ -49,7 +51,7 @@ _TO_ALL: dict[int, Handler] = {
     mavlink.MAVLINK_MSG_ID_TIMESYNC: time_sync,
     mavlink.MAVLINK_MSG_ID_PING: ping,
 }
-"""Questions to nobody in particular: the vehicle with the lowest id answers."""
+"""Questions to nobody in particular: the live vehicle with the lowest id answers, or none."""
 
 
 def step(state: GatewayState, given: Input, now_ns: int) -> Stepped:
@@ -72,7 +74,8 @@ def _received(state: GatewayState, sender: Sender, message: Any, now_ns: int) ->
     number = message.get_msgId()
     handle = _TO_ALL.get(number)
     if handle is not None:
-        first = min(state.vehicles, default=None)
+        live = (n for n, each in state.vehicles.items() if is_live_now(state, each, now_ns))
+        first = min(live, default=None)
         if first is None:
             return state, ()
         return handle(state, state.vehicles[first], sender, message, now_ns)

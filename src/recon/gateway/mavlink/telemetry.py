@@ -9,11 +9,10 @@ from math import atan2, degrees, hypot, isfinite, nan, radians
 from recon.client.telemetry import Aged, Telemetry
 from recon.gateway.mavlink.dialect import ENCODED_DEGREE, UNKNOWN_UINT16, mavlink
 from recon.gateway.mavlink.flight_modes import custom_mode
+from recon.model.vehicle import ENOUGH_SATELLITES
 
 FRESH_S = 3.0
 """Values of the second group, battery and satellites, come every second; older ones are unknown."""
-ENOUGH_SATELLITES = 8
-"""As the gate's rule `gnss` has it."""
 Place = tuple[float, float]
 """Latitude and longitude, degrees."""
 NO_POSE = (1.0, 0.0, 0.0, 0.0)

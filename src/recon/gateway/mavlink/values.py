@@ -1,12 +1,10 @@
-"""The gateway's state, what comes into its step, and what goes out: frozen values."""
+"""The gateway's state: frozen values."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from recon.client.messages import StateMessage
 from recon.client.telemetry import Telemetry
-from recon.model.command import Body, Refusal
 from recon.model.mission import Mission
 
 MAX_PENDING = 64
@@ -115,100 +113,13 @@ class Pending:
 
 
 @dataclass(frozen=True, slots=True)
-class StationSeen:
-    """A state of the station, `age_s` after it was created."""
-
-    message: StateMessage
-    age_s: float = 0.0
-
-
-@dataclass(frozen=True, slots=True)
-class MessageReceived:
-    """A checked message of a client."""
-
-    sender: Sender
-    message: Any
-
-
-@dataclass(frozen=True, slots=True)
-class PeerGone:
-    """A client whose connection has closed, or that has been silent for too long."""
-
-    peer: int
-
-
-@dataclass(frozen=True, slots=True)
-class StationAnswered:
-    """The station's answer to an order or a check; `problem` when there is none."""
-
-    token: int
-    refusal: Refusal | None = None
-    command_id: int | None = None
-    problem: str | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class FenceRead:
-    """The site's fence as mission items; `problem` when it could not be read."""
-
-    token: int
-    items: tuple[Any, ...] = ()
-    problem: str | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class TimePassed:
-    """Time has passed."""
-
-
-Input = StationSeen | MessageReceived | PeerGone | StationAnswered | FenceRead | TimePassed
-
-
-@dataclass(frozen=True, slots=True)
-class Send:
-    """Messages of a vehicle, to one peer or to all (None)."""
-
-    system_id: int
-    messages: tuple[Any, ...]
-    peer: int | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class PlaceOrder:
-    """An order for the station's gate."""
-
-    token: int
-    serial: str
-    body: Body
-    takeoff: bool = False
-
-
-@dataclass(frozen=True, slots=True)
-class CheckMission:
-    """A mission that the station's gate is to judge; nothing is sent to the vehicle."""
-
-    token: int
-    serial: str
-    mission: Mission
-
-
-@dataclass(frozen=True, slots=True)
-class ReadFence:
-    """Read the site's boundary and zones."""
-
-    token: int
-
-
-Output = Send | PlaceOrder | CheckMission | ReadFence
-Outputs = tuple[Output, ...]
-
-
-@dataclass(frozen=True, slots=True)
 class GatewayState:
     """All of the gateway's state. Vehicles and uploads are by system id, requests by token."""
 
     settings: GatewaySettings = field(default_factory=GatewaySettings)
     vehicles: Mapping[int, GatewayVehicle] = field(default_factory=dict)
+    seen_ns: int = 0
+    """When the newest state of the station was created, by the gateway's own clock."""
     uploads: Mapping[int, Upload] = field(default_factory=dict)
     pending: Mapping[int, Pending] = field(default_factory=dict)
     answers: Mapping[tuple[Any, ...], tuple[Any, int]] = field(default_factory=dict)
@@ -232,9 +143,6 @@ class GatewayState:
     def is_busy(self) -> bool:
         """Whether too many requests are under way for another one."""
         return len(self.pending) >= MAX_PENDING
-
-
-Stepped = tuple[GatewayState, Outputs]
 
 
 def newest(mapping: Mapping[Any, Any], key: Any, value: Any, limit: int) -> dict[Any, Any]:
