@@ -131,6 +131,9 @@ def test_two_loggers_with_one_name_are_not_mixed() -> None:
     after = reads(station, 2.0, "another", west=1.0)
     assert after.light_sensors.sensors == station.light_sensors.sensors
     assert "mast sends one of this name" in after.light_sensors.problem
+    view = light_sensors_view(after, at_ns(7.0))
+    assert view is not None
+    assert view.problem_age_s == 5.0
     gone = reads(station, 100.0, "another", west=1.0)
     assert gone.light_sensors.sensors["west"].source == "another"
 

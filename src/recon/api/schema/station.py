@@ -177,6 +177,7 @@ class LightSensorsView(Message):
     sensors: list[LightSensorView]
     refused_lines: int
     problem: str = Field(description="why the newest of them was refused; empty: none was")
+    problem_age_s: float | None = Field(description="since then; null: none was refused")
 
 
 class StationState(Message):

@@ -3,7 +3,7 @@
 from recon.api import schema
 from recon.api.schema.station import Light
 from recon.model.shade import SUNLIT_TRANSMITTANCE
-from recon.station.api_views.ages import since_s
+from recon.station.api_views.ages import known_since_s, since_s
 from recon.station.state.light_sensors import LightSensor
 from recon.station.state.station import Station
 
@@ -24,6 +24,7 @@ def light_sensors_view(station: Station, now_ns: int) -> schema.LightSensorsView
         ],
         refused_lines=lights.refused,
         problem=lights.problem,
+        problem_age_s=known_since_s(lights.problem_at_ns, now_ns),
     )
 
 

@@ -33,7 +33,7 @@ def on_light_read(station: Station, event: LightRead, now_ns: int) -> Station:
         sensors[name] = replace(sensor, shows=sensor.direct(sensor.readings[-1][1]))
     lights = replace(lights, sensors=sensors, refused=lights.refused + event.refused)
     if problem:
-        lights = replace(lights, problem=f"{event.source}: {problem}")
+        lights = replace(lights, problem=f"{event.source}: {problem}", problem_at_ns=now_ns)
     return replace(station, light_sensors=lights)
 
 

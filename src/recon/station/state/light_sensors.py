@@ -97,3 +97,5 @@ class LightSensors:
     """Lines that could not be used."""
     problem: str = ""
     """Why the newest of them could not, and of which logger."""
+    problem_at_ns: int | None = None
+    """When that was; None without one."""

@@ -3,12 +3,12 @@ import { useStation } from "../../console";
 import type { LightSensorView } from "../../protocol";
 import { text } from "../../text/catalogue";
 import { isSensorLive } from "../../text/light";
-import { formatAge, formatFraction, formatQuantity } from "../../text/quantities";
+import { agedBy, formatAge, formatFraction, formatQuantity } from "../../text/quantities";
 import { Warning } from "../Panel";
 
 /** Light sensors at the field: what each shows, and what the shade map says where it is. */
 export function LightSensors() {
-  const { fleet } = useStation();
+  const { fleet, behindS } = useStation();
   return (
     <Show when={fleet.lightSensors}>
       {(lights) => (
@@ -17,7 +17,15 @@ export function LightSensors() {
           <ul class="light-sensors">
             <For each={lights().sensors}>{(sensor) => <LightSensor sensor={sensor} />}</For>
           </ul>
-          <Warning text={lights().problem || null} />
+          <Warning
+            text={
+              lights().problem &&
+              text.lightSensors.problem(
+                lights().problem,
+                formatAge(agedBy(lights().problem_age_s, behindS())),
+              )
+            }
+          />
         </div>
       )}
     </Show>

@@ -30,7 +30,12 @@ const GATE: LightSensorView = {
 };
 
 function showSensors(...sensors: LightSensorView[]) {
-  const light_sensors = { sensors, refused_lines: 1, problem: "10.0.0.9: line 4: no number" };
+  const light_sensors = {
+    sensors,
+    refused_lines: 1,
+    problem: "10.0.0.9: line 4: no number",
+    problem_age_s: 61,
+  };
   page = renderPage(SunPanel, station([vehicle(1)], { shade: shadeLine(), light_sensors }));
 }
 
@@ -40,7 +45,9 @@ describe("light sensors", () => {
     expect(find(page.root, ".light-sensors").textContent).toBe(
       "gate1480In sun. Map: shade. Right in 75\u00a0% of 4 maps.",
     );
-    expect(page.root.textContent).toContain("10.0.0.9: line 4: no number");
+    expect(page.root.textContent).toContain("10.0.0.9: line 4: no number (1 min 1 s ago)");
+    page.age(9);
+    expect(page.root.textContent).toContain("no number (1 min 10 s ago)");
   });
 
   it("shows a silent one as stale and never its light", () => {

@@ -47,6 +47,7 @@ export const lightSensors = {
     nowhere: "No place stated.",
   },
   right: (share: string, maps: number) => `Right in ${share} of ${plural(maps, "map")}.`,
+  problem: (what: string, age: string) => `${what} (${age} ago)`,
   stale: (age: string) => `stale, ${age} ago`,
   ahead: (time: string) => `stale, clock ${time} ahead`,
   /** On the map. */
