@@ -31,12 +31,14 @@ class ProcessSample:
 class AllStop:
     """One all stop: when it was pressed, and the time until the last vehicle's packet was sent.
 
-    `unsent` counts accepted vehicles whose packet the audit does not have.
+    `away` counts vehicles without a link at that moment; `unsent` packets of the press before that
+    were never sent, also not when their vehicles were back.
     """
 
     at_s: float
     on_wires_ms: float
     unsent: int = 0
+    away: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,7 +140,11 @@ def window_lines(soak: Soak, from_s: float, until_s: float) -> list[str]:
             f"  state {last.state_bytes / 1e3:.0f} kB, record {last.record_bytes / MB:.0f} MB"
         )
     if p50_ms is not None and p99_ms is not None:
-        lines.append(f"  {len(stops)} all stops: p50 {p50_ms:.1f} ms, p99 {p99_ms:.1f} ms")
+        away = sum(each.away for each in stops)
+        lines.append(
+            f"  {len(stops)} all stops: p50 {p50_ms:.1f} ms, p99 {p99_ms:.1f} ms; "
+            f"{away} vehicles were without a link, and told later"
+        )
     lines.append(f"  {'process':<12}{'memory MB':>10}{'handles':>9}{'threads':>9}")
     newest = {
         (each.role, each.pid): each for each in soak.processes if from_s <= each.at_s < until_s

@@ -6,9 +6,10 @@ from pathlib import Path
 
 from benches.station.bench_all_stop import ask
 
+from studies.soak.all_stop import AllStops
 from studies.soak.clients import Clients
 from studies.soak.figures import Sizes, Soak, faults_of, growth_lines, window_lines
-from studies.soak.surveyor import AuditTail, Surveyor, press_all_stop
+from studies.soak.surveyor import Surveyor
 from studies.soak.world import World, size_of
 
 SAMPLES = 360
@@ -30,7 +31,9 @@ def soak_for(folder: Path, minutes: float, vehicles: int, stop_every_s: float) -
         stack.callback(surveyor.end)
         clients = Clients(world)
         stack.callback(clients.end)
-        ended = _watched(world, soak, surveyor, length_s, stop_every_s)
+        stops = AllStops(world)
+        stack.callback(stops.end)
+        ended = _watched(world, soak, surveyor, stops, length_s, stop_every_s)
     print(f"clients: {dict(clients.seen)}")
     print(f"surveys: {surveyor.requested} requested, {surveyor.finished} done")
     for reason in sorted(set(surveyor.refusals))[:10]:
@@ -45,10 +48,15 @@ def soak_for(folder: Path, minutes: float, vehicles: int, stop_every_s: float) -
 
 
 def _watched(
-    world: World, soak: Soak, surveyor: Surveyor, length_s: float, stop_every_s: float
+    world: World,
+    soak: Soak,
+    surveyor: Surveyor,
+    stops: AllStops,
+    length_s: float,
+    stop_every_s: float,
 ) -> list[str]:
     """Sample, press and print until the end; return why it ended early."""
-    began_s, tail = time.monotonic(), AuditTail(world.audit)
+    began_s = time.monotonic()
     sample_every_s = max(SOONEST_SAMPLE_S, length_s / SAMPLES)
     window_s = min(LONGEST_WINDOW_S, WINDOW_SHARE * length_s)
     sample_at_s, press_at_s, window_end_s = 0.0, stop_every_s, window_s
@@ -61,7 +69,7 @@ def _watched(
             _sample(world, soak, now_s)
         if now_s >= press_at_s:
             press_at_s = now_s + stop_every_s
-            stopped = press_all_stop(world, tail, now_s)
+            stopped = stops.press(now_s)
             if stopped is not None:
                 soak.stops.append(stopped)
             surveyor.start_again_soon()

@@ -1,4 +1,4 @@
-"""The operator of a soak: two surveys flown again and again, and all stops that are measured.
+"""The operator of a soak: two surveys flown again and again.
 
 Once a second each region's newest survey is looked at: without one, or after its end, another is
 requested; one that is planned is started with its half of the fleet; members without rows for
@@ -11,20 +11,15 @@ import threading
 import time
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
-from datetime import datetime
-from pathlib import Path
 from typing import Any
 
 from studies.soak.field import REGIONS_M
-from studies.soak.figures import AllStop
 from studies.soak.world import World
 
 LOOK_EVERY_S = 1.0
 IDLE_S = 15.0
 HEIGHT_M, SPEED_MPS = 60.0, 8.0
 ENDED = ("done", "aborted", "refused")
-SENT_WITHIN_S = 2.0
 
 
 class Surveyor:
@@ -101,51 +96,3 @@ def post(http_port: int, path: str, facts: object = None) -> dict[str, Any]:
     answer: dict[str, Any] = json.loads(connection.getresponse().read())
     connection.close()
     return answer
-
-
-@dataclass(slots=True)
-class AuditTail:
-    """Reads on in the newest file of an audit: when each order's packet was first sent."""
-
-    folder: Path
-    sent_utc_s: dict[int, float] = field(default_factory=dict)
-    _path: Path | None = None
-    _at: int = 0
-
-    def read_on(self) -> None:
-        """Read the whole lines that were added since."""
-        newest = max(self.folder.glob("*.jsonl"))
-        if newest != self._path:
-            self._path, self._at = newest, 0
-        with newest.open("rb") as file:
-            file.seek(self._at)
-            data = file.read()
-        whole = data[: data.rfind(b"\n") + 1]
-        self._at += len(whole)
-        for line in whole.splitlines():
-            if b'"order.sent"' in line:
-                entry = json.loads(line)
-                moment = datetime.fromisoformat(entry["utc"]).timestamp()
-                self.sent_utc_s.setdefault(entry["details"]["id"], moment)
-
-
-def press_all_stop(world: World, tail: AuditTail, at_s: float) -> AllStop | None:
-    """Stop all, and release them; None if nothing was in the air.
-
-    The time is that until each packet was handed to its socket, as the audit says.
-    """
-    pressed_utc_s = time.time()
-    answer = post(world.http_port, "/api/all-stop")
-    numbers = [each["command_id"] for each in answer["results"] if each["accepted"]]
-    if not numbers:
-        return None
-    end_s = time.monotonic() + SENT_WITHIN_S
-    tail.read_on()
-    while time.monotonic() < end_s and any(n not in tail.sent_utc_s for n in numbers):
-        time.sleep(0.05)
-        tail.read_on()
-    post(world.http_port, "/api/all-stop/release", {"serials": None})
-    sent = [tail.sent_utc_s[number] for number in numbers if number in tail.sent_utc_s]
-    tail.sent_utc_s.clear()
-    last_ms = 1e3 * (max(sent, default=pressed_utc_s + SENT_WITHIN_S) - pressed_utc_s)
-    return AllStop(at_s, last_ms, len(numbers) - len(sent))

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from studies.soak.all_stop import AuditTail
 from studies.soak.field import drones_and_imagers, write_faults, write_site
 from studies.soak.figures import (
     AllStop,
@@ -14,7 +15,6 @@ from studies.soak.figures import (
     growths,
     window_lines,
 )
-from studies.soak.surveyor import AuditTail
 from studies.soak.virtual_days import Tally
 
 from recon.sim.app.fault_file import load_faults
@@ -100,6 +100,7 @@ def test_the_audit_is_read_on_from_whole_line_to_whole_line(tmp_path: Path) -> N
     with path.open("a", encoding="ascii") as file:
         file.write('nt","utc":"2026-01-01T00:00:03+00:00","details":{"id":6}}\n' + sent % (4, 5))
     tail.read_on()
+    assert tail.lacks({5, 6, 7}) == {7}
     assert tail.sent_utc_s[6] - tail.sent_utc_s[5] == pytest.approx(2.0)
 
 
