@@ -13,6 +13,7 @@ COMMANDS = {
     "cli.bench_startup": ("--repeats", "1"),
     "fields.bench_import": ("--fields", "20", "--only", "register"),
     "fleet.bench_trust": (),
+    "gateway.bench_foxglove": ("--vehicles", "2", "--seconds", "1"),
     "gateway.bench_mavlink": ("--vehicles", "2", "--seconds", "1", "--orders", "2"),
     "product.bench_tag": ("--photos", "8"),
     "record.bench_record": ("--seconds", "1"),
