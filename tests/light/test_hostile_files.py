@@ -100,7 +100,7 @@ def test_packed_arrays_have_a_limit(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     path.write_bytes(arrays(np.savez_compressed, other=np.zeros(100_000)))
     assert path.stat().st_size < 10_000
     monkeypatch.setattr(tables, "MOST_UNPACKED_BYTES", 100_000)
-    with pytest.raises(RecordError, match="expected at most"):
+    with pytest.raises(RecordError, match="expected arrays of at most"):
         read_points(path)
 
 

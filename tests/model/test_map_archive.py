@@ -58,11 +58,15 @@ def test_what_is_no_archive_is_one_error(data: st.DataObject) -> None:
 
 def test_other_arrays_and_larger_ones_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     file = io.BytesIO()
-    np.savez(file, transmittance=np.zeros((2, 2)), object=np.array([None], object))
+    np.savez(file, transmittance=np.zeros((2, 2)))
     with pytest.raises(MapArchiveError, match="transmittance: float32 of 2 dimensions"):
         read_shade(file.getvalue())
-    with pytest.raises(MapArchiveError, match="transmittance is not a file"):
+    pickled = io.BytesIO()
+    np.savez(pickled, transmittance=np.array([None], object))
+    with pytest.raises(MapArchiveError, match="Object arrays cannot be loaded"):
+        read_shade(pickled.getvalue())
+    with pytest.raises(MapArchiveError, match="expected an array transmittance, got"):
         read_shade(forecast_archive(SUN))
     monkeypatch.setattr(map_archive, "MOST_BYTES", 1000)
-    with pytest.raises(MapArchiveError, match="arrays of up to 1000 bytes"):
+    with pytest.raises(MapArchiveError, match="arrays of at most 1000 bytes"):
         read_shade(shade_archive(SHADE))

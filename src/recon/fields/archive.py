@@ -3,28 +3,21 @@
 import io
 import re
 import zipfile
-import zlib
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path, PurePosixPath
 
 from recon.fields.limits import LARGEST_UNPACKED_BYTES, MOST_MEMBERS
 from recon.fields.shape import FieldFileError
+from recon.model.array_archive import DAMAGE, PACKINGS
 
 SHAPEFILE_PARTS = (".shp", ".shx", ".dbf", ".prj", ".cpg")
 NEEDED_PARTS = (".shx", ".dbf", ".prj")
 SHP_MAGIC = b"\x00\x00\x27\x0a"
 MOST_SHAPEFILES = 200
 _ENTRY = b"PK\x01\x02"
-_PACKINGS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
-"""Python unpacks the others without a limit of size."""
 _ISOXML = re.compile(r"(TASKDATA|PFD\d+)\.XML", re.IGNORECASE)
 _NOT_THE_USERS = re.compile(r"(^|/)(__MACOSX/|\._|\.DS_Store$|Thumbs\.db$|desktop\.ini$)")
 """What systems put beside a user's files."""
-_UNREADABLE = (
-    *(zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, ValueError, EOFError),
-    OSError,
-)
-"""Raised for an archive that is damaged, encrypted, or packed in an unusual way."""
 
 Members = Mapping[str, zipfile.ZipInfo]
 
@@ -40,7 +33,7 @@ def unpacked(data: bytes, folder: Path) -> dict[str, str]:
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             return _Unpacking(archive, folder).documents()
-    except _UNREADABLE as problem:
+    except (*DAMAGE, OSError) as problem:
         raise FieldFileError(f"expected a zip archive that can be read, got: {problem}") from None
 
 
@@ -104,7 +97,7 @@ class _Unpacking:
     def _write(self, target: str, name: str) -> str:
         """Write a member; the size that its header claims is not trusted."""
         member = self._members[name]
-        if member.compress_type not in _PACKINGS:
+        if member.compress_type not in PACKINGS:
             raise FieldFileError("expected files stored or deflated, got another compression")
         with self._archive.open(member) as file:
             content = file.read(self._left + 1)

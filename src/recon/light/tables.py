@@ -5,8 +5,6 @@ Names of columns and arrays are those of `rows.NAMES`, in any case; `rows` state
 
 import subprocess
 import sys
-import zipfile
-import zlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from io import BytesIO
@@ -29,6 +27,7 @@ from recon.light.rows import (
     read_head,
     read_row,
 )
+from recon.model.array_archive import ArchiveError, read_arrays
 from recon.model.arrays import FloatArray, IntArray
 from recon.model.errors import RecordError
 from recon.model.extras import from_extra
@@ -40,13 +39,6 @@ MOST_UNPACKED_BYTES = 130_000_000
 """Eight hours of 500 sensors, each second."""
 NUMBERS = frozenset("fiu")
 """Kinds of NumPy's types that are numbers."""
-_PACKINGS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
-"""Python unpacks the others without a limit of size."""
-_UNREADABLE = (
-    *(zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, EOFError),
-    *(ValueError, KeyError, MemoryError, OverflowError),
-)
-"""Raised for an archive of arrays that is damaged, encrypted, or claims more than it holds."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -167,17 +159,10 @@ def _npz_table(path: Path) -> LightTable:
 
 
 def _arrays_of(path: Path, file: Path | BytesIO) -> dict[str, np.ndarray]:
-    # What a member states of its size is the most that is unpacked of it.
     try:
-        with zipfile.ZipFile(file) as archive:
-            members = archive.infolist()
-        if any(each.compress_type not in _PACKINGS for each in members):
-            raise RecordError(f"{path}: expected arrays stored or deflated, got another packing")
-        _expect_bytes(path, sum(each.file_size for each in members), MOST_UNPACKED_BYTES)
-        with np.load(file, allow_pickle=False) as found:
-            return {name: np.asarray(found[name]) for name in found}
-    except _UNREADABLE as problem:
-        raise RecordError(f"{path}: expected an .npz of arrays, got: {problem}") from problem
+        return read_arrays(file, MOST_UNPACKED_BYTES)
+    except ArchiveError as problem:
+        raise RecordError(f"{path}: {problem}") from problem
 
 
 def _netcdf_table(path: Path) -> LightTable:

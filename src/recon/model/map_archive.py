@@ -7,8 +7,6 @@ before anything is unpacked, and nothing is unpickled.
 """
 
 import io
-import zipfile
-import zlib
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
@@ -16,6 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from recon.model.array_archive import ArchiveError, read_arrays
 from recon.model.errors import ReconError
 from recon.model.geo import GeoPoint, GroundGrid, LocalFrame
 from recon.model.shade import ShadeMap, SunForecast
@@ -104,21 +103,14 @@ def _packed(grid: GroundGrid, **arrays: Any) -> bytes:
 def _unpacked(data: bytes) -> Iterator[Arrays]:
     """Yield the arrays of an archive; errors of reading them become a `MapArchiveError`."""
     try:
-        with zipfile.ZipFile(io.BytesIO(data)) as parts:
-            size = sum(part.file_size for part in parts.infolist())
-        if size > MOST_BYTES:
-            raise ValueError(f"arrays of up to {MOST_BYTES} bytes, got {size}")
-        with np.load(io.BytesIO(data), allow_pickle=False) as arrays:
-            yield arrays
-    except (ValueError, TypeError, KeyError, EOFError, OSError, *_DAMAGE) as problem:
+        yield read_arrays(io.BytesIO(data), MOST_BYTES)
+    except (ArchiveError, ValueError, TypeError, KeyError, OverflowError, OSError) as problem:
         raise MapArchiveError(f"expected an archive of a map (.npz): {problem}") from problem
 
 
-_DAMAGE = zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, MemoryError
-"""What a damaged archive raises besides."""
-
-
 def _array(arrays: Arrays, name: str, kind: type[np.generic], ndim: int) -> npt.NDArray[Any]:
+    if name not in arrays:
+        raise ValueError(f"expected an array {name}, got {', '.join(arrays)[:80]}")
     array = arrays[name]
     if not np.issubdtype(array.dtype, kind) or array.ndim != ndim:
         raise ValueError(f"{name}: {kind.__name__} of {ndim} dimensions, got {array.dtype}")
