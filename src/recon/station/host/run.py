@@ -85,9 +85,7 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
                 place.folder, clock, last_order_id=last_id, keep_current=is_snapshot_good
             )
             auditor.snapshot_problem = lambda: snapshots.problem or flown.problem
-            driver.observe = _both(snapshots.observe, observe)
-            snapshots.start(station)
-            stack.callback(snapshots.close)
+            _start_snapshots(snapshots, driver, observe, stack)
         _write_app_list(config, driver, stack)
         folder = _text(config.record_folder)
         service = Service.around(driver, config.site, folder, begun.log, last_run.first_ids[0])
@@ -99,8 +97,7 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
         line = _start_guard(config, driver, service, doors, place.folder, stack)
         links = await _start_links_and_worker(config, driver, service, line, recorder, stack)
         if config.is_announced:
-            name = "Recon" if config.site_folder is None else config.site.name
-            announce(name, links.hosts, links.port, last)
+            _announce(config, links, last)
         lights = config.light_sensors and await start_light_input(
             config.light_sensors, config.site.frame, driver.handle, stack
         )
@@ -119,6 +116,19 @@ async def run(config: RunConfig, on_start: OnStart) -> None:
         )
         auditor.printer.start()
         await serve(config, driver, service, doors, lambda: on_start(started), stack)
+
+
+def _start_snapshots(
+    snapshots: SnapshotWriter, driver: AsyncioDriver, observe: Observe, stack: AsyncExitStack
+) -> None:
+    driver.observe = _both(snapshots.observe, observe)
+    snapshots.start(driver.station)
+    stack.callback(snapshots.close)
+
+
+def _announce(config: RunConfig, links: LinkServer, last: AsyncExitStack) -> None:
+    name = "Recon" if config.site_folder is None else config.site.name
+    announce(name, links.hosts, links.port, last)
 
 
 def _flown_regions(config: RunConfig, place: AuditPlace, stack: AsyncExitStack) -> FlownRegions:
