@@ -6,7 +6,6 @@ hostile map costs an answer and nothing else. It ends with its input.
 """
 
 import json
-import os
 import sys
 from collections import OrderedDict
 from collections.abc import Callable
@@ -14,13 +13,14 @@ from pathlib import Path
 from stat import S_ISLNK, S_ISREG
 from typing import IO, TYPE_CHECKING, Any
 
+from recon.processes.limits import limit_itself
+
 if TYPE_CHECKING:
     from recon.basemap.map_file import MapFile
 
 MOST_MEMORY_BYTES = 2 * 1024**3
 """Limit of address space: GDAL, PROJ and numpy map 1 GiB before a file is read."""
 MOST_OPEN = 4
-NICENESS = 10
 OUT_OF_MEMORY = "expected a map that is read in 2 GiB of memory, got one that needs more"
 
 Answer = tuple[dict[str, Any], bytes]
@@ -28,24 +28,9 @@ Answer = tuple[dict[str, Any], bytes]
 
 def main() -> None:
     """Answer until the input ends."""
-    limit_itself()
+    limit_itself(MOST_MEMORY_BYTES, writes_files=False)
     answers, sys.stdout = sys.stdout.buffer, sys.stderr
     serve(Path(sys.argv[1]), sys.stdin.buffer, answers)
-
-
-def limit_itself() -> None:
-    """Give this process little memory, no files to write and low priority, where it can be."""
-    os.environ.update(OPENBLAS_NUM_THREADS="1", OMP_NUM_THREADS="1", GDAL_NUM_THREADS="1")
-    os.environ.update(CPL_VSIL_CURL_ALLOWED_EXTENSIONS="{none}", PROJ_NETWORK="OFF")
-    if hasattr(os, "nice"):
-        os.nice(NICENESS)  # The station is more urgent.
-    try:
-        import resource
-    except ImportError:
-        return  # Not on Windows: the time limit of the station remains.
-    resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY_BYTES, MOST_MEMORY_BYTES))
-    resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
 def serve(folder: Path, questions: IO[bytes], answers: IO[bytes]) -> None:

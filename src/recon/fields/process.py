@@ -10,6 +10,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from recon.processes.limits import limit_itself
+
 MOST_CPU_S = 15
 MOST_MEMORY_BYTES = {False: 768 * 1024**2, True: 2 * 1024**3}
 """Limits of address space; GDAL, PROJ and numpy (True) map 1 GiB before a file is read."""
@@ -20,7 +22,10 @@ def main() -> None:
     """Read what the command line names in the working folder."""
     task = json.loads(sys.argv[1])
     documents: dict[str, str] = task["documents"]
-    _limit_itself(needs_libraries=any(name.endswith((*TABLES, ".json")) for name in documents))
+    needs_libraries = any(name.endswith((*TABLES, ".json")) for name in documents)
+    # A GeoPackage's own SQL functions and extensions stay off.
+    os.environ.update(OGR_SQLITE_LOAD_EXTENSIONS="", OGR_GPKG_FOREIGN_KEY_CHECK="NO")
+    limit_itself(MOST_MEMORY_BYTES[needs_libraries], MOST_CPU_S)
     from recon.fields.shape import FieldFileError
 
     answer: dict[str, Any]
@@ -45,25 +50,6 @@ def read_documents(documents: dict[str, str], *, close_paths: bool) -> dict[str,
     for name in documents:
         found.extend(_read(name, documents))
     return tidied(found, close_paths=close_paths)
-
-
-def _limit_itself(*, needs_libraries: bool) -> None:
-    # One thread each: their stacks would count as memory.
-    os.environ.update(OPENBLAS_NUM_THREADS="1", OMP_NUM_THREADS="1", GDAL_NUM_THREADS="1")
-    # Nothing is fetched, whatever a file names.
-    os.environ.update(CPL_VSIL_CURL_ALLOWED_EXTENSIONS="{none}", PROJ_NETWORK="OFF")
-    # A GeoPackage's own SQL functions and extensions stay off.
-    os.environ.update(OGR_SQLITE_LOAD_EXTENSIONS="", OGR_GPKG_FOREIGN_KEY_CHECK="NO")
-    if hasattr(os, "nice"):
-        os.nice(10)  # The station is more urgent.
-    try:
-        import resource
-    except ImportError:
-        return  # Not on Windows: the time limit of the station remains.
-    most = MOST_MEMORY_BYTES[needs_libraries]
-    resource.setrlimit(resource.RLIMIT_AS, (most, most))
-    resource.setrlimit(resource.RLIMIT_CPU, (MOST_CPU_S, MOST_CPU_S + 1))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
 def _read(name: str, documents: dict[str, str]) -> Any:

@@ -5,7 +5,6 @@ this one limits itself, and prints the variables with numbers as an .npz of `nam
 `0`, `1` and so on, times in seconds since 1970. Else it ends with 1 and prints a sentence.
 """
 
-import os
 import sys
 from collections.abc import Iterator
 from math import prod
@@ -14,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from recon.light.rows import key_of
+from recon.processes.limits import limit_itself
 
 MOST_CPU_S = 60
 MOST_MEMORY_BYTES = 2 * 1024**3
@@ -25,7 +25,7 @@ UNIX_TIME = "seconds since 1970-01-01"
 
 def main() -> None:
     """Read what the command line names."""
-    _limit_itself()
+    limit_itself(MOST_MEMORY_BYTES, MOST_CPU_S)
     try:
         found = dict(variables(sys.argv[1]))
     except (ValueError, OSError, RuntimeError, MemoryError) as problem:
@@ -33,17 +33,6 @@ def main() -> None:
         sys.exit(1)
     arrays = {str(number): each for number, each in enumerate(found.values())}
     np.savez(sys.stdout.buffer, allow_pickle=False, names=np.array([*found]), **arrays)
-
-
-def _limit_itself() -> None:
-    os.environ.update(OPENBLAS_NUM_THREADS="1", OMP_NUM_THREADS="1")
-    try:
-        import resource
-    except ImportError:
-        return  # Not on Windows.
-    resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY_BYTES, MOST_MEMORY_BYTES))
-    resource.setrlimit(resource.RLIMIT_CPU, (MOST_CPU_S, MOST_CPU_S + 1))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
 def variables(path: str) -> Iterator[tuple[str, Any]]:

@@ -13,12 +13,12 @@ from typing import Any
 
 from recon.model.errors import ReconError
 from recon.model.extras import from_extra
+from recon.processes.parent import end_with_parent
 from recon.score.kept_runs import flown_code
 from recon.score.run import Report, run
 from recon.score.run_score import RunScore
 from recon.score.scenario import Scenario
 from recon.score.scenario_schema import ScenarioError
-from recon.station.kernel.method_process import end_with_parent
 
 CONNECT_WITHIN_S, WORKERS_WITHIN_S = 10.0, 600.0
 """A batch system may let the first worker wait for minutes."""

@@ -6,19 +6,18 @@ ready fail at once, so that no other job waits for it.
 """
 
 import multiprocessing
-import os
 import pickle
 import signal
 from collections.abc import Callable
 from importlib import import_module
 from io import BytesIO
 from multiprocessing.connection import Connection
-from threading import Thread
 from types import MappingProxyType
 from typing import Any
 
 from recon.model.errors import ReconError, describe_fault
 from recon.model.methods import MethodError
+from recon.processes.parent import end_with_parent
 
 LIMIT_S = 2.0
 """Longest time of one job: other jobs wait for it, and a survey is stepped once a second."""
@@ -137,18 +136,3 @@ def _answer(work: Callable[[Any], Any], given: Any) -> bytes:
         return packed((False, str(problem)))
     except Exception as problem:  # a method of another package may raise anything
         return packed((False, describe_fault(problem)))
-
-
-def end_with_parent() -> None:
-    """End this process as soon as the one that started it ends, even when that is killed.
-
-    Otherwise it would finish its work, and then wait for the next piece indefinitely.
-    """
-    parent = multiprocessing.parent_process()
-    assert parent is not None
-
-    def watch() -> None:
-        parent.join()
-        os._exit(1)
-
-    Thread(target=watch, daemon=True).start()

@@ -1,0 +1,1 @@
+"""Processes of our own beside the main one: their limits, and their end."""
