@@ -10,22 +10,20 @@ from tests.gateway.running_gateway import PATIENCE_S
 from tests.patient_loop import run_patiently
 
 from recon.client import Station
-from recon.gateway.mavlink.contact import StationContact
+from recon.gateway.contact import StationContact
 from recon.gateway.mavlink.run import MavlinkGateway
 from recon.gateway.mavlink.values import GatewaySettings
 
 
 def test_a_line_at_each_change_with_its_times() -> None:
-    contact = StationContact()
-    assert contact.change(100.0, 100.9, "{:g}".format) is None
-    assert contact.change(100.0, 101.0, "{:g}".format) == (
+    contact = StationContact("{:g}".format)
+    assert contact.change(100.0, 100.9) is None
+    assert contact.change(100.0, 101.0) == (
         "station unreachable since 100: no vehicle is shown until it is back"
     )
-    assert contact.change(100.0, 170.0, "{:g}".format) is None
-    assert contact.change(172.0, 172.1, "{:g}".format) == (
-        "station connected again at 172.1, after 72 s"
-    )
-    assert contact.change(172.2, 172.3, "{:g}".format) is None
+    assert contact.change(100.0, 170.0) is None
+    assert contact.change(172.0, 172.1) == ("station connected again at 172.1, after 72 s")
+    assert contact.change(172.2, 172.3) is None
 
 
 def test_a_station_that_was_stopped_is_said_and_its_return_too() -> None:

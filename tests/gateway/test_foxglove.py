@@ -267,7 +267,8 @@ def test_topics_stop_while_the_station_is_gone_and_it_is_said() -> None:
             await client.until(FIRST, 2)
             between.pull()
             await client.until("/log", len(client.received["/log"]) + 1)
-            assert running.lines == ["no states from the station: all topics stop"]
+            (line,) = running.lines
+            assert line.startswith("station unreachable since ")
             gone = {topic: len(each) for topic, each in client.received.items()}
             with pytest.raises(TimeoutError):
                 async with asyncio.timeout(0.5):
@@ -275,7 +276,7 @@ def test_topics_stop_while_the_station_is_gone_and_it_is_said() -> None:
             assert {topic: len(each) for topic, each in client.received.items()} == gone
             between.is_plugged = True
             await client.until(FIRST, gone[FIRST] + 2)
-            assert running.lines[1:] == ["the station is back"]
+            assert running.lines[1].startswith("station connected again at ")
             lines = [Log.FromString(each.data) for each in client.received["/log"]]
             assert [each.message for each in lines if each.name == "gateway"] == running.lines
 

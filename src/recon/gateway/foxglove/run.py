@@ -12,6 +12,7 @@ from contextlib import asynccontextmanager, suppress
 
 from recon.client import BadAnswerError, ClientError, Station
 from recon.client.messages import StateMessage
+from recon.gateway.contact import StationContact
 from recon.gateway.endpoints import Endpoint
 from recon.gateway.foxglove.audit_messages import audit_messages, gateway_line
 from recon.gateway.foxglove.live_message import GEOJSON, LOG, LiveMessage
@@ -19,14 +20,12 @@ from recon.gateway.foxglove.live_topics import LiveTopics
 from recon.gateway.foxglove.newest_pictures import NewestPictures
 from recon.gateway.foxglove.site_message import SITE_TOPIC, site_message
 from recon.gateway.foxglove.vehicle_messages import Shown, is_another_run, new_samples
-from recon.model.vehicle import LIVE_UNDER_S
 from recon.record.mcap.foxglove import LOG_TOPIC
 
 STATE_WITHIN_S = 0.25
 AUDIT_EVERY_S = 0.5
 AUDIT_PAGE = 100
 AGAIN_EVERY_S = 2.0
-GONE = "no states from the station: all topics stop"
 
 
 class FoxgloveGateway:
@@ -46,7 +45,7 @@ class FoxgloveGateway:
         """What was said last of pictures that cannot be read."""
         self._heard_s = time.monotonic()
         """When the newest state was made, on this computer's monotonic clock."""
-        self._is_heard = True
+        self._contact = StationContact()
 
     @asynccontextmanager
     async def listening(self, place: Endpoint) -> AsyncIterator[Endpoint]:
@@ -112,13 +111,11 @@ class FoxgloveGateway:
 
     def _mind_silence(self) -> None:
         """Say when the station's states stop coming, and when they come again."""
-        is_heard = time.monotonic() - self._heard_s < LIVE_UNDER_S
-        if is_heard != self._is_heard:
-            self._is_heard = is_heard
-            text = "the station is back" if is_heard else GONE
-            level = "info" if is_heard else "error"
-            self._say(text)
-            self._topics.publish(gateway_line(text, level, time.time_ns()))
+        line = self._contact.change(self._heard_s, time.monotonic())
+        if line is not None:
+            level = "error" if self._contact.is_lost else "info"
+            self._say(line)
+            self._topics.publish(gateway_line(line, level, time.time_ns()))
 
     async def _show_pictures(self, message: StateMessage | None, age_s: float) -> None:
         if message is not None:
@@ -136,7 +133,7 @@ class FoxgloveGateway:
             self._say(problem)
 
     async def _show_audit(self) -> None:
-        while self._is_heard:
+        while not self._contact.is_lost:
             missions, after = self._missions, self._audit_n
             page = await self._station.audit(after, AUDIT_PAGE)
             if missions is not self._missions or not page.entries:
@@ -151,7 +148,7 @@ class FoxgloveGateway:
 
     async def _show_again(self) -> None:
         self._topics.wants(LOG_TOPIC, LOG)
-        if not self._is_heard or self._seen is None:
+        if self._contact.is_lost or self._seen is None:
             return
         if self._topics.wants(SITE_TOPIC, GEOJSON):
             self._topics.publish(site_message(self._seen))

@@ -12,12 +12,11 @@ import time
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterator, Sequence
 from contextlib import AsyncExitStack, asynccontextmanager, contextmanager
 from dataclasses import dataclass
-from datetime import datetime
 
 from recon.client import ClientError, RequestRefusedError, Station
+from recon.gateway.contact import StationContact
 from recon.gateway.endpoints import Endpoint, shown_endpoint
 from recon.gateway.errors import GatewayError
-from recon.gateway.mavlink.contact import StationContact
 from recon.gateway.mavlink.encoder import Encoder
 from recon.gateway.mavlink.fence import FenceTooLongError, fence_items
 from recon.gateway.mavlink.inputs_outputs import (
@@ -89,11 +88,6 @@ async def _udp_socket(local: Endpoint | None, remote: Endpoint | None) -> socket
     return opened
 
 
-def _time_of_day(at_s: float) -> str:
-    """Return a monotonic time as a clock on the wall shows it."""
-    return f"{datetime.fromtimestamp(time.time() - time.monotonic() + at_s):%H:%M:%S}"
-
-
 class MavlinkGateway:
     """A running gateway of one station; `station` is connected and no operator yet."""
 
@@ -160,7 +154,7 @@ class MavlinkGateway:
                 state, age_s = seen
                 number, newest_s = state.number, time.monotonic() - age_s
                 await self._show(StationSeen(state.message, age_s))
-            line = contact.change(newest_s, time.monotonic(), _time_of_day)
+            line = contact.change(newest_s, time.monotonic())
             if line is not None:
                 self._say(line)
             for udp in self._sockets:
